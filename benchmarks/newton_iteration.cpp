@@ -1,0 +1,163 @@
+// The cost of one planar Newton iteration (gradient, Hessian, factorisation, solution) against one
+// bare factorisation and solution of the same matrix by Eigen's SimplicialLDLT with its natural
+// ordering, the pattern analysed before. Run it and compare lines of one run: machines differ.
+#include <benchmark/benchmark.h>
+
+#include <Eigen/SparseCholesky>
+#include <cmath>
+#include <random>
+
+#include "der/assembly/assembler.hpp"
+#include "der/model/builder.hpp"
+#include "der/model/state.hpp"
+#include "der/solvers/banded_ldlt.hpp"
+#include "der/solvers/newton.hpp"
+
+namespace {
+
+using namespace der;
+
+/// A cantilever whose shape waves a little, so that no angle is zero.
+scenario::Scene cantilever(int nodes) {
+  scenario::Scene scene;
+  scenario::Rod rod;
+  rod.name = "rod";
+  for (int i = 0; i < nodes; ++i) {
+    const double s = static_cast<double>(i) / (nodes - 1);
+    rod.points.push_back({s, 0.01 * std::sin(20.0 * s)});
+  }
+  rod.cross_section = scenario::Circle{0.01};
+  rod.material = scenario::Material{1e7, 1000.0};
+  rod.natural_curvature = 0.0;
+  scene.rods.push_back(rod);
+  scenario::Support support;
+  support.rod = "rod";
+  support.clamp = true;
+  scene.supports.push_back(support);
+  scene.loads.push_back({scenario::Gravity{{0.0, -9.81}}, {}});
+  return scene;
+}
+
+struct Problem {
+  explicit Problem(int nodes)
+      : model(build_model(cantilever(nodes))),
+        pattern(build_pattern(model)),
+        solver(pattern),
+        assembler(model, solver.layout()),
+        state(initial_state(model)),
+        stage(model),
+        gradient(Vector::Zero(model.num_dofs())),
+        values(Vector::Zero(assembler.num_values())),
+        right_side(Vector::Zero(model.num_free())) {
+    model.controls.evaluate(0.0, stage.controls);
+    stage.inertia = 1e6;  // a time step of 1 ms
+    stage.inertia_target = state.positions;
+  }
+
+  void assemble() {
+    assembler.gradient_and_hessian(state.positions, stage.controls, gradient, values);
+    assembler.add_diagonal(stage.mass, stage.inertia, values);
+  }
+
+  void newton_iteration() {
+    assemble();
+    benchmark::DoNotOptimize(solver.factorize(values));
+    for (Index i = 0; i < model.num_free(); ++i) {
+      right_side[i] = -gradient[model.free_dofs[static_cast<std::size_t>(i)]];
+    }
+    solver.solve(right_side);
+    benchmark::DoNotOptimize(right_side.data());
+  }
+
+  Model model;
+  Pattern pattern;
+  BandedLdlt solver;
+  Assembler assembler;
+  State state;
+  Stage stage;
+  Vector gradient;
+  Vector values;
+  Vector right_side;
+};
+
+void count_nodes(benchmark::State& state) {
+  state.counters["per_node"] =
+      benchmark::Counter(static_cast<double>(state.iterations() * state.range(0)),
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void newton_iteration(benchmark::State& state) {
+  Problem problem(static_cast<int>(state.range(0)));
+  for (auto _ : state) problem.newton_iteration();
+  count_nodes(state);
+}
+
+void assembly_alone(benchmark::State& state) {
+  Problem problem(static_cast<int>(state.range(0)));
+  for (auto _ : state) {
+    problem.assemble();
+    benchmark::DoNotOptimize(problem.values.data());
+  }
+  count_nodes(state);
+}
+
+void residual_alone(benchmark::State& state) {
+  Problem problem(static_cast<int>(state.range(0)));
+  for (auto _ : state) {
+    problem.assembler.gradient(problem.state.positions, problem.stage.controls, problem.gradient);
+    benchmark::DoNotOptimize(problem.gradient.data());
+  }
+  count_nodes(state);
+}
+
+void banded_solve_alone(benchmark::State& state) {
+  Problem problem(static_cast<int>(state.range(0)));
+  problem.assemble();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(problem.solver.factorize(problem.values));
+    problem.solver.solve(problem.right_side);
+    benchmark::DoNotOptimize(problem.right_side.data());
+  }
+  count_nodes(state);
+}
+
+void eigen_simplicial_ldlt(benchmark::State& state) {
+  Problem problem(static_cast<int>(state.range(0)));
+  problem.assemble();
+  using Matrix = Eigen::SparseMatrix<double>;
+  std::vector<Eigen::Triplet<double>> triplets;
+  const Index size = problem.model.num_free();
+  for (Index j = 0; j < size; ++j) {
+    for (Index k = problem.pattern.outer[static_cast<std::size_t>(j)];
+         k < problem.pattern.outer[static_cast<std::size_t>(j) + 1]; ++k) {
+      const Index i = problem.pattern.inner[static_cast<std::size_t>(k)];
+      triplets.emplace_back(i, j, problem.values[problem.solver.layout().slot(i, j)]);
+    }
+  }
+  Matrix matrix(size, size);
+  matrix.setFromTriplets(triplets.begin(), triplets.end());
+  Eigen::SimplicialLDLT<Matrix, Eigen::Lower, Eigen::NaturalOrdering<int>> ldlt;
+  ldlt.analyzePattern(matrix);
+  const Vector right_side = Vector::Ones(size);
+  Vector solution(size);
+  for (auto _ : state) {
+    ldlt.factorize(matrix);
+    solution = ldlt.solve(right_side);
+    benchmark::DoNotOptimize(solution.data());
+  }
+  count_nodes(state);
+}
+
+void sizes(benchmark::internal::Benchmark* benchmark) {
+  for (const int nodes : {51, 101, 401, 1601}) benchmark->Arg(nodes);
+}
+
+BENCHMARK(newton_iteration)->Apply(sizes);
+BENCHMARK(eigen_simplicial_ldlt)->Apply(sizes);
+BENCHMARK(assembly_alone)->Apply(sizes);
+BENCHMARK(residual_alone)->Apply(sizes);
+BENCHMARK(banded_solve_alone)->Apply(sizes);
+
+}  // namespace
+
+BENCHMARK_MAIN();

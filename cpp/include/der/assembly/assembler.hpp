@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <tuple>
+#include <vector>
+
+#include "der/assembly/pattern.hpp"
+#include "der/core/types.hpp"
+#include "der/energies/local_term.hpp"
+#include "der/model/model.hpp"
+
+namespace der {
+
+/// Sums the elements of a model into a gradient over all degrees of freedom and a Hessian over the
+/// free ones, straight into the solver's array of values. The scatter maps are built once;
+/// assembling allocates nothing. Entries of held degrees of freedom go to one spare slot at the end
+/// of the values.
+class Assembler {
+ public:
+  Assembler(const Model& model, const MatrixLayout& layout);
+
+  /// Length of the array of values that `hessian` fills, spare slot included.
+  [[nodiscard]] Index num_values() const { return num_values_; }
+
+  /// Sets `gradient` (all degrees of freedom) [N] of the potential energy of all elements.
+  void gradient(const Vector& positions, const Vector& controls, Vector& gradient) const;
+  /// As above, and sets `values` to the Hessian [N/m].
+  void gradient_and_hessian(const Vector& positions, const Vector& controls, Vector& gradient,
+                            Vector& values) const;
+  /// Adds `diagonal` (all degrees of freedom) times `factor` to the matrix diagonal.
+  void add_diagonal(const Vector& diagonal, double factor, Vector& values) const;
+  /// Adds `shift` to every diagonal entry of the matrix.
+  void shift_diagonal(double shift, Vector& values) const;
+
+ private:
+  template <Derivatives D>
+  void assemble(const Vector& positions, const Vector& controls, Vector& gradient,
+                Vector* values) const;
+
+  const Model& model_;
+  Index num_values_ = 0;
+  std::vector<Index> diagonal_slots_;  // of each free degree of freedom
+
+  template <class List>
+  struct ScatterMap;
+  template <class Kernel>
+  struct ScatterMap<ElementList<Kernel>> {
+    static constexpr std::size_t kSlots = Kernel::kDofs * (Kernel::kDofs + 1) / 2;
+    std::vector<std::array<Index, kSlots>> slots;  // lower triangle, column by column
+  };
+  template <class Lists>
+  struct ScatterMaps;
+  template <class... Lists>
+  struct ScatterMaps<std::tuple<Lists...>> {
+    using type = std::tuple<ScatterMap<Lists>...>;
+  };
+  typename ScatterMaps<ElementLists>::type scatter_;
+};
+
+}  // namespace der

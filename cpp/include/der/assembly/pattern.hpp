@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+
+namespace der {
+
+/// The nonzero positions of the lower triangle of the system matrix over the free degrees of
+/// freedom, in compressed columns with ascending rows. Built once from the element lists; the
+/// diagonal is always present.
+struct Pattern {
+  Index size = 0;
+  Index half_bandwidth = 0;   ///< largest row - column
+  std::vector<Index> outer;   ///< size + 1 column starts
+  std::vector<Index> inner;   ///< row of each nonzero
+
+  [[nodiscard]] Index nonzeros() const { return static_cast<Index>(inner.size()); }
+};
+Pattern build_pattern(const Model& model);
+
+/// Where the entry (row, column), row >= column, of the lower triangle lies in a solver's array of
+/// values. Two ways serve all solvers: compressed columns, and the columns of a band.
+class MatrixLayout {
+ public:
+  static MatrixLayout compressed(const Pattern& pattern);
+  /// Column j holds rows j .. j + half_bandwidth.
+  static MatrixLayout band(Index size, Index half_bandwidth);
+
+  [[nodiscard]] Index slot(Index row, Index column) const;
+  [[nodiscard]] Index num_values() const { return num_values_; }
+
+ private:
+  MatrixLayout() = default;
+  const Pattern* pattern_ = nullptr;  // null: a band
+  Index width_ = 0;
+  Index num_values_ = 0;
+};
+
+}  // namespace der

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace der {
+
+/// Base of every error that the library reports on purpose. `status()` is the short machine-readable
+/// name that ends up in `summary.json`; `what()` says what went wrong, where, and what to try.
+class Error : public std::runtime_error {
+ public:
+  Error(std::string status, const std::string& message)
+      : std::runtime_error(message), status_(std::move(status)) {}
+  [[nodiscard]] const std::string& status() const noexcept { return status_; }
+
+ private:
+  std::string status_;
+};
+
+/// One complaint about a scene: 1-based line and column in the text (0 when the scene did not come
+/// from a text), the key path (`rods.beam.nodes`) and a sentence.
+struct Diagnostic {
+  int line = 0;
+  int column = 0;
+  std::string path;
+  std::string message;
+};
+
+/// A scene that cannot be run as written. Holds every complaint found, in the order of the text.
+class SceneError : public Error {
+ public:
+  /// `source` is the file name, or empty for a dictionary.
+  SceneError(const std::string& source, std::vector<Diagnostic> diagnostics);
+  [[nodiscard]] const std::vector<Diagnostic>& diagnostics() const noexcept { return diagnostics_; }
+
+ private:
+  std::vector<Diagnostic> diagnostics_;
+};
+
+/// Newton's method found no solution, even with the smallest allowed time step.
+class NotConvergedError : public Error {
+ public:
+  explicit NotConvergedError(const std::string& message) : Error("not_converged", message) {}
+};
+
+/// The motion grew without bound or a value stopped being a number.
+class DivergedError : public Error {
+ public:
+  explicit DivergedError(const std::string& message) : Error("diverged", message) {}
+};
+
+}  // namespace der

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace der {
+
+/// Dense column vector of run-time length: one entry per degree of freedom unless said otherwise.
+using Vector = Eigen::VectorXd;
+using Vec2 = Eigen::Vector2d;
+using Mat2 = Eigen::Matrix2d;
+
+/// Integer type of every node, element, degree-of-freedom and matrix-slot index. 32 bits halve the
+/// memory traffic of the scatter maps and still reach two thousand million.
+using Index = int;
+
+}  // namespace der

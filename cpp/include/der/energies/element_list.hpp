@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "der/core/types.hpp"
+
+namespace der {
+
+/// All elements of one kind: for each, the degrees of freedom it acts on (in the order in which its
+/// kernel takes them) and its constants. Elements hold indices into a graph of nodes and edges, so
+/// nothing here knows about chains.
+///
+/// A `Kernel` is a struct with
+///   static constexpr int kDofs;              number of coordinates of the stencil
+///   static constexpr EnergyTerm kTerm;       what its energy is booked under
+///   struct Constants;                        of one element, fixed during a run
+///   template <Derivatives D>
+///   static void evaluate(const Constants&, const Vector& controls,
+///                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out);
+template <class Kernel>
+struct ElementList {
+  using KernelType = Kernel;
+  std::vector<std::array<Index, Kernel::kDofs>> dofs;
+  std::vector<typename Kernel::Constants> constants;
+
+  [[nodiscard]] std::size_t size() const noexcept { return dofs.size(); }
+  void add(const std::array<Index, Kernel::kDofs>& element_dofs,
+           const typename Kernel::Constants& element_constants) {
+    dofs.push_back(element_dofs);
+    constants.push_back(element_constants);
+  }
+};
+
+}  // namespace der

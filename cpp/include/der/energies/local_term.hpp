@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace der {
+
+/// How much of an element's energy a kernel must work out. Kernels take it as a template argument,
+/// so that a residual evaluation does not pay for a Hessian.
+enum class Derivatives { Energy, Gradient, Hessian };
+
+/// What an element's energy is booked under in reports.
+enum class EnergyTerm { Stretch, Bend, Load };
+
+/// Energy of one element [J] with its derivatives by the element's own N coordinates. The kernels
+/// fill the members up to the order asked for; of `hessian` only the lower triangle is set.
+template <int N>
+struct LocalTerm {
+  double energy = 0.0;
+  Eigen::Matrix<double, N, 1> gradient;
+  Eigen::Matrix<double, N, N> hessian;
+};
+
+}  // namespace der

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cmath>
+
+#include "der/core/types.hpp"
+#include "der/energies/local_term.hpp"
+#include "der/kinematics/curvature_measure.hpp"
+#include "der/kinematics/planar_edge.hpp"
+
+namespace der {
+
+/// First and second derivative of 1/2 EI (kappa(phi) - rest_kappa)^2 / l by the turning angle phi.
+struct BendResponse {
+  double energy = 0.0;
+  double moment = 0.0;     ///< dE/dphi [N m]
+  double stiffness = 0.0;  ///< d2E/dphi2 [N m]
+};
+
+template <class Curvature>
+BendResponse bend_response(double stiffness_per_length, double rest_kappa, double phi) {
+  const CurvatureValue k = Curvature::of(phi);
+  const double excess = k.kappa - rest_kappa;
+  return {0.5 * stiffness_per_length * excess * excess, stiffness_per_length * excess * k.first,
+          stiffness_per_length * (k.first * k.first + excess * k.second)};
+}
+
+/// Bending at a node between the edges e0 = x1 - x0 and e1 = x2 - x1:
+/// E = 1/2 EI (kappa - rest_kappa)^2 / l_v with the Voronoi length l_v = (l0 + l1)/2 and kappa a
+/// function of the signed turning angle phi from e0 to e1 (Bergou et al. 2008, section 4.2.1).
+template <class Curvature>
+struct PlanarBend {
+  static constexpr int kDofs = 6;
+  static constexpr EnergyTerm kTerm = EnergyTerm::Bend;
+  struct Constants {
+    double stiffness_per_length = 0.0;  ///< EI / l_v [N m]
+    double rest_kappa = 0.0;            ///< integrated natural curvature [-]
+  };
+
+  template <Derivatives D>
+  static void evaluate(const Constants& c, const Vector& /*controls*/,
+                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
+    const Vec2 e0 = x.segment<2>(2) - x.segment<2>(0);
+    const Vec2 e1 = x.segment<2>(4) - x.segment<2>(2);
+    const BendResponse bend =
+        bend_response<Curvature>(c.stiffness_per_length, c.rest_kappa, angle_between(e0, e1));
+    out.energy = bend.energy;
+    if constexpr (D == Derivatives::Energy) return;
+
+    // phi = direction(e1) - direction(e0), hence dphi/de0 = -d0 and dphi/de1 = d1.
+    const double w0 = 1.0 / e0.squaredNorm();
+    const double w1 = 1.0 / e1.squaredNorm();
+    const Vec2 d0 = direction_gradient(e0, w0);
+    const Vec2 d1 = direction_gradient(e1, w1);
+    out.gradient.segment<2>(0) = bend.moment * d0;
+    out.gradient.segment<2>(2) = -bend.moment * (d0 + d1);
+    out.gradient.segment<2>(4) = bend.moment * d1;
+    if constexpr (D == Derivatives::Gradient) return;
+
+    // Hessian by the edge vectors (h00, h10 = h01', h11), then by the nodes they run between.
+    const Mat2 h00 = bend.stiffness * d0 * d0.transpose() -
+                     bend.moment * direction_hessian(e0, d0, w0);
+    const Mat2 h11 = bend.stiffness * d1 * d1.transpose() +
+                     bend.moment * direction_hessian(e1, d1, w1);
+    const Mat2 h10 = -bend.stiffness * d1 * d0.transpose();
+    out.hessian.block<2, 2>(0, 0) = h00;
+    out.hessian.block<2, 2>(2, 0) = h10 - h00;
+    out.hessian.block<2, 2>(4, 0) = -h10;
+    out.hessian.block<2, 2>(2, 2) = h00 - h10 - h10.transpose() + h11;
+    out.hessian.block<2, 2>(4, 2) = h10 - h11;
+    out.hessian.block<2, 2>(4, 4) = h11;
+  }
+};
+
+}  // namespace der

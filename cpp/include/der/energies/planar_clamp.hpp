@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cmath>
+
+#include "der/core/types.hpp"
+#include "der/energies/local_term.hpp"
+#include "der/energies/planar_bend.hpp"
+#include "der/kinematics/planar_edge.hpp"
+
+namespace der {
+
+/// Bending of the half cell between a clamped tangent and the edge next to it. The tangent is held
+/// at the node, the edge stands for the tangent in its middle, so the turning angle between the two
+/// acts over half the edge: E = 1/2 EI (kappa - rest_kappa)^2 / (l/2). Holding two nodes instead
+/// would make this half cell rigid, an error of order l; this form is of order l^2.
+template <class Curvature>
+struct PlanarClamp {
+  static constexpr int kDofs = 4;
+  static constexpr EnergyTerm kTerm = EnergyTerm::Bend;
+  struct Constants {
+    double stiffness_per_length = 0.0;  ///< EI / (l/2) [N m]
+    double rest_kappa = 0.0;            ///< natural curvature integrated over the half cell [-]
+    double direction = 0.0;             ///< initial angle of the clamped tangent [rad]
+    double side = 1.0;                  ///< +1: the edge leaves the clamp, -1: it arrives there
+    Index rotation = -1;                ///< control that turns the tangent [rad]; -1: none
+  };
+
+  template <Derivatives D>
+  static void evaluate(const Constants& c, const Vector& controls,
+                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
+    const double direction = c.direction + (c.rotation >= 0 ? controls[c.rotation] : 0.0);
+    const Vec2 tangent{std::cos(direction), std::sin(direction)};
+    const Vec2 e = x.tail<2>() - x.head<2>();
+    const BendResponse bend = bend_response<Curvature>(c.stiffness_per_length, c.rest_kappa,
+                                                       c.side * angle_between(tangent, e));
+    out.energy = bend.energy;
+    if constexpr (D == Derivatives::Energy) return;
+
+    const double w = 1.0 / e.squaredNorm();
+    const Vec2 d = direction_gradient(e, w);
+    const double moment = c.side * bend.moment;
+    out.gradient.head<2>() = -moment * d;
+    out.gradient.tail<2>() = moment * d;
+    if constexpr (D == Derivatives::Gradient) return;
+
+    const Mat2 h = bend.stiffness * d * d.transpose() + moment * direction_hessian(e, d, w);
+    out.hessian.topLeftCorner<2, 2>() = h;
+    out.hessian.bottomLeftCorner<2, 2>() = -h;
+    out.hessian.bottomRightCorner<2, 2>() = h;
+  }
+};
+
+}  // namespace der

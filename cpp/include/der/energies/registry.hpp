@@ -1,0 +1,30 @@
+#pragma once
+
+#include <tuple>
+
+#include "der/energies/element_list.hpp"
+#include "der/energies/planar_bend.hpp"
+#include "der/energies/planar_clamp.hpp"
+#include "der/energies/stretch.hpp"
+#include "der/loads/planar_moment.hpp"
+
+namespace der {
+
+/// Every kind of element. A new energy is one header with its kernel and one line here; assembly,
+/// the energy report and the finite-difference tests loop over this list. A kind without elements
+/// costs nothing in a run.
+using ElementLists =
+    std::tuple<ElementList<Stretch<2>>,                //
+               ElementList<PlanarBend<AngleCurvature>>,    //
+               ElementList<PlanarBend<TangentCurvature>>,  //
+               ElementList<PlanarClamp<AngleCurvature>>,   //
+               ElementList<PlanarClamp<TangentCurvature>>,  //
+               ElementList<PlanarMoment>>;
+
+/// Calls `f(list)` for each kind of element.
+template <class Lists, class F>
+void for_each_list(Lists&& lists, F&& f) {
+  std::apply([&](auto&&... list) { (f(list), ...); }, lists);
+}
+
+}  // namespace der

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+#include "der/scenario/scenario.hpp"
+
+namespace der {
+
+/// A place along a rod as a weighted sum of its nodes (or of its edges).
+struct Weighted {
+  Index place = 0;  ///< position in RodLayout::nodes, or number of the edge after that position
+  double weight = 0.0;
+};
+
+/// Rest arc length [m] that a location names (not for Kind::All).
+double arc_length_of(const scenario::Location& at, const RodLayout& rod);
+
+/// Position in RodLayout::nodes of the node at `at`. The reader has checked that there is one.
+Index node_at(const scenario::Location& at, const RodLayout& rod);
+/// As above; every node for Kind::All.
+std::vector<Index> nodes_at(const scenario::Location& at, const RodLayout& rod);
+
+/// Weights of the cubic Lagrange polynomial through the (up to) four nodes nearest to arc length
+/// `s`; a single node when `s` is at one. Applied to positions it gives the point at `s`; the same
+/// weights spread a point force, so force and displacement are work-conjugate. A linear split would
+/// move the second moment of the load by f (1 - f) l^2 (f the place in the edge), an error of order
+/// l^2 that jumps from mesh to mesh; the cubic keeps the first three moments.
+std::vector<Weighted> node_weights(const RodLayout& rod, double s);
+
+/// Weights of the edges whose direction angles, linearly interpolated between edge midpoints, give
+/// the direction at arc length `s`; within half an edge of an end that edge alone.
+std::vector<Weighted> edge_weights(const RodLayout& rod, double s);
+
+}  // namespace der

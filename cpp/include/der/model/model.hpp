@@ -1,0 +1,88 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "der/core/types.hpp"
+#include "der/energies/registry.hpp"
+#include "der/model/controls.hpp"
+#include "der/scenario/scenario.hpp"
+
+namespace der {
+
+struct Model;
+
+/// Where the nodes and edges of one rod are in the model, and what is known of it for probes and
+/// drawings. Only the builder assumes that a rod is a chain; everybody else reads these lists.
+struct RodLayout {
+  std::string name;
+  std::vector<Index> nodes;        ///< in the order of the arc length
+  std::vector<double> arc_length;  ///< rest arc length of each node [m]
+  std::vector<double> edge_length;  ///< rest length of each edge [m]
+  double EA = 0.0;                 ///< [N]
+  double EI = 0.0;                 ///< [N m^2]
+  scenario::CurvatureMeasure curvature = scenario::CurvatureMeasure::Angle;
+  /// Natural curvature at each node [1/m]; empty: stress-free as drawn.
+  std::vector<double> natural_curvature;
+  /// Natural turning angle at each node [rad]; 0 at the ends.
+  std::vector<double> rest_turning_angle;
+  double draw_radius = 0.0;           ///< half the height of the section [m]; 0 if not known
+  std::vector<double> sphere_radius;  ///< per node [m]; 0: no sphere
+
+  [[nodiscard]] double rest_length() const { return arc_length.back(); }
+  [[nodiscard]] Index num_edges() const { return static_cast<Index>(nodes.size()) - 1; }
+  /// Voronoi length [m]: the rod's part that is nearer to this node than to another.
+  [[nodiscard]] double voronoi_length(Index node) const;
+  /// Degrees of freedom (x, y of both ends) of an edge of a planar model.
+  [[nodiscard]] std::array<Index, 4> edge_dofs(Index edge, const Model& model) const;
+};
+
+/// A degree of freedom that the solver does not find: it keeps its initial value, plus a control.
+struct HeldDof {
+  Index dof = 0;
+  Index displacement = -1;  ///< control that holds the displacement [m]; -1: none
+};
+
+/// weight * control[i] acts as a force on one degree of freedom.
+struct ControlledForce {
+  Index dof = 0;
+  Index control = 0;
+  double weight = 1.0;
+};
+
+/// Everything that stays constant in a run. Degrees of freedom are numbered node by node
+/// (dof = dimension * node + component); `free_dofs` lists those that the solver finds.
+struct Model {
+  std::string name;    ///< "planar"
+  std::string reason;  ///< why this model, in words
+  int dimension = 2;
+  Index num_nodes = 0;
+  std::vector<RodLayout> rods;
+
+  Vector initial_positions;   ///< [m]
+  Vector initial_velocities;  ///< [m/s]
+  Vector mass;                ///< lumped [kg], one entry a degree of freedom
+  Vector damping;             ///< [N s/m], one entry a degree of freedom: drag and linear damping
+  Vector gravity_force;       ///< [N] weight without buoyancy
+  Vector dead_force;          ///< [N] every constant force but weight: buoyancy, constant loads
+  Controls controls;          ///< tables over time that forces and supports follow
+  std::vector<ControlledForce> controlled_forces;
+
+  std::vector<HeldDof> held;
+  std::vector<Index> free_dofs;   ///< full number of each free degree of freedom, ascending
+  std::vector<Index> free_index;  ///< of each degree of freedom: its place in `free_dofs`, or -1
+
+  ElementLists elements;
+
+  /// The largest extent of the initial shape [m]: the length against which steps are small.
+  double size = 0.0;
+
+  [[nodiscard]] Index num_dofs() const { return dimension * num_nodes; }
+  [[nodiscard]] Index num_free() const { return static_cast<Index>(free_dofs.size()); }
+  [[nodiscard]] Index dof(Index node, int component) const { return dimension * node + component; }
+  /// Throws Error if there is no rod of that name.
+  [[nodiscard]] const RodLayout& rod(const std::string& rod_name) const;
+};
+
+}  // namespace der

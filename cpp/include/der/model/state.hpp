@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "der/core/types.hpp"
+
+namespace der {
+
+struct Model;
+
+/// Everything that changes in a run. A plain value: copy it to save it, assign it to go back, bit
+/// for bit.
+struct State {
+  double time = 0.0;               ///< [s]
+  std::int64_t step = 0;           ///< steps done
+  Vector positions;                ///< [m], one entry a degree of freedom
+  Vector velocities;               ///< [m/s]
+  Vector extra_force;              ///< [N] set from outside (a controller); constant in a step
+  std::vector<Vector> history;     ///< what a multi-step stepper remembers; empty at the start
+};
+
+/// The state at time 0.
+State initial_state(const Model& model);
+
+/// Energies [J] of a state.
+struct Energies {
+  double kinetic = 0.0;
+  double stretch = 0.0;
+  double bend = 0.0;
+  double gravity = 0.0;  ///< of the weight, zero at the origin
+  [[nodiscard]] double elastic() const { return stretch + bend; }
+  [[nodiscard]] double total() const { return kinetic + elastic() + gravity; }
+};
+Energies energies(const Model& model, const State& state);
+
+}  // namespace der

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "der/assembly/assembler.hpp"
+#include "der/assembly/pattern.hpp"
+#include "der/model/model.hpp"
+#include "der/model/state.hpp"
+#include "der/scenario/reader.hpp"
+#include "der/solvers/linear_solver.hpp"
+#include "der/solvers/newton.hpp"
+#include "der/statics/equilibrium.hpp"
+#include "der/steppers/stepper.hpp"
+
+namespace der {
+
+/// What a run has cost so far.
+struct Counters {
+  std::int64_t steps = 0;
+  std::int64_t newton_iterations = 0;
+  std::int64_t retried_steps = 0;  ///< steps that had to be done in smaller pieces
+};
+
+/// One simulation: a scenario's model, its state, and the stepper that advances it. This is the
+/// engine that der_run and Python both drive.
+class Simulation {
+ public:
+  /// Throws SceneError or Error where the scene cannot be simulated.
+  explicit Simulation(Scenario scenario);
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  /// Advances by one time step of the scene. A step that fails is retried in smaller pieces. Throws
+  /// NotConvergedError or DivergedError; the state is then that of the last good step.
+  void step();
+  /// Replaces the state by the static equilibrium near it under the loads at the present time,
+  /// velocities zero. Throws NotConvergedError.
+  EquilibriumReport equilibrium();
+
+  [[nodiscard]] const Scenario& scenario() const { return scenario_; }
+  [[nodiscard]] const Model& model() const { return model_; }
+  /// Its vectors keep their memory for the life of the simulation, so views of them stay valid.
+  [[nodiscard]] State& state() { return state_; }
+  [[nodiscard]] const State& state() const { return state_; }
+  /// Goes back (or forward) to a state copied earlier, without moving the vectors' memory.
+  void restore(const State& saved);
+  [[nodiscard]] const Counters& counters() const { return counters_; }
+  /// Number of steps from time 0 to the scene's duration.
+  [[nodiscard]] std::int64_t total_steps() const { return total_steps_; }
+  [[nodiscard]] bool finished() const { return state_.step >= total_steps_; }
+  [[nodiscard]] const StepperInfo& integrator() const { return stepper_info_; }
+  [[nodiscard]] std::string_view linear_solver() const { return solver_.solver->name(); }
+  [[nodiscard]] const std::string& linear_solver_reason() const { return solver_.reason; }
+
+ private:
+  void advance_to(double target);
+  [[nodiscard]] std::string describe_failure(const StepReport& report, double dt) const;
+  [[nodiscard]] std::string describe_divergence(const StepReport& report, double dt) const;
+
+  Scenario scenario_;
+  Model model_;
+  Pattern pattern_;
+  LinearSolverChoice solver_;
+  Assembler assembler_;
+  const StepperInfo& stepper_info_;
+  std::unique_ptr<Stepper> stepper_;
+  State state_;
+  Counters counters_;
+  std::int64_t total_steps_ = 0;
+};
+
+}  // namespace der

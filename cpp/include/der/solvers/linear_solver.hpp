@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "der/assembly/pattern.hpp"
+#include "der/core/types.hpp"
+
+namespace der {
+
+/// What a factorisation A = L D L^T tells about A: by Sylvester's law the signs of the pivots D are
+/// the signs of the eigenvalues.
+struct Inertia {
+  bool factorised = false;      ///< false: a pivot vanished or was not a number
+  Index negative_pivots = 0;    ///< number of negative eigenvalues
+  Index failed_at = -1;         ///< free degree of freedom of the vanishing pivot
+};
+
+/// Direct solver for the symmetric, possibly indefinite system matrix. Called once a Newton
+/// iteration, so a virtual call costs nothing here.
+class LinearSolver {
+ public:
+  virtual ~LinearSolver() = default;
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  /// Where the assembler has to put the entries of the lower triangle.
+  [[nodiscard]] virtual const MatrixLayout& layout() const = 0;
+  /// Factorises the matrix whose entries lie in `values` as `layout` says; `values` is kept.
+  virtual Inertia factorize(const Vector& values) = 0;
+  /// Solves A x = b in place, with the last factorisation.
+  virtual void solve(Vector& b) = 0;
+};
+
+/// A solver chosen, and why.
+struct LinearSolverChoice {
+  std::unique_ptr<LinearSolver> solver;
+  std::string reason;
+};
+
+/// `name` is one of `linear_solver_names()`; `auto` takes the band solver where the band is narrow.
+/// `pattern` must outlive the solver. Throws Error for a solver that is not built in.
+LinearSolverChoice make_linear_solver(const std::string& name, const Pattern& pattern);
+
+}  // namespace der

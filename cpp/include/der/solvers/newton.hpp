@@ -1,0 +1,92 @@
+#pragma once
+
+#include <string>
+
+#include "der/assembly/assembler.hpp"
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+#include "der/solvers/linear_solver.hpp"
+
+namespace der {
+
+/// The nonlinear system that one stage of an implicit stepper, or a static analysis, has to solve
+/// for the positions y:
+///   inertia M (y - inertia_target) + velocity_factor C (y - velocity_reference)
+///     + grad E(y, controls) - force = 0
+/// over the free degrees of freedom; M is `mass`, C the model's diagonal damping. All vectors have
+/// one entry a degree of freedom.
+struct Stage {
+  explicit Stage(const Model& model);
+  double inertia = 0.0;  ///< [1/s^2]; 0: statics
+  Vector mass;           ///< [kg]; the model's, unless a static analysis brings its own
+  Vector inertia_target;
+  double velocity_factor = 0.0;  ///< [1/s]
+  Vector velocity_reference;     ///< [m]
+  Vector controls;               ///< values of the model's tables at the stage's time
+  Vector force;                  ///< [N] external forces at the stage's time
+};
+
+struct NewtonOptions {
+  double residual_tolerance = 1e-9;  ///< against the largest acting force
+  double step_tolerance = 1e-9;      ///< against the model's size
+  int max_iterations = 50;
+};
+
+struct NewtonReport {
+  bool converged = false;
+  int iterations = 0;
+  double residual = 0.0;      ///< largest component over the free degrees of freedom [N]
+  double force_scale = 0.0;   ///< largest acting force [N]
+  Index worst_dof = -1;       ///< full number of the degree of freedom with the largest residual
+  Index negative_pivots = 0;  ///< of the last matrix, before any shift
+  std::string failure;        ///< in words, if not converged
+};
+
+/// Newton's method for a Stage, on preallocated memory: an iteration allocates nothing.
+///
+/// First plain Newton steps, which converge fastest though the residual may rise on the way (a rod
+/// that turns is first stretched by its step, then springs back). If they do not get there, again
+/// from the guess with a line search on the slope of the potential along the step. Where the matrix
+/// is not positive definite it is shifted until it is, so that every step leads downhill.
+class Newton {
+ public:
+  Newton(const Model& model, const Assembler& assembler, LinearSolver& solver,
+         const NewtonOptions& options);
+
+  /// Solves for `positions`: on entry the guess, with held degrees of freedom already at their
+  /// values; on exit the solution, or the guess again if not converged.
+  NewtonReport solve(const Stage& stage, Vector& positions);
+
+  /// Left side of the stage's equation at the last iterate, over all degrees of freedom [N]; on held
+  /// ones it is the force that the support has to provide.
+  [[nodiscard]] const Vector& residual() const { return residual_; }
+
+ private:
+  enum class Mode { FullSteps, LineSearch };
+
+  NewtonReport iterate(const Stage& stage, Mode mode, Vector& positions);
+  void evaluate_residual(const Stage& stage, const Vector& positions);
+  void evaluate_system(const Stage& stage, const Vector& positions);
+  void add_stage_forces(const Stage& stage, const Vector& positions);
+  bool find_direction(NewtonReport& report);
+  void limit_turn();
+  void move(const Vector& start, double factor, Vector& positions) const;
+  double line_search(const Stage& stage, Vector& positions);
+  [[nodiscard]] double slope() const;
+  void measure(NewtonReport& report) const;
+
+  const Model& model_;
+  const Assembler& assembler_;
+  LinearSolver& solver_;
+  NewtonOptions options_;
+  Vector residual_;    // all degrees of freedom
+  Vector values_;      // of the matrix, shifted where need be
+  Vector direction_;   // over the free degrees of freedom
+  Vector guess_;       // positions that the solve started from
+  Vector line_start_;  // positions that the line search starts from
+  double acting_ = 0.0;  // largest acting force at the last iterate [N]
+  double noise_ = 0.0;   // rounding error of a force [N]
+  double last_shift_ = 0.0;
+};
+
+}  // namespace der

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace der {
+
+/// The names that a scene can give as `time.integrator`.
+const std::vector<std::string>& integrator_names();
+
+}  // namespace der

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+#include "der/model/state.hpp"
+#include "der/solvers/newton.hpp"
+
+namespace der {
+
+enum class StepOutcome { Done, NotConverged, Diverged };
+
+/// What one attempted step did. If not done, the state is untouched and `failure` says why.
+struct StepReport {
+  StepOutcome outcome = StepOutcome::Done;
+  int newton_iterations = 0;
+  Index worst_dof = -1;  ///< full number of the degree of freedom at which it failed; -1: none
+  std::string failure;
+};
+
+/// Advances a state by one time step. One file for each time integrator.
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+  /// Tries one step of `dt` seconds from `state.time`; sets positions, velocities and history, and
+  /// leaves time and count to the caller.
+  virtual StepReport step(State& state, double dt) = 0;
+};
+
+/// Facts about a stepper, for the registry, the docs and the tests that loop over them.
+struct StepperInfo {
+  std::string_view name;
+  int order;
+  bool implicit;
+  std::string_view summary;
+  std::unique_ptr<Stepper> (*make)(const Model&, const Assembler&, LinearSolver&,
+                                   const NewtonOptions&);
+};
+
+/// Every stepper. A new one is one file and one line in the registry.
+const std::vector<StepperInfo>& stepper_registry();
+/// Throws Error for an unknown name.
+const StepperInfo& find_stepper(const std::string& name);
+
+}  // namespace der

@@ -1,0 +1,31 @@
+#include <utility>
+
+#include "der/loads/loads.hpp"
+
+namespace der {
+
+DeadForce::DeadForce(const scenario::VectorSeries& force, Model& model) {
+  if (force.constant()) {
+    constant_ = force.values.front();
+    return;
+  }
+  for (std::size_t c = 0; c < static_cast<std::size_t>(model.dimension); ++c) {
+    scenario::Series series{force.times, {}};
+    for (const auto& value : force.values) series.values.push_back(value[c]);
+    controls_.push_back(model.controls.add(std::move(series)));
+  }
+}
+
+void DeadForce::act_on(Index node, double weight, Model& model) const {
+  for (int c = 0; c < model.dimension; ++c) {
+    const auto component = static_cast<std::size_t>(c);
+    const Index dof = model.dof(node, c);
+    if (controls_.empty()) {
+      model.dead_force[dof] += weight * constant_[component];
+    } else {
+      model.controlled_forces.push_back({dof, controls_[component], weight});
+    }
+  }
+}
+
+}  // namespace der

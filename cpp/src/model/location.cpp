@@ -1,0 +1,104 @@
+#include "der/model/location.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "der/core/error.hpp"
+
+namespace der {
+namespace {
+
+/// Two arc lengths closer than this share of the rod's length are the same place.
+constexpr double kSamePlace = 1e-9;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+Index nearest_node(const RodLayout& rod, double s) {
+  const auto& arc = rod.arc_length;
+  const auto above = std::lower_bound(arc.begin(), arc.end(), s);
+  if (above == arc.begin()) return 0;
+  if (above == arc.end()) return static_cast<Index>(arc.size()) - 1;
+  const auto i = static_cast<Index>(above - arc.begin());
+  return s - arc[at(i - 1)] <= arc[at(i)] - s ? i - 1 : i;
+}
+
+bool is_node(const RodLayout& rod, Index i, double s) {
+  return std::abs(rod.arc_length[at(i)] - s) <= kSamePlace * rod.rest_length();
+}
+
+}  // namespace
+
+double arc_length_of(const scenario::Location& location, const RodLayout& rod) {
+  using Kind = scenario::Location::Kind;
+  switch (location.kind) {
+    case Kind::Start:
+      return 0.0;
+    case Kind::Middle:
+      return 0.5 * rod.rest_length();
+    case Kind::End:
+      return rod.rest_length();
+    case Kind::ArcLength:
+      return location.arc_length;
+    case Kind::Node: {
+      const auto count = static_cast<Index>(rod.nodes.size());
+      return rod.arc_length[at(location.node < 0 ? location.node + count : location.node)];
+    }
+    case Kind::All:
+      break;
+  }
+  throw Error("model_error", "rod '" + rod.name + "': 'all' does not name one place");
+}
+
+Index node_at(const scenario::Location& location, const RodLayout& rod) {
+  const double s = arc_length_of(location, rod);
+  const Index node = nearest_node(rod, s);
+  if (!is_node(rod, node, s)) {
+    throw Error("model_error", "rod '" + rod.name + "': no node at arc length " +
+                                   std::to_string(s) + " m; the nearest is at " +
+                                   std::to_string(rod.arc_length[at(node)]) + " m");
+  }
+  return node;
+}
+
+std::vector<Index> nodes_at(const scenario::Location& location, const RodLayout& rod) {
+  if (location.kind != scenario::Location::Kind::All) return {node_at(location, rod)};
+  std::vector<Index> all(rod.nodes.size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Index>(i);
+  return all;
+}
+
+std::vector<Weighted> node_weights(const RodLayout& rod, double s) {
+  const Index nearest = nearest_node(rod, s);
+  if (is_node(rod, nearest, s)) return {{nearest, 1.0}};
+
+  // Four nodes with `s` in the middle edge, moved inwards at the ends, fewer on a short rod.
+  const auto& arc = rod.arc_length;
+  const auto count = static_cast<Index>(arc.size());
+  const auto right =
+      static_cast<Index>(std::upper_bound(arc.begin(), arc.end(), s) - arc.begin());
+  const Index stencil = std::min<Index>(4, count);
+  const Index first = std::clamp<Index>(right - 2, 0, count - stencil);
+  std::vector<Weighted> weights;
+  for (Index i = first; i < first + stencil; ++i) {
+    double weight = 1.0;
+    for (Index j = first; j < first + stencil; ++j) {
+      if (j != i) weight *= (s - arc[at(j)]) / (arc[at(i)] - arc[at(j)]);
+    }
+    weights.push_back({i, weight});
+  }
+  return weights;
+}
+
+std::vector<Weighted> edge_weights(const RodLayout& rod, double s) {
+  const auto& arc = rod.arc_length;
+  const auto edges = static_cast<Index>(arc.size()) - 1;
+  const auto midpoint = [&](Index edge) { return 0.5 * (arc[at(edge)] + arc[at(edge + 1)]); };
+  if (s <= midpoint(0)) return {{0, 1.0}};
+  if (s >= midpoint(edges - 1)) return {{edges - 1, 1.0}};
+  Index right = 1;
+  while (midpoint(right) < s) ++right;
+  const double share = (s - midpoint(right - 1)) / (midpoint(right) - midpoint(right - 1));
+  return {{right - 1, 1.0 - share}, {right, share}};
+}
+
+}  // namespace der

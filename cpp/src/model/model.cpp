@@ -1,0 +1,27 @@
+#include "der/model/model.hpp"
+
+#include "der/core/error.hpp"
+
+namespace der {
+
+double RodLayout::voronoi_length(Index node) const {
+  const auto i = static_cast<std::size_t>(node);
+  const double before = node > 0 ? edge_length[i - 1] : 0.0;
+  const double after = node < num_edges() ? edge_length[i] : 0.0;
+  return 0.5 * (before + after);
+}
+
+std::array<Index, 4> RodLayout::edge_dofs(Index edge, const Model& model) const {
+  const Index a = nodes[static_cast<std::size_t>(edge)];
+  const Index b = nodes[static_cast<std::size_t>(edge) + 1];
+  return {model.dof(a, 0), model.dof(a, 1), model.dof(b, 0), model.dof(b, 1)};
+}
+
+const RodLayout& Model::rod(const std::string& rod_name) const {
+  for (const RodLayout& layout : rods) {
+    if (layout.name == rod_name) return layout;
+  }
+  throw Error("model_error", "there is no rod named '" + rod_name + "'");
+}
+
+}  // namespace der

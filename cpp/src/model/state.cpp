@@ -1,0 +1,37 @@
+#include "der/model/state.hpp"
+
+#include <type_traits>
+
+#include "der/assembly/element_energy.hpp"
+#include "der/model/model.hpp"
+#include "der/supports/supports.hpp"
+
+namespace der {
+
+State initial_state(const Model& model) {
+  State state;
+  state.positions = model.initial_positions;
+  state.velocities = model.initial_velocities;
+  state.extra_force.setZero(model.num_dofs());
+  Vector controls;
+  model.controls.evaluate(0.0, controls);
+  place_held(model, controls, state.positions);
+  return state;
+}
+
+Energies energies(const Model& model, const State& state) {
+  Vector controls;
+  model.controls.evaluate(state.time, controls);
+  Energies result;
+  result.kinetic = 0.5 * state.velocities.dot(model.mass.cwiseProduct(state.velocities));
+  result.gravity = -model.gravity_force.dot(state.positions);
+  for_each_list(model.elements, [&](const auto& list) {
+    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+    const double energy = element_energy(list, controls, state.positions);
+    if constexpr (Kernel::kTerm == EnergyTerm::Stretch) result.stretch += energy;
+    if constexpr (Kernel::kTerm == EnergyTerm::Bend) result.bend += energy;
+  });
+  return result;
+}
+
+}  // namespace der

@@ -1,0 +1,136 @@
+#include "der/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "der/core/error.hpp"
+#include "der/model/builder.hpp"
+#include "der/steppers/stable_step.hpp"
+
+namespace der {
+namespace {
+
+/// A failed step is cut down to this share of the scene's step before the run gives up.
+constexpr double kSmallestShare = 1e-6;
+
+NewtonOptions newton_options(const scenario::Solver& solver) {
+  return {solver.residual_tolerance, solver.step_tolerance, solver.max_iterations};
+}
+
+std::int64_t count_steps(const scenario::Time& time) {
+  if (time.step <= 0.0) return 0;  // a static scene
+  // A duration that is a whole number of steps but for rounding has no short last step.
+  return static_cast<std::int64_t>(std::ceil(time.duration / time.step * (1.0 - 1e-12)));
+}
+
+/// "node 3 of rod 'beam' (y)"
+std::string describe_dof(const Model& model, Index dof) {
+  const Index node = dof / model.dimension;
+  const char component = "xyz"[dof % model.dimension];
+  for (const RodLayout& rod : model.rods) {
+    const auto found = std::find(rod.nodes.begin(), rod.nodes.end(), node);
+    if (found != rod.nodes.end()) {
+      return fmt::format("node {} of rod '{}' ({})", found - rod.nodes.begin(), rod.name, component);
+    }
+  }
+  return fmt::format("node {} ({})", node, component);
+}
+
+}  // namespace
+
+Simulation::Simulation(Scenario scenario)
+    : scenario_(std::move(scenario)),
+      model_(build_model(scenario_.scene())),
+      pattern_(build_pattern(model_)),
+      solver_(make_linear_solver(scenario_.scene().solver.linear, pattern_)),
+      assembler_(model_, solver_.solver->layout()),
+      stepper_info_(find_stepper(scenario_.scene().time.integrator)),
+      stepper_(stepper_info_.make(model_, assembler_, *solver_.solver,
+                                  newton_options(scenario_.scene().solver))),
+      state_(initial_state(model_)),
+      total_steps_(count_steps(scenario_.scene().time)) {}
+
+void Simulation::step() {
+  const auto& time = scenario_.scene().time;
+  if (time.step <= 0.0) {
+    throw Error("model_error", "a static scene has no time steps: use equilibrium()");
+  }
+  // Counted from the start, so that rounding does not add up over many steps.
+  double target = static_cast<double>(state_.step + 1) * time.step;
+  if (state_.step + 1 == total_steps_) target = time.duration;
+  advance_to(target);
+  ++state_.step;
+  ++counters_.steps;
+}
+
+void Simulation::advance_to(double target) {
+  const double whole = target - state_.time;
+  const double smallest =
+      std::max(scenario_.scene().time.minimum_step, kSmallestShare * whole);
+  double dt = whole;
+  while (true) {
+    const double left = target - state_.time;
+    const bool last = dt >= left * (1.0 - 1e-9);
+    const StepReport report = stepper_->step(state_, last ? left : dt);
+    counters_.newton_iterations += report.newton_iterations;
+    if (report.outcome == StepOutcome::Done) {
+      state_.time = last ? target : state_.time + dt;
+      if (last) return;
+      continue;
+    }
+    if (report.outcome == StepOutcome::Diverged) {
+      throw DivergedError(describe_divergence(report, dt));
+    }
+    counters_.retried_steps += dt == whole ? 1 : 0;
+    dt *= 0.5;
+    if (dt < smallest) throw NotConvergedError(describe_failure(report, dt));
+  }
+}
+
+EquilibriumReport Simulation::equilibrium() {
+  Vector positions = state_.positions;
+  EquilibriumReport report =
+      find_equilibrium(model_, assembler_, *solver_.solver,
+                       newton_options(scenario_.scene().solver), state_, positions);
+  counters_.newton_iterations += report.newton_iterations;
+  if (!report.converged) {
+    throw NotConvergedError(fmt::format(
+        "no equilibrium found ({}; unbalanced force {:.3g} N against {:.3g} N acting). Is the "
+        "structure held against every rigid motion, and does an equilibrium exist under this load?",
+        report.failure, report.residual, report.force_scale));
+  }
+  state_.positions = positions;
+  state_.velocities.setZero();
+  return report;
+}
+
+void Simulation::restore(const State& saved) {
+  state_.time = saved.time;
+  state_.step = saved.step;
+  state_.positions = saved.positions;
+  state_.velocities = saved.velocities;
+  state_.extra_force = saved.extra_force;
+  state_.history = saved.history;
+}
+
+std::string Simulation::describe_failure(const StepReport& report, double dt) const {
+  return fmt::format(
+      "Newton's method failed at t = {:.6g} s even with a step of {:.3g} s: {}; the worst residual is "
+      "at {}. A load that rises too fast, a shape that snaps, or too tight a solver.residual_tolerance "
+      "are the usual causes; a smaller time.step or smoother load tables help.",
+      state_.time, dt, report.failure, describe_dof(model_, report.worst_dof));
+}
+
+std::string Simulation::describe_divergence(const StepReport& report, double dt) const {
+  const StableStep stable = stable_step(model_, model_.initial_positions);
+  return fmt::format(
+      "the motion diverged at t = {:.6g} s: {} at {}. The step of {:.3g} s is above the stable step of "
+      "{:.3g} s, which {} at {} sets. Use time.step <= {:.2g}, or an implicit integrator.",
+      state_.time, report.failure, describe_dof(model_, report.worst_dof), dt, stable.step,
+      stable.limited_by, describe_dof(model_, stable.worst_dof), 0.95 * stable.step);
+}
+
+}  // namespace der

@@ -1,0 +1,84 @@
+#include "der/solvers/banded_ldlt.hpp"
+
+#include <cmath>
+
+namespace der {
+namespace {
+
+/// `kWidth` is the half-bandwidth, or 0 when it is only known at run time.
+template <Index kWidth>
+Inertia factorize_band(Index size, Index run_time_width, double* band) {
+  const Index width = kWidth > 0 ? kWidth : run_time_width;
+  const Index stride = width + 1;
+  Inertia inertia;
+  for (Index j = 0; j < size; ++j) {
+    double* column = band + static_cast<std::ptrdiff_t>(j) * stride;
+    const double pivot = column[0];
+    if (!(std::abs(pivot) > 0.0) || !std::isfinite(pivot)) {
+      inertia.failed_at = j;
+      return inertia;
+    }
+    inertia.negative_pivots += pivot < 0.0 ? 1 : 0;
+    const double inverse = 1.0 / pivot;
+    column[0] = inverse;
+    for (Index k = 1; k <= width; ++k) {
+      const double multiplier = column[k] * inverse;
+      double* target = column + k * stride;
+      for (Index m = k; m <= width; ++m) target[m - k] -= multiplier * column[m];
+    }
+    for (Index k = 1; k <= width; ++k) column[k] *= inverse;
+  }
+  inertia.factorised = true;
+  return inertia;
+}
+
+template <Index kWidth>
+void solve_band(Index size, Index run_time_width, const double* band, double* b) {
+  const Index width = kWidth > 0 ? kWidth : run_time_width;
+  const Index stride = width + 1;
+  for (Index j = 0; j < size; ++j) {
+    const double* column = band + static_cast<std::ptrdiff_t>(j) * stride;
+    const double y = b[j];
+    for (Index k = 1; k <= width; ++k) b[j + k] -= column[k] * y;
+    b[j] = y * column[0];
+  }
+  for (Index j = size - 1; j >= 0; --j) {
+    const double* column = band + static_cast<std::ptrdiff_t>(j) * stride;
+    double x = b[j];
+    // From the far end: the value needed last is the one computed last.
+    for (Index k = width; k >= 1; --k) x -= column[k] * b[j + k];
+    b[j] = x;
+  }
+}
+
+}  // namespace
+
+BandedLdlt::BandedLdlt(const Pattern& pattern)
+    : size_(pattern.size),
+      half_bandwidth_(pattern.half_bandwidth),
+      layout_(MatrixLayout::band(pattern.size, pattern.half_bandwidth)),
+      factorize_kernel_(factorize_band<0>),
+      solve_kernel_(solve_band<0>) {
+  if (half_bandwidth_ == 5) {  // planar chains
+    factorize_kernel_ = factorize_band<5>;
+    solve_kernel_ = solve_band<5>;
+  }
+  band_.setZero(static_cast<Eigen::Index>(size_ + half_bandwidth_) * (half_bandwidth_ + 1));
+  right_side_.setZero(size_ + half_bandwidth_);
+}
+
+Inertia BandedLdlt::factorize(const Vector& values) {
+  const Index used = layout_.num_values();
+  band_.head(used) = values.head(used);
+  band_.tail(band_.size() - used).setZero();
+  return factorize_kernel_(size_, half_bandwidth_, band_.data());
+}
+
+void BandedLdlt::solve(Vector& b) {
+  right_side_.head(size_) = b;
+  right_side_.tail(half_bandwidth_).setZero();
+  solve_kernel_(size_, half_bandwidth_, band_.data(), right_side_.data());
+  b = right_side_.head(size_);
+}
+
+}  // namespace der

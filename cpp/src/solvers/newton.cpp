@@ -1,0 +1,222 @@
+#include "der/solvers/newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace der {
+namespace {
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// Plain Newton steps that have not converged by then rarely do.
+constexpr int kFullStepIterations = 12;
+/// No step turns an edge by more than this [rad]: beyond it the quadratic model says nothing.
+constexpr double kLargestTurn = 0.7;
+/// A step below this share of the size may well be the last: look before building a new matrix.
+constexpr double kNearSolution = 1e-3;
+/// How many rounding errors of the largest stiffness times the largest coordinate count as noise.
+constexpr double kNoiseFactor = 8.0;
+
+}  // namespace
+
+Stage::Stage(const Model& model)
+    : mass(model.mass),
+      inertia_target(Vector::Zero(model.num_dofs())),
+      velocity_reference(Vector::Zero(model.num_dofs())),
+      controls(Vector::Zero(model.controls.size())),
+      force(Vector::Zero(model.num_dofs())) {}
+
+Newton::Newton(const Model& model, const Assembler& assembler, LinearSolver& solver,
+               const NewtonOptions& options)
+    : model_(model),
+      assembler_(assembler),
+      solver_(solver),
+      options_(options),
+      residual_(Vector::Zero(model.num_dofs())),
+      values_(Vector::Zero(assembler.num_values())),
+      direction_(Vector::Zero(model.num_free())),
+      guess_(Vector::Zero(model.num_dofs())),
+      line_start_(Vector::Zero(model.num_dofs())) {}
+
+NewtonReport Newton::solve(const Stage& stage, Vector& positions) {
+  guess_ = positions;
+  NewtonReport report = iterate(stage, Mode::FullSteps, positions);
+  if (report.converged) return report;
+
+  const int spent = report.iterations;
+  positions = guess_;
+  report = iterate(stage, Mode::LineSearch, positions);
+  report.iterations += spent;
+  if (!report.converged) positions = guess_;
+  return report;
+}
+
+NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
+  const int limit = mode == Mode::FullSteps
+                        ? std::min(kFullStepIterations, options_.max_iterations)
+                        : options_.max_iterations;
+  NewtonReport report;
+  evaluate_system(stage, positions);
+  noise_ = kNoiseFactor * std::numeric_limits<double>::epsilon() *
+           values_.lpNorm<Eigen::Infinity>() * positions.lpNorm<Eigen::Infinity>();
+  measure(report);
+  while (report.iterations < limit) {
+    const double residual_before = report.residual;
+    if (!std::isfinite(residual_before) || !find_direction(report)) {
+      report.failure = "the forces or the stiffness stopped being numbers";
+      return report;
+    }
+    ++report.iterations;
+    limit_turn();
+    double step = direction_.lpNorm<Eigen::Infinity>();
+    bool have_system = false;
+    if (mode == Mode::FullSteps) {
+      move(positions, 1.0, positions);
+      have_system = step > kNearSolution * model_.size;
+      if (have_system) {
+        evaluate_system(stage, positions);
+      } else {
+        evaluate_residual(stage, positions);
+      }
+    } else {
+      step *= line_search(stage, positions);
+    }
+    measure(report);
+
+    // The next step is about as much smaller than this one as the residual has become.
+    const double next_step =
+        residual_before > 0.0 ? step * std::min(1.0, report.residual / residual_before) : 0.0;
+    const double allowed = std::max(options_.residual_tolerance * report.force_scale, noise_);
+    if (report.residual <= allowed && next_step <= options_.step_tolerance * model_.size) {
+      report.converged = true;
+      return report;
+    }
+    if (!have_system) evaluate_system(stage, positions);
+  }
+  report.failure = "no convergence in " + std::to_string(options_.max_iterations) + " iterations";
+  return report;
+}
+
+void Newton::evaluate_residual(const Stage& stage, const Vector& positions) {
+  assembler_.gradient(positions, stage.controls, residual_);
+  add_stage_forces(stage, positions);
+}
+
+void Newton::evaluate_system(const Stage& stage, const Vector& positions) {
+  assembler_.gradient_and_hessian(positions, stage.controls, residual_, values_);
+  add_stage_forces(stage, positions);
+  if (stage.inertia != 0.0) assembler_.add_diagonal(stage.mass, stage.inertia, values_);
+  if (stage.velocity_factor != 0.0) {
+    assembler_.add_diagonal(model_.damping, stage.velocity_factor, values_);
+  }
+}
+
+void Newton::add_stage_forces(const Stage& stage, const Vector& positions) {
+  acting_ = 0.0;
+  for (Index i = 0; i < residual_.size(); ++i) {
+    const double inertial = stage.inertia * stage.mass[i] * (positions[i] - stage.inertia_target[i]);
+    const double viscous =
+        stage.velocity_factor * model_.damping[i] * (positions[i] - stage.velocity_reference[i]);
+    acting_ = std::max({acting_, std::abs(residual_[i]), std::abs(inertial), std::abs(viscous),
+                        std::abs(stage.force[i])});
+    residual_[i] += inertial + viscous - stage.force[i];
+  }
+}
+
+bool Newton::find_direction(NewtonReport& report) {
+  Inertia inertia = solver_.factorize(values_);
+  report.negative_pivots = inertia.negative_pivots;
+  if (!inertia.factorised || inertia.negative_pivots > 0) {
+    // Shift by ever more until positive definite, starting a little below the last shift needed.
+    const double largest = values_.lpNorm<Eigen::Infinity>();
+    if (!std::isfinite(largest)) return false;
+    double shift = std::max(1e-12 * largest, 0.1 * last_shift_);
+    double applied = 0.0;
+    do {
+      assembler_.shift_diagonal(shift - applied, values_);
+      applied = shift;
+      shift *= 4.0;
+      inertia = solver_.factorize(values_);
+    } while ((!inertia.factorised || inertia.negative_pivots > 0) && applied < 1e3 * largest);
+    last_shift_ = applied;
+    if (!inertia.factorised) return false;
+  }
+  for (std::size_t i = 0; i < model_.free_dofs.size(); ++i) {
+    direction_[static_cast<Index>(i)] = -residual_[model_.free_dofs[i]];
+  }
+  solver_.solve(direction_);
+  return direction_.allFinite();
+}
+
+void Newton::move(const Vector& start, double factor, Vector& positions) const {
+  for (std::size_t i = 0; i < model_.free_dofs.size(); ++i) {
+    const Index dof = model_.free_dofs[i];
+    positions[dof] = start[dof] + factor * direction_[static_cast<Index>(i)];
+  }
+}
+
+/// Moves along the direction until the potential no longer falls, or not much steeper than it fell
+/// at the start, and returns the share of the step taken. Works on the slope, which is known even
+/// where a potential is not, and to more digits near the solution.
+double Newton::line_search(const Stage& stage, Vector& positions) {
+  constexpr int kTrials = 40;
+  line_start_ = positions;
+  const double start_slope = slope();
+  double factor = 1.0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    move(line_start_, factor, positions);
+    evaluate_residual(stage, positions);
+    const double here = slope();
+    if (!std::isfinite(here)) {
+      factor *= 0.25;
+      continue;
+    }
+    if (here <= 0.5 * std::abs(start_slope)) break;
+    const double secant = std::abs(start_slope) / (std::abs(start_slope) + here);
+    factor *= std::clamp(secant, 0.1, 0.7);
+  }
+  return factor;
+}
+
+double Newton::slope() const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < model_.free_dofs.size(); ++i) {
+    sum += residual_[model_.free_dofs[i]] * direction_[static_cast<Index>(i)];
+  }
+  return sum;
+}
+
+/// Shortens the direction so that no edge changes by more than kLargestTurn of its rest length: an
+/// angle for motion across the edge. Rigid translation does not count.
+void Newton::limit_turn() {
+  const auto component = [&](Index dof) {
+    const Index free = model_.free_index[at(dof)];
+    return free < 0 ? 0.0 : direction_[free];
+  };
+  const auto& edges = std::get<ElementList<Stretch<2>>>(model_.elements);
+  double largest = 0.0;  // squared
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto& dofs = edges.dofs[e];
+    const double dx = component(dofs[2]) - component(dofs[0]);
+    const double dy = component(dofs[3]) - component(dofs[1]);
+    const double length = edges.constants[e].rest_length;
+    largest = std::max(largest, (dx * dx + dy * dy) / (length * length));
+  }
+  if (largest > kLargestTurn * kLargestTurn) direction_ *= kLargestTurn / std::sqrt(largest);
+}
+
+void Newton::measure(NewtonReport& report) const {
+  report.residual = 0.0;
+  for (const Index dof : model_.free_dofs) {
+    const double r = std::abs(residual_[dof]);
+    if (r > report.residual || !std::isfinite(r)) {
+      report.residual = r;
+      report.worst_dof = dof;
+    }
+    if (!std::isfinite(r)) return;
+  }
+  report.force_scale = acting_;
+}
+
+}  // namespace der

@@ -1,0 +1,43 @@
+#include "der/steppers/explicit_force.hpp"
+#include "steppers.hpp"
+
+namespace der {
+namespace {
+
+/// q' = q + dt (v + dt M^-1 F(q, v, t)), v' = (q' - q)/dt: all forces at the old state, the new
+/// velocity from the new position. First order; stable only below a step that the stiffest spring
+/// or the strongest drag sets.
+class ExplicitEuler final : public Stepper {
+ public:
+  ExplicitEuler(const Model& model, const Assembler& assembler)
+      : force_(model, assembler),
+        acceleration_(Vector::Zero(model.num_dofs())),
+        positions_(Vector::Zero(model.num_dofs())) {}
+
+  StepReport step(State& state, double dt) override {
+    force_.acceleration(state, state.positions, state.velocities, state.time, acceleration_);
+    positions_ = state.positions + dt * (state.velocities + dt * acceleration_);
+    force_.place_held_at(state.time + dt, positions_);
+    StepReport report = force_.check(positions_);
+    if (report.outcome == StepOutcome::Done) {
+      state.velocities = (positions_ - state.positions) / dt;
+      state.positions = positions_;
+    }
+    return report;
+  }
+
+ private:
+  ExplicitForce force_;
+  Vector acceleration_;
+  Vector positions_;
+};
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_explicit_euler(const Model& model, const Assembler& assembler,
+                                             LinearSolver& /*solver*/,
+                                             const NewtonOptions& /*options*/) {
+  return std::make_unique<ExplicitEuler>(model, assembler);
+}
+
+}  // namespace der

@@ -1,0 +1,40 @@
+#include "der/steppers/implicit_stage.hpp"
+#include "steppers.hpp"
+
+namespace der {
+namespace {
+
+/// q' = q + dt v', M (v' - v)/dt = F(q', v', t + dt): first order, L-stable, damps motion away.
+class ImplicitEuler final : public Stepper {
+ public:
+  ImplicitEuler(const Model& model, const Assembler& assembler, LinearSolver& solver,
+                const NewtonOptions& options)
+      : stage_(model, assembler, solver, options) {}
+
+  StepReport step(State& state, double dt) override {
+    Stage& equation = stage_.equation;
+    equation.inertia = 1.0 / (dt * dt);
+    equation.inertia_target = state.positions + dt * state.velocities;
+    equation.velocity_factor = 1.0 / dt;
+    equation.velocity_reference = state.positions;
+    stage_.positions = equation.inertia_target;
+    StepReport report = stage_.solve(state, state.time + dt);
+    if (report.outcome == StepOutcome::Done) {
+      state.velocities = (stage_.positions - state.positions) / dt;
+      state.positions = stage_.positions;
+    }
+    return report;
+  }
+
+ private:
+  ImplicitStage stage_;
+};
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_implicit_euler(const Model& model, const Assembler& assembler,
+                                             LinearSolver& solver, const NewtonOptions& options) {
+  return std::make_unique<ImplicitEuler>(model, assembler, solver, options);
+}
+
+}  // namespace der

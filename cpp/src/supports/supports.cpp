@@ -1,0 +1,51 @@
+#include "der/supports/supports.hpp"
+
+#include <algorithm>
+
+#include "der/model/location.hpp"
+#include "der/supports/clamp.hpp"
+
+namespace der {
+namespace {
+
+void hold(Model& model, Index dof, Index displacement) {
+  const auto known = std::find_if(model.held.begin(), model.held.end(),
+                                  [&](const HeldDof& held) { return held.dof == dof; });
+  if (known == model.held.end()) model.held.push_back({dof, displacement});
+}
+
+}  // namespace
+
+void add_support(const scenario::Support& support, Model& model) {
+  const RodLayout& rod = model.rod(support.rod);
+  for (const Index place : nodes_at(support.at, rod)) {
+    const Index node = rod.nodes[static_cast<std::size_t>(place)];
+    for (const auto& [component, displacement] : support.prescribe) {
+      hold(model, model.dof(node, static_cast<int>(component)), model.controls.add(displacement));
+    }
+    for (const auto component : support.fix) {
+      hold(model, model.dof(node, static_cast<int>(component)), -1);
+    }
+    if (support.clamp) {
+      for (int c = 0; c < model.dimension; ++c) hold(model, model.dof(node, c), -1);
+      add_clamp(support, rod, place, model);
+    }
+  }
+}
+
+bool is_clamped(const scenario::Scene& scene, const RodLayout& rod, Index place) {
+  return std::any_of(scene.supports.begin(), scene.supports.end(), [&](const auto& support) {
+    if (!support.clamp || support.rod != rod.name) return false;
+    const auto places = nodes_at(support.at, rod);
+    return std::find(places.begin(), places.end(), place) != places.end();
+  });
+}
+
+void place_held(const Model& model, const Vector& controls, Vector& positions) {
+  for (const HeldDof& held : model.held) {
+    positions[held.dof] = model.initial_positions[held.dof] +
+                          (held.displacement >= 0 ? controls[held.displacement] : 0.0);
+  }
+}
+
+}  // namespace der

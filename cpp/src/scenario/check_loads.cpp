@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <cmath>
+
+#include "scenario/checks.hpp"
+
+namespace der::scenario {
+namespace {
+
+/// The checks of one load; one function for each kind.
+class LoadCheck {
+ public:
+  LoadCheck(CheckContext& context, int number) : context_(context), number_(number) {}
+
+  void operator()(const Gravity& /*load*/) { check_single<Gravity>("gravity"); }
+
+  void operator()(const Fluid& /*load*/) {
+    check_single<Fluid>("fluid");
+    const auto& rods = context_.scene.given_rods;
+    const bool spheres = std::any_of(rods.begin(), rods.end(),
+                                     [](const RodText& rod) { return !rod.spheres.empty(); });
+    if (!spheres && !context_.complaints.under({"rods"})) {
+      complain(path("fluid"),
+               "a fluid acts on spheres only, and no rod carries any: give a rod "
+               "'spheres', or use 'damping'");
+    }
+  }
+
+  void operator()(const Damping& load) {
+    if (load.rod) context_.find_rod(*load.rod, path("damping") / "rod");
+  }
+
+  void operator()(PointForce& load) {
+    const Path here = path("point_force");
+    check_constant(load.force.constant(), here / "force");
+    if (const auto rod = context_.find_rod(load.rod, here / "rod")) {
+      context_.nodes_at(*rod, load.at, here / "at", false);
+    }
+  }
+
+  void operator()(Moment& load) {
+    const Path here = path("moment");
+    check_constant(load.moment.constant(), here / "moment");
+    const auto rod = context_.find_rod(load.rod, here / "rod");
+    if (!rod) return;
+    const auto nodes = context_.nodes_at(*rod, load.at, here / "at", false);
+    if (!nodes || nodes->empty()) return;
+    if (context_.is_clamped(*rod, nodes->front())) {
+      complain(here / "at",
+               "the moment acts on a clamp, which takes it up without any effect on "
+               "the rod: move one of them");
+    }
+  }
+
+  void operator()(DistributedForce& load) {
+    const Path here = path("distributed_force");
+    check_constant(load.force.constant(), here / "force");
+    const auto rod = context_.find_rod(load.rod, here / "rod");
+    if (!rod) return;
+    const RestLine& line = *context_.lines[static_cast<std::size_t>(*rod)];
+    if (load.from >= line.length()) {
+      complain(here / "from", fmt::format("must be less than the rod's length, {:.9g} m, got {} m",
+                                          line.length(), load.from));
+    }
+    if (std::isfinite(load.to) && load.to > line.length() + line.same_place()) {
+      complain(here / "to", fmt::format("arc length {} m lies beyond the rod's length, {:.9g} m",
+                                        load.to, line.length()));
+    }
+    load.to = std::min(load.to, line.length());
+  }
+
+ private:
+  [[nodiscard]] Path path(const char* kind) const { return {"loads", number_, kind}; }
+  void complain(const Path& where, const std::string& message) {
+    context_.complaints.add(where, message);
+  }
+
+  void check_constant(bool constant, const Path& where) {
+    if (constant || context_.scene.analysis == AnalysisKind::Dynamic) return;
+    complain(where, "a static analysis has no time: give a constant in place of a table");
+  }
+
+  /// Two of a kind where one is meant are a slip.
+  template <class Kind>
+  void check_single(const char* kind) {
+    for (int i = 0; i < number_; ++i) {
+      const Load& earlier = context_.scene.loads[static_cast<std::size_t>(i)];
+      if (!std::holds_alternative<Kind>(earlier.what)) continue;
+      if (context_.complaints.under({"loads", i})) continue;
+      complain(path(kind), fmt::format("'{}' is given twice{}", kind,
+                                       earlier.mark.line > 0
+                                           ? fmt::format(" (first in line {})", earlier.mark.line)
+                                           : std::string()));
+      return;
+    }
+  }
+
+  CheckContext& context_;
+  int number_;
+};
+
+}  // namespace
+
+void check_loads(CheckContext& context) {
+  auto& loads = context.scene.loads;
+  for (int i = 0; i < static_cast<int>(loads.size()); ++i) {
+    if (context.complaints.under({"loads", i})) continue;
+    std::visit(LoadCheck(context, i), loads[static_cast<std::size_t>(i)].what);
+  }
+}
+
+}  // namespace der::scenario

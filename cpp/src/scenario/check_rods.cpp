@@ -1,0 +1,253 @@
+#include <algorithm>
+#include <cmath>
+
+#include "scenario/checks.hpp"
+
+namespace der::scenario {
+namespace {
+
+Path rod_path(int rod) { return {"rods", rod}; }
+
+void check_name(CheckContext& context, int i) {
+  const std::string& name = context.scene.given_rods[static_cast<std::size_t>(i)].name;
+  if (name.empty()) return;
+  const auto [first, is_new] = context.rods.emplace(name, i);
+  if (is_new) return;
+  const int line = context.scene.given_rods[static_cast<std::size_t>(first->second)].mark.line;
+  context.complaints.add(rod_path(i) / "name",
+                         fmt::format("there is already a rod '{}'{}", name,
+                                     line > 0 ? fmt::format(" (line {})", line) : std::string()));
+}
+
+void place_evenly(RodText& rod) {
+  const int count = *rod.nodes;
+  const auto last = static_cast<double>(count - 1);
+  rod.points.reserve(static_cast<std::size_t>(count));
+  for (int k = 0; k < count; ++k) {
+    const double share = static_cast<double>(k) / last;
+    rod.points.push_back({rod.from[0] + share * (rod.to[0] - rod.from[0]),
+                          rod.from[1] + share * (rod.to[1] - rod.from[1])});
+  }
+  rod.points.back() = rod.to;
+}
+
+bool finite_length(const RestLine& line, const Path& path, Complaints& complaints) {
+  if (std::isfinite(line.length())) return true;
+  complaints.add(path, "the rod is too long for double-precision numbers");
+  return false;
+}
+
+bool check_straight(const RodText& rod, const RestLine& line, const Path& path,
+                    Complaints& complaints) {
+  if (rod.from == rod.to) {
+    complaints.add(path / "to", "must differ from 'from': the rod has no length");
+    return false;
+  }
+  return finite_length(line, path / "to", complaints);
+}
+
+/// No edge without length, no edge that runs straight back over the one before.
+bool check_polyline(const RodText& rod, const RestLine& line, const Path& path,
+                    Complaints& complaints) {
+  const Path points = path / "points";
+  if (!finite_length(line, points, complaints)) return false;
+  const std::size_t before = complaints.size();
+  double dx = 0.0;
+  double dy = 0.0;
+  for (int k = 1; k < line.num_nodes(); ++k) {
+    if (line.arc_length(k) - line.arc_length(k - 1) <= line.same_place()) {
+      complaints.add(points / k, "coincides with the point before it: an edge needs a length");
+      continue;
+    }
+    const auto i = static_cast<std::size_t>(k);
+    const double ex = rod.points[i][0] - rod.points[i - 1][0];
+    const double ey = rod.points[i][1] - rod.points[i - 1][1];
+    const double dot = dx * ex + dy * ey;
+    const double cross = dx * ey - dy * ex;
+    constexpr double straight_back = 1e-9;  // [rad] from a half turn
+    if (dot < 0.0 && std::abs(cross) <= -dot * straight_back) {
+      complaints.add(points / (k - 1),
+                     "the rod turns straight back here, through 180 degrees: its "
+                     "side of bending is not defined");
+    }
+    dx = ex;
+    dy = ey;
+  }
+  return complaints.size() == before;
+}
+
+/// The rod's nodes, as far as the keys that say where they are could be read.
+void check_geometry(CheckContext& context, int i) {
+  const Path path = rod_path(i);
+  for (const char* key : {"nodes", "from", "to", "points"}) {
+    if (context.complaints.under(path / key)) return;
+  }
+  RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
+  const bool straight = rod.given_points.empty();
+  if (straight && !rod.nodes) return;  // not a mapping at all
+  if (straight) {
+    place_evenly(rod);
+  } else {
+    rod.points = std::move(rod.given_points);
+  }
+  RestLine line(rod.points);
+  const bool fine = straight ? check_straight(rod, line, path, context.complaints)
+                             : check_polyline(rod, line, path, context.complaints);
+  if (fine) context.lines[static_cast<std::size_t>(i)] = std::move(line);
+}
+
+std::string kind_name(const CrossSection& section) {
+  struct Name {
+    std::string operator()(const Circle& /*kind*/) const { return "circle"; }
+    std::string operator()(const Tube& /*kind*/) const { return "tube"; }
+    std::string operator()(const Rectangle& /*kind*/) const { return "rectangle"; }
+    std::string operator()(const Stiffness& /*kind*/) const { return "stiffness"; }
+  };
+  return std::visit(Name{}, section);
+}
+
+void check_material(CheckContext& context, int i) {
+  const Path path = rod_path(i);
+  if (context.complaints.under(path / "cross_section") ||
+      context.complaints.under(path / "material") || context.complaints.at(path)) {
+    return;
+  }
+  const RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
+  const bool direct = std::holds_alternative<Stiffness>(rod.cross_section);
+  if (direct && rod.material) {
+    context.complaints.add(path / "material",
+                           "'material' and 'cross_section: {stiffness: ...}' exclude each other: "
+                           "the stiffnesses and the mass per length are given already");
+  } else if (!direct && !rod.material) {
+    context.complaints.add(path / "material",
+                           fmt::format("a rod with the cross-section '{}' needs the key 'material'",
+                                       kind_name(rod.cross_section)));
+  }
+}
+
+/// Complains where a list that goes with the nodes has another length.
+bool one_for_each_node(CheckContext& context, std::size_t count, std::size_t nodes,
+                       const Path& path) {
+  if (count == nodes) return true;
+  context.complaints.add(path, fmt::format("needs one value for all nodes or one for each of the "
+                                           "{} nodes, got {}",
+                                           nodes, count));
+  return false;
+}
+
+void check_velocity(CheckContext& context, int i) {
+  const Path path = rod_path(i) / "initial_velocity";
+  RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
+  if (context.complaints.under(path)) return;
+  if (auto* constant = std::get_if<Components>(&rod.given_velocity)) {
+    rod.initial_velocity.assign(rod.points.size(), *constant);
+  } else if (auto* list = std::get_if<std::vector<Components>>(&rod.given_velocity)) {
+    if (one_for_each_node(context, list->size(), rod.points.size(), path)) {
+      rod.initial_velocity = std::move(*list);
+    }
+  }
+}
+
+void check_natural_curvature(CheckContext& context, int i) {
+  const Path path = rod_path(i) / "natural_curvature";
+  const RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
+  if (context.complaints.under(path)) return;
+  if (const auto* list = std::get_if<std::vector<double>>(&rod.natural_curvature)) {
+    one_for_each_node(context, list->size(), rod.points.size(), path);
+  }
+}
+
+void check_spheres(CheckContext& context, int i) {
+  const Path path = rod_path(i) / "spheres";
+  RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
+  for (std::size_t k = 0; k < rod.spheres.size(); ++k) {
+    const Path at = path / static_cast<int>(k) / "at";
+    if (!context.complaints.under(at)) context.nodes_at(i, rod.spheres[k].at, at, true);
+  }
+}
+
+bool is_massless(const RodText& rod) {
+  if (const auto* direct = std::get_if<Stiffness>(&rod.cross_section)) {
+    return direct->mass_per_length == 0.0;
+  }
+  return rod.material->density == 0.0;
+}
+
+/// Nodes that could move but have no mass.
+std::vector<int> weightless_nodes(CheckContext& context, int i) {
+  RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
+  std::vector<double> density(rod.points.size(), 0.0);
+  for (Sphere& sphere : rod.spheres) {
+    const auto nodes = context.nodes_at(i, sphere.at, rod_path(i) / "spheres", true);
+    for (const int node : *nodes) density[static_cast<std::size_t>(node)] = sphere.density;
+  }
+  std::vector<int> nodes;
+  for (int node = 0; node < static_cast<int>(density.size()); ++node) {
+    const HeldNode* held = context.held_at(i, node);
+    const bool fixed = held && held->by[0] >= 0 && held->by[1] >= 0;
+    if (density[static_cast<std::size_t>(node)] == 0.0 && !fixed) nodes.push_back(node);
+  }
+  return nodes;
+}
+
+void check_masses(CheckContext& context, int i) {
+  const RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
+  if (!is_massless(rod)) return;
+  const std::vector<int> nodes = weightless_nodes(context, i);
+  if (nodes.empty()) return;
+  constexpr std::size_t shown = 5;
+  std::string numbers;
+  for (std::size_t k = 0; k < std::min(shown, nodes.size()); ++k) {
+    numbers += (k > 0 ? ", " : "") + std::to_string(nodes[k]);
+  }
+  if (nodes.size() > shown) numbers += fmt::format(", ... ({} in all)", nodes.size());
+  const Path path = rod_path(i);
+  const bool direct = std::holds_alternative<Stiffness>(rod.cross_section);
+  context.complaints.add(
+      direct ? path / "cross_section" / "stiffness" / "mass_per_length"
+             : path / "material" / "density",
+      fmt::format(
+          "every free node needs a mass in a run over time, but {} {} {} none: give the rod "
+          "a {}, or the node a sphere with a density",
+          nodes.size() > 1 ? "nodes" : "node", numbers, nodes.size() > 1 ? "have" : "has",
+          direct ? "mass per length" : "density"));
+}
+
+/// A rod of a single edge has no inner node, so only a clamp can make it bend.
+void check_bends(CheckContext& context, int i) {
+  const RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
+  const bool curved = !std::holds_alternative<AsDrawn>(rod.natural_curvature);
+  if (!curved || rod.points.size() > 2) return;
+  if (context.is_clamped(i, 0) || context.is_clamped(i, 1)) return;
+  context.complaints.add(
+      rod_path(i) / "natural_curvature",
+      "has no effect: a rod of 2 nodes without a clamp cannot bend; give it 3 or "
+      "more nodes");
+}
+
+}  // namespace
+
+void check_rods(CheckContext& context) {
+  const auto count = static_cast<int>(context.scene.given_rods.size());
+  context.lines.resize(context.scene.given_rods.size());
+  for (int i = 0; i < count; ++i) {
+    check_name(context, i);
+    check_geometry(context, i);
+    check_material(context, i);
+    if (context.scene.given_rods[static_cast<std::size_t>(i)].points.empty()) continue;
+    check_velocity(context, i);
+    check_natural_curvature(context, i);
+    if (context.lines[static_cast<std::size_t>(i)]) check_spheres(context, i);
+  }
+}
+
+void check_free_nodes(CheckContext& context) {
+  if (context.complaints.under({"supports"})) return;
+  for (int i = 0; i < static_cast<int>(context.lines.size()); ++i) {
+    if (context.complaints.under(rod_path(i))) continue;
+    check_bends(context, i);
+    if (context.scene.analysis == AnalysisKind::Dynamic) check_masses(context, i);
+  }
+}
+
+}  // namespace der::scenario

@@ -1,0 +1,68 @@
+#include "scenario/checks.hpp"
+
+namespace der::scenario {
+namespace {
+
+std::array<bool, 3> components_held(const Support& support) {
+  std::array<bool, 3> held{support.clamp, support.clamp, support.clamp};
+  for (const Component component : support.fix) held[static_cast<std::size_t>(component)] = true;
+  for (const Prescribed& motion : support.prescribe) {
+    held[static_cast<std::size_t>(motion.component)] = true;
+  }
+  return held;
+}
+
+void check_constant(CheckContext& context, bool constant, const Path& path) {
+  if (constant || context.scene.analysis == AnalysisKind::Dynamic) return;
+  context.complaints.add(path,
+                         "a static analysis has no time: give a constant in place of a table");
+}
+
+/// Enters what a support holds of its nodes; complains once where another holds it already.
+void hold(CheckContext& context, int number, int rod, const std::vector<int>& nodes) {
+  static constexpr std::array<const char*, 3> names{"x", "y", "the angle"};
+  const Support& support = context.scene.supports[static_cast<std::size_t>(number)];
+  const std::array<bool, 3> held = components_held(support);
+  for (const int node : nodes) {
+    HeldNode& holding = context.held[CheckContext::node_key(rod, node)];
+    for (std::size_t c = 0; c < held.size(); ++c) {
+      if (!held[c]) continue;
+      if (holding.by[c] >= 0) {
+        const int line = context.scene.supports[static_cast<std::size_t>(holding.by[c])].mark.line;
+        context.complaints.add(
+            {"supports", number},
+            fmt::format("{} of node {} of rod '{}' is already held by support {}{}", names[c], node,
+                        support.rod, holding.by[c],
+                        line > 0 ? fmt::format(" (line {})", line) : std::string()));
+        return;
+      }
+      holding.by[c] = number;
+    }
+  }
+}
+
+void check_support(CheckContext& context, int number) {
+  const Path path{"supports", number};
+  if (context.complaints.under(path)) return;
+  Support& support = context.scene.supports[static_cast<std::size_t>(number)];
+  for (const Prescribed& motion : support.prescribe) {
+    check_constant(context, motion.displacement.constant(),
+                   path / "prescribe" / (motion.component == Component::X ? "x" : "y"));
+  }
+  if (support.rotation) {
+    check_constant(context, support.rotation->constant(), path / "prescribe" / "angle");
+  }
+  const std::optional<int> rod = context.find_rod(support.rod, path / "rod");
+  if (!rod) return;
+  const auto nodes = context.nodes_at(*rod, support.at, path / "at", true);
+  if (nodes) hold(context, number, *rod, *nodes);
+}
+
+}  // namespace
+
+void check_supports(CheckContext& context) {
+  const auto count = static_cast<int>(context.scene.supports.size());
+  for (int i = 0; i < count; ++i) check_support(context, i);
+}
+
+}  // namespace der::scenario

@@ -1,0 +1,108 @@
+#include "scenario/checks.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "scenario/suggestion.hpp"
+
+namespace der::scenario {
+namespace {
+
+std::string in_words(const Location& at) {
+  return at.kind == Location::Kind::Middle ? "in the middle" : "at this arc length";
+}
+
+std::string no_node_there(const RestLine& line, const Location& at, double s) {
+  const int nearest = line.nearest_node(s);
+  const bool evenly_halved = at.kind == Location::Kind::Middle && line.num_nodes() % 2 == 0;
+  return fmt::format("no node lies {} ({:.9g} m): the nearest is {{node: {}}} at {:.9g} m{}",
+                     in_words(at), s, nearest, line.arc_length(nearest),
+                     evenly_halved ? fmt::format("; the rod has {} nodes, an odd number has one in "
+                                                 "the middle",
+                                                 line.num_nodes())
+                                   : "");
+}
+
+}  // namespace
+
+const HeldNode* CheckContext::held_at(int rod, int node) const {
+  const auto found = held.find(node_key(rod, node));
+  return found == held.end() ? nullptr : &found->second;
+}
+
+bool CheckContext::is_clamped(int rod, int node) const {
+  const HeldNode* holding = held_at(rod, node);
+  return holding && holding->by[HeldNode::kAngle] >= 0;
+}
+
+std::optional<int> CheckContext::find_rod(const std::string& name, const Path& path) {
+  if (const auto found = rods.find(name); found != rods.end()) {
+    if (!lines[static_cast<std::size_t>(found->second)]) return std::nullopt;
+    return found->second;
+  }
+  std::vector<std::string> names;
+  for (const RodText& rod : scene.given_rods) {
+    if (rod.name.empty()) return std::nullopt;  // it may be the one that is meant
+    names.push_back(rod.name);
+  }
+  if (names.empty()) return std::nullopt;
+  const std::string near = did_you_mean(name, names);
+  complaints.add(path, fmt::format("there is no rod '{}'{}", name,
+                                   near.empty() ? "; there is " + listed(names) : near));
+  return std::nullopt;
+}
+
+std::optional<std::vector<int>> CheckContext::nodes_at(int rod, Location& at, const Path& path,
+                                                       bool needs_node) {
+  const RestLine& line = *lines[static_cast<std::size_t>(rod)];
+  const int count = line.num_nodes();
+  double s = 0.0;
+  switch (at.kind) {
+    case Location::Kind::Start:
+      return std::vector<int>{0};
+    case Location::Kind::End:
+      return std::vector<int>{count - 1};
+    case Location::Kind::All: {
+      std::vector<int> all(static_cast<std::size_t>(count));
+      std::iota(all.begin(), all.end(), 0);
+      return all;
+    }
+    case Location::Kind::Node:
+      if (at.node < count && at.node >= -count) {
+        return std::vector<int>{at.node < 0 ? at.node + count : at.node};
+      }
+      complaints.add(path,
+                     fmt::format("the rod has no node {}: its nodes are 0 to {} (or, from the "
+                                 "end, -1 to -{})",
+                                 at.node, count - 1, count));
+      return std::nullopt;
+    case Location::Kind::Middle:
+      s = 0.5 * line.length();
+      break;
+    case Location::Kind::ArcLength:
+      if (at.arc_length > line.length() + line.same_place()) {
+        complaints.add(path, fmt::format("arc length {} m lies beyond the rod's length, {:.9g} m",
+                                         at.arc_length, line.length()));
+        return std::nullopt;
+      }
+      at.arc_length = std::min(at.arc_length, line.length());
+      s = at.arc_length;
+      break;
+  }
+  if (const std::optional<int> node = line.node_at(s)) return std::vector<int>{*node};
+  if (!needs_node) return std::vector<int>{};
+  complaints.add(path, no_node_there(line, at, s));
+  return std::nullopt;
+}
+
+void check_scene(SceneText& scene, Complaints& complaints) {
+  CheckContext context{scene, complaints};
+  check_rods(context);
+  check_supports(context);
+  check_free_nodes(context);
+  check_loads(context);
+  check_time(context);
+  check_probes(context);
+}
+
+}  // namespace der::scenario

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "scenario/rest_line.hpp"
+#include "scenario/scene_text.hpp"
+
+/// The checks that tie several keys of a scene together. Each skips what could not be read, so that
+/// one mistake does not cause a second complaint.
+namespace der::scenario {
+
+/// What supports hold of a node: the number of the support that does, or -1, for x, y and angle.
+struct HeldNode {
+  static constexpr std::size_t kAngle = 2;
+  std::array<int, 3> by{-1, -1, -1};
+};
+
+/// Everything that the checks share.
+struct CheckContext {
+  SceneText& scene;
+  Complaints& complaints;
+  std::vector<std::optional<RestLine>> lines{};  ///< by rod; none where the rod has mistakes
+  std::unordered_map<std::string, int> rods{};   ///< number of the rod with a name
+  std::unordered_map<std::int64_t, HeldNode> held{};
+
+  [[nodiscard]] static std::int64_t node_key(int rod, int node) {
+    return (std::int64_t{rod} << 32) | node;
+  }
+  /// Null where no support holds the node.
+  [[nodiscard]] const HeldNode* held_at(int rod, int node) const;
+  [[nodiscard]] bool is_clamped(int rod, int node) const;
+
+  /// The rod with this name, if its geometry is known; complains at `path` where there is none.
+  std::optional<int> find_rod(const std::string& name, const Path& path);
+  /// The nodes that a location names, none for a place between nodes. Complains at `path` about a
+  /// place that the rod does not have and, with `needs_node`, about one between nodes.
+  std::optional<std::vector<int>> nodes_at(int rod, Location& at, const Path& path,
+                                           bool needs_node);
+};
+
+void check_rods(CheckContext& context);
+void check_supports(CheckContext& context);
+/// Masses and bending, which depend on the supports.
+void check_free_nodes(CheckContext& context);
+void check_loads(CheckContext& context);
+void check_time(CheckContext& context);
+void check_probes(CheckContext& context);
+
+}  // namespace der::scenario

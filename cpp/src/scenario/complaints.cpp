@@ -1,0 +1,113 @@
+#include "scenario/complaints.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace der::scenario {
+namespace {
+
+Path path_to(const Place& place) {
+  Path path;
+  for (const Place* step = &place; step->parent; step = step->parent) {
+    path.push_back(step->index < 0 ? Segment(std::string(step->key)) : Segment(step->index));
+  }
+  std::reverse(path.begin(), path.end());
+  return path;
+}
+
+/// The value that a segment names inside another; null if there is none.
+const Value* child(const Value& parent, const Segment& segment) {
+  if (segment.index >= 0) {
+    const Sequence* items = parent.sequence();
+    const auto index = static_cast<std::size_t>(segment.index);
+    return items && index < items->size() ? &(*items)[index] : nullptr;
+  }
+  const Mapping* entries = parent.mapping();
+  const Entry* entry = entries ? find_entry(*entries, segment.key) : nullptr;
+  return entry ? &entry->value : nullptr;
+}
+
+/// A list item goes by its name, as in an override, unless an earlier one has the same.
+std::string item_text(const Sequence& items, int index) {
+  const std::string* name = name_of(items[static_cast<std::size_t>(index)]);
+  if (!name || name->empty()) return std::to_string(index);
+  const auto end = items.begin() + index;
+  const bool taken = std::any_of(items.begin(), end, [&](const Value& earlier) {
+    const std::string* other = name_of(earlier);
+    return other && *other == *name;
+  });
+  return taken ? std::to_string(index) : *name;
+}
+
+}  // namespace
+
+Path operator/(Path path, Segment next) {
+  path.push_back(std::move(next));
+  return path;
+}
+
+void Complaints::add(const Place& place, std::string message) {
+  record(path_to(place), place.value->mark, std::move(message));
+}
+
+void Complaints::add_key(const Place& mapping, std::string_view key, const Mark& mark,
+                         std::string message) {
+  record(path_to(mapping) / std::string(key), mark, std::move(message));
+}
+
+void Complaints::add(const Path& path, std::string message) {
+  const Value* value = &document_.root();
+  for (const Segment& segment : path) {
+    const Value* next = child(*value, segment);
+    if (!next) break;
+    value = next;
+  }
+  record(path, value->mark, std::move(message));
+}
+
+bool Complaints::under(const Path& path) const {
+  return std::any_of(found_.begin(), found_.end(), [&](const Complaint& complaint) {
+    return complaint.path.size() >= path.size() &&
+           std::equal(path.begin(), path.end(), complaint.path.begin());
+  });
+}
+
+bool Complaints::at(const Path& path) const {
+  return std::any_of(found_.begin(), found_.end(),
+                     [&](const Complaint& complaint) { return complaint.path == path; });
+}
+
+void Complaints::throw_if_any() const {
+  if (found_.empty()) return;
+  std::vector<Diagnostic> diagnostics;
+  for (const Complaint& complaint : found_) diagnostics.push_back(complaint.diagnostic);
+  std::stable_sort(diagnostics.begin(), diagnostics.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+  });
+  throw SceneError(document_.source(), std::move(diagnostics));
+}
+
+void Complaints::record(Path path, const Mark& mark, std::string message) {
+  std::string text = written(path);
+  found_.push_back(
+      {std::move(path), {mark.line, mark.column, std::move(text), std::move(message)}});
+}
+
+std::string Complaints::written(const Path& path) const {
+  std::string text;
+  const Value* value = &document_.root();
+  for (const Segment& segment : path) {
+    if (!text.empty()) text += '.';
+    const Value* next = value ? child(*value, segment) : nullptr;
+    if (segment.index < 0) {
+      text += segment.key;
+    } else {
+      text += next ? item_text(*value->sequence(), segment.index) : std::to_string(segment.index);
+    }
+    value = next;
+  }
+  return text;
+}
+
+}  // namespace der::scenario

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "der/core/error.hpp"
+#include "der/scenario/document.hpp"
+
+namespace der::scenario {
+
+/// A value together with the way to it from the top of the document: a linked list on the stack, so
+/// that a scene without mistakes pays nothing for its paths.
+struct Place {
+  const Value* value = nullptr;
+  const Place* parent = nullptr;
+  std::string_view key{};  ///< under which it stands in its parent, if that is a mapping
+  int index = -1;          ///< of it in its parent, if that is a sequence
+
+  [[nodiscard]] Place at(const Entry& entry) const { return {&entry.value, this, entry.key, -1}; }
+  [[nodiscard]] Place at(int item, const Value& child) const { return {&child, this, {}, item}; }
+};
+
+/// One step of a path: a key or an index.
+struct Segment {
+  Segment(const char* name) : key(name) {}             // NOLINT(google-explicit-constructor)
+  Segment(std::string name) : key(std::move(name)) {}  // NOLINT(google-explicit-constructor)
+  Segment(int item) : index(item) {}                   // NOLINT(google-explicit-constructor)
+  bool operator==(const Segment& other) const { return key == other.key && index == other.index; }
+
+  std::string key;
+  int index = -1;
+};
+using Path = std::vector<Segment>;
+Path operator/(Path path, Segment next);
+
+/// Collects everything that is wrong with a document.
+class Complaints {
+ public:
+  explicit Complaints(const Document& document) : document_(document) {}
+
+  /// About a value.
+  void add(const Place& place, std::string message);
+  /// About a key of a mapping; `mark` is where that key stands, or should.
+  void add_key(const Place& mapping, std::string_view key, const Mark& mark, std::string message);
+  /// About a value, or (where it is absent) about the nearest that holds it.
+  void add(const Path& path, std::string message);
+
+  [[nodiscard]] std::size_t size() const { return found_.size(); }
+  /// Whether something at this path, or below it, is wrong: then nothing can be concluded from it.
+  [[nodiscard]] bool under(const Path& path) const;
+  /// Whether the value itself, not one of its parts, is of the wrong kind.
+  [[nodiscard]] bool at(const Path& path) const;
+  /// Throws SceneError with all of them, sorted by line.
+  void throw_if_any() const;
+
+ private:
+  struct Complaint {
+    Path path;
+    Diagnostic diagnostic;
+  };
+  void record(Path path, const Mark& mark, std::string message);
+  [[nodiscard]] std::string written(const Path& path) const;
+
+  const Document& document_;
+  std::vector<Complaint> found_;
+};
+
+}  // namespace der::scenario

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <fmt/core.h>
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "der/scenario/scenario.hpp"
+#include "scenario/complaints.hpp"
+#include "scenario/shape.hpp"
+
+namespace der::scenario {
+
+/// How a value of type T is written in a scene: what it may look like, and how it is read.
+template <class T>
+struct Format {
+  Shape shape;
+  /// Reads and checks; complains and returns false where the text does not fit the shape.
+  std::function<bool(const Shape&, const Place&, Complaints&, T&)> read_shape;
+  /// A value as one would write it, for the defaults in the documentation; may be absent.
+  std::function<std::string(const T&)> print{};
+
+  bool read(const Place& place, Complaints& complaints, T& out) const {
+    return read_shape(shape, place, complaints, out);
+  }
+};
+
+/// "expected a number in m, got 'abc'" and, behind a colon, what to do.
+void complain_expected(const std::string& what, const Place& place, Complaints& complaints,
+                       const std::string& hint = {});
+
+/// The text of a scalar that is not typed, quoted or not; null for everything else.
+const std::string* text_of(const Value& value);
+
+Format<double> number(std::string unit, Range range = {});
+Format<int> integer(Range range);
+Format<bool> boolean();
+Format<std::string> text();
+/// A word that other keys and override paths can refer to.
+Format<std::string> name();
+/// One of some words, as itself.
+Format<std::string> one_of(const std::vector<Word>& words, std::vector<ReservedWord> reserved = {});
+Format<Components> vector(std::string unit);
+
+/// Position among the shape's words of the one that is written; -1 after a complaint, which says
+/// that `what` was expected.
+int read_word(const Shape& shape, const std::string& what, const Place& place,
+              Complaints& complaints);
+
+/// One of some words, as the value that belongs to it.
+template <class E>
+Format<E> choice(const std::vector<std::pair<Word, E>>& options,
+                 std::vector<ReservedWord> reserved = {}) {
+  Shape shape{Shape::Kind::Choice};
+  std::vector<E> values;
+  for (const auto& [word, value] : options) {
+    shape.words.push_back(word);
+    values.push_back(value);
+  }
+  shape.reserved = std::move(reserved);
+  return {std::move(shape),
+          [values](const Shape& self, const Place& place, Complaints& complaints, E& out) {
+            const int chosen = read_word(self, expected(self), place, complaints);
+            if (chosen >= 0) out = values[static_cast<std::size_t>(chosen)];
+            return chosen >= 0;
+          },
+          [options](const E& value) {
+            for (const auto& [word, candidate] : options) {
+              if (candidate == value) return word.name;
+            }
+            return std::string();
+          }};
+}
+
+/// Complains and returns false unless the value is a list with enough items.
+bool is_list(const Shape& shape, const Place& place, Complaints& complaints);
+
+/// In a long list of numbers the first mistakes are enough.
+inline constexpr int kMaxMistakesInNumbers = 10;
+
+/// A list; its items keep their positions even where some cannot be read.
+template <class T>
+Format<std::vector<T>> list_of(Format<T> item, int min_items) {
+  Shape shape{Shape::Kind::List};
+  shape.unit = item.shape.unit;
+  shape.parts = {item.shape};
+  shape.min_items = min_items;
+  const bool numbers =
+      item.shape.kind == Shape::Kind::Number || item.shape.kind == Shape::Kind::Vector;
+  return {std::move(shape),
+          [item = std::move(item), numbers](const Shape& self, const Place& place,
+                                            Complaints& complaints, std::vector<T>& out) {
+            if (!is_list(self, place, complaints)) return false;
+            const Sequence& items = *place.value->sequence();
+            out.assign(items.size(), T{});
+            int mistakes = 0;
+            for (std::size_t i = 0; i < items.size(); ++i) {
+              const Place here = place.at(static_cast<int>(i), items[i]);
+              if (item.read(here, complaints, out[i])) continue;
+              if (++mistakes == kMaxMistakesInNumbers && numbers && i + 1 < items.size()) {
+                complaints.add(here,
+                               "the rest of this list is not checked before these are mended");
+                break;
+              }
+            }
+            return mistakes == 0;
+          }};
+}
+
+/// A constant, or a table over time.
+Format<Series> series(const std::string& unit);
+Format<VectorSeries> vector_series(const std::string& unit);
+
+/// `at:`. `All` names every node; without it the place is a single one.
+Format<Location> location();
+Format<Location> single_location(const std::string& why_not_all);
+
+/// What is said wherever a third dimension shows up.
+inline constexpr const char* kNoSpatialRods =
+    "spatial rods are not available in this version: the scene has to lie in the x-y plane";
+
+}  // namespace der::scenario

@@ -1,0 +1,94 @@
+#include <limits>
+
+#include "scenario/scene_text.hpp"
+#include "scenario/table.hpp"
+
+namespace der::scenario {
+namespace {
+
+struct DistributedForceText : DistributedForce {
+  DistributedForceText() { to = std::numeric_limits<double>::infinity(); }
+};
+
+constexpr auto assign_load = [](Load& load, auto&& what) {
+  load.what = std::forward<decltype(what)>(what);
+};
+
+Format<Fluid> fluid_format() {
+  return mapping(
+      Table<Fluid>("fluid",
+                   "A viscous fluid at rest, felt by the spheres: Stokes drag 6 pi mu R u "
+                   "and buoyancy.")
+          .required("density", &Fluid::density, number("kg/m^3", not_negative()),
+                    "Density; 0: no buoyancy.")
+          .required("viscosity", &Fluid::viscosity, number("Pa s", not_negative()),
+                    "Dynamic viscosity mu."));
+}
+
+Format<Damping> damping_format() {
+  return mapping(
+      Table<Damping>("damping",
+                     "A force -coefficient * velocity per rest length. Several of them "
+                     "add up.")
+          .required("coefficient", &Damping::coefficient, number("N s/m^2", not_negative()),
+                    "Force per velocity and length.")
+          .optional("rod", &Damping::rod, name(), "Name of the rod that it acts on.", "every rod"));
+}
+
+Format<PointForce> point_force_format() {
+  return mapping(Table<PointForce>("point force", "A force that keeps its direction.")
+                     .required("rod", &PointForce::rod, name(), "Name of the rod.")
+                     .required("at", &PointForce::at, location(),
+                               "Where; any arc length. With `all` it acts on each node.")
+                     .required("force", &PointForce::force, vector_series("N"),
+                               "A constant, or a table over time."));
+}
+
+Format<Moment> moment_format() {
+  return mapping(
+      Table<Moment>("moment", "A moment about z, positive counter-clockwise.")
+          .required("rod", &Moment::rod, name(), "Name of the rod.")
+          .required("at", &Moment::at,
+                    single_location("'all' is no single place: a moment acts at one"),
+                    "Where; any arc length.")
+          .required("moment", &Moment::moment, series("N m"), "A constant, or a table over time."));
+}
+
+Format<DistributedForceText> distributed_force_format() {
+  return mapping(
+      Table<DistributedForceText>("distributed force",
+                                  "A force per rest length that keeps its "
+                                  "direction, on a part of a rod.")
+          .required("rod", &DistributedForce::rod, name(), "Name of the rod.")
+          .required("force", &DistributedForce::force, vector_series("N/m"),
+                    "A constant, or a table over time.")
+          .optional("from", &DistributedForce::from, number("m", not_negative()),
+                    "Arc length where the part starts.")
+          .optional("to", &DistributedForce::to, number("m", positive()),
+                    "Arc length where the part ends.", "the rod's length")
+          .check([](DistributedForceText& load, const Place& place, Complaints& complaints) {
+            if (load.from < load.to) return;
+            complaints.add(
+                place.at(*find_entry(*place.value->mapping(), "to")),
+                fmt::format("must be greater than 'from' ({} m), got {} m", load.from, load.to));
+          }));
+}
+
+}  // namespace
+
+Format<Load> load_format() {
+  return mapping(
+      Table<Load>("load", "Exactly one of these keys.")
+          .kind(
+              "gravity", vector("m/s^2"),
+              [](Load& load, Components&& g) { load.what = Gravity{std::move(g)}; },
+              "Acceleration of gravity.")
+          .kind("fluid", fluid_format(), assign_load, "A viscous fluid around the spheres.")
+          .kind("damping", damping_format(), assign_load, "Linear damping along rods.")
+          .kind("point_force", point_force_format(), assign_load, "A force at a place.")
+          .kind("moment", moment_format(), assign_load, "A moment at a place.")
+          .kind("distributed_force", distributed_force_format(), assign_load,
+                "A force per length on a part of a rod."));
+}
+
+}  // namespace der::scenario

@@ -1,0 +1,237 @@
+#include "scenario/number.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace der::scenario {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// The longest start of a text that has the form of a decimal number.
+struct Decimal {
+  std::size_t length = 0;  // 0: there is none
+  bool whole = true;       // no point and no exponent
+  bool leading_zero = false;
+};
+
+std::size_t skip_digits(std::string_view text, std::size_t i) {
+  while (i < text.size() && is_digit(text[i])) ++i;
+  return i;
+}
+
+std::size_t skip_sign(std::string_view text, std::size_t i) {
+  return i < text.size() && (text[i] == '+' || text[i] == '-') ? i + 1 : i;
+}
+
+Decimal scan(std::string_view text) {
+  Decimal number;
+  const std::size_t start = skip_sign(text, 0);
+  std::size_t end = skip_digits(text, start);
+  std::size_t digits = end - start;
+  number.leading_zero = digits > 1 && text[start] == '0';
+  if (end < text.size() && text[end] == '.') {
+    const std::size_t fraction = skip_digits(text, end + 1);
+    digits += fraction - end - 1;
+    if (digits > 0) {
+      number.whole = false;
+      end = fraction;
+    }
+  }
+  if (digits == 0) return {};
+  if (end < text.size() && (text[end] == 'e' || text[end] == 'E')) {
+    const std::size_t exponent = skip_sign(text, end + 1);
+    const std::size_t after = skip_digits(text, exponent);
+    if (after > exponent) {
+      number.whole = false;
+      end = after;
+    }
+  }
+  number.length = end;
+  return number;
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+bool is_infinite_or_nan(std::string_view text) {
+  std::string word = lower(text.substr(skip_sign(text, 0)));
+  if (!word.empty() && word.front() == '.') word.erase(0, 1);
+  return word == "inf" || word == "infinity" || word == "nan";
+}
+
+template <class T>
+std::optional<T> convert(std::string_view text) {
+  if (text.front() == '+') text.remove_prefix(1);  // from_chars knows no plus sign
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::string without(std::string_view text, char unwanted) {
+  std::string result(text);
+  result.erase(std::remove(result.begin(), result.end(), unwanted), result.end());
+  return result;
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  return text;
+}
+
+std::string leading_zero_problem(std::string_view text) {
+  const bool negative = text.front() == '-';
+  std::string_view digits = text.substr(skip_sign(text, 0));
+  const bool octal =
+      std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '7'; });
+  long octal_value = 0;
+  if (octal) std::from_chars(digits.data(), digits.data() + digits.size(), octal_value, 8);
+  while (digits.size() > 1 && digits[0] == '0' && is_digit(digits[1])) digits.remove_prefix(1);
+  const char* sign = negative ? "-" : "";
+  if (!octal) return fmt::format("numbers have no leading zero: write {}{}", sign, digits);
+  return fmt::format("a leading zero is ambiguous (octal in YAML 1.1): write {}{} or {}{}", sign,
+                     digits, sign, octal_value);
+}
+
+std::string other_base_problem(std::string_view text) {
+  const std::string word = lower(text.substr(skip_sign(text, 0)));
+  if (word.size() < 3 || word[0] != '0') return {};
+  int base = 0;
+  if (word[1] == 'x') base = 16;
+  if (word[1] == 'o') base = 8;
+  if (word[1] == 'b') base = 2;
+  if (base == 0) return {};
+  long value = 0;
+  const auto [end, error] =
+      std::from_chars(word.data() + 2, word.data() + word.size(), value, base);
+  if (error != std::errc{} || end != word.data() + word.size()) return {};
+  return fmt::format("only decimal numbers are read: write {}{}", text.front() == '-' ? "-" : "",
+                     value);
+}
+
+/// Factor that turns a value with the unit `written` into one with `unit`; 0 if unknown.
+double unit_factor(std::string_view written, std::string_view unit) {
+  if (unit == "rad" && (written == "deg" || written == "degrees" || written == "°")) {
+    return std::acos(-1.0) / 180.0;
+  }
+  if (unit.empty() || written.size() < unit.size()) return 0.0;
+  const std::string_view prefix = written.substr(0, written.size() - unit.size());
+  if (written.substr(prefix.size()) != unit) return 0.0;
+  struct Prefix {
+    std::string_view symbol;
+    double factor;
+  };
+  static constexpr std::array<Prefix, 11> prefixes{{{"", 1.0},
+                                                    {"n", 1e-9},
+                                                    {"u", 1e-6},
+                                                    {"\u00b5", 1e-6},
+                                                    {"\u03bc", 1e-6},
+                                                    {"m", 1e-3},
+                                                    {"c", 1e-2},
+                                                    {"d", 1e-1},
+                                                    {"k", 1e3},
+                                                    {"M", 1e6},
+                                                    {"G", 1e9}}};
+  const auto* known = std::find_if(prefixes.begin(), prefixes.end(),
+                                   [&](const Prefix& p) { return p.symbol == prefix; });
+  return known == prefixes.end() ? 0.0 : known->factor;
+}
+
+std::string unit_problem(std::string_view number, std::string_view written, std::string_view unit) {
+  const std::optional<double> value = convert<double>(number);
+  const double factor = unit_factor(written, unit);
+  if (value && factor > 0.0) {
+    return fmt::format("write the value in {} without a unit: {:.12g}", unit, *value * factor);
+  }
+  if (unit.empty()) return "write the number alone, without a unit";
+  return fmt::format("write the value in {}, without a unit", unit);
+}
+
+/// Why a text that is no decimal number is none, as far as one can tell.
+std::string diagnose(std::string_view text, const Decimal& start, std::string_view unit) {
+  if (is_infinite_or_nan(text)) return "infinities and NaN are out of range";
+  if (std::string problem = other_base_problem(text); !problem.empty()) return problem;
+  for (const char separator : {'_', '\''}) {
+    const std::string joined = without(text, separator);
+    if (joined.size() < text.size() && scan(joined).length == joined.size()) {
+      return fmt::format("write {}", joined);
+    }
+  }
+  if (start.length == 0) return {};
+  const std::string_view rest = trimmed(text.substr(start.length));
+  if (rest.front() == ',') {
+    return "decimals have a point, thousands no separator, and a list stands in brackets";
+  }
+  if (rest.front() == '*' || rest.front() == '/' || rest.front() == '^') {
+    return "arithmetic is not evaluated: write the result";
+  }
+  if (is_digit(rest.front()) || rest.front() == '-' || rest.front() == '+') {
+    return "is a comma or a bracket missing?";
+  }
+  if ((rest.front() == 'd' || rest.front() == 'D') && rest.size() > 1 &&
+      skip_digits(rest, skip_sign(rest, 1)) == rest.size()) {
+    return fmt::format("write {}e{}", text.substr(0, start.length), rest.substr(1));
+  }
+  const auto first = static_cast<unsigned char>(rest.front());
+  if (std::isalpha(first) != 0 || first >= 0x80 || first == '%') {
+    return unit_problem(text.substr(0, start.length), rest, unit);
+  }
+  return {};
+}
+
+}  // namespace
+
+Reading<double> read_real(std::string_view text, std::string_view unit) {
+  const Decimal number = scan(text);
+  if (text.empty() || number.length != text.size()) {
+    return {std::nullopt, diagnose(text, number, unit)};
+  }
+  if (number.leading_zero) return {std::nullopt, leading_zero_problem(text)};
+  const std::optional<double> value = convert<double>(text);
+  if (value) return {value, {}};
+  return {std::nullopt, "it is out of the range of double-precision numbers (1e-308 to 1.8e308)"};
+}
+
+Reading<std::int64_t> read_whole(std::string_view text) {
+  const Decimal number = scan(text);
+  if (text.empty() || number.length != text.size()) {
+    return {std::nullopt, diagnose(text, number, {})};
+  }
+  if (number.leading_zero) return {std::nullopt, leading_zero_problem(text)};
+  if (number.whole) {
+    const std::optional<std::int64_t> value = convert<std::int64_t>(text);
+    if (value) return {value, {}};
+    return {std::nullopt, "it is too large"};
+  }
+  const std::optional<double> value = convert<double>(text);
+  if (value && std::abs(*value) < 1e15 && *value == std::floor(*value)) {
+    return {std::nullopt, fmt::format("write {:.0f}", *value)};
+  }
+  return {std::nullopt, {}};
+}
+
+bool looks_like_number(std::string_view text) {
+  return !text.empty() && (scan(text).length == text.size() || is_infinite_or_nan(text) ||
+                           !other_base_problem(text).empty());
+}
+
+std::string shortest(double value) {
+  std::array<char, 32> buffer{};
+  const auto result = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  std::string text(buffer.data(), result.ptr);
+  if (text.find_first_of(".en") == std::string::npos) text += ".0";
+  return text;
+}
+
+}  // namespace der::scenario

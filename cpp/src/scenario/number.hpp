@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace der::scenario {
+
+/// A value, or a clause that says what is wrong with the text and what to write (may be empty).
+template <class T>
+struct Reading {
+  std::optional<T> value;
+  std::string problem;
+};
+
+/// Numbers are decimal on purpose: an optional sign, digits with or without a point on either side
+/// of them (`.5`, `5.`), an optional exponent (`1e-3`). Everything that YAML 1.1 or a programming
+/// language would read differently (`010`, `0x1F`, `1_000`, `1:30`) is refused with a hint, as are
+/// infinities, NaN, values outside the range of a double and values with a unit.
+/// `unit` is the unit of the key, for the hint.
+Reading<double> read_real(std::string_view text, std::string_view unit);
+
+/// As above for whole numbers; `2.0` and `1e2` are refused with a hint.
+Reading<std::int64_t> read_whole(std::string_view text);
+
+/// Whether a text would be read as a number, or only just not (`010`, `.inf`).
+bool looks_like_number(std::string_view text);
+
+/// The shortest text that reads back to the same double, always with a point or an exponent.
+std::string shortest(double value);
+
+}  // namespace der::scenario

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "der/scenario/scenario.hpp"
+
+namespace der::scenario {
+
+/// A rod's rest length as a line with nodes on it.
+class RestLine {
+ public:
+  /// `points` [m], at least two.
+  explicit RestLine(const std::vector<Components>& points);
+
+  [[nodiscard]] int num_nodes() const { return static_cast<int>(arc_length_.size()); }
+  [[nodiscard]] double length() const { return arc_length_.back(); }
+  [[nodiscard]] double arc_length(int node) const;
+  [[nodiscard]] int nearest_node(double s) const;
+  /// The node at arc length `s` [m], if there is one within `same_place()`.
+  [[nodiscard]] std::optional<int> node_at(double s) const;
+  /// Two arc lengths [m] closer than this are the same place.
+  [[nodiscard]] double same_place() const { return 1e-9 * length(); }
+
+ private:
+  std::vector<double> arc_length_;  // of each node [m]
+};
+
+}  // namespace der::scenario

@@ -1,0 +1,153 @@
+#include "scenario/scene_text.hpp"
+#include "scenario/table.hpp"
+
+namespace der::scenario {
+namespace {
+
+/// Puts a kind of a variant into it.
+constexpr auto assign_kind = [](auto& target, auto&& kind) {
+  target = std::forward<decltype(kind)>(kind);
+};
+
+Format<Circle> circle_format() {
+  return mapping(Table<Circle>("circle", "A solid round rod.")
+                     .required("radius", &Circle::radius, number("m", positive()), "Radius."));
+}
+
+Format<Tube> tube_format() {
+  return mapping(
+      Table<Tube>("tube", "A hollow round rod.")
+          .required("inner_radius", &Tube::inner_radius, number("m", not_negative()),
+                    "Radius of the hole.")
+          .required("outer_radius", &Tube::outer_radius, number("m", positive()), "Outer radius.")
+          .check([](Tube& tube, const Place& place, Complaints& complaints) {
+            if (tube.inner_radius < tube.outer_radius) return;
+            complaints.add(place.at(*find_entry(*place.value->mapping(), "inner_radius")),
+                           fmt::format("must be smaller than 'outer_radius', but {} m is not "
+                                       "smaller than {} m",
+                                       tube.inner_radius, tube.outer_radius));
+          }));
+}
+
+Format<Rectangle> rectangle_format() {
+  return mapping(Table<Rectangle>("rectangle", "A solid rod with a rectangular cross-section.")
+                     .required("width", &Rectangle::width, number("m", positive()),
+                               "Size out of the plane of a planar scene.")
+                     .required("height", &Rectangle::height, number("m", positive()),
+                               "Size in the plane of bending of a planar scene."));
+}
+
+Format<Stiffness> stiffness_format() {
+  return mapping(
+      Table<Stiffness>("stiffness",
+                       "The stiffnesses themselves, for a cross-section of any other "
+                       "kind. Such a rod has no `material`.")
+          .required("EA", &Stiffness::EA, number("N", positive()), "Against stretching.")
+          .required("EI", &Stiffness::EI, number("N m^2", not_negative()),
+                    "Against bending; 0 makes a cable, which does not resist it.")
+          .optional("GJ", &Stiffness::GJ, number("N m^2", positive()),
+                    "Against twisting. A planar scene does not twist and does not need it.")
+          .required("mass_per_length", &Stiffness::mass_per_length, number("kg/m", not_negative()),
+                    "Mass per rest length."));
+}
+
+Format<CrossSection> cross_section_format() {
+  return mapping(Table<CrossSection>("cross-section", "Exactly one of these keys.")
+                     .kind("circle", circle_format(), assign_kind, "A solid round rod.")
+                     .kind("tube", tube_format(), assign_kind, "A hollow round rod.")
+                     .kind("rectangle", rectangle_format(), assign_kind, "A rectangular rod.")
+                     .kind("stiffness", stiffness_format(), assign_kind,
+                           "The stiffnesses themselves; then without `material`."));
+}
+
+Format<Material> material_format() {
+  return mapping(Table<Material>("material", "A linearly elastic material.")
+                     .required("youngs_modulus", &Material::youngs_modulus,
+                               number("Pa", positive()), "Young's modulus.")
+                     .required("density", &Material::density, number("kg/m^3", not_negative()),
+                               "Density; 0 for a rod whose mass is only in its spheres."));
+}
+
+Format<Sphere> sphere_format() {
+  return mapping(
+      Table<Sphere>("sphere",
+                    "Rigid spheres on nodes. A later entry replaces an earlier one on "
+                    "the same node.")
+          .required("at", &Sphere::at, location(), "The node, or all; there has to be a node.")
+          .required("radius", &Sphere::radius, number("m", positive()), "Radius.")
+          .required("density", &Sphere::density, number("kg/m^3", not_negative()), "Density."));
+}
+
+Format<NaturalCurvature> natural_curvature_format() {
+  const Format<double> constant = number("1/m");
+  const Format<std::vector<double>> list = list_of(number("1/m"), 1);
+  Shape shape{Shape::Kind::AnyOf};
+  shape.unit = constant.shape.unit;
+  shape.parts = {constant.shape, list.shape};
+  return {std::move(shape), [constant, list](const Shape& /*self*/, const Place& place,
+                                             Complaints& complaints, NaturalCurvature& out) {
+            if (!place.value->sequence()) {
+              return constant.read(place, complaints, out.emplace<double>());
+            }
+            return list.read(place, complaints, out.emplace<std::vector<double>>());
+          }};
+}
+
+Format<Velocities> velocities_format() {
+  const Format<Components> one = vector("m/s");
+  const Format<std::vector<Components>> list = list_of(one, 1);
+  Shape shape{Shape::Kind::AnyOf};
+  shape.unit = one.shape.unit;
+  shape.parts = {one.shape, list.shape};
+  return {std::move(shape), [one, list](const Shape& /*self*/, const Place& place,
+                                        Complaints& complaints, Velocities& out) {
+            const Sequence* items = place.value->sequence();
+            if (items && !items->empty() && items->front().sequence()) {
+              return list.read(place, complaints, out.emplace<std::vector<Components>>());
+            }
+            return one.read(place, complaints, out.emplace<Components>());
+          }};
+}
+
+Format<CurvatureMeasure> curvature_format() {
+  return choice<CurvatureMeasure>(
+      {{{"angle", "the turning angle at a node: second order from coarse meshes on"},
+        CurvatureMeasure::Angle},
+       {{"tangent", "the classic 2 tan(turning angle / 2)"}, CurvatureMeasure::Tangent}});
+}
+
+}  // namespace
+
+Format<RodText> rod_format() {
+  constexpr double max_nodes = 1'000'000;
+  return mapping(
+      Table<RodText>("rod",
+                     "An elastic rod, drawn as a straight line or a polyline, with a node at "
+                     "each corner. Its rest length is the length as drawn.")
+          .required("name", &Rod::name, name(),
+                    "Supports, loads, probes and override paths refer to it.")
+          .optional("nodes", &RodText::nodes, integer({2, false, max_nodes}),
+                    "Number of nodes, evenly spaced over `from` .. `to`; a rod bends at its inner "
+                    "nodes, so it takes 3 to bend.")
+          .optional("from", &RodText::from, vector("m"), "First node of a straight rod.")
+          .optional("to", &RodText::to, vector("m"), "Last node of a straight rod.")
+          .optional("points", &RodText::given_points, list_of(vector("m"), 2),
+                    "The nodes, one by one.")
+          .either({{"nodes", "from", "to"}, {"points"}})
+          .required("cross_section", &Rod::cross_section, cross_section_format(),
+                    "Shape and size across the rod.")
+          .optional("material", &Rod::material, material_format(),
+                    "What the rod is made of; needed with every cross-section but `stiffness`.")
+          .optional("curvature", &Rod::curvature, curvature_format(),
+                    "Measure of bending at a node.")
+          .optional("natural_curvature", &Rod::natural_curvature, natural_curvature_format(),
+                    "Curvature without stress, positive counter-clockwise: one number, or one for "
+                    "each node.",
+                    "as drawn")
+          .optional("initial_velocity", &RodText::given_velocity, velocities_format(),
+                    "One vector for all nodes, or one for each.", "at rest")
+          .optional("spheres", &Rod::spheres, list_of(sphere_format(), 0),
+                    "Rigid spheres on nodes."));
+}
+
+}  // namespace der::scenario

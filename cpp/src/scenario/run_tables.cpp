@@ -1,0 +1,148 @@
+#include "der/output/quantities.hpp"
+#include "der/solvers/names.hpp"
+#include "der/steppers/names.hpp"
+#include "scenario/scene_text.hpp"
+#include "scenario/table.hpp"
+
+namespace der::scenario {
+namespace {
+
+std::vector<Word> words(const std::vector<std::string>& names) {
+  std::vector<Word> result;
+  result.reserve(names.size());
+  for (const std::string& word : names) result.push_back({word, ""});
+  return result;
+}
+
+Format<std::string> quantity_format() {
+  std::vector<Word> names;
+  for (const Quantity& quantity : quantities()) {
+    const std::string unit = quantity.unit.empty() ? "" : " [" + quantity.unit + "]";
+    names.push_back({quantity.name, quantity.doc + unit});
+  }
+  return one_of(names, {{"z", kNoSpatialRods}, {"vz", kNoSpatialRods}, {"twist", kNoSpatialRods}});
+}
+
+/// `over: rod`: the only span there is.
+Format<bool> over_format() { return choice<bool>({{{"rod", "the whole rod"}, true}}); }
+
+struct ProbeText : Probe {
+  bool over_rod = false;
+};
+
+Table<ProbeText> probe_table() {
+  return Table<ProbeText>("probe", "A number recorded at every step.")
+      .required("quantity", &Probe::quantity, quantity_format(), "What is recorded.")
+      .optional("rod", &Probe::rod, name(),
+                "Name of the rod; energies of the whole model go "
+                "without it.")
+      .optional("at", &Probe::at,
+                single_location("'all' is no single place: for the extreme along the rod write "
+                                "'over: rod' and 'reduce: min' or 'max'"),
+                "Where along the rod.")
+      .optional("over", &ProbeText::over_rod, over_format(),
+                "In place of `at`: the extreme along the rod.")
+      .optional("reduce", &Probe::over,
+                choice<Reduce>({{{"min", "the least value"}, Reduce::Min},
+                                {{"max", "the greatest value"}, Reduce::Max}}),
+                "Which extreme; with `over`.")
+      .at_most_one({{"at"}, {"over", "reduce"}});
+}
+
+/// A mapping from free names to probes.
+Format<std::vector<Probe>> probes_format() {
+  const auto table = std::make_shared<const Table<ProbeText>>(probe_table());
+  Shape shape{Shape::Kind::NamedTables};
+  shape.table = std::shared_ptr<const TableInfo>(table, &table->info());
+  return {std::move(shape), [table](const Shape& self, const Place& place, Complaints& complaints,
+                                    std::vector<Probe>& out) {
+            const Mapping* entries = place.value->mapping();
+            if (!entries) {
+              complain_expected(expected(self), place, complaints);
+              return false;
+            }
+            const std::size_t before = complaints.size();
+            for (const Entry& entry : *entries) {
+              const Entry& first = *find_entry(*entries, entry.key);
+              if (&first != &entry) {
+                complaints.add_key(place, entry.key, entry.mark,
+                                   fmt::format("duplicate probe '{}'", entry.key));
+              } else if (!is_name(entry.key)) {
+                complaints.add_key(place, entry.key, entry.mark,
+                                   "names are made of letters, digits, '_' and '-' and do not "
+                                   "start with a digit or '-'");
+              }
+              ProbeText probe;
+              table->read(place.at(entry), complaints, probe);
+              probe.name = entry.key;
+              out.push_back(static_cast<Probe&&>(probe));
+            }
+            return complaints.size() == before;
+          }};
+}
+
+}  // namespace
+
+Format<TimeText> time_format() {
+  return mapping(
+      Table<TimeText>("time", "A run over time.")
+          .required("duration", &Time::duration, number("s", positive()), "End of the run.")
+          .required("step", &Time::step, number("s", positive()), "Time step.")
+          .optional("integrator", &Time::integrator, one_of(words(integrator_names())),
+                    "Time-stepping scheme.")
+          .optional("minimum_step", &TimeText::given_minimum_step, number("s", positive()),
+                    "A step that fails is retried in smaller ones, down to this.", "step / 1024"));
+}
+
+Format<Solver> solver_format() {
+  return mapping(
+      Table<Solver>("solver", "How the equations of a step are solved.")
+          .optional("linear", &Solver::linear, one_of(words(linear_solver_names())),
+                    "Solver for the linear equations; `auto` picks the fastest that fits.")
+          .optional("residual_tolerance", &Solver::residual_tolerance, number("", between(0, 1)),
+                    "Newton's method ends when the residual is below this fraction of the acting "
+                    "forces ...")
+          .optional("step_tolerance", &Solver::step_tolerance, number("", between(0, 1)),
+                    "... and its step below this fraction of the structure's size.")
+          .optional("max_iterations", &Solver::max_iterations, integer(at_least(1)),
+                    "Iterations before a step counts as failed."));
+}
+
+Format<OutputText> output_format() {
+  return mapping(Table<OutputText>("output", "What is saved.")
+                     .optional("every", &OutputText::given_every, number("s", positive()),
+                               "Time between saved frames, a whole multiple of the step.",
+                               "a thousandth of the duration, or the step if that is longer")
+                     .optional("probes", &Output::probes, probes_format(),
+                               "Numbers to record, under names of your own."));
+}
+
+const Format<SceneText>& scene_format() {
+  static const Format<SceneText> format = mapping(
+      Table<SceneText>("scene",
+                       "A scene is one YAML mapping with these keys. All values are in SI "
+                       "units.")
+          .optional("title", &Scene::title, text(), "One line that says what the scene shows.")
+          .optional(
+              "model", &Scene::model,
+              choice<ModelChoice>(
+                  {{{"auto", "the smallest model that can represent the scene"}, ModelChoice::Auto},
+                   {{"planar", "positions and bending in the x-y plane"}, ModelChoice::Planar}},
+                  {{"spatial", kNoSpatialRods}, {"spatial_bend", kNoSpatialRods}}),
+              "Mechanical model.")
+          .required("rods", &SceneText::given_rods, list_of(rod_format(), 1), "The rods.")
+          .optional("supports", &Scene::supports, list_of(support_format(), 0),
+                    "What holds or moves the rods.")
+          .optional("loads", &Scene::loads, list_of(load_format(), 0), "What acts on the rods.")
+          .optional("time", &SceneText::given_time, time_format(), "A run over time.")
+          .optional("analysis", &Scene::analysis,
+                    choice<AnalysisKind>(
+                        {{{"static", "the equilibrium under the loads"}, AnalysisKind::Static}}),
+                    "In place of `time`: an analysis without it.")
+          .either({{"time"}, {"analysis"}})
+          .optional("solver", &Scene::solver, solver_format(), "Numerical settings.")
+          .optional("output", &SceneText::given_output, output_format(), "What is saved."));
+  return format;
+}
+
+}  // namespace der::scenario

@@ -1,0 +1,67 @@
+#include <memory>
+#include <utility>
+
+#include "der/scenario/document.hpp"
+#include "der/scenario/reader.hpp"
+#include "scenario/overrides.hpp"
+#include "scenario/scene_text.hpp"
+
+namespace der {
+namespace {
+
+using scenario::Document;
+
+scenario::Scene read_scene(const Document& document) {
+  scenario::Complaints complaints(document);
+  scenario::SceneText text;
+  if (document.root().mapping()) {
+    scenario::scene_format().read({&document.root()}, complaints, text);
+    scenario::check_scene(text, complaints);
+  } else {
+    complaints.add(scenario::Place{&document.root()},
+                   document.root().is_null()
+                       ? "the scene is empty: it needs at least 'rods' and 'time' or 'analysis'"
+                       : "a scene is a mapping of keys such as 'rods' and 'time'");
+  }
+  complaints.throw_if_any();
+  for (scenario::RodText& rod : text.given_rods) {
+    text.rods.push_back(static_cast<scenario::Rod&&>(rod));
+  }
+  return static_cast<scenario::Scene&&>(text);
+}
+
+Document varied(Document document, const std::vector<Override>& overrides) {
+  return overrides.empty() ? std::move(document) : with_overrides(document, overrides);
+}
+
+}  // namespace
+
+Scenario::Scenario(std::shared_ptr<const Document> document,
+                   std::shared_ptr<const scenario::Scene> scene)
+    : document_(std::move(document)), scene_(std::move(scene)) {}
+
+Scenario Scenario::load(const std::filesystem::path& file, const std::vector<Override>& overrides) {
+  return from_document(std::make_shared<const Document>(varied(Document::load(file), overrides)));
+}
+
+Scenario Scenario::parse(std::string_view text, const std::string& source,
+                         const std::vector<Override>& overrides) {
+  return from_document(
+      std::make_shared<const Document>(varied(Document::parse(text, source), overrides)));
+}
+
+Scenario Scenario::from_document(std::shared_ptr<const Document> document) {
+  auto scene = std::make_shared<const scenario::Scene>(read_scene(*document));
+  return {std::move(document), std::move(scene)};
+}
+
+Scenario Scenario::with(const std::vector<Override>& overrides) const {
+  return from_document(
+      std::make_shared<const Document>(scenario::with_overrides(*document_, overrides)));
+}
+
+const std::string& Scenario::source() const noexcept { return document_->source(); }
+
+std::string Scenario::to_yaml() const { return document_->to_yaml(); }
+
+}  // namespace der

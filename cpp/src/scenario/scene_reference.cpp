@@ -1,0 +1,153 @@
+#include <fmt/core.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "der/scenario/reader.hpp"
+#include "scenario/scene_text.hpp"
+
+namespace der {
+namespace {
+
+using scenario::Alternatives;
+using scenario::FieldInfo;
+using scenario::Shape;
+using scenario::TableInfo;
+using scenario::Word;
+
+constexpr const char* kIntroduction = R"(# Scene reference
+
+This page is made from the tables that the scene reader itself works with.
+
+A scene is one YAML file. All values are in SI units and are written as plain decimal numbers:
+`0.5`, `.5`, `-2`, `1e-3`. Numbers with a unit (`5 mm`), a leading zero (`010`) or separators
+(`1_000`), other bases, infinities and NaN are refused; so is `2.0` where a whole number is needed.
+Truth values are `true` and `false`. Names are made of letters, digits, `_` and `-` and do not start
+with a digit. Unknown, duplicate and missing keys are errors. YAML anchors and aliases work; tags,
+merge keys and several documents in one file do not.
+
+A value is overridden by its path: keys and list items joined by dots, items by their `name` or their
+number, as in `rods.beam.nodes=101` or `loads.0.gravity=[0, -1.62]`. An empty value removes what the
+path names.
+)";
+
+std::string anchor(const TableInfo& table) {
+  std::string id = table.name;
+  for (char& c : id) c = c == ' ' ? '-' : c;
+  return id;
+}
+
+std::string code_list(const std::vector<std::string>& words, const std::string& last_joint) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 == words.size() ? last_joint : ", ";
+    text += "`" + words[i] + "`";
+  }
+  return text;
+}
+
+/// What may be written, in a cell of a table.
+std::string value_text(const Shape& shape) {
+  const std::string range = scenario::bounds(shape.range);
+  switch (shape.kind) {
+    case Shape::Kind::Number:
+      return range.empty() ? "number" : "number " + range;
+    case Shape::Kind::Integer:
+      return range.empty() ? "whole number" : "whole number " + range;
+    case Shape::Kind::Boolean:
+      return "`true`, `false`";
+    case Shape::Kind::Text:
+      return "text";
+    case Shape::Kind::Name:
+      return "name";
+    case Shape::Kind::Choice:
+      return code_list(names_of(shape.words), ", ");
+    case Shape::Kind::Vector:
+      return "`[x, y]`";
+    case Shape::Kind::List:
+      return "list of: " + value_text(shape.parts.front());
+    case Shape::Kind::Table:
+      return fmt::format("[{}](#{})", shape.table->name, anchor(*shape.table));
+    case Shape::Kind::NamedTables:
+      return fmt::format("name: [{}](#{})", shape.table->name, anchor(*shape.table));
+    case Shape::Kind::AnyOf:
+      break;
+  }
+  std::string text;
+  for (const Shape& part : shape.parts) text += (text.empty() ? "" : "; or ") + value_text(part);
+  return text;
+}
+
+std::string default_text(const FieldInfo& field) {
+  if (field.required) return "**required**";
+  return field.default_is_literal ? "`" + field.default_text + "`" : field.default_text;
+}
+
+std::string row(const FieldInfo& field) {
+  return fmt::format("| `{}` | {} | {} | {} | {} |\n", field.key, value_text(field.shape),
+                     field.shape.unit, default_text(field), field.doc);
+}
+
+std::string alternatives_text(const Alternatives& alternatives) {
+  std::string text;
+  for (const auto& branch : alternatives.branches) {
+    text += (text.empty() ? "" : " or ") + code_list(branch, " and ");
+  }
+  return fmt::format("\nGive {} {}.\n", alternatives.required ? "either" : "at most one of", text);
+}
+
+/// The words of a key that mean something, one by one.
+std::string words_text(const FieldInfo& field) {
+  std::vector<const Shape*> shapes{&field.shape};
+  for (const Shape& part : field.shape.parts) shapes.push_back(&part);
+  std::string text;
+  for (const Shape* shape : shapes) {
+    for (const Word& word : shape->words) {
+      if (!word.doc.empty()) text += fmt::format("- `{}`: {}\n", word.name, word.doc);
+    }
+  }
+  return text.empty() ? text : fmt::format("\nWords of `{}`:\n\n{}", field.key, text);
+}
+
+/// Writes a table, then the tables that it refers to, each once.
+class ReferenceWriter {
+ public:
+  void write(const TableInfo& table) {
+    if (!written_.insert(table.name).second) return;
+    std::string title = table.name;
+    title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
+    text_ += fmt::format("\n<a id=\"{}\"></a>\n\n## {}\n\n{}\n\n", anchor(table), title, table.doc);
+    text_ += "| key | value | unit | default | meaning |\n|---|---|---|---|---|\n";
+    for (FieldInfo field : table.fields) {
+      if (table.unit_of_the_key && field.key == "values") field.shape.unit = "of the key";
+      text_ += row(field);
+    }
+    for (const Alternatives& alternatives : table.alternatives) {
+      text_ += alternatives_text(alternatives);
+    }
+    for (const FieldInfo& field : table.fields) text_ += words_text(field);
+    for (const FieldInfo& field : table.fields) write_tables_of(field.shape);
+  }
+
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  void write_tables_of(const Shape& shape) {
+    if (shape.table) write(*shape.table);
+    for (const Shape& part : shape.parts) write_tables_of(part);
+  }
+
+  std::set<std::string> written_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string scene_reference() {
+  ReferenceWriter writer;
+  writer.write(*scenario::scene_format().shape.table);
+  return kIntroduction + writer.text();
+}
+
+}  // namespace der

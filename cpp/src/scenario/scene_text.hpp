@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "der/scenario/scenario.hpp"
+#include "scenario/format.hpp"
+
+/// What the tables read a text into, where the text has more ways to say a thing than the scene.
+namespace der::scenario {
+
+/// One vector for all nodes, or one for each.
+using Velocities = std::variant<std::monostate, Components, std::vector<Components>>;
+
+struct RodText : Rod {
+  std::vector<Components> given_points;  ///< or:
+  std::optional<int> nodes;
+  Components from;
+  Components to;
+  Velocities given_velocity;
+};
+
+struct OutputText : Output {
+  std::optional<double> given_every;
+};
+
+struct TimeText : Time {
+  std::optional<double> given_minimum_step;
+};
+
+struct SceneText : Scene {
+  std::vector<RodText> given_rods;
+  TimeText given_time;
+  OutputText given_output;
+};
+
+Format<RodText> rod_format();
+Format<Support> support_format();
+/// A distributed force without `to` reaches to infinity until the checks know the rod.
+Format<Load> load_format();
+Format<TimeText> time_format();
+Format<Solver> solver_format();
+Format<OutputText> output_format();
+
+/// The whole scene: the root of all tables.
+const Format<SceneText>& scene_format();
+
+/// What the tables cannot see: everything that ties several keys together. Completes the scene.
+void check_scene(SceneText& scene, Complaints& complaints);
+
+}  // namespace der::scenario

@@ -1,0 +1,85 @@
+#include "scenario/suggestion.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+namespace der::scenario {
+namespace {
+
+/// Lower case, with one separator: a slip in these costs nothing.
+std::string normalised(std::string_view word) {
+  std::string result(word);
+  for (char& c : result) {
+    c = c == '-' || c == ' ' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return result;
+}
+
+/// Damerau-Levenshtein distance in its optimal-string-alignment form: the least number of
+/// insertions, deletions, substitutions and swaps of neighbours, no substring edited twice.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before_last(b.size() + 1);
+  std::vector<std::size_t> last(b.size() + 1);
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    before_last.swap(last);
+    last.swap(row);
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substituted = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, substituted});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        row[j] = std::min(row[j], before_last[j - 2] + 1);
+      }
+    }
+  }
+  return row[b.size()];
+}
+
+std::size_t allowed_distance(std::size_t length) {
+  if (length <= 2) return 0;
+  if (length <= 5) return 1;
+  return length <= 8 ? 2 : 3;
+}
+
+/// `inner` for `inner_radius`, or `node_count` for `node`.
+bool one_starts_the_other(std::string_view a, std::string_view b) {
+  const std::size_t shared = std::min(a.size(), b.size());
+  return shared >= 3 && a.substr(0, shared) == b.substr(0, shared);
+}
+
+}  // namespace
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
+  const std::string given = normalised(word);
+  const std::string* best = nullptr;
+  std::size_t best_distance = allowed_distance(given.size()) + 1;
+  for (const std::string& candidate : known) {
+    const std::size_t distance = edit_distance(given, normalised(candidate));
+    if (distance < best_distance) {
+      best = &candidate;
+      best_distance = distance;
+    }
+  }
+  for (const std::string& candidate : known) {
+    if (!best && one_starts_the_other(given, normalised(candidate))) best = &candidate;
+  }
+  return best ? "; did you mean '" + *best + "'?" : "";
+}
+
+std::string with_article(std::string_view noun) {
+  const bool vowel = std::string_view("aeiou").find(noun.front()) != std::string_view::npos;
+  return (vowel ? "an " : "a ") + std::string(noun);
+}
+
+std::string listed(const std::vector<std::string>& words, std::string_view last_joint) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 == words.size() ? std::string(last_joint) : std::string(", ");
+    text += "'" + words[i] + "'";
+  }
+  return text;
+}
+
+}  // namespace der::scenario

@@ -1,0 +1,170 @@
+#include "scenario/table.hpp"
+
+#include <algorithm>
+
+#include "scenario/number.hpp"
+#include "scenario/suggestion.hpp"
+
+namespace der::scenario {
+namespace {
+
+/// Reads the entries of one mapping and remembers which keys were there.
+class KeyReader {
+ public:
+  KeyReader(const TableInfo& table, const Place& place, Complaints& complaints)
+      : table_(table),
+        noun_(with_article(table.name)),
+        place_(place),
+        complaints_(complaints),
+        seen_(table.fields.size()) {}
+
+  void read_entries(const std::function<bool(int, const Place&)>& read) {
+    for (const Entry& entry : *place_.value->mapping()) {
+      const int field = table_.find(entry.key);
+      if (field < 0) {
+        complain(entry, unknown_key(entry.key));
+        continue;
+      }
+      const Entry*& first = seen_[static_cast<std::size_t>(field)];
+      if (first) {
+        complain(entry, fmt::format("duplicate key '{}'{}", entry.key, line_of_first(*first)));
+        continue;
+      }
+      first = &entry;
+      if (entry.value.is_null()) {
+        complain(entry,
+                 fmt::format("'{}' has no value: give it one, or remove the key", entry.key));
+        continue;
+      }
+      read(field, place_.at(entry));
+    }
+  }
+
+  void check_required() {
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      if (table_.fields[i].required && !seen_[i]) complain_missing(table_.fields[i].key, {});
+    }
+  }
+
+  void check_alternatives() {
+    for (const Alternatives& alternatives : table_.alternatives) check(alternatives);
+  }
+
+  void check_one_key() {
+    const Mapping& entries = *place_.value->mapping();
+    if (!table_.one_key || entries.size() == 1) return;
+    if (entries.empty()) {
+      complaints_.add(
+          place_, fmt::format("{} needs one of the keys {}", noun_, listed(table_.keys(), " or ")));
+      return;
+    }
+    std::vector<std::string> given;
+    for (const Entry& entry : entries) given.push_back(entry.key);
+    complaints_.add(place_,
+                    fmt::format("{} has one key, which says what it is, but here are {}: {} (is "
+                                "a list dash '- ' missing, or the indentation wrong?)",
+                                noun_, entries.size(), listed(given)));
+  }
+
+ private:
+  void complain(const Entry& entry, std::string message) {
+    complaints_.add_key(place_, entry.key, entry.mark, std::move(message));
+  }
+
+  void complain_missing(const std::string& key, const std::string& why) {
+    complaints_.add_key(place_, key, place_.value->mark,
+                        fmt::format("{} needs the key '{}'{}", noun_, key, why));
+  }
+
+  [[nodiscard]] std::string unknown_key(const std::string& key) const {
+    const std::string message = fmt::format("{} has no key '{}'", noun_, key);
+    if (const std::size_t colon = key.find(':'); colon != std::string::npos && colon > 0) {
+      return fmt::format("{}; is a space missing after the colon?", message);
+    }
+    if (std::string near = did_you_mean(key, table_.keys()); !near.empty()) return message + near;
+    if (looks_like_number(key)) return message + "; is a list missing its brackets?";
+    if (const std::string owner = owner_of(key); !owner.empty()) {
+      return fmt::format("{}; it belongs under '{}' (indent it further)", message, owner);
+    }
+    return fmt::format("{}; its keys are {}", message, listed(table_.keys()));
+  }
+
+  /// The key whose own mapping knows `key`, if that is the only one that could be meant.
+  [[nodiscard]] std::string owner_of(const std::string& key) const {
+    std::string owner;
+    for (const FieldInfo& field : table_.fields) {
+      if (!field.shape.table || field.shape.table->find(key) < 0) continue;
+      const bool present = find_entry(*place_.value->mapping(), field.key) != nullptr;
+      if (present || (!table_.one_key && owner.empty())) owner = field.key;
+    }
+    return owner;
+  }
+
+  static std::string line_of_first(const Entry& first) {
+    return first.mark.line > 0 ? fmt::format(" (first in line {})", first.mark.line)
+                               : std::string();
+  }
+
+  [[nodiscard]] const Entry* seen(const std::string& key) const {
+    return seen_[static_cast<std::size_t>(table_.find(key))];
+  }
+
+  static std::string described(const Alternatives& alternatives) {
+    const bool single = std::all_of(alternatives.branches.begin(), alternatives.branches.end(),
+                                    [](const auto& branch) { return branch.size() == 1; });
+    std::string text;
+    for (const auto& branch : alternatives.branches) {
+      text += (text.empty() ? "either " : single ? " or " : ", or ") + listed(branch);
+    }
+    return text;
+  }
+
+  void check(const Alternatives& alternatives) {
+    const std::vector<std::string>* chosen = nullptr;
+    for (const auto& branch : alternatives.branches) {
+      const auto given = std::find_if(branch.begin(), branch.end(),
+                                      [&](const std::string& key) { return seen(key) != nullptr; });
+      if (given == branch.end()) continue;
+      if (chosen) {
+        complain(*seen(*given), fmt::format("{} exclude{} {}: give {}", listed(branch),
+                                            branch.size() == 1 ? "s" : "", listed(*chosen),
+                                            described(alternatives)));
+        return;
+      }
+      chosen = &branch;
+    }
+    if (chosen) {
+      for (const std::string& key : *chosen) {
+        if (!seen(key)) complain_missing(key, ", as " + listed(*chosen) + " go together");
+      }
+    } else if (alternatives.required) {
+      complaints_.add_key(place_, alternatives.branches.front().front(), place_.value->mark,
+                          fmt::format("{} needs {}", noun_, described(alternatives)));
+    }
+  }
+
+  const TableInfo& table_;
+  std::string noun_;  // "a rod"
+  const Place& place_;
+  Complaints& complaints_;
+  std::vector<const Entry*> seen_;  // by field
+};
+
+}  // namespace
+
+bool read_keys(const TableInfo& table, const Place& place, Complaints& complaints,
+               const std::function<bool(int, const Place&)>& read) {
+  const std::size_t before = complaints.size();
+  if (!place.value->mapping()) {
+    complain_expected(expected_mapping(table), place, complaints);
+    return false;
+  }
+  KeyReader reader(table, place, complaints);
+  reader.read_entries(read);
+  reader.check_required();
+  reader.check_alternatives();
+  if (complaints.size() == before) reader.check_one_key();
+  return complaints.size() == before;
+}
+
+}  // namespace der::scenario

@@ -1,0 +1,329 @@
+// The only file that knows yaml-cpp.
+
+#include <fmt/core.h>
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/mark.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <sstream>
+#include <unordered_map>
+#include <utility>
+
+#include "der/core/error.hpp"
+#include "der/scenario/document.hpp"
+
+namespace der::scenario {
+namespace {
+
+/// Aliases are copied out; this many values stop a text that nests them to fill the memory.
+constexpr std::size_t kMaxAliasedValues = 1'000'000;
+
+Mark mark_of(const YAML::Mark& mark) { return {mark.line + 1, mark.column + 1}; }
+
+/// A syntax error, before it is known which source it is in.
+struct SyntaxError {
+  Mark mark;
+  std::string message;
+};
+
+std::size_t count_values(const Value& value) {
+  std::size_t count = 1;
+  if (const Sequence* items = value.sequence()) {
+    for (const Value& item : *items) count += count_values(item);
+  } else if (const Mapping* entries = value.mapping()) {
+    for (const Entry& entry : *entries) count += count_values(entry.value);
+  }
+  return count;
+}
+
+/// Builds the tree from the parser's events.
+class TreeBuilder : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (documents_ > 0) {
+      throw SyntaxError{mark_of(mark),
+                        "a second YAML document starts here, but a scene is one document (is there "
+                        "a '---' too many, or a line at the wrong indentation?)"};
+    }
+    ++documents_;
+  }
+  void OnDocumentEnd() override {}
+
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    add({std::monostate{}, mark_of(mark)}, anchor);
+  }
+
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& text) override {
+    const bool quoted = tag == "!";
+    if (!quoted) refuse_tag(mark, tag);
+    if (quoted) last_quoted_ = mark_of(mark);
+    add(quoted ? Value{text, mark_of(mark)} : Value{Plain{text}, mark_of(mark)}, anchor);
+  }
+
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto known = anchors_.find(anchor);
+    if (known == anchors_.end()) {
+      throw SyntaxError{mark_of(mark), "an alias inside the value that it stands for"};
+    }
+    aliased_values_ += count_values(known->second);
+    if (aliased_values_ > kMaxAliasedValues) {
+      throw SyntaxError{mark_of(mark), fmt::format("the aliases of this scene stand for more than "
+                                                   "{} values",
+                                                   kMaxAliasedValues)};
+    }
+    add(known->second, YAML::NullAnchor);
+  }
+
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value style) override {
+    refuse_tag(mark, tag);
+    open(mark, Sequence{}, anchor, style);
+  }
+  void OnSequenceEnd() override { close(); }
+
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value style) override {
+    refuse_tag(mark, tag);
+    open(mark, Mapping{}, anchor, style);
+  }
+  void OnMapEnd() override { close(); }
+
+  [[nodiscard]] Value take_root() {
+    if (documents_ == 0) root_.mark = {1, 1};
+    return std::move(root_);
+  }
+  [[nodiscard]] const std::optional<Mark>& last_quoted() const { return last_quoted_; }
+  /// Where the innermost bracket that is still open stands.
+  [[nodiscard]] std::optional<Mark> open_bracket() const {
+    if (stack_.empty() || !stack_.back().in_brackets) return std::nullopt;
+    return stack_.back().value.mark;
+  }
+
+ private:
+  struct Frame {
+    Value value;
+    YAML::anchor_t anchor;
+    bool in_brackets;
+    std::optional<std::string> key;  // read, its value not yet
+    Mark key_mark;
+  };
+
+  static void refuse_tag(const YAML::Mark& mark, const std::string& tag) {
+    if (tag != "?") {
+      throw SyntaxError{mark_of(mark),
+                        "YAML tags (such as '!!float') are not read: remove the tag"};
+    }
+  }
+
+  template <class Content>
+  void open(const YAML::Mark& mark, Content content, YAML::anchor_t anchor,
+            YAML::EmitterStyle::value style) {
+    stack_.push_back({{std::move(content), mark_of(mark)},
+                      anchor,
+                      style == YAML::EmitterStyle::Flow,
+                      std::nullopt,
+                      {}});
+  }
+
+  void close() {
+    Frame frame = std::move(stack_.back());
+    stack_.pop_back();
+    add(std::move(frame.value), frame.anchor);
+  }
+
+  void add(Value value, YAML::anchor_t anchor) {
+    if (anchor != YAML::NullAnchor) anchors_[anchor] = value;
+    if (stack_.empty()) {
+      root_ = std::move(value);
+      return;
+    }
+    Frame& frame = stack_.back();
+    if (auto* items = std::get_if<Sequence>(&frame.value.content)) {
+      items->push_back(std::move(value));
+    } else if (!frame.key) {
+      take_key(frame, value);
+    } else {
+      // The parser marks a missing value where the next thing stands, maybe lines below.
+      if (value.is_null()) value.mark = frame.key_mark;
+      std::get<Mapping>(frame.value.content)
+          .push_back({std::move(*frame.key), std::move(value), frame.key_mark});
+      frame.key.reset();
+    }
+  }
+
+  static void take_key(Frame& frame, Value& value) {
+    frame.key_mark = value.mark;
+    if (auto* plain = std::get_if<Plain>(&value.content)) {
+      if (plain->text == "<<") {
+        throw SyntaxError{value.mark,
+                          "merge keys ('<<') are not read: repeat the keys, or give the whole "
+                          "value an anchor (&name) and write *name where it is needed again"};
+      }
+      frame.key = std::move(plain->text);
+    } else if (auto* text = std::get_if<std::string>(&value.content)) {
+      frame.key = std::move(*text);
+    } else {
+      throw SyntaxError{value.mark, "a key has to be a plain word"};
+    }
+  }
+
+  Value root_;
+  std::vector<Frame> stack_;
+  std::unordered_map<YAML::anchor_t, Value> anchors_;
+  std::size_t aliased_values_ = 0;
+  int documents_ = 0;
+  std::optional<Mark> last_quoted_;
+};
+
+std::string_view line_at(std::string_view text, int line) {
+  for (int i = 1; i < line && !text.empty(); ++i) {
+    text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  }
+  return text.substr(0, text.find('\n'));
+}
+
+bool indented_by_tab(std::string_view line) {
+  const std::string_view indentation = line.substr(0, line.find_first_not_of(" \t"));
+  return indentation.find('\t') != std::string_view::npos;
+}
+
+/// yaml-cpp ends a quoted scalar at the end of the text without a word.
+bool is_closed(std::string_view text, const Mark& mark) {
+  const std::string_view line = line_at(text, mark.line);
+  text.remove_prefix(static_cast<std::size_t>(line.data() - text.data()) +
+                     static_cast<std::size_t>(mark.column - 1));
+  text.remove_prefix(std::min(text.find_first_of("\"'|>"), text.size()));  // past an anchor
+  if (text.empty() || text.front() == '|' || text.front() == '>') return true;
+  const char quote = text.front();
+  for (std::size_t i = 1; i < text.size(); ++i) {
+    if (quote == '"' && text[i] == '\\') {
+      ++i;
+    } else if (text[i] == quote) {
+      if (quote == '"' || i + 1 >= text.size() || text[i + 1] != quote) return true;
+      ++i;
+    }
+  }
+  return false;
+}
+
+std::string explain(const std::string& problem) {
+  struct Explanation {
+    std::string_view problem;
+    std::string_view meaning;
+  };
+  static constexpr std::array<Explanation, 8> explanations{{
+      {"illegal map value",
+       "a ':' where no key can stand: check the indentation of this line and the one above, and "
+       "put a text that holds ': ' in quotes"},
+      {"end of map not found",
+       "this does not continue the mapping above: check the indentation, and that each key has "
+       "its ':'"},
+      {"end of sequence not found",
+       "this does not continue the list above: check the indentation, and that each item has its "
+       "'- '"},
+      {"illegal flow end", "a closing bracket without its opening one"},
+      {"illegal block entry", "a list item '- ' cannot stand here: put it on a line of its own"},
+      {"the referenced anchor is not defined", "an alias (*name) without its anchor (&name)"},
+      {"unknown token", "no value can start with this character: put the text in quotes"},
+      {"illegal tab when looking for indentation",
+       "a tab indents this line; YAML is indented by spaces"},
+  }};
+  const auto* known =
+      std::find_if(explanations.begin(), explanations.end(),
+                   [&](const Explanation& candidate) { return candidate.problem == problem; });
+  const std::string meaning(known == explanations.end() ? problem : known->meaning);
+  return "not valid YAML: " + meaning;
+}
+
+SyntaxError explain(const YAML::Exception& error, const TreeBuilder& builder,
+                    std::string_view text) {
+  const Mark mark = mark_of(error.mark);
+  if (indented_by_tab(line_at(text, mark.line))) {
+    return {mark, "not valid YAML: a tab indents this line; YAML is indented by spaces"};
+  }
+  const bool in_brackets = error.msg.find("flow not found") != std::string::npos;
+  if (const std::optional<Mark> bracket = builder.open_bracket(); in_brackets && bracket) {
+    return {*bracket,
+            fmt::format("not valid YAML: this bracket is not closed (noticed in line {}); "
+                        "is a bracket or a comma missing?",
+                        mark.line)};
+  }
+  return {mark, explain(error.msg)};
+}
+
+/// Control characters have no place in a scene; some end the text for yaml-cpp, silently.
+void refuse_control_characters(std::string_view text) {
+  Mark mark{1, 1};
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '\n') {
+      mark = {mark.line + 1, 1};
+      continue;
+    }
+    if ((code < 0x20 && c != '\t' && c != '\r') || code == 0x7f) {
+      throw SyntaxError{mark, fmt::format("control character 0x{:02x}: a scene is plain text in "
+                                          "UTF-8",
+                                          code)};
+    }
+    ++mark.column;
+  }
+}
+
+Value parse_tree(std::string_view text) {
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+  if (text.substr(0, byte_order_mark.size()) == byte_order_mark) {
+    text.remove_prefix(byte_order_mark.size());
+  }
+  refuse_control_characters(text);
+  TreeBuilder builder;
+  const auto refuse_open_quote = [&] {
+    if (builder.last_quoted() && !is_closed(text, *builder.last_quoted())) {
+      throw SyntaxError{*builder.last_quoted(), "not valid YAML: this quoted text is never closed"};
+    }
+  };
+  try {
+    std::istringstream stream{std::string(text)};
+    YAML::Parser parser(stream);
+    while (parser.HandleNextDocument(builder)) {
+    }
+  } catch (const YAML::Exception& error) {
+    refuse_open_quote();
+    throw explain(error, builder, text);
+  }
+  refuse_open_quote();
+  return builder.take_root();
+}
+
+[[noreturn]] void refuse_file(const std::string& file, const std::string& reason) {
+  throw SceneError(file, {{0, 0, "", "cannot read the scene file: " + reason}});
+}
+
+}  // namespace
+
+Document Document::parse(std::string_view text, const std::string& source) {
+  try {
+    return Document(parse_tree(text), source);
+  } catch (const SyntaxError& error) {
+    throw SceneError(source, {{error.mark.line, error.mark.column, "", error.message}});
+  }
+}
+
+Document Document::load(const std::filesystem::path& file) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) refuse_file(file.string(), "there is no such file");
+  if (std::filesystem::is_directory(status)) refuse_file(file.string(), "it is a folder");
+  std::ifstream stream(file, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(stream)), {});
+  if (!stream) refuse_file(file.string(), "it could not be opened (is reading it allowed?)");
+  return parse(text, file.string());
+}
+
+}  // namespace der::scenario

@@ -1,0 +1,144 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "der/scenario/document.hpp"
+#include "scene_texts.hpp"
+
+namespace der {
+namespace {
+
+using test::beam;
+using test::complaints;
+using test::contains;
+
+/// The value that a number in the text is read as.
+double read(const std::string& text) {
+  const Scenario scene = beam({{"rods.beam.to", "[" + text + ", 0]"}});
+  return scene.scene().rods[0].points.back()[0];
+}
+
+TEST_CASE("numbers: decimal notations") {
+  const std::vector<std::pair<std::string, double>> notations{
+      {"1e-3", 1e-3}, {".5", 0.5},        {"5.", 5.0},     {"+3", 3.0},
+      {"-2", -2.0},   {"70e9", 70e9},     {"1E+2", 100.0}, {"0.1", 0.1},
+      {"-.5e1", -5},  {"5e-150", 5e-150}, {"1e00", 1.0},
+  };
+  for (const auto& [text, value] : notations) {
+    CAPTURE(text);
+    CHECK(read(text) == value);
+  }
+}
+
+TEST_CASE("numbers: what other readers would take differently is refused with a hint") {
+  const std::vector<std::pair<std::string, std::string>> refused{
+      {"010", "write 10 or 8"},
+      {"-017", "write -17 or -15"},
+      {"09", "write 9"},
+      {"00.5", "write 0.5"},
+      {"1_000", "write 1000"},
+      {"0x1F", "write 31"},
+      {"0b11", "write 3"},
+      {"0o17", "write 15"},
+      {"1d-3", "write 1e-3"},
+      {".inf", "out of range"},
+      {"-.INF", "out of range"},
+      {"nan", "out of range"},
+      {".NaN", "out of range"},
+      {"infinity", "out of range"},
+      {"1e999", "out of the range"},
+      {"-1e999", "out of the range"},
+      {"1e-999", "out of the range"},
+      {"5 mm", "write the value in m without a unit: 0.005"},
+      {"5mm", "without a unit: 0.005"},
+      {"3 km", "without a unit: 3000"},
+      {"2 m", "without a unit: 2"},
+      {"2 inch", "write the value in m, without a unit"},
+      {"1/2", "arithmetic is not evaluated"},
+      {"2*3", "arithmetic is not evaluated"},
+      {"2^3", "arithmetic is not evaluated"},
+      {"1 2", "is a comma or a bracket missing?"},
+      {"'1'", "remove the quotes"},
+      {"1:30", "expected a number in m, got '1:30'"},
+      {"1.2.3", "expected a number in m, got '1.2.3'"},
+      {"1e", "expected a number in m, got '1e'"},
+      {"e5", "expected a number in m, got 'e5'"},
+      {"-", "expected a number in m, got '-'"},
+      {".", "expected a number in m, got '.'"},
+      {"''", "expected a number in m"},
+      {"true", "expected a number in m, got 'true'"},
+      {"~", "expected a number in m, got nothing"},
+  };
+  for (const auto& [text, hint] : refused) {
+    CAPTURE(text);
+    const std::string said = complaints({{"rods.beam.to", "[" + text + ", 0]"}});
+    CAPTURE(said);
+    CHECK(contains(said, "rods.beam.to.0: "));
+    CHECK(contains(said, hint));
+  }
+}
+
+TEST_CASE("numbers: angles in degrees are converted in the hint") {
+  const std::string said = complaints(
+      {{"supports", "[{rod: beam, at: start, clamp: true, prescribe: {angle: 180 deg}}]"}});
+  CHECK(contains(said, "write the value in rad without a unit: 3.14159265359"));
+}
+
+TEST_CASE("numbers: whole numbers") {
+  CHECK(beam({{"rods.beam.nodes", "+3"}}).scene().rods[0].points.size() == 3);
+  const std::vector<std::pair<std::string, std::string>> refused{
+      {"11.0", "write 11"},           {"1e1", "write 10"},
+      {"2.5", "got '2.5'"},           {"'3'", "remove"},
+      {"4294967299", "is too large"}, {"99999999999999999999", "too large"},
+      {"3 nodes", "alone"},           {"-3", "must be between"},
+  };
+  for (const auto& [text, hint] : refused) {
+    CAPTURE(text);
+    const std::string said = complaints({{"rods.beam.nodes", text}});
+    CAPTURE(said);
+    CHECK(contains(said, hint));
+  }
+}
+
+TEST_CASE("numbers: typed values of a dictionary obey the same rules") {
+  using scenario::make_scalar;
+  const auto read_value = [](scenario::Value step) {
+    scenario::Value scene = beam().document().root();
+    for (auto& entry : std::get<scenario::Mapping>(scene.content)) {
+      if (entry.key != "time") continue;
+      std::get<scenario::Mapping>(entry.value.content)[1].value = std::move(step);
+    }
+    return Scenario::from_document(
+               std::make_shared<const scenario::Document>(scenario::Document(std::move(scene))))
+        .scene()
+        .time.step;
+  };
+  CHECK(read_value(make_scalar(0.125)) == 0.125);
+  CHECK(read_value(make_scalar(1)) == 1.0);
+  CHECK_THROWS_AS(read_value(make_scalar(true)), SceneError);
+  CHECK_THROWS_AS(read_value(make_scalar("0.1")), SceneError);
+  CHECK_THROWS_AS(read_value(make_scalar(std::numeric_limits<double>::infinity())), SceneError);
+  CHECK_THROWS_AS(read_value(make_scalar(std::nan(""))), SceneError);
+  CHECK_THROWS_AS(read_value(scenario::make_null()), SceneError);
+}
+
+TEST_CASE("numbers: doubles survive a round trip bit for bit") {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> mantissa(0.1, 1.0);
+  std::uniform_int_distribution<int> exponent(-300, 150);
+  for (int i = 0; i < 200; ++i) {
+    const double value = mantissa(random) * std::pow(10.0, exponent(random));
+    CHECK(read(scenario::to_flow_yaml(scenario::make_scalar(value))) == value);
+  }
+  CHECK(scenario::to_flow_yaml(scenario::make_scalar(0.1)) == "0.1");
+  CHECK(scenario::to_flow_yaml(scenario::make_scalar(3.0)) == "3.0");
+  CHECK(scenario::to_flow_yaml(scenario::make_scalar(1e300)) == "1e+300");
+}
+
+}  // namespace
+}  // namespace der

@@ -16,8 +16,11 @@ namespace {
 /// A failed step is cut down to this share of the scene's step before the run gives up.
 constexpr double kSmallestShare = 1e-6;
 
-NewtonOptions newton_options(const scenario::Solver& solver) {
-  return {solver.residual_tolerance, solver.step_tolerance, solver.max_iterations};
+StepperOptions stepper_options(const scenario::Scene& scene) {
+  StepperOptions options;
+  options.newton = {scene.solver.residual_tolerance, scene.solver.step_tolerance,
+                    scene.solver.max_iterations};
+  return options;
 }
 
 std::int64_t count_steps(const scenario::Time& time) {
@@ -49,7 +52,7 @@ Simulation::Simulation(Scenario scenario)
       assembler_(model_, solver_.solver->layout()),
       stepper_info_(find_stepper(scenario_.scene().time.integrator)),
       stepper_(stepper_info_.make(model_, assembler_, *solver_.solver,
-                                  newton_options(scenario_.scene().solver))),
+                                  stepper_options(scenario_.scene()))),
       state_(initial_state(model_)),
       total_steps_(count_steps(scenario_.scene().time)) {}
 
@@ -94,7 +97,7 @@ EquilibriumReport Simulation::equilibrium() {
   Vector positions = state_.positions;
   EquilibriumReport report =
       find_equilibrium(model_, assembler_, *solver_.solver,
-                       newton_options(scenario_.scene().solver), state_, positions);
+                       stepper_options(scenario_.scene()).newton, state_, positions);
   counters_.newton_iterations += report.newton_iterations;
   if (!report.converged) {
     throw NotConvergedError(fmt::format(
@@ -113,6 +116,8 @@ void Simulation::restore(const State& saved) {
   state_.positions = saved.positions;
   state_.velocities = saved.velocities;
   state_.extra_force = saved.extra_force;
+  state_.accelerations = saved.accelerations;
+  state_.last_step = saved.last_step;
   state_.history = saved.history;
 }
 

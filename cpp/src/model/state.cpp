@@ -13,6 +13,7 @@ State initial_state(const Model& model) {
   state.positions = model.initial_positions;
   state.velocities = model.initial_velocities;
   state.extra_force.setZero(model.num_dofs());
+  state.accelerations.setZero(model.num_dofs());
   Vector controls;
   model.controls.evaluate(0.0, controls);
   place_held(model, controls, state.positions);

@@ -11,18 +11,19 @@ class ExplicitEuler final : public Stepper {
  public:
   ExplicitEuler(const Model& model, const Assembler& assembler)
       : force_(model, assembler),
-        acceleration_(Vector::Zero(model.num_dofs())),
-        positions_(Vector::Zero(model.num_dofs())) {}
+        acceleration_(model.num_dofs()),
+        positions_(model.num_dofs()) {}
 
   StepReport step(State& state, double dt) override {
     force_.acceleration(state, state.positions, state.velocities, state.time, acceleration_);
     positions_ = state.positions + dt * (state.velocities + dt * acceleration_);
     force_.place_held_at(state.time + dt, positions_);
-    StepReport report = force_.check(positions_);
-    if (report.outcome == StepOutcome::Done) {
-      state.velocities = (positions_ - state.positions) / dt;
-      state.positions = positions_;
-    }
+    const StepReport report = force_.check(positions_);
+    if (report.outcome != StepOutcome::Done) return report;
+
+    state.velocities = (positions_ - state.positions) / dt;
+    state.positions = positions_;
+    state.last_step = dt;
     return report;
   }
 
@@ -36,7 +37,7 @@ class ExplicitEuler final : public Stepper {
 
 std::unique_ptr<Stepper> make_explicit_euler(const Model& model, const Assembler& assembler,
                                              LinearSolver& /*solver*/,
-                                             const NewtonOptions& /*options*/) {
+                                             const StepperOptions& /*options*/) {
   return std::make_unique<ExplicitEuler>(model, assembler);
 }
 

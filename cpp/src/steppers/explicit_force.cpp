@@ -19,14 +19,21 @@ ExplicitForce::ExplicitForce(const Model& model, const Assembler& assembler)
       force_(Vector::Zero(model.num_dofs())),
       gradient_(Vector::Zero(model.num_dofs())) {}
 
-void ExplicitForce::acceleration(const State& state, const Vector& positions,
-                                 const Vector& velocities, double time, Vector& acceleration) {
+void ExplicitForce::undamped_acceleration(const State& state, const Vector& positions, double time,
+                                          Vector& acceleration) {
   model_.controls.evaluate(time, controls_);
   external_force(model_, controls_, state.extra_force, force_);
   assembler_.gradient(positions, controls_, gradient_);
-  acceleration =
-      (force_ - gradient_ - model_.damping.cwiseProduct(velocities)).cwiseQuotient(model_.mass);
+  acceleration = (force_ - gradient_).cwiseQuotient(model_.mass);
   for (const HeldDof& held : model_.held) acceleration[held.dof] = 0.0;
+}
+
+void ExplicitForce::acceleration(const State& state, const Vector& positions,
+                                 const Vector& velocities, double time, Vector& acceleration) {
+  undamped_acceleration(state, positions, time, acceleration);
+  for (const Index dof : model_.free_dofs) {
+    acceleration[dof] -= model_.damping[dof] / model_.mass[dof] * velocities[dof];
+  }
 }
 
 void ExplicitForce::place_held_at(double time, Vector& positions) {

@@ -8,8 +8,8 @@ namespace {
 class ImplicitEuler final : public Stepper {
  public:
   ImplicitEuler(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                const NewtonOptions& options)
-      : stage_(model, assembler, solver, options) {}
+                const StepperOptions& options)
+      : stage_(model, assembler, solver, options.newton), velocities_(model.num_dofs()) {}
 
   StepReport step(State& state, double dt) override {
     Stage& equation = stage_.equation;
@@ -17,23 +17,26 @@ class ImplicitEuler final : public Stepper {
     equation.inertia_target = state.positions + dt * state.velocities;
     equation.velocity_factor = 1.0 / dt;
     equation.velocity_reference = state.positions;
-    stage_.positions = equation.inertia_target;
-    StepReport report = stage_.solve(state, state.time + dt);
-    if (report.outcome == StepOutcome::Done) {
-      state.velocities = (stage_.positions - state.positions) / dt;
-      state.positions = stage_.positions;
-    }
+    stage_.positions = equation.inertia_target + dt * dt * state.accelerations;
+    stage_.place_held_at(state.time + dt, stage_.positions);
+    const StepReport report = stage_.solve(state, state.time + dt);
+    if (report.outcome != StepOutcome::Done) return report;
+
+    velocities_ = (stage_.positions - state.positions) / dt;
+    state.accelerations = (velocities_ - state.velocities) / dt;
+    stage_.finish(stage_.positions, velocities_, dt, state);
     return report;
   }
 
  private:
   ImplicitStage stage_;
+  Vector velocities_;
 };
 
 }  // namespace
 
 std::unique_ptr<Stepper> make_implicit_euler(const Model& model, const Assembler& assembler,
-                                             LinearSolver& solver, const NewtonOptions& options) {
+                                             LinearSolver& solver, const StepperOptions& options) {
   return std::make_unique<ImplicitEuler>(model, assembler, solver, options);
 }
 

@@ -14,8 +14,11 @@ class ExplicitForce {
  public:
   ExplicitForce(const Model& model, const Assembler& assembler);
 
-  /// Sets `acceleration` [m/s^2] to M^-1 (external - grad E - C v) at `time`, 0 on held degrees of
+  /// Sets `acceleration` [m/s^2] to M^-1 (external - grad E) at `time`, 0 on held degrees of
   /// freedom.
+  void undamped_acceleration(const State& state, const Vector& positions, double time,
+                             Vector& acceleration);
+  /// As above, with the damping force -C v.
   void acceleration(const State& state, const Vector& positions, const Vector& velocities,
                     double time, Vector& acceleration);
   /// Puts held degrees of freedom of `positions` where the tables have them at `time`.

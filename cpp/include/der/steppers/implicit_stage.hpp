@@ -8,7 +8,7 @@
 
 namespace der {
 
-/// What every implicit stepper shares: one stage's equation, its solver and its unknown positions.
+/// What every implicit stepper shares: the equation of one stage, its solver, its unknown positions.
 class ImplicitStage {
  public:
   ImplicitStage(const Model& model, const Assembler& assembler, LinearSolver& solver,
@@ -16,11 +16,17 @@ class ImplicitStage {
 
   /// Inertia and velocity terms, to be set by the stepper before `solve`.
   Stage equation;
-  /// On entry to `solve` the guess, on exit the solution.
+  /// On entry to `solve` the guess, held degrees of freedom included; on exit the solution.
   Vector positions;
 
-  /// Evaluates tables and forces at `time`, places the held degrees of freedom, and solves.
+  /// Puts the held degrees of freedom of `where` to where the tables have them at `time`.
+  void place_held_at(double time, Vector& where);
+  /// Solves with tables and external forces at `time`.
   StepReport solve(const State& state, double time);
+  /// Completes a done step from the old positions in `state` to `new_positions`: held degrees of
+  /// freedom get the velocity of their motion over the step.
+  void finish(const Vector& new_positions, const Vector& new_velocities, double dt,
+              State& state) const;
 
  private:
   const Model& model_;

@@ -31,14 +31,22 @@ class Stepper {
   virtual StepReport step(State& state, double dt) = 0;
 };
 
+/// What a stepper can be told.
+struct StepperOptions {
+  NewtonOptions newton;
+  /// Of generalized_alpha: what is left of the fastest motion after a step, 0 (all damped) .. 1 (none).
+  double spectral_radius = 0.9;
+};
+
 /// Facts about a stepper, for the registry, the docs and the tests that loop over them.
 struct StepperInfo {
   std::string_view name;
   int order;
   bool implicit;
-  std::string_view summary;
+  std::string_view stability;  ///< in words
+  std::string_view damping;    ///< numerical damping, in words
   std::unique_ptr<Stepper> (*make)(const Model&, const Assembler&, LinearSolver&,
-                                   const NewtonOptions&);
+                                   const StepperOptions&);
 };
 
 /// Every stepper. A new one is one file and one line in the registry.

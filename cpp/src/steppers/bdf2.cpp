@@ -1,0 +1,67 @@
+#include "der/steppers/implicit_stage.hpp"
+#include "steppers.hpp"
+
+namespace der {
+namespace {
+
+/// The two-step backward differentiation formula for steps of varying length (Hairer, Norsett and
+/// Wanner, Solving Ordinary Differential Equations I, section III.5), for q and v alike: with
+/// w = dt / previous dt and h = dt (1 + w)/(1 + 2 w),
+///   y' = ((1 + w)^2 y - w^2 y_previous)/(1 + 2 w) + h f(y').
+/// Second order, L-stable, little damping of slow motion. With no past yet w = 0: implicit Euler.
+class Bdf2 final : public Stepper {
+ public:
+  Bdf2(const Model& model, const Assembler& assembler, LinearSolver& solver,
+       const StepperOptions& options)
+      : stage_(model, assembler, solver, options.newton),
+        past_positions_(model.num_dofs()),
+        past_velocities_(model.num_dofs()),
+        velocities_(model.num_dofs()) {}
+
+  StepReport step(State& state, double dt) override {
+    const bool has_past = state.history.size() == 2;
+    const double w = has_past ? dt / state.last_step : 0.0;
+    const double here = (1.0 + w) * (1.0 + w) / (1.0 + 2.0 * w);
+    const double before = w * w / (1.0 + 2.0 * w);
+    const double h = dt * (1.0 + w) / (1.0 + 2.0 * w);
+    past_positions_ = here * state.positions;
+    past_velocities_ = here * state.velocities;
+    if (has_past) {
+      past_positions_ -= before * state.history[0];
+      past_velocities_ -= before * state.history[1];
+    }
+
+    Stage& equation = stage_.equation;
+    equation.inertia = 1.0 / (h * h);
+    equation.inertia_target = past_positions_ + h * past_velocities_;
+    equation.velocity_factor = 1.0 / h;
+    equation.velocity_reference = past_positions_;
+    stage_.positions = state.positions + dt * (state.velocities + 0.5 * dt * state.accelerations);
+    stage_.place_held_at(state.time + dt, stage_.positions);
+    const StepReport report = stage_.solve(state, state.time + dt);
+    if (report.outcome != StepOutcome::Done) return report;
+
+    velocities_ = (stage_.positions - past_positions_) / h;
+    state.accelerations = (velocities_ - past_velocities_) / h;
+    state.history.resize(2);
+    state.history[0] = state.positions;
+    state.history[1] = state.velocities;
+    stage_.finish(stage_.positions, velocities_, dt, state);
+    return report;
+  }
+
+ private:
+  ImplicitStage stage_;
+  Vector past_positions_;
+  Vector past_velocities_;
+  Vector velocities_;
+};
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_bdf2(const Model& model, const Assembler& assembler,
+                                   LinearSolver& solver, const StepperOptions& options) {
+  return std::make_unique<Bdf2>(model, assembler, solver, options);
+}
+
+}  // namespace der

@@ -1,0 +1,83 @@
+#include "der/steppers/explicit_force.hpp"
+#include "der/steppers/implicit_stage.hpp"
+#include "steppers.hpp"
+
+namespace der {
+namespace {
+
+/// Chung and Hulbert's generalized-alpha method (J. Appl. Mech. 60, 1993): second order, A-stable;
+/// motion far above the step's frequency shrinks by the spectral radius r in each step, slow motion
+/// is hardly damped. Forces are evaluated at the intermediate state
+///   y = (1 - af) q' + af q, which is the unknown, with af = r/(1 + r), am = (2 r - 1)/(1 + r).
+class GeneralizedAlpha final : public Stepper {
+ public:
+  GeneralizedAlpha(const Model& model, const Assembler& assembler, LinearSolver& solver,
+                   const StepperOptions& options)
+      : alpha_m_((2.0 * options.spectral_radius - 1.0) / (1.0 + options.spectral_radius)),
+        alpha_f_(options.spectral_radius / (1.0 + options.spectral_radius)),
+        gamma_(0.5 - alpha_m_ + alpha_f_),
+        beta_(0.25 * (1.0 - alpha_m_ + alpha_f_) * (1.0 - alpha_m_ + alpha_f_)),
+        stage_(model, assembler, solver, options.newton),
+        force_(model, assembler),
+        positions_(model.num_dofs()),
+        velocities_(model.num_dofs()),
+        accelerations_(model.num_dofs()) {}
+
+  StepReport step(State& state, double dt) override {
+    if (state.last_step == 0.0) {
+      force_.acceleration(state, state.positions, state.velocities, state.time,
+                          state.accelerations);
+    }
+    const Vector& q = state.positions;
+    const Vector& v = state.velocities;
+    const Vector& a = state.accelerations;
+    const double kept = 1.0 - alpha_f_;
+    Stage& equation = stage_.equation;
+
+    // Inertia: M ((1 - am) a' + am a) is zero at the target.
+    equation.inertia = (1.0 - alpha_m_) / (beta_ * dt * dt * kept);
+    equation.inertia_target =
+        q + kept * dt * (v + dt * (0.5 - beta_ - alpha_m_ * beta_ / (1.0 - alpha_m_)) * a);
+    // Velocity: (1 - af) v' + af v is zero at the reference, where a' is such that v' is.
+    equation.velocity_factor = gamma_ / (beta_ * dt);
+    equation.velocity_reference =
+        q + kept * dt * (v + dt * (0.5 - beta_) * a) -
+        (beta_ / gamma_) * dt * (v + kept * dt * (1.0 - gamma_) * a);
+
+    positions_ = q + dt * (v + 0.5 * dt * a);
+    stage_.place_held_at(state.time + dt, positions_);
+    stage_.positions = kept * positions_ + alpha_f_ * q;
+    const StepReport report = stage_.solve(state, state.time + kept * dt);
+    if (report.outcome != StepOutcome::Done) return report;
+
+    positions_ = (stage_.positions - alpha_f_ * q) / kept;
+    stage_.place_held_at(state.time + dt, positions_);
+    accelerations_ =
+        (positions_ - q - dt * v) / (beta_ * dt * dt) - ((0.5 - beta_) / beta_) * a;
+    velocities_ = v + dt * ((1.0 - gamma_) * a + gamma_ * accelerations_);
+    state.accelerations = accelerations_;
+    stage_.finish(positions_, velocities_, dt, state);
+    return report;
+  }
+
+ private:
+  double alpha_m_;
+  double alpha_f_;
+  double gamma_;
+  double beta_;
+  ImplicitStage stage_;
+  ExplicitForce force_;
+  Vector positions_;
+  Vector velocities_;
+  Vector accelerations_;
+};
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_generalized_alpha(const Model& model, const Assembler& assembler,
+                                                LinearSolver& solver,
+                                                const StepperOptions& options) {
+  return std::make_unique<GeneralizedAlpha>(model, assembler, solver, options);
+}
+
+}  // namespace der

@@ -1,0 +1,95 @@
+#include <cmath>
+
+#include "der/steppers/explicit_force.hpp"
+#include "der/steppers/implicit_stage.hpp"
+#include "steppers.hpp"
+
+namespace der {
+namespace {
+
+/// The trapezoidal rule over the part g = 2 - sqrt(2) of the step, then BDF2 over its end (Bank et
+/// al., IEEE Trans. CAD 4, 1985; Hosea and Shampine, Appl. Numer. Math. 20, 1996): second order,
+/// L-stable, one-step. Both stages have the same h = g dt / 2 before f.
+class TrBdf2 final : public Stepper {
+ public:
+  TrBdf2(const Model& model, const Assembler& assembler, LinearSolver& solver,
+         const StepperOptions& options)
+      : stage_(model, assembler, solver, options.newton),
+        force_(model, assembler),
+        start_acceleration_(model.num_dofs()),
+        middle_positions_(model.num_dofs()),
+        middle_velocities_(model.num_dofs()),
+        past_positions_(model.num_dofs()),
+        past_velocities_(model.num_dofs()),
+        velocities_(model.num_dofs()) {}
+
+  StepReport step(State& state, double dt) override {
+    const double h = 0.5 * kGamma * dt;
+    stage_.equation.inertia = 1.0 / (h * h);
+    stage_.equation.velocity_factor = 1.0 / h;
+    StepReport report = trapezoidal_stage(state, h);
+    if (report.outcome != StepOutcome::Done) return report;
+    const StepReport second = bdf2_stage(state, h, dt);
+    report.outcome = second.outcome;
+    report.newton_iterations += second.newton_iterations;
+    report.worst_dof = second.worst_dof;
+    report.failure = second.failure;
+    if (report.outcome != StepOutcome::Done) return report;
+
+    velocities_ = (stage_.positions - past_positions_) / h;
+    state.accelerations = (velocities_ - past_velocities_) / h;
+    stage_.finish(stage_.positions, velocities_, dt, state);
+    return report;
+  }
+
+ private:
+  static constexpr double kGamma = 0.58578643762690495;  // 2 - sqrt(2)
+
+  StepReport trapezoidal_stage(const State& state, double h) {
+    const double time = state.time + 2.0 * h;
+    force_.acceleration(state, state.positions, state.velocities, state.time, start_acceleration_);
+    Stage& equation = stage_.equation;
+    equation.inertia_target =
+        state.positions + h * (2.0 * state.velocities + h * start_acceleration_);
+    equation.velocity_reference = state.positions + h * state.velocities;
+    stage_.positions =
+        state.positions + 2.0 * h * (state.velocities + h * start_acceleration_);
+    stage_.place_held_at(time, stage_.positions);
+    const StepReport report = stage_.solve(state, time);
+    middle_positions_ = stage_.positions;
+    middle_velocities_ = (middle_positions_ - state.positions) / h - state.velocities;
+    return report;
+  }
+
+  StepReport bdf2_stage(const State& state, double h, double dt) {
+    constexpr double middle = 1.0 / (kGamma * (2.0 - kGamma));
+    constexpr double start = (1.0 - kGamma) * (1.0 - kGamma) / (kGamma * (2.0 - kGamma));
+    past_positions_ = middle * middle_positions_ - start * state.positions;
+    past_velocities_ = middle * middle_velocities_ - start * state.velocities;
+    stage_.equation.inertia_target = past_positions_ + h * past_velocities_;
+    stage_.equation.velocity_reference = past_positions_;
+    const double rest = (1.0 - kGamma) * dt;
+    stage_.positions = middle_positions_ + rest * middle_velocities_ +
+                       0.5 * rest * (rest / (kGamma * dt)) * (middle_velocities_ - state.velocities);
+    stage_.place_held_at(state.time + dt, stage_.positions);
+    return stage_.solve(state, state.time + dt);
+  }
+
+  ImplicitStage stage_;
+  ExplicitForce force_;
+  Vector start_acceleration_;
+  Vector middle_positions_;
+  Vector middle_velocities_;
+  Vector past_positions_;
+  Vector past_velocities_;
+  Vector velocities_;
+};
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_tr_bdf2(const Model& model, const Assembler& assembler,
+                                      LinearSolver& solver, const StepperOptions& options) {
+  return std::make_unique<TrBdf2>(model, assembler, solver, options);
+}
+
+}  // namespace der

@@ -130,12 +130,22 @@ std::string Simulation::describe_failure(const StepReport& report, double dt) co
 }
 
 std::string Simulation::describe_divergence(const StepReport& report, double dt) const {
-  const StableStep stable = stable_step(model_, model_.initial_positions);
+  const std::string what =
+      fmt::format("the motion diverged at t = {:.6g} s: {} at {}", state_.time, report.failure,
+                  describe_dof(model_, report.worst_dof));
+  const StableStep stable =
+      stable_step(model_, model_.initial_positions, stepper_info_.drag_limits_step);
+  if (dt <= stable.step) {
+    return fmt::format(
+        "{}. The step of {:.3g} s is below the stable step at the start, {:.3g} s: the motion itself "
+        "stiffens the rod. Try half the step, or an implicit integrator.",
+        what, dt, stable.step);
+  }
   return fmt::format(
-      "the motion diverged at t = {:.6g} s: {} at {}. The step of {:.3g} s is above the stable step of "
-      "{:.3g} s, which {} at {} sets. Use time.step <= {:.2g}, or an implicit integrator.",
-      state_.time, report.failure, describe_dof(model_, report.worst_dof), dt, stable.step,
-      stable.limited_by, describe_dof(model_, stable.worst_dof), 0.95 * stable.step);
+      "{}. The step of {:.3g} s is above the stable step of {:.3g} s, which {} at {} sets. Use "
+      "time.step <= {:.2g}, or an implicit integrator.",
+      what, dt, stable.step, stable.limited_by, describe_dof(model_, stable.worst_dof),
+      0.95 * stable.step);
 }
 
 }  // namespace der

@@ -6,7 +6,6 @@
 
 #include "scenario/number.hpp"
 #include "scenario/suggestion.hpp"
-#include "scenario/table.hpp"
 
 namespace der::scenario {
 namespace {
@@ -166,97 +165,6 @@ bool read_vector(const Shape& shape, const Place& place, Complaints& complaints,
   return fine;
 }
 
-/// Times that increase, and a value for each.
-template <class Table>
-void check_table(const Table& table, const Place& place, Complaints& complaints) {
-  const Mapping& entries = *place.value->mapping();
-  const Place times = place.at(*find_entry(entries, "times"));
-  for (std::size_t i = 1; i < table.times.size(); ++i) {
-    if (table.times[i] > table.times[i - 1]) continue;
-    complaints.add(times.at(static_cast<int>(i), (*times.value->sequence())[i]),
-                   fmt::format("times must increase, but {} s follows {} s", table.times[i],
-                               table.times[i - 1]));
-    return;
-  }
-  if (table.times.size() != table.values.size()) {
-    complaints.add(place.at(*find_entry(entries, "values")),
-                   fmt::format("a table needs one value for each of its {} times, got {}",
-                               table.times.size(), table.values.size()));
-  }
-}
-
-/// A constant or a table: `Constant` is the type of one value, `Result` that of the series.
-template <class Result, class Constant>
-Format<Result> constant_or_table(const Format<Constant>& constant, const std::string& name) {
-  const Format<Result> table = mapping(
-      Table<Result>(name,
-                    "A value over time: linear between the times of the list, constant "
-                    "before the first and after the last.")
-          .required("times", &Result::times, list_of(number("s"), 1), "Increasing times.")
-          .required("values", &Result::values, list_of(constant, 1), "One value for each time.")
-          .in_unit_of_the_key()
-          .check(check_table<Result>));
-  Shape shape{Shape::Kind::AnyOf};
-  shape.unit = constant.shape.unit;
-  shape.parts = {constant.shape, table.shape};
-  return {std::move(shape), [constant, table](const Shape& self, const Place& place,
-                                              Complaints& complaints, Result& out) {
-            if (place.value->mapping()) return table.read(place, complaints, out);
-            if (place.value->sequence() && constant.shape.kind == Shape::Kind::Number) {
-              complain_expected(expected(self), place, complaints);
-              return false;
-            }
-            Constant value{};
-            if (!constant.read(place, complaints, value)) return false;
-            out.times = {0.0};
-            out.values = {std::move(value)};
-            return true;
-          }};
-}
-
-Format<Location> location_of(const std::vector<std::pair<Word, Location::Kind>>& places,
-                             std::vector<ReservedWord> reserved) {
-  const Format<Location::Kind> word = choice(places, std::move(reserved));
-  std::vector<Location::Kind> kinds;
-  for (const auto& [name, kind] : places) kinds.push_back(kind);
-  const Format<double> arc_length = number("m", not_negative());
-  const Format<Location> node = mapping(Table<Location>("node", "A node by its number.")
-                                            .required("node", &Location::node, integer({}),
-                                                      "Counted from 0 at the start; -1 is the "
-                                                      "last, -2 the one before."));
-  Shape shape{Shape::Kind::AnyOf};
-  shape.unit = "m";
-  shape.parts = {word.shape, arc_length.shape, node.shape};
-  return {std::move(shape), [word, kinds, arc_length, node](const Shape& self, const Place& place,
-                                                            Complaints& complaints, Location& out) {
-            out.mark = place.value->mark;
-            if (place.value->mapping()) {
-              out.kind = Location::Kind::Node;
-              return node.read(place, complaints, out);
-            }
-            const std::string* written = text_of(*place.value);
-            const bool is_word = written && !written->empty() &&
-                                 std::isalpha(static_cast<unsigned char>(written->front())) != 0;
-            if (is_word) {
-              const int chosen = read_word(word.shape, expected(self), place, complaints);
-              if (chosen >= 0) out.kind = kinds[static_cast<std::size_t>(chosen)];
-              return chosen >= 0;
-            }
-            if (place.value->sequence()) {
-              complain_expected(expected(self), place, complaints);
-              return false;
-            }
-            out.kind = Location::Kind::ArcLength;
-            return arc_length.read(place, complaints, out.arc_length);
-          }};
-}
-
-std::vector<std::pair<Word, Location::Kind>> single_places() {
-  return {{{"start", "first node"}, Location::Kind::Start},
-          {{"middle", "half the rod's length"}, Location::Kind::Middle},
-          {{"end", "last node"}, Location::Kind::End}};
-}
-
 }  // namespace
 
 void complain_expected(const std::string& what, const Place& place, Complaints& complaints,
@@ -337,24 +245,6 @@ bool is_list(const Shape& shape, const Place& place, Complaints& complaints) {
     return false;
   }
   return true;
-}
-
-Format<Series> series(const std::string& unit) {
-  return constant_or_table<Series>(number(unit), "table");
-}
-
-Format<VectorSeries> vector_series(const std::string& unit) {
-  return constant_or_table<VectorSeries>(vector(unit), "table of vectors");
-}
-
-Format<Location> location() {
-  auto places = single_places();
-  places.push_back({{"all", "every node"}, Location::Kind::All});
-  return location_of(places, {});
-}
-
-Format<Location> single_location(const std::string& why_not_all) {
-  return location_of(single_places(), {{"all", why_not_all}});
 }
 
 }  // namespace der::scenario

@@ -90,11 +90,9 @@ std::string row(const FieldInfo& field) {
 }
 
 std::string alternatives_text(const Alternatives& alternatives) {
-  std::string text;
-  for (const auto& branch : alternatives.branches) {
-    text += (text.empty() ? "" : " or ") + code_list(branch, " and ");
-  }
-  return fmt::format("\nGive {} {}.\n", alternatives.required ? "either" : "at most one of", text);
+  return fmt::format(
+      "\nGive {} {}.\n", alternatives.required ? "either" : "at most one of",
+      alternatives.described([](const auto& branch) { return code_list(branch, " and "); }));
 }
 
 /// The words of a key that mean something, one by one.

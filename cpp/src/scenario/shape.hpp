@@ -77,6 +77,18 @@ struct FieldInfo {
 struct Alternatives {
   std::vector<std::vector<std::string>> branches;
   bool required = false;  ///< one branch must be present
+
+  /// "a and b, or c": `listing` joins the keys of one branch.
+  template <class Listing>
+  [[nodiscard]] std::string described(Listing listing) const {
+    bool single = true;
+    for (const auto& branch : branches) single = single && branch.size() == 1;
+    std::string text;
+    for (const auto& branch : branches) {
+      text += (text.empty() ? "" : single ? " or " : ", or ") + listing(branch);
+    }
+    return text;
+  }
 };
 
 /// All that is known of a mapping: its keys and how they exclude each other.

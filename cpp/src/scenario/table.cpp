@@ -110,13 +110,7 @@ class KeyReader {
   }
 
   static std::string described(const Alternatives& alternatives) {
-    const bool single = std::all_of(alternatives.branches.begin(), alternatives.branches.end(),
-                                    [](const auto& branch) { return branch.size() == 1; });
-    std::string text;
-    for (const auto& branch : alternatives.branches) {
-      text += (text.empty() ? "either " : single ? " or " : ", or ") + listed(branch);
-    }
-    return text;
+    return "either " + alternatives.described([](const auto& branch) { return listed(branch); });
   }
 
   void check(const Alternatives& alternatives) {

@@ -7,14 +7,17 @@ namespace der {
 
 const std::vector<StepperInfo>& stepper_registry() {
   static const std::vector<StepperInfo> registry = {
-      {"implicit_euler", 1, true, "L-stable: any step", "strong, all motion", make_implicit_euler},
-      {"implicit_midpoint", 2, true, "A-stable: any step", "none", make_implicit_midpoint},
-      {"generalized_alpha", 2, true, "A-stable: any step", "fast motion only, as chosen",
-       make_generalized_alpha},
-      {"bdf2", 2, true, "L-stable: any step", "fast motion, some of the slow", make_bdf2},
-      {"tr_bdf2", 2, true, "L-stable: any step", "fast motion", make_tr_bdf2},
-      {"verlet", 2, false, "below the stretch and bend limit", "none", make_verlet},
-      {"explicit_euler", 1, false, "below the stretch, bend and drag limit", "none",
+      {"implicit_euler", 1, true, false, false, "L-stable: any step", "strong, all motion",
+       make_implicit_euler},
+      {"implicit_midpoint", 2, true, true, false, "A-stable: any step", "none",
+       make_implicit_midpoint},
+      {"generalized_alpha", 2, true, false, false, "A-stable: any step",
+       "fast motion only, as chosen", make_generalized_alpha},
+      {"bdf2", 2, true, false, false, "L-stable: any step", "fast motion, some of the slow",
+       make_bdf2},
+      {"tr_bdf2", 2, true, false, false, "L-stable: any step", "fast motion", make_tr_bdf2},
+      {"verlet", 2, false, true, false, "below the stretch and bend limit", "none", make_verlet},
+      {"explicit_euler", 1, false, true, true, "below the stretch, bend and drag limit", "none",
        make_explicit_euler},
   };
   return registry;

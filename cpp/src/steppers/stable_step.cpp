@@ -54,14 +54,15 @@ Vector scaled_row_sums(const Model& model, const Vector& positions, const Vector
 
 }  // namespace
 
-StableStep stable_step(const Model& model, const Vector& positions) {
+StableStep stable_step(const Model& model, const Vector& positions, bool drag_limits_step) {
   Vector controls;
   model.controls.evaluate(0.0, controls);
   const Fastest stretch =
       largest(model, scaled_row_sums(model, positions, controls, EnergyTerm::Stretch));
   const Fastest bend =
       largest(model, scaled_row_sums(model, positions, controls, EnergyTerm::Bend));
-  const Fastest drag = largest(model, model.damping.cwiseQuotient(model.mass));
+  const Fastest drag =
+      drag_limits_step ? largest(model, model.damping.cwiseQuotient(model.mass)) : Fastest{};
 
   const double w2 = stretch.rate + bend.rate;
   const double g = drag.rate;

@@ -43,8 +43,8 @@ inline PlanarMoment::Constants sample_constants(const PlanarMoment&, Random& ran
   return {uniform(random, 0.1, 1.0), 0};
 }
 
-enum class Shape { Random, NearStraight, NearFolded, Stretched };
-constexpr Shape kShapes[] = {Shape::Random, Shape::NearStraight, Shape::NearFolded,
+enum class Shape { Arbitrary, NearStraight, NearFolded, Stretched };
+constexpr Shape kShapes[] = {Shape::Arbitrary, Shape::NearStraight, Shape::NearFolded,
                              Shape::Stretched};
 
 /// Nodes of a planar stencil with N coordinates: edges laid one after the other, each turned from

@@ -176,7 +176,7 @@ TEST_CASE("places: an arc length within rounding of the end is the end") {
                  "lies beyond the rod's length"));
 }
 
-TEST_CASE("places: a point force may act between nodes, or on all of them; a support may not") {
+TEST_CASE("places: a point force may act between nodes, or on all of them, a support may not") {
   CHECK(complaints({{"loads",
                      "[{point_force: {rod: beam, at: 0.123, force: [0, 1]}}, "
                      "{point_force: {rod: beam, at: all, force: [0, 1]}}, "

@@ -15,12 +15,12 @@ struct Weighted {
 };
 
 /// Rest arc length [m] that a location names (not for Kind::All).
-double arc_length_of(const scenario::Location& at, const RodLayout& rod);
+double arc_length_of(const scenario::Location& location, const RodLayout& rod);
 
-/// Position in RodLayout::nodes of the node at `at`. The reader has checked that there is one.
-Index node_at(const scenario::Location& at, const RodLayout& rod);
+/// Position in RodLayout::nodes of the node at `location`. The reader has checked that there is one.
+Index node_at(const scenario::Location& location, const RodLayout& rod);
 /// As above; every node for Kind::All.
-std::vector<Index> nodes_at(const scenario::Location& at, const RodLayout& rod);
+std::vector<Index> nodes_at(const scenario::Location& location, const RodLayout& rod);
 
 /// Weights of the cubic Lagrange polynomial through the (up to) four nodes nearest to arc length
 /// `s`; a single node when `s` is at one. Applied to positions it gives the point at `s`; the same

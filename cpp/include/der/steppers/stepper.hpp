@@ -43,6 +43,8 @@ struct StepperInfo {
   std::string_view name;
   int order;
   bool implicit;
+  bool keeps_angular_momentum;
+  bool drag_limits_step;  ///< of the explicit ones: whether drag bounds the stable step
   std::string_view stability;  ///< in words
   std::string_view damping;    ///< numerical damping, in words
   std::unique_ptr<Stepper> (*make)(const Model&, const Assembler&, LinearSolver&,

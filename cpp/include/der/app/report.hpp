@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "der/app/terminal.hpp"
+#include "der/output/recorder.hpp"
+#include "der/output/run.hpp"
+#include "der/output/run_folder.hpp"
+#include "der/simulation.hpp"
+
+namespace der::app {
+
+/// The summary that der_run prints at the end: what ran, with which model and solver and why, what
+/// it cost, the probes, and where the results are.
+std::string run_report(const Simulation& simulation, const Recorder& recorder,
+                       const RunOutcome& outcome, const RunFolder& folder, const Style& style);
+
+/// What --check prints for a scene that is valid.
+std::string check_report(const Simulation& simulation, const Style& style);
+
+}  // namespace der::app

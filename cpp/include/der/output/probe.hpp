@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "der/model/model.hpp"
+#include "der/model/state.hpp"
+#include "der/scenario/scenario.hpp"
+
+namespace der {
+
+/// Reads one scalar off a state; what it needs is worked out beforehand, so that reading allocates
+/// nothing.
+class ProbeReader {
+ public:
+  ProbeReader() = default;
+  ProbeReader(const ProbeReader&) = delete;
+  ProbeReader& operator=(const ProbeReader&) = delete;
+  virtual ~ProbeReader() = default;
+  [[nodiscard]] virtual double value(const Model& model, const State& state) = 0;
+};
+
+/// A scalar read off a state, as the scene's `output.probes` name it, with order 2 in the element
+/// length or better wherever the solution is smooth:
+/// - positions and velocities between nodes by the cubic through the four nearest nodes (the weights
+///   that also spread a point force, see location.hpp);
+/// - strain and tension, which belong to the middles of the edges, linearly between those and beyond
+///   the outermost ones;
+/// - turning angle, curvature and moment at the nodes; at a clamped end they are those of its half
+///   cell, so that the moment is the clamp's reaction;
+/// - an extreme over a rod is that of the parabola through the three samples around the extreme one,
+///   except for the turning angle, a sum over a cell, which is not interpolated;
+/// - the energies of a rod count a node that rods share in each of them.
+class Probe {
+ public:
+  Probe(const scenario::Probe& probe, const Model& model);
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::string& unit() const { return unit_; }
+  [[nodiscard]] double value(const Model& model, const State& state) const {
+    return reader_->value(model, state);
+  }
+
+ private:
+  std::string name_;
+  std::string unit_;
+  std::unique_ptr<ProbeReader> reader_;
+};
+
+std::vector<Probe> make_probes(const scenario::Scene& scene, const Model& model);
+
+}  // namespace der

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "der/core/types.hpp"
+#include "der/model/state.hpp"
+#include "der/output/checkpoint.hpp"
+#include "der/output/frame.hpp"
+#include "der/output/probe.hpp"
+#include "der/simulation.hpp"
+
+namespace der {
+
+/// Reads the probes after every step, keeps their extremes, and hands every saved instant to the
+/// sinks: the start, every `output.every` seconds, and the last instant of the run.
+class Recorder {
+ public:
+  /// The clock of `wall_seconds()` starts here.
+  explicit Recorder(const Simulation& simulation);
+  /// The sink must outlive the recorder's use.
+  void add(FrameSink& sink) { sinks_.push_back(&sink); }
+
+  /// To be called at the start and after each step; an instant that was seen before is not taken
+  /// twice. Throws DivergedError if a value is not a finite number; such a state is not recorded.
+  void observe(const Simulation& simulation);
+  /// To be called at the end, however the run ended: saves the present instant, if that has not
+  /// been done and its values are finite.
+  void finish(const Simulation& simulation);
+
+  /// Puts the simulation and itself back to a checkpoint, to go on from there in place of a start.
+  void restore(const Checkpoint& checkpoint, Simulation& simulation);
+  /// What it takes to go on from the instant that was seen last.
+  [[nodiscard]] Checkpoint checkpoint(const Simulation& simulation) const;
+
+  [[nodiscard]] const std::vector<Probe>& probes() const { return probes_; }
+  /// One a probe; without meaning before the first `observe`.
+  [[nodiscard]] const std::vector<ProbeSummary>& summaries() const { return summaries_; }
+  /// False until the first `observe`.
+  [[nodiscard]] bool has_data() const { return seen_time_.has_value(); }
+  /// Energies [J] of the last saved instant; none before it.
+  [[nodiscard]] const std::optional<Energies>& energies() const { return energies_; }
+  /// Cost of the run so far, earlier parts of a resumed run included.
+  [[nodiscard]] Counters counters(const Simulation& simulation) const;
+  [[nodiscard]] double wall_seconds() const;
+
+ private:
+  /// Returns what is not a finite number, in words; empty if the instant has been recorded.
+  std::string record(const Simulation& simulation, bool save);
+  [[nodiscard]] std::string read_probes(const Simulation& simulation);
+  void update_extremes(double time);
+  void hand_out(const State& state);
+
+  std::vector<Probe> probes_;
+  std::vector<ProbeSummary> summaries_;
+  std::vector<FrameSink*> sinks_;
+  Vector values_;  // of the probes, now
+  std::optional<Energies> energies_;
+  std::int64_t every_ = 1;            // steps between saved frames
+  std::optional<double> seen_time_;   // [s] of the last instant recorded
+  std::optional<double> saved_time_;  // [s] of the last instant handed to the sinks
+  Counters counters_before_;          // of the earlier parts of a resumed run
+  double seconds_before_ = 0.0;
+  std::chrono::steady_clock::time_point start_;
+};
+
+/// Steps between two saved frames of a scene, at least 1.
+std::int64_t steps_between_frames(const scenario::Scene& scene);
+
+}  // namespace der

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "der/output/recorder.hpp"
+#include "der/simulation.hpp"
+#include "der/statics/equilibrium.hpp"
+
+namespace der {
+
+/// Called after every step; return false to stop the run early (status "stopped").
+using StepCallback = std::function<bool(const Simulation&)>;
+
+/// How a run ended. `status` is "completed", "static_converged", "stopped" or the failure's name.
+struct RunOutcome {
+  std::string status;
+  std::string message;        ///< of the failure, empty otherwise
+  double time = 0.0;          ///< [s] that the simulation has reached
+  Counters counters;          ///< earlier parts of a resumed run included
+  double wall_seconds = 0.0;  ///< earlier parts of a resumed run included
+  /// Of a static analysis that converged.
+  std::optional<EquilibriumReport> equilibrium;
+  [[nodiscard]] bool ok() const { return status == "completed" || status == "static_converged"; }
+  [[nodiscard]] bool failed() const { return !message.empty(); }
+};
+
+/// Runs a simulation from its present state to the end of the scene (or to its equilibrium, for a
+/// static analysis), feeding the recorder. Numerical failures end the run and are reported in the
+/// outcome, with everything up to the last good step recorded; other errors (of a sink, of the
+/// callback) are thrown on.
+RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& after_step = {});
+
+}  // namespace der

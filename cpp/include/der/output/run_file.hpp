@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "der/output/checkpoint.hpp"
+#include "der/output/frame.hpp"
+
+namespace der {
+
+/// The HDF5 file of a run (layout: docs/results.md), written while the run goes on. Frames gather in
+/// memory and are written out together, at most about 50 ms after they came, in an order in which a
+/// process killed at any moment leaves a readable file: data first, then the length of /time, then
+/// the mark that names the valid checkpoint. Throws IoError.
+class RunFile : public FrameSink {
+ public:
+  /// Starts a new file, replacing one that is there.
+  static std::unique_ptr<RunFile> create(const std::filesystem::path& path,
+                                         const Simulation& simulation, const Recorder& recorder);
+  /// Opens the file of an interrupted run of the same scene to go on with it: frames behind the
+  /// checkpoint are dropped, `recorder` and `simulation` are put back to it.
+  static std::unique_ptr<RunFile> resume(const std::filesystem::path& path, Simulation& simulation,
+                                         Recorder& recorder);
+  /// Writes what has gathered; the status stays "running" unless `finish` was called.
+  ~RunFile() override;
+
+  void write(const Frame& frame) override;
+  void stepped(const Simulation& simulation, const Recorder& recorder) override;
+  /// To be called at the end of the run: writes all out, with the final status.
+  void finish(const std::string& status, const Simulation& simulation, const Recorder& recorder);
+
+ private:
+  class Writer;
+  explicit RunFile(std::unique_ptr<Writer> writer);
+  std::unique_ptr<Writer> writer_;
+};
+
+/// What the head of a run file says.
+struct RunFileHead {
+  std::string der_version;
+  std::string status;  ///< "running" while it is written, and after a kill
+  std::string scene;   ///< YAML text of the scene as run
+  std::int64_t step = 0;  ///< of the checkpoint; -1: there is none
+  double time = 0.0;      ///< [s] of the checkpoint
+};
+RunFileHead read_head(const std::filesystem::path& path);
+
+}  // namespace der

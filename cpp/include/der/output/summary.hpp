@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "der/output/recorder.hpp"
+#include "der/output/run.hpp"
+#include "der/simulation.hpp"
+
+namespace der {
+
+/// The linear solver of a run, and why.
+struct UsedSolver {
+  std::string name;  ///< "none" for explicit steps, which solve no equations
+  std::string reason;
+};
+UsedSolver used_solver(const Simulation& simulation);
+
+/// The summary of an ended run as JSON text (keys: docs/results.md). Values that the run did not
+/// come to (the probes of an equilibrium that was not found) are left out; no number is NaN or
+/// infinite.
+std::string summary_json(const Simulation& simulation, const Recorder& recorder,
+                         const RunOutcome& outcome);
+
+}  // namespace der

@@ -1,0 +1,73 @@
+#include "der/app/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "der/version.hpp"
+
+namespace der::app {
+namespace {
+
+constexpr const char* kDescription =
+    "Runs the scene of a YAML file and writes its results to a folder: summary.json, results.h5 and "
+    "scene.yaml.";
+
+constexpr const char* kFooter =
+    "Examples:\n"
+    "  der_run configs/cantilever.yaml\n"
+    "  der_run configs/cantilever.yaml --set rods.arm.nodes=101 --out runs/fine\n"
+    "  der_run configs/cantilever.yaml --check\n"
+    "\n"
+    "Exit codes: 0 completed, 1 mistake in the scene, 2 mistake on the command line,\n"
+    "3 not converged or diverged, 4 file or folder not readable or writable,\n"
+    "130 interrupted by Ctrl-C, 143 by SIGTERM (what has been computed is saved; see --resume).";
+
+Override parse_override(const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    throw CLI::ValidationError("--set", "'" + text + "' is not of the form path=value, as in "
+                                        "rods.beam.nodes=101");
+  }
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+std::filesystem::path default_folder(const std::filesystem::path& scene) {
+  return std::filesystem::path("runs") / scene.stem();
+}
+
+}  // namespace
+
+std::variant<Options, ExitCode> parse_options(int argc, const char* const* argv) {
+  Options options;
+  std::vector<std::string> settings;
+  CLI::App app(kDescription, "der_run");
+  app.footer(kFooter);
+  app.set_version_flag("--version", std::string("der_run ") + version, "Print the version and exit");
+  app.add_option("scene", options.scene, "Scene file (YAML)")->option_text("SCENE");
+  app.add_option("--out", options.out, "Folder for the results; runs/<name of SCENE> if not given")
+      ->option_text("DIR");
+  app.add_option("--set", settings, "Replace a value of the scene; can be given more than once")
+      ->option_text("PATH=VALUE")
+      ->allow_extra_args(false);
+  auto* check = app.add_flag("--check", options.check, "Only check the scene and its model");
+  check->option_text(" ");  // without the list of what it excludes
+  app.add_flag("--resume", options.resume, "Go on with an interrupted run as if it had never stopped")
+      ->excludes(check)
+      ->option_text(" ");
+  app.add_flag("--quiet", options.quiet, "No progress and no summary; errors are still printed");
+  app.add_flag("--schema", options.schema,
+               "Print the JSON Schema of scene files, for editors, and exit");
+  try {
+    app.parse(argc, argv);
+    if (options.scene.empty() && !options.schema) throw CLI::RequiredError("SCENE");
+    for (const std::string& setting : settings) {
+      options.overrides.push_back(parse_override(setting));
+    }
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? ExitCode::Completed : ExitCode::Usage;
+  }
+  if (options.out.empty()) options.out = default_folder(options.scene);
+  return options;
+}
+
+}  // namespace der::app

@@ -1,0 +1,116 @@
+#include "der/app/program.hpp"
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <string>
+
+#include "der/app/exit_code.hpp"
+#include "der/app/interrupt.hpp"
+#include "der/app/options.hpp"
+#include "der/app/progress.hpp"
+#include "der/app/report.hpp"
+#include "der/app/terminal.hpp"
+#include "der/core/error.hpp"
+#include "der/output/io_error.hpp"
+#include "der/output/recorder.hpp"
+#include "der/output/run_folder.hpp"
+#include "der/scenario/reader.hpp"
+#include "der/simulation.hpp"
+
+namespace der::app {
+namespace {
+
+void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
+
+ExitCode fail(ExitCode code, const std::string& message) {
+  std::fputs((Style::of(stderr).bad("error: ") + message + "\n").c_str(), stderr);
+  return code;
+}
+
+/// Every complaint on a line of its own, as compilers write them, so that editors can jump there.
+ExitCode fail(const Options& options, const SceneError& error) {
+  std::fputs((std::string(error.what()) + "\n").c_str(), stderr);
+  const bool readable = std::ifstream(options.scene).good();
+  return readable ? ExitCode::SceneError : ExitCode::IoFailure;
+}
+
+ExitCode exit_code(const RunOutcome& outcome) {
+  if (outcome.ok()) return ExitCode::Completed;
+  if (outcome.failed()) return ExitCode::NumericalFailure;
+  return InterruptGuard::signal() == SIGTERM ? ExitCode::Terminated : ExitCode::Interrupted;
+}
+
+ExitCode run_scene(const Options& options, Simulation& simulation) {
+  const RunFolder folder(options.out);
+  Recorder recorder(simulation);
+  Progress progress(!options.quiet);
+  const auto after_step = [&](const Simulation& now) {
+    progress.update([&] {
+      return RunPosition{now.state().step, now.total_steps(), now.state().time,
+                         now.scenario().scene().time.duration};
+    });
+    return InterruptGuard::signal() == 0;
+  };
+  const InterruptGuard guard;
+  const RunOutcome outcome =
+      options.resume ? resume_in_folder(folder, simulation, recorder, after_step)
+                     : run_in_folder(folder, simulation, recorder, after_step);
+  progress.clear();
+  if (!options.quiet) {
+    print(run_report(simulation, recorder, outcome, folder, Style::of(stdout)));
+    std::fflush(stdout);
+  }
+  return outcome.failed() ? fail(exit_code(outcome), outcome.message) : exit_code(outcome);
+}
+
+/// True if the run is at its end already, which is said.
+bool is_finished(const Options& options, const Scenario& scenario) {
+  const RunFileHead head = check_resumable(RunFolder(options.out), scenario);
+  if (head.status != "completed" && head.status != "static_converged") return false;
+  if (!options.quiet) {
+    print("the run in '" + options.out.string() + "' is finished already (" + head.status +
+          "): nothing to resume\n");
+  }
+  return true;
+}
+
+ExitCode execute(const Options& options) {
+  if (options.schema) {
+    print(json_schema());
+    return ExitCode::Completed;
+  }
+  const Scenario scenario = Scenario::load(options.scene, options.overrides);
+  if (options.resume && is_finished(options, scenario)) return ExitCode::Completed;
+  Simulation simulation(scenario);
+  if (options.check) {
+    if (!options.quiet) print(check_report(simulation, Style::of(stdout)));
+    return ExitCode::Completed;
+  }
+  return run_scene(options, simulation);
+}
+
+ExitCode guarded(const Options& options) {
+  try {
+    return execute(options);
+  } catch (const SceneError& error) {
+    return fail(options, error);
+  } catch (const IoError& error) {
+    return fail(ExitCode::IoFailure, error.what());
+  } catch (const Error& error) {
+    return fail(ExitCode::SceneError, error.what());
+  } catch (const std::exception& error) {
+    return fail(ExitCode::InternalError, std::string("internal error: ") + error.what());
+  }
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv) {
+  const auto options = parse_options(argc, argv);
+  if (const auto* code = std::get_if<ExitCode>(&options)) return static_cast<int>(*code);
+  return static_cast<int>(guarded(std::get<Options>(options)));
+}
+
+}  // namespace der::app

@@ -1,0 +1,154 @@
+#include "der/app/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "der/app/format.hpp"
+#include "der/output/summary.hpp"
+
+namespace der::app {
+namespace {
+
+using Row = std::vector<std::string>;
+
+bool is_static(const Simulation& simulation) {
+  return simulation.scenario().scene().analysis == scenario::AnalysisKind::Static;
+}
+
+/// Rows of a table as lines, indented by two: the first and the last column to the left, numbers to
+/// the right.
+std::string aligned(const std::vector<Row>& rows, const Style& style) {
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  std::string text;
+  for (const Row& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const bool left = i == 0 || i + 1 == row.size();
+      line += left ? fmt::format("  {:<{}}", row[i], widths[i])
+                   : fmt::format("  {:>{}}", row[i], widths[i]);
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += (&row == &rows.front() ? style.dim(line) : line) + "\n";
+  }
+  return text;
+}
+
+std::string number(double value) { return fmt::format("{:.6g}", value); }
+
+std::string probe_table(const Simulation& simulation, const Recorder& recorder,
+                        const Style& style) {
+  std::vector<Row> rows;
+  if (is_static(simulation)) {
+    rows.push_back({"probe", "value", "unit"});
+  } else {
+    rows.push_back({"probe", "final", "min", "at t [s]", "max", "at t [s]", "unit"});
+  }
+  for (std::size_t i = 0; i < recorder.probes().size(); ++i) {
+    const Probe& probe = recorder.probes()[i];
+    const ProbeSummary& s = recorder.summaries()[i];
+    if (is_static(simulation)) {
+      rows.push_back({probe.name(), number(s.final), probe.unit()});
+    } else {
+      rows.push_back({probe.name(), number(s.final), number(s.min), number(s.t_min), number(s.max),
+                      number(s.t_max), probe.unit()});
+    }
+  }
+  return aligned(rows, style);
+}
+
+std::string line(std::string_view label, const std::string& text, const Style& style) {
+  return fmt::format("  {} {}\n", style.dim(fmt::format("{:<8}", label)), text);
+}
+
+std::string heading(const Simulation& simulation, const Style& style) {
+  const std::string& title = simulation.scenario().scene().title;
+  return style.bold(title.empty() ? simulation.scenario().source() : title) + "\n";
+}
+
+std::string model_lines(const Simulation& simulation, const Style& style) {
+  const Model& model = simulation.model();
+  const UsedSolver solver = used_solver(simulation);
+  return line("model", fmt::format("{}: {}", model.name, model.reason), style) +
+         line("",
+              fmt::format("{}, {}, {}, {} free",
+                          format_count(static_cast<std::int64_t>(model.rods.size()), "rod"),
+                          format_count(model.num_nodes, "node"),
+                          format_count(model.num_dofs(), "degree") + " of freedom", model.num_free()),
+              style) +
+         line("solver", fmt::format("{}: {}", solver.name, solver.reason), style);
+}
+
+std::string status_line(const Simulation& simulation, const RunOutcome& outcome,
+                        const Style& style) {
+  std::string status = outcome.status;
+  if (outcome.ok()) {
+    status = style.good(status);
+  } else if (outcome.failed()) {
+    status = style.bad(status) + fmt::format(" at t = {:.6g} s", outcome.time);
+  } else {
+    status = style.warning(status) +
+             fmt::format(" at t = {:.6g} s of {:.6g} s; go on with --resume", outcome.time,
+                         simulation.scenario().scene().time.duration);
+  }
+  if (outcome.equilibrium) {
+    const Index unstable = outcome.equilibrium->negative_pivots;
+    status += unstable == 0
+                  ? ", stable"
+                  : ", " + style.warning(fmt::format("UNSTABLE in {}: a small push would move it on",
+                                                     format_count(unstable, "direction")));
+  }
+  return line("status", status, style);
+}
+
+std::string what_ran(const Simulation& simulation) {
+  if (is_static(simulation)) return "static equilibrium";
+  const auto& time = simulation.scenario().scene().time;
+  return fmt::format("{}, {} of {:g} s", simulation.integrator().name,
+                     format_count(simulation.total_steps(), "step"), time.step);
+}
+
+std::string cost_line(const Simulation& simulation, const RunOutcome& outcome,
+                      const Style& style) {
+  const Counters& c = outcome.counters;
+  std::string text = format_seconds(outcome.wall_seconds);
+  if (!is_static(simulation)) {
+    const double speed = static_cast<double>(c.steps) / outcome.wall_seconds;
+    text += fmt::format(" ({} steps/s)", format_count(std::llround(speed)));
+  }
+  if (c.newton_iterations > 0) text += ", " + format_count(c.newton_iterations, "Newton iteration");
+  if (c.retried_steps > 0) {
+    text += ", " + format_count(c.retried_steps, "step") + " done again in smaller pieces";
+  }
+  return line("cost", text, style);
+}
+
+}  // namespace
+
+std::string run_report(const Simulation& simulation, const Recorder& recorder,
+                       const RunOutcome& outcome, const RunFolder& folder, const Style& style) {
+  std::string text = heading(simulation, style);
+  text += status_line(simulation, outcome, style);
+  text += line("ran", what_ran(simulation), style);
+  text += model_lines(simulation, style);
+  text += cost_line(simulation, outcome, style);
+  text += line("results", (folder.path() / "").string(), style);
+  if (!recorder.probes().empty() && recorder.has_data()) {
+    text += "\n" + probe_table(simulation, recorder, style);
+  }
+  return text;
+}
+
+std::string check_report(const Simulation& simulation, const Style& style) {
+  return heading(simulation, style) + line("status", style.good("scene is valid"), style) +
+         line("runs", what_ran(simulation), style) + model_lines(simulation, style);
+}
+
+}  // namespace der::app

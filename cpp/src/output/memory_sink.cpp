@@ -1,0 +1,24 @@
+#include "der/output/memory_sink.hpp"
+
+namespace der {
+namespace {
+
+void append(std::vector<double>& rows, const Vector& row) {
+  rows.insert(rows.end(), row.data(), row.data() + row.size());
+}
+
+}  // namespace
+
+void MemorySink::write(const Frame& frame) {
+  times.push_back(frame.time);
+  steps.push_back(frame.step);
+  append(positions, frame.positions);
+  append(velocities, frame.velocities);
+  kinetic_energy.push_back(frame.energies.kinetic);
+  stretch_energy.push_back(frame.energies.stretch);
+  bend_energy.push_back(frame.energies.bend);
+  gravity_energy.push_back(frame.energies.gravity);
+  append(probes, frame.probes);
+}
+
+}  // namespace der

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "der/model/model.hpp"
+#include "der/model/state.hpp"
+
+namespace der {
+
+/// A quantity along a rod, sampled where the discrete rod has it: at nodes or at the middles of
+/// edges.
+class RodField {
+ public:
+  explicit RodField(std::vector<double> arc_length) : arc_length_(std::move(arc_length)) {}
+  RodField(const RodField&) = delete;
+  RodField& operator=(const RodField&) = delete;
+  virtual ~RodField() = default;
+
+  /// Rest arc length of each sample [m], ascending; at least one.
+  [[nodiscard]] const std::vector<double>& arc_length() const { return arc_length_; }
+  /// The value of sample number `i`.
+  [[nodiscard]] virtual double sample(std::size_t i, const Model& model,
+                                      const State& state) const = 0;
+  /// False if values between the samples have no meaning.
+  [[nodiscard]] virtual bool continuous() const { return true; }
+
+ private:
+  std::vector<double> arc_length_;
+};
+
+/// The field of a quantity (output/quantities.hpp, but for the energies). Throws Error for a name
+/// that is no such quantity.
+std::unique_ptr<RodField> make_rod_field(const std::string& quantity, const RodLayout& rod,
+                                         const Model& model);
+
+}  // namespace der

@@ -1,0 +1,79 @@
+#include "der/output/summary.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "der/version.hpp"
+
+namespace der {
+namespace {
+
+using Json = nlohmann::ordered_json;  // keys stay in the order in which a person wants to read them
+
+Json probes_json(const Recorder& recorder) {
+  Json probes = Json::object();
+  if (!recorder.has_data()) return probes;
+  for (std::size_t i = 0; i < recorder.probes().size(); ++i) {
+    const Probe& probe = recorder.probes()[i];
+    const ProbeSummary& s = recorder.summaries()[i];
+    probes[probe.name()] = {{"final", s.final}, {"min", s.min},     {"max", s.max},
+                            {"t_min", s.t_min}, {"t_max", s.t_max}, {"unit", probe.unit()}};
+  }
+  return probes;
+}
+
+Json energies_json(const Energies& e) {
+  return {{"kinetic", e.kinetic}, {"stretch", e.stretch}, {"bend", e.bend}, {"gravity", e.gravity}};
+}
+
+}  // namespace
+
+UsedSolver used_solver(const Simulation& simulation) {
+  const bool is_static =
+      simulation.scenario().scene().analysis == scenario::AnalysisKind::Static;
+  const StepperInfo& integrator = simulation.integrator();
+  if (is_static || integrator.implicit) {
+    return {std::string(simulation.linear_solver()), simulation.linear_solver_reason()};
+  }
+  return {"none", std::string(integrator.name) + " is explicit: it solves no equations"};
+}
+
+std::string summary_json(const Simulation& simulation, const Recorder& recorder,
+                         const RunOutcome& outcome) {
+  const scenario::Scene& scene = simulation.scenario().scene();
+  const Model& model = simulation.model();
+  const bool is_static = scene.analysis == scenario::AnalysisKind::Static;
+
+  Json summary;
+  summary["title"] = scene.title;
+  summary["status"] = outcome.status;
+  if (outcome.failed()) {
+    summary["failure"] = {{"message", outcome.message}, {"time", outcome.time}};
+  }
+  summary["analysis"] = is_static ? "static" : "dynamic";
+  summary["model"] = model.name;
+  summary["model_reason"] = model.reason;
+  if (!is_static) summary["integrator"] = simulation.integrator().name;
+  const UsedSolver solver = used_solver(simulation);
+  summary["linear_solver"] = solver.name;
+  summary["linear_solver_reason"] = solver.reason;
+  summary["nodes"] = model.num_nodes;
+  summary["dofs"] = model.num_dofs();
+  summary["free_dofs"] = model.num_free();
+  summary["time"] = outcome.time;
+  summary["steps"] = outcome.counters.steps;
+  summary["newton_iterations"] = outcome.counters.newton_iterations;
+  summary["retried_steps"] = outcome.counters.retried_steps;
+  summary["wall_seconds"] = outcome.wall_seconds;
+  if (outcome.equilibrium) {
+    summary["residual"] = outcome.equilibrium->residual;
+    summary["unstable_directions"] = outcome.equilibrium->negative_pivots;
+  }
+  if (recorder.energies()) summary["energies"] = energies_json(*recorder.energies());
+  summary["probes"] = probes_json(recorder);
+  summary["scene"] = simulation.scenario().source();
+  summary["der_version"] = version;
+  // A title that is not UTF-8 must not cost the results.
+  return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace der

@@ -1,0 +1,126 @@
+// Every linear solver against dense algebra, and against each other on every scene of configs/.
+#include <doctest/doctest.h>
+
+#include <Eigen/Dense>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "der/core/error.hpp"
+#include "der/model/builder.hpp"
+#include "der/simulation.hpp"
+#include "der/solvers/linear_solver.hpp"
+#include "der/solvers/names.hpp"
+
+namespace der::test {
+namespace {
+
+bool built_in(const std::string& name, const Pattern& pattern) {
+  try {
+    make_linear_solver(name, pattern);
+    return true;
+  } catch (const Error& error) {
+    return error.status() != "not_available";
+  }
+}
+
+/// A full band of the given width.
+Pattern band_pattern(Index size, Index half_bandwidth) {
+  Pattern pattern;
+  pattern.size = size;
+  pattern.half_bandwidth = half_bandwidth;
+  pattern.outer.push_back(0);
+  for (Index j = 0; j < size; ++j) {
+    for (Index i = j; i < std::min(size, j + half_bandwidth + 1); ++i) pattern.inner.push_back(i);
+    pattern.outer.push_back(pattern.nonzeros());
+  }
+  return pattern;
+}
+
+Vector values_of(const Eigen::MatrixXd& dense, const Pattern& pattern, const MatrixLayout& layout) {
+  Vector values = Vector::Zero(layout.num_values() + 1);
+  for (Index j = 0; j < pattern.size; ++j) {
+    for (Index k = pattern.outer[static_cast<std::size_t>(j)];
+         k < pattern.outer[static_cast<std::size_t>(j) + 1]; ++k) {
+      const Index i = pattern.inner[static_cast<std::size_t>(k)];
+      values[layout.slot(i, j)] = dense(i, j);
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("every linear solver solves and counts negative eigenvalues as dense algebra does") {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (const Index width : {0, 1, 3, 5, 8}) {
+    const Index size = 40;
+    const Pattern pattern = band_pattern(size, width);
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
+    for (Index j = 0; j < size; ++j) {
+      for (Index i = j; i < std::min(size, j + width + 1); ++i) {
+        dense(i, j) = dense(j, i) = uniform(random);
+      }
+      // Dominant, so that no pivoting is needed, and of either sign.
+      dense(j, j) = (j % 7 == 3 ? -1.0 : 1.0) * (2.0 * static_cast<double>(width) + 2.0);
+    }
+    const Vector b = Vector::Random(size);
+    const Vector expected = dense.fullPivLu().solve(b);
+    const auto negative =
+        (Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense).eigenvalues().array() < 0.0).count();
+    for (const std::string& name : linear_solver_names()) {
+      if (!built_in(name, pattern)) continue;
+      CAPTURE(name);
+      CAPTURE(width);
+      const LinearSolverChoice choice = make_linear_solver(name, pattern);
+      const Inertia inertia =
+          choice.solver->factorize(values_of(dense, pattern, choice.solver->layout()));
+      REQUIRE(inertia.factorised);
+      CHECK(inertia.negative_pivots == negative);
+      Vector x = b;
+      choice.solver->solve(x);
+      CHECK((x - expected).norm() < 1e-12 * expected.norm());
+    }
+  }
+}
+
+TEST_CASE("a vanishing pivot is reported, not divided by") {
+  const Pattern pattern = band_pattern(4, 1);
+  for (const std::string& name : linear_solver_names()) {
+    if (!built_in(name, pattern)) continue;
+    CAPTURE(name);
+    const LinearSolverChoice choice = make_linear_solver(name, pattern);
+    const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(4, 4);
+    CHECK_FALSE(
+        choice.solver->factorize(values_of(zero, pattern, choice.solver->layout())).factorised);
+  }
+}
+
+TEST_CASE("all linear solvers lead to the same motion, to 1e-10, on every scene") {
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(DER_SOURCE_DIR "/configs")) {
+    const Scenario scenario = Scenario::load(entry.path());
+    const Pattern pattern = build_pattern(build_model(scenario.scene()));
+    Vector expected;
+    for (const std::string& name : linear_solver_names()) {
+      if (!built_in(name, pattern)) continue;
+      CAPTURE(entry.path().string());
+      CAPTURE(name);
+      Simulation simulation(scenario.with({{"solver.linear", name}}));
+      if (scenario.scene().analysis == scenario::AnalysisKind::Static) {
+        simulation.equilibrium();
+      } else {
+        for (int i = 0; i < 20; ++i) simulation.step();
+      }
+      const Vector& positions = simulation.state().positions;
+      if (expected.size() == 0) expected = positions;
+      CHECK((positions - expected).lpNorm<Eigen::Infinity>() < 1e-10 * simulation.model().size);
+    }
+    ++scenes;
+  }
+  CHECK(scenes >= 10);
+}
+
+}  // namespace der::test

@@ -11,7 +11,7 @@ volatile std::sig_atomic_t received = 0;
 void remember(int signal) { received = signal; }
 
 void install(int signal, void (*handler)(int)) {
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_handler = handler;
   // The second signal finds the default action. Without SA_RESTART a blocked write would fail.
   action.sa_flags = SA_RESTART | (handler == SIG_DFL ? 0 : static_cast<int>(SA_RESETHAND));

@@ -9,7 +9,8 @@ namespace der::app {
 namespace {
 
 constexpr const char* kDescription =
-    "Runs the scene of a YAML file and writes its results to a folder: summary.json, results.h5 and "
+    "Runs the scene of a YAML file and writes its results to a folder: summary.json, results.h5 "
+    "and "
     "scene.yaml.";
 
 constexpr const char* kFooter =
@@ -25,8 +26,9 @@ constexpr const char* kFooter =
 Override parse_override(const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
-    throw CLI::ValidationError("--set", "'" + text + "' is not of the form path=value, as in "
-                                        "rods.beam.nodes=101");
+    throw CLI::ValidationError("--set", "'" + text +
+                                            "' is not of the form path=value, as in "
+                                            "rods.beam.nodes=101");
   }
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
@@ -42,7 +44,8 @@ std::variant<Options, ExitCode> parse_options(int argc, const char* const* argv)
   std::vector<std::string> settings;
   CLI::App app(kDescription, "der_run");
   app.footer(kFooter);
-  app.set_version_flag("--version", std::string("der_run ") + version, "Print the version and exit");
+  app.set_version_flag("--version", std::string("der_run ") + version,
+                       "Print the version and exit");
   app.add_option("scene", options.scene, "Scene file (YAML)")->option_text("SCENE");
   app.add_option("--out", options.out, "Folder for the results; runs/<name of SCENE> if not given")
       ->option_text("DIR");
@@ -51,7 +54,8 @@ std::variant<Options, ExitCode> parse_options(int argc, const char* const* argv)
       ->allow_extra_args(false);
   auto* check = app.add_flag("--check", options.check, "Only check the scene and its model");
   check->option_text(" ");  // without the list of what it excludes
-  app.add_flag("--resume", options.resume, "Go on with an interrupted run as if it had never stopped")
+  app.add_flag("--resume", options.resume,
+               "Go on with an interrupted run as if it had never stopped")
       ->excludes(check)
       ->option_text(" ");
   app.add_flag("--quiet", options.quiet, "No progress and no summary; errors are still printed");

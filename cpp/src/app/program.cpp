@@ -54,9 +54,9 @@ ExitCode run_scene(const Options& options, Simulation& simulation) {
     return InterruptGuard::signal() == 0;
   };
   const InterruptGuard guard;
-  const RunOutcome outcome =
-      options.resume ? resume_in_folder(folder, simulation, recorder, after_step)
-                     : run_in_folder(folder, simulation, recorder, after_step);
+  const RunOutcome outcome = options.resume
+                                 ? resume_in_folder(folder, simulation, recorder, after_step)
+                                 : run_in_folder(folder, simulation, recorder, after_step);
   progress.clear();
   if (!options.quiet) {
     print(run_report(simulation, recorder, outcome, folder, Style::of(stdout)));

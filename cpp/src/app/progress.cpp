@@ -40,8 +40,8 @@ std::string progress_line(const RunPosition& p, double steps_per_second, int wid
     left = "  " + format_time_left(seconds) + " left";
     speed = "  " + format_count(std::llround(steps_per_second)) + " steps/s";
   }
-  const std::string time = fmt::format("  t = {} of {:g} s", format_time(p.time, p.duration),
-                                       p.duration);
+  const std::string time =
+      fmt::format("  t = {} of {:g} s", format_time(p.time, p.duration), p.duration);
   for (const std::string& tail : {time + speed + left, time + left, left}) {
     const int room = width - static_cast<int>(percent.size() + tail.size()) - 3;
     if (room >= kShortestBar) {

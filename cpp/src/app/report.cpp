@@ -81,7 +81,8 @@ std::string model_lines(const Simulation& simulation, const Style& style) {
               fmt::format("{}, {}, {}, {} free",
                           format_count(static_cast<std::int64_t>(model.rods.size()), "rod"),
                           format_count(model.num_nodes, "node"),
-                          format_count(model.num_dofs(), "degree") + " of freedom", model.num_free()),
+                          format_count(model.num_dofs(), "degree") + " of freedom",
+                          model.num_free()),
               style) +
          line("solver", fmt::format("{}: {}", solver.name, solver.reason), style);
 }
@@ -100,10 +101,11 @@ std::string status_line(const Simulation& simulation, const RunOutcome& outcome,
   }
   if (outcome.equilibrium) {
     const Index unstable = outcome.equilibrium->negative_pivots;
-    status += unstable == 0
-                  ? ", stable"
-                  : ", " + style.warning(fmt::format("UNSTABLE in {}: a small push would move it on",
-                                                     format_count(unstable, "direction")));
+    status +=
+        unstable == 0
+            ? ", stable"
+            : ", " + style.warning(fmt::format("UNSTABLE in {}: a small push would move it on",
+                                               format_count(unstable, "direction")));
   }
   return line("status", status, style);
 }
@@ -115,8 +117,7 @@ std::string what_ran(const Simulation& simulation) {
                      format_count(simulation.total_steps(), "step"), time.step);
 }
 
-std::string cost_line(const Simulation& simulation, const RunOutcome& outcome,
-                      const Style& style) {
+std::string cost_line(const Simulation& simulation, const RunOutcome& outcome, const Style& style) {
   const Counters& c = outcome.counters;
   std::string text = format_seconds(outcome.wall_seconds);
   if (!is_static(simulation)) {

@@ -128,7 +128,8 @@ CheckpointStore CheckpointStore::open(hid_t file) {
 void CheckpointStore::write(const Checkpoint& checkpoint) {
   written_ = published_ == 0 ? 1 : 0;
   Slot& slot = slots_[static_cast<std::size_t>(written_)];
-  // Taken apart so that a new member of State does not compile until it is saved here and read below.
+  // Taken apart so that a new member of State does not compile until it is saved here and read
+  // below.
   const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history] =
       checkpoint.state;
   hdf5::write_all(slot.time.id(), &time);

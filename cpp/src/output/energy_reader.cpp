@@ -75,9 +75,7 @@ std::vector<Index> rod_dofs(const RodLayout& rod, const Model& model) {
 /// The elements all of whose degrees of freedom are in `dofs`.
 ElementLists elements_on(std::vector<Index> dofs, const ElementLists& all) {
   std::sort(dofs.begin(), dofs.end());
-  const auto is_here = [&](Index dof) {
-    return std::binary_search(dofs.begin(), dofs.end(), dof);
-  };
+  const auto is_here = [&](Index dof) { return std::binary_search(dofs.begin(), dofs.end(), dof); };
   ElementLists result;
   for_each_list(all, [&](const auto& list) {
     auto& kept = std::get<std::decay_t<decltype(list)>>(result);

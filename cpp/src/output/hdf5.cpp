@@ -27,9 +27,7 @@ herr_t keep_cause(unsigned depth, const H5E_error2_t* entry, void* text) {
   throw IoError("cannot " + action + (cause.empty() ? "" : ": " + cause));
 }
 
-Handle property_list(hid_t kind) {
-  return {H5Pcreate(kind), H5Pclose, "create a property list"};
-}
+Handle property_list(hid_t kind) { return {H5Pcreate(kind), H5Pclose, "create a property list"}; }
 
 Handle text_type(std::size_t size) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "create a text type");
@@ -155,7 +153,8 @@ void write_attribute(hid_t object, const std::string& name, std::int64_t value) 
 std::string read_string_attribute(hid_t object, const std::string& name) {
   const Handle attribute = open_attribute(object, name);
   char* text = nullptr;
-  check(H5Aread(attribute.id(), text_type(H5T_VARIABLE).id(), &text), "read attribute '" + name + "'");
+  check(H5Aread(attribute.id(), text_type(H5T_VARIABLE).id(), &text),
+        "read attribute '" + name + "'");
   std::string result = text == nullptr ? "" : text;
   if (text != nullptr) H5free_memory(text);  // HDF5 has allocated it
   return result;
@@ -186,13 +185,12 @@ std::string read_text(hid_t parent, const std::string& name) {
 
 Handle create_fixed(hid_t parent, const std::string& name, hid_t type,
                     const std::vector<hsize_t>& dimensions) {
-  const Handle space =
-      dimensions.empty() ? scalar_space() : simple_space(dimensions, nullptr);
+  const Handle space = dimensions.empty() ? scalar_space() : simple_space(dimensions, nullptr);
   const Handle creation = property_list(H5P_DATASET_CREATE);
   check(H5Pset_alloc_time(creation.id(), H5D_ALLOC_TIME_EARLY), "lay out '" + name + "'");
-  return {H5Dcreate2(parent, name.c_str(), type, space.id(), H5P_DEFAULT, creation.id(),
-                     H5P_DEFAULT),
-          H5Dclose, "create dataset '" + name + "'"};
+  return {
+      H5Dcreate2(parent, name.c_str(), type, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
+      H5Dclose, "create dataset '" + name + "'"};
 }
 
 Handle open_dataset(hid_t parent, const std::string& name) {

@@ -68,8 +68,8 @@ inline hid_t native_type<std::int64_t>() {
   return H5T_NATIVE_INT64;
 }
 
-/// A new file in the oldest format that serves, which every reader knows and which carries no "still
-/// open" mark that would lock a killed run's file.
+/// A new file in the oldest format that serves, which every reader knows and which carries no
+/// "still open" mark that would lock a killed run's file.
 Handle create_file(const std::filesystem::path& path);
 Handle open_file(const std::filesystem::path& path, unsigned flags);
 Handle create_group(hid_t parent, const std::string& name);

@@ -23,8 +23,8 @@ using Weights = std::vector<SampleWeight>;
 /// Linear between the two samples nearest to `s`, and beyond the outermost ones.
 Weights linear_weights(const std::vector<double>& arc, double s) {
   if (arc.size() == 1) return {{0, 1.0}};
-  const auto above = static_cast<std::size_t>(
-      std::upper_bound(arc.begin(), arc.end(), s) - arc.begin());
+  const auto above =
+      static_cast<std::size_t>(std::upper_bound(arc.begin(), arc.end(), s) - arc.begin());
   const std::size_t right = std::clamp<std::size_t>(above, 1, arc.size() - 1);
   const double share = (s - arc[right - 1]) / (arc[right] - arc[right - 1]);
   return {{right - 1, 1.0 - share}, {right, share}};
@@ -99,8 +99,8 @@ class ExtremeReader : public ProbeReader {
 
   double value(const Model& model, const State& state) override {
     evaluate(model, state);
-    const auto best = static_cast<std::size_t>(
-        std::max_element(values_.begin(), values_.end()) - values_.begin());
+    const auto best = static_cast<std::size_t>(std::max_element(values_.begin(), values_.end()) -
+                                               values_.begin());
     const bool inside = best > 0 && best + 1 < values_.size();
     if (!inside || !field_->continuous()) return sign_ * values_[best];
     return sign_ * parabola_extreme(&arc_length_[best - 1], &values_[best - 1]);
@@ -153,8 +153,8 @@ std::unique_ptr<ProbeReader> make_point_reader(const scenario::Probe& probe, Qua
   if (probe.quantity == "speed") return std::make_unique<SpeedReader>(node_weights(rod, s), rod);
   auto field = make_rod_field(probe.quantity, rod, model);
   const bool at_nodes = kind == QuantityKind::Position || kind == QuantityKind::Velocity;
-  Weights weights = at_nodes ? sample_weights(node_weights(rod, s))
-                             : linear_weights(field->arc_length(), s);
+  Weights weights =
+      at_nodes ? sample_weights(node_weights(rod, s)) : linear_weights(field->arc_length(), s);
   return std::make_unique<PointReader>(std::move(field), std::move(weights));
 }
 
@@ -172,8 +172,8 @@ std::unique_ptr<ProbeReader> make_reader(const scenario::Probe& probe, QuantityK
 Probe::Probe(const scenario::Probe& probe, const Model& model) : name_(probe.name) {
   const Quantity* quantity = find_quantity(probe.quantity);
   if (quantity == nullptr) {
-    throw Error("model_error", "probe '" + probe.name + "': there is no quantity '" +
-                                   probe.quantity + "'");
+    throw Error("model_error",
+                "probe '" + probe.name + "': there is no quantity '" + probe.quantity + "'");
   }
   unit_ = quantity->unit;
   reader_ = make_reader(probe, quantity->kind, model);

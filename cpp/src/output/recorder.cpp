@@ -70,8 +70,7 @@ std::string Recorder::read_probes(const Simulation& simulation) {
 }
 
 void Recorder::hand_out(const State& state) {
-  const Frame frame{state.time,       state.step, state.positions,
-                    state.velocities, *energies_, values_};
+  const Frame frame{state.time, state.step, state.positions, state.velocities, *energies_, values_};
   for (FrameSink* sink : sinks_) sink->write(frame);
   saved_time_ = state.time;
 }

@@ -22,7 +22,7 @@ Vec2 edge_vector(const EdgeDofs& dofs, const Vector& positions) {
 /// A component of position or velocity at every node.
 class ComponentField : public RodField {
  public:
-  ComponentField(Vector State::*values, int component, const RodLayout& rod, const Model& model)
+  ComponentField(Vector State::* values, int component, const RodLayout& rod, const Model& model)
       : RodField(rod.arc_length), values_(values) {
     for (const Index node : rod.nodes) dofs_.push_back(model.dof(node, component));
   }
@@ -32,7 +32,7 @@ class ComponentField : public RodField {
   }
 
  private:
-  Vector State::*values_;
+  Vector State::* values_;
   std::vector<Index> dofs_;
 };
 
@@ -98,8 +98,8 @@ std::optional<EndClamp> find_clamp(const EdgeDofs& edge, double side, const Mode
   return std::nullopt;
 }
 
-/// Where a rod bends: a cell of length `length` around a node, with the edge before and behind it; at
-/// a clamped end one of the two is the clamp's tangent.
+/// Where a rod bends: a cell of length `length` around a node, with the edge before and behind it;
+/// at a clamped end one of the two is the clamp's tangent.
 struct BendCell {
   EdgeDofs before{};
   EdgeDofs after{};
@@ -118,8 +118,8 @@ Vec2 tangent(const EndClamp& clamp, const Model& model, double time) {
 double turning_angle(const BendCell& cell, const Model& model, const State& state) {
   const Vec2 before = cell.start ? tangent(*cell.start, model, state.time)
                                  : edge_vector(cell.before, state.positions);
-  const Vec2 after = cell.end ? tangent(*cell.end, model, state.time)
-                              : edge_vector(cell.after, state.positions);
+  const Vec2 after =
+      cell.end ? tangent(*cell.end, model, state.time) : edge_vector(cell.after, state.positions);
   return angle_between(before, after);
 }
 
@@ -149,8 +149,7 @@ class BendField : public RodField {
  public:
   enum class What { TurningAngle, Curvature, Moment };
 
-  BendField(What what, const RodLayout& rod,
-            std::vector<std::pair<double, BendCell>> cells)
+  BendField(What what, const RodLayout& rod, std::vector<std::pair<double, BendCell>> cells)
       : RodField(arc_lengths(cells)), what_(what), EI_(rod.EI) {
     for (auto& [arc_length, cell] : cells) cells_.push_back(cell);
   }
@@ -198,7 +197,7 @@ std::unique_ptr<RodField> make_bend_field(const std::string& quantity, const Rod
 
 std::unique_ptr<RodField> make_rod_field(const std::string& quantity, const RodLayout& rod,
                                          const Model& model) {
-  const auto component = [&](Vector State::*values, int number) {
+  const auto component = [&](Vector State::* values, int number) {
     return std::make_unique<ComponentField>(values, number, rod, model);
   };
   if (quantity == "x") return component(&State::positions, 0);

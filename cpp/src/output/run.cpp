@@ -18,8 +18,7 @@ std::string advance(Simulation& simulation, Recorder& recorder, const StepCallba
 }  // namespace
 
 RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& after_step) {
-  const bool is_static =
-      simulation.scenario().scene().analysis == scenario::AnalysisKind::Static;
+  const bool is_static = simulation.scenario().scene().analysis == scenario::AnalysisKind::Static;
   RunOutcome outcome;
   const auto fail = [&](const Error& error) {
     outcome.status = error.status();

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "output/checkpoint_store.hpp"
 #include "der/output/io_error.hpp"
 #include "der/output/pacer.hpp"
 #include "der/output/recorder.hpp"
 #include "der/version.hpp"
+#include "output/checkpoint_store.hpp"
 #include "output/hdf5.hpp"
 
 namespace der {
@@ -92,8 +92,7 @@ void write_head(hid_t file, const Simulation& simulation) {
 template <class T>
 void write_list(hid_t group, const std::string& name, const std::vector<T>& values,
                 const std::string& unit) {
-  const Handle dataset =
-      hdf5::create_fixed(group, name, hdf5::native_type<T>(), {values.size()});
+  const Handle dataset = hdf5::create_fixed(group, name, hdf5::native_type<T>(), {values.size()});
   hdf5::write_all(dataset.id(), values.data());
   hdf5::write_attribute(dataset.id(), "unit", unit);
 }
@@ -146,7 +145,7 @@ class RunFile::Writer {
   BufferedColumn<std::int64_t> step_;
   std::vector<BufferedColumn<double>> energies_, probes_;
   CheckpointStore checkpoints_;
-  hsize_t gathered_ = 0;            // frames not written yet
+  hsize_t gathered_ = 0;  // frames not written yet
   std::size_t bytes_per_frame_ = 0;
   Pacer pacer_{kFlushInterval};
   std::chrono::steady_clock::time_point last_checkpoint_;
@@ -177,8 +176,7 @@ void RunFile::Writer::create_columns(const Simulation& simulation, const Recorde
   };
   const hsize_t scalar_chunk = chunk_rows(sizeof(double), total);
   const auto create_scalar = [&](hid_t group, const std::string& name, const std::string& unit) {
-    return BufferedColumn<double>(
-        create(group, name, H5T_NATIVE_DOUBLE, {}, unit, scalar_chunk));
+    return BufferedColumn<double>(create(group, name, H5T_NATIVE_DOUBLE, {}, unit, scalar_chunk));
   };
   const std::vector<hsize_t> row{static_cast<hsize_t>(simulation.model().num_nodes),
                                  static_cast<hsize_t>(simulation.model().dimension)};
@@ -187,9 +185,10 @@ void RunFile::Writer::create_columns(const Simulation& simulation, const Recorde
                                          chunk_rows(sizeof(double) * row[0] * row[1], total)));
   };
 
-  // One chunk for all times: its place in the index is written with the first frame and never again.
-  time_ = BufferedColumn<double>(create(file_.id(), "time", H5T_NATIVE_DOUBLE, {}, "s",
-                                        std::min(total, kLargestTimeChunk)));
+  // One chunk for all times: its place in the index is written with the first frame and never
+  // again.
+  time_ = BufferedColumn<double>(
+      create(file_.id(), "time", H5T_NATIVE_DOUBLE, {}, "s", std::min(total, kLargestTimeChunk)));
   step_ = BufferedColumn<std::int64_t>(
       create(file_.id(), "step", H5T_NATIVE_INT64, {}, "", scalar_chunk));
   positions_ = create_vectors("positions", "m");

@@ -119,8 +119,8 @@ RunFileHead check_resumable(const RunFolder& folder, const Scenario& scenario) {
                       ", which need not give the same numbers; run it again without --resume");
   }
   if (head.status != "running" && head.status != "stopped") {
-    throw ResumeError("the run ended as '" + head.status + "' at t = " +
-                      std::to_string(head.time) + " s and would do so again; change the scene and "
+    throw ResumeError("the run ended as '" + head.status + "' at t = " + std::to_string(head.time) +
+                      " s and would do so again; change the scene and "
                       "run it without --resume");
   }
   if (head.step < 0) {

@@ -28,8 +28,7 @@ Json energies_json(const Energies& e) {
 }  // namespace
 
 UsedSolver used_solver(const Simulation& simulation) {
-  const bool is_static =
-      simulation.scenario().scene().analysis == scenario::AnalysisKind::Static;
+  const bool is_static = simulation.scenario().scene().analysis == scenario::AnalysisKind::Static;
   const StepperInfo& integrator = simulation.integrator();
   if (is_static || integrator.implicit) {
     return {std::string(simulation.linear_solver()), simulation.linear_solver_reason()};

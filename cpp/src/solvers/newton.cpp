@@ -68,7 +68,7 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
       return report;
     }
     ++report.iterations;
-    limit_turn();
+    const double turn = limit_turn();
     double step = direction_.lpNorm<Eigen::Infinity>();
     bool have_system = false;
     if (mode == Mode::FullSteps) {
@@ -84,9 +84,11 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
     }
     measure(report);
 
-    // The next step is about as much smaller than this one as the residual has become.
-    const double next_step =
-        residual_before > 0.0 ? step * std::min(1.0, report.residual / residual_before) : 0.0;
+    // The next step is about as much smaller than this one as the residual has become; but the
+    // residual of stiff stretching hides that of soft bending, so also no less than what the
+    // rotation of the edges, which a Newton step leaves out, makes of this step.
+    const double fall = residual_before > 0.0 ? report.residual / residual_before : 0.0;
+    const double next_step = step * std::min(1.0, std::max(fall, turn));
     const double allowed = std::max(options_.residual_tolerance * report.force_scale, noise_);
     if (report.residual <= allowed && next_step <= options_.step_tolerance * model_.size) {
       report.converged = true;
@@ -188,8 +190,8 @@ double Newton::slope() const {
 }
 
 /// Shortens the direction so that no edge changes by more than kLargestTurn of its rest length: an
-/// angle for motion across the edge. Rigid translation does not count.
-void Newton::limit_turn() {
+/// angle for motion across the edge. Rigid translation does not count. Returns the change left.
+double Newton::limit_turn() {
   const auto component = [&](Index dof) {
     const Index free = model_.free_index[at(dof)];
     return free < 0 ? 0.0 : direction_[free];
@@ -203,7 +205,10 @@ void Newton::limit_turn() {
     const double length = edges.constants[e].rest_length;
     largest = std::max(largest, (dx * dx + dy * dy) / (length * length));
   }
-  if (largest > kLargestTurn * kLargestTurn) direction_ *= kLargestTurn / std::sqrt(largest);
+  const double turn = std::sqrt(largest);
+  if (turn <= kLargestTurn) return turn;
+  direction_ *= kLargestTurn / turn;
+  return kLargestTurn;
 }
 
 void Newton::measure(NewtonReport& report) const {

@@ -16,12 +16,12 @@ struct RunPosition {
   double duration = 0.0;  ///< [s]
 };
 
-/// One line of at most `width` columns: percentage, bar, time, speed, time left; what does not fit is
-/// left out, the least important first. `steps_per_second` 0: not known yet.
+/// One line of at most `width` columns: percentage, bar, time, speed, time left; what does not fit
+/// is left out, the least important first. `steps_per_second` 0: not known yet.
 std::string progress_line(const RunPosition& position, double steps_per_second, int width);
 
-/// A line on stderr that shows how far a run is: only on a terminal, at most ten times a second, and
-/// not at all for runs that end at once. Costs a decrement a step in between.
+/// A line on stderr that shows how far a run is: only on a terminal, at most ten times a second,
+/// and not at all for runs that end at once. Costs a decrement a step in between.
 class Progress {
  public:
   /// `enabled` false: never shows anything.

@@ -10,8 +10,8 @@ bool is_terminal(std::FILE* stream);
 /// Columns of the terminal behind a stream; 80 if that is not known.
 int terminal_width(std::FILE* stream);
 
-/// Colours for a stream: on a terminal only, and not where NO_COLOR is set (https://no-color.org) or
-/// TERM is `dumb`.
+/// Colours for a stream: on a terminal only, and not where NO_COLOR is set (https://no-color.org)
+/// or TERM is `dumb`.
 class Style {
  public:
   static Style of(std::FILE* stream);

@@ -13,12 +13,12 @@ class Simulation;
 /// One saved instant of a run. It refers to vectors that live on in the simulation: a sink copies
 /// what it keeps.
 struct Frame {
-  double time = 0.0;        ///< [s]
-  std::int64_t step = 0;    ///< steps done
-  const Vector& positions;  ///< [m], one entry a degree of freedom
-  const Vector& velocities; ///< [m/s]
-  Energies energies;        ///< [J]
-  const Vector& probes;     ///< one value a probe, in the order of the scene
+  double time = 0.0;         ///< [s]
+  std::int64_t step = 0;     ///< steps done
+  const Vector& positions;   ///< [m], one entry a degree of freedom
+  const Vector& velocities;  ///< [m/s]
+  Energies energies;         ///< [J]
+  const Vector& probes;      ///< one value a probe, in the order of the scene
 };
 
 /// Takes the saved instants of a run, one after the other: into memory, into a file, ...
@@ -30,8 +30,8 @@ class FrameSink {
   virtual ~FrameSink() = default;
 
   virtual void write(const Frame& frame) = 0;
-  /// Called after every step, saved or not (behind `write`): for work now and then, like writing out
-  /// what has gathered. Must cost next to nothing when there is nothing to do.
+  /// Called after every step, saved or not (behind `write`): for work now and then, like writing
+  /// out what has gathered. Must cost next to nothing when there is nothing to do.
   virtual void stepped(const Simulation& /*simulation*/, const Recorder& /*recorder*/) {}
 };
 

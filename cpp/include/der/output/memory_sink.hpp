@@ -15,15 +15,15 @@ class MemorySink : public FrameSink {
 
   [[nodiscard]] std::size_t num_frames() const { return times.size(); }
 
-  std::vector<double> times;            ///< [s]
+  std::vector<double> times;  ///< [s]
   std::vector<std::int64_t> steps;
-  std::vector<double> positions;        ///< frames x (nodes * dimension) [m]
-  std::vector<double> velocities;       ///< frames x (nodes * dimension) [m/s]
-  std::vector<double> kinetic_energy;   ///< [J]
-  std::vector<double> stretch_energy;   ///< [J]
-  std::vector<double> bend_energy;      ///< [J]
-  std::vector<double> gravity_energy;   ///< [J]
-  std::vector<double> probes;           ///< frames x probes, in the order of the scene
+  std::vector<double> positions;       ///< frames x (nodes * dimension) [m]
+  std::vector<double> velocities;      ///< frames x (nodes * dimension) [m/s]
+  std::vector<double> kinetic_energy;  ///< [J]
+  std::vector<double> stretch_energy;  ///< [J]
+  std::vector<double> bend_energy;     ///< [J]
+  std::vector<double> gravity_energy;  ///< [J]
+  std::vector<double> probes;          ///< frames x probes, in the order of the scene
 };
 
 }  // namespace der

@@ -23,13 +23,16 @@ class ProbeReader {
 
 /// A scalar read off a state, as the scene's `output.probes` name it, with order 2 in the element
 /// length or better wherever the solution is smooth:
-/// - positions and velocities between nodes by the cubic through the four nearest nodes (the weights
+/// - positions and velocities between nodes by the cubic through the four nearest nodes (the
+/// weights
 ///   that also spread a point force, see location.hpp);
-/// - strain and tension, which belong to the middles of the edges, linearly between those and beyond
+/// - strain and tension, which belong to the middles of the edges, linearly between those and
+/// beyond
 ///   the outermost ones;
 /// - turning angle, curvature and moment at the nodes; at a clamped end they are those of its half
 ///   cell, so that the moment is the clamp's reaction;
-/// - an extreme over a rod is that of the parabola through the three samples around the extreme one,
+/// - an extreme over a rod is that of the parabola through the three samples around the extreme
+/// one,
 ///   except for the turning angle, a sum over a cell, which is not interpolated;
 /// - the energies of a rod count a node that rods share in each of them.
 class Probe {

@@ -9,10 +9,10 @@
 
 namespace der {
 
-/// The HDF5 file of a run (layout: docs/results.md), written while the run goes on. Frames gather in
-/// memory and are written out together, at most about 50 ms after they came, in an order in which a
-/// process killed at any moment leaves a readable file: data first, then the length of /time, then
-/// the mark that names the valid checkpoint. Throws IoError.
+/// The HDF5 file of a run (layout: docs/results.md), written while the run goes on. Frames gather
+/// in memory and are written out together, at most about 50 ms after they came, in an order in
+/// which a process killed at any moment leaves a readable file: data first, then the length of
+/// /time, then the mark that names the valid checkpoint. Throws IoError.
 class RunFile : public FrameSink {
  public:
   /// Starts a new file, replacing one that is there.
@@ -39,8 +39,8 @@ class RunFile : public FrameSink {
 /// What the head of a run file says.
 struct RunFileHead {
   std::string der_version;
-  std::string status;  ///< "running" while it is written, and after a kill
-  std::string scene;   ///< YAML text of the scene as run
+  std::string status;     ///< "running" while it is written, and after a kill
+  std::string scene;      ///< YAML text of the scene as run
   std::int64_t step = 0;  ///< of the checkpoint; -1: there is none
   double time = 0.0;      ///< [s] of the checkpoint
 };

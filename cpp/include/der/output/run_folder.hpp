@@ -44,8 +44,8 @@ RunFileHead check_resumable(const RunFolder& folder, const Scenario& scenario);
 /// Runs a simulation, as `run` does, with its results in a folder that is made ready for it.
 RunOutcome run_in_folder(const RunFolder& folder, Simulation& simulation, Recorder& recorder,
                          const StepCallback& after_step = {});
-/// Goes on with an interrupted run; what comes out is the same, bit for bit, as if it had never been
-/// interrupted. Call `check_resumable` first.
+/// Goes on with an interrupted run; what comes out is the same, bit for bit, as if it had never
+/// been interrupted. Call `check_resumable` first.
 RunOutcome resume_in_folder(const RunFolder& folder, Simulation& simulation, Recorder& recorder,
                             const StepCallback& after_step = {});
 

@@ -69,7 +69,7 @@ class Newton {
   void evaluate_system(const Stage& stage, const Vector& positions);
   void add_stage_forces(const Stage& stage, const Vector& positions);
   bool find_direction(NewtonReport& report);
-  void limit_turn();
+  double limit_turn();
   void move(const Vector& start, double factor, Vector& positions) const;
   double line_search(const Stage& stage, Vector& positions);
   [[nodiscard]] double slope() const;

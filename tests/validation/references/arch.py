@@ -43,7 +43,6 @@ class Snap:
     """A symmetric snap-through problem (lengths and forces as above)."""
 
     stretching: float
-    rest_length: float
     curvature: float  # natural, of the arc; negative turns the rod downward
     span: float
     ends: Ends
@@ -146,7 +145,7 @@ def circular_arch(rise: float, stretching: float, degree: int = 40) -> Snap:
     start.values[:, 0] = radius * (np.sin(slope) - np.sin(theta))
     start.values[:, 1] = radius * (np.cos(theta) - np.cos(slope))
     start.values[:, 2] = theta
-    return Snap(stretching, length, -1.0 / radius, 1.0, "pinned", start, rise)
+    return Snap(stretching, -1.0 / radius, 1.0, "pinned", start, rise)
 
 
 def buckled_beam(shortening: float, stretching: float, ends: Ends, degree: int = 40) -> Snap:
@@ -168,7 +167,7 @@ def buckled_beam(shortening: float, stretching: float, ends: Ends, degree: int =
         flat.values[:, 1] = 0.5 * amplitude * (1.0 - np.cos(waves))
         flat.values[:, 2] = amplitude * np.pi * np.sin(waves)
         flat.values[:, 3] = 2.0 * amplitude * np.pi**2 * np.cos(waves)
-    guess = Snap(stretching, 1.0, 0.0, 1.0 - shortening, ends, flat, 0.0)
+    guess = Snap(stretching, 0.0, 1.0 - shortening, ends, flat, 0.0)
     curve = guess.problem()
 
     def unloaded(left: Numbers, right: Numbers, p: Numbers) -> Numbers:

@@ -1,0 +1,150 @@
+"""Cantilevers: tip load against the elastica, self weight, roll-up, natural curvature, moments.
+
+References: `references/elastica.py` (elliptic integrals) and `references/extensible_beam.py`.
+"""
+
+import numpy as np
+import pytest
+
+import der
+
+SIZES = [10, 20, 40, 80]
+
+
+def tip(scenario):
+    return der.run(scenario).positions[-1, -1]
+
+
+@pytest.mark.parametrize(
+    "load, error_at_10", [(1, 2e-3), (10, 6e-3)]
+)
+def test_tip_load_converges_to_the_elastica_at_second_order(
+    scene, reference, fitted_order, load, error_at_10
+):
+    # EA L^2 / EI = 1e8: the stretch of 1e-8 L is far below the finest mesh's error of 2e-5 L.
+    exact = [reference("elastica", f"tip_load.{load}.{c}") for c in "xy"]
+    errors = []
+    for n in SIZES:
+        x, y = tip(
+            scene("cantilever").with_(
+                **{
+                    "rods.arm.nodes": n + 1,
+                    "rods.arm.cross_section.stiffness.EA": 1e8,
+                    "loads.0.point_force.force": [0, -load],
+                }
+            )
+        )
+        errors.append(np.hypot(x - exact[0], y + exact[1]))
+    assert errors[0] < error_at_10
+    assert fitted_order([1 / n for n in SIZES], errors) > 1.9
+
+
+@pytest.mark.parametrize("load", [1, 10])
+def test_tip_load_with_stretch_converges_at_second_order(scene, reference, fitted_order, load):
+    name = f"cantilever.slenderness100.load{load}"
+    exact = [reference("extensible_beam", f"{name}.{c}") for c in "xy"]
+    errors = []
+    for n in SIZES:
+        x, y = tip(
+            scene("cantilever").with_(
+                **{
+                    "rods.arm.nodes": n + 1,
+                    "rods.arm.cross_section.stiffness.EA": 1e2,
+                    "loads.0.point_force.force": [0, -load],
+                }
+            )
+        )
+        errors.append(np.hypot(x - exact[0], abs(y) - abs(exact[1])))
+    assert fitted_order([1 / n for n in SIZES], errors) > 1.9
+
+
+@pytest.mark.parametrize("curvature", ["angle", "tangent"])
+def test_both_curvature_measures_converge(scene, reference, fitted_order, curvature):
+    exact = [reference("elastica", f"tip_load.2.{c}") for c in "xy"]
+    errors = []
+    for n in SIZES:
+        x, y = tip(
+            scene("cantilever").with_(
+                **{
+                    "rods.arm.nodes": n + 1,
+                    "rods.arm.curvature": curvature,
+                    "rods.arm.cross_section.stiffness.EA": 1e8,
+                    "loads.0.point_force.force": [0, -2],
+                }
+            )
+        )
+        errors.append(np.hypot(x - exact[0], y + exact[1]))
+    assert fitted_order([1 / n for n in SIZES], errors) > 1.9
+
+
+@pytest.mark.parametrize("weight", [1, 10, 100])
+def test_self_weight_as_a_distributed_force(scene, reference, fitted_order, weight):
+    exact = [reference("elastica", f"self_weight.{weight}.{c}") for c in "xy"]
+    errors = []
+    for n in SIZES[1:]:
+        heavy = scene("cantilever").to_dict()
+        heavy["rods"][0]["nodes"] = n + 1
+        heavy["rods"][0]["cross_section"]["stiffness"]["EA"] = 1e9
+        heavy["loads"] = [{"distributed_force": {"rod": "arm", "force": [0, -weight]}}]
+        x, y = tip(der.Scenario.from_dict(heavy))
+        errors.append(np.hypot(x - exact[0], abs(y) - abs(exact[1])))
+    assert fitted_order([1 / n for n in SIZES[1:]], errors) > 1.9
+
+
+def test_a_force_between_nodes_does_not_jump_to_one(scene, fitted_order):
+    """A load at 0.7 L: the tip of the free part beyond it must converge at second order though
+    the load's place in its edge changes from mesh to mesh (0.1, 0.2, 0.4, 0.8, ...). The reference
+    is a mesh with a node at the load, Richardson-extrapolated."""
+
+    def tip_y(n):
+        return tip(
+            scene("cantilever").with_(
+                **{
+                    "rods.arm.nodes": n + 1,
+                    "loads.0.point_force.at": 0.7,
+                    "loads.0.point_force.force": [0, -4],
+                }
+            )
+        )[1]
+
+    exact = tip_y(400) + (tip_y(400) - tip_y(200)) / 3
+    counts = [13, 23, 43, 83]
+    errors = [tip_y(n) - exact for n in counts]
+    assert fitted_order([1 / n for n in counts], errors) > 1.9
+
+
+def test_end_moment_rolls_the_rod_into_a_closed_circle(scene):
+    """M = 2 pi EI / L: a regular polygon, which closes at every mesh; the residual tolerance of
+    1e-9 times M / l leaves the tip open by about 1e-7."""
+    for nodes in (11, 51):
+        result = der.run(scene("roll_up").with_(**{"rods.strip.nodes": nodes}))
+        assert np.abs(result.positions[-1, -1]).max() < 1e-6
+        edges = np.diff(result.positions[-1], axis=0)
+        angles = np.unwrap(np.arctan2(edges[:, 1], edges[:, 0]))
+        assert np.diff(angles) == pytest.approx(2 * np.pi / (nodes - 1), rel=1e-6)
+
+
+def test_natural_curvature_relaxes_to_its_circle(scene):
+    result = der.run(scene("natural_curvature"))
+    positions = result.positions[-1]
+    assert np.abs(positions[-1] - positions[0]).max() < 1e-6
+    assert result.energies["bend"][-1] + result.energies["stretch"][-1] < 1e-9
+
+
+def test_a_prescribed_rotation_of_a_clamp_turns_the_free_rod(scene):
+    """Slowly turned by 90 degrees without load, the rod follows rigidly."""
+    turned = scene("cantilever").to_dict()
+    del turned["analysis"]
+    turned["loads"] = [{"damping": {"coefficient": 1.0}}]
+    turned["supports"][0]["prescribe"] = {
+        "angle": {"times": [0, 5], "values": [0, np.pi / 2]}
+    }
+    turned["time"] = {"duration": 40, "step": 0.1, "integrator": "implicit_euler"}
+    result = der.run(der.Scenario.from_dict(turned))
+    assert result.positions[-1, -1] == pytest.approx([0, 1], abs=1e-6)
+
+
+def test_bending_moment_at_the_clamp_balances_the_load(scene):
+    result = der.run(scene("cantilever"))
+    arm = result.positions[-1, -1, 0]
+    assert result.probes["root_moment"][-1] == pytest.approx(-arm, rel=1e-9)

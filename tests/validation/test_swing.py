@@ -1,0 +1,46 @@
+"""A soft clamped rod that swings down under its weight.
+
+Reference: `references/swing.py`, cubic finite elements with high-order collocation in time.
+"""
+
+import numpy as np
+import pytest
+
+import der
+
+SWING = {
+    "title": "Swing",
+    "rods": [
+        {
+            "name": "arm",
+            "nodes": 51,
+            "from": [0, 0],
+            "to": [1, 0],
+            "cross_section": {"circle": {"radius": 0.01}},
+            "material": {"youngs_modulus": 1e7, "density": 1000},
+        }
+    ],
+    "supports": [{"rod": "arm", "at": "start", "clamp": True}],
+    "loads": [{"gravity": [0, -9.81]}],
+    "time": {"duration": 1.0, "step": 5e-4, "integrator": "implicit_midpoint"},
+    "output": {"every": 0.01},
+}
+
+
+def tip_error(reference, **changes):
+    """Largest distance of the tip from the reference over the second [m]."""
+    result = der.run(der.Scenario.from_dict(SWING).with_(**changes))
+    exact = np.stack([reference("swing", f"soft.tip.{c}") for c in "xy"], axis=1)
+    return np.linalg.norm(result.positions[:, -1] - exact, axis=1).max()
+
+
+def test_converges_to_the_continuum_at_second_order_in_space(reference, fitted_order):
+    nodes = [21, 41, 81]
+    errors = [tip_error(reference, **{"rods.arm.nodes": n}) for n in nodes]
+    assert fitted_order([1 / (n - 1) for n in nodes], errors) > 1.9
+
+
+@pytest.mark.parametrize("integrator", ["implicit_midpoint", "generalized_alpha", "tr_bdf2", "bdf2"])
+def test_second_order_steppers_reach_the_continuum(reference, integrator):
+    """At 51 nodes the error in space is 2.5e-3 m, that in time far smaller."""
+    assert tip_error(reference, **{"time.integrator": integrator}) < 3e-3

@@ -36,7 +36,8 @@ std::string describe_dof(const Model& model, Index dof) {
   for (const RodLayout& rod : model.rods) {
     const auto found = std::find(rod.nodes.begin(), rod.nodes.end(), node);
     if (found != rod.nodes.end()) {
-      return fmt::format("node {} of rod '{}' ({})", found - rod.nodes.begin(), rod.name, component);
+      return fmt::format("node {} of rod '{}' ({})", found - rod.nodes.begin(), rod.name,
+                         component);
     }
   }
   return fmt::format("node {} ({})", node, component);
@@ -71,8 +72,7 @@ void Simulation::step() {
 
 void Simulation::advance_to(double target) {
   const double whole = target - state_.time;
-  const double smallest =
-      std::max(scenario_.scene().time.minimum_step, kSmallestShare * whole);
+  const double smallest = std::max(scenario_.scene().time.minimum_step, kSmallestShare * whole);
   double dt = whole;
   while (true) {
     const double left = target - state_.time;
@@ -123,21 +123,23 @@ void Simulation::restore(const State& saved) {
 
 std::string Simulation::describe_failure(const StepReport& report, double dt) const {
   return fmt::format(
-      "Newton's method failed at t = {:.6g} s even with a step of {:.3g} s: {}; the worst residual is "
-      "at {}. A load that rises too fast, a shape that snaps, or too tight a solver.residual_tolerance "
+      "Newton's method failed at t = {:.6g} s even with a step of {:.3g} s: {}; the worst residual "
+      "is "
+      "at {}. A load that rises too fast, a shape that snaps, or too tight a "
+      "solver.residual_tolerance "
       "are the usual causes; a smaller time.step or smoother load tables help.",
       state_.time, dt, report.failure, describe_dof(model_, report.worst_dof));
 }
 
 std::string Simulation::describe_divergence(const StepReport& report, double dt) const {
-  const std::string what =
-      fmt::format("the motion diverged at t = {:.6g} s: {} at {}", state_.time, report.failure,
-                  describe_dof(model_, report.worst_dof));
+  const std::string what = fmt::format("the motion diverged at t = {:.6g} s: {} at {}", state_.time,
+                                       report.failure, describe_dof(model_, report.worst_dof));
   const StableStep stable =
       stable_step(model_, model_.initial_positions, stepper_info_.drag_limits_step);
   if (dt <= stable.step) {
     return fmt::format(
-        "{}. The step of {:.3g} s is below the stable step at the start, {:.3g} s: the motion itself "
+        "{}. The step of {:.3g} s is below the stable step at the start, {:.3g} s: the motion "
+        "itself "
         "stiffens the rod. Try half the step, or an implicit integrator.",
         what, dt, stable.step);
   }

@@ -4,10 +4,9 @@ import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import der
 import numpy as np
 import pytest
-
-import der
 
 ROOT = Path(__file__).resolve().parents[2]
 

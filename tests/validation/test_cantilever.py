@@ -3,10 +3,9 @@
 References: `references/elastica.py` (elliptic integrals) and `references/extensible_beam.py`.
 """
 
+import der
 import numpy as np
 import pytest
-
-import der
 
 SIZES = [10, 20, 40, 80]
 
@@ -15,9 +14,7 @@ def tip(scenario):
     return der.run(scenario).positions[-1, -1]
 
 
-@pytest.mark.parametrize(
-    "load, error_at_10", [(1, 2e-3), (10, 6e-3)]
-)
+@pytest.mark.parametrize("load, error_at_10", [(1, 2e-3), (10, 6e-3)])
 def test_tip_load_converges_to_the_elastica_at_second_order(
     scene, reference, fitted_order, load, error_at_10
 ):
@@ -136,9 +133,7 @@ def test_a_prescribed_rotation_of_a_clamp_turns_the_free_rod(scene):
     turned = scene("cantilever").to_dict()
     del turned["analysis"]
     turned["loads"] = [{"damping": {"coefficient": 1.0}}]
-    turned["supports"][0]["prescribe"] = {
-        "angle": {"times": [0, 5], "values": [0, np.pi / 2]}
-    }
+    turned["supports"][0]["prescribe"] = {"angle": {"times": [0, 5], "values": [0, np.pi / 2]}}
     turned["time"] = {"duration": 40, "step": 0.1, "integrator": "implicit_euler"}
     result = der.run(der.Scenario.from_dict(turned))
     assert result.positions[-1, -1] == pytest.approx([0, 1], abs=1e-6)

@@ -5,10 +5,9 @@ of the same equations of motion with forces derived apart from der's, and the ex
 weight and drag.
 """
 
+import der
 import numpy as np
 import pytest
-
-import der
 
 
 def richardson(coarse, fine, order):
@@ -82,9 +81,7 @@ def test_terminal_velocity_balances_weight_and_drag(scene, reference, nodes, den
 @pytest.mark.parametrize("step", [1e-2, 1e-1, 1.0, 10.0])
 def test_velocity_after_50_s_hardly_depends_on_the_step(scene, step):
     """The report's 0.0068 m/s at 21 nodes, which is the value without buoyancy."""
-    falling = scene("falling_beam_21").with_(
-        **{"time.step": step, "output.every": max(step, 0.1)}
-    )
+    falling = scene("falling_beam_21").with_(**{"time.step": step, "output.every": max(step, 0.1)})
     assert der.run(falling).probes["v_mid"][-1] == pytest.approx(-0.0068, abs=5e-5)
 
 

@@ -2,9 +2,8 @@
 
 from pathlib import Path
 
-import pytest
-
 import der
+import pytest
 
 CONFIGS = sorted((Path(__file__).resolve().parents[2] / "configs").glob("*.yaml"))
 

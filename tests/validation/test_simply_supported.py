@@ -4,9 +4,8 @@ References: `references/extensible_beam.py`, the geometrically exact extensible 
 and Euler-Bernoulli's formula beside it.
 """
 
-import pytest
-
 import der
+import pytest
 
 
 def settled(scenario):
@@ -18,7 +17,9 @@ def settled(scenario):
     return der.run(der.Scenario.from_dict(tree))
 
 
-@pytest.mark.parametrize("name, load", [("simply_supported", 2000), ("simply_supported_20kN", 20000)])
+@pytest.mark.parametrize(
+    "name, load", [("simply_supported", 2000), ("simply_supported_20kN", 20000)]
+)
 def test_deflection_converges_at_second_order(scene, reference, fitted_order, name, load):
     """The load stands at 0.75 m: in the middle of an edge, a quarter of one away from a node, and
     on a node, and the order shows all the same."""

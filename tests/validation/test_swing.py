@@ -3,10 +3,9 @@
 Reference: `references/swing.py`, cubic finite elements with high-order collocation in time.
 """
 
+import der
 import numpy as np
 import pytest
-
-import der
 
 SWING = {
     "title": "Swing",
@@ -40,7 +39,9 @@ def test_converges_to_the_continuum_at_second_order_in_space(reference, fitted_o
     assert fitted_order([1 / (n - 1) for n in nodes], errors) > 1.9
 
 
-@pytest.mark.parametrize("integrator", ["implicit_midpoint", "generalized_alpha", "tr_bdf2", "bdf2"])
+@pytest.mark.parametrize(
+    "integrator", ["implicit_midpoint", "generalized_alpha", "tr_bdf2", "bdf2"]
+)
 def test_second_order_steppers_reach_the_continuum(reference, integrator):
     """At 51 nodes the error in space is 2.5e-3 m, that in time far smaller."""
     assert tip_error(reference, **{"time.integrator": integrator}) < 3e-3

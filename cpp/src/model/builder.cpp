@@ -103,8 +103,7 @@ void lump_masses(const scenario::Rod& rod, RodLayout& layout, Model& model) {
   for (std::size_t i = 0; i < layout.nodes.size(); ++i) {
     const double volume = 4.0 / 3.0 * kPi * std::pow(layout.sphere_radius[i], 3);
     add_mass(layout.nodes[i],
-             per_length * layout.voronoi_length(static_cast<Index>(i)) +
-                 sphere_density[i] * volume,
+             per_length * layout.voronoi_length(static_cast<Index>(i)) + sphere_density[i] * volume,
              model);
   }
 }
@@ -124,8 +123,7 @@ void add_bend(const scenario::Scene& scene, const RodLayout& rod, Model& model) 
     const auto before = rod.edge_dofs(i - 1, model);
     const auto after = rod.edge_dofs(i, model);
     list.add({before[0], before[1], after[0], after[1], after[2], after[3]},
-             {rod.EI / rod.voronoi_length(i),
-              Curvature::of(rod.rest_turning_angle[at(i)]).kappa});
+             {rod.EI / rod.voronoi_length(i), Curvature::of(rod.rest_turning_angle[at(i)]).kappa});
   }
 }
 

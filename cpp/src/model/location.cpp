@@ -74,8 +74,7 @@ std::vector<Weighted> node_weights(const RodLayout& rod, double s) {
   // Four nodes with `s` in the middle edge, moved inwards at the ends, fewer on a short rod.
   const auto& arc = rod.arc_length;
   const auto count = static_cast<Index>(arc.size());
-  const auto right =
-      static_cast<Index>(std::upper_bound(arc.begin(), arc.end(), s) - arc.begin());
+  const auto right = static_cast<Index>(std::upper_bound(arc.begin(), arc.end(), s) - arc.begin());
   const Index stencil = std::min<Index>(4, count);
   const Index first = std::clamp<Index>(right - 2, 0, count - stencil);
   std::vector<Weighted> weights;

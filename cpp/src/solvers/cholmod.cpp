@@ -2,8 +2,8 @@
 #include "der/solvers/sparse_ldlt.hpp"
 
 #ifdef DER_HAS_CHOLMOD
-#include <cmath>
 #include <Eigen/CholmodSupport>
+#include <cmath>
 
 #include "compressed_matrix.hpp"
 #endif

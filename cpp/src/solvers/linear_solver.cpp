@@ -8,8 +8,8 @@
 namespace der {
 namespace {
 
-/// Up to this half-bandwidth the band solver beats a general sparse one on rod networks; a chain has
-/// 5 in the plane.
+/// Up to this half-bandwidth the band solver beats a general sparse one on rod networks; a chain
+/// has 5 in the plane.
 constexpr Index kNarrowBand = 32;
 
 std::unique_ptr<LinearSolver> make_banded(const Pattern& pattern) {

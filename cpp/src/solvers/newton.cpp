@@ -15,8 +15,11 @@ constexpr int kFullStepIterations = 12;
 constexpr double kLargestTurn = 0.7;
 /// A step below this share of the size may well be the last: look before building a new matrix.
 constexpr double kNearSolution = 1e-3;
-/// How many rounding errors of the largest stiffness times the largest coordinate count as noise.
-constexpr double kNoiseFactor = 8.0;
+
+/// A few rounding errors of the largest coordinate [m]; times a stiffness, the noise of a force.
+double rounding(const Vector& positions) {
+  return 8.0 * std::numeric_limits<double>::epsilon() * positions.lpNorm<Eigen::Infinity>();
+}
 
 }  // namespace
 
@@ -53,13 +56,11 @@ NewtonReport Newton::solve(const Stage& stage, Vector& positions) {
 }
 
 NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
-  const int limit = mode == Mode::FullSteps
-                        ? std::min(kFullStepIterations, options_.max_iterations)
-                        : options_.max_iterations;
+  const int limit = mode == Mode::FullSteps ? std::min(kFullStepIterations, options_.max_iterations)
+                                            : options_.max_iterations;
   NewtonReport report;
   evaluate_system(stage, positions);
-  noise_ = kNoiseFactor * std::numeric_limits<double>::epsilon() *
-           values_.lpNorm<Eigen::Infinity>() * positions.lpNorm<Eigen::Infinity>();
+  noise_ = values_.lpNorm<Eigen::Infinity>() * rounding(positions);
   measure(report);
   while (report.iterations < limit) {
     const double residual_before = report.residual;
@@ -90,7 +91,10 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
     const double fall = residual_before > 0.0 ? report.residual / residual_before : 0.0;
     const double next_step = step * std::min(1.0, std::max(fall, turn));
     const double allowed = std::max(options_.residual_tolerance * report.force_scale, noise_);
-    if (report.residual <= allowed && next_step <= options_.step_tolerance * model_.size) {
+    // Far from the origin positions themselves are only known to their rounding.
+    const double allowed_step =
+        std::max(options_.step_tolerance * model_.size, rounding(positions));
+    if (report.residual <= allowed && next_step <= allowed_step) {
       report.converged = true;
       return report;
     }
@@ -117,7 +121,8 @@ void Newton::evaluate_system(const Stage& stage, const Vector& positions) {
 void Newton::add_stage_forces(const Stage& stage, const Vector& positions) {
   acting_ = 0.0;
   for (Index i = 0; i < residual_.size(); ++i) {
-    const double inertial = stage.inertia * stage.mass[i] * (positions[i] - stage.inertia_target[i]);
+    const double inertial =
+        stage.inertia * stage.mass[i] * (positions[i] - stage.inertia_target[i]);
     const double viscous =
         stage.velocity_factor * model_.damping[i] * (positions[i] - stage.velocity_reference[i]);
     acting_ = std::max({acting_, std::abs(residual_[i]), std::abs(inertial), std::abs(viscous),

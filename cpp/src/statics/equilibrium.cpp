@@ -7,6 +7,8 @@ namespace der {
 namespace {
 
 constexpr int kMaxRelaxations = 400;
+/// A structure that has moved this many times its size is held by nothing.
+constexpr double kDrift = 100.0;
 
 /// Number of negative eigenvalues of the stiffness at a solution.
 Index unstable_directions(const Model& model, const Assembler& assembler, LinearSolver& solver,
@@ -30,20 +32,24 @@ EquilibriumReport find_equilibrium(const Model& model, const Assembler& assemble
   Newton newton(model, assembler, solver, options);
 
   EquilibriumReport result;
+  const Vector start = positions;
+  bool drifted = false;
   const auto attempt = [&] {
     const NewtonReport report = newton.solve(stage, positions);
     result.newton_iterations += report.iterations;
     result.residual = report.residual;
     result.force_scale = report.force_scale;
     result.failure = report.failure;
-    return report.converged;
+    drifted = (positions - start).lpNorm<Eigen::Infinity>() > kDrift * model.size;
+    if (drifted) result.failure = "the structure drifts away: nothing holds it";
+    return report.converged && !drifted;
   };
 
   result.converged = attempt();
   // `inertia` is the inverse of the pseudo-time step. It starts where the unbalanced force alone
   // would move a node by the size of the structure.
   double resistance = result.force_scale / model.size;
-  while (!result.converged && result.relaxations < kMaxRelaxations) {
+  while (!result.converged && !drifted && result.relaxations < kMaxRelaxations) {
     ++result.relaxations;
     stage.inertia = resistance;
     stage.inertia_target = positions;

@@ -10,9 +10,7 @@ namespace {
 class ExplicitEuler final : public Stepper {
  public:
   ExplicitEuler(const Model& model, const Assembler& assembler)
-      : force_(model, assembler),
-        acceleration_(model.num_dofs()),
-        positions_(model.num_dofs()) {}
+      : force_(model, assembler), acceleration_(model.num_dofs()), positions_(model.num_dofs()) {}
 
   StepReport step(State& state, double dt) override {
     force_.acceleration(state, state.positions, state.velocities, state.time, acceleration_);

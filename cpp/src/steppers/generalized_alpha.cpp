@@ -40,9 +40,8 @@ class GeneralizedAlpha final : public Stepper {
         q + kept * dt * (v + dt * (0.5 - beta_ - alpha_m_ * beta_ / (1.0 - alpha_m_)) * a);
     // Velocity: (1 - af) v' + af v is zero at the reference, where a' is such that v' is.
     equation.velocity_factor = gamma_ / (beta_ * dt);
-    equation.velocity_reference =
-        q + kept * dt * (v + dt * (0.5 - beta_) * a) -
-        (beta_ / gamma_) * dt * (v + kept * dt * (1.0 - gamma_) * a);
+    equation.velocity_reference = q + kept * dt * (v + dt * (0.5 - beta_) * a) -
+                                  (beta_ / gamma_) * dt * (v + kept * dt * (1.0 - gamma_) * a);
 
     positions_ = q + dt * (v + 0.5 * dt * a);
     stage_.place_held_at(state.time + dt, positions_);
@@ -52,8 +51,7 @@ class GeneralizedAlpha final : public Stepper {
 
     positions_ = (stage_.positions - alpha_f_ * q) / kept;
     stage_.place_held_at(state.time + dt, positions_);
-    accelerations_ =
-        (positions_ - q - dt * v) / (beta_ * dt * dt) - ((0.5 - beta_) / beta_) * a;
+    accelerations_ = (positions_ - q - dt * v) / (beta_ * dt * dt) - ((0.5 - beta_) / beta_) * a;
     velocities_ = v + dt * ((1.0 - gamma_) * a + gamma_ * accelerations_);
     state.accelerations = accelerations_;
     stage_.finish(positions_, velocities_, dt, state);

@@ -22,8 +22,8 @@ Fastest largest(const Model& model, const Vector& rates) {
   return fastest;
 }
 
-/// Row sums of |M^-1/2 K M^-1/2| over the elements booked under `term`, element by element: an upper
-/// bound even where entries of neighbours cancel.
+/// Row sums of |M^-1/2 K M^-1/2| over the elements booked under `term`, element by element: an
+/// upper bound even where entries of neighbours cancel.
 Vector scaled_row_sums(const Model& model, const Vector& positions, const Vector& controls,
                        EnergyTerm term) {
   Vector sums = Vector::Zero(model.num_dofs());

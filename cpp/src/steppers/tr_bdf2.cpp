@@ -52,8 +52,7 @@ class TrBdf2 final : public Stepper {
     equation.inertia_target =
         state.positions + h * (2.0 * state.velocities + h * start_acceleration_);
     equation.velocity_reference = state.positions + h * state.velocities;
-    stage_.positions =
-        state.positions + 2.0 * h * (state.velocities + h * start_acceleration_);
+    stage_.positions = state.positions + 2.0 * h * (state.velocities + h * start_acceleration_);
     stage_.place_held_at(time, stage_.positions);
     const StepReport report = stage_.solve(state, time);
     middle_positions_ = stage_.positions;
@@ -69,8 +68,9 @@ class TrBdf2 final : public Stepper {
     stage_.equation.inertia_target = past_positions_ + h * past_velocities_;
     stage_.equation.velocity_reference = past_positions_;
     const double rest = (1.0 - kGamma) * dt;
-    stage_.positions = middle_positions_ + rest * middle_velocities_ +
-                       0.5 * rest * (rest / (kGamma * dt)) * (middle_velocities_ - state.velocities);
+    stage_.positions =
+        middle_positions_ + rest * middle_velocities_ +
+        0.5 * rest * (rest / (kGamma * dt)) * (middle_velocities_ - state.velocities);
     stage_.place_held_at(state.time + dt, stage_.positions);
     return stage_.solve(state, state.time + dt);
   }

@@ -50,15 +50,14 @@ void add_clamp(const scenario::Support& support, const RodLayout& rod, Index pla
                                   ? drawn
                                   : rod.natural_curvature[static_cast<std::size_t>(place)] * half;
     const auto add = [&](auto& list, auto measure) {
-      list.add(rod.edge_dofs(cell.edge, model),
-               {rod.EI / half, decltype(measure)::of(rest_angle).kappa, tangent, cell.side,
-                rotation});
+      list.add(
+          rod.edge_dofs(cell.edge, model),
+          {rod.EI / half, decltype(measure)::of(rest_angle).kappa, tangent, cell.side, rotation});
     };
     if (rod.curvature == scenario::CurvatureMeasure::Angle) {
       add(std::get<ElementList<PlanarClamp<AngleCurvature>>>(model.elements), AngleCurvature{});
     } else {
-      add(std::get<ElementList<PlanarClamp<TangentCurvature>>>(model.elements),
-          TangentCurvature{});
+      add(std::get<ElementList<PlanarClamp<TangentCurvature>>>(model.elements), TangentCurvature{});
     }
   }
 }

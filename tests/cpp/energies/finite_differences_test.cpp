@@ -51,7 +51,8 @@ void check_derivatives(Shape shape, Random& random) {
   const double energy_scale = std::abs(exact.energy) + 1.0;
   double largest_entry = 0.0;
   for (int j = 0; j < n; ++j) {
-    for (int i = j; i < n; ++i) largest_entry = std::max(largest_entry, std::abs(exact.hessian(i, j)));
+    for (int i = j; i < n; ++i)
+      largest_entry = std::max(largest_entry, std::abs(exact.hessian(i, j)));
   }
   for (int j = 0; j < n; ++j) {
     const auto along = [&](double t) {

@@ -58,9 +58,8 @@ Eigen::Matrix<double, N, 1> sample_positions(Shape shape, Random& random) {
   for (int node = 1; node < N / 2; ++node) {
     double length = uniform(random, 0.7, 1.4);
     if (shape == Shape::Stretched) length *= std::exp(uniform(random, -1.5, 1.5));
-    x.template segment<2>(2 * node) =
-        x.template segment<2>(2 * node - 2) +
-        length * Vec2{std::cos(direction), std::sin(direction)};
+    x.template segment<2>(2 * node) = x.template segment<2>(2 * node - 2) +
+                                      length * Vec2{std::cos(direction), std::sin(direction)};
     const double sign = uniform(random, -1.0, 1.0) < 0.0 ? -1.0 : 1.0;
     switch (shape) {
       case Shape::NearStraight:

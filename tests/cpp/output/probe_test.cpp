@@ -140,9 +140,10 @@ TEST_CASE("the half cell of a clamp has the curvature of the arc") {
 }
 
 TEST_CASE("the moment at a clamp is its reaction, whichever end it holds") {
-  Simulation start(cantilever("m: {rod: arm, at: start, quantity: moment},"
-                              "least: {rod: arm, quantity: moment, over: rod, reduce: min},"
-                              "x: {rod: arm, at: end, quantity: x}"));
+  Simulation start(
+      cantilever("m: {rod: arm, at: start, quantity: moment},"
+                 "least: {rod: arm, quantity: moment, over: rod, reduce: min},"
+                 "x: {rod: arm, at: end, quantity: x}"));
   start.equilibrium();
   const auto probes = make_probes(start.scenario().scene(), start.model());
   const auto read = [&](std::size_t i) { return probes[i].value(start.model(), start.state()); };
@@ -150,12 +151,13 @@ TEST_CASE("the moment at a clamp is its reaction, whichever end it holds") {
   CHECK(read(1) == doctest::Approx(read(0)).epsilon(1e-9));
 
   // The mirror image, drawn from its free end to the clamp.
-  Simulation end(cantilever("m: {rod: arm, at: end, quantity: moment},"
-                            "x: {rod: arm, at: start, quantity: x}",
-                            {{"rods.arm.from", "[-1, 0]"},
-                             {"rods.arm.to", "[0, 0]"},
-                             {"supports.0.at", "end"},
-                             {"loads.0.point_force.at", "start"}}));
+  Simulation end(
+      cantilever("m: {rod: arm, at: end, quantity: moment},"
+                 "x: {rod: arm, at: start, quantity: x}",
+                 {{"rods.arm.from", "[-1, 0]"},
+                  {"rods.arm.to", "[0, 0]"},
+                  {"supports.0.at", "end"},
+                  {"loads.0.point_force.at", "start"}}));
   end.equilibrium();
   const auto mirrored = make_probes(end.scenario().scene(), end.model());
   CHECK(mirrored[0].value(end.model(), end.state()) == doctest::Approx(read(0)).epsilon(1e-9));

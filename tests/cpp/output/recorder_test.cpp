@@ -93,9 +93,8 @@ TEST_CASE("a callback that says stop after the last step does not make a run inc
 
 TEST_CASE("an error of the callback is passed on") {
   struct Mine {};
-  CHECK_THROWS_AS(Recorded(Scenario::parse(kSpheres),
-                           [](const Simulation&) -> bool { throw Mine{}; }),
-                  Mine);
+  CHECK_THROWS_AS(
+      Recorded(Scenario::parse(kSpheres), [](const Simulation&) -> bool { throw Mine{}; }), Mine);
 }
 
 TEST_CASE("a static analysis records its equilibrium and nothing else") {

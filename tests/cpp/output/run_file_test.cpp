@@ -59,8 +59,7 @@ class Reader {
 
  private:
   static herr_t visit(hid_t file, const char* name, const H5O_info_t* info, void* names) {
-    if (info->type == H5O_TYPE_DATASET &&
-        H5Aexists_by_name(file, name, "unit", H5P_DEFAULT) <= 0) {
+    if (info->type == H5O_TYPE_DATASET && H5Aexists_by_name(file, name, "unit", H5P_DEFAULT) <= 0) {
       static_cast<std::vector<std::string>*>(names)->emplace_back(name);
     }
     return 0;
@@ -88,10 +87,18 @@ void run_to_file(const fs::path& path, const Scenario& scenario, bool resume, Wr
   written.summaries = recorder.summaries();
 }
 
-const std::vector<std::string> kColumns{
-    "time",          "step",        "positions",      "velocities",  "energies/kinetic",
-    "energies/bend", "energies/stretch", "energies/gravity", "probes/v_mid", "probes/y_mid",
-    "probes/angle",  "probes/kinetic"};
+const std::vector<std::string> kColumns{"time",
+                                        "step",
+                                        "positions",
+                                        "velocities",
+                                        "energies/kinetic",
+                                        "energies/bend",
+                                        "energies/stretch",
+                                        "energies/gravity",
+                                        "probes/v_mid",
+                                        "probes/y_mid",
+                                        "probes/angle",
+                                        "probes/kinetic"};
 
 void check_same_file(const fs::path& a, const fs::path& b) {
   const Reader first(a);
@@ -131,7 +138,8 @@ TEST_CASE("a run file holds what a run keeps in memory") {
   CHECK(file.values("energies/bend") == written.memory.bend_energy);
   CHECK(file.values("energies/gravity") == written.memory.gravity_energy);
   const auto angle = file.values("probes/angle");
-  for (std::size_t i = 0; i < angle.size(); ++i) CHECK(angle[i] == written.memory.probes[4 * i + 2]);
+  for (std::size_t i = 0; i < angle.size(); ++i)
+    CHECK(angle[i] == written.memory.probes[4 * i + 2]);
   CHECK(file.values("rods/rod/arc_length") == std::vector<double>{0.0, 0.05, 0.1});
   CHECK(file.values("rods/rod/sphere_radius") == std::vector<double>{0.005, 0.025, 0.005});
   CHECK(file.values("rods/rod/nodes") == std::vector<double>{0, 1, 2});
@@ -177,8 +185,8 @@ TEST_CASE("a stopped and resumed run is the uninterrupted one, bit for bit, with
     CAPTURE(stepper.name);
     std::vector<Override> overrides{{"time.integrator", std::string(stepper.name)}};
     if (!stepper.implicit) {
-      for (const auto& [key, value] : {Override{"time.step", "1e-5"}, {"time.duration", "2e-4"},
-                                       {"output.every", "3e-5"}}) {
+      for (const auto& [key, value] :
+           {Override{"time.step", "1e-5"}, {"time.duration", "2e-4"}, {"output.every", "3e-5"}}) {
         overrides.emplace_back(key, value);
       }
     }
@@ -262,9 +270,9 @@ TEST_CASE("a run that outgrows one chunk is written and read back whole") {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "results.h5";
   // 40001 frames of 8 bytes are more than the 256 KiB of a scalar's chunk.
-  const Scenario scenario = Scenario::parse(
-      kSpheres, "spheres",
-      {{"time.duration", "40"}, {"time.step", "0.001"}, {"output.every", "0.001"}});
+  const Scenario scenario =
+      Scenario::parse(kSpheres, "spheres",
+                      {{"time.duration", "40"}, {"time.step", "0.001"}, {"output.every", "0.001"}});
   Written written;
   run_to_file(path, scenario, false, written);
   const Reader file(path);

@@ -14,8 +14,9 @@
 namespace der::test {
 namespace {
 
-// A soft four-node rod in a viscous fluid: its left end is moved by a table, its right end is pulled
-// by a force that grows with time, and it starts with a velocity. Large rotations and strains.
+// A soft four-node rod in a viscous fluid: its left end is moved by a table, its right end is
+// pulled by a force that grows with time, and it starts with a velocity. Large rotations and
+// strains.
 const char* const kDrivenRod = R"(
 title: Driven rod
 rods:
@@ -111,8 +112,8 @@ TEST_CASE("every stepper converges at its stated order") {
     std::vector<double> errors;
     for (const int count : counts.at(info.order)) {
       steps.push_back(kDuration / count);
-      errors.push_back((final_positions(std::string(info.name), count) - reference)
-                           .lpNorm<Eigen::Infinity>());
+      errors.push_back(
+          (final_positions(std::string(info.name), count) - reference).lpNorm<Eigen::Infinity>());
       CAPTURE(errors.back());
     }
     CHECK(fitted_order(steps, errors) == doctest::Approx(info.order).epsilon(0.1 / info.order));
@@ -139,8 +140,8 @@ TEST_CASE("free flight keeps the momenta that a stepper promises to keep") {
 TEST_CASE("a state restored goes on bit for bit") {
   for (const StepperInfo& info : stepper_registry()) {
     CAPTURE(info.name);
-    Simulation simulation(Scenario::parse(kFreeRod, "free flight",
-                                          {{"time.integrator", std::string(info.name)}}));
+    Simulation simulation(
+        Scenario::parse(kFreeRod, "free flight", {{"time.integrator", std::string(info.name)}}));
     for (int i = 0; i < 5; ++i) simulation.step();
     const State saved = simulation.state();
     for (int i = 0; i < 5; ++i) simulation.step();
@@ -152,10 +153,9 @@ TEST_CASE("a state restored goes on bit for bit") {
 }
 
 TEST_CASE("an unstable explicit step is named as such") {
-  Simulation simulation(Scenario::parse(kDrivenRod, "driven rod",
-                                        {{"time.integrator", "explicit_euler"},
-                                         {"time.step", "0.1"},
-                                         {"time.duration", "10"}}));
+  Simulation simulation(Scenario::parse(
+      kDrivenRod, "driven rod",
+      {{"time.integrator", "explicit_euler"}, {"time.step", "0.1"}, {"time.duration", "10"}}));
   const auto run = [&] {
     while (!simulation.finished()) simulation.step();
   };

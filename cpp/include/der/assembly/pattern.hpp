@@ -12,9 +12,9 @@ namespace der {
 /// diagonal is always present.
 struct Pattern {
   Index size = 0;
-  Index half_bandwidth = 0;   ///< largest row - column
-  std::vector<Index> outer;   ///< size + 1 column starts
-  std::vector<Index> inner;   ///< row of each nonzero
+  Index half_bandwidth = 0;  ///< largest row - column
+  std::vector<Index> outer;  ///< size + 1 column starts
+  std::vector<Index> inner;  ///< row of each nonzero
 
   [[nodiscard]] Index nonzeros() const { return static_cast<Index>(inner.size()); }
 };

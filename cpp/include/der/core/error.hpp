@@ -7,8 +7,9 @@
 
 namespace der {
 
-/// Base of every error that the library reports on purpose. `status()` is the short machine-readable
-/// name that ends up in `summary.json`; `what()` says what went wrong, where, and what to try.
+/// Base of every error that the library reports on purpose. `status()` is the short
+/// machine-readable name that ends up in `summary.json`; `what()` says what went wrong, where, and
+/// what to try.
 class Error : public std::runtime_error {
  public:
   Error(std::string status, const std::string& message)

@@ -57,10 +57,10 @@ struct PlanarBend {
     if constexpr (D == Derivatives::Gradient) return;
 
     // Hessian by the edge vectors (h00, h10 = h01', h11), then by the nodes they run between.
-    const Mat2 h00 = bend.stiffness * d0 * d0.transpose() -
-                     bend.moment * direction_hessian(e0, d0, w0);
-    const Mat2 h11 = bend.stiffness * d1 * d1.transpose() +
-                     bend.moment * direction_hessian(e1, d1, w1);
+    const Mat2 h00 =
+        bend.stiffness * d0 * d0.transpose() - bend.moment * direction_hessian(e0, d0, w0);
+    const Mat2 h11 =
+        bend.stiffness * d1 * d1.transpose() + bend.moment * direction_hessian(e1, d1, w1);
     const Mat2 h10 = -bend.stiffness * d1 * d0.transpose();
     out.hessian.block<2, 2>(0, 0) = h00;
     out.hessian.block<2, 2>(2, 0) = h10 - h00;

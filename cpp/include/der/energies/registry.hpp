@@ -13,13 +13,12 @@ namespace der {
 /// Every kind of element. A new energy is one header with its kernel and one line here; assembly,
 /// the energy report and the finite-difference tests loop over this list. A kind without elements
 /// costs nothing in a run.
-using ElementLists =
-    std::tuple<ElementList<Stretch<2>>,                //
-               ElementList<PlanarBend<AngleCurvature>>,    //
-               ElementList<PlanarBend<TangentCurvature>>,  //
-               ElementList<PlanarClamp<AngleCurvature>>,   //
-               ElementList<PlanarClamp<TangentCurvature>>,  //
-               ElementList<PlanarMoment>>;
+using ElementLists = std::tuple<ElementList<Stretch<2>>,                     //
+                                ElementList<PlanarBend<AngleCurvature>>,     //
+                                ElementList<PlanarBend<TangentCurvature>>,   //
+                                ElementList<PlanarClamp<AngleCurvature>>,    //
+                                ElementList<PlanarClamp<TangentCurvature>>,  //
+                                ElementList<PlanarMoment>>;
 
 /// Calls `f(list)` for each kind of element.
 template <class Lists, class F>

@@ -26,8 +26,7 @@ inline Vec2 direction_gradient(const Vec2& e, double inverse_squared_length) {
 /// -(t n' + n t') / |e|^2, t and n the unit tangent and normal. Symmetric and traceless.
 inline Mat2 direction_hessian(const Vec2& e, const Vec2& gradient, double inverse_squared_length) {
   const double xx = -2.0 * inverse_squared_length * e.x() * gradient.x();
-  const double xy =
-      -inverse_squared_length * (e.x() * gradient.y() + e.y() * gradient.x());
+  const double xy = -inverse_squared_length * (e.x() * gradient.y() + e.y() * gradient.x());
   Mat2 hessian;
   hessian << xx, xy, xy, -xx;
   return hessian;

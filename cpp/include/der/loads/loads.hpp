@@ -21,8 +21,8 @@ void add_load(const scenario::DistributedForce& load, const scenario::Scene& sce
 /// Sum of all gravity entries [m/s^2]; zero without one.
 Vector total_gravity(const scenario::Scene& scene);
 
-/// A force that keeps its direction and may follow a table over time. Its tables are entered into the
-/// model once, however many nodes share it.
+/// A force that keeps its direction and may follow a table over time. Its tables are entered into
+/// the model once, however many nodes share it.
 class DeadForce {
  public:
   DeadForce(const scenario::VectorSeries& force, Model& model);
@@ -36,7 +36,6 @@ class DeadForce {
 
 /// Sets `force` [N] to everything that does not depend on the motion: weight, dead loads, tables at
 /// the time of `controls`, and `extra` set from outside.
-void external_force(const Model& model, const Vector& controls, const Vector& extra,
-                    Vector& force);
+void external_force(const Model& model, const Vector& controls, const Vector& extra, Vector& force);
 
 }  // namespace der

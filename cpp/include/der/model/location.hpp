@@ -17,7 +17,8 @@ struct Weighted {
 /// Rest arc length [m] that a location names (not for Kind::All).
 double arc_length_of(const scenario::Location& location, const RodLayout& rod);
 
-/// Position in RodLayout::nodes of the node at `location`. The reader has checked that there is one.
+/// Position in RodLayout::nodes of the node at `location`. The reader has checked that there is
+/// one.
 Index node_at(const scenario::Location& location, const RodLayout& rod);
 /// As above; every node for Kind::All.
 std::vector<Index> nodes_at(const scenario::Location& location, const RodLayout& rod);

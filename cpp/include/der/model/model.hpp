@@ -17,11 +17,11 @@ struct Model;
 /// drawings. Only the builder assumes that a rod is a chain; everybody else reads these lists.
 struct RodLayout {
   std::string name;
-  std::vector<Index> nodes;        ///< in the order of the arc length
-  std::vector<double> arc_length;  ///< rest arc length of each node [m]
+  std::vector<Index> nodes;         ///< in the order of the arc length
+  std::vector<double> arc_length;   ///< rest arc length of each node [m]
   std::vector<double> edge_length;  ///< rest length of each edge [m]
-  double EA = 0.0;                 ///< [N]
-  double EI = 0.0;                 ///< [N m^2]
+  double EA = 0.0;                  ///< [N]
+  double EI = 0.0;                  ///< [N m^2]
   scenario::CurvatureMeasure curvature = scenario::CurvatureMeasure::Angle;
   /// Natural curvature at each node [1/m]; empty: stress-free as drawn.
   std::vector<double> natural_curvature;

@@ -27,7 +27,8 @@ class BandedLdlt final : public LinearSolver {
   MatrixLayout layout_;
   FactorizeKernel factorize_kernel_ = nullptr;
   SolveKernel solve_kernel_ = nullptr;
-  // Both are longer by half_bandwidth columns of zeros, which spares the kernels a test for the end.
+  // Both are longer by half_bandwidth columns of zeros, which spares the kernels a test for the
+  // end.
   Vector band_;  ///< column j: 1 / d_j, then the multipliers l_{j+1,j} ..
   Vector right_side_;
 };

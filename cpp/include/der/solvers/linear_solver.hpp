@@ -13,9 +13,9 @@ namespace der {
 /// What a factorisation A = L D L^T tells about A: by Sylvester's law the signs of the pivots D are
 /// the signs of the eigenvalues.
 struct Inertia {
-  bool factorised = false;      ///< false: a pivot vanished or was not a number
-  Index negative_pivots = 0;    ///< number of negative eigenvalues
-  Index failed_at = -1;         ///< free degree of freedom of the vanishing pivot
+  bool factorised = false;    ///< false: a pivot vanished or was not a number
+  Index negative_pivots = 0;  ///< number of negative eigenvalues
+  Index failed_at = -1;       ///< free degree of freedom of the vanishing pivot
 };
 
 /// Direct solver for the symmetric, possibly indefinite system matrix. Called once a Newton

@@ -57,8 +57,8 @@ class Newton {
   /// values; on exit the solution, or the guess again if not converged.
   NewtonReport solve(const Stage& stage, Vector& positions);
 
-  /// Left side of the stage's equation at the last iterate, over all degrees of freedom [N]; on held
-  /// ones it is the force that the support has to provide.
+  /// Left side of the stage's equation at the last iterate, over all degrees of freedom [N]; on
+  /// held ones it is the force that the support has to provide.
   [[nodiscard]] const Vector& residual() const { return residual_; }
 
  private:
@@ -79,11 +79,11 @@ class Newton {
   const Assembler& assembler_;
   LinearSolver& solver_;
   NewtonOptions options_;
-  Vector residual_;    // all degrees of freedom
-  Vector values_;      // of the matrix, shifted where need be
-  Vector direction_;   // over the free degrees of freedom
-  Vector guess_;       // positions that the solve started from
-  Vector line_start_;  // positions that the line search starts from
+  Vector residual_;      // all degrees of freedom
+  Vector values_;        // of the matrix, shifted where need be
+  Vector direction_;     // over the free degrees of freedom
+  Vector guess_;         // positions that the solve started from
+  Vector line_start_;    // positions that the line search starts from
   double acting_ = 0.0;  // largest acting force at the last iterate [N]
   double noise_ = 0.0;   // rounding error of a force [N]
   double last_shift_ = 0.0;

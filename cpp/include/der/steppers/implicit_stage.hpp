@@ -8,7 +8,8 @@
 
 namespace der {
 
-/// What every implicit stepper shares: the equation of one stage, its solver, its unknown positions.
+/// What every implicit stepper shares: the equation of one stage, its solver, its unknown
+/// positions.
 class ImplicitStage {
  public:
   ImplicitStage(const Model& model, const Assembler& assembler, LinearSolver& solver,

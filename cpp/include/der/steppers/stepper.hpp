@@ -34,7 +34,8 @@ class Stepper {
 /// What a stepper can be told.
 struct StepperOptions {
   NewtonOptions newton;
-  /// Of generalized_alpha: what is left of the fastest motion after a step, 0 (all damped) .. 1 (none).
+  /// Of generalized_alpha: what is left of the fastest motion after a step, 0 (all damped) .. 1
+  /// (none).
   double spectral_radius = 0.9;
 };
 
@@ -44,7 +45,7 @@ struct StepperInfo {
   int order;
   bool implicit;
   bool keeps_angular_momentum;
-  bool drag_limits_step;  ///< of the explicit ones: whether drag bounds the stable step
+  bool drag_limits_step;       ///< of the explicit ones: whether drag bounds the stable step
   std::string_view stability;  ///< in words
   std::string_view damping;    ///< numerical damping, in words
   std::unique_ptr<Stepper> (*make)(const Model&, const Assembler&, LinearSolver&,

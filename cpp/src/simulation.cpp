@@ -20,6 +20,7 @@ StepperOptions stepper_options(const scenario::Scene& scene) {
   StepperOptions options;
   options.newton = {scene.solver.residual_tolerance, scene.solver.step_tolerance,
                     scene.solver.max_iterations};
+  options.spectral_radius = scene.time.spectral_radius;
   return options;
 }
 

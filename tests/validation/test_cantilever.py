@@ -14,7 +14,7 @@ def tip(scenario):
     return der.run(scenario).positions[-1, -1]
 
 
-@pytest.mark.parametrize("load, error_at_10", [(1, 2e-3), (10, 6e-3)])
+@pytest.mark.parametrize(("load", "error_at_10"), [(1, 2e-3), (10, 6e-3)])
 def test_tip_load_converges_to_the_elastica_at_second_order(
     scene, reference, fitted_order, load, error_at_10
 ):

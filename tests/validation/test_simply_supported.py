@@ -18,7 +18,7 @@ def settled(scenario):
 
 
 @pytest.mark.parametrize(
-    "name, load", [("simply_supported", 2000), ("simply_supported_20kN", 20000)]
+    ("name", "load"), [("simply_supported", 2000), ("simply_supported_20kN", 20000)]
 )
 def test_deflection_converges_at_second_order(scene, reference, fitted_order, name, load):
     """The load stands at 0.75 m: in the middle of an edge, a quarter of one away from a node, and

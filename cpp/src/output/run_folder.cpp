@@ -133,8 +133,9 @@ RunFileHead check_resumable(const RunFolder& folder, const Scenario& scenario) {
 RunOutcome run_in_folder(const RunFolder& folder, Simulation& simulation, Recorder& recorder,
                          const StepCallback& after_step) {
   folder.prepare();
-  write_file(folder.scene(), simulation.scenario().to_yaml());
+  // The result file first: it marks the folder as one of a run, should the process end right here.
   const auto file = RunFile::create(folder.results(), simulation, recorder);
+  write_file(folder.scene(), simulation.scenario().to_yaml());
   return run_into_file(*file, folder, simulation, recorder, after_step);
 }
 

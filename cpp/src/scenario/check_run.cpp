@@ -128,6 +128,14 @@ void check_time(CheckContext& context) {
                    fmt::format("must not be greater than the step, {} s, got {} s", step,
                                scene.time.minimum_step));
   }
+  if (const auto& radius = scene.given_time.given_spectral_radius) {
+    scene.time.spectral_radius = *radius;
+    if (scene.time.integrator != "generalized_alpha") {
+      complaints.add({"time", "spectral_radius"},
+                     fmt::format("only generalized_alpha has a spectral radius, not {}",
+                                 scene.time.integrator));
+    }
+  }
   if (!complaints.under({"output", "every"})) check_every(scene, complaints);
 }
 

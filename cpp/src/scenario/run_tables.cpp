@@ -90,6 +90,11 @@ Format<TimeText> time_format() {
           .required("step", &Time::step, number("s", positive()), "Time step.")
           .optional("integrator", &Time::integrator, one_of(words(integrator_names())),
                     "Time-stepping scheme.")
+          .optional("spectral_radius", &TimeText::given_spectral_radius,
+                    number("", Range{0.0, false, 1.0, false}),
+                    "For `generalized_alpha`: what a step leaves of the fastest motion, from 0 "
+                    "(nothing) to 1 (all of it).",
+                    "0.9")
           .optional("minimum_step", &TimeText::given_minimum_step, number("s", positive()),
                     "A step that fails is retried in smaller ones, down to this.", "step / 1024"));
 }

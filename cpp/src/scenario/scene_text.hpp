@@ -27,6 +27,7 @@ struct OutputText : Output {
 
 struct TimeText : Time {
   std::optional<double> given_minimum_step;
+  std::optional<double> given_spectral_radius;
 };
 
 struct SceneText : Scene {

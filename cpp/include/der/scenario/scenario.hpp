@@ -157,6 +157,8 @@ struct Time {
   double step = 0.0;      ///< [s]
   std::string integrator = "implicit_euler";
   double minimum_step = 0.0;  ///< [s] floor for retries after a failed step
+  /// Of generalized_alpha: what a step leaves of the fastest motion, 0 (nothing) .. 1 (all).
+  double spectral_radius = 0.9;
 };
 
 struct Solver {

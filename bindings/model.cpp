@@ -1,0 +1,152 @@
+#include "der/model/model.hpp"
+
+#include <pybind11/stl.h>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "der/model/builder.hpp"
+#include "der/model/location.hpp"
+#include "der/scenario/reader.hpp"
+#include "der/supports/clamp.hpp"
+
+namespace der::python {
+namespace {
+
+/// A node that a support of the scene holds, for drawings.
+struct HeldNode {
+  std::string rod;
+  Index node = 0;
+  std::vector<std::string> components;  ///< held or moved by a table: x, y, z
+  std::optional<double> tangent_angle;  ///< [rad] from the x axis, of a clamp
+};
+
+std::vector<std::string> held_components(const scenario::Support& support, int dimension) {
+  const std::array<const char*, 3> names{"x", "y", "z"};
+  std::array<bool, 3> held{};
+  for (const auto component : support.fix) held[static_cast<std::size_t>(component)] = true;
+  for (const auto& moved : support.prescribe) {
+    held[static_cast<std::size_t>(moved.component)] = true;
+  }
+  std::vector<std::string> result;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(dimension); ++c) {
+    if (held[c] || support.clamp) result.emplace_back(names[c]);
+  }
+  return result;
+}
+
+/// The angle that a clamp holds the tangent at, as its half cells do.
+std::optional<double> clamp_angle(const scenario::Support& support, const RodLayout& rod,
+                                  Index place, const Model& model, double time) {
+  if (!support.clamp) return std::nullopt;
+  const double turned = support.rotation ? value_at(*support.rotation, time) : 0.0;
+  return initial_tangent_angle(rod, place, model) + turned;
+}
+
+std::vector<HeldNode> held_nodes(const Scenario& scenario, double time) {
+  const Model model = build_model(scenario.scene());
+  std::vector<HeldNode> result;
+  for (const scenario::Support& support : scenario.scene().supports) {
+    const RodLayout& rod = model.rod(support.rod);
+    for (const Index place : nodes_at(support.at, rod)) {
+      result.push_back({rod.name, rod.nodes[static_cast<std::size_t>(place)],
+                        held_components(support, model.dimension),
+                        clamp_angle(support, rod, place, model, time)});
+    }
+  }
+  return result;
+}
+
+template <class T>
+py::array_t<T> to_array(const std::vector<T>& values) {
+  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+void bind_rod(py::module_& module) {
+  py::class_<RodLayout>(module, "Rod", "Where a rod is in the model, and its measures.")
+      .def_readonly("name", &RodLayout::name, "Name in the scene.")
+      .def_property_readonly(
+          "nodes", [](const RodLayout& rod) { return to_array(rod.nodes); },
+          "Row numbers of the rod's nodes in `positions`, in the order of the arc length.")
+      .def_property_readonly(
+          "arc_lengths", [](const RodLayout& rod) { return to_array(rod.arc_length); },
+          "Rest arc length of each node [m].")
+      .def_property_readonly("length", &RodLayout::rest_length, "Rest length [m].")
+      .def_property_readonly(
+          "rest_turning_angles",
+          [](const RodLayout& rod) { return to_array(rod.rest_turning_angle); },
+          "Natural turning angle at each node [rad]; 0 at the ends.")
+      .def_property_readonly(
+          "curvature",
+          [](const RodLayout& rod) {
+            return rod.curvature == scenario::CurvatureMeasure::Angle ? "angle" : "tangent";
+          },
+          "Curvature measure: angle or tangent.")
+      .def_readonly("EA", &RodLayout::EA, "Axial stiffness [N].")
+      .def_readonly("EI", &RodLayout::EI, "Bending stiffness [N m^2].")
+      .def_readonly("radius", &RodLayout::draw_radius,
+                    "Half the height of the section [m]; 0 where only stiffnesses are given.")
+      .def_property_readonly(
+          "sphere_radii", [](const RodLayout& rod) { return to_array(rod.sphere_radius); },
+          "Radius of the sphere on each node [m]; 0 where there is none.")
+      .def("__repr__", [](const RodLayout& rod) {
+        return py::str("<der.Rod {!r}: {} nodes, length {:.6g} m>")
+            .format(rod.name, rod.nodes.size(), rod.rest_length());
+      });
+}
+
+void bind_held_node(py::module_& module) {
+  py::class_<HeldNode>(module, "HeldNode", "A node that a support of the scene holds.")
+      .def_readonly("rod", &HeldNode::rod, "Name of the rod.")
+      .def_readonly("node", &HeldNode::node, "Row number of the node in `positions`.")
+      .def_readonly("components", &HeldNode::components,
+                    "Components that are held, or moved by a table: x, y, z.")
+      .def_readonly("tangent_angle", &HeldNode::tangent_angle,
+                    "Angle [rad] from the x axis that a clamp holds the tangent at; None without.")
+      .def("__repr__", [](const HeldNode& held) {
+        return py::str("<der.HeldNode {} of {!r}: {}{}>")
+            .format(held.node, held.rod, py::str(", ").attr("join")(held.components),
+                    held.tangent_angle ? ", clamped" : "");
+      });
+  module.def(
+      "held_nodes", &held_nodes, py::arg("scenario"), py::arg("time") = 0.0,
+      "Return every node that a support of the scene holds, with the angle of clamps at `time` "
+      "[s].");
+}
+
+}  // namespace
+
+void bind_model(py::module_& module) {
+  bind_rod(module);
+  bind_held_node(module);
+  py::class_<Model>(module, "Model", "What stays constant in a run.")
+      .def(py::init([](const Scenario& scenario) { return build_model(scenario.scene()); }),
+           py::arg("scenario"), "Raises SceneError or DerError where no model can be built.")
+      .def_readonly("name", &Model::name, "Name of the model, such as planar.")
+      .def_readonly("reason", &Model::reason, "Why this model was taken.")
+      .def_readonly("dimension", &Model::dimension, "Components of a position: 2 or 3.")
+      .def_readonly("num_nodes", &Model::num_nodes, "Number of nodes of all rods.")
+      .def_property_readonly("num_dofs", &Model::num_dofs,
+                             "Degrees of freedom, held ones included.")
+      .def_property_readonly("num_free", &Model::num_free,
+                             "Degrees of freedom that are solved for.")
+      .def_property_readonly(
+          "rods", [](const Model& model) { return model.rods; }, "The rods, in the scene's order.")
+      .def_property_readonly(
+          "initial_positions",
+          [](const py::object& self) {
+            const auto& model = self.cast<const Model&>();
+            return read_only_view(model.initial_positions, model.dimension, self);
+          },
+          "Node positions as drawn [m], shape (nodes, dim), read-only.")
+      .def("__repr__", [](const Model& model) {
+        return py::str("<der.Model {}: {} nodes, {} free of {} degrees of freedom; {}>")
+            .format(model.name, model.num_nodes, model.num_free(), model.num_dofs(), model.reason);
+      });
+}
+
+}  // namespace der::python

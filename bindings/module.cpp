@@ -1,0 +1,14 @@
+#include "bindings.hpp"
+#include "der/version.hpp"
+
+PYBIND11_MODULE(_core, module) {
+  namespace bindings = der::python;
+  module.doc() = "The C++ engine of der. Use the package `der`, which re-exports what is public.";
+  module.attr("__version__") = der::version;
+  bindings::bind_errors(module);
+  bindings::bind_scenario(module);
+  bindings::bind_model(module);
+  bindings::bind_state(module);
+  bindings::bind_recording(module);
+  bindings::bind_simulation(module);
+}

@@ -1,0 +1,90 @@
+#include <stdexcept>
+
+#include "der/output/run_folder.hpp"
+#include "heartbeat.hpp"
+#include "py_simulation.hpp"
+
+namespace der::python {
+
+/// The right to change the state: one caller at a time, with the lock held on both ends. It leaves
+/// no force function's force behind, whatever happens.
+class PySimulation::Turn {
+ public:
+  explicit Turn(PySimulation& simulation) : simulation_(simulation) {
+    if (simulation.busy_) {
+      throw std::runtime_error(
+          "this simulation is busy: force functions and callbacks must not step or restore it, and "
+          "two threads must not share it");
+    }
+    simulation.busy_ = true;
+  }
+  ~Turn() {
+    simulation_.forces_.take_off(simulation_.engine_.state());
+    simulation_.busy_ = false;
+  }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  PySimulation& simulation_;
+};
+
+void PySimulation::step(std::int64_t count, py::handle self) {
+  if (count < 0) throw py::value_error("the number of steps must not be negative");
+  const Turn turn(*this);
+  const py::gil_scoped_release unlocked;
+  Heartbeat heartbeat;
+  for (std::int64_t i = 0; i < count; ++i) {
+    if (!forces_.empty()) {
+      const py::gil_scoped_acquire lock;
+      forces_.apply(engine_.model(), engine_.state(), self);
+    }
+    engine_.step();
+    forces_.take_off(engine_.state());
+    if (count > 1) heartbeat.beat();
+  }
+}
+
+EquilibriumReport PySimulation::equilibrium(py::handle self) {
+  const Turn turn(*this);
+  forces_.apply(engine_.model(), engine_.state(), self);
+  const py::gil_scoped_release unlocked;
+  return engine_.equilibrium();
+}
+
+RunOutcome PySimulation::run(Recorder& recorder, double until, const Callback& callback,
+                             const Tick& tick, const std::optional<std::filesystem::path>& out,
+                             py::handle self) {
+  const Turn turn(*this);
+  State& state = engine_.state();
+  const auto apply_forces = [&] {
+    if (forces_.empty()) return;
+    const py::gil_scoped_acquire lock;
+    forces_.apply(engine_.model(), state, self);
+  };
+  // Half a step of slack: the times of a run are sums of steps, with their rounding.
+  const double stop_at = until - 0.5 * engine_.scenario().scene().time.step;
+  Heartbeat heartbeat;
+  const auto after_step = [&](const Simulation&) {
+    forces_.take_off(state);
+    heartbeat.beat(tick);
+    bool go_on = state.time < stop_at;
+    if (callback) {
+      const py::gil_scoped_acquire lock;
+      go_on = callback() && go_on;
+    }
+    if (go_on && !engine_.finished()) apply_forces();
+    return go_on;
+  };
+  const py::gil_scoped_release unlocked;
+  apply_forces();
+  return out ? run_in_folder(RunFolder(*out), engine_, recorder, after_step)
+             : der::run(engine_, recorder, after_step);
+}
+
+void PySimulation::restore(const State& saved) {
+  const Turn turn(*this);
+  engine_.restore(saved);
+}
+
+}  // namespace der::python

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include "der/output/recorder.hpp"
+#include "der/output/run.hpp"
+#include "der/simulation.hpp"
+#include "force_functions.hpp"
+
+namespace der::python {
+
+namespace py = pybind11;
+
+/// A simulation as Python sees it: the engine, the force functions written in Python, and a guard
+/// against two callers at once, which the lock does not prevent since stepping lets go of it.
+class PySimulation {
+ public:
+  explicit PySimulation(Scenario scenario) : engine_(std::move(scenario)) {}
+
+  /// Called after every step of a run, with the lock held; returns false to stop.
+  using Callback = std::function<bool()>;
+  /// Called now and then while a run goes on, with the lock held.
+  using Tick = std::function<void()>;
+
+  /// `self` is the Python object of this simulation.
+  void step(std::int64_t count, py::handle self);
+  EquilibriumReport equilibrium(py::handle self);
+  /// Runs to the end of the scene, to time `until` [s], or until the callback says stop; with
+  /// `out`, the run is also written to that folder.
+  RunOutcome run(Recorder& recorder, double until, const Callback& callback, const Tick& tick,
+                 const std::optional<std::filesystem::path>& out, py::handle self);
+  void restore(const State& saved);
+
+  [[nodiscard]] Simulation& engine() { return engine_; }
+  [[nodiscard]] const Simulation& engine() const { return engine_; }
+  [[nodiscard]] ForceFunctions& forces() { return forces_; }
+  [[nodiscard]] const ForceFunctions& forces() const { return forces_; }
+
+ private:
+  class Turn;
+  Simulation engine_;
+  ForceFunctions forces_;
+  bool busy_ = false;
+};
+
+}  // namespace der::python

@@ -1,0 +1,135 @@
+#include "recording.hpp"
+
+#include <pybind11/stl.h>
+
+#include <cstdint>
+#include <utility>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "der/output/summary.hpp"
+#include "py_simulation.hpp"
+
+namespace der::python {
+namespace {
+
+PySimulation::Callback to_callback(const std::optional<py::function>& function) {
+  if (!function) return {};
+  return [function = *function] { return function().cast<bool>(); };
+}
+
+PySimulation::Tick to_tick(const std::optional<py::function>& function) {
+  if (!function) return [] {};
+  return [function = *function] { function(); };
+}
+
+/// A view of the columns of a (frames x columns) table, without a copy; `self` keeps it alive.
+py::array_t<double> table_view(const std::vector<double>& data, std::vector<py::ssize_t> shape,
+                               const py::object& self) {
+  return py::array_t<double>(std::move(shape), data.data(), self);
+}
+
+template <std::vector<double> MemorySink::* member>
+py::array_t<double> vectors(const py::object& self) {
+  const auto& recording = self.cast<const Recording&>();
+  const std::vector<double>& data = recording.frames.*member;
+  const auto frames = static_cast<py::ssize_t>(recording.frames.num_frames());
+  const py::ssize_t dimension = recording.dimension;
+  const auto entries = static_cast<py::ssize_t>(data.size());
+  const py::ssize_t nodes = frames == 0 ? 0 : entries / (frames * dimension);
+  return table_view(data, {frames, nodes, dimension}, self);
+}
+
+py::array_t<double> column(const std::vector<double>& data, const py::object& self) {
+  return table_view(data, {static_cast<py::ssize_t>(data.size())}, self);
+}
+
+py::dict energy_columns(const py::object& self) {
+  const MemorySink& frames = self.cast<const Recording&>().frames;
+  py::dict energies;
+  energies["kinetic"] = column(frames.kinetic_energy, self);
+  energies["stretch"] = column(frames.stretch_energy, self);
+  energies["bend"] = column(frames.bend_energy, self);
+  energies["gravity"] = column(frames.gravity_energy, self);
+  return energies;
+}
+
+py::dict probe_columns(const py::object& self) {
+  const auto& recording = self.cast<const Recording&>();
+  const auto frames = static_cast<py::ssize_t>(recording.frames.num_frames());
+  const std::size_t count = recording.probe_names.size();
+  const auto row = static_cast<py::ssize_t>(count * sizeof(double));
+  py::dict probes;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double* first = frames == 0 ? nullptr : recording.frames.probes.data() + i;
+    const py::array_t<double> strided({frames}, {row}, first, self);
+    probes[py::str(recording.probe_names[i])] = strided.attr("copy")();
+  }
+  return probes;
+}
+
+py::dict probe_units(const Recording& recording) {
+  py::dict units;
+  for (std::size_t i = 0; i < recording.probe_names.size(); ++i) {
+    units[py::str(recording.probe_names[i])] = recording.probe_units[i];
+  }
+  return units;
+}
+
+}  // namespace
+
+std::unique_ptr<Recording> record(const py::object& self,
+                                  const std::optional<py::function>& callback, double until,
+                                  const std::optional<py::function>& tick,
+                                  const std::optional<std::filesystem::path>& out) {
+  auto& simulation = self.cast<PySimulation&>();
+  auto recording = std::make_unique<Recording>();
+  recording->dimension = simulation.engine().model().dimension;
+  Recorder recorder(simulation.engine());
+  recorder.add(recording->frames);
+  for (const Probe& probe : recorder.probes()) {
+    recording->probe_names.push_back(probe.name());
+    recording->probe_units.push_back(probe.unit());
+  }
+  recording->outcome =
+      simulation.run(recorder, until, to_callback(callback), to_tick(tick), out, self);
+  recording->summary_json = summary_json(simulation.engine(), recorder, recording->outcome);
+  return recording;
+}
+
+void bind_recording(py::module_& module) {
+  py::class_<Recording>(
+      module, "Recording",
+      "What a run recorded, as the engine hands it over; der.Result is made of it.")
+      .def_property_readonly(
+          "status", [](const Recording& r) { return r.outcome.status; }, "How the run ended.")
+      .def_property_readonly(
+          "message", [](const Recording& r) { return r.outcome.message; },
+          "Why it failed; empty if it did not.")
+      .def_property_readonly(
+          "failed", [](const Recording& r) { return r.outcome.failed(); }, "Whether it failed.")
+      .def_readonly("summary_json", &Recording::summary_json, "Text of summary.json.")
+      .def_property_readonly(
+          "times",
+          [](const py::object& self) {
+            return column(self.cast<const Recording&>().frames.times, self);
+          },
+          "Times of the saved frames [s], shape (frames,).")
+      .def_property_readonly(
+          "steps",
+          [](const py::object& self) {
+            const std::vector<std::int64_t>& steps = self.cast<const Recording&>().frames.steps;
+            return py::array_t<std::int64_t>(static_cast<py::ssize_t>(steps.size()), steps.data(),
+                                             self);
+          },
+          "Time steps done at the saved frames, shape (frames,).")
+      .def_property_readonly("positions", &vectors<&MemorySink::positions>,
+                             "Node positions [m], shape (frames, nodes, dim).")
+      .def_property_readonly("velocities", &vectors<&MemorySink::velocities>,
+                             "Node velocities [m/s], shape (frames, nodes, dim).")
+      .def_property_readonly("energies", &energy_columns, "Energies [J] by name, shape (frames,).")
+      .def_property_readonly("probes", &probe_columns, "Probes by name, shape (frames,).")
+      .def_property_readonly("probe_units", &probe_units, "SI units of the probes by name.");
+}
+
+}  // namespace der::python

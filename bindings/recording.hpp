@@ -1,0 +1,36 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "der/output/memory_sink.hpp"
+#include "der/output/run.hpp"
+
+namespace der::python {
+
+namespace py = pybind11;
+
+/// Everything that a run recorded, in memory; der/simulation.py makes a Result of it.
+struct Recording {
+  RunOutcome outcome;
+  std::string summary_json;
+  MemorySink frames;
+  std::vector<std::string> probe_names;
+  std::vector<std::string> probe_units;
+  Index dimension = 0;
+};
+
+/// Runs the simulation `self` from its present state to the end of the scene, to time `until` [s],
+/// or until `callback()` returns false after a step, and records it; `tick()` is called now and
+/// then. With `out`, the run is also written to that folder while it goes on.
+std::unique_ptr<Recording> record(const py::object& self,
+                                  const std::optional<py::function>& callback, double until,
+                                  const std::optional<py::function>& tick,
+                                  const std::optional<std::filesystem::path>& out);
+
+}  // namespace der::python

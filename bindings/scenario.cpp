@@ -1,0 +1,108 @@
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bindings.hpp"
+#include "der/scenario/document.hpp"
+#include "der/scenario/reader.hpp"
+#include "values.hpp"
+
+namespace der::python {
+namespace {
+
+std::vector<Override> to_overrides(const py::kwargs& values) {
+  std::vector<Override> overrides;
+  for (const auto& [key, value] : values) {
+    const auto path = key.cast<std::string>();
+    overrides.emplace_back(path, scenario::to_flow_yaml(to_document_value(value, path)));
+  }
+  return overrides;
+}
+
+Scenario from_dict(const py::dict& scene) {
+  return Scenario::from_document(
+      std::make_shared<const scenario::Document>(to_document_value(scene, "")));
+}
+
+py::str repr(const Scenario& scenario) {
+  const std::string& source = scenario.source();
+  return py::str("<der.Scenario {!r}{}>")
+      .format(scenario.scene().title, source.empty() ? "" : " from " + source);
+}
+
+using ScenarioClass = py::class_<Scenario>;
+
+void bind_readers(ScenarioClass& cls) {
+  cls.def_static(
+         "load",
+         [](const std::filesystem::path& path, const py::kwargs& overrides) {
+           return Scenario::load(path, to_overrides(overrides));
+         },
+         py::arg("path"), py::pos_only(),
+         "Read and validate a scene file.\n\n"
+         "Keyword arguments replace values, as in `with_`. Raises SceneError with every complaint.")
+      .def_static(
+          "parse",
+          [](const std::string& text, const std::string& source, const py::kwargs& overrides) {
+            return Scenario::parse(text, source, to_overrides(overrides));
+          },
+          py::arg("text"), py::arg("source") = "scene", py::pos_only(),
+          "Read and validate a scene given as YAML text; `source` names it in messages.\n\n"
+          "Keyword arguments replace values, as in `with_`. Raises SceneError.")
+      .def_static("from_dict", &from_dict, py::arg("scene"),
+                  "Validate a scene given as a dict, with the keys of a scene file.\n\n"
+                  "Values may be None, bool, int, float, str, lists, tuples, dicts, NumPy scalars\n"
+                  "and arrays. Raises SceneError, whose messages name the key path.")
+      .def(
+          "with_",
+          [](const Scenario& scenario, const py::kwargs& overrides) {
+            return scenario.with(to_overrides(overrides));
+          },
+          "Return the same scene with some values replaced or added, validated again.\n\n"
+          "A key path names mappings by key and list items by `name` or number:\n"
+          "`scenario.with_(**{\"rods.beam.nodes\": 101, \"loads.0.gravity\": [0, -1.6]})`.");
+}
+
+void bind_facts(ScenarioClass& cls) {
+  cls.def_property_readonly(
+         "title", [](const Scenario& s) { return s.scene().title; }, "The scene's title.")
+      .def_property_readonly("source", &Scenario::source,
+                             "Name of the file or text; empty for a dict.")
+      .def_property_readonly(
+          "is_static",
+          [](const Scenario& s) { return s.scene().analysis == scenario::AnalysisKind::Static; },
+          "Whether the scene asks for an equilibrium (`analysis: static`), not for a motion.")
+      .def_property_readonly(
+          "duration", [](const Scenario& s) { return s.scene().time.duration; },
+          "Duration of the motion [s]; 0 for a static scene.")
+      .def("to_yaml", &Scenario::to_yaml,
+           "Return the scene as YAML text that reads back to the same scene.")
+      .def(
+          "to_dict", [](const Scenario& s) { return to_python(s.document().root()); },
+          "Return the scene as a new dict, as written: defaults are not filled in.")
+      .def("__repr__", &repr)
+      .def(py::pickle([](const Scenario& s) { return py::make_tuple(s.to_yaml(), s.source()); },
+                      [](const py::tuple& dumped) {
+                        return Scenario::parse(dumped[0].cast<std::string>(),
+                                               dumped[1].cast<std::string>());
+                      }));
+}
+
+}  // namespace
+
+void bind_scenario(py::module_& module) {
+  ScenarioClass cls(module, "Scenario",
+                    "A validated scene. It never changes; `with_` makes a new one.\n\n"
+                    "Made by `load`, `parse` or `from_dict`.");
+  bind_readers(cls);
+  bind_facts(cls);
+  module.def("json_schema", &json_schema,
+             "Return the JSON Schema of a scene file, as text, for editors.");
+  module.def("scene_reference", &scene_reference,
+             "Return the reference of all scene keys, in Markdown.");
+}
+
+}  // namespace der::python

@@ -1,0 +1,237 @@
+#include "py_simulation.hpp"
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <limits>
+#include <string>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "recording.hpp"
+#include "state.hpp"
+
+namespace der::python {
+namespace {
+
+/// Lets Python's collector see the force functions, which often refer back to the simulation.
+void support_cycle_collection(PyHeapTypeObject* heap_type) {
+  PyTypeObject& type = heap_type->ht_type;
+  type.tp_flags |= Py_TPFLAGS_HAVE_GC;
+  type.tp_traverse = [](PyObject* self, visitproc visit, void* arg) -> int {
+    Py_VISIT(Py_TYPE(self));
+    if (!py::detail::is_holder_constructed(self)) return 0;
+    return py::cast<PySimulation&>(py::handle(self)).forces().traverse(visit, arg);
+  };
+  type.tp_clear = [](PyObject* self) -> int {
+    if (py::detail::is_holder_constructed(self)) {
+      py::cast<PySimulation&>(py::handle(self)).forces().clear();
+    }
+    return 0;
+  };
+}
+
+/// A live view of one of the state's vectors as a property of the Python object.
+template <Vector State::* member>
+Array state_view(const py::object& self) {
+  Simulation& engine = self.cast<PySimulation&>().engine();
+  return live_view(engine.state().*member, engine.model().dimension, self);
+}
+
+py::dict probe_values(const PySimulation& simulation) {
+  const Simulation& engine = simulation.engine();
+  py::dict values;
+  for (const Probe& probe : make_probes(engine.scenario().scene(), engine.model())) {
+    values[py::str(probe.name())] = probe.value(engine.model(), engine.state());
+  }
+  return values;
+}
+
+void restore(PySimulation& simulation, const SavedState& saved) {
+  const Model& model = simulation.engine().model();
+  if (saved.dimension != model.dimension || saved.state.positions.size() != model.num_dofs()) {
+    throw py::value_error("the state has " + std::to_string(saved.state.positions.size()) +
+                          " degrees of freedom, this simulation has " +
+                          std::to_string(model.num_dofs()) +
+                          ": a state can only be restored into a simulation of the same rods");
+  }
+  simulation.restore(saved.state);
+}
+
+void bind_reports(py::module_& module) {
+  py::class_<Counters>(module, "Counters", "What a simulation has cost so far.")
+      .def_readonly("steps", &Counters::steps, "Time steps done.")
+      .def_readonly("newton_iterations", &Counters::newton_iterations, "Newton iterations done.")
+      .def_readonly("retried_steps", &Counters::retried_steps,
+                    "Steps that had to be done in smaller pieces.")
+      .def("__repr__", [](const Counters& c) {
+        return py::str("Counters(steps={}, newton_iterations={}, retried_steps={})")
+            .format(c.steps, c.newton_iterations, c.retried_steps);
+      });
+  py::class_<EquilibriumReport>(module, "EquilibriumReport",
+                                "How a search for an equilibrium ended.")
+      .def_readonly("newton_iterations", &EquilibriumReport::newton_iterations,
+                    "Newton iterations done.")
+      .def_readonly("relaxations", &EquilibriumReport::relaxations,
+                    "Pseudo-time steps taken on the way; 0: Newton's method found it directly.")
+      .def_readonly("residual", &EquilibriumReport::residual, "Largest unbalanced force [N].")
+      .def_readonly("force_scale", &EquilibriumReport::force_scale, "Largest acting force [N].")
+      .def_readonly("negative_pivots", &EquilibriumReport::negative_pivots,
+                    "Unstable directions of the equilibrium found; 0: it is stable.")
+      .def("__repr__", [](const EquilibriumReport& r) {
+        return py::str("EquilibriumReport(residual={:.3g} N, negative_pivots={})")
+            .format(r.residual, r.negative_pivots);
+      });
+}
+
+using PySimulationClass = py::class_<PySimulation>;
+
+void bind_arrays(PySimulationClass& cls) {
+  cls.def_property_readonly(
+         "positions", &state_view<&State::positions>,
+         "Node positions [m], shape (nodes, dim): a live, writable view of the engine's memory.\n\n"
+         "It follows every step, and stays valid as long as it is referenced. Held components are "
+         "put back\nby the next step. Copy it to keep values.")
+      .def_property_readonly(
+          "velocities", &state_view<&State::velocities>,
+          "Node velocities [m/s], shape (nodes, dim): a live, writable view, as `positions`.")
+      .def_property_readonly(
+          "extra_force", &state_view<&State::extra_force>,
+          "Forces on the nodes [N], shape (nodes, dim): a live, writable view, zero at the "
+          "start.\n\n"
+          "What is written acts, constant within a step, in every step until something else is "
+          "written.\nForces of `add_force` come on top of it.")
+      .def_property_readonly(
+          "mass",
+          [](const py::object& self) {
+            const Model& model = self.cast<PySimulation&>().engine().model();
+            const py::ssize_t stride = model.dimension * static_cast<py::ssize_t>(sizeof(double));
+            Array mass({py::ssize_t{model.num_nodes}}, {stride}, model.mass.data(), self);
+            mass.attr("setflags")(false);
+            return mass;
+          },
+          "Mass lumped on each node [kg], shape (nodes,), read-only.");
+}
+
+void bind_progress(PySimulationClass& cls) {
+  cls.def_property_readonly(
+         "time", [](const PySimulation& s) { return s.engine().state().time; },
+         "Simulated time [s].")
+      .def_property_readonly(
+          "step_count", [](const PySimulation& s) { return s.engine().state().step; },
+          "Time steps from time 0 to now.")
+      .def_property_readonly(
+          "total_steps", [](const PySimulation& s) { return s.engine().total_steps(); },
+          "Time steps from time 0 to the scene's duration.")
+      .def_property_readonly(
+          "finished", [](const PySimulation& s) { return s.engine().finished(); },
+          "Whether the scene's duration is reached. `step` goes on beyond it.")
+      .def_property_readonly(
+          "counters", [](const PySimulation& s) { return s.engine().counters(); },
+          "What the simulation has cost so far.");
+}
+
+void bind_facts(PySimulationClass& cls) {
+  cls.def_property_readonly(
+         "scenario", [](const PySimulation& s) { return s.engine().scenario(); },
+         "The scenario it was made from.")
+      .def_property_readonly(
+          "model", [](const PySimulation& s) -> const Model& { return s.engine().model(); },
+          "What stays constant: the chosen model and why, rods, degrees of freedom.")
+      .def_property_readonly(
+          "integrator",
+          [](const PySimulation& s) { return std::string(s.engine().integrator().name); },
+          "Name of the time integrator.")
+      .def_property_readonly(
+          "linear_solver",
+          [](const PySimulation& s) { return std::string(s.engine().linear_solver()); },
+          "Name of the linear solver.")
+      .def_property_readonly(
+          "linear_solver_reason",
+          [](const PySimulation& s) { return s.engine().linear_solver_reason(); },
+          "Why this linear solver was taken.")
+      .def_property_readonly(
+          "energies",
+          [](const PySimulation& s) { return energies(s.engine().model(), s.engine().state()); },
+          "Energies of the present state [J].")
+      .def_property_readonly("probes", &probe_values,
+                             "Present value of each probe of the scene, by name, in its SI unit.");
+}
+
+void bind_actions(PySimulationClass& cls) {
+  cls.def(
+         "step",
+         [](const py::object& self, std::int64_t n) { self.cast<PySimulation&>().step(n, self); },
+         py::arg("n") = 1,
+         "Advance by `n` time steps of the scene.\n\n"
+         "Other Python threads run meanwhile, and Ctrl-C interrupts between two steps. Raises\n"
+         "NotConvergedError or DivergedError; the state is then that of the last good step.")
+      .def(
+          "equilibrium",
+          [](const py::object& self) { return self.cast<PySimulation&>().equilibrium(self); },
+          "Move to the static equilibrium near the present state.\n\n"
+          "It is found under the loads at the present time, `extra_force` and the functions of\n"
+          "`add_force` (evaluated once, at the start) included. Velocities become zero. Raises\n"
+          "NotConvergedError.")
+      .def(
+          "add_force",
+          [](PySimulation& simulation, py::function function) {
+            simulation.forces().add(function);
+            return function;
+          },
+          py::arg("function"),
+          "Add a force: function(time, positions, velocities) -> (nodes, dim) array [N].\n\n"
+          "It is evaluated once at the start of every step, with live views of the state, and "
+          "acts\n"
+          "unchanged during that step, on top of `extra_force`. A force that depends on positions\n"
+          "or velocities is therefore explicit: a stiff one needs small steps. Returns the\n"
+          "function, so that it works as a decorator.")
+      .def(
+          "remove_force",
+          [](PySimulation& simulation, const py::function& function) {
+            simulation.forces().remove(function);
+          },
+          py::arg("function"), "Remove a force that was added. Raises ValueError if it was not.")
+      .def(
+          "save_state",
+          [](const PySimulation& simulation) {
+            const Simulation& engine = simulation.engine();
+            return SavedState{engine.state(), engine.model().dimension};
+          },
+          "Return a copy of the state, to go back to with `restore_state`.")
+      .def("restore_state", &restore, py::arg("state"),
+           "Go back (or forward) to a saved state, bit for bit. Views stay valid.\n\n"
+           "The state may come from another simulation of the same rods. Raises ValueError if it\n"
+           "does not fit.")
+      .def("record", &record, py::arg("callback") = py::none(),
+           py::arg("until") = std::numeric_limits<double>::infinity(), py::arg("tick") = py::none(),
+           py::arg("out") = py::none(),
+           "Run from the present state to the end of the scene, to time `until` [s], or until\n"
+           "`callback()` returns false after a step. `tick()` is called now and then; `out` is a\n"
+           "folder to write the run to. A failure is told by the recording, not raised.\n"
+           "`Simulation.run` makes a Result of it.")
+      .def("__repr__", [](const PySimulation& simulation) {
+        const Simulation& engine = simulation.engine();
+        return py::str("<der.Simulation of {!r}: {} nodes, t = {:.6g} s, step {} of {}>")
+            .format(engine.scenario().scene().title, engine.model().num_nodes, engine.state().time,
+                    engine.state().step, engine.total_steps());
+      });
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& module) {
+  bind_reports(module);
+  PySimulationClass cls(
+      module, "Simulation", py::custom_type_setup(support_cycle_collection),
+      "A scenario's model, its state, and the time integrator that advances it.\n\n"
+      "One thread at a time may use a simulation.");
+  cls.def(py::init<Scenario>(), py::arg("scenario"),
+          "Raises SceneError or DerError where the scene cannot be simulated.");
+  bind_arrays(cls);
+  bind_progress(cls);
+  bind_facts(cls);
+  bind_actions(cls);
+}
+
+}  // namespace der::python

@@ -1,0 +1,98 @@
+#include "state.hpp"
+
+#include <pybind11/stl.h>
+
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+
+namespace der::python {
+namespace {
+
+Array to_array(const Vector& vector) { return Array(vector.size(), vector.data()); }
+
+Vector to_vector(const Array& array) {
+  return Eigen::Map<const Vector>(array.data(), array.size());
+}
+
+// Both ways name every part of a state by a structured binding: one more part does not compile
+// until it is saved too.
+
+py::tuple dump(const SavedState& saved) {
+  const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history] =
+      saved.state;
+  py::list remembered;
+  for (const Vector& vector : history) remembered.append(to_array(vector));
+  return py::make_tuple(saved.dimension, time, step, to_array(positions), to_array(velocities),
+                        to_array(extra_force), to_array(accelerations), last_step, remembered);
+}
+
+SavedState revive(const py::tuple& dumped) {
+  SavedState saved;
+  auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history] =
+      saved.state;
+  saved.dimension = dumped[0].cast<Index>();
+  time = dumped[1].cast<double>();
+  step = dumped[2].cast<std::int64_t>();
+  positions = to_vector(dumped[3].cast<Array>());
+  velocities = to_vector(dumped[4].cast<Array>());
+  extra_force = to_vector(dumped[5].cast<Array>());
+  accelerations = to_vector(dumped[6].cast<Array>());
+  last_step = dumped[7].cast<double>();
+  for (const auto& vector : dumped[8].cast<std::vector<Array>>()) {
+    history.push_back(to_vector(vector));
+  }
+  return saved;
+}
+
+void bind_energies(py::module_& module) {
+  py::class_<Energies>(module, "Energies", "Energies of a state [J].")
+      .def_readonly("kinetic", &Energies::kinetic, "Kinetic energy [J].")
+      .def_readonly("stretch", &Energies::stretch, "Elastic energy of stretching [J].")
+      .def_readonly("bend", &Energies::bend, "Elastic energy of bending [J].")
+      .def_readonly("gravity", &Energies::gravity,
+                    "Potential energy of the weight [J], zero at the origin.")
+      .def_property_readonly("elastic", &Energies::elastic, "Stretching and bending together [J].")
+      .def_property_readonly("total", &Energies::total, "The sum of all [J].")
+      .def("__repr__", [](const Energies& e) {
+        return py::str("Energies(kinetic={:.6g}, stretch={:.6g}, bend={:.6g}, gravity={:.6g}) J")
+            .format(e.kinetic, e.stretch, e.bend, e.gravity);
+      });
+}
+
+}  // namespace
+
+void bind_state(py::module_& module) {
+  bind_energies(module);
+  py::class_<SavedState>(
+      module, "State",
+      "A saved state of a simulation: positions, velocities, time, written extra "
+      "forces and what the\ntime integrator remembers. It can be pickled; "
+      "restoring it goes back bit for bit.")
+      .def_property_readonly(
+          "time", [](const SavedState& s) { return s.state.time; }, "Time [s].")
+      .def_property_readonly(
+          "step_count", [](const SavedState& s) { return s.state.step; }, "Steps done.")
+      .def_property_readonly(
+          "positions",
+          [](const py::object& self) {
+            const auto& saved = self.cast<const SavedState&>();
+            return read_only_view(saved.state.positions, saved.dimension, self);
+          },
+          "Node positions [m], shape (nodes, dim), read-only.")
+      .def_property_readonly(
+          "velocities",
+          [](const py::object& self) {
+            const auto& saved = self.cast<const SavedState&>();
+            return read_only_view(saved.state.velocities, saved.dimension, self);
+          },
+          "Node velocities [m/s], shape (nodes, dim), read-only.")
+      .def(py::pickle(&dump, &revive))
+      .def("__repr__", [](const SavedState& s) {
+        return py::str("<der.State at t = {:.6g} s after {} steps, {} nodes>")
+            .format(s.state.time, s.state.step, s.state.positions.size() / s.dimension);
+      });
+}
+
+}  // namespace der::python

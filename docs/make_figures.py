@@ -1,0 +1,142 @@
+"""Make the pictures of the README and of the documentation.
+
+    python docs/make_figures.py [NAME...]
+
+Writes docs/images/NAME.png for each NAME, or for all of them.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import der
+import matplotlib.pyplot as plt
+import numpy as np
+from der.plotting import PALETTE, style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+DOCS = Path(__file__).resolve().parent
+CONFIGS = DOCS.parent / "configs"
+
+SWING: dict[str, Any] = {
+    "title": "A soft rod swings down from horizontal",
+    "rods": [
+        {
+            "name": "rod",
+            "nodes": 41,
+            "from": [0, 0],
+            "to": [1, 0],
+            "cross_section": {"circle": {"radius": 0.01}},
+            "material": {"youngs_modulus": 1e7, "density": 1000},
+        }
+    ],
+    "supports": [{"rod": "rod", "at": "start", "clamp": True}],
+    "loads": [{"gravity": [0, -9.81]}],
+    "time": {"duration": 1, "step": 0.001, "integrator": "implicit_midpoint"},
+    "output": {"every": 0.01, "probes": {"tip_y": {"rod": "rod", "at": "end", "quantity": "y"}}},
+}
+
+TUBE = ("simply_supported.yaml", "deflection", "loads.0.point_force.force.1")
+ARM = ("cantilever.yaml", "tip_y", "loads.0.point_force.force.1")
+# What is drawn, its scene, probe and path of the load, the load, and the continuum's value: from
+# tests/validation/references/values.json.
+REFERENCES = [
+    ("tube, 2 kN", *TUBE, -2000, -0.03771401492),
+    ("tube, 20 kN", *TUBE, -20000, -0.2380055980),
+    ("cantilever, PL²/EI = 1", *ARM, -1, -0.3017207738),
+    ("cantilever, PL²/EI = 10", *ARM, -10, -0.8106090249),
+]
+
+
+def swing() -> Figure:
+    """Draw the scene of the README and of the quick start."""
+    return der.run(SWING).plot("shapes", times=np.linspace(0, 0.5, 6).tolist())
+
+
+def falling_spheres() -> Figure:
+    """Draw shapes of the three falling spheres."""
+    return der.run(CONFIGS / "falling_beam_3.yaml").plot("shapes", times=[0, 4, 10])
+
+
+def simply_supported_20kN() -> Figure:
+    """Draw the tube under ten times the load that linear theory can take."""
+    return der.run(CONFIGS / "simply_supported_20kN.yaml").plot()
+
+
+def roll_up() -> Figure:
+    """Draw equilibria of a cantilever under a growing end moment."""
+    scene = der.load(CONFIGS / "roll_up.yaml")
+    whole = scene.to_dict()["loads"][0]["moment"]["moment"]
+    figure, axes = new_axes()
+    for share, colour in zip((0.25, 0.5, 0.75, 1.0), PALETTE, strict=False):
+        result = der.run(scene.with_(**{"loads.0.moment.moment": share * whole}))
+        axes.plot(*result.positions[-1].T, color=colour, linewidth=2.5, label=f"{share:g}")
+    axes.set(aspect="equal", xlabel="x [m]", ylabel="y [m]")
+    axes.legend(title="moment / (2π EI/L)", loc="center left", bbox_to_anchor=(1.0, 0.5))
+    return figure
+
+
+def convergence() -> Figure:
+    """Draw, and print, errors of equilibria with 10 to 80 elements; order 2 beside them."""
+    figure, axes = new_axes()
+    nodes = np.array([11, 21, 41, 81])
+    length = 1.0 / (nodes - 1)
+    for (label, config, probe, path, load, exact), colour in zip(REFERENCES, PALETTE, strict=False):
+        scene = der.load(CONFIGS / config, **{path: load})
+        rod = scene.to_dict()["rods"][0]
+        if "stiffness" in rod["cross_section"]:  # the reference does not stretch
+            scene = scene.with_(**{f"rods.{rod['name']}.cross_section.stiffness.EA": 1e7})
+        found = [
+            der.equilibrium(scene.with_(**{f"rods.{rod['name']}.nodes": n})).probes[probe][0]
+            for n in nodes.tolist()
+        ]
+        error = np.abs(np.array(found) - exact)
+        print(label, *(f"{e:.3g}" for e in error))
+        axes.loglog(length, error, "o-", color=colour, label=label)
+        axes.loglog(length, error[-1] * (length / length[-1]) ** 2, "--", color="0.6", zorder=1)
+    axes.plot([], [], "--", color="0.6", label="order 2")
+    axes.set_xticks(length, [f"1/{n - 1}" for n in nodes], minor=False)
+    axes.minorticks_off()
+    axes.set(xlabel="element length / rod length", ylabel="error [m]")
+    axes.legend()
+    return figure
+
+
+def new_axes() -> tuple[Figure, Axes]:
+    """Return a figure with one set of axes."""
+    return plt.subplots(figsize=(6, 4), layout="constrained")
+
+
+FIGURES: dict[str, Callable[[], Figure]] = {
+    make.__name__: make
+    for make in (swing, falling_spheres, simply_supported_20kN, roll_up, convergence)
+}
+
+
+def main() -> None:
+    """Write the pictures that the command line names."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(FIGURES))
+    names = parser.parse_args().names or list(FIGURES)
+    unknown = sorted(set(names) - set(FIGURES))
+    if unknown:
+        parser.error(f"no picture named {', '.join(unknown)}; there are {', '.join(FIGURES)}")
+    plt.switch_backend("agg")  # files are written and no window opened
+    (DOCS / "images").mkdir(exist_ok=True)
+    for name in names:
+        with style():
+            figure = FIGURES[name]()
+            path = DOCS / "images" / f"{name}.png"
+            figure.savefig(path, dpi=150)
+        plt.close(figure)
+        print(path.relative_to(DOCS.parent))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,89 @@
+"""Discrete elastic rods: fast, accurate simulation of slender elastic structures.
+
+Run a scene file and look at what came out::
+
+    import der
+
+    result = der.run("configs/simply_supported.yaml")
+    print(result.probes["deflection"][-1], result.probes["deflection"].unit)
+    result.plot().savefig("beam.png")
+
+Or drive the same engine step by step::
+
+    simulation = der.Simulation(der.load("configs/cantilever.yaml"))
+    while not simulation.finished:
+        simulation.extra_force[-1, 1] = -1.0
+        simulation.step()
+
+All quantities are in SI units.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from der._core import (
+    Counters,
+    Energies,
+    EquilibriumReport,
+    HeldNode,
+    Model,
+    Rod,
+    Scenario,
+    State,
+    __version__,
+    held_nodes,
+    json_schema,
+    scene_reference,
+)
+from der.errors import DerError, Diagnostic, DivergedError, NotConvergedError, SceneError
+from der.probe_series import ProbeSeries
+from der.result import Result
+from der.run_folder import open_run
+from der.simulation import Simulation, equilibrium, run
+
+if TYPE_CHECKING:
+    from der.plotting import plot
+
+load = Scenario.load
+
+__all__ = [
+    "Counters",
+    "DerError",
+    "Diagnostic",
+    "DivergedError",
+    "Energies",
+    "EquilibriumReport",
+    "HeldNode",
+    "Model",
+    "NotConvergedError",
+    "ProbeSeries",
+    "Result",
+    "Rod",
+    "Scenario",
+    "SceneError",
+    "Simulation",
+    "State",
+    "__version__",
+    "equilibrium",
+    "held_nodes",
+    "json_schema",
+    "load",
+    "open_run",
+    "plot",
+    "run",
+    "scene_reference",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Load matplotlib, which takes long, only when something is drawn."""
+    if name == "plot":
+        from der.plotting import plot
+
+        return plot
+    raise AttributeError(f"module 'der' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return __all__

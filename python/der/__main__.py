@@ -1,0 +1,7 @@
+"""``python -m der`` is the command ``der``."""
+
+import sys
+
+from der.cli import main
+
+sys.exit(main())

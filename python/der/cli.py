@@ -1,0 +1,45 @@
+"""The command ``der``: one subcommand for each file of ``der/commands``."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import pkgutil
+import sys
+from collections.abc import Sequence
+
+from der import __version__, commands
+from der.errors import DerError
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a subcommand and return its exit code: 0, or 1 with a message on stderr.
+
+    Parameters
+    ----------
+    arguments
+        In place of those of the process.
+    """
+    chosen = _make_parser().parse_args(arguments)
+    try:
+        return int(chosen.execute(chosen))
+    except (DerError, OSError, ValueError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+
+
+def _make_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="der", description="Simulate slender elastic rods, and look at what came out."
+    )
+    parser.add_argument("--version", action="version", version=f"der {__version__}")
+    subparsers = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    for name in sorted(module.name for module in pkgutil.iter_modules(commands.__path__)):
+        command = importlib.import_module(f"{commands.__name__}.{name}")
+        text = command.__doc__ or ""
+        subparser = subparsers.add_parser(name, help=text.partition("\n")[0], description=text)
+        command.add_arguments(subparser)
+        subparser.set_defaults(execute=command.execute)
+    return parser

@@ -1,0 +1,39 @@
+"""Run a scene; the same as the program der_run, which gets all arguments."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import sys
+import sysconfig
+from pathlib import Path
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Take everything that follows as it is."""
+    parser.add_argument(
+        "arguments", nargs="*", metavar="ARGUMENT", help="see `der_run --help` for them"
+    )
+    # No argument starts with this character, so that options, even --help, pass as arguments.
+    parser.prefix_chars = "\0"
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Turn this process into der_run."""
+    program = _find_program()
+    sys.stdout.flush()
+    os.execv(program, [str(program), *arguments.arguments])
+
+
+def _find_program() -> Path:
+    beside_python = Path(sysconfig.get_path("scripts"), "der_run")
+    if beside_python.exists():
+        return beside_python
+    on_path = shutil.which("der_run")
+    if on_path is None:
+        raise FileNotFoundError(
+            f"der_run is neither in {beside_python.parent} nor on the PATH; `pip install` of der "
+            "puts it there"
+        )
+    return Path(on_path)

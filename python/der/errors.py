@@ -1,0 +1,81 @@
+"""The errors that der raises on purpose."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from der.result import Result
+
+
+@dataclass(frozen=True)
+class Diagnostic:
+    """One complaint about a scene.
+
+    Attributes
+    ----------
+    line, column
+        Where it stands in the text, counted from 1; 0 for a scene that is no text.
+    path
+        The key path, such as ``rods.beam.nodes``.
+    message
+        What is wrong and, where one is near, the key that was meant.
+    """
+
+    line: int
+    column: int
+    path: str
+    message: str
+
+
+class DerError(RuntimeError):
+    """Base of every error that der raises on purpose.
+
+    Attributes
+    ----------
+    status
+        Short machine-readable name, the same as ``status`` in ``summary.json``.
+    result
+        What a failed run had recorded up to its last good step; None outside of runs.
+    """
+
+    def __init__(self, message: str, status: str = "error") -> None:
+        super().__init__(message)
+        self.status = status
+        self.result: Result | None = None
+
+
+class SceneError(DerError, ValueError):
+    """A scene that cannot be run as written.
+
+    Attributes
+    ----------
+    diagnostics
+        Every complaint found, in the order of the text.
+    """
+
+    def __init__(self, message: str, diagnostics: Sequence[Diagnostic] = ()) -> None:
+        super().__init__(message, "invalid_scene")
+        self.diagnostics: tuple[Diagnostic, ...] = tuple(diagnostics)
+
+
+class NotConvergedError(DerError):
+    """Newton's method found no solution, even with the smallest allowed time step."""
+
+    def __init__(self, message: str, status: str = "not_converged") -> None:
+        super().__init__(message, status)
+
+
+class DivergedError(DerError):
+    """The motion grew without bound, or a value stopped being a number."""
+
+    def __init__(self, message: str, status: str = "diverged") -> None:
+        super().__init__(message, status)
+
+
+def error_for(status: str, message: str) -> DerError:
+    """Return the error of the class that belongs to the status of a failed run."""
+    classes = {"not_converged": NotConvergedError, "diverged": DivergedError}
+    return classes.get(status, DerError)(message, status)

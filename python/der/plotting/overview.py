@@ -1,0 +1,182 @@
+"""The picture of a result: its shapes on top, its probes against time below."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from der._core import held_nodes
+from der.plotting.probes import draw_probe, mark_times
+from der.plotting.shapes import draw_shapes, limits, pick_frames
+from der.plotting.style import MUTED, style, time_colours, time_text
+from der.plotting.supports import draw_supports
+
+if TYPE_CHECKING:
+    from der.result import Result
+
+What = Literal["overview", "shapes", "probes"]
+
+_WIDTH = 7.2  # of the figure [inch]
+_SHAPE_WIDTH = 5.6  # of the axes of the shapes, beside their legend [inch]
+_SHAPE_HEIGHT = (1.7, 5.5)  # least and most [inch]
+_PROBE_HEIGHT = 1.55  # [inch]
+
+
+def plot(
+    result: Result,
+    what: What = "overview",
+    *,
+    times: Sequence[float] | None = None,
+    probes: Sequence[str] | None = None,
+    title: str | None = None,
+) -> Figure:
+    """Draw a result: shapes coloured by time, and probes against time.
+
+    Parameters
+    ----------
+    result
+        What ``der.run`` or ``der.open_run`` returned.
+    what
+        ``"shapes"``, ``"probes"``, or both: ``"overview"``.
+    times
+        Times [s] of the shapes; the nearest saved frame of each is drawn. Without it, up to six
+        frames that are evenly spaced along the way that the nodes travel.
+    probes
+        Names of the probes to draw; without it, all.
+    title
+        In place of the scene's title.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Made with pyplot, so that ``plt.show()`` shows it.
+
+    Raises
+    ------
+    ValueError
+        For a time outside of the run, or a probe that the scene has not.
+    """
+    names = _probe_names(result, probes) if what != "shapes" else []
+    frames = _frames_to_draw(result, times)
+    if what == "probes" and not names:
+        raise ValueError("the scene has no probes to plot; add some under output.probes")
+    with style():
+        if result.scenario.is_static:
+            figure = _plot_static(result, what, names)
+        else:
+            figure = _plot_motion(result, what, names, frames)
+        text = result.scenario.title if title is None else title
+        figure.align_ylabels()
+        figure.axes[0].set_title("\n".join(textwrap.wrap(text, 80)), pad=10)
+    return figure
+
+
+def _probe_names(result: Result, probes: Sequence[str] | None) -> list[str]:
+    if probes is None:
+        return list(result.probes)
+    unknown = [name for name in probes if name not in result.probes]
+    if unknown:
+        raise ValueError(
+            f"the scene has no probe {unknown[0]!r}; it has: {', '.join(result.probes) or 'none'}"
+        )
+    return list(probes)
+
+
+def _frames_to_draw(result: Result, times: Sequence[float] | None) -> list[int]:
+    if times is None:
+        return pick_frames(result.positions, 6)
+    first, last = float(result.times[0]), float(result.times[-1])
+    slack = 1e-9 * max(abs(first), abs(last))
+    for time in times:
+        if not first - slack <= time <= last + slack:
+            raise ValueError(f"no frame at {time} s: the run goes from {first:g} s to {last:g} s")
+    return sorted({int(np.argmin(np.abs(result.times - time))) for time in times})
+
+
+def _plot_motion(result: Result, what: What, names: list[str], frames: list[int]) -> Figure:
+    marks = result.times[frames]
+    shapes = [result.positions[frame] for frame in frames]
+    heights = [_PROBE_HEIGHT] * len(names)
+    if what == "probes":
+        figure, panels = _figure(heights)
+    else:
+        figure, panels = _figure([_shape_height(result, shapes), *heights])
+        labels = [time_text(time) for time in marks]
+        _draw_shape_panel(panels.pop(0), result, shapes, labels, float(marks[-1]))
+    for axes, name in zip(panels, names, strict=True):
+        probe = result.probes[name]
+        draw_probe(axes, result.times, probe, name, probe.unit)
+        if what == "overview":
+            mark_times(axes, result.times, probe, marks)
+        axes.sharex(panels[0])
+        axes.label_outer()
+    if panels:
+        panels[-1].set_xlabel("time [s]")
+    return figure
+
+
+def _plot_static(result: Result, what: What, names: list[str]) -> Figure:
+    equilibrium = result.positions[-1]
+    shapes = [result.model.initial_positions, equilibrium]
+    table_height = 0.25 + 0.2 * len(names)
+    if what == "probes":
+        figure, panels = _figure([table_height])
+    else:
+        heights = [_shape_height(result, shapes), *([table_height] if names else [])]
+        figure, panels = _figure(heights)
+        axes = panels.pop(0)
+        draw_shapes(axes, result.rods, shapes[0], MUTED, "as drawn", "--")
+        _draw_shape_panel(axes, result, [equilibrium], ["equilibrium"], float(result.times[-1]))
+    if panels:
+        _write_values(panels[0], result, names)
+    return figure
+
+
+def _figure(heights: list[float]) -> tuple[Figure, list[Axes]]:
+    figure, axes = plt.subplots(
+        len(heights),
+        1,
+        squeeze=False,
+        figsize=(_WIDTH, sum(heights) + 0.7),
+        height_ratios=heights,
+        layout="constrained",
+    )
+    return figure, list(axes[:, 0])
+
+
+def _shape_height(result: Result, shapes: Sequence[NDArray[np.float64]]) -> float:
+    """Return the height [inch] at which the shapes fill the width, within bounds."""
+    low, high = limits(result.rods, shapes)
+    width, height = high - low
+    return float(np.clip(_SHAPE_WIDTH * height / max(width, 1e-300) + 0.5, *_SHAPE_HEIGHT))
+
+
+def _draw_shape_panel(
+    axes: Axes,
+    result: Result,
+    shapes: Sequence[NDArray[np.float64]],
+    labels: Sequence[str],
+    time: float,
+) -> None:
+    for positions, label, colour in zip(shapes, labels, time_colours(len(shapes)), strict=True):
+        draw_shapes(axes, result.rods, positions, colour, label)
+    draw_supports(axes, result.rods, held_nodes(result.scenario, time), shapes[-1])
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.margins(0.06)
+    axes.autoscale_view()
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]")
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
+
+
+def _write_values(axes: Axes, result: Result, names: list[str]) -> None:
+    axes.set_axis_off()
+    lines = [f"{name} = {result.probes[name][-1]:.6g} {result.probes[name].unit}" for name in names]
+    axes.text(0.0, 1.0, "\n".join(lines), transform=axes.transAxes, va="top", linespacing=1.4)

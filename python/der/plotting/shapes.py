@@ -1,0 +1,128 @@
+"""Rods at some instants, drawn to scale, with their spheres."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PatchCollection, PolyCollection
+from matplotlib.colors import to_rgb
+from matplotlib.patches import Circle
+from matplotlib.typing import ColorType
+from numpy.typing import NDArray
+
+from der._core import Rod
+
+Array = NDArray[np.float64]
+
+
+def pick_frames(positions: Array, count: int) -> list[int]:
+    """Pick frames that tell a motion: evenly spaced along the way that the nodes travel.
+
+    Parameters
+    ----------
+    positions
+        Node positions [m], shape (frames, nodes, dim).
+    count
+        How many frames at most; the first and the last are always among them.
+
+    Returns
+    -------
+    list of int
+        Frame numbers, ascending. Fewer than `count` where the motion has not that many frames.
+    """
+    steps = np.sqrt(np.mean(np.sum(np.diff(positions, axis=0) ** 2, axis=2), axis=1))
+    way = np.concatenate([[0.0], np.cumsum(steps)])
+    targets = np.linspace(0.0, way[-1], count)[:-1]
+    frames = {int(np.argmin(np.abs(way - target))) for target in targets}
+    return sorted(frames | {len(positions) - 1})
+
+
+def outline(positions: Array, radius: float) -> Array:
+    """Return the outline of a rod of constant radius as a polygon.
+
+    Parameters
+    ----------
+    positions
+        Centre line [m], shape (nodes, 2).
+    radius
+        Half the thickness [m].
+
+    Returns
+    -------
+    array
+        Corners [m], shape (2 * nodes, 2): along the left side and back along the right side.
+    """
+    edges = np.diff(positions, axis=0)
+    tangents = edges / np.linalg.norm(edges, axis=1, keepdims=True)
+    # At a node the sides of the two edges meet on the bisector, at 1 / cos(half the turning angle);
+    # no farther than twice the radius, or a fold would have an endless spike.
+    sums = np.vstack([2.0 * tangents[:1], tangents[:-1] + tangents[1:], 2.0 * tangents[-1:]])
+    along = 2.0 * sums / np.maximum(np.sum(sums**2, axis=1, keepdims=True), 1.0)
+    normals = np.column_stack([-along[:, 1], along[:, 0]])
+    return np.vstack([positions + radius * normals, (positions - radius * normals)[::-1]])
+
+
+def draw_shapes(
+    axes: Axes,
+    rods: Iterable[Rod],
+    positions: Array,
+    colour: ColorType,
+    label: str | None = None,
+    linestyle: str = "-",
+) -> None:
+    """Draw all rods at one instant.
+
+    The centre line is a thin line, so that it shows at any zoom; the rod's thickness and the
+    spheres are true to scale.
+
+    Parameters
+    ----------
+    axes
+        Where to draw; equal axes are left to the caller.
+    rods
+        The rods; their `nodes` pick rows of `positions`.
+    positions
+        Positions of all nodes [m], shape (nodes, 2).
+    colour, linestyle
+        Of the centre line; thickness and spheres are a pale tone of the colour.
+    label
+        For the legend.
+    """
+    for rod in rods:
+        line = positions[rod.nodes]
+        axes.plot(line[:, 0], line[:, 1], color=colour, linestyle=linestyle, label=label, zorder=3)
+        label = None  # once for all rods of the instant
+        if linestyle == "-":
+            _draw_thickness(axes, rod, line, colour)
+            _draw_spheres(axes, rod, line, colour)
+
+
+def _draw_thickness(axes: Axes, rod: Rod, line: Array, colour: ColorType) -> None:
+    if rod.radius > 0.0:
+        body = PolyCollection(
+            [outline(line, rod.radius)], facecolor=colour, alpha=0.3, linewidth=0.0, zorder=2
+        )
+        axes.add_collection(body)
+
+
+def _draw_spheres(axes: Axes, rod: Rod, line: Array, colour: ColorType) -> None:
+    radii = rod.sphere_radii
+    circles = [Circle((x, y), r) for (x, y), r in zip(line, radii, strict=True) if r > 0.0]
+    if circles:
+        axes.add_collection(
+            PatchCollection(circles, facecolor=(*to_rgb(colour), 0.12), edgecolor=colour, zorder=1)
+        )
+
+
+def limits(rods: Sequence[Rod], shapes: Sequence[Array]) -> tuple[Array, Array]:
+    """Return the lower left and upper right corner [m] of what `draw_shapes` draws."""
+    low = np.full(2, np.inf)
+    high = np.full(2, -np.inf)
+    for positions in shapes:
+        for rod in rods:
+            around = np.maximum(rod.sphere_radii, rod.radius)[:, np.newaxis]
+            low = np.minimum(low, (positions[rod.nodes] - around).min(axis=0))
+            high = np.maximum(high, (positions[rod.nodes] + around).max(axis=0))
+    return low, high

@@ -1,0 +1,74 @@
+"""The look that all pictures share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import matplotlib as mpl
+from cycler import cycler
+from matplotlib.typing import ColorType
+
+#: Colours of Okabe and Ito, told apart with every common form of colour blindness.
+PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+
+#: What is not the result itself: supports, zero lines, reference shapes.
+MUTED = "#6b6b6b"
+
+_SETTINGS: dict[Any, Any] = {
+    "axes.axisbelow": True,
+    "axes.edgecolor": "#8a8a8a",
+    "axes.formatter.limits": (-3, 4),
+    "axes.formatter.use_mathtext": True,
+    "axes.formatter.useoffset": False,
+    "axes.grid": True,
+    "axes.labelsize": 10,
+    "axes.prop_cycle": cycler(color=PALETTE),
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlelocation": "left",
+    "axes.titlesize": 11,
+    "figure.dpi": 110,
+    "figure.titlesize": 12,
+    "font.size": 9,
+    "grid.color": "#e4e4e4",
+    "grid.linewidth": 0.6,
+    "legend.frameon": False,
+    "lines.linewidth": 1.4,
+    "lines.solid_capstyle": "round",
+    "savefig.dpi": 150,
+    "xtick.color": "#8a8a8a",
+    "xtick.labelcolor": "black",
+    "ytick.color": "#8a8a8a",
+    "ytick.labelcolor": "black",
+}
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """Draw in the style of der within a ``with`` block; settings outside stay as they are."""
+    with mpl.rc_context(_SETTINGS):
+        yield
+
+
+def time_colours(count: int) -> list[ColorType]:
+    """Return `count` colours that run from dark (early) to light (late).
+
+    They are taken from viridis, whose lightness rises evenly, without its palest end, which does
+    not show on white. A single instant gets the first colour of the palette.
+    """
+    if count == 1:
+        return [PALETTE[0]]
+    colour_map = mpl.colormaps["viridis"]
+    return [colour_map(0.88 * i / (count - 1)) for i in range(count)]
+
+
+def axis_label(name: str, unit: str) -> str:
+    """Return ``name [unit]``, or the name alone for a quantity without a unit."""
+    return f"{name} [{unit}]" if unit not in ("", "1") else name
+
+
+def time_text(seconds: float) -> str:
+    """Return a time in as few digits as tell it, such as ``0.05 s``."""
+    return f"{seconds:.4g} s"

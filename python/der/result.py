@@ -1,0 +1,102 @@
+"""What a run recorded."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from der._core import Model, Rod, Scenario
+from der.probe_series import ProbeSeries
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from der.plotting.overview import What
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """What a run recorded: its saved frames, probes and summary.
+
+    Attributes
+    ----------
+    scenario
+        The scenario that was run.
+    times
+        Times of the saved frames [s], shape (frames,).
+    steps
+        Time steps done at the saved frames, shape (frames,).
+    positions
+        Node positions [m], shape (frames, nodes, dim).
+    velocities
+        Node velocities [m/s], shape (frames, nodes, dim).
+    energies
+        Energies [J] by name (``kinetic``, ``stretch``, ``bend``, ``gravity``), each of shape
+        (frames,).
+    probes
+        Probes by name, each an array of shape (frames,) with its ``unit`` and ``summary``.
+    summary
+        What ``summary.json`` of a run folder says: status, model, solver, costs, probes.
+    """
+
+    scenario: Scenario
+    times: NDArray[np.float64]
+    steps: NDArray[np.int64]
+    positions: NDArray[np.float64]
+    velocities: NDArray[np.float64]
+    energies: dict[str, NDArray[np.float64]]
+    probes: dict[str, ProbeSeries]
+    summary: dict[str, Any]
+
+    @property
+    def status(self) -> str:
+        """``completed``, ``static_converged``, ``stopped``, or the name of a failure."""
+        return str(self.summary["status"])
+
+    @cached_property
+    def model(self) -> Model:
+        """What stayed constant in the run."""
+        return Model(self.scenario)
+
+    @property
+    def rods(self) -> list[Rod]:
+        """The rods: which nodes are theirs, arc lengths, radii."""
+        return self.model.rods
+
+    def plot(
+        self,
+        what: What = "overview",
+        *,
+        times: Sequence[float] | None = None,
+        probes: Sequence[str] | None = None,
+        title: str | None = None,
+    ) -> Figure:
+        """Draw the shapes coloured by time and the probes against time; see `der.plot`."""
+        from der.plotting import plot  # here, because matplotlib takes long to load
+
+        return plot(self, what, times=times, probes=probes, title=title)
+
+    def save(self, folder: str | os.PathLike[str]) -> Path:
+        """Write a run folder that `der.open_run` reads, and return its path.
+
+        It has ``results.h5``, ``summary.json`` and ``scene.yaml``, as der_run writes them, but no
+        checkpoint: it cannot be resumed.
+        """
+        from der.run_folder import save_run
+
+        return save_run(self, folder)
+
+    def __repr__(self) -> str:
+        """Return title, status and size in one line."""
+        frames, nodes, _ = self.positions.shape
+        return (
+            f"<der.Result of {self.scenario.title!r}: {self.status}, {frames} frames of "
+            f"{nodes} nodes, probes: {', '.join(self.probes) or 'none'}>"
+        )

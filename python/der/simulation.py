@@ -1,0 +1,216 @@
+"""Running scenes: step by step, or to the end with everything recorded."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Callable, Mapping
+from typing import Any, TypeAlias
+
+from der import _core
+from der._core import Recording, Scenario
+from der.errors import error_for
+from der.probe_series import make_probes
+from der.progress import ProgressFunction, ProgressLine
+from der.result import Result
+
+#: A scenario, the path of a scene file, or a dict with the keys of a scene file.
+SceneLike: TypeAlias = "Scenario | str | os.PathLike[str] | dict[str, Any]"
+
+#: Called after every step; False stops the run, True and None let it go on.
+StepCallback: TypeAlias = "Callable[[Simulation], bool | None]"
+
+
+class Simulation(_core.Simulation):
+    """A scenario's model, its state, and the time integrator that advances it.
+
+    ``positions``, ``velocities`` and ``extra_force`` are live NumPy views of the engine's memory,
+    shape (nodes, dim), in m, m/s and N. One thread at a time may use a simulation.
+
+    Parameters
+    ----------
+    scenario
+        What to simulate.
+
+    Raises
+    ------
+    SceneError, DerError
+        Where the scene cannot be simulated.
+    """
+
+    def run(
+        self,
+        callback: StepCallback | None = None,
+        until: float | None = None,
+        *,
+        out: str | os.PathLike[str] | None = None,
+        progress: bool | ProgressFunction = False,
+        check: bool = True,
+    ) -> Result:
+        """Run from the present state to the end of the scene and record it.
+
+        A static scene is brought to its equilibrium. Other Python threads run meanwhile, and Ctrl-C
+        interrupts between two steps.
+
+        Parameters
+        ----------
+        callback
+            Called with this simulation after every step; returning False stops the run, with the
+            status ``stopped``; True or None lets it go on. It may read the state and write to the
+            views, but not step.
+        until
+            Stop at this time [s] instead of at the scene's end, with the status ``stopped``.
+        out
+            Folder to write the run to while it goes on, with the same files as der_run.
+        progress
+            True for a progress line on stderr, or a function that is told now and then how much is
+            done, from 0 to 1.
+        check
+            Whether a run that fails raises; otherwise `Result.status` tells.
+
+        Returns
+        -------
+        Result
+            The saved frames (every ``output.every`` seconds and the last), probes and summary.
+
+        Raises
+        ------
+        NotConvergedError, DivergedError
+            If the run fails; their ``result`` holds everything up to the last good step.
+        ValueError
+            If `until` lies before the present time or beyond the scene's end.
+        """
+        end = self._end_time(until)
+        line = ProgressLine() if progress is True else None
+        report = progress if callable(progress) else line
+        try:
+            recording = self.record(
+                callback=None if callback is None else lambda: _goes_on(callback(self)),
+                until=end,
+                tick=None if report is None else lambda: report(self._share_done(end)),
+                out=out,
+            )
+        finally:
+            if line is not None:
+                line.close()
+        result = _to_result(self.scenario, recording)
+        if check and recording.failed:
+            error = error_for(recording.status, recording.message)
+            error.result = result
+            raise error
+        return result
+
+    def _end_time(self, until: float | None) -> float:
+        if until is None:
+            return math.inf
+        if self.scenario.is_static:
+            raise ValueError("a static scene has no time to run until")
+        if not self.time <= until <= self.scenario.duration * (1.0 + 1e-12):
+            raise ValueError(
+                f"until = {until:g} s must lie between the present time, {self.time:g} s, and the "
+                f"scene's end, {self.scenario.duration:g} s; for a longer run, vary the scenario "
+                'with with_(**{"time.duration": ...})'
+            )
+        return until
+
+    def _share_done(self, end: float) -> float:
+        duration = min(end, self.scenario.duration)
+        return self.time / duration if duration > 0.0 else 0.0
+
+
+def _goes_on(answer: bool | None) -> bool:
+    # Not `is not False`: a comparison of NumPy numbers answers with NumPy's own False.
+    return answer is None or bool(answer)
+
+
+def run(
+    scenario: SceneLike,
+    out: str | os.PathLike[str] | None = None,
+    callback: StepCallback | None = None,
+    progress: bool | ProgressFunction = False,
+    *,
+    check: bool = True,
+) -> Result:
+    """Run a scene from its start to its end and return what was recorded.
+
+    Parameters
+    ----------
+    scenario
+        A scenario, the path of a scene file, or a dict with the keys of a scene file.
+    out, callback, progress, check
+        As for `Simulation.run`.
+
+    Returns
+    -------
+    Result
+        The saved frames, probes and summary.
+
+    Raises
+    ------
+    SceneError
+        If the scene cannot be run as written.
+    NotConvergedError, DivergedError
+        If the run fails; their ``result`` holds everything up to the last good step.
+
+    Examples
+    --------
+    >>> result = der.run("configs/simply_supported.yaml")
+    >>> result.summary["probes"]["deflection"]["final"]
+    """
+    simulation = Simulation(as_scenario(scenario))
+    return simulation.run(callback, out=out, progress=progress, check=check)
+
+
+def equilibrium(scenario: SceneLike) -> Result:
+    """Find the static equilibrium of a scene, whatever its `time` says.
+
+    Parameters
+    ----------
+    scenario
+        A scenario, the path of a scene file, or a dict with the keys of a scene file. The loads are
+        those at time 0.
+
+    Returns
+    -------
+    Result
+        With one frame.
+
+    Raises
+    ------
+    NotConvergedError
+        If no equilibrium is found.
+    """
+    scene = as_scenario(scenario)
+    return run(scene if scene.is_static else _as_static(scene))
+
+
+def _as_static(scenario: Scenario) -> Scenario:
+    scene = scenario.to_dict()
+    for key in ("time", "analysis"):
+        scene.pop(key, None)
+    scene.get("output", {}).pop("every", None)
+    return Scenario.from_dict({**scene, "analysis": "static"})
+
+
+def as_scenario(scenario: SceneLike) -> Scenario:
+    """Return a scenario as it is; load a path; validate a dict."""
+    if isinstance(scenario, Scenario):
+        return scenario
+    if isinstance(scenario, Mapping):
+        return Scenario.from_dict(scenario)
+    return Scenario.load(scenario)
+
+
+def _to_result(scenario: Scenario, recording: Recording) -> Result:
+    summary = json.loads(recording.summary_json)
+    return Result(
+        scenario=scenario,
+        times=recording.times,
+        steps=recording.steps,
+        positions=recording.positions,
+        velocities=recording.velocities,
+        energies=recording.energies,
+        probes=make_probes(recording.probes, recording.probe_units, summary),
+        summary=summary,
+    )

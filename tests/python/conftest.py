@@ -1,0 +1,101 @@
+import copy
+from typing import Any
+
+import matplotlib as mpl
+import pytest
+
+mpl.use("agg")
+
+TUBE: dict[str, Any] = {
+    "title": "Tube on two supports",
+    "rods": [
+        {
+            "name": "beam",
+            "nodes": 21,
+            "from": [0, 0],
+            "to": [1, 0],
+            "cross_section": {"tube": {"inner_radius": 0.011, "outer_radius": 0.013}},
+            "material": {"youngs_modulus": 70e9, "density": 2700},
+        }
+    ],
+    "supports": [
+        {"rod": "beam", "at": "start", "fix": ["x", "y"]},
+        {"rod": "beam", "at": "end", "fix": ["y"]},
+    ],
+    "loads": [{"point_force": {"rod": "beam", "at": 0.75, "force": [0, -2000]}}],
+    "time": {"duration": 0.5, "step": 0.01, "integrator": "implicit_euler"},
+    "output": {
+        "every": 0.02,
+        "probes": {
+            "deflection": {"rod": "beam", "quantity": "y", "over": "rod", "reduce": "min"},
+            "roller": {"rod": "beam", "at": "end", "quantity": "x"},
+        },
+    },
+}
+
+SWING: dict[str, Any] = {
+    "title": "Swinging rod",
+    "rods": [
+        {
+            "name": "arm",
+            "nodes": 11,
+            "from": [0, 0],
+            "to": [1, 0],
+            "cross_section": {"circle": {"radius": 0.01}},
+            "material": {"youngs_modulus": 1e7, "density": 1000},
+        }
+    ],
+    "supports": [{"rod": "arm", "at": "start", "clamp": True}],
+    "loads": [{"gravity": [0, -9.81]}],
+    "time": {"duration": 0.2, "step": 0.002, "integrator": "implicit_euler"},
+    "output": {"every": 0.01, "probes": {"tip": {"rod": "arm", "at": "end", "quantity": "y"}}},
+}
+
+SPHERES: dict[str, Any] = {
+    "title": "Three spheres in a fluid",
+    "rods": [
+        {
+            "name": "rod",
+            "nodes": 3,
+            "from": [0, 0],
+            "to": [0.1, 0],
+            "cross_section": {"circle": {"radius": 0.001}},
+            "material": {"youngs_modulus": 1e9, "density": 0},
+            "curvature": "tangent",
+            "spheres": [
+                {"at": "all", "radius": 0.005, "density": 7000},
+                {"at": "middle", "radius": 0.025, "density": 7000},
+            ],
+        }
+    ],
+    "loads": [{"gravity": [0, -9.8]}, {"fluid": {"density": 1000, "viscosity": 1000}}],
+    "time": {"duration": 1, "step": 0.01, "integrator": "implicit_euler"},
+    "output": {
+        "probes": {
+            "v_mid": {"rod": "rod", "at": "middle", "quantity": "vy"},
+            "angle": {"rod": "rod", "at": "middle", "quantity": "turning_angle"},
+        }
+    },
+}
+
+
+@pytest.fixture
+def tube() -> dict[str, Any]:
+    return copy.deepcopy(TUBE)
+
+
+@pytest.fixture
+def swing() -> dict[str, Any]:
+    return copy.deepcopy(SWING)
+
+
+@pytest.fixture
+def spheres() -> dict[str, Any]:
+    return copy.deepcopy(SPHERES)
+
+
+@pytest.fixture
+def unstable(spheres: dict[str, Any]) -> dict[str, Any]:
+    """The explicit scheme with a step at which drag makes it blow up."""
+    spheres["time"] = {"duration": 1, "step": 1e-4, "integrator": "explicit_euler"}
+    return spheres

@@ -1,0 +1,121 @@
+"""The command der."""
+
+import json
+import subprocess
+import sys
+
+import der
+import pytest
+from der.cli import main
+from matplotlib.image import imread
+
+
+def command(*arguments, **options):
+    line = [sys.executable, "-m", "der", *map(str, arguments)]
+    return subprocess.run(line, capture_output=True, text=True, check=False, **options)
+
+
+@pytest.fixture
+def scene(tube, tmp_path):
+    path = tmp_path / "tube.yaml"
+    path.write_text(der.Scenario.from_dict(tube).to_yaml())
+    return path
+
+
+def test_help_lists_every_command(capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(["--help"])
+    assert caught.value.code == 0
+    listed = capsys.readouterr().out
+    for name in ("run", "check", "schema", "plot"):
+        assert f"\n    {name} " in listed
+
+
+def test_version(capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(["--version"])
+    assert caught.value.code == 0
+    assert capsys.readouterr().out == f"der {der.__version__}\n"
+
+
+def test_run_is_the_program(scene, tmp_path):
+    done = command(
+        "run", "--quiet", scene, "--out", tmp_path / "run", "--set", "rods.beam.nodes=11"
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    result = der.open_run(tmp_path / "run")
+    assert result.status == "completed"
+    assert result.positions.shape[1] == 11
+    assert "--resume" in command("run", "--help").stdout
+    assert command("run", "no_such.yaml").returncode not in (0, 1)
+
+
+def test_run_with_no_program_to_be_found(monkeypatch, capsys):
+    monkeypatch.setattr("sysconfig.get_path", lambda _: "/nowhere")
+    monkeypatch.setattr("shutil.which", lambda _: None)
+    assert main(["run", "scene.yaml"]) == 1
+    assert "der_run" in capsys.readouterr().err
+
+
+def test_check_valid(scene, capsys):
+    assert main(["check", str(scene), str(scene)]) == 0
+    captured = capsys.readouterr()
+    assert captured.out == f"{scene}: valid (Tube on two supports)\n" * 2
+    assert captured.err == ""
+
+
+def test_check_invalid_goes_on_with_the_other_files(scene, tmp_path, capsys):
+    bad = tmp_path / "bad.yaml"
+    bad.write_text(scene.read_text().replace("title:", "titel:").replace("nodes: 21", "nodes: x"))
+    assert main(["check", str(bad), str(scene)]) == 1
+    captured = capsys.readouterr()
+    lines = captured.err.splitlines()
+    assert lines[0].startswith(f"{bad}:1:1: titel")
+    assert len(lines) == 2
+    assert "valid" in captured.out
+
+
+def test_schema(capsys):
+    assert main(["schema"]) == 0
+    schema = json.loads(capsys.readouterr().out)
+    assert "rods" in schema["properties"]
+    assert main(["schema", "--markdown"]) == 0
+    assert "youngs_modulus" in capsys.readouterr().out
+
+
+def test_plot_writes_a_picture(tube, tmp_path, capsys):
+    der.run(tube, out=tmp_path / "run")
+    assert main(["plot", str(tmp_path / "run")]) == 0
+    assert capsys.readouterr().out == f"{tmp_path / 'run' / 'plot.png'}\n"
+    picture = imread(tmp_path / "run" / "plot.png")
+    assert picture.shape[1] > 600
+    assert len({tuple(pixel) for pixel in picture.reshape(-1, 4)}) > 50
+
+    out = tmp_path / "shapes.svg"
+    options = ["--what", "shapes", "--times", "0", "0.5", "--out", str(out)]
+    assert main(["plot", str(tmp_path / "run"), *options]) == 0
+    assert "<svg" in out.read_text()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [(["plot", "no_such_run"], "no_such_run"), (["plot", "RUN", "--probes", "speed"], "speed")],
+)
+def test_errors_are_one_line_on_stderr(tube, tmp_path, capsys, arguments, words):
+    der.run(tube, out=tmp_path / "run")
+    arguments = [str(tmp_path / "run") if word == "RUN" else word for word in arguments]
+    assert main(arguments) == 1
+    error = capsys.readouterr().err
+    assert error.startswith("error: ")
+    assert words in error
+    assert error.count("\n") == 1
+
+
+def test_matplotlib_is_loaded_only_to_draw():
+    script = (
+        "import sys, der, der.cli\n"
+        "der.cli.main(['schema'])\n"
+        "sys.exit('matplotlib' in sys.modules or 'h5py' in sys.modules)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, check=False)
+    assert done.returncode == 0

@@ -1,0 +1,468 @@
+"""The program der_run from outside: exit codes, run folders, kills, Ctrl-C and resuming."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import re
+import resource
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+
+DER_RUN = os.environ.get("DER_RUN", str(Path(sys.executable).with_name("der_run")))
+
+SPHERES = """\
+title: Three spheres
+rods:
+  - name: rod
+    nodes: 3
+    from: [0, 0]
+    to: [0.1, 0]
+    cross_section: {circle: {radius: 0.001}}
+    material: {youngs_modulus: 1e9, density: 0}
+    curvature: tangent
+    spheres:
+      - {at: all, radius: 0.005, density: 7000}
+      - {at: middle, radius: 0.025, density: 7000}
+loads:
+  - gravity: [0, -9.8]
+  - fluid: {density: 1000, viscosity: 1000}
+time: {duration: 10, step: 0.01, integrator: implicit_euler}
+output:
+  every: 0.01
+  probes:
+    v_mid: {rod: rod, at: middle, quantity: vy}
+    y_mid: {rod: rod, at: middle, quantity: y}
+"""
+
+CANTILEVER = """\
+title: Cantilever
+rods:
+  - name: arm
+    nodes: 21
+    from: [0, 0]
+    to: [1, 0]
+    cross_section: {stiffness: {EA: 1e4, EI: 1, mass_per_length: 1}}
+supports:
+  - {rod: arm, at: start, clamp: true}
+loads:
+  - point_force: {rod: arm, at: end, force: [0, -1]}
+analysis: static
+output:
+  probes:
+    tip: {rod: arm, at: end, quantity: y}
+"""
+
+# Long enough to be interrupted, with frames all the way.
+LONG = ["--set", "time.duration=1e5", "--set", "output.every=0.05"]
+COLUMNS = [
+    "time",
+    "step",
+    "positions",
+    "velocities",
+    "energies/kinetic",
+    "energies/stretch",
+    "energies/bend",
+    "energies/gravity",
+    "probes/v_mid",
+    "probes/y_mid",
+]
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    path = tmp_path / "spheres.yaml"
+    path.write_text(SPHERES)
+    return path
+
+
+def der_run(*arguments: str | Path, **options: Any) -> subprocess.CompletedProcess[str]:
+    command = [DER_RUN, *map(str, arguments)]
+    return subprocess.run(
+        command, capture_output=True, text=True, timeout=120, check=False, **options
+    )
+
+
+def start(*arguments: str | Path) -> subprocess.Popen[str]:
+    command = [DER_RUN, *map(str, arguments)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def wait_for_frames(results: Path, count: int) -> None:
+    """Until the file of a run that goes on holds so many frames."""
+    deadline = time.monotonic() + 60
+    while time.monotonic() < deadline:
+        try:
+            with h5py.File(results, "r", locking=False) as file:
+                if len(file["time"]) >= count:
+                    return
+        except (OSError, KeyError):
+            pass  # not there yet, or caught in the middle of a write
+        time.sleep(0.01)
+    pytest.fail(f"{results} did not come to {count} frames")
+
+
+def summary_of(folder: Path) -> dict[str, Any]:
+    summary: dict[str, Any] = json.loads((folder / "summary.json").read_text())
+    return summary
+
+
+def assert_same_results(a: Path, b: Path) -> None:
+    with h5py.File(a / "results.h5") as first, h5py.File(b / "results.h5") as second:
+        for name in COLUMNS:
+            assert np.array_equal(first[name][:], second[name][:]), name
+
+
+def test_a_run_prints_a_summary_and_writes_its_folder(scene: Path, tmp_path: Path) -> None:
+    done = der_run(scene, "--out", tmp_path / "out")
+    assert done.returncode == 0
+    assert done.stderr == ""
+    for part in ("Three spheres", "completed", "planar", "implicit_euler", "banded", "v_mid"):
+        assert part in done.stdout
+    assert "\x1b" not in done.stdout, "colours belong on a terminal only"
+    summary = summary_of(tmp_path / "out")
+    assert summary["status"] == "completed"
+    assert summary["steps"] == 1000
+    assert summary["probes"]["v_mid"]["final"] == pytest.approx(-0.0059661, abs=5e-8)
+    assert summary["probes"]["y_mid"]["final"] == pytest.approx(-0.066153, abs=5e-7)
+
+
+def test_the_default_folder_is_named_after_the_scene(scene: Path, tmp_path: Path) -> None:
+    assert der_run(scene.name, cwd=tmp_path).returncode == 0
+    assert (tmp_path / "runs" / "spheres" / "summary.json").exists()
+
+
+def test_results_are_laid_out_as_documented(scene: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    der_run(scene, "--out", out)
+    with h5py.File(out / "results.h5") as file:
+        assert file["positions"].shape == (1001, 3, 2)
+        assert file["velocities"].shape == (1001, 3, 2)
+        assert np.allclose(file["time"][:], 0.01 * np.arange(1001), rtol=1e-13, atol=0)
+        assert np.array_equal(file["step"][:], np.arange(1001))
+        assert np.array_equal(file["probes/y_mid"][:], file["positions"][:, 1, 1])
+        assert file["probes/v_mid"].attrs["unit"] == "m/s"
+        assert file["rods/rod"].attrs["EI"] == pytest.approx(1e9 * np.pi * 0.001**4 / 4)
+        assert file["rods/rod"].attrs["radius"] == 0.001
+        assert list(file["rods/rod/sphere_radius"][:]) == [0.005, 0.025, 0.005]
+        assert file.attrs["status"] == "completed"
+        assert file.attrs["dimension"] == 2
+        assert file["scene"].asstr()[()] == (out / "scene.yaml").read_text()
+        without_unit: list[str] = []
+
+        def look_at(name: str, item: object) -> None:
+            if isinstance(item, h5py.Dataset) and "unit" not in item.attrs:
+                without_unit.append(name)
+
+        file.visititems(look_at)
+        assert without_unit == []
+        for name in COLUMNS:
+            assert np.all(np.isfinite(file[name][:])), name
+
+
+def test_the_scene_is_saved_with_its_overrides(scene: Path, tmp_path: Path) -> None:
+    first = tmp_path / "first"
+    second = tmp_path / "second"
+    assert der_run(scene, "--set", "rods.rod.nodes=5", "--quiet", "--out", first).returncode == 0
+    assert der_run(first / "scene.yaml", "--quiet", "--out", second).returncode == 0
+    assert summary_of(second)["nodes"] == 5
+    assert_same_results(first, second)
+
+
+def test_quiet_prints_nothing_but_errors(scene: Path, tmp_path: Path) -> None:
+    done = der_run(scene, "--quiet", "--out", tmp_path / "out")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    done = der_run(scene, "--quiet", "--set", "time.step=-1", "--out", tmp_path / "out")
+    assert done.returncode == 1
+    assert "time.step" in done.stderr
+
+
+def test_check_says_what_would_run_and_writes_nothing(scene: Path, tmp_path: Path) -> None:
+    done = der_run(scene, "--check", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "scene is valid" in done.stdout
+    assert "planar" in done.stdout
+    assert "6 degrees of freedom" in done.stdout
+    assert not (tmp_path / "runs").exists()
+
+
+def test_every_mistake_of_a_scene_is_reported_with_its_place(tmp_path: Path) -> None:
+    path = tmp_path / "wrong.yaml"
+    path.write_text(SPHERES.replace("duration", "durration").replace("youngs", "yuongs"))
+    for option in ([], ["--check"]):
+        done = der_run(path, *option, cwd=tmp_path)
+        assert done.returncode == 1
+        lines = done.stderr.splitlines()
+        assert any(line.startswith(f"{path}:8:") and "youngs_modulus" in line for line in lines)
+        assert any(line.startswith(f"{path}:16:") and "duration" in line for line in lines)
+        assert not (tmp_path / "runs").exists()
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["--no-such-option"],
+        ["scene.yaml", "--set"],
+        ["scene.yaml", "--set", "no_equals"],
+        ["scene.yaml", "--set", "=1"],
+        ["scene.yaml", "--check", "--resume"],
+        ["a.yaml", "b.yaml"],
+    ],
+)
+def test_usage_errors(arguments: list[str], tmp_path: Path) -> None:
+    done = der_run(*arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stderr != ""
+
+
+def test_help_version_and_schema() -> None:
+    done = der_run("--help")
+    assert done.returncode == 0
+    for option in ("--out", "--set", "--check", "--resume", "--quiet", "--schema", "Exit codes"):
+        assert option in done.stdout
+    done = der_run("--version")
+    assert done.returncode == 0
+    assert done.stdout.startswith("der_run ")
+    done = der_run("--schema")
+    assert done.returncode == 0
+    assert json.loads(done.stdout)["$schema"].endswith("2020-12/schema")
+
+
+def test_files_that_cannot_be_read_or_written(scene: Path, tmp_path: Path) -> None:
+    assert der_run(tmp_path / "none.yaml").returncode == 4
+    assert der_run(scene, "--out", scene).returncode == 4
+    folder = tmp_path / "thesis"
+    folder.mkdir()
+    (folder / "chapter.tex").write_text("do not delete")
+    done = der_run(scene, "--out", folder)
+    assert done.returncode == 4
+    assert str(folder) in done.stderr
+    assert [path.name for path in folder.iterdir()] == ["chapter.tex"]
+
+
+def test_a_static_analysis_is_one_frame(tmp_path: Path) -> None:
+    path = tmp_path / "cantilever.yaml"
+    path.write_text(CANTILEVER)
+    out = tmp_path / "out"
+    done = der_run(path, "--out", out)
+    assert done.returncode == 0
+    assert "static_converged, stable" in done.stdout
+    summary = summary_of(out)
+    assert summary["status"] == "static_converged"
+    assert summary["unstable_directions"] == 0
+    # Exact tip deflection for P L^2 / EI = 1 is 0.30172 (extensible here by 1e-4).
+    assert summary["probes"]["tip"]["final"] == pytest.approx(-0.3017, abs=1e-3)
+    with h5py.File(out / "results.h5") as file:
+        assert file["positions"].shape == (1, 21, 2)
+    done = der_run(path, "--out", out, "--resume")
+    assert done.returncode == 0
+    assert "nothing to resume" in done.stdout
+
+
+def test_failures_are_named_and_leave_no_old_summary(scene: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert der_run(scene, "--out", out).returncode == 0
+    unstable = ["--set", "time.integrator=explicit_euler", "--set", "time.step=1e-4"]
+    done = der_run(scene, "--out", out, *unstable)
+    assert done.returncode == 3
+    assert "diverged" in done.stdout
+    assert "error: " in done.stderr
+    summary = summary_of(out)
+    assert summary["status"] == "diverged"
+    assert summary["failure"]["message"] in done.stderr
+    assert 0 < summary["failure"]["time"] < 10
+    # json.loads would take NaN and Infinity, which are no JSON.
+    assert not any(word in (out / "summary.json").read_text() for word in ("NaN", "Inf"))
+    with h5py.File(out / "results.h5") as file:
+        assert file.attrs["status"] == "diverged"
+        for name in COLUMNS:
+            assert np.all(np.isfinite(file[name][:])), name
+    done = der_run(scene, "--out", out, *unstable, "--resume")
+    assert done.returncode == 1
+    assert "diverged" in done.stderr
+
+    path = tmp_path / "free.yaml"
+    path.write_text(CANTILEVER.replace("  - {rod: arm, at: start, clamp: true}", "  []"))
+    assert der_run(path, "--out", out).returncode == 3
+    assert summary_of(out)["status"] == "not_converged"
+    assert summary_of(out)["probes"] == {}
+
+
+def test_a_killed_run_leaves_every_saved_step_and_can_be_resumed(
+    scene: Path, tmp_path: Path
+) -> None:
+    reference = tmp_path / "reference"
+    out = tmp_path / "killed"
+    length = ["--set", "time.duration=20000", "--set", "output.every=0.1"]
+    assert der_run(scene, *length, "--quiet", "--out", reference).returncode == 0
+    for frames in (2, 3000, 20000):
+        run = start(scene, *length, "--out", out)
+        wait_for_frames(out / "results.h5", frames)
+        run.kill()
+        run.communicate()
+        assert run.returncode == -signal.SIGKILL
+        assert not (out / "summary.json").exists()
+        with (
+            h5py.File(out / "results.h5") as file,
+            h5py.File(reference / "results.h5") as whole,
+        ):
+            assert file.attrs["status"] == "running"
+            n = len(file["time"])
+            assert n >= frames
+            assert np.array_equal(file["step"][:n], 10 * np.arange(n))
+            for name in COLUMNS:
+                assert np.array_equal(file[name][:n], whole[name][:n]), name
+    assert n < len(h5py.File(reference / "results.h5")["time"]), "killed too late to tell"
+    done = der_run(scene, *length, "--out", out, "--resume")
+    assert done.returncode == 0
+    assert_same_results(out, reference)
+
+
+@pytest.mark.parametrize(
+    ("signal_number", "exit_code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)]
+)
+def test_an_interrupted_and_resumed_run_is_the_uninterrupted_one(
+    scene: Path, tmp_path: Path, signal_number: signal.Signals, exit_code: int
+) -> None:
+    reference = tmp_path / "reference"
+    out = tmp_path / "interrupted"
+    # Frames every 7 steps: the run is most likely stopped between two of them.
+    length = ["--set", "time.duration=5000.1", "--set", "output.every=0.07"]
+    assert der_run(scene, *length, "--quiet", "--out", reference).returncode == 0
+    run = start(scene, *length, "--out", out)
+    wait_for_frames(out / "results.h5", 50)
+    run.send_signal(signal_number)
+    stdout, stderr = run.communicate(timeout=60)
+    assert run.returncode == exit_code
+    assert "stopped" in stdout
+    assert "--resume" in stdout
+    assert stderr == ""
+    part = summary_of(out)
+    assert part["status"] == "stopped"
+    assert 0 < part["steps"] < 500010
+
+    done = der_run(scene, *length, "--out", out, "--resume")
+    assert done.returncode == 0
+    assert_same_results(out, reference)
+    whole = summary_of(reference)
+    resumed = summary_of(out)
+    for key in ("status", "steps", "newton_iterations", "time", "probes", "energies"):
+        assert resumed[key] == whole[key], key
+    assert resumed["wall_seconds"] > part["wall_seconds"]
+
+    done = der_run(scene, *length, "--out", out, "--resume")
+    assert done.returncode == 0
+    assert "nothing to resume" in done.stdout
+
+
+def test_resuming_with_another_scene_or_without_a_run_is_refused(
+    scene: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    done = der_run(scene, "--out", out, "--resume")
+    assert done.returncode == 4
+    run = start(scene, *LONG, "--out", out)
+    wait_for_frames(out / "results.h5", 2)
+    # The folder is in use: neither a new run nor a resumed one may touch it.
+    assert der_run(scene, *LONG, "--out", out).returncode == 4
+    assert der_run(scene, *LONG, "--out", out, "--resume").returncode == 4
+    run.send_signal(signal.SIGINT)
+    run.communicate(timeout=60)
+    before = (out / "results.h5").read_bytes()
+    done = der_run(scene, *LONG, "--out", out, "--resume", "--set", "time.step=0.005")
+    assert done.returncode == 1
+    assert "another scene" in done.stderr
+    assert "0.005" in done.stderr
+    assert (out / "results.h5").read_bytes() == before
+
+
+def test_a_full_disk_is_an_error_that_says_so(scene: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+
+    def limit_files() -> None:
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # writing fails instead
+        resource.setrlimit(resource.RLIMIT_FSIZE, (2_000_000, 2_000_000))
+
+    done = der_run(scene, *LONG, "--out", out, preexec_fn=limit_files)
+    assert done.returncode == 4
+    assert "results.h5" in done.stderr
+    assert "File too large" in done.stderr
+    assert not (out / "summary.json").exists()
+
+
+def on_terminal(*arguments: str | Path, **variables: str) -> str:
+    """Run der_run with a terminal on stdout and stderr; what it wrote there."""
+    parent, child = pty.openpty()
+    environment = {**os.environ, "TERM": "xterm", "COLUMNS": "100"}
+    environment.pop("NO_COLOR", None)
+    environment.update(variables)
+    process = subprocess.Popen(
+        [DER_RUN, *map(str, arguments)], stdout=child, stderr=child, env=environment
+    )
+    os.close(child)
+    written = b""
+    while True:
+        try:
+            chunk = os.read(parent, 65536)
+        except OSError:  # Linux says this when the other end is closed
+            break
+        if not chunk:
+            break
+        written += chunk
+    os.close(parent)
+    assert process.wait(timeout=60) == 0
+    return written.decode()
+
+
+def test_progress_and_colours_are_for_terminals(scene: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    length = ["--set", "time.duration=8000", "--set", "output.every=10", "--out", str(out)]
+    begin = time.monotonic()
+    text = on_terminal(scene, *length)
+    seconds = time.monotonic() - begin
+    updates = text.count(" steps/s") - 1  # the summary has one
+    assert 1 <= updates <= 10 * seconds + 1
+    assert " left" in text
+    assert "\x1b[32mcompleted\x1b[0m" in text
+    # The line is gone when the summary comes.
+    assert text.rindex("\r\x1b[K") < text.index("Three spheres")
+
+    text = on_terminal(scene, *length, NO_COLOR="1")
+    assert "[32m" not in text
+    assert " left" in text
+    assert on_terminal(scene, *length, "--quiet") == ""
+
+
+def test_short_runs_take_well_under_a_tenth_of_a_second(scene: Path, tmp_path: Path) -> None:
+    seconds = []
+    for _ in range(5):
+        assert der_run(scene, "--quiet", "--out", tmp_path / "out").returncode == 0
+        seconds.append(summary_of(tmp_path / "out")["wall_seconds"])
+    assert min(seconds) < 0.05
+
+
+def test_the_snippet_of_the_results_page(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    root = Path(__file__).parents[2]
+    monkeypatch.chdir(tmp_path)
+    assert der_run(root / "configs" / "cantilever.yaml", "--quiet").returncode == 0
+    (snippet,) = re.findall(
+        r"^```python\n(.*?)^```$",
+        (root / "docs" / "results.md").read_text(),
+        re.DOTALL | re.MULTILINE,
+    )
+    exec(snippet, {})
+    printed = dict(line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines())
+    assert float(printed["tip_y"].split()[0]) == pytest.approx(-0.301721, abs=1e-4)
+    assert printed["root_moment"].endswith("N m")

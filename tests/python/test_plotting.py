@@ -1,0 +1,184 @@
+"""Pictures: that what is drawn is what was computed, to scale and with its units."""
+
+import der
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from der.plotting import PALETTE, pick_frames, style, time_colours
+from der.plotting.shapes import outline
+from matplotlib.collections import PatchCollection, PolyCollection
+from matplotlib.colors import to_hex
+
+
+@pytest.fixture(autouse=True)
+def close_figures():
+    yield
+    plt.close("all")
+
+
+@pytest.fixture
+def result(spheres):
+    return der.run(spheres)
+
+
+def lines_of(axes):
+    """What is drawn with a line; the symbols of supports are not."""
+    return [line for line in axes.lines if line.get_linestyle() != "None"]
+
+
+def test_overview_has_shapes_and_every_probe(result):
+    figure = result.plot()
+    figure.canvas.draw()
+    shape, *panels = figure.axes
+    assert shape.get_title(loc="left") == "Three spheres in a fluid"
+    assert (shape.get_xlabel(), shape.get_ylabel()) == ("x [m]", "y [m]")
+    assert [axes.get_ylabel() for axes in panels] == ["v_mid [m/s]", "angle [rad]"]
+    assert panels[-1].get_xlabel() == "time [s]"
+    for axes, probe in zip(panels, result.probes.values(), strict=True):
+        curve = lines_of(axes)[0]
+        assert np.array_equal(curve.get_xdata(), result.times)
+        assert np.array_equal(curve.get_ydata(), probe)
+
+
+def test_axes_of_the_shapes_are_equal(result):
+    shape = result.plot("shapes").axes[0]
+    shape.figure.canvas.draw()
+    box, x, y = shape.get_window_extent(), shape.get_xlim(), shape.get_ylim()
+    assert box.width / (x[1] - x[0]) == pytest.approx(box.height / (y[1] - y[0]), rel=1e-3)
+
+
+def test_shapes_at_given_times(result):
+    shape = result.plot("shapes", times=[0.0, 0.101, 1.0]).axes[0]
+    drawn = lines_of(shape)
+    assert len(drawn) == 3
+    for line, frame in zip(drawn, (0, 10, 100), strict=True):
+        assert np.array_equal(line.get_xydata(), result.positions[frame])
+    labels = [text.get_text() for text in shape.get_legend().get_texts()]
+    assert labels == ["0 s", "0.1 s", "1 s"]
+    colours = [to_hex(line.get_color()) for line in drawn]
+    assert colours == [to_hex(colour) for colour in time_colours(3)]
+
+
+def test_thickness_and_spheres_are_to_scale(result):
+    shape = result.plot("shapes", times=[0.0]).axes[0]
+    (body,) = (c for c in shape.collections if isinstance(c, PolyCollection))
+    corners = body.get_paths()[0].vertices
+    assert np.ptp(corners[:, 1]) == pytest.approx(2 * 0.001)
+    (circles,) = (c for c in shape.collections if isinstance(c, PatchCollection))
+    widths = [np.ptp(path.vertices[:, 0]) for path in circles.get_paths()]
+    assert widths == pytest.approx([0.01, 0.05, 0.01], rel=1e-3)
+    y = shape.get_ylim()
+    assert y[0] < -0.025 < 0.025 < y[1], "the spheres lie inside of the axes"
+
+
+def test_supports_have_their_symbols(tube, swing):
+    beam = der.run(tube).plot("shapes").axes[0]
+    marked = {line.get_gid(): line.get_xydata()[0] for line in beam.lines if line.get_gid()}
+    assert set(marked) == {"support-beam-0", "support-beam-20"}
+    assert marked["support-beam-20"][0] < 1.0, "a roller stands where its node has moved"
+    arm = der.run(swing).plot("shapes").axes[0]
+    (wall,) = (line for line in arm.lines if line.get_gid())
+    vertices = wall.get_marker().vertices
+    assert vertices[:, 0].max() == pytest.approx(0.0, abs=1e-12), "the wall is behind the clamp"
+    assert np.ptp(vertices[:, 1]) > np.ptp(vertices[:, 0])
+
+
+def test_held_nodes(swing):
+    swing["supports"][0]["prescribe"] = {"angle": {"times": [0, 1], "values": [0, 0.5]}}
+    swing["supports"].append({"rod": "arm", "at": "end", "fix": ["y"]})
+    clamp, roller = der.held_nodes(der.Scenario.from_dict(swing), time=0.5)
+    assert (clamp.rod, clamp.node, clamp.components) == ("arm", 0, ["x", "y"])
+    assert clamp.tangent_angle == pytest.approx(0.25)
+    assert (roller.node, roller.components, roller.tangent_angle) == (10, ["y"], None)
+
+
+def test_static_shape_beside_the_drawn_one(tube):
+    result = der.equilibrium(tube)
+    figure = result.plot()
+    shape, values = figure.axes
+    drawn, found = lines_of(shape)
+    assert np.all(drawn.get_ydata() == 0.0)
+    assert np.array_equal(found.get_xydata(), result.positions[-1])
+    labels = [text.get_text() for text in shape.get_legend().get_texts()]
+    assert labels == ["as drawn", "equilibrium"]
+    text = values.texts[0].get_text()
+    assert f"deflection = {result.probes['deflection'][-1]:.6g} m" in text
+
+
+def test_only_some_probes(result):
+    figure = der.plot(result, "probes", probes=["angle"], title="Folding")
+    (axes,) = figure.axes
+    assert axes.get_ylabel() == "angle [rad]"
+    assert axes.get_title(loc="left") == "Folding"
+
+
+def test_rounding_errors_are_not_blown_up(spheres):
+    spheres["rods"][0]["spheres"].pop()
+    result = der.run(spheres)
+    spread = np.ptp(result.probes["v_mid"][50:])
+    figure = der.plot(result, "probes", probes=["v_mid"])
+    low, high = figure.axes[0].get_ylim()
+    assert high - low > 100 * spread
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"probes": ["speed"]}, "'speed'.*v_mid"),
+        ({"times": [2.0]}, "from 0 s to 1 s"),
+        ({"times": [-0.1]}, "-0.1"),
+    ],
+)
+def test_what_is_not_there_is_an_error(result, arguments, words):
+    with pytest.raises(ValueError, match=words):
+        result.plot(**arguments)
+
+
+def test_no_probes_to_plot(spheres):
+    del spheres["output"]
+    result = der.run(spheres)
+    assert len(result.plot().axes) == 1
+    with pytest.raises(ValueError, match="no probes"):
+        result.plot("probes")
+
+
+def test_style_stays_inside(result):
+    before = dict(plt.rcParams)
+    result.plot()
+    assert dict(plt.rcParams) == before
+    with style():
+        assert plt.rcParams["axes.prop_cycle"].by_key()["color"] == list(PALETTE)
+
+
+def test_frames_are_picked_along_the_way():
+    way = np.array([0.0, 0.0, 1.0, 5.0, 9.0, 10.0, 10.0, 10.0])
+    positions = np.zeros((8, 3, 2))
+    positions[:, :, 1] = way[:, np.newaxis]
+    assert pick_frames(positions, 3) == [0, 3, 7]
+    assert pick_frames(positions[:1], 6) == [0]
+    assert pick_frames(np.zeros((4, 3, 2)), 6) == [0, 3]
+
+
+def test_outline_of_a_bend_keeps_its_width():
+    line = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
+    corners = outline(line, 0.1)
+    assert len(corners) == 6
+    assert corners[0] == pytest.approx([0.0, 0.1])
+    assert corners[-1] == pytest.approx([0.0, -0.1])
+    for edge in (0, 1):
+        direction = line[edge + 1] - line[edge]
+        normal = np.array([-direction[1], direction[0]])
+        for node in (edge, edge + 1):
+            assert (corners[node] - line[node]) @ normal == pytest.approx(0.1)
+            assert (corners[5 - node] - line[node]) @ normal == pytest.approx(-0.1)
+
+
+def test_outline_of_a_fold_is_finite():
+    line = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 0.0]])
+    assert np.all(np.isfinite(outline(line, 0.1)))
+
+
+def test_lightness_of_time_colours_rises():
+    lightness = [np.dot(colour[:3], [0.2126, 0.7152, 0.0722]) for colour in time_colours(6)]
+    assert np.all(np.diff(lightness) > 0.05)
+    assert lightness[-1] < 0.85

@@ -1,0 +1,393 @@
+"""Whole runs: what is recorded, how they stop and fail, and the run folder."""
+
+import json
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import der
+import h5py
+import numpy as np
+import pytest
+
+
+def test_result_holds_what_the_scene_asks_for(tube):
+    result = der.run(der.Scenario.from_dict(tube))
+    assert result.status == "completed"
+    assert result.times == pytest.approx(np.arange(0.0, 0.501, 0.02))
+    assert result.steps.tolist() == list(range(0, 51, 2))
+    assert result.positions.shape == result.velocities.shape == (26, 21, 2)
+    assert set(result.energies) == {"kinetic", "stretch", "bend", "gravity"}
+    assert all(values.shape == (26,) for values in result.energies.values())
+    assert list(result.probes) == ["deflection", "roller"]
+    assert result.probes["roller"] == pytest.approx(result.positions[:, -1, 0])
+    assert [rod.name for rod in result.rods] == ["beam"]
+    assert result.scenario.title == result.summary["title"]
+    assert "26 frames of 21 nodes" in repr(result)
+
+
+def test_summary_is_that_of_the_program(tube):
+    tube["output"]["every"] = 0.05
+    result = der.run(tube)
+    summary = result.summary
+    keys = {"status", "model", "integrator", "linear_solver", "steps", "newton_iterations"}
+    assert keys | {"wall_seconds", "probes"} <= set(summary)
+    assert summary["steps"] == 50
+    deflection = summary["probes"]["deflection"]
+    assert {"final", "min", "max", "t_min", "t_max"} <= set(deflection)
+    assert deflection["final"] == result.probes["deflection"][-1]
+    # Between the saved frames the beam swings further than in any of them.
+    assert deflection["min"] < result.probes["deflection"].min()
+
+
+def test_probes_know_their_unit_and_summary(spheres):
+    result = der.run(spheres)
+    speed = result.probes["v_mid"]
+    assert speed.unit == "m/s"
+    assert result.probes["angle"].unit == "rad"
+    assert speed.summary == result.summary["probes"]["v_mid"]
+    assert speed[10:].unit == "m/s"
+    for computed in (2 * speed, speed.max(), np.mean(speed), speed**2):
+        assert not hasattr(computed, "unit"), "the unit of what is computed is another"
+    copy = pickle.loads(pickle.dumps(speed))
+    assert (copy.unit, copy.summary) == (speed.unit, speed.summary)
+    assert np.array_equal(copy, speed)
+
+
+def test_result_can_be_pickled(tube):
+    result = der.run(tube)
+    copy = pickle.loads(pickle.dumps(result))
+    assert np.array_equal(copy.positions, result.positions)
+    assert copy.summary == result.summary
+    assert copy.rods[0].name == "beam"
+
+
+def test_callback_sees_every_step_and_can_stop(swing):
+    scenario = der.Scenario.from_dict(swing)
+    seen = []
+
+    def watch(simulation):
+        seen.append((simulation.step_count, simulation.positions[-1, 1]))
+        return simulation.step_count < 33
+
+    result = der.run(scenario, callback=watch)
+    assert [step for step, _ in seen] == list(range(1, 34))
+    assert result.status == "stopped"
+    assert result.steps[-1] == 33, "the last instant is recorded"
+    assert result.probes["tip"][-1] == seen[-1][1]
+
+
+@pytest.mark.parametrize(
+    ("answer", "status"),
+    [
+        (None, "completed"),
+        (True, "completed"),
+        (np.True_, "completed"),
+        (False, "stopped"),
+        (np.False_, "stopped"),
+    ],
+)
+def test_what_a_callback_may_answer(swing, answer, status):
+    assert der.run(swing, callback=lambda _: answer).status == status
+
+
+def test_callback_can_control(swing):
+    def hold_tip_up(simulation):
+        simulation.extra_force[-1, 1] = 5.0 if simulation.positions[-1, 1] < 0.0 else 0.0
+
+    free = der.run(swing)
+    controlled = der.run(swing, callback=hold_tip_up)
+    assert controlled.probes["tip"][-1] > free.probes["tip"][-1] + 0.1
+
+
+def test_callback_errors_pass_through(swing):
+    simulation = der.Simulation(der.Scenario.from_dict(swing))
+
+    def fail(simulation):
+        if simulation.step_count == 5:
+            raise LookupError("enough")
+
+    with pytest.raises(LookupError, match="enough"):
+        simulation.run(fail)
+    assert simulation.step_count == 5
+    assert simulation.run().status == "completed", "and the simulation can go on"
+
+
+def test_callback_must_not_step(swing):
+    with pytest.raises(RuntimeError, match="busy"):
+        der.run(swing, callback=lambda simulation: simulation.step())
+
+
+def test_run_until_and_on(swing):
+    scenario = der.Scenario.from_dict(swing)
+    simulation = der.Simulation(scenario)
+    first = simulation.run(until=0.1)
+    assert first.status == "stopped"
+    assert simulation.time == pytest.approx(0.1)
+    assert first.times == pytest.approx(np.arange(0.0, 0.101, 0.01))
+    second = simulation.run()
+    assert second.status == "completed"
+    assert second.times[0] == first.times[-1]
+    whole = der.run(scenario)
+    joined = np.concatenate([first.positions, second.positions[1:]])
+    assert np.array_equal(joined, whole.positions)
+
+
+@pytest.mark.parametrize("until", [-1.0, 0.05, 0.3, float("nan")])
+def test_until_outside_of_the_scene(swing, until):
+    simulation = der.Simulation(der.Scenario.from_dict(swing))
+    simulation.step(50)
+    with pytest.raises(ValueError, match="until"):
+        simulation.run(until=until)
+
+
+def test_static_scene(tube):
+    del tube["time"], tube["output"]["every"]
+    result = der.run({**tube, "analysis": "static"})
+    assert result.status == "static_converged"
+    assert result.positions.shape == (1, 21, 2)
+    assert np.all(result.velocities == 0.0)
+    assert result.summary["unstable_directions"] == 0
+    simulation = der.Simulation(result.scenario)
+    with pytest.raises(ValueError, match="static"):
+        simulation.run(until=1.0)
+
+
+def test_equilibrium_of_static_and_of_moving_scenes(tube):
+    of_moving = der.equilibrium(tube)
+    assert of_moving.status == "static_converged"
+    del tube["time"], tube["output"]["every"]
+    of_static = der.equilibrium({**tube, "analysis": "static"})
+    assert np.array_equal(of_moving.positions, of_static.positions)
+    settled = der.run({**tube, "time": {"duration": 2, "step": 0.01}})
+    assert settled.positions[-1] == pytest.approx(of_static.positions[-1], abs=1e-7)
+
+
+def test_a_failed_run_raises_with_what_it_recorded(unstable):
+    with pytest.raises(der.DivergedError) as caught:
+        der.run(unstable)
+    result = caught.value.result
+    assert result.status == caught.value.status == "diverged"
+    assert len(result.times) > 1
+    assert np.all(np.isfinite(result.positions))
+    assert str(caught.value) == result.summary["failure"]["message"]
+    unchecked = der.run(unstable, check=False)
+    assert unchecked.status == "diverged"
+    assert np.array_equal(unchecked.positions, result.positions)
+
+
+def test_no_equilibrium_raises(swing):
+    swing["supports"] = []
+    with pytest.raises(der.NotConvergedError) as caught:
+        der.equilibrium(swing)
+    assert caught.value.result.positions.shape[0] == 0
+
+
+def test_progress_is_told_as_it_goes(swing):
+    told = []
+    der.run({**swing, "time": {"duration": 40, "step": 0.001}}, progress=told.append)
+    assert len(told) >= 2
+    assert told == sorted(told)
+    assert told[0] >= 0.0
+    assert told[-1] <= 1.0
+
+
+def test_progress_line_is_wiped_out(swing, capsys):
+    der.run({**swing, "time": {"duration": 200, "step": 0.001}}, progress=True)
+    lines = capsys.readouterr().err.split("\r")
+    assert any("% , " in line or "%, " in line for line in lines), "percentage and time left"
+    assert lines[-1] == ""
+    assert lines[-2].strip() == ""
+
+
+def assert_same(first, second):
+    assert second.scenario.to_dict() == first.scenario.to_dict()
+    assert second.summary == first.summary
+    for name in ("times", "steps", "positions", "velocities"):
+        one, other = getattr(first, name), getattr(second, name)
+        assert np.array_equal(one, other)
+        assert one.dtype == other.dtype
+    assert second.energies.keys() == first.energies.keys()
+    for name, values in first.energies.items():
+        assert np.array_equal(second.energies[name], values)
+    assert list(second.probes) == list(first.probes)
+    for name, probe in first.probes.items():
+        assert np.array_equal(second.probes[name], probe)
+        assert second.probes[name].unit == probe.unit
+        assert second.probes[name].summary == probe.summary
+
+
+def test_run_folder_reads_back(tube, tmp_path):
+    result = der.run(tube, out=tmp_path / "run")
+    assert sorted(path.name for path in (tmp_path / "run").iterdir()) == [
+        "results.h5",
+        "scene.yaml",
+        "summary.json",
+    ]
+    assert_same(result, der.open_run(tmp_path / "run"))
+
+
+def test_saved_result_reads_back(spheres, tmp_path):
+    result = der.run(spheres)
+    assert result.save(tmp_path / "saved") == tmp_path / "saved"
+    assert_same(result, der.open_run(tmp_path / "saved"))
+    der.open_run(tmp_path / "saved").save(tmp_path / "saved again")
+    assert_same(result, der.open_run(tmp_path / "saved again"))
+
+
+def layout(file):
+    """Every item of a file but its checkpoint, with kind, shape and attributes."""
+    items = {"/": {name: type(value).__name__ for name, value in file.attrs.items()}}
+
+    def visit(name, item):
+        if name.startswith("checkpoint"):
+            return
+        shape = item.shape if isinstance(item, h5py.Dataset) else None
+        kind = item.dtype.kind if isinstance(item, h5py.Dataset) else None
+        items[name] = (shape, kind, {n: str(v) for n, v in item.attrs.items()})
+
+    file.visititems(visit)
+    return items
+
+
+def test_saved_result_has_the_layout_of_the_program(spheres, tmp_path):
+    der.run(spheres, out=tmp_path / "run").save(tmp_path / "saved")
+    with (
+        h5py.File(tmp_path / "run" / "results.h5") as written,
+        h5py.File(tmp_path / "saved" / "results.h5") as saved,
+    ):
+        assert layout(saved) == layout(written)
+    for name in ("scene.yaml", "summary.json"):
+        texts = [(tmp_path / folder / name).read_text() for folder in ("run", "saved")]
+        loaded = [json.loads(text) for text in texts] if name.endswith("json") else texts
+        assert loaded[0] == loaded[1]
+
+
+def test_open_run_says_what_is_missing(tmp_path):
+    with pytest.raises(FileNotFoundError, match=r"results\.h5"):
+        der.open_run(tmp_path)
+
+
+def test_a_newer_format_is_refused(tube, tmp_path):
+    der.run(tube, out=tmp_path / "run")
+    with h5py.File(tmp_path / "run" / "results.h5", "r+") as file:
+        file.attrs["format_version"] = 99
+    with pytest.raises(ValueError, match="format 99"):
+        der.open_run(tmp_path / "run")
+
+
+def test_a_folder_with_other_things_is_left_alone(tube, tmp_path):
+    (tmp_path / "thesis.tex").write_text("important")
+    with pytest.raises(der.DerError) as caught:
+        der.run(tube, out=tmp_path)
+    assert caught.value.status == "io_error"
+    assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
+
+
+def test_other_threads_run_while_it_steps(swing):
+    simulation = der.Simulation(der.Scenario.from_dict(swing))
+    ticks, stop = [], threading.Event()
+
+    def tick():
+        while not stop.wait(0.002):
+            ticks.append(time.monotonic())
+
+    for act in (lambda: simulation.step(60_000), lambda: der.run(long_scene(swing))):
+        thread = threading.Thread(target=tick)
+        stop.clear()
+        thread.start()
+        start = time.monotonic()
+        act()
+        end = time.monotonic()
+        stop.set()
+        thread.join()
+        during = [moment for moment in ticks if start < moment < end]
+        assert len(during) > 0.1 * (end - start) / 0.002
+
+
+def long_scene(swing, duration=120.0):
+    return {**swing, "time": {"duration": duration, "step": 0.002}}
+
+
+def test_two_threads_must_not_share_a_simulation(swing):
+    simulation = der.Simulation(der.Scenario.from_dict(swing))
+    started = threading.Event()
+    simulation.add_force(lambda t, x, v: (started.set(), np.zeros_like(x))[1])
+    thread = threading.Thread(target=simulation.step, args=(20_000,))
+    thread.start()
+    started.wait()
+    with pytest.raises(RuntimeError, match="two threads"):
+        simulation.step()
+    thread.join()
+    assert simulation.step_count == 20_000
+
+
+def test_two_simulations_step_at_the_same_time(swing):
+    scenario = der.Scenario.from_dict(swing)
+    simulations = [der.Simulation(scenario) for _ in range(4)]
+    threads = [threading.Thread(target=s.step, args=(2000,)) for s in simulations]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for simulation in simulations[1:]:
+        assert np.array_equal(simulation.positions, simulations[0].positions)
+
+
+@pytest.mark.parametrize("way", ["step", "run"])
+def test_ctrl_c_interrupts(swing, way):
+    simulation = der.Simulation(der.Scenario.from_dict(long_scene(swing, 1e5)))
+    # The deadline keeps a broken build from running for ever.
+    total = 5_000_000
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    act = {"step": simulation.step, "run": lambda n: simulation.run(until=n * 0.002)}[way]
+    timer.start()
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        act(total)
+    assert time.monotonic() - start < 5.0
+    assert 0 < simulation.step_count < total
+    before = simulation.step_count
+    simulation.step()
+    assert simulation.step_count == before + 1, "it can go on"
+
+
+def test_an_interrupted_run_leaves_a_readable_folder(swing, tmp_path):
+    scene = der.Scenario.from_dict(long_scene(swing, 1e4))
+    scene_path = tmp_path / "scene.yaml"
+    scene_path.write_text(scene.to_yaml())
+    script = (
+        "import sys, der\n"
+        "print('ready', flush=True)\n"
+        "der.run(sys.argv[1], out=sys.argv[2], callback=None)\n"
+    )
+    command = [sys.executable, "-c", script, str(scene_path), str(tmp_path / "run")]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as child:
+        assert child.stdout.readline() == "ready\n"
+        results = tmp_path / "run" / "results.h5"
+        deadline = time.monotonic() + 30
+        while time.monotonic() < deadline:
+            if results.exists() and frames(tmp_path / "run") > 20:
+                break
+        child.send_signal(signal.SIGINT)
+        _, errors = child.communicate(timeout=30)
+    assert "KeyboardInterrupt" in errors
+    result = der.open_run(tmp_path / "run")
+    assert result.status == "running"
+    assert len(result.times) > 20
+    complete = der.Simulation(scene).run(until=float(result.times[-1]))
+    assert np.array_equal(complete.positions[: len(result.times)], result.positions)
+
+
+def frames(folder):
+    """How many frames an unfinished run has saved by now."""
+    try:
+        return len(der.open_run(folder).times)
+    except (OSError, KeyError):
+        return 0  # caught while the file was being created

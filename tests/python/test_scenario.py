@@ -1,0 +1,185 @@
+"""Scenarios from files, texts and dicts: one validator, one set of messages."""
+
+import math
+import pickle
+from collections import OrderedDict
+
+import der
+import numpy as np
+import pytest
+
+
+def test_dict_and_text_give_the_same_scene(tube, tmp_path):
+    from_dict = der.Scenario.from_dict(tube)
+    path = tmp_path / "tube.yaml"
+    path.write_text(from_dict.to_yaml())
+    from_file = der.load(path)
+    assert from_file.to_dict() == from_dict.to_dict() == tube
+    assert from_file.source == str(path)
+    assert from_dict.source == ""
+    first = der.run(from_dict)
+    second = der.run(str(path))
+    assert np.array_equal(first.positions, second.positions)
+
+
+def test_facts(tube):
+    scenario = der.Scenario.from_dict(tube)
+    assert scenario.title == "Tube on two supports"
+    assert scenario.duration == 0.5
+    assert not scenario.is_static
+    assert repr(scenario) == "<der.Scenario 'Tube on two supports'>"
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        np.column_stack([np.linspace(0.0, 1.0, 21), np.zeros(21)]),
+        [(np.float32(x), np.int8(0)) for x in (0.0, 0.5, 1.0)],
+        tuple((x, 0) for x in (0.0, 0.25, 1.0)),
+    ],
+)
+def test_numpy_and_tuples_are_plain_values(tube, points):
+    rod = tube["rods"][0]
+    for key in ("nodes", "from", "to"):
+        del rod[key]
+    rod["points"] = points
+    scenario = der.Scenario.from_dict(OrderedDict(tube))
+    assert der.Simulation(scenario).positions == pytest.approx(np.asarray(points, dtype=float))
+
+
+def test_numpy_scalars(tube):
+    tube["rods"][0]["nodes"] = np.int64(31)
+    tube["time"]["step"] = np.float64(0.02)
+    tube["rods"][0]["name"] = np.str_("beam")
+    scenario = der.Scenario.from_dict(tube)
+    assert der.Simulation(scenario).positions.shape == (31, 2)
+    assert scenario.to_dict()["time"]["step"] == 0.02
+
+
+def test_every_complaint_names_its_key_path(tube):
+    tube["rods"][0]["nodes"] = "many"
+    tube["titel"] = "typo"
+    tube["output"]["probes"]["roller"]["quantity"] = "w"
+    with pytest.raises(der.SceneError) as caught:
+        der.Scenario.from_dict(tube)
+    paths = {diagnostic.path for diagnostic in caught.value.diagnostics}
+    assert paths == {"rods.beam.nodes", "titel", "output.probes.roller.quantity"}
+    assert all(d.line == 0 and d.column == 0 for d in caught.value.diagnostics)
+    assert "title" in str(caught.value)
+    assert isinstance(caught.value, ValueError)
+    assert caught.value.status == "invalid_scene"
+
+
+@pytest.mark.parametrize(
+    ("value", "path", "words"),
+    [
+        (object(), "rods.beam.nodes", "object"),
+        (1 + 2j, "rods.beam.nodes", "complex"),
+        (2**70, "rods.beam.nodes", "64 bits"),
+        (math.nan, "rods.beam.nodes", ""),
+        (math.inf, "rods.beam.nodes", ""),
+        (True, "rods.beam.nodes", ""),
+        ({1: 2}, "rods.beam.nodes", "int"),
+        (None, "rods.beam.nodes", ""),
+    ],
+)
+def test_values_that_do_not_belong_there(tube, value, path, words):
+    tube["rods"][0]["nodes"] = value
+    with pytest.raises(der.SceneError) as caught:
+        der.Scenario.from_dict(tube)
+    assert caught.value.diagnostics[0].path == path
+    assert words in caught.value.diagnostics[0].message
+
+
+def test_errors_of_a_text_have_lines_and_columns():
+    text = "title: x\nrods:\n  - {name: a, nodes: 5}\ntime: {duration: 1, step: 0.1}\ntimes: 3\n"
+    with pytest.raises(der.SceneError) as caught:
+        der.Scenario.parse(text, "mine.yaml")
+    by_path = {d.path: d for d in caught.value.diagnostics}
+    assert (by_path["times"].line, by_path["times"].column) == (5, 1)
+    assert "mine.yaml:5:1" in str(caught.value)
+
+
+def test_missing_file(tmp_path):
+    with pytest.raises(der.SceneError, match=r"no_such\.yaml"):
+        der.load(tmp_path / "no_such.yaml")
+
+
+def test_with_replaces_and_adds(tube):
+    scenario = der.Scenario.from_dict(tube)
+    varied = scenario.with_(
+        **{
+            "rods.beam.nodes": 31,
+            "time.step": np.float64(0.005),
+            "loads.0.point_force.force": (0, -10),
+            "solver.linear": "simplicial_ldlt",
+            "output.probes": {"tip": {"rod": "beam", "at": "end", "quantity": "x"}},
+        }
+    )
+    simulation = der.Simulation(varied)
+    assert simulation.positions.shape == (31, 2)
+    assert simulation.linear_solver == "simplicial_ldlt"
+    assert list(simulation.probes) == ["tip"]
+    scene = varied.to_dict()
+    assert scene["time"]["step"] == 0.005
+    assert scene["loads"][0]["point_force"]["force"] == [0, -10]
+    assert scenario.to_dict() == tube, "the scenario itself never changes"
+
+
+@pytest.mark.parametrize("number", [0.1, 1 / 3, 1e-300, 5e22, -0.0, 1.0, 123456789012345680.0])
+def test_with_keeps_every_bit_of_a_number(tube, number):
+    varied = der.Scenario.from_dict(tube).with_(**{"loads.0.point_force.force": [number, 0.0]})
+    kept = varied.to_dict()["loads"][0]["point_force"]["force"][0]
+    assert kept == number
+    assert math.copysign(1.0, kept) == math.copysign(1.0, number)
+
+
+def test_with_keeps_texts_texts(tube):
+    varied = der.Scenario.from_dict(tube).with_(title='2020: "yes" # or\nno')
+    assert varied.title == '2020: "yes" # or\nno'
+    assert der.Scenario.parse(varied.to_yaml()).title == varied.title
+
+
+def test_with_complains_like_the_reader(tube):
+    scenario = der.Scenario.from_dict(tube)
+    with pytest.raises(der.SceneError, match=r"rods\.beam\.nodes"):
+        scenario.with_(**{"rods.beam.nodes": 1.5})
+    with pytest.raises(der.SceneError, match="beem"):
+        scenario.with_(**{"rods.beem.nodes": 5})
+    with pytest.raises(der.SceneError, match=r"time\.step: .*object"):
+        scenario.with_(**{"time.step": object()})
+
+
+def test_load_and_parse_take_overrides(tube, tmp_path):
+    text = der.Scenario.from_dict(tube).to_yaml()
+    path = tmp_path / "scene.yaml"
+    path.write_text(text)
+    assert der.load(path, **{"rods.beam.nodes": 5}).to_dict()["rods"][0]["nodes"] == 5
+    assert der.Scenario.parse(text, title="other").title == "other"
+
+
+def test_pickle(tube):
+    scenario = der.Scenario.from_dict(tube)
+    copy = pickle.loads(pickle.dumps(scenario))
+    assert copy.to_dict() == scenario.to_dict()
+
+
+def test_errors_can_be_pickled(tube):
+    tube["titel"] = 1
+    with pytest.raises(der.SceneError) as caught:
+        der.Scenario.from_dict(tube)
+    copy = pickle.loads(pickle.dumps(caught.value))
+    assert str(copy) == str(caught.value)
+    assert copy.diagnostics == caught.value.diagnostics
+
+
+def test_schema_and_reference_know_the_keys():
+    assert "youngs_modulus" in der.json_schema()
+    assert "youngs_modulus" in der.scene_reference()
+
+
+def test_static_scene(tube):
+    del tube["time"], tube["output"]["every"]
+    scenario = der.Scenario.from_dict({**tube, "analysis": "static"})
+    assert scenario.is_static
+    assert scenario.duration == 0.0

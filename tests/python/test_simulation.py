@@ -1,0 +1,243 @@
+"""The engine driven from Python: live views, saved states, the same result in every way."""
+
+import gc
+import pickle
+import weakref
+
+import der
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def simulation(swing):
+    return der.Simulation(der.Scenario.from_dict(swing))
+
+
+def test_views_have_the_shape_and_the_memory_of_the_engine(simulation):
+    for view in (simulation.positions, simulation.velocities, simulation.extra_force):
+        assert view.shape == (11, 2)
+        assert view.dtype == np.float64
+        assert view.flags.writeable
+        assert view.flags.c_contiguous
+        assert not view.flags.owndata
+    assert np.shares_memory(simulation.positions, simulation.positions)
+
+
+def test_views_follow_the_engine(simulation):
+    positions, velocities = simulation.positions, simulation.velocities
+    before = positions.copy()
+    simulation.step(5)
+    assert not np.array_equal(positions, before)
+    assert np.array_equal(positions, simulation.positions)
+    assert velocities[-1, 1] < 0.0
+    simulation.equilibrium()
+    assert np.array_equal(positions, simulation.positions)
+    assert np.all(velocities == 0.0)
+
+
+def test_the_engine_sees_what_is_written(simulation):
+    untouched = der.Simulation(simulation.scenario)
+    untouched.step()
+    simulation.velocities[-1] = [0.0, 3.0]
+    assert simulation.energies.kinetic == pytest.approx(0.5 * simulation.mass[-1] * 9.0)
+    simulation.step()
+    assert simulation.positions[-1, 1] > untouched.positions[-1, 1] + 0.003
+    simulation.positions[...] = untouched.positions
+    simulation.velocities[...] = untouched.velocities
+    untouched.step()
+    simulation.step()
+    assert simulation.positions == pytest.approx(untouched.positions, abs=1e-12)
+
+
+def test_held_nodes_return_to_their_place(simulation):
+    simulation.positions[0] = [0.5, 0.5]
+    simulation.step()
+    assert np.array_equal(simulation.positions[0], [0.0, 0.0])
+
+
+def test_views_do_not_move_and_outlive_the_name_of_the_simulation(simulation, swing):
+    address = simulation.positions.ctypes.data
+    saved = simulation.save_state()
+    simulation.step(20)
+    simulation.equilibrium()
+    simulation.restore_state(saved)
+    simulation.run()
+    assert simulation.positions.ctypes.data == address
+
+    other = der.Simulation(der.Scenario.from_dict(swing))
+    other.step(3)
+    positions, expected = other.positions, other.positions.copy()
+    rods, model = other.model.rods, other.model
+    del other
+    gc.collect()
+    der.Simulation(der.Scenario.from_dict(swing)).step(3)  # would reuse freed memory
+    assert np.array_equal(positions, expected)
+    assert model.num_nodes == 11
+    assert rods[0].name == "arm"
+
+
+def test_simulation_goes_away_with_its_last_view(swing):
+    simulation = der.Simulation(der.Scenario.from_dict(swing))
+    alive = weakref.ref(simulation)
+    view = simulation.positions
+    del simulation
+    gc.collect()
+    assert alive() is not None
+    del view
+    gc.collect()
+    assert alive() is None
+
+
+def test_step_n_and_run_agree_bit_for_bit(swing):
+    scenario = der.Scenario.from_dict(swing)
+    one_by_one = der.Simulation(scenario)
+    while not one_by_one.finished:
+        one_by_one.step()
+    at_once = der.Simulation(scenario)
+    at_once.step(at_once.total_steps)
+    run = der.Simulation(scenario)
+    result = run.run()
+    recorded = der.run(scenario)
+    for simulation in (at_once, run):
+        assert simulation.time == one_by_one.time == pytest.approx(0.2)
+        assert np.array_equal(simulation.positions, one_by_one.positions)
+        assert np.array_equal(simulation.velocities, one_by_one.velocities)
+    for frames in (result, recorded):
+        assert np.array_equal(frames.positions[-1], one_by_one.positions)
+        assert np.array_equal(frames.velocities[-1], one_by_one.velocities)
+
+
+def test_counts(simulation):
+    assert (simulation.step_count, simulation.total_steps, simulation.finished) == (0, 100, False)
+    simulation.step()
+    simulation.step(9)
+    simulation.step(0)
+    assert simulation.step_count == simulation.counters.steps == 10
+    assert simulation.counters.newton_iterations >= 10
+    assert simulation.time == pytest.approx(0.02)
+    simulation.step(95)
+    assert simulation.finished, "stepping goes on beyond the scene's end"
+    with pytest.raises(ValueError, match="negative"):
+        simulation.step(-1)
+
+
+@pytest.mark.parametrize("way", ["direct", "pickled"])
+def test_save_and_restore_bit_for_bit(swing, way):
+    simulation = der.Simulation(der.Scenario.from_dict(swing))
+    simulation.step(30)
+    simulation.extra_force[-1] = [0.1, 0.2]
+    state = simulation.save_state()
+    if way == "pickled":
+        dumped = pickle.dumps(state)
+        state = pickle.loads(dumped)
+        assert pickle.dumps(state) == dumped
+    assert (state.time, state.step_count) == (simulation.time, 30)
+    assert np.array_equal(state.positions, simulation.positions)
+    simulation.step(40)
+    first = simulation.positions.copy()
+    assert not np.array_equal(state.positions, first), "a saved state is a copy"
+
+    simulation.restore_state(state)
+    assert simulation.step_count == 30
+    assert np.array_equal(simulation.extra_force[-1], [0.1, 0.2])
+    simulation.step(40)
+    assert np.array_equal(simulation.positions, first)
+
+    other = der.Simulation(der.Scenario.from_dict(swing))
+    other.restore_state(state)
+    other.step(40)
+    assert np.array_equal(other.positions, first)
+
+
+def test_a_saved_state_is_read_only_and_must_fit(simulation, tube):
+    state = simulation.save_state()
+    with pytest.raises(ValueError, match="read-only"):
+        state.positions[0, 0] = 1.0
+    other = der.Simulation(der.Scenario.from_dict(tube))
+    with pytest.raises(ValueError, match="22 degrees of freedom"):
+        other.restore_state(state)
+
+
+def test_mass_and_model(simulation):
+    density_length_area = 1000 * 1.0 * np.pi * 0.01**2
+    assert simulation.mass.shape == (11,)
+    assert simulation.mass.sum() == pytest.approx(density_length_area)
+    assert not simulation.mass.flags.writeable
+    model = simulation.model
+    assert (model.name, model.dimension, model.num_nodes) == ("planar", 2, 11)
+    assert (model.num_dofs, model.num_free) == (22, 20)
+    assert model.reason
+    assert simulation.linear_solver
+    assert simulation.linear_solver_reason
+    assert simulation.integrator == "implicit_euler"
+    (rod,) = model.rods
+    assert rod.name == "arm"
+    assert rod.nodes.tolist() == list(range(11))
+    assert rod.arc_lengths == pytest.approx(np.linspace(0.0, 1.0, 11))
+    assert (rod.length, rod.radius) == pytest.approx((1.0, 0.01))
+    assert np.array_equal(rod.sphere_radii, np.zeros(11))
+    bending_stiffness = 1e7 * np.pi / 4 * 0.01**4
+    assert bending_stiffness == pytest.approx(rod.EI)
+    assert model.initial_positions[-1] == pytest.approx([1.0, 0.0])
+
+
+def test_energies_balance(simulation):
+    energies = simulation.energies
+    assert energies.total == pytest.approx(0.0, abs=1e-12)
+    simulation.step(10)
+    energies = simulation.energies
+    parts = (energies.kinetic, energies.stretch, energies.bend, energies.gravity)
+    assert energies.kinetic > 0.0 > energies.gravity
+    assert energies.elastic == pytest.approx(energies.stretch + energies.bend)
+    assert energies.total == pytest.approx(sum(parts))
+    speed = np.sum(simulation.velocities**2, axis=1)
+    assert energies.kinetic == pytest.approx(0.5 * np.sum(simulation.mass * speed))
+    assert energies.gravity == pytest.approx(
+        9.81 * np.sum(simulation.mass * simulation.positions[:, 1])
+    )
+
+
+def test_probes_of_the_present_state(simulation):
+    simulation.step(7)
+    assert simulation.probes == {"tip": pytest.approx(simulation.positions[-1, 1])}
+
+
+def test_equilibrium_of_a_simulation(simulation):
+    report = simulation.equilibrium()
+    assert report.residual < 1e-6 * report.force_scale
+    assert report.negative_pivots == 0
+    settled = simulation.positions.copy()
+    simulation.step(10)
+    assert simulation.positions == pytest.approx(settled, abs=1e-7)
+
+
+def test_equilibrium_without_supports_is_an_error(swing):
+    swing["supports"] = []
+    simulation = der.Simulation(der.Scenario.from_dict(swing))
+    before = simulation.positions.copy()
+    with pytest.raises(der.NotConvergedError) as caught:
+        simulation.equilibrium()
+    assert caught.value.status == "not_converged"
+    assert isinstance(caught.value, der.DerError)
+    assert np.array_equal(simulation.positions, before)
+
+
+def test_a_step_of_a_static_scene_is_an_error(tube):
+    del tube["time"], tube["output"]["every"]
+    simulation = der.Simulation(der.Scenario.from_dict({**tube, "analysis": "static"}))
+    with pytest.raises(der.DerError, match="static"):
+        simulation.step()
+
+
+def test_divergence_is_an_error_of_its_own(unstable):
+    simulation = der.Simulation(der.Scenario.from_dict(unstable))
+    with pytest.raises(der.DivergedError, match=r"time\.step") as caught:
+        simulation.step(10_000)
+    assert caught.value.status == "diverged"
+    assert np.all(np.isfinite(simulation.positions))
+
+
+def test_repr_tells_what_it_is(simulation):
+    assert "Swinging rod" in repr(simulation)
+    assert "11 nodes" in repr(simulation)

@@ -37,14 +37,14 @@ class Table {
 
   /// `Owner` is S or a base of it; a member of type std::optional<T> takes a Format<T>.
   template <class Owner, class Member, class T>
-  Table& required(std::string key, Member Owner::*member, Format<T> format, std::string doc) {
+  Table& required(std::string key, Member Owner::* member, Format<T> format, std::string doc) {
     return field({std::move(key), format.shape, true, {}, false, std::move(doc)}, format,
                  assign(member));
   }
 
   /// `default_words` says what holds without the key where that is not the member's own value.
   template <class Owner, class Member, class T>
-  Table& optional(std::string key, Member Owner::*member, Format<T> format, std::string doc,
+  Table& optional(std::string key, Member Owner::* member, Format<T> format, std::string doc,
                   std::string default_words = {}) {
     FieldInfo info{std::move(key),           format.shape, false,
                    std::move(default_words), false,        std::move(doc)};
@@ -99,7 +99,7 @@ class Table {
 
  private:
   template <class Member, class Owner>
-  static auto assign(Member Owner::*member) {
+  static auto assign(Member Owner::* member) {
     return [member](S& target, auto&& value) {
       target.*member = std::forward<decltype(value)>(value);
     };

@@ -14,8 +14,10 @@ ProgressFunction = Callable[[float], None]
 class ProgressLine:
     """Writes one line with percentage and time left, over and over in place.
 
-    The line comes only after half a second, so that short runs stay silent; `close` wipes it out.
+    It comes only after `delay` seconds, so that short runs stay silent; `close` wipes it out.
     """
+
+    delay = 0.5
 
     def __init__(self, stream: TextIO | None = None) -> None:
         self._stream = sys.stderr if stream is None else stream
@@ -25,7 +27,7 @@ class ProgressLine:
     def __call__(self, done: float) -> None:
         """Show that the share `done` (0 to 1) of the run is done."""
         elapsed = time.monotonic() - self._start
-        if elapsed < 0.5:
+        if elapsed < self.delay:
             return
         left = f", {_duration(elapsed * (1.0 - done) / done)} left" if done > 0.0 else ""
         self._write(f"{done:4.0%}{left}")

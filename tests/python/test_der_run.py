@@ -386,18 +386,32 @@ def test_resuming_with_another_scene_or_without_a_run_is_refused(
     assert (out / "results.h5").read_bytes() == before
 
 
-def test_a_full_disk_is_an_error_that_says_so(scene: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("limit", [1_000, 1_500_000, 4_000_000])
+def test_a_full_disk_is_an_error_and_leaves_what_was_written(
+    scene: Path, tmp_path: Path, limit: int
+) -> None:
+    reference = tmp_path / "reference"
     out = tmp_path / "out"
+    length = ["--set", "time.duration=2000", "--set", "output.every=0.02", "--quiet"]
 
     def limit_files() -> None:
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # writing fails instead
-        resource.setrlimit(resource.RLIMIT_FSIZE, (2_000_000, 2_000_000))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
 
-    done = der_run(scene, *LONG, "--out", out, preexec_fn=limit_files)
+    done = der_run(scene, *length, "--out", out, preexec_fn=limit_files)
     assert done.returncode == 4
     assert "results.h5" in done.stderr
     assert "File too large" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
     assert not (out / "summary.json").exists()
+    if limit < 1_000_000:
+        return  # not even the head could be written
+    assert der_run(scene, *length, "--out", reference).returncode == 0
+    with h5py.File(out / "results.h5") as file, h5py.File(reference / "results.h5") as whole:
+        n = len(file["time"])
+        assert 0 < n < len(whole["time"])
+        for name in COLUMNS:
+            assert np.array_equal(file[name][:n], whole[name][:n]), name
 
 
 def on_terminal(*arguments: str | Path, **variables: str) -> str:

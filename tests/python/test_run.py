@@ -3,6 +3,7 @@
 import json
 import os
 import pickle
+import re
 import signal
 import subprocess
 import sys
@@ -189,19 +190,29 @@ def test_no_equilibrium_raises(swing):
 
 def test_progress_is_told_as_it_goes(swing):
     told = []
-    der.run({**swing, "time": {"duration": 40, "step": 0.001}}, progress=told.append)
+    der.run(swing, callback=slowly, progress=told.append)
     assert len(told) >= 2
     assert told == sorted(told)
     assert told[0] >= 0.0
     assert told[-1] <= 1.0
 
 
-def test_progress_line_is_wiped_out(swing, capsys):
-    der.run({**swing, "time": {"duration": 200, "step": 0.001}}, progress=True)
+def slowly(simulation):
+    time.sleep(0.002)
+
+
+def test_progress_line_is_wiped_out(swing, capsys, monkeypatch):
+    monkeypatch.setattr("der.progress.ProgressLine.delay", 0.0)
+    der.run(swing, callback=slowly, progress=True)
     lines = capsys.readouterr().err.split("\r")
-    assert any("% , " in line or "%, " in line for line in lines), "percentage and time left"
+    assert any(re.fullmatch(r" *\d+%, \d+ s left", line) for line in lines)
     assert lines[-1] == ""
     assert lines[-2].strip() == ""
+
+
+def test_short_runs_show_no_progress_line(swing, capsys):
+    der.run(swing, progress=True)
+    assert capsys.readouterr().err == ""
 
 
 def assert_same(first, second):

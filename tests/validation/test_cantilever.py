@@ -14,24 +14,26 @@ def tip(scenario):
     return der.run(scenario).positions[-1, -1]
 
 
+def tip_errors(scenario, exact, **changes):
+    """Distance of the tip from `exact` (x, and how far down) for every mesh of SIZES, in L."""
+    errors = []
+    for n in SIZES:
+        x, y = tip(scenario.with_(**{"rods.arm.nodes": n + 1}, **changes))
+        errors.append(np.hypot(x - exact[0], -y - abs(exact[1])))
+    return errors
+
+
+def stiffness_and_load(EA, load):
+    return {"rods.arm.cross_section.stiffness.EA": EA, "loads.0.point_force.force": [0, -load]}
+
+
 @pytest.mark.parametrize(("load", "error_at_10"), [(1, 2e-3), (10, 6e-3)])
 def test_tip_load_converges_to_the_elastica_at_second_order(
     scene, reference, fitted_order, load, error_at_10
 ):
     # EA L^2 / EI = 1e8: the stretch of 1e-8 L is far below the finest mesh's error of 2e-5 L.
     exact = [reference("elastica", f"tip_load.{load}.{c}") for c in "xy"]
-    errors = []
-    for n in SIZES:
-        x, y = tip(
-            scene("cantilever").with_(
-                **{
-                    "rods.arm.nodes": n + 1,
-                    "rods.arm.cross_section.stiffness.EA": 1e8,
-                    "loads.0.point_force.force": [0, -load],
-                }
-            )
-        )
-        errors.append(np.hypot(x - exact[0], y + exact[1]))
+    errors = tip_errors(scene("cantilever"), exact, **stiffness_and_load(1e8, load))
     assert errors[0] < error_at_10
     assert fitted_order([1 / n for n in SIZES], errors) > 1.9
 
@@ -40,52 +42,26 @@ def test_tip_load_converges_to_the_elastica_at_second_order(
 def test_tip_load_with_stretch_converges_at_second_order(scene, reference, fitted_order, load):
     name = f"cantilever.slenderness100.load{load}"
     exact = [reference("extensible_beam", f"{name}.{c}") for c in "xy"]
-    errors = []
-    for n in SIZES:
-        x, y = tip(
-            scene("cantilever").with_(
-                **{
-                    "rods.arm.nodes": n + 1,
-                    "rods.arm.cross_section.stiffness.EA": 1e2,
-                    "loads.0.point_force.force": [0, -load],
-                }
-            )
-        )
-        errors.append(np.hypot(x - exact[0], abs(y) - abs(exact[1])))
+    errors = tip_errors(scene("cantilever"), exact, **stiffness_and_load(1e2, load))
     assert fitted_order([1 / n for n in SIZES], errors) > 1.9
 
 
 @pytest.mark.parametrize("curvature", ["angle", "tangent"])
 def test_both_curvature_measures_converge(scene, reference, fitted_order, curvature):
     exact = [reference("elastica", f"tip_load.2.{c}") for c in "xy"]
-    errors = []
-    for n in SIZES:
-        x, y = tip(
-            scene("cantilever").with_(
-                **{
-                    "rods.arm.nodes": n + 1,
-                    "rods.arm.curvature": curvature,
-                    "rods.arm.cross_section.stiffness.EA": 1e8,
-                    "loads.0.point_force.force": [0, -2],
-                }
-            )
-        )
-        errors.append(np.hypot(x - exact[0], y + exact[1]))
+    changes = {"rods.arm.curvature": curvature, **stiffness_and_load(1e8, 2)}
+    errors = tip_errors(scene("cantilever"), exact, **changes)
     assert fitted_order([1 / n for n in SIZES], errors) > 1.9
 
 
 @pytest.mark.parametrize("weight", [1, 10, 100])
 def test_self_weight_as_a_distributed_force(scene, reference, fitted_order, weight):
     exact = [reference("elastica", f"self_weight.{weight}.{c}") for c in "xy"]
-    errors = []
-    for n in SIZES[1:]:
-        heavy = scene("cantilever").to_dict()
-        heavy["rods"][0]["nodes"] = n + 1
-        heavy["rods"][0]["cross_section"]["stiffness"]["EA"] = 1e9
-        heavy["loads"] = [{"distributed_force": {"rod": "arm", "force": [0, -weight]}}]
-        x, y = tip(der.Scenario.from_dict(heavy))
-        errors.append(np.hypot(x - exact[0], abs(y) - abs(exact[1])))
-    assert fitted_order([1 / n for n in SIZES[1:]], errors) > 1.9
+    heavy = scene("cantilever").to_dict()
+    heavy["rods"][0]["cross_section"]["stiffness"]["EA"] = 1e9
+    heavy["loads"] = [{"distributed_force": {"rod": "arm", "force": [0, -weight]}}]
+    errors = tip_errors(der.Scenario.from_dict(heavy), exact)
+    assert fitted_order([1 / n for n in SIZES], errors) > 1.9
 
 
 def test_a_force_between_nodes_does_not_jump_to_one(scene, fitted_order):

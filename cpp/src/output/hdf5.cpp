@@ -21,10 +21,28 @@ herr_t keep_cause(unsigned depth, const H5E_error2_t* entry, void* text) {
   return 0;
 }
 
-[[noreturn]] void throw_error(const std::string& action) {
+/// What stands between `before` and the next quote; empty if it is not there.
+std::string quoted_after(const std::string& text, const std::string& before) {
+  const auto found = text.find(before);
+  if (found == std::string::npos) return "";
+  const auto start = found + before.size();
+  return text.substr(start, text.find('\'', start) - start);
+}
+
+/// HDF5 reports a failed system call with buffer addresses and all; a person wants the file and the
+/// reason.
+std::string readable(const std::string& cause) {
+  const std::string file = quoted_after(cause, "name = '");
+  const std::string reason = quoted_after(cause, "error message = '");
+  if (reason.empty()) return cause;
+  return file.empty() ? reason : "'" + file + "': " + reason;
+}
+
+/// The error that the last HDF5 call has left.
+IoError last_error(const std::string& action) {
   std::string cause;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_cause, &cause);
-  throw IoError("cannot " + action + (cause.empty() ? "" : ": " + cause));
+  return IoError("cannot " + action + (cause.empty() ? "" : ": " + readable(cause)));
 }
 
 Handle property_list(hid_t kind) { return {H5Pcreate(kind), H5Pclose, "create a property list"}; }
@@ -71,6 +89,9 @@ Handle uncached_access() {
 }  // namespace
 
 Session::Session() : lock_(library_mutex()) {
+  // HDF5's own handler at the end of a process crashes when a file could not be closed, as on a
+  // full disk. It is not needed: every handle is closed by its owner.
+  [[maybe_unused]] static const herr_t without_exit_handler = H5dont_atexit();
   H5Eget_auto2(H5E_DEFAULT, &print_, &print_data_);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
@@ -78,7 +99,7 @@ Session::Session() : lock_(library_mutex()) {
 Session::~Session() { H5Eset_auto2(H5E_DEFAULT, print_, print_data_); }
 
 Handle::Handle(hid_t id, Close close, const std::string& action) : id_(id), close_(close) {
-  if (id < 0) throw_error(action);
+  if (id < 0) throw last_error(action);
 }
 
 Handle& Handle::operator=(Handle&& other) noexcept {
@@ -96,7 +117,7 @@ void Handle::reset() noexcept {
 }
 
 void check(herr_t result, const std::string& action) {
-  if (result < 0) throw_error(action);
+  if (result < 0) throw last_error(action);
 }
 
 Handle create_file(const std::filesystem::path& path) {
@@ -250,14 +271,17 @@ void Column::append_raw(hid_t type, const void* data, hsize_t count) {
   start.front() = rows();
   std::vector<hsize_t> block = dimensions_;
   block.front() = count;
+  const Handle memory_space = simple_space(block, nullptr);
   resize(rows() + count);
   const Handle file_space(H5Dget_space(dataset_.id()), H5Sclose, "append to a dataset");
   check(H5Sselect_hyperslab(file_space.id(), H5S_SELECT_SET, start.data(), nullptr, block.data(),
                             nullptr),
         "append to a dataset");
-  const Handle memory_space = simple_space(block, nullptr);
-  check(H5Dwrite(dataset_.id(), type, memory_space.id(), file_space.id(), H5P_DEFAULT, data),
-        "append to a dataset");
+  if (H5Dwrite(dataset_.id(), type, memory_space.id(), file_space.id(), H5P_DEFAULT, data) < 0) {
+    const IoError error = last_error("append to a dataset");
+    resize(start.front());  // rows that are not there must not be counted
+    throw error;  // NOLINT(misc-throw-by-value-catch-by-reference): made before the stack changes
+  }
 }
 
 }  // namespace der::hdf5

@@ -1,5 +1,8 @@
 #include "output/hdf5.hpp"
 
+#include <sys/mman.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <functional>
 #include <numeric>
@@ -38,11 +41,10 @@ std::string readable(const std::string& cause) {
   return file.empty() ? reason : "'" + file + "': " + reason;
 }
 
-/// The error that the last HDF5 call has left.
-IoError last_error(const std::string& action) {
+[[noreturn]] void throw_error(const std::string& action) {
   std::string cause;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_cause, &cause);
-  return IoError("cannot " + action + (cause.empty() ? "" : ": " + readable(cause)));
+  throw IoError("cannot " + action + (cause.empty() ? "" : ": " + readable(cause)));
 }
 
 Handle property_list(hid_t kind) { return {H5Pcreate(kind), H5Pclose, "create a property list"}; }
@@ -99,7 +101,7 @@ Session::Session() : lock_(library_mutex()) {
 Session::~Session() { H5Eset_auto2(H5E_DEFAULT, print_, print_data_); }
 
 Handle::Handle(hid_t id, Close close, const std::string& action) : id_(id), close_(close) {
-  if (id < 0) throw last_error(action);
+  if (id < 0) throw_error(action);
 }
 
 Handle& Handle::operator=(Handle&& other) noexcept {
@@ -117,7 +119,7 @@ void Handle::reset() noexcept {
 }
 
 void check(herr_t result, const std::string& action) {
-  if (result < 0) throw last_error(action);
+  if (result < 0) throw_error(action);
 }
 
 Handle create_file(const std::filesystem::path& path) {
@@ -146,6 +148,15 @@ void flush(hid_t file, const std::filesystem::path& path) {
   }
   if (error) throw IoError("cannot " + action + ": " + error.message());
   check(H5Fflush(file, H5F_SCOPE_GLOBAL), action);
+}
+
+void abandon(hid_t file) noexcept {
+  void* handle = nullptr;
+  if (H5Fget_vfd_handle(file, H5P_DEFAULT, &handle) < 0) return;
+  const int memory = ::memfd_create("der-abandoned", MFD_CLOEXEC);
+  if (memory < 0) return;
+  ::dup2(memory, *static_cast<int*>(handle));
+  ::close(memory);
 }
 
 bool exists(hid_t parent, const std::string& name) {
@@ -271,17 +282,14 @@ void Column::append_raw(hid_t type, const void* data, hsize_t count) {
   start.front() = rows();
   std::vector<hsize_t> block = dimensions_;
   block.front() = count;
-  const Handle memory_space = simple_space(block, nullptr);
   resize(rows() + count);
   const Handle file_space(H5Dget_space(dataset_.id()), H5Sclose, "append to a dataset");
   check(H5Sselect_hyperslab(file_space.id(), H5S_SELECT_SET, start.data(), nullptr, block.data(),
                             nullptr),
         "append to a dataset");
-  if (H5Dwrite(dataset_.id(), type, memory_space.id(), file_space.id(), H5P_DEFAULT, data) < 0) {
-    const IoError error = last_error("append to a dataset");
-    resize(start.front());  // rows that are not there must not be counted
-    throw error;  // NOLINT(misc-throw-by-value-catch-by-reference): made before the stack changes
-  }
+  const Handle memory_space = simple_space(block, nullptr);
+  check(H5Dwrite(dataset_.id(), type, memory_space.id(), file_space.id(), H5P_DEFAULT, data),
+        "append to a dataset");
 }
 
 }  // namespace der::hdf5

@@ -77,6 +77,11 @@ Handle create_group(hid_t parent, const std::string& name);
 /// which a process killed on the way leaves a file that opens.
 void flush(hid_t file, const std::filesystem::path& path);
 
+/// Keeps what HDF5 still wants to write, when it closes the file or before, from the file on disk.
+/// After a write that failed (a full disk) that would be half of a change, which makes the file
+/// unreadable; without it the file stays as it was flushed last.
+void abandon(hid_t file) noexcept;
+
 bool exists(hid_t parent, const std::string& name);
 bool has_attribute(hid_t object, const std::string& name);
 

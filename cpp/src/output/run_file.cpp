@@ -123,6 +123,12 @@ class RunFile::Writer {
   void add(const Frame& frame);
   [[nodiscard]] bool due();
   void commit(const Simulation& simulation, const Recorder& recorder);
+  /// To be called after an error of any of the others: leaves the file as it was flushed last.
+  void abandon() {
+    hdf5::abandon(file_.id());
+    abandoned_ = true;
+  }
+  [[nodiscard]] bool abandoned() const { return abandoned_; }
   void set_status(const std::string& status);
   /// Writes the frames that have gathered: all but /time first, so that the length of /time counts
   /// the frames that are whole.
@@ -145,6 +151,7 @@ class RunFile::Writer {
   BufferedColumn<std::int64_t> step_;
   std::vector<BufferedColumn<double>> energies_, probes_;
   CheckpointStore checkpoints_;
+  bool abandoned_ = false;
   hsize_t gathered_ = 0;  // frames not written yet
   std::size_t bytes_per_frame_ = 0;
   Pacer pacer_{kFlushInterval};
@@ -321,12 +328,24 @@ std::unique_ptr<RunFile> RunFile::resume(const std::filesystem::path& path, Simu
   return std::unique_ptr<RunFile>(new RunFile(Writer::resume(path, simulation, recorder)));
 }
 
+/// Calls an operation that writes; if it fails, the file is left as it was flushed last.
+template <class F>
+void RunFile::guarded(F&& operation) {
+  const hdf5::Session session;
+  try {
+    operation();
+  } catch (...) {
+    writer_->abandon();
+    throw;
+  }
+}
+
 RunFile::~RunFile() {
   const hdf5::Session session;
   try {
-    writer_->commit_frames();
+    if (!writer_->abandoned()) guarded([&] { writer_->commit_frames(); });
   } catch (const IoError&) {
-    // Whoever could be told has been told by an earlier call, or is unwinding from another error.
+    // The run is unwinding from another error, which is the one to report.
   }
   writer_.reset();
 }
@@ -334,16 +353,15 @@ RunFile::~RunFile() {
 void RunFile::write(const Frame& frame) { writer_->add(frame); }
 
 void RunFile::stepped(const Simulation& simulation, const Recorder& recorder) {
-  if (!writer_->due()) return;
-  const hdf5::Session session;
-  writer_->commit(simulation, recorder);
+  if (writer_->due()) guarded([&] { writer_->commit(simulation, recorder); });
 }
 
 void RunFile::finish(const std::string& status, const Simulation& simulation,
                      const Recorder& recorder) {
-  const hdf5::Session session;
-  writer_->commit(simulation, recorder);
-  writer_->set_status(status);
+  guarded([&] {
+    writer_->commit(simulation, recorder);
+    writer_->set_status(status);
+  });
 }
 
 RunFileHead read_head(const std::filesystem::path& path) {

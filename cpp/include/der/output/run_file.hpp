@@ -33,6 +33,8 @@ class RunFile : public FrameSink {
  private:
   class Writer;
   explicit RunFile(std::unique_ptr<Writer> writer);
+  template <class F>
+  void guarded(F&& operation);
   std::unique_ptr<Writer> writer_;
 };
 

@@ -1,0 +1,147 @@
+// The model that the builder makes of a scene: masses, places along a rod, clamps, tables.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+
+#include "der/model/builder.hpp"
+#include "der/model/location.hpp"
+#include "der/model/state.hpp"
+#include "der/scenario/reader.hpp"
+#include "der/supports/clamp.hpp"
+
+namespace der::test {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+Model model_of(const std::string& rod, const std::string& rest = "") {
+  return build_model(Scenario::parse("title: test\nrods:\n  - name: rod\n" + rod + rest +
+                                     "time: {duration: 1, step: 0.1}\n")
+                         .scene());
+}
+
+const std::string kUneven =
+    "    points: [[0, 0], [0.1, 0], [0.4, 0], [0.5, 0], [0.9, 0], [1, 0]]\n"
+    "    cross_section: {circle: {radius: 0.01}}\n"
+    "    material: {youngs_modulus: 1e7, density: 1000}\n";
+
+}  // namespace
+
+TEST_CASE("masses: Voronoi cells sum to the rod, spheres add to their node") {
+  const Model model = model_of(kUneven +
+                               "    spheres:\n"
+                               "      - {at: all, radius: 0.02, density: 500}\n"
+                               "      - {at: end, radius: 0.03, density: 700}\n");
+  const double rod = kPi * 1e-4 * 1000.0;
+  const auto sphere = [](double radius, double density) {
+    return 4.0 / 3.0 * kPi * std::pow(radius, 3) * density;
+  };
+  CHECK(model.mass.sum() / 2.0 ==
+        doctest::Approx(rod + 5.0 * sphere(0.02, 500.0) + sphere(0.03, 700.0)));
+  CHECK(model.mass[2 * 2] == doctest::Approx(rod * 0.5 * (0.3 + 0.1) + sphere(0.02, 500.0)));
+}
+
+TEST_CASE("weights between nodes reproduce cubics, so a load keeps its first three moments") {
+  const Model model = model_of(kUneven);
+  const RodLayout& rod = model.rods.front();
+  for (const double s : {0.0, 0.03, 0.1, 0.27, 0.45, 0.5, 0.77, 0.98, 1.0}) {
+    for (int power = 0; power <= 3; ++power) {
+      double sum = 0.0;
+      for (const auto& [place, weight] : node_weights(rod, s)) {
+        sum += weight * std::pow(rod.arc_length[static_cast<std::size_t>(place)], power);
+      }
+      CHECK(sum == doctest::Approx(std::pow(s, power)));
+    }
+  }
+  CHECK(node_weights(rod, 0.5).size() == 1);
+}
+
+TEST_CASE("weights of edges reproduce a linear change of direction between edge midpoints") {
+  const Model model = model_of(kUneven);
+  const RodLayout& rod = model.rods.front();
+  for (const double s : {0.05, 0.2, 0.3, 0.5, 0.9, 0.95}) {
+    double sum = 0.0;
+    for (const auto& [edge, weight] : edge_weights(rod, s)) {
+      const auto e = static_cast<std::size_t>(edge);
+      sum += weight * 0.5 * (rod.arc_length[e] + rod.arc_length[e + 1]);
+    }
+    CHECK(sum == doctest::Approx(s));
+  }
+}
+
+TEST_CASE("a clamp on a drawn arc holds the arc's tangent and leaves it free of stress") {
+  // A circle of radius 1 from angle 0 on: the tangent at its start points along +y.
+  std::string points = "    points: [";
+  for (int i = 0; i <= 40; ++i) {
+    const double a = 0.02 * i;
+    points += (i > 0 ? ", [" : "[") + std::to_string(std::cos(a)) + ", " +
+              std::to_string(std::sin(a)) + "]";
+  }
+  points += "]\n    cross_section: {stiffness: {EA: 1e3, EI: 1, mass_per_length: 1}}\n";
+  const Model model = model_of(points, "supports:\n  - {rod: rod, at: start, clamp: true}\n");
+  // The points are written with 6 digits; over an edge of 0.02 that is 5e-5 rad.
+  CHECK(initial_tangent_angle(model.rods.front(), 0, model) ==
+        doctest::Approx(0.5 * kPi).epsilon(1e-4));
+  CHECK(energies(model, initial_state(model)).elastic() < 1e-20);
+}
+
+TEST_CASE("a clamp inside a rod takes over the bending of its node") {
+  const std::string rod =
+      "    nodes: 11\n    from: [0, 0]\n    to: [1, 0]\n"
+      "    cross_section: {stiffness: {EA: 1e3, EI: 1, mass_per_length: 1}}\n";
+  const Model free = model_of(rod);
+  const Model clamped = model_of(rod, "supports:\n  - {rod: rod, at: middle, clamp: true}\n");
+  const auto count = [](const Model& model, auto kernel) {
+    return std::get<ElementList<decltype(kernel)>>(model.elements).size();
+  };
+  CHECK(count(free, PlanarBend<AngleCurvature>{}) == 9);
+  CHECK(count(clamped, PlanarBend<AngleCurvature>{}) == 8);
+  CHECK(count(clamped, PlanarClamp<AngleCurvature>{}) == 2);
+}
+
+TEST_CASE("a cable has no bending elements") {
+  const Model model = model_of(
+      "    nodes: 11\n    from: [0, 0]\n    to: [1, 0]\n"
+      "    cross_section: {stiffness: {EA: 1e3, EI: 0, mass_per_length: 1}}\n");
+  CHECK(std::get<ElementList<PlanarBend<AngleCurvature>>>(model.elements).size() == 0);
+}
+
+TEST_CASE("a distributed force sums to its length and stands at its middle") {
+  const Model model = model_of(kUneven,
+                               "loads:\n  - distributed_force: {rod: rod, from: 0.15, to: 0.8, "
+                               "force: [0, -4]}\n");
+  double force = 0.0;
+  double moment = 0.0;
+  for (Index i = 0; i < model.num_nodes; ++i) {
+    force += model.dead_force[2 * i + 1];
+    moment += model.dead_force[2 * i + 1] * model.initial_positions[2 * i];
+  }
+  CHECK(force == doctest::Approx(-4.0 * 0.65));
+  CHECK(moment == doctest::Approx(-4.0 * 0.65 * 0.475));
+}
+
+TEST_CASE("tables are linear between entries and constant beyond both ends") {
+  const scenario::Series series{{1.0, 2.0, 4.0}, {10.0, 20.0, 0.0}};
+  CHECK(value_at(series, 0.0) == 10.0);
+  CHECK(value_at(series, 1.5) == 15.0);
+  CHECK(value_at(series, 2.0) == 20.0);
+  CHECK(value_at(series, 3.0) == 10.0);
+  CHECK(value_at(series, 9.0) == 0.0);
+}
+
+TEST_CASE("held nodes follow their table and keep their velocity") {
+  const Model model = model_of(
+      "    nodes: 3\n    from: [0, 0]\n    to: [1, 0]\n"
+      "    cross_section: {stiffness: {EA: 1e3, EI: 1, mass_per_length: 1}}\n"
+      "    initial_velocity: [2, 0]\n",
+      "supports:\n  - {rod: rod, at: start, fix: [y], prescribe: {x: {times: [0, 1], values: "
+      "[0.5, 1.5]}}}\n");
+  const State state = initial_state(model);
+  CHECK(state.positions[0] == 0.5);
+  CHECK(state.velocities[0] == 0.0);
+  CHECK(state.velocities[2] == 2.0);
+  CHECK(model.num_free() == 4);
+}
+
+}  // namespace der::test

@@ -3,7 +3,10 @@
 
 #include <atomic>
 #include <cstddef>
+#include <string>
 
+#include "der/output/quantities.hpp"
+#include "der/output/recorder.hpp"
 #include "der/simulation.hpp"
 
 // The sanitizers bring their own allocator, which cannot be replaced; they do not look for this.
@@ -57,6 +60,49 @@ time: {duration: 1, step: 0.0001, integrator: implicit_euler}
     CHECK(allocations == before);
     CHECK(simulation.counters().newton_iterations >= (info.implicit ? 20 : 0));
   }
+}
+
+TEST_CASE("reading probes at every step allocates nothing, with every quantity there is") {
+  std::string scene = R"(
+rods:
+  - name: rod
+    nodes: 21
+    from: [0, 0]
+    to: [1, 0]
+    cross_section: {circle: {radius: 0.01}}
+    material: {youngs_modulus: 1e7, density: 1000}
+supports:
+  - {rod: rod, at: start, clamp: true, prescribe: {angle: {times: [0, 1], values: [0, 1]}}}
+loads:
+  - gravity: [0, -9.81]
+time: {duration: 1, step: 0.001}
+output:
+  every: 1
+  probes:
+)";
+  for (const Quantity& quantity : quantities()) {
+    const std::string head = "    " + quantity.name;
+    const std::string what = ": {quantity: " + quantity.name + ", rod: rod";
+    if (quantity.kind == QuantityKind::Energy) {
+      scene += head + what + "}\n";
+      continue;
+    }
+    scene += head + what + ", at: start}\n";
+    scene += head + "_max" + what + ", over: rod, reduce: max}\n";
+  }
+  Simulation simulation(Scenario::parse(scene));
+  Recorder recorder(simulation);
+  for (int i = 0; i < 3; ++i) {
+    simulation.step();
+    recorder.observe(simulation);
+  }
+  const long before = allocations;
+  for (int i = 0; i < 20; ++i) {
+    simulation.step();
+    recorder.observe(simulation);
+  }
+  CHECK(allocations == before);
+  CHECK(recorder.summaries().size() == 2 * quantities().size() - 6);
 }
 
 }  // namespace der::test

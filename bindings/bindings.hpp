@@ -14,5 +14,6 @@ void bind_model(py::module_& module);
 void bind_state(py::module_& module);
 void bind_recording(py::module_& module);
 void bind_simulation(py::module_& module);
+void bind_steppers(py::module_& module);
 
 }  // namespace der::python

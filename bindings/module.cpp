@@ -11,4 +11,5 @@ PYBIND11_MODULE(_core, module) {
   bindings::bind_state(module);
   bindings::bind_recording(module);
   bindings::bind_simulation(module);
+  bindings::bind_steppers(module);
 }

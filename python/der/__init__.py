@@ -31,10 +31,12 @@ from der._core import (
     Rod,
     Scenario,
     State,
+    StepperInfo,
     __version__,
     held_nodes,
     json_schema,
     scene_reference,
+    steppers,
 )
 from der.errors import DerError, Diagnostic, DivergedError, NotConvergedError, SceneError
 from der.probe_series import ProbeSeries
@@ -64,6 +66,7 @@ __all__ = [
     "SceneError",
     "Simulation",
     "State",
+    "StepperInfo",
     "__version__",
     "equilibrium",
     "held_nodes",
@@ -73,6 +76,7 @@ __all__ = [
     "plot",
     "run",
     "scene_reference",
+    "steppers",
 ]
 
 

@@ -83,6 +83,16 @@ def test_schema(capsys):
     assert "youngs_modulus" in capsys.readouterr().out
 
 
+def test_steppers_lists_every_integrator(capsys):
+    assert main(["steppers"]) == 0
+    header, *rows = capsys.readouterr().out.splitlines()
+    assert header.split() == ["name", "order", "kind", "stable", "damping"]
+    assert [row.split()[:2] for row in rows] == [
+        [info.name, str(info.order)] for info in der.steppers()
+    ]
+    assert ["verlet", "2", "explicit"] in [row.split()[:3] for row in rows]
+
+
 def test_plot_writes_a_picture(tube, tmp_path, capsys):
     der.run(tube, out=tmp_path / "run")
     assert main(["plot", str(tmp_path / "run")]) == 0

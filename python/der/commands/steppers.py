@@ -1,0 +1,24 @@
+"""List the time integrators: order, stability and damping of each."""
+
+from __future__ import annotations
+
+import argparse
+
+from der import steppers
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add no arguments: the list is always whole."""
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Print one line for each stepper, in aligned columns."""
+    rows = [("name", "order", "kind", "stable", "damping")]
+    for info in steppers():
+        kind = "implicit" if info.implicit else "explicit"
+        rows.append((info.name, str(info.order), kind, info.stability, info.damping))
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    for row in rows:
+        cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
+        print("  ".join(cells).rstrip())
+    return 0

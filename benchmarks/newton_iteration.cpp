@@ -13,9 +13,8 @@
 #include "der/solvers/banded_ldlt.hpp"
 #include "der/solvers/newton.hpp"
 
+namespace der {
 namespace {
-
-using namespace der;
 
 /// A cantilever whose shape waves a little, so that no angle is zero.
 scenario::Scene cantilever(int nodes) {
@@ -159,5 +158,6 @@ BENCHMARK(residual_alone)->Apply(sizes);
 BENCHMARK(banded_solve_alone)->Apply(sizes);
 
 }  // namespace
+}  // namespace der
 
 BENCHMARK_MAIN();

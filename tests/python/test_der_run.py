@@ -259,6 +259,7 @@ def test_a_static_analysis_is_one_frame(tmp_path: Path) -> None:
     assert "static_converged, stable" in done.stdout
     summary = summary_of(out)
     assert summary["status"] == "static_converged"
+    assert summary["integrator"] == "none"
     assert summary["unstable_directions"] == 0
     # Exact tip deflection for P L^2 / EI = 1 is 0.30172 (extensible here by 1e-4).
     assert summary["probes"]["tip"]["final"] == pytest.approx(-0.3017, abs=1e-3)

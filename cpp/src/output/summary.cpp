@@ -51,7 +51,7 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
   summary["analysis"] = is_static ? "static" : "dynamic";
   summary["model"] = model.name;
   summary["model_reason"] = model.reason;
-  if (!is_static) summary["integrator"] = simulation.integrator().name;
+  summary["integrator"] = is_static ? "none" : simulation.integrator().name;
   const UsedSolver solver = used_solver(simulation);
   summary["linear_solver"] = solver.name;
   summary["linear_solver_reason"] = solver.reason;

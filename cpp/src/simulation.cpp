@@ -78,19 +78,20 @@ void Simulation::advance_to(double target) {
   while (true) {
     const double left = target - state_.time;
     const bool last = dt >= left * (1.0 - 1e-9);
-    const StepReport report = stepper_->step(state_, last ? left : dt);
+    const double tried = last ? left : dt;
+    const StepReport report = stepper_->step(state_, tried);
     counters_.newton_iterations += report.newton_iterations;
     if (report.outcome == StepOutcome::Done) {
-      state_.time = last ? target : state_.time + dt;
+      state_.time = last ? target : state_.time + tried;
       if (last) return;
       continue;
     }
     if (report.outcome == StepOutcome::Diverged) {
-      throw DivergedError(describe_divergence(report, dt));
+      throw DivergedError(describe_divergence(report, tried));
     }
     counters_.retried_steps += dt == whole ? 1 : 0;
-    dt *= 0.5;
-    if (dt < smallest) throw NotConvergedError(describe_failure(report, dt));
+    dt = 0.5 * tried;
+    if (dt < smallest) throw NotConvergedError(describe_failure(report, tried));
   }
 }
 

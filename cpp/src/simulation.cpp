@@ -13,9 +13,6 @@
 namespace der {
 namespace {
 
-/// A failed step is cut down to this share of the scene's step before the run gives up.
-constexpr double kSmallestShare = 1e-6;
-
 StepperOptions stepper_options(const scenario::Scene& scene) {
   StepperOptions options;
   options.newton = {scene.solver.residual_tolerance, scene.solver.step_tolerance,
@@ -73,7 +70,6 @@ void Simulation::step() {
 
 void Simulation::advance_to(double target) {
   const double whole = target - state_.time;
-  const double smallest = std::max(scenario_.scene().time.minimum_step, kSmallestShare * whole);
   double dt = whole;
   while (true) {
     const double left = target - state_.time;
@@ -91,7 +87,8 @@ void Simulation::advance_to(double target) {
     }
     counters_.retried_steps += dt == whole ? 1 : 0;
     dt = 0.5 * tried;
-    if (dt < smallest) throw NotConvergedError(describe_failure(report, tried));
+    if (dt < scenario_.scene().time.minimum_step)
+      throw NotConvergedError(describe_failure(report, tried));
   }
 }
 
@@ -126,8 +123,7 @@ void Simulation::restore(const State& saved) {
 std::string Simulation::describe_failure(const StepReport& report, double dt) const {
   return fmt::format(
       "Newton's method failed at t = {:.6g} s even with a step of {:.3g} s: {}; the worst residual "
-      "is "
-      "at {}. A load that rises too fast, a shape that snaps, or too tight a "
+      "is at {}. A load that rises too fast, a shape that snaps, or too tight a "
       "solver.residual_tolerance "
       "are the usual causes; a smaller time.step or smoother load tables help.",
       state_.time, dt, report.failure, describe_dof(model_, report.worst_dof));
@@ -141,8 +137,7 @@ std::string Simulation::describe_divergence(const StepReport& report, double dt)
   if (dt <= stable.step) {
     return fmt::format(
         "{}. The step of {:.3g} s is below the stable step at the start, {:.3g} s: the motion "
-        "itself "
-        "stiffens the rod. Try half the step, or an implicit integrator.",
+        "itself stiffens the rod. Try half the step, or an implicit integrator.",
         what, dt, stable.step);
   }
   return fmt::format(

@@ -4,11 +4,10 @@
 #include <utility>
 
 #include "der/assembly/element_energy.hpp"
+#include "der/core/index.hpp"
 
 namespace der {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Calls f(list, map) for each kind of element with its scatter map.
 template <class Lists, class Maps, class F, std::size_t... I>

@@ -4,10 +4,10 @@
 #include <cassert>
 #include <utility>
 
+#include "der/core/index.hpp"
+
 namespace der {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// (column, row) of every entry that an element of the model touches, with repetitions.
 std::vector<std::pair<Index, Index>> touched_entries(const Model& model) {

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "der/core/constants.hpp"
 #include "der/loads/loads.hpp"
 
 namespace der {
@@ -7,13 +8,12 @@ namespace der {
 // Stokes drag on a sphere and the weight of the fluid that it displaces (Batchelor, An Introduction
 // to Fluid Dynamics, eq. 4.9.19).
 void add_load(const scenario::Fluid& load, const scenario::Scene& scene, Model& model) {
-  constexpr double pi = 3.14159265358979323846;
   const Vector gravity = total_gravity(scene);
   for (const RodLayout& rod : model.rods) {
     for (std::size_t i = 0; i < rod.nodes.size(); ++i) {
       const double radius = rod.sphere_radius[i];
-      const double drag = 6.0 * pi * load.viscosity * radius;
-      const double displaced = 4.0 / 3.0 * pi * std::pow(radius, 3) * load.density;
+      const double drag = 6.0 * kPi * load.viscosity * radius;
+      const double displaced = 4.0 / 3.0 * kPi * std::pow(radius, 3) * load.density;
       for (int c = 0; c < model.dimension; ++c) {
         const Index dof = model.dof(rod.nodes[i], c);
         model.damping[dof] += drag;

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <cstddef>
 
+#include "der/core/constants.hpp"
 #include "der/core/error.hpp"
+#include "der/core/index.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/cross_section.hpp"
@@ -12,10 +14,6 @@
 
 namespace der {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 void choose_model(const scenario::Scene& scene, Model& model) {
   model.dimension = 2;
@@ -39,11 +37,11 @@ Vec2 position(const Model& model, Index node) {
 }
 
 /// The only place that makes a chain of nodes; everything after it reads the layout's lists.
-RodLayout lay_out(const scenario::Rod& rod, Index first_node, Model& model) {
+RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, Index first_node,
+                  Model& model) {
   RodLayout layout;
   layout.name = rod.name;
   layout.curvature = rod.curvature;
-  const SectionProperties section = section_properties(rod.cross_section, rod.material);
   layout.EA = section.EA;
   layout.EI = section.EI;
   layout.draw_radius = section.draw_radius;
@@ -91,8 +89,8 @@ void add_mass(Index node, double mass, Model& model) {
 }
 
 /// Lumped masses: each node carries its Voronoi cell and its sphere.
-void lump_masses(const scenario::Rod& rod, RodLayout& layout, Model& model) {
-  const double per_length = section_properties(rod.cross_section, rod.material).mass_per_length;
+void lump_masses(const scenario::Rod& rod, double mass_per_length, RodLayout& layout,
+                 Model& model) {
   std::vector<double> sphere_density(layout.nodes.size(), 0.0);
   for (const auto& sphere : rod.spheres) {
     for (const Index place : nodes_at(sphere.at, layout)) {
@@ -102,9 +100,10 @@ void lump_masses(const scenario::Rod& rod, RodLayout& layout, Model& model) {
   }
   for (std::size_t i = 0; i < layout.nodes.size(); ++i) {
     const double volume = 4.0 / 3.0 * kPi * std::pow(layout.sphere_radius[i], 3);
-    add_mass(layout.nodes[i],
-             per_length * layout.voronoi_length(static_cast<Index>(i)) + sphere_density[i] * volume,
-             model);
+    add_mass(
+        layout.nodes[i],
+        mass_per_length * layout.voronoi_length(static_cast<Index>(i)) + sphere_density[i] * volume,
+        model);
   }
 }
 
@@ -130,9 +129,10 @@ void add_bend(const scenario::Scene& scene, const RodLayout& rod, Model& model) 
 void build_rods(const scenario::Scene& scene, Model& model) {
   Index first_node = 0;
   for (const auto& rod : scene.rods) {
-    RodLayout layout = lay_out(rod, first_node, model);
+    const SectionProperties section = section_properties(rod.cross_section, rod.material);
+    RodLayout layout = lay_out(rod, section, first_node, model);
     set_natural_curvature(rod, model, layout);
-    lump_masses(rod, layout, model);
+    lump_masses(rod, section.mass_per_length, layout, model);
     add_stretch(layout, model);
     if (layout.EI > 0.0) {
       if (layout.curvature == scenario::CurvatureMeasure::Angle) {

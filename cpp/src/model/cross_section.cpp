@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "der/core/constants.hpp"
+
 namespace der {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 struct Geometry {
   double area = 0.0;           // [m^2]

@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "der/core/error.hpp"
+#include "der/core/index.hpp"
 
 namespace der {
 namespace {
 
 /// Two arc lengths closer than this share of the rod's length are the same place.
 constexpr double kSamePlace = 1e-9;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 Index nearest_node(const RodLayout& rod, double s) {
   const auto& arc = rod.arc_length;

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "der/core/index.hpp"
+
 namespace der {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Plain Newton steps that have not converged by then rarely do.
 constexpr int kFullStepIterations = 12;

@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "der/steppers/explicit_force.hpp"
 #include "der/steppers/implicit_stage.hpp"
 #include "steppers.hpp"

@@ -55,7 +55,7 @@ struct Problem {
 
   void assemble() {
     assembler.gradient_and_hessian(state.positions, stage.controls, gradient, values);
-    assembler.add_diagonal(stage.mass, stage.inertia, values);
+    assembler.add_mass(stage.mass, stage.inertia, values);
   }
 
   void newton_iteration() {

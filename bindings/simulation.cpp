@@ -106,7 +106,7 @@ void bind_arrays(PySimulationClass& cls) {
           [](const py::object& self) {
             const Model& model = self.cast<PySimulation&>().engine().model();
             const py::ssize_t stride = model.dimension * static_cast<py::ssize_t>(sizeof(double));
-            Array mass({py::ssize_t{model.num_nodes}}, {stride}, model.mass.data(), self);
+            Array mass({py::ssize_t{model.num_nodes}}, {stride}, model.mass.lumped.data(), self);
             mass.attr("setflags")(false);
             return mass;
           },

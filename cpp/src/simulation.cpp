@@ -94,9 +94,11 @@ void Simulation::advance_to(double target) {
 
 EquilibriumReport Simulation::equilibrium() {
   Vector positions = state_.positions;
+  NewtonOptions newton = stepper_options(scenario_.scene()).newton;
+  // Solved once, not at every step: one more iteration takes the last digits too.
+  newton.step_tolerance *= 0.01;
   EquilibriumReport report =
-      find_equilibrium(model_, assembler_, *solver_.solver,
-                       stepper_options(scenario_.scene()).newton, state_, positions);
+      find_equilibrium(model_, assembler_, *solver_.solver, newton, state_, positions);
   counters_.newton_iterations += report.newton_iterations;
   if (!report.converged) {
     throw NotConvergedError(fmt::format(

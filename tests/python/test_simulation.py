@@ -40,7 +40,9 @@ def test_the_engine_sees_what_is_written(simulation):
     untouched = der.Simulation(simulation.scenario)
     untouched.step()
     simulation.velocities[-1] = [0.0, 3.0]
-    assert simulation.energies.kinetic == pytest.approx(0.5 * simulation.mass[-1] * 9.0)
+    # A uniform edge of twice the end node's mass with one end at rest: 1/2 (m/3) v^2.
+    edge_mass = 2.0 * simulation.mass[-1]
+    assert simulation.energies.kinetic == pytest.approx(0.5 * edge_mass / 3.0 * 9.0)
     simulation.step()
     assert simulation.positions[-1, 1] > untouched.positions[-1, 1] + 0.003
     simulation.positions[...] = untouched.positions
@@ -191,8 +193,13 @@ def test_energies_balance(simulation):
     assert energies.kinetic > 0.0 > energies.gravity
     assert energies.elastic == pytest.approx(energies.stretch + energies.bend)
     assert energies.total == pytest.approx(sum(parts))
-    speed = np.sum(simulation.velocities**2, axis=1)
-    assert energies.kinetic == pytest.approx(0.5 * np.sum(simulation.mass * speed))
+    # Edges are uniform bars, but for the first one, which is held at one end and so stays lumped.
+    v = simulation.velocities
+    edge_mass = 2.0 * simulation.mass[-1]
+    kinetic = 0.25 * edge_mass * np.sum(v[1] ** 2)
+    for a, b in zip(v[1:-1], v[2:], strict=True):
+        kinetic += edge_mass / 6.0 * (a @ a + a @ b + b @ b)
+    assert energies.kinetic == pytest.approx(kinetic)
     assert energies.gravity == pytest.approx(
         9.81 * np.sum(simulation.mass * simulation.positions[:, 1])
     )

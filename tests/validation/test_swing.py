@@ -21,7 +21,7 @@ SWING = {
     ],
     "supports": [{"rod": "arm", "at": "start", "clamp": True}],
     "loads": [{"gravity": [0, -9.81]}],
-    "time": {"duration": 1.0, "step": 5e-4, "integrator": "implicit_midpoint"},
+    "time": {"duration": 1.0, "step": 2e-4, "integrator": "implicit_midpoint"},
     "output": {"every": 0.01},
 }
 
@@ -43,5 +43,6 @@ def test_converges_to_the_continuum_at_second_order_in_space(reference, fitted_o
     "integrator", ["implicit_midpoint", "generalized_alpha", "tr_bdf2", "bdf2"]
 )
 def test_second_order_steppers_reach_the_continuum(reference, integrator):
-    """At 51 nodes the error in space is 2.5e-3 m, that in time far smaller."""
-    assert tip_error(reference, **{"time.integrator": integrator}) < 3e-3
+    """At 51 nodes the error in space is 2e-4 m; that in time is 2e-5 m for the midpoint rule and up
+    to 2e-4 m for the damping ones."""
+    assert tip_error(reference, **{"time.integrator": integrator}) < 4e-4

@@ -28,6 +28,9 @@ Assembler::Assembler(const Model& model, const MatrixLayout& layout)
     return i < 0 || j < 0 ? spare : layout.slot(std::max(i, j), std::min(i, j));
   };
   for (Index i = 0; i < model.num_free(); ++i) diagonal_slots_.push_back(layout.slot(i, i));
+  for (const auto& [a, b, mass] : model.mass.coupling) {
+    coupling_slots_.push_back({slot_of(a, a), slot_of(b, b), slot_of(a, b)});
+  }
   for_each_pair(
       model.elements, scatter_,
       [&](const auto& list, auto& map) {
@@ -80,6 +83,16 @@ void Assembler::gradient(const Vector& positions, const Vector& controls, Vector
 void Assembler::gradient_and_hessian(const Vector& positions, const Vector& controls,
                                      Vector& gradient, Vector& values) const {
   assemble<Derivatives::Hessian>(positions, controls, gradient, &values);
+}
+
+void Assembler::add_mass(const Mass& mass, double factor, Vector& values) const {
+  add_diagonal(mass.lumped, factor, values);
+  for (std::size_t i = 0; i < mass.coupling.size(); ++i) {
+    const double shared = factor * mass.coupling[i].mass;
+    values[coupling_slots_[i].a] -= shared;
+    values[coupling_slots_[i].b] -= shared;
+    values[coupling_slots_[i].ab] += shared;
+  }
 }
 
 void Assembler::add_diagonal(const Vector& diagonal, double factor, Vector& values) const {

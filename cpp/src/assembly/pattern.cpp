@@ -9,28 +9,21 @@
 namespace der {
 namespace {
 
-/// (column, row) of every entry that an element of the model touches, with repetitions.
-std::vector<std::pair<Index, Index>> touched_entries(const Model& model) {
-  std::vector<std::pair<Index, Index>> entries;
-  for (Index i = 0; i < model.num_free(); ++i) entries.emplace_back(i, i);
-  for_each_list(model.elements, [&](const auto& list) {
-    for (const auto& dofs : list.dofs) {
-      for (const Index a : dofs) {
-        for (const Index b : dofs) {
-          const Index row = model.free_index[at(a)];
-          const Index column = model.free_index[at(b)];
-          if (column >= 0 && row > column) entries.emplace_back(column, row);
-        }
-      }
-    }
-  });
-  return entries;
+/// (column, row) of entries of the lower triangle, repetitions allowed.
+using Entries = std::vector<std::pair<Index, Index>>;
+
+void add_entry(Index dof_a, Index dof_b, const Model& model, Entries& entries) {
+  const Index a = model.free_index[at(dof_a)];
+  const Index b = model.free_index[at(dof_b)];
+  if (a >= 0 && b >= 0) entries.emplace_back(std::min(a, b), std::max(a, b));
 }
 
-}  // namespace
+void add_mass_entries(const Model& model, Entries& entries) {
+  for (const Index dof : model.free_dofs) add_entry(dof, dof, model, entries);
+  for (const auto& [a, b, mass] : model.mass.coupling) add_entry(a, b, model, entries);
+}
 
-Pattern build_pattern(const Model& model) {
-  auto entries = touched_entries(model);
+Pattern compress(Entries entries, const Model& model) {
   std::sort(entries.begin(), entries.end());
   entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
 
@@ -44,6 +37,27 @@ Pattern build_pattern(const Model& model) {
   }
   for (std::size_t j = 0; j < at(pattern.size); ++j) pattern.outer[j + 1] += pattern.outer[j];
   return pattern;
+}
+
+}  // namespace
+
+Pattern build_pattern(const Model& model) {
+  Entries entries;
+  add_mass_entries(model, entries);
+  for_each_list(model.elements, [&](const auto& list) {
+    for (const auto& dofs : list.dofs) {
+      for (std::size_t i = 0; i < dofs.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) add_entry(dofs[i], dofs[j], model, entries);
+      }
+    }
+  });
+  return compress(std::move(entries), model);
+}
+
+Pattern build_mass_pattern(const Model& model) {
+  Entries entries;
+  add_mass_entries(model, entries);
+  return compress(std::move(entries), model);
 }
 
 MatrixLayout MatrixLayout::compressed(const Pattern& pattern) {

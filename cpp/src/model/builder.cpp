@@ -6,10 +6,10 @@
 #include "der/core/constants.hpp"
 #include "der/core/error.hpp"
 #include "der/core/index.hpp"
-#include "der/kinematics/planar_edge.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/cross_section.hpp"
 #include "der/model/location.hpp"
+#include "der/model/rod_elements.hpp"
 #include "der/supports/supports.hpp"
 
 namespace der {
@@ -26,7 +26,7 @@ void choose_model(const scenario::Scene& scene, Model& model) {
 void place_nodes(const scenario::Scene& scene, Model& model) {
   for (const auto& rod : scene.rods) model.num_nodes += static_cast<Index>(rod.points.size());
   const Index dofs = model.num_dofs();
-  for (Vector* v : {&model.initial_positions, &model.initial_velocities, &model.mass,
+  for (Vector* v : {&model.initial_positions, &model.initial_velocities, &model.mass.lumped,
                     &model.damping, &model.gravity_force, &model.dead_force}) {
     v->setZero(dofs);
   }
@@ -60,37 +60,27 @@ RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, In
     layout.edge_length.push_back((position(model, node) - position(model, node - 1)).norm());
     layout.arc_length.push_back(layout.arc_length.back() + layout.edge_length.back());
   }
+  for (Index edge = 0; edge < layout.num_edges(); ++edge) {
+    model.edges.push_back({layout.edge_dofs(edge, model), layout.edge_length[at(edge)]});
+  }
   layout.sphere_radius.assign(rod.points.size(), 0.0);
   return layout;
 }
 
-void set_natural_curvature(const scenario::Rod& rod, const Model& model, RodLayout& layout) {
-  const std::size_t count = layout.nodes.size();
+void set_natural_curvature(const scenario::Rod& rod, RodLayout& layout) {
   if (const auto* constant = std::get_if<double>(&rod.natural_curvature)) {
-    layout.natural_curvature.assign(count, *constant);
+    layout.natural_curvature.assign(layout.nodes.size(), *constant);
   } else if (const auto* list = std::get_if<std::vector<double>>(&rod.natural_curvature)) {
     layout.natural_curvature = *list;
-  }
-  layout.rest_turning_angle.assign(count, 0.0);
-  for (std::size_t i = 1; i + 1 < count; ++i) {
-    if (layout.natural_curvature.empty()) {
-      const Vec2 x = position(model, layout.nodes[i]);
-      layout.rest_turning_angle[i] = angle_between(x - position(model, layout.nodes[i - 1]),
-                                                   position(model, layout.nodes[i + 1]) - x);
-    } else {
-      layout.rest_turning_angle[i] =
-          layout.natural_curvature[i] * layout.voronoi_length(static_cast<Index>(i));
-    }
   }
 }
 
 void add_mass(Index node, double mass, Model& model) {
-  for (int c = 0; c < model.dimension; ++c) model.mass[model.dof(node, c)] += mass;
+  for (int c = 0; c < model.dimension; ++c) model.mass.lumped[model.dof(node, c)] += mass;
 }
 
 /// Lumped masses: each node carries its Voronoi cell and its sphere.
-void lump_masses(const scenario::Rod& rod, double mass_per_length, RodLayout& layout,
-                 Model& model) {
+void lump_masses(const scenario::Rod& rod, RodLayout& layout, Model& model) {
   std::vector<double> sphere_density(layout.nodes.size(), 0.0);
   for (const auto& sphere : rod.spheres) {
     for (const Index place : nodes_at(sphere.at, layout)) {
@@ -100,47 +90,35 @@ void lump_masses(const scenario::Rod& rod, double mass_per_length, RodLayout& la
   }
   for (std::size_t i = 0; i < layout.nodes.size(); ++i) {
     const double volume = 4.0 / 3.0 * kPi * std::pow(layout.sphere_radius[i], 3);
-    add_mass(
-        layout.nodes[i],
-        mass_per_length * layout.voronoi_length(static_cast<Index>(i)) + sphere_density[i] * volume,
-        model);
+    add_mass(layout.nodes[i],
+             layout.mass_per_length * layout.voronoi_length(static_cast<Index>(i)) +
+                 sphere_density[i] * volume,
+             model);
   }
 }
 
-void add_stretch(const RodLayout& rod, Model& model) {
-  auto& list = std::get<ElementList<Stretch<2>>>(model.elements);
+/// The part of each edge's consistent mass that is not lumped, between free degrees of freedom.
+void couple_masses(const RodLayout& rod, Model& model) {
+  if (rod.mass_per_length == 0.0) return;
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-    list.add(rod.edge_dofs(edge, model), {rod.EA, rod.edge_length[at(edge)]});
+    const double mass = rod.mass_per_length * rod.edge_length[at(edge)] / 6.0;
+    for (int c = 0; c < model.dimension; ++c) {
+      const Index a = model.dof(rod.nodes[at(edge)], c);
+      const Index b = model.dof(rod.nodes[at(edge) + 1], c);
+      if (model.free_index[at(a)] < 0 || model.free_index[at(b)] < 0) continue;
+      model.mass.coupling.push_back({a, b, mass});
+    }
   }
 }
 
-template <class Curvature>
-void add_bend(const scenario::Scene& scene, const RodLayout& rod, Model& model) {
-  auto& list = std::get<ElementList<PlanarBend<Curvature>>>(model.elements);
-  for (Index i = 1; i < rod.num_edges(); ++i) {
-    if (is_clamped(scene, rod, i)) continue;
-    const auto before = rod.edge_dofs(i - 1, model);
-    const auto after = rod.edge_dofs(i, model);
-    list.add({before[0], before[1], after[0], after[1], after[2], after[3]},
-             {rod.EI / rod.voronoi_length(i), Curvature::of(rod.rest_turning_angle[at(i)]).kappa});
-  }
-}
-
-void build_rods(const scenario::Scene& scene, Model& model) {
+void lay_out_rods(const scenario::Scene& scene, Model& model) {
   Index first_node = 0;
   for (const auto& rod : scene.rods) {
     const SectionProperties section = section_properties(rod.cross_section, rod.material);
     RodLayout layout = lay_out(rod, section, first_node, model);
-    set_natural_curvature(rod, model, layout);
-    lump_masses(rod, section.mass_per_length, layout, model);
-    add_stretch(layout, model);
-    if (layout.EI > 0.0) {
-      if (layout.curvature == scenario::CurvatureMeasure::Angle) {
-        add_bend<AngleCurvature>(scene, layout, model);
-      } else {
-        add_bend<TangentCurvature>(scene, layout, model);
-      }
-    }
+    layout.mass_per_length = section.mass_per_length;
+    set_natural_curvature(rod, layout);
+    lump_masses(rod, layout, model);
     first_node += static_cast<Index>(rod.points.size());
     model.size = std::max(model.size, layout.rest_length());
     model.rods.push_back(std::move(layout));
@@ -169,12 +147,14 @@ Model build_model(const scenario::Scene& scene) {
   Model model;
   choose_model(scene, model);
   place_nodes(scene, model);
-  build_rods(scene, model);
+  lay_out_rods(scene, model);
   for (const auto& support : scene.supports) add_support(support, model);
+  for (RodLayout& rod : model.rods) add_rod_elements(rod, model);
   for (const auto& load : scene.loads) {
     std::visit([&](const auto& l) { add_load(l, scene, model); }, load.what);
   }
   number_free_dofs(model);
+  for (const RodLayout& rod : model.rods) couple_masses(rod, model);
   return model;
 }
 

@@ -12,6 +12,11 @@ namespace {
 /// Two arc lengths closer than this share of the rod's length are the same place.
 constexpr double kSamePlace = 1e-9;
 
+/// Of a moment at the very end, what the last edge takes beyond all of it and the edge before takes
+/// back: turns the last edge by l kappa/12 more, which brings the end from the chain's place beside
+/// the curve onto it (supports/clamp.hpp).
+constexpr double kEndShare = 1.0 / 12.0;
+
 Index nearest_node(const RodLayout& rod, double s) {
   const auto& arc = rod.arc_length;
   const auto above = std::lower_bound(arc.begin(), arc.end(), s);
@@ -91,8 +96,13 @@ std::vector<Weighted> edge_weights(const RodLayout& rod, double s) {
   const auto& arc = rod.arc_length;
   const auto edges = static_cast<Index>(arc.size()) - 1;
   const auto midpoint = [&](Index edge) { return 0.5 * (arc[at(edge)] + arc[at(edge + 1)]); };
-  if (s <= midpoint(0)) return {{0, 1.0}};
-  if (s >= midpoint(edges - 1)) return {{edges - 1, 1.0}};
+  const auto beyond = [&](double distance, Index last, Index before) -> std::vector<Weighted> {
+    if (edges == 1) return {{last, 1.0}};
+    const double share = kEndShare * distance / (0.5 * rod.edge_length[at(last)]);
+    return {{last, 1.0 + share}, {before, -share}};
+  };
+  if (s <= midpoint(0)) return beyond(midpoint(0) - s, 0, 1);
+  if (s >= midpoint(edges - 1)) return beyond(s - midpoint(edges - 1), edges - 1, edges - 2);
   Index right = 1;
   while (midpoint(right) < s) ++right;
   const double share = (s - midpoint(right - 1)) / (midpoint(right) - midpoint(right - 1));

@@ -1,5 +1,7 @@
 #include "der/model/model.hpp"
 
+#include <utility>
+
 #include "der/core/error.hpp"
 
 namespace der {
@@ -17,11 +19,22 @@ std::array<Index, 4> RodLayout::edge_dofs(Index edge, const Model& model) const 
   return {model.dof(a, 0), model.dof(a, 1), model.dof(b, 0), model.dof(b, 1)};
 }
 
+const Clamp* RodLayout::clamp_at(Index place) const {
+  for (const Clamp& clamp : clamps) {
+    if (clamp.place == place) return &clamp;
+  }
+  return nullptr;
+}
+
 const RodLayout& Model::rod(const std::string& rod_name) const {
   for (const RodLayout& layout : rods) {
     if (layout.name == rod_name) return layout;
   }
   throw Error("model_error", "there is no rod named '" + rod_name + "'");
+}
+
+RodLayout& Model::rod(const std::string& rod_name) {
+  return rods[static_cast<std::size_t>(&std::as_const(*this).rod(rod_name) - rods.data())];
 }
 
 }  // namespace der

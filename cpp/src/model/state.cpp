@@ -24,7 +24,7 @@ Energies energies(const Model& model, const State& state) {
   Vector controls;
   model.controls.evaluate(state.time, controls);
   Energies result;
-  result.kinetic = 0.5 * state.velocities.dot(model.mass.cwiseProduct(state.velocities));
+  result.kinetic = model.mass.kinetic_energy(state.velocities);
   result.gravity = -model.gravity_force.dot(state.positions);
   for_each_list(model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;

@@ -28,18 +28,21 @@ Terms terms_of(const std::string& quantity) {
   throw Error("model_error", "'" + quantity + "' is not an energy");
 }
 
+/// What an energy is read from: the whole model, or a part of it.
+struct Part {
+  Mass mass;
+  Vector gravity_force;
+  ElementLists elements;
+};
+
 class EnergyReader : public ProbeReader {
  public:
-  EnergyReader(Terms terms, std::vector<Index> dofs, ElementLists elements)
-      : terms_(terms), dofs_(std::move(dofs)), elements_(std::move(elements)) {}
+  EnergyReader(Terms terms, Part part) : terms_(terms), part_(std::move(part)) {}
 
   double value(const Model& model, const State& state) override {
     double energy = 0.0;
-    for (const Index dof : dofs_) {
-      const double v = state.velocities[dof];
-      if (terms_.kinetic) energy += 0.5 * model.mass[dof] * v * v;
-      if (terms_.gravity) energy -= model.gravity_force[dof] * state.positions[dof];
-    }
+    if (terms_.kinetic) energy += part_.mass.kinetic_energy(state.velocities);
+    if (terms_.gravity) energy -= part_.gravity_force.dot(state.positions);
     if (terms_.stretch || terms_.bend) energy += elastic(model, state);
     return energy;
   }
@@ -48,7 +51,7 @@ class EnergyReader : public ProbeReader {
   double elastic(const Model& model, const State& state) {
     model.controls.evaluate(state.time, controls_);
     double energy = 0.0;
-    for_each_list(elements_, [&](const auto& list) {
+    for_each_list(part_.elements, [&](const auto& list) {
       constexpr EnergyTerm term = std::decay_t<decltype(list)>::KernelType::kTerm;
       if ((term == EnergyTerm::Stretch && terms_.stretch) ||
           (term == EnergyTerm::Bend && terms_.bend)) {
@@ -59,8 +62,7 @@ class EnergyReader : public ProbeReader {
   }
 
   Terms terms_;
-  std::vector<Index> dofs_;  // whose kinetic and gravity energy counts
-  ElementLists elements_;    // whose elastic energy counts
+  Part part_;
   Vector controls_;
 };
 
@@ -72,20 +74,29 @@ std::vector<Index> rod_dofs(const RodLayout& rod, const Model& model) {
   return dofs;
 }
 
-/// The elements all of whose degrees of freedom are in `dofs`.
-ElementLists elements_on(std::vector<Index> dofs, const ElementLists& all) {
+/// The nodes of a rod, and everything between them.
+Part part_of(const RodLayout& rod, const Model& model) {
+  std::vector<Index> dofs = rod_dofs(rod, model);
   std::sort(dofs.begin(), dofs.end());
   const auto is_here = [&](Index dof) { return std::binary_search(dofs.begin(), dofs.end(), dof); };
-  ElementLists result;
-  for_each_list(all, [&](const auto& list) {
-    auto& kept = std::get<std::decay_t<decltype(list)>>(result);
+
+  Part part{{Vector::Zero(model.num_dofs()), {}}, Vector::Zero(model.num_dofs()), {}};
+  for (const Index dof : dofs) {
+    part.mass.lumped[dof] = model.mass.lumped[dof];
+    part.gravity_force[dof] = model.gravity_force[dof];
+  }
+  for (const MassCoupling& coupling : model.mass.coupling) {
+    if (is_here(coupling.a) && is_here(coupling.b)) part.mass.coupling.push_back(coupling);
+  }
+  for_each_list(model.elements, [&](const auto& list) {
+    auto& kept = std::get<std::decay_t<decltype(list)>>(part.elements);
     for (std::size_t e = 0; e < list.size(); ++e) {
       if (std::all_of(list.dofs[e].begin(), list.dofs[e].end(), is_here)) {
         kept.add(list.dofs[e], list.constants[e]);
       }
     }
   });
-  return result;
+  return part;
 }
 
 }  // namespace
@@ -93,11 +104,9 @@ ElementLists elements_on(std::vector<Index> dofs, const ElementLists& all) {
 std::unique_ptr<ProbeReader> make_energy_reader(const std::string& quantity,
                                                 const std::optional<std::string>& rod,
                                                 const Model& model) {
-  std::vector<Index> dofs(static_cast<std::size_t>(model.num_dofs()));
-  for (std::size_t i = 0; i < dofs.size(); ++i) dofs[i] = static_cast<Index>(i);
-  if (rod) dofs = rod_dofs(model.rod(*rod), model);
-  ElementLists elements = rod ? elements_on(dofs, model.elements) : model.elements;
-  return std::make_unique<EnergyReader>(terms_of(quantity), std::move(dofs), std::move(elements));
+  return std::make_unique<EnergyReader>(
+      terms_of(quantity), rod ? part_of(model.rod(*rod), model)
+                              : Part{model.mass, model.gravity_force, model.elements});
 }
 
 }  // namespace der

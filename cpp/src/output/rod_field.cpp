@@ -1,23 +1,17 @@
 #include "output/rod_field.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 
 #include "der/core/error.hpp"
+#include "der/core/index.hpp"
 #include "der/energies/planar_bend.hpp"
-#include "der/energies/planar_clamp.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "der/supports/clamp.hpp"
 
 namespace der {
 namespace {
-
-using EdgeDofs = std::array<Index, 4>;
-
-Vec2 edge_vector(const EdgeDofs& dofs, const Vector& positions) {
-  return {positions[dofs[2]] - positions[dofs[0]], positions[dofs[3]] - positions[dofs[1]]};
-}
 
 /// A component of position or velocity at every node.
 class ComponentField : public RodField {
@@ -58,89 +52,76 @@ std::vector<double> edge_middles(const RodLayout& rod) {
   return middles;
 }
 
+/// An edge's vector [m] as its elements see it.
+Vec2 vector_of(const Link& link, const Model& model, const State& state) {
+  const auto turn = [&](const Pivot& pivot) {
+    return pivot.rotation >= 0 ? value_at(model.controls[pivot.rotation], state.time) : 0.0;
+  };
+  return link.vector(state.positions, turn(link.first), turn(link.last));
+}
+
 /// Strain of every edge, times a stiffness (1 for the strain itself, EA for the tension).
 class StretchField : public RodField {
  public:
   StretchField(double stiffness, const RodLayout& rod, const Model& model)
-      : RodField(edge_middles(rod)), stiffness_(stiffness), rest_length_(rod.edge_length) {
+      : RodField(edge_middles(rod)), stiffness_(stiffness), edge_length_(rod.edge_length) {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-      dofs_.push_back(rod.edge_dofs(edge, model));
+      links_.push_back(link_of(rod, edge, model));
+      rest_length_.push_back(links_.back().vector(model.initial_positions, 0.0, 0.0).norm());
     }
   }
-  [[nodiscard]] double sample(std::size_t i, const Model& /*model*/,
+  [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
-    const double length = edge_vector(dofs_[i], state.positions).norm();
-    return stiffness_ * (length / rest_length_[i] - 1.0);
+    const double length = vector_of(links_[i], model, state).norm();
+    return stiffness_ * (length - rest_length_[i]) / edge_length_[i];
   }
 
  private:
   double stiffness_;
-  std::vector<double> rest_length_;
-  std::vector<EdgeDofs> dofs_;
+  std::vector<double> edge_length_;
+  std::vector<double> rest_length_;  // of the links
+  std::vector<Link> links_;
 };
 
-/// The tangent that a clamp at the end of a rod holds.
-struct EndClamp {
-  double direction = 0.0;   // initial [rad]
-  double rest_kappa = 0.0;  // of the half cell
-  Index rotation = -1;      // control that turns it; -1: none
-};
-
-template <class Measure>
-std::optional<EndClamp> find_clamp(const EdgeDofs& edge, double side, const Model& model) {
-  const auto& list = std::get<ElementList<PlanarClamp<Measure>>>(model.elements);
-  for (std::size_t e = 0; e < list.size(); ++e) {
-    const auto& c = list.constants[e];
-    if (list.dofs[e] == edge && c.side == side) {
-      return EndClamp{c.direction, c.rest_kappa, c.rotation};
-    }
-  }
-  return std::nullopt;
-}
-
-/// Where a rod bends: a cell of length `length` around a node, with the edge before and behind it;
-/// at a clamped end one of the two is the clamp's tangent.
+/// Where a rod bends: the turn from one direction to the next, and the length over which it acts.
 struct BendCell {
-  EdgeDofs before{};
-  EdgeDofs after{};
-  std::optional<EndClamp> start;  // in place of the edge before
-  std::optional<EndClamp> end;    // in place of the edge behind
-  double length = 0.0;            // [m]
-  double rest_kappa = 0.0;
+  Link before;
+  Link after;
+  std::optional<Clamp> start;  // its tangent stands in place of the link before
+  std::optional<Clamp> end;    // its tangent stands in place of the link after
+  double length = 0.0;         // [m]
+  double rest_angle = 0.0;     // [rad]
 };
 
-Vec2 tangent(const EndClamp& clamp, const Model& model, double time) {
+Vec2 tangent(const Clamp& clamp, const Model& model, double time) {
   double angle = clamp.direction;
   if (clamp.rotation >= 0) angle += value_at(model.controls[clamp.rotation], time);
   return {std::cos(angle), std::sin(angle)};
 }
 
 double turning_angle(const BendCell& cell, const Model& model, const State& state) {
-  const Vec2 before = cell.start ? tangent(*cell.start, model, state.time)
-                                 : edge_vector(cell.before, state.positions);
+  const Vec2 before =
+      cell.start ? tangent(*cell.start, model, state.time) : vector_of(cell.before, model, state);
   const Vec2 after =
-      cell.end ? tangent(*cell.end, model, state.time) : edge_vector(cell.after, state.positions);
+      cell.end ? tangent(*cell.end, model, state.time) : vector_of(cell.after, model, state);
   return angle_between(before, after);
 }
 
-template <class Measure>
-std::vector<std::pair<double, BendCell>> bend_cells(const RodLayout& rod, const Model& model) {
-  std::vector<std::pair<double, BendCell>> cells;
-  const Index last = rod.num_edges();
-  for (Index i = 0; i <= last; ++i) {
-    const auto place = static_cast<std::size_t>(i);
-    BendCell cell;
-    cell.length = rod.voronoi_length(i);
-    cell.rest_kappa = Measure::of(rod.rest_turning_angle[place]).kappa;
-    if (i > 0) cell.before = rod.edge_dofs(i - 1, model);
-    if (i < last) cell.after = rod.edge_dofs(i, model);
-    if (i == 0 && !(cell.start = find_clamp<Measure>(cell.after, 1.0, model))) continue;
-    if (i == last && !(cell.end = find_clamp<Measure>(cell.before, -1.0, model))) continue;
-    if (cell.start) cell.rest_kappa = cell.start->rest_kappa;
-    if (cell.end) cell.rest_kappa = cell.end->rest_kappa;
-    cells.emplace_back(rod.arc_length[place], cell);
+BendCell bend_cell(const RodLayout& rod, Index place, const Model& model) {
+  BendCell cell;
+  const Clamp* clamp = rod.clamp_at(place);
+  cell.rest_angle = rod.rest_turning_angle[at(place)];
+  if (place > 0) cell.before = link_of(rod, place - 1, model);
+  if (place < rod.num_edges()) cell.after = link_of(rod, place, model);
+  if (clamp == nullptr) {
+    cell.length = bend_length(rod, place);
+    return cell;
   }
-  return cells;
+  if (place > 0) cell.length += clamp_cell_length(rod, place - 1);
+  if (place < rod.num_edges()) cell.length += clamp_cell_length(rod, place);
+  if (place == 0) cell.start = *clamp;
+  if (place == rod.num_edges()) cell.end = *clamp;
+  return cell;
 }
 
 /// Turning angle, curvature or moment at the nodes that bend.
@@ -149,13 +130,26 @@ class BendField : public RodField {
  public:
   enum class What { TurningAngle, Curvature, Moment };
 
-  BendField(What what, const RodLayout& rod, std::vector<std::pair<double, BendCell>> cells)
-      : RodField(arc_lengths(cells)), what_(what), EI_(rod.EI) {
-    for (auto& [arc_length, cell] : cells) cells_.push_back(cell);
+  /// `places`: positions in the rod of the nodes that bend.
+  BendField(What what, const RodLayout& rod, const std::vector<Index>& places, const Model& model)
+      : RodField(arc_lengths(rod, places)), what_(what), EI_(rod.EI) {
+    for (const Index place : places) cells_.push_back(bend_cell(rod, place, model));
   }
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
-    const BendCell& cell = cells_[i];
+    const double here = cell_value(cells_[i], model, state);
+    if (what_ == What::TurningAngle || cells_.size() < 2) return here;
+    // The value of a clamp's cell is that at its pivot; carried on to the node it is the clamp's.
+    const double share = clamp_pivot_share() / (1.0 - clamp_pivot_share());
+    if (cells_[i].start) return here + share * (here - cell_value(cells_[i + 1], model, state));
+    if (cells_[i].end) return here + share * (here - cell_value(cells_[i - 1], model, state));
+    return here;
+  }
+  [[nodiscard]] bool continuous() const override { return what_ != What::TurningAngle; }
+
+ private:
+  [[nodiscard]] double cell_value(const BendCell& cell, const Model& model,
+                                  const State& state) const {
     const double angle = turning_angle(cell, model, state);
     switch (what_) {
       case What::TurningAngle:
@@ -165,14 +159,12 @@ class BendField : public RodField {
       case What::Moment:
         break;
     }
-    return bend_response<Measure>(EI_ / cell.length, cell.rest_kappa, angle).moment;
+    const double rest_kappa = Measure::of(cell.rest_angle).kappa;
+    return bend_response<Measure>(EI_ / cell.length, rest_kappa, angle).moment;
   }
-  [[nodiscard]] bool continuous() const override { return what_ != What::TurningAngle; }
-
- private:
-  static std::vector<double> arc_lengths(const std::vector<std::pair<double, BendCell>>& cells) {
+  static std::vector<double> arc_lengths(const RodLayout& rod, const std::vector<Index>& places) {
     std::vector<double> result;
-    for (const auto& [arc_length, cell] : cells) result.push_back(arc_length);
+    for (const Index place : places) result.push_back(rod.arc_length[at(place)]);
     return result;
   }
 
@@ -181,6 +173,16 @@ class BendField : public RodField {
   std::vector<BendCell> cells_;
 };
 
+/// Inner nodes, and ends that are clamped.
+std::vector<Index> bending_nodes(const RodLayout& rod) {
+  std::vector<Index> places;
+  for (Index i = 0; i <= rod.num_edges(); ++i) {
+    const bool inner = i > 0 && i < rod.num_edges();
+    if (inner || rod.clamp_at(i) != nullptr) places.push_back(i);
+  }
+  return places;
+}
+
 template <class Measure>
 std::unique_ptr<RodField> make_bend_field(const std::string& quantity, const RodLayout& rod,
                                           const Model& model) {
@@ -188,9 +190,9 @@ std::unique_ptr<RodField> make_bend_field(const std::string& quantity, const Rod
   auto what = Field::What::Moment;
   if (quantity == "turning_angle") what = Field::What::TurningAngle;
   if (quantity == "curvature") what = Field::What::Curvature;
-  auto cells = bend_cells<Measure>(rod, model);
-  if (cells.empty()) throw Error("model_error", "rod '" + rod.name + "' bends nowhere");
-  return std::make_unique<Field>(what, rod, std::move(cells));
+  const std::vector<Index> places = bending_nodes(rod);
+  if (places.empty()) throw Error("model_error", "rod '" + rod.name + "' bends nowhere");
+  return std::make_unique<Field>(what, rod, places, model);
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ void Newton::evaluate_residual(const Stage& stage, const Vector& positions) {
 void Newton::evaluate_system(const Stage& stage, const Vector& positions) {
   assembler_.gradient_and_hessian(positions, stage.controls, residual_, values_);
   add_stage_forces(stage, positions);
-  if (stage.inertia != 0.0) assembler_.add_diagonal(stage.mass, stage.inertia, values_);
+  if (stage.inertia != 0.0) assembler_.add_mass(stage.mass, stage.inertia, values_);
   if (stage.velocity_factor != 0.0) {
     assembler_.add_diagonal(model_.damping, stage.velocity_factor, values_);
   }
@@ -122,12 +122,19 @@ void Newton::add_stage_forces(const Stage& stage, const Vector& positions) {
   acting_ = 0.0;
   for (Index i = 0; i < residual_.size(); ++i) {
     const double inertial =
-        stage.inertia * stage.mass[i] * (positions[i] - stage.inertia_target[i]);
+        stage.inertia * stage.mass.lumped[i] * (positions[i] - stage.inertia_target[i]);
     const double viscous =
         stage.velocity_factor * model_.damping[i] * (positions[i] - stage.velocity_reference[i]);
     acting_ = std::max({acting_, std::abs(residual_[i]), std::abs(inertial), std::abs(viscous),
                         std::abs(stage.force[i])});
     residual_[i] += inertial + viscous - stage.force[i];
+  }
+  if (stage.inertia == 0.0) return;
+  const auto displacement = [&](Index dof) { return positions[dof] - stage.inertia_target[dof]; };
+  for (const auto& [a, b, mass] : stage.mass.coupling) {
+    const double inertial = stage.inertia * mass * (displacement(a) - displacement(b));
+    residual_[a] -= inertial;
+    residual_[b] += inertial;
   }
 }
 
@@ -201,14 +208,11 @@ double Newton::limit_turn() {
     const Index free = model_.free_index[at(dof)];
     return free < 0 ? 0.0 : direction_[free];
   };
-  const auto& edges = std::get<ElementList<Stretch<2>>>(model_.elements);
   double largest = 0.0;  // squared
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const auto& dofs = edges.dofs[e];
-    const double dx = component(dofs[2]) - component(dofs[0]);
-    const double dy = component(dofs[3]) - component(dofs[1]);
-    const double length = edges.constants[e].rest_length;
-    largest = std::max(largest, (dx * dx + dy * dy) / (length * length));
+  for (const Edge& edge : model_.edges) {
+    const double dx = component(edge.dofs[2]) - component(edge.dofs[0]);
+    const double dy = component(edge.dofs[3]) - component(edge.dofs[1]);
+    largest = std::max(largest, (dx * dx + dy * dy) / (edge.rest_length * edge.rest_length));
   }
   const double turn = std::sqrt(largest);
   if (turn <= kLargestTurn) return turn;

@@ -25,7 +25,7 @@ EquilibriumReport find_equilibrium(const Model& model, const Assembler& assemble
                                    LinearSolver& solver, const NewtonOptions& options,
                                    const State& state, Vector& positions) {
   Stage stage(model);
-  stage.mass.setOnes();
+  stage.mass = {Vector::Ones(model.num_dofs()), {}};
   model.controls.evaluate(state.time, stage.controls);
   external_force(model, stage.controls, state.extra_force, stage.force);
   place_held(model, stage.controls, positions);

@@ -13,7 +13,7 @@ class ExplicitEuler final : public Stepper {
       : force_(model, assembler), acceleration_(model.num_dofs()), positions_(model.num_dofs()) {}
 
   StepReport step(State& state, double dt) override {
-    force_.acceleration(state, state.positions, state.velocities, state.time, acceleration_);
+    force_.acceleration(state, state.positions, state.velocities, state.time, 0.0, acceleration_);
     positions_ = state.positions + dt * (state.velocities + dt * acceleration_);
     force_.place_held_at(state.time + dt, positions_);
     const StepReport report = force_.check(positions_);

@@ -15,25 +15,19 @@ constexpr double kLargestStretch = 100.0;
 ExplicitForce::ExplicitForce(const Model& model, const Assembler& assembler)
     : model_(model),
       assembler_(assembler),
+      mass_(model),
       controls_(Vector::Zero(model.controls.size())),
       force_(Vector::Zero(model.num_dofs())),
       gradient_(Vector::Zero(model.num_dofs())) {}
 
-void ExplicitForce::undamped_acceleration(const State& state, const Vector& positions, double time,
-                                          Vector& acceleration) {
+void ExplicitForce::acceleration(const State& state, const Vector& positions,
+                                 const Vector& velocities, double time, double damping_time,
+                                 Vector& acceleration) {
   model_.controls.evaluate(time, controls_);
   external_force(model_, controls_, state.extra_force, force_);
   assembler_.gradient(positions, controls_, gradient_);
-  acceleration = (force_ - gradient_).cwiseQuotient(model_.mass);
-  for (const HeldDof& held : model_.held) acceleration[held.dof] = 0.0;
-}
-
-void ExplicitForce::acceleration(const State& state, const Vector& positions,
-                                 const Vector& velocities, double time, Vector& acceleration) {
-  undamped_acceleration(state, positions, time, acceleration);
-  for (const Index dof : model_.free_dofs) {
-    acceleration[dof] -= model_.damping[dof] / model_.mass[dof] * velocities[dof];
-  }
+  acceleration = force_ - gradient_ - model_.damping.cwiseProduct(velocities);
+  mass_.solve(damping_time, acceleration);
 }
 
 void ExplicitForce::place_held_at(double time, Vector& positions) {
@@ -42,14 +36,12 @@ void ExplicitForce::place_held_at(double time, Vector& positions) {
 }
 
 StepReport ExplicitForce::check(const Vector& positions) const {
-  const auto& edges = std::get<ElementList<Stretch<2>>>(model_.elements);
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const auto& dofs = edges.dofs[e];
-    const double limit = kLargestStretch * edges.constants[e].rest_length;
-    const double dx = positions[dofs[2]] - positions[dofs[0]];
-    const double dy = positions[dofs[3]] - positions[dofs[1]];
+  for (const Edge& edge : model_.edges) {
+    const double limit = kLargestStretch * edge.rest_length;
+    const double dx = positions[edge.dofs[2]] - positions[edge.dofs[0]];
+    const double dy = positions[edge.dofs[3]] - positions[edge.dofs[1]];
     if (!(dx * dx + dy * dy < limit * limit)) {  // also true for NaN
-      return {StepOutcome::Diverged, 0, dofs[2], "an edge grew beyond 100 times its length"};
+      return {StepOutcome::Diverged, 0, edge.dofs[2], "an edge grew beyond 100 times its length"};
     }
   }
   return {};

@@ -25,7 +25,7 @@ class GeneralizedAlpha final : public Stepper {
 
   StepReport step(State& state, double dt) override {
     if (state.last_step == 0.0) {
-      force_.acceleration(state, state.positions, state.velocities, state.time,
+      force_.acceleration(state, state.positions, state.velocities, state.time, 0.0,
                           state.accelerations);
     }
     const Vector& q = state.positions;

@@ -22,14 +22,15 @@ Fastest largest(const Model& model, const Vector& rates) {
   return fastest;
 }
 
-/// Row sums of |M^-1/2 K M^-1/2| over the elements booked under `term`, element by element: an
-/// upper bound even where entries of neighbours cancel.
+/// Row sums of |D^-1/2 K D^-1/2|, D a diagonal below the mass, over the elements booked under
+/// `term`, element by element: an upper bound even where entries of neighbours cancel.
 Vector scaled_row_sums(const Model& model, const Vector& positions, const Vector& controls,
                        EnergyTerm term) {
   Vector sums = Vector::Zero(model.num_dofs());
+  const Vector mass = model.mass.lower_bound();
   const auto weight = [&](Index dof) {
     const bool free = model.free_index[static_cast<std::size_t>(dof)] >= 0;
-    return free ? 1.0 / std::sqrt(model.mass[dof]) : 0.0;
+    return free ? 1.0 / std::sqrt(mass[dof]) : 0.0;
   };
   for_each_list(model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
@@ -61,8 +62,9 @@ StableStep stable_step(const Model& model, const Vector& positions, bool drag_li
       largest(model, scaled_row_sums(model, positions, controls, EnergyTerm::Stretch));
   const Fastest bend =
       largest(model, scaled_row_sums(model, positions, controls, EnergyTerm::Bend));
-  const Fastest drag =
-      drag_limits_step ? largest(model, model.damping.cwiseQuotient(model.mass)) : Fastest{};
+  const Fastest drag = drag_limits_step
+                           ? largest(model, model.damping.cwiseQuotient(model.mass.lower_bound()))
+                           : Fastest{};
 
   const double w2 = stretch.rate + bend.rate;
   const double g = drag.rate;

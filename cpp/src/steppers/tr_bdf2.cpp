@@ -45,7 +45,8 @@ class TrBdf2 final : public Stepper {
 
   StepReport trapezoidal_stage(const State& state, double h) {
     const double time = state.time + 2.0 * h;
-    force_.acceleration(state, state.positions, state.velocities, state.time, start_acceleration_);
+    force_.acceleration(state, state.positions, state.velocities, state.time, 0.0,
+                        start_acceleration_);
     Stage& equation = stage_.equation;
     equation.inertia_target =
         state.positions + h * (2.0 * state.velocities + h * start_acceleration_);

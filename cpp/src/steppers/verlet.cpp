@@ -6,7 +6,7 @@ namespace {
 
 /// Position Verlet: half a drift, a kick by the forces in the middle, half a drift. Second order,
 /// symplectic, keeps linear and angular momentum; one force evaluation a step. Linear damping is
-/// taken by the implicit midpoint rule, which is diagonal, so drag does not limit the step; the
+/// taken by the implicit midpoint rule, which is linear, so drag does not limit the step; the
 /// fastest elastic mode does.
 class Verlet final : public Stepper {
  public:
@@ -14,21 +14,19 @@ class Verlet final : public Stepper {
       : model_(model),
         force_(model, assembler),
         positions_(model.num_dofs()),
-        acceleration_(model.num_dofs()),
-        damping_rate_(model.damping.cwiseQuotient(model.mass)) {}
+        acceleration_(model.num_dofs()) {}
 
   StepReport step(State& state, double dt) override {
     const double half = 0.5 * dt;
     positions_ = state.positions + half * state.velocities;
     force_.place_held_at(state.time + half, positions_);
-    force_.undamped_acceleration(state, positions_, state.time + half, acceleration_);
+    force_.acceleration(state, positions_, state.velocities, state.time + half, half,
+                        acceleration_);
     StepReport report = force_.check(positions_);
     if (report.outcome != StepOutcome::Done) return report;
 
     for (const Index dof : model_.free_dofs) {
-      const double g = half * damping_rate_[dof];
-      state.velocities[dof] =
-          ((1.0 - g) * state.velocities[dof] + dt * acceleration_[dof]) / (1.0 + g);
+      state.velocities[dof] += dt * acceleration_[dof];
       state.positions[dof] = positions_[dof] + half * state.velocities[dof];
     }
     force_.place_held_at(state.time + dt, positions_);
@@ -45,7 +43,6 @@ class Verlet final : public Stepper {
   ExplicitForce force_;
   Vector positions_;
   Vector acceleration_;
-  Vector damping_rate_;
 };
 
 }  // namespace

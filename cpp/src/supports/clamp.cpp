@@ -1,16 +1,22 @@
 #include "der/supports/clamp.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "der/core/index.hpp"
+#include "der/energies/registry.hpp"
 #include "der/kinematics/planar_edge.hpp"
 
 namespace der {
 namespace {
 
-Vec2 edge_vector(const RodLayout& rod, Index edge, const Model& model) {
-  const auto dofs = rod.edge_dofs(edge, model);
-  return Vec2(model.initial_positions[dofs[2]], model.initial_positions[dofs[3]]) -
-         Vec2(model.initial_positions[dofs[0]], model.initial_positions[dofs[1]]);
+constexpr double kPivotShare = 1.0 / 5.0;
+constexpr double kCellShare = 25.0 / 48.0;
+constexpr double kNextCellLoss = 1.0 / 48.0;
+
+/// From node to node in the initial shape.
+Vec2 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
+  return Link{rod.edge_dofs(edge, model), {}, {}}.vector(model.initial_positions, 0.0, 0.0);
 }
 
 double direction(const Vec2& e) { return std::atan2(e.y(), e.x()); }
@@ -19,14 +25,33 @@ double direction(const Vec2& e) { return std::atan2(e.y(), e.x()); }
 double initial_curvature(const RodLayout& rod, Index place, const Model& model) {
   if (rod.num_edges() < 2) return 0.0;
   const Index inner = std::min(std::max<Index>(place, 1), rod.num_edges() - 1);
-  return angle_between(edge_vector(rod, inner - 1, model), edge_vector(rod, inner, model)) /
+  return angle_between(drawn_edge(rod, inner - 1, model), drawn_edge(rod, inner, model)) /
          rod.voronoi_length(inner);
 }
 
-struct HalfCell {
-  Index edge;
-  double side;
-};
+/// +1 if the edge leaves the clamp, -1 if it arrives there.
+double side_of(const Clamp& clamp, Index edge) { return edge == clamp.place ? 1.0 : -1.0; }
+
+Pivot pivot_at(const RodLayout& rod, Index place, Index edge) {
+  const Clamp* clamp = rod.clamp_at(place);
+  if (clamp == nullptr) return {};
+  return {side_of(*clamp, edge) * kPivotShare * rod.edge_length[at(edge)], clamp->direction,
+          clamp->rotation};
+}
+
+/// Natural turning angle [rad] of the cell between a clamp and an edge next to it.
+double rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, const Model& model) {
+  const double side = side_of(clamp, edge);
+  if (rod.natural_curvature.empty()) {
+    const Vec2 tangent{std::cos(clamp.direction), std::sin(clamp.direction)};
+    const Vec2 link = link_of(rod, edge, model).vector(model.initial_positions, 0.0, 0.0);
+    return side * angle_between(tangent, link);
+  }
+  const Index next = clamp.place + (side > 0.0 ? 1 : -1);
+  const double at_pivot = (1.0 - kPivotShare) * rod.natural_curvature[at(clamp.place)] +
+                          kPivotShare * rod.natural_curvature[at(next)];
+  return at_pivot * clamp_cell_length(rod, edge);
+}
 
 }  // namespace
 
@@ -34,30 +59,56 @@ double initial_tangent_angle(const RodLayout& rod, Index place, const Model& mod
   const double curvature = initial_curvature(rod, place, model);
   const bool leaves = place < rod.num_edges();
   const Index edge = leaves ? place : place - 1;
-  const double half = 0.5 * rod.edge_length[static_cast<std::size_t>(edge)];
-  return direction(edge_vector(rod, edge, model)) + (leaves ? -curvature : curvature) * half;
+  const double half = 0.5 * rod.edge_length[at(edge)];
+  return direction(drawn_edge(rod, edge, model)) + (leaves ? -curvature : curvature) * half;
 }
 
-void add_clamp(const scenario::Support& support, const RodLayout& rod, Index place, Model& model) {
-  const double tangent = initial_tangent_angle(rod, place, model);
+void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod, Model& model) {
+  if (rod.EI == 0.0 || rod.clamp_at(place) != nullptr) return;
   const Index rotation = support.rotation ? model.controls.add(*support.rotation) : -1;
-  const Vec2 t{std::cos(tangent), std::sin(tangent)};
-  for (const HalfCell cell : {HalfCell{place - 1, -1.0}, HalfCell{place, 1.0}}) {
-    if (cell.edge < 0 || cell.edge >= rod.num_edges()) continue;
-    const double half = 0.5 * rod.edge_length[static_cast<std::size_t>(cell.edge)];
-    const double drawn = cell.side * angle_between(t, edge_vector(rod, cell.edge, model));
-    const double rest_angle = rod.natural_curvature.empty()
-                                  ? drawn
-                                  : rod.natural_curvature[static_cast<std::size_t>(place)] * half;
-    const auto add = [&](auto& list, auto measure) {
-      list.add(
-          rod.edge_dofs(cell.edge, model),
-          {rod.EI / half, decltype(measure)::of(rest_angle).kappa, tangent, cell.side, rotation});
+  rod.clamps.push_back({place, initial_tangent_angle(rod, place, model), rotation});
+}
+
+Vec2 Link::vector(const Vector& positions, double first_turn, double last_turn) const {
+  return Vec2(positions[dofs[2]], positions[dofs[3]]) + last.offset(last_turn) -
+         Vec2(positions[dofs[0]], positions[dofs[1]]) - first.offset(first_turn);
+}
+
+Link link_of(const RodLayout& rod, Index edge, const Model& model) {
+  return {rod.edge_dofs(edge, model), pivot_at(rod, edge, edge), pivot_at(rod, edge + 1, edge)};
+}
+
+double bend_length(const RodLayout& rod, Index place) {
+  double length = rod.voronoi_length(place);
+  if (rod.clamp_at(place - 1) != nullptr) length -= kNextCellLoss * rod.edge_length[at(place - 1)];
+  if (rod.clamp_at(place + 1) != nullptr) length -= kNextCellLoss * rod.edge_length[at(place)];
+  return length;
+}
+
+double clamp_cell_length(const RodLayout& rod, Index edge) {
+  return kCellShare * rod.edge_length[at(edge)];
+}
+
+double clamp_pivot_share() { return kPivotShare; }
+
+void add_clamp_cells(const Clamp& clamp, RodLayout& rod, Model& model) {
+  for (const Index edge : {clamp.place - 1, clamp.place}) {
+    if (edge < 0 || edge >= rod.num_edges()) continue;
+    const Link link = link_of(rod, edge, model);
+    const double rest = rest_angle(rod, clamp, edge, model);
+    rod.rest_turning_angle[at(clamp.place)] += rest;
+    const auto add = [&](auto measure) {
+      using Measure = decltype(measure);
+      auto& list = std::get<ElementList<FromPivot<PlanarClamp<Measure>>>>(model.elements);
+      list.add(link.dofs, {{rod.EI / clamp_cell_length(rod, edge), Measure::of(rest).kappa,
+                            clamp.direction, side_of(clamp, edge), clamp.rotation},
+                           link.first,
+                           link.last});
     };
     if (rod.curvature == scenario::CurvatureMeasure::Angle) {
-      add(std::get<ElementList<PlanarClamp<AngleCurvature>>>(model.elements), AngleCurvature{});
+      add(AngleCurvature{});
     } else {
-      add(std::get<ElementList<PlanarClamp<TangentCurvature>>>(model.elements), TangentCurvature{});
+      add(TangentCurvature{});
     }
   }
 }

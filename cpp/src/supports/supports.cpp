@@ -17,7 +17,7 @@ void hold(Model& model, Index dof, Index displacement) {
 }  // namespace
 
 void add_support(const scenario::Support& support, Model& model) {
-  const RodLayout& rod = model.rod(support.rod);
+  RodLayout& rod = model.rod(support.rod);
   for (const Index place : nodes_at(support.at, rod)) {
     const Index node = rod.nodes[static_cast<std::size_t>(place)];
     for (const auto& [component, displacement] : support.prescribe) {
@@ -28,17 +28,9 @@ void add_support(const scenario::Support& support, Model& model) {
     }
     if (support.clamp) {
       for (int c = 0; c < model.dimension; ++c) hold(model, model.dof(node, c), -1);
-      add_clamp(support, rod, place, model);
+      hold_tangent(support, place, rod, model);
     }
   }
-}
-
-bool is_clamped(const scenario::Scene& scene, const RodLayout& rod, Index place) {
-  return std::any_of(scene.supports.begin(), scene.supports.end(), [&](const auto& support) {
-    if (!support.clamp || support.rod != rod.name) return false;
-    const auto places = nodes_at(support.at, rod);
-    return std::find(places.begin(), places.end(), place) != places.end();
-  });
 }
 
 void place_held(const Model& model, const Vector& controls, Vector& positions) {

@@ -43,6 +43,15 @@ inline PlanarMoment::Constants sample_constants(const PlanarMoment&, Random& ran
   return {uniform(random, 0.1, 1.0), 0};
 }
 
+template <class Kernel>
+typename FromPivot<Kernel>::Constants sample_constants(const FromPivot<Kernel>&, Random& random) {
+  const auto pivot = [&] {
+    // Short enough for edges that are nearly folded to stay so.
+    return Pivot{uniform(random, -0.01, 0.01), uniform(random, -0.5, 0.5), 1};
+  };
+  return {sample_constants(Kernel{}, random), pivot(), pivot()};
+}
+
 enum class Shape { Arbitrary, NearStraight, NearFolded, Stretched };
 constexpr Shape kShapes[] = {Shape::Arbitrary, Shape::NearStraight, Shape::NearFolded,
                              Shape::Stretched};

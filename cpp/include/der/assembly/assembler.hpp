@@ -27,6 +27,8 @@ class Assembler {
   /// As above, and sets `values` to the Hessian [N/m].
   void gradient_and_hessian(const Vector& positions, const Vector& controls, Vector& gradient,
                             Vector& values) const;
+  /// Adds `factor` times the mass matrix; its couplings are the model's or none.
+  void add_mass(const Mass& mass, double factor, Vector& values) const;
   /// Adds `diagonal` (all degrees of freedom) times `factor` to the matrix diagonal.
   void add_diagonal(const Vector& diagonal, double factor, Vector& values) const;
   /// Adds `shift` to every diagonal entry of the matrix.
@@ -37,9 +39,16 @@ class Assembler {
   void assemble(const Vector& positions, const Vector& controls, Vector& gradient,
                 Vector* values) const;
 
+  struct CouplingSlots {
+    Index a;  // diagonal entries
+    Index b;
+    Index ab;  // the entry between them
+  };
+
   const Model& model_;
   Index num_values_ = 0;
-  std::vector<Index> diagonal_slots_;  // of each free degree of freedom
+  std::vector<Index> diagonal_slots_;          // of each free degree of freedom
+  std::vector<CouplingSlots> coupling_slots_;  // of each of the model's mass couplings
 
   template <class List>
   struct ScatterMap;

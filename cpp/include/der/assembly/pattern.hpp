@@ -19,6 +19,8 @@ struct Pattern {
   [[nodiscard]] Index nonzeros() const { return static_cast<Index>(inner.size()); }
 };
 Pattern build_pattern(const Model& model);
+/// As above, of the mass matrix alone.
+Pattern build_mass_pattern(const Model& model);
 
 /// Where the entry (row, column), row >= column, of the lower triangle lies in a solver's array of
 /// values. Two ways serve all solvers: compressed columns, and the columns of a band.

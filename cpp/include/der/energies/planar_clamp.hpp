@@ -9,17 +9,16 @@
 
 namespace der {
 
-/// Bending of the half cell between a clamped tangent and the edge next to it. The tangent is held
-/// at the node, the edge stands for the tangent in its middle, so the turning angle between the two
-/// acts over half the edge: E = 1/2 EI (kappa - rest_kappa)^2 / (l/2). Holding two nodes instead
-/// would make this half cell rigid, an error of order l; this form is of order l^2.
+/// Bending of the cell between a clamped tangent and the edge next to it, which is about half an
+/// edge long: E = 1/2 EI (kappa - rest_kappa)^2 / c. Holding two nodes instead would make this cell
+/// rigid, an error of order l. supports/clamp.hpp gives c and the pivot that the edge starts from.
 template <class Curvature>
 struct PlanarClamp {
   static constexpr int kDofs = 4;
   static constexpr EnergyTerm kTerm = EnergyTerm::Bend;
   struct Constants {
-    double stiffness_per_length = 0.0;  ///< EI / (l/2) [N m]
-    double rest_kappa = 0.0;            ///< natural curvature integrated over the half cell [-]
+    double stiffness_per_length = 0.0;  ///< EI / c [N m]
+    double rest_kappa = 0.0;            ///< natural curvature integrated over the cell [-]
     double direction = 0.0;             ///< initial angle of the clamped tangent [rad]
     double side = 1.0;                  ///< +1: the edge leaves the clamp, -1: it arrives there
     Index rotation = -1;                ///< control that turns the tangent [rad]; -1: none

@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "der/energies/element_list.hpp"
+#include "der/energies/from_pivot.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/energies/planar_clamp.hpp"
 #include "der/energies/stretch.hpp"
@@ -13,11 +14,14 @@ namespace der {
 /// Every kind of element. A new energy is one header with its kernel and one line here; assembly,
 /// the energy report and the finite-difference tests loop over this list. A kind without elements
 /// costs nothing in a run.
-using ElementLists = std::tuple<ElementList<Stretch<2>>,                     //
-                                ElementList<PlanarBend<AngleCurvature>>,     //
-                                ElementList<PlanarBend<TangentCurvature>>,   //
-                                ElementList<PlanarClamp<AngleCurvature>>,    //
-                                ElementList<PlanarClamp<TangentCurvature>>,  //
+using ElementLists = std::tuple<ElementList<Stretch<2>>,                                //
+                                ElementList<FromPivot<Stretch<2>>>,                     //
+                                ElementList<PlanarBend<AngleCurvature>>,                //
+                                ElementList<PlanarBend<TangentCurvature>>,              //
+                                ElementList<FromPivot<PlanarBend<AngleCurvature>>>,     //
+                                ElementList<FromPivot<PlanarBend<TangentCurvature>>>,   //
+                                ElementList<FromPivot<PlanarClamp<AngleCurvature>>>,    //
+                                ElementList<FromPivot<PlanarClamp<TangentCurvature>>>,  //
                                 ElementList<PlanarMoment>>;
 
 /// Calls `f(list)` for each kind of element.

@@ -31,7 +31,8 @@ std::vector<Index> nodes_at(const scenario::Location& location, const RodLayout&
 std::vector<Weighted> node_weights(const RodLayout& rod, double s);
 
 /// Weights of the edges whose direction angles, linearly interpolated between edge midpoints, give
-/// the direction at arc length `s`; within half an edge of an end that edge alone.
+/// the direction at arc length `s`. For a moment within half an edge of an end the weights go on to
+/// 13/12 and -1/12, which brings the end from the chain's place beside the curve onto it.
 std::vector<Weighted> edge_weights(const RodLayout& rod, double s);
 
 }  // namespace der

@@ -7,11 +7,25 @@
 #include "der/core/types.hpp"
 #include "der/energies/registry.hpp"
 #include "der/model/controls.hpp"
+#include "der/model/mass.hpp"
 #include "der/scenario/scenario.hpp"
 
 namespace der {
 
 struct Model;
+
+/// An edge of the graph of nodes.
+struct Edge {
+  std::array<Index, 4> dofs{};  ///< x, y of both ends
+  double rest_length = 0.0;     ///< [m]
+};
+
+/// A node of a rod whose tangent is held.
+struct Clamp {
+  Index place = 0;         ///< position in RodLayout::nodes
+  double direction = 0.0;  ///< initial angle of the held tangent [rad]
+  Index rotation = -1;     ///< control that turns it [rad]; -1: none
+};
 
 /// Where the nodes and edges of one rod are in the model, and what is known of it for probes and
 /// drawings. Only the builder assumes that a rod is a chain; everybody else reads these lists.
@@ -22,11 +36,14 @@ struct RodLayout {
   std::vector<double> edge_length;  ///< rest length of each edge [m]
   double EA = 0.0;                  ///< [N]
   double EI = 0.0;                  ///< [N m^2]
+  double mass_per_length = 0.0;     ///< [kg/m] without spheres
   scenario::CurvatureMeasure curvature = scenario::CurvatureMeasure::Angle;
   /// Natural curvature at each node [1/m]; empty: stress-free as drawn.
   std::vector<double> natural_curvature;
-  /// Natural turning angle at each node [rad]; 0 at the ends.
+  /// Natural turning angle at each node that bends [rad], at clamped ones of the clamp's cells; 0
+  /// at free ends.
   std::vector<double> rest_turning_angle;
+  std::vector<Clamp> clamps;          ///< none on a rod that does not bend
   double draw_radius = 0.0;           ///< half the height of the section [m]; 0 if not known
   std::vector<double> sphere_radius;  ///< per node [m]; 0: no sphere
 
@@ -36,6 +53,8 @@ struct RodLayout {
   [[nodiscard]] double voronoi_length(Index node) const;
   /// Degrees of freedom (x, y of both ends) of an edge of a planar model.
   [[nodiscard]] std::array<Index, 4> edge_dofs(Index edge, const Model& model) const;
+  /// Null if the tangent at that node is free.
+  [[nodiscard]] const Clamp* clamp_at(Index place) const;
 };
 
 /// A degree of freedom that the solver does not find: it keeps its initial value, plus a control.
@@ -62,17 +81,18 @@ struct Model {
 
   Vector initial_positions;   ///< [m]
   Vector initial_velocities;  ///< [m/s]
-  Vector mass;                ///< lumped [kg], one entry a degree of freedom
-  Vector damping;             ///< [N s/m], one entry a degree of freedom: drag and linear damping
-  Vector gravity_force;       ///< [N] weight without buoyancy
-  Vector dead_force;          ///< [N] every constant force but weight: buoyancy, constant loads
-  Controls controls;          ///< tables over time that forces and supports follow
+  Mass mass;
+  Vector damping;        ///< [N s/m], one entry a degree of freedom: drag and linear damping
+  Vector gravity_force;  ///< [N] weight without buoyancy
+  Vector dead_force;     ///< [N] every constant force but weight: buoyancy, constant loads
+  Controls controls;     ///< tables over time that forces and supports follow
   std::vector<ControlledForce> controlled_forces;
 
   std::vector<HeldDof> held;
   std::vector<Index> free_dofs;   ///< full number of each free degree of freedom, ascending
   std::vector<Index> free_index;  ///< of each degree of freedom: its place in `free_dofs`, or -1
 
+  std::vector<Edge> edges;  ///< of all rods
   ElementLists elements;
 
   /// The largest extent of the initial shape [m]: the length against which steps are small.
@@ -83,6 +103,7 @@ struct Model {
   [[nodiscard]] Index dof(Index node, int component) const { return dimension * node + component; }
   /// Throws Error if there is no rod of that name.
   [[nodiscard]] const RodLayout& rod(const std::string& rod_name) const;
+  [[nodiscard]] RodLayout& rod(const std::string& rod_name);
 };
 
 }  // namespace der

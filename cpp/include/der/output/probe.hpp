@@ -29,8 +29,8 @@ class ProbeReader {
 /// - strain and tension, which belong to the middles of the edges, linearly between those and
 /// beyond
 ///   the outermost ones;
-/// - turning angle, curvature and moment at the nodes; at a clamped end they are those of its half
-///   cell, so that the moment is the clamp's reaction;
+/// - turning angle, curvature and moment at the nodes; at a clamped end curvature and moment are
+///   carried on from its cell to the node, so that the moment is the clamp's reaction;
 /// - an extreme over a rod is that of the parabola through the three samples around the extreme
 /// one,
 ///   except for the turning angle, a sum over a cell, which is not interpolated;

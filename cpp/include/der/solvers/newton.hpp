@@ -18,7 +18,7 @@ namespace der {
 struct Stage {
   explicit Stage(const Model& model);
   double inertia = 0.0;  ///< [1/s^2]; 0: statics
-  Vector mass;           ///< [kg]; the model's, unless a static analysis brings its own
+  Mass mass;             ///< [kg]; the model's, unless a static analysis brings its own
   Vector inertia_target;
   double velocity_factor = 0.0;  ///< [1/s]
   Vector velocity_reference;     ///< [m]

@@ -4,6 +4,7 @@
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
+#include "der/solvers/mass_solver.hpp"
 #include "der/steppers/stepper.hpp"
 
 namespace der {
@@ -14,13 +15,11 @@ class ExplicitForce {
  public:
   ExplicitForce(const Model& model, const Assembler& assembler);
 
-  /// Sets `acceleration` [m/s^2] to M^-1 (external - grad E) at `time`, 0 on held degrees of
-  /// freedom.
-  void undamped_acceleration(const State& state, const Vector& positions, double time,
-                             Vector& acceleration);
-  /// As above, with the damping force -C v.
+  /// Sets `acceleration` [m/s^2] to (M + t C)^-1 (external - grad E - C v) at `time`, 0 on held
+  /// degrees of freedom. `damping_time` t [s] 0: the acceleration as it is; half a step: the mean
+  /// one over the step under the damping of the mean velocity.
   void acceleration(const State& state, const Vector& positions, const Vector& velocities,
-                    double time, Vector& acceleration);
+                    double time, double damping_time, Vector& acceleration);
   /// Puts held degrees of freedom of `positions` where the tables have them at `time`.
   void place_held_at(double time, Vector& positions);
   /// Not done where a value is no longer a number or an edge is stretched beyond reason.
@@ -29,6 +28,7 @@ class ExplicitForce {
  private:
   const Model& model_;
   const Assembler& assembler_;
+  MassSolver mass_;
   Vector controls_;
   Vector force_;
   Vector gradient_;

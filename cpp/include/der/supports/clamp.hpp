@@ -1,16 +1,51 @@
 #pragma once
 
+#include <array>
+
+#include "der/core/types.hpp"
+#include "der/energies/from_pivot.hpp"
 #include "der/model/model.hpp"
 #include "der/scenario/scenario.hpp"
 
 namespace der {
 
+// A clamp holds a node and the tangent there. In the linear theory a chain with equal edges l,
+// moment M_i = EI phi_i / l at node i, carries every load exactly, but for its nodes lying at y -
+// (l^2/12) kappa beside the curve y. A clamp that lets the chain have that shape adds no error of
+// its own: the edge next to the clamp then starts from a pivot at l/5 on the held tangent, it turns
+// against the tangent over 25/48 l, and the next node over 47/48 l (in place of l/2 and l, an edge
+// that starts from the node, and an error of order l^2). docs/mechanics.md derives it.
+
 /// Angle [rad] of the tangent at a node of the initial shape: that of the circle through the node's
 /// neighbourhood, so that a clamp on a drawn arc holds the arc's tangent and not the chord's.
 double initial_tangent_angle(const RodLayout& rod, Index place, const Model& model);
 
-/// Adds the half cells of a clamp: bending between the held tangent at the node and the edge on
-/// either side of it.
-void add_clamp(const scenario::Support& support, const RodLayout& rod, Index place, Model& model);
+/// Enters a clamp into the layout of `rod`, which is one of the model's. The rod's elements are
+/// made after it. Without effect on a rod that does not bend.
+void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod, Model& model);
+
+/// An edge as its elements see it: from node to node, or from a clamp's pivot.
+struct Link {
+  std::array<Index, 4> dofs{};
+  Pivot first;
+  Pivot last;
+
+  [[nodiscard]] bool has_pivot() const { return first.distance != 0.0 || last.distance != 0.0; }
+  /// The link's vector [m] where the tangents are turned by `first_turn` and `last_turn` [rad].
+  [[nodiscard]] Vec2 vector(const Vector& positions, double first_turn, double last_turn) const;
+};
+Link link_of(const RodLayout& rod, Index edge, const Model& model);
+
+/// Length [m] over which the turning angle at a node without a clamp acts: its Voronoi length, less
+/// 1/48 of an edge that a clamp ends.
+double bend_length(const RodLayout& rod, Index place);
+/// Length [m] over which an edge turns against the clamped tangent at its end: 25/48 of the edge.
+double clamp_cell_length(const RodLayout& rod, Index edge);
+/// Where the moment of that cell acts, as a share of the edge from the clamp on: 1/5.
+double clamp_pivot_share();
+
+/// Adds the bending of a clamp's cells, one on either side of the node, and sets the node's rest
+/// turning angle to their sum.
+void add_clamp_cells(const Clamp& clamp, RodLayout& rod, Model& model);
 
 }  // namespace der

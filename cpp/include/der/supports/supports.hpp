@@ -6,13 +6,9 @@
 
 namespace der {
 
-/// Holds or moves the components that a support names, and lists the half-cell elements of a clamp.
-/// Must run after the rods are built.
+/// Holds or moves the components that a support names, and enters its clamps into the rod's layout.
+/// Must run after the rods are laid out and before their elements are made.
 void add_support(const scenario::Support& support, Model& model);
-
-/// Whether a support clamps the node at position `place` of a rod (its bending then belongs to the
-/// clamp's half cells).
-bool is_clamped(const scenario::Scene& scene, const RodLayout& rod, Index place);
 
 /// Moves the held degrees of freedom of `positions` to where the tables put them.
 void place_held(const Model& model, const Vector& controls, Vector& positions);

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "der/model/model.hpp"
+
+namespace der {
+
+/// Makes the stretch and bend elements of a rod that is one of the model's, from its layout and
+/// clamps, and sets its rest turning angles.
+void add_rod_elements(RodLayout& rod, Model& model);
+
+}  // namespace der

@@ -1,0 +1,81 @@
+#include "der/model/rod_elements.hpp"
+
+#include "der/core/index.hpp"
+#include "der/kinematics/planar_edge.hpp"
+#include "der/supports/clamp.hpp"
+
+namespace der {
+namespace {
+
+/// Adds an element of the rod to the list of its kind: the plain one, or that of elements between
+/// pivots.
+template <class Kernel>
+void add_element(const std::array<Index, Kernel::kDofs>& dofs,
+                 const typename Kernel::Constants& constants, const Pivot& first, const Pivot& last,
+                 Model& model) {
+  if (first.distance == 0.0 && last.distance == 0.0) {
+    std::get<ElementList<Kernel>>(model.elements).add(dofs, constants);
+  } else {
+    std::get<ElementList<FromPivot<Kernel>>>(model.elements).add(dofs, {constants, first, last});
+  }
+}
+
+Vec2 drawn(const Link& link, const Model& model) {
+  return link.vector(model.initial_positions, 0.0, 0.0);
+}
+
+/// A link from a pivot is shorter than its edge and stretches for all of it.
+void add_stretch(const RodLayout& rod, Model& model) {
+  for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+    const Link link = link_of(rod, edge, model);
+    const double length = link.has_pivot() ? drawn(link, model).norm() : rod.edge_length[at(edge)];
+    const double EA = rod.EA * (length / rod.edge_length[at(edge)]);
+    add_element<Stretch<2>>(link.dofs, {EA, length}, link.first, link.last, model);
+  }
+}
+
+double rest_angle_between(const RodLayout& rod, Index place, const Link& before, const Link& after,
+                          const Model& model) {
+  if (rod.natural_curvature.empty())
+    return angle_between(drawn(before, model), drawn(after, model));
+  double angle = rod.natural_curvature[at(place)] * bend_length(rod, place);
+  // A free end lies on the curve, the nodes next to it l^2 kappa/12 beside it (supports/clamp.hpp).
+  const auto end = [&](Index end_place, Index edge) {
+    if (rod.clamp_at(end_place) != nullptr) return;
+    angle += rod.natural_curvature[at(end_place)] * rod.edge_length[at(edge)] / 12.0;
+  };
+  if (place == 1) end(0, 0);
+  if (place == rod.num_edges() - 1) end(rod.num_edges(), rod.num_edges() - 1);
+  return angle;
+}
+
+template <class Curvature>
+void add_bend(RodLayout& rod, Model& model) {
+  for (Index i = 1; i < rod.num_edges(); ++i) {
+    if (rod.clamp_at(i) != nullptr) continue;
+    const Link before = link_of(rod, i - 1, model);
+    const Link after = link_of(rod, i, model);
+    const double rest = rest_angle_between(rod, i, before, after, model);
+    rod.rest_turning_angle[at(i)] = rest;
+    add_element<PlanarBend<Curvature>>({before.dofs[0], before.dofs[1], after.dofs[0],
+                                        after.dofs[1], after.dofs[2], after.dofs[3]},
+                                       {rod.EI / bend_length(rod, i), Curvature::of(rest).kappa},
+                                       before.first, after.last, model);
+  }
+}
+
+}  // namespace
+
+void add_rod_elements(RodLayout& rod, Model& model) {
+  rod.rest_turning_angle.assign(rod.nodes.size(), 0.0);
+  add_stretch(rod, model);
+  if (rod.EI == 0.0) return;
+  if (rod.curvature == scenario::CurvatureMeasure::Angle) {
+    add_bend<AngleCurvature>(rod, model);
+  } else {
+    add_bend<TangentCurvature>(rod, model);
+  }
+  for (const Clamp& clamp : rod.clamps) add_clamp_cells(clamp, rod, model);
+}
+
+}  // namespace der

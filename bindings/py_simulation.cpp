@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <stdexcept>
 
 #include "der/output/run_folder.hpp"
@@ -63,7 +64,8 @@ RunOutcome PySimulation::run(Recorder& recorder, double until, const Callback& c
     forces_.apply(engine_.model(), state, self);
   };
   // Half a step of slack: the times of a run are sums of steps, with their rounding.
-  const double stop_at = until - 0.5 * engine_.scenario().scene().time.step;
+  const double stop_at = until - 0.5 * engine_.plan().step;
+  engine_.set_horizon(std::min(until, engine_.scenario().scene().time.duration));
   Heartbeat heartbeat;
   const auto after_step = [&](const Simulation&) {
     forces_.take_off(state);

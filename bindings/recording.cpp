@@ -54,18 +54,27 @@ py::dict energy_columns(const py::object& self) {
   return energies;
 }
 
-py::dict probe_columns(const py::object& self) {
-  const auto& recording = self.cast<const Recording&>();
-  const auto frames = static_cast<py::ssize_t>(recording.frames.num_frames());
-  const std::size_t count = recording.probe_names.size();
+/// The columns of a (frames x names) table by name, copied.
+template <class Names>
+py::dict columns_by_name(const std::vector<double>& table, const Names& names) {
+  const std::size_t count = std::size(names);
+  const auto frames = static_cast<py::ssize_t>(count == 0 ? 0 : table.size() / count);
   const auto row = static_cast<py::ssize_t>(count * sizeof(double));
-  py::dict probes;
+  py::dict columns;
   for (std::size_t i = 0; i < count; ++i) {
-    const double* first = frames == 0 ? nullptr : recording.frames.probes.data() + i;
-    const py::array_t<double> strided({frames}, {row}, first, self);
-    probes[py::str(recording.probe_names[i])] = strided.attr("copy")();
+    const double* first = frames == 0 ? nullptr : table.data() + i;
+    // Without an owner the array is a copy.
+    columns[py::str(names[i])] = py::array_t<double>({frames}, {row}, first);
   }
-  return probes;
+  return columns;
+}
+
+py::dict probe_columns(const Recording& recording) {
+  return columns_by_name(recording.frames.probes, recording.probe_names);
+}
+
+py::dict work_columns(const Recording& recording) {
+  return columns_by_name(recording.frames.work, kLedgerNames);
 }
 
 py::dict probe_units(const Recording& recording) {
@@ -128,6 +137,9 @@ void bind_recording(py::module_& module) {
       .def_property_readonly("velocities", &vectors<&MemorySink::velocities>,
                              "Node velocities [m/s], shape (frames, nodes, dim).")
       .def_property_readonly("energies", &energy_columns, "Energies [J] by name, shape (frames,).")
+      .def_property_readonly("work", &work_columns,
+                             "What has gone in and out of the energy since the start [J] by name, "
+                             "shape (frames,).")
       .def_property_readonly("probes", &probe_columns, "Probes by name, shape (frames,).")
       .def_property_readonly("probe_units", &probe_units, "SI units of the probes by name.");
 }

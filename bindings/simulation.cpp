@@ -64,6 +64,8 @@ void bind_reports(py::module_& module) {
       .def_readonly("newton_iterations", &Counters::newton_iterations, "Newton iterations done.")
       .def_readonly("retried_steps", &Counters::retried_steps,
                     "Steps that had to be done in smaller pieces.")
+      .def_readonly("rejected_steps", &Counters::rejected_steps,
+                    "Adaptive steps that were too long for the tolerance.")
       .def("__repr__", [](const Counters& c) {
         return py::str("Counters(steps={}, newton_iterations={}, retried_steps={})")
             .format(c.steps, c.newton_iterations, c.retried_steps);
@@ -121,8 +123,11 @@ void bind_progress(PySimulationClass& cls) {
           "step_count", [](const PySimulation& s) { return s.engine().state().step; },
           "Time steps from time 0 to now.")
       .def_property_readonly(
-          "total_steps", [](const PySimulation& s) { return s.engine().total_steps(); },
-          "Time steps from time 0 to the scene's duration.")
+          "total_steps", [](const PySimulation& s) { return s.engine().plan().total_steps; },
+          "Time steps from time 0 to the scene's duration; 0 with a tolerance: not known.")
+      .def_property_readonly(
+          "time_step", [](const PySimulation& s) { return s.engine().plan().step; },
+          "Length of a time step [s]; 0 with a tolerance.")
       .def_property_readonly(
           "finished", [](const PySimulation& s) { return s.engine().finished(); },
           "Whether the scene's duration is reached. `step` goes on beyond it.")
@@ -214,7 +219,7 @@ void bind_actions(PySimulationClass& cls) {
         const Simulation& engine = simulation.engine();
         return py::str("<der.Simulation of {!r}: {} nodes, t = {:.6g} s, step {} of {}>")
             .format(engine.scenario().scene().title, engine.model().num_nodes, engine.state().time,
-                    engine.state().step, engine.total_steps());
+                    engine.state().step, engine.plan().total_steps);
       });
 }
 

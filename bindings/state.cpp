@@ -20,18 +20,20 @@ Vector to_vector(const Array& array) {
 // until it is saved too.
 
 py::tuple dump(const SavedState& saved) {
-  const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history] =
-      saved.state;
+  const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
+               next_step, last_error, work] = saved.state;
   py::list remembered;
   for (const Vector& vector : history) remembered.append(to_array(vector));
   return py::make_tuple(saved.dimension, time, step, to_array(positions), to_array(velocities),
-                        to_array(extra_force), to_array(accelerations), last_step, remembered);
+                        to_array(extra_force), to_array(accelerations), last_step, remembered,
+                        next_step, last_error, work.start, work.loads, work.supports, work.drag,
+                        work.solver);
 }
 
 SavedState revive(const py::tuple& dumped) {
   SavedState saved;
-  auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history] =
-      saved.state;
+  auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
+         next_step, last_error, work] = saved.state;
   saved.dimension = dumped[0].cast<Index>();
   time = dumped[1].cast<double>();
   step = dumped[2].cast<std::int64_t>();
@@ -43,6 +45,10 @@ SavedState revive(const py::tuple& dumped) {
   for (const auto& vector : dumped[8].cast<std::vector<Array>>()) {
     history.push_back(to_vector(vector));
   }
+  next_step = dumped[9].cast<double>();
+  last_error = dumped[10].cast<double>();
+  const auto value = [&](std::size_t i) { return dumped[i].cast<double>(); };
+  work = {value(11), value(12), value(13), value(14), value(15)};
   return saved;
 }
 

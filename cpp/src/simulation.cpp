@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "der/core/error.hpp"
@@ -13,32 +13,20 @@
 namespace der {
 namespace {
 
+/// Newton's error must not show in the estimated error of a step, which is a small part of the
+/// tolerance.
+constexpr double kNewtonShare = 1e-5;
+
 StepperOptions stepper_options(const scenario::Scene& scene) {
   StepperOptions options;
   options.newton = {scene.solver.residual_tolerance, scene.solver.step_tolerance,
                     scene.solver.max_iterations};
+  if (scene.time.stepping == scenario::Stepping::Adaptive) {
+    options.newton.step_tolerance =
+        std::min(options.newton.step_tolerance, kNewtonShare * scene.time.tolerance);
+  }
   options.spectral_radius = scene.time.spectral_radius;
   return options;
-}
-
-std::int64_t count_steps(const scenario::Time& time) {
-  if (time.step <= 0.0) return 0;  // a static scene
-  // A duration that is a whole number of steps but for rounding has no short last step.
-  return static_cast<std::int64_t>(std::ceil(time.duration / time.step * (1.0 - 1e-12)));
-}
-
-/// "node 3 of rod 'beam' (y)"
-std::string describe_dof(const Model& model, Index dof) {
-  const Index node = dof / model.dimension;
-  const char component = "xyz"[dof % model.dimension];
-  for (const RodLayout& rod : model.rods) {
-    const auto found = std::find(rod.nodes.begin(), rod.nodes.end(), node);
-    if (found != rod.nodes.end()) {
-      return fmt::format("node {} of rod '{}' ({})", found - rod.nodes.begin(), rod.name,
-                         component);
-    }
-  }
-  return fmt::format("node {} ({})", node, component);
 }
 
 }  // namespace
@@ -52,20 +40,46 @@ Simulation::Simulation(Scenario scenario)
       stepper_info_(find_stepper(scenario_.scene().time.integrator)),
       stepper_(stepper_info_.make(model_, assembler_, *solver_.solver,
                                   stepper_options(scenario_.scene()))),
-      state_(initial_state(model_)),
-      total_steps_(count_steps(scenario_.scene().time)) {}
+      plan_(plan_steps(scenario_.scene(), model_, stepper_info_)),
+      horizon_(scenario_.scene().time.duration),
+      state_(initial_state(model_)) {
+  state_.work.start = energies(model_, state_).total();
+  const scenario::Time& time = scenario_.scene().time;
+  if (time.stepping == scenario::Stepping::Adaptive) {
+    adaptive_.emplace(
+        model_, *stepper_, stepper_info_.order,
+        AdaptiveOptions{time.tolerance, time.duration, time.minimum_step, plan_.largest_step});
+  }
+}
+
+bool Simulation::finished() const {
+  return adaptive_ ? state_.time >= scenario_.scene().time.duration
+                   : state_.step >= plan_.total_steps;
+}
 
 void Simulation::step() {
-  const auto& time = scenario_.scene().time;
-  if (time.step <= 0.0) {
+  if (scenario_.scene().analysis == scenario::AnalysisKind::Static) {
     throw Error("model_error", "a static scene has no time steps: use equilibrium()");
   }
-  // Counted from the start, so that rounding does not add up over many steps.
-  double target = static_cast<double>(state_.step + 1) * time.step;
-  if (state_.step + 1 == total_steps_) target = time.duration;
-  advance_to(target);
+  if (adaptive_) {
+    advance_adaptively();
+  } else {
+    // Counted from the start, so that rounding does not add up over many steps.
+    double target = static_cast<double>(state_.step + 1) * plan_.step;
+    if (state_.step + 1 == plan_.total_steps) target = scenario_.scene().time.duration;
+    advance_to(target);
+  }
   ++state_.step;
   ++counters_.steps;
+}
+
+void Simulation::advance_adaptively() {
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  const AdaptiveReport report =
+      adaptive_->advance(state_, state_.time < horizon_ ? horizon_ : endless);
+  counters_.newton_iterations += report.newton_iterations;
+  counters_.rejected_steps += report.rejected;
+  if (report.last.outcome != StepOutcome::Done) fail(report.last, report.tried);
 }
 
 void Simulation::advance_to(double target) {
@@ -82,14 +96,16 @@ void Simulation::advance_to(double target) {
       if (last) return;
       continue;
     }
-    if (report.outcome == StepOutcome::Diverged) {
-      throw DivergedError(describe_divergence(report, tried));
-    }
+    if (report.outcome == StepOutcome::Diverged) fail(report, tried);
     counters_.retried_steps += dt == whole ? 1 : 0;
     dt = 0.5 * tried;
-    if (dt < scenario_.scene().time.minimum_step)
-      throw NotConvergedError(describe_failure(report, tried));
+    if (dt < scenario_.scene().time.minimum_step) fail(report, tried);
   }
+}
+
+void Simulation::fail(const StepReport& report, double dt) const {
+  if (report.outcome == StepOutcome::Diverged) throw DivergedError(describe_divergence(report, dt));
+  throw NotConvergedError(describe_failure(report, dt));
 }
 
 EquilibriumReport Simulation::equilibrium() {
@@ -108,24 +124,20 @@ EquilibriumReport Simulation::equilibrium() {
   }
   state_.positions = positions;
   state_.velocities.setZero();
+  state_.work = {energies(model_, state_).total(), 0.0, 0.0, 0.0, 0.0};
   return report;
 }
 
 void Simulation::restore(const State& saved) {
-  state_.time = saved.time;
-  state_.step = saved.step;
-  state_.positions = saved.positions;
-  state_.velocities = saved.velocities;
-  state_.extra_force = saved.extra_force;
-  state_.accelerations = saved.accelerations;
-  state_.last_step = saved.last_step;
-  state_.history = saved.history;
+  // Vectors of the same length keep their memory when assigned.
+  state_ = saved;
 }
 
 std::string Simulation::describe_failure(const StepReport& report, double dt) const {
   return fmt::format(
-      "Newton's method failed at t = {:.6g} s even with a step of {:.3g} s: {}; the worst residual "
-      "is at {}. A load that rises too fast, a shape that snaps, or too tight a "
+      "a step from t = {:.6g} s failed even with a length of {:.3g} s: {}; the worst residual is "
+      "at "
+      "{}. A load that rises too fast, a shape that snaps, or too tight a "
       "solver.residual_tolerance "
       "are the usual causes; a smaller time.step or smoother load tables help.",
       state_.time, dt, report.failure, describe_dof(model_, report.worst_dof));

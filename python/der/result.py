@@ -40,6 +40,10 @@ class Result:
     energies
         Energies [J] by name (``kinetic``, ``stretch``, ``bend``, ``gravity``), each of shape
         (frames,).
+    work
+        What has gone in and out of the energy since the start [J] by name, each of shape (frames,):
+        work of the ``loads`` (but for weight), of moving ``supports`` and of the ``solver``'s
+        residual went in; ``drag`` and the ``numerical`` loss of the time stepping went out.
     probes
         Probes by name, each an array of shape (frames,) with its ``unit`` and ``summary``.
     summary
@@ -52,6 +56,7 @@ class Result:
     positions: NDArray[np.float64]
     velocities: NDArray[np.float64]
     energies: dict[str, NDArray[np.float64]]
+    work: dict[str, NDArray[np.float64]]
     probes: dict[str, ProbeSeries]
     summary: dict[str, Any]
 

@@ -20,7 +20,7 @@ from der.result import Result
 if TYPE_CHECKING:
     import h5py
 
-_FORMAT_VERSION = 1
+_FORMAT_VERSION = 2
 
 
 def open_run(folder: str | os.PathLike[str]) -> Result:
@@ -75,6 +75,7 @@ def _read_results(file: h5py.File, folder: Path) -> Result:
         positions=file["positions"][:frames],
         velocities=file["velocities"][:frames],
         energies={name: column[:frames] for name, column in file["energies"].items()},
+        work={name: column[:frames] for name, column in file["work"].items()},
         probes=make_probes(
             {name: file["probes"][name][:frames] for name in names},
             {name: str(file["probes"][name].attrs["unit"]) for name in names},
@@ -120,9 +121,10 @@ def _write_results(file: h5py.File, result: Result) -> None:
     _write(file, "step", result.steps, "")
     _write(file, "positions", result.positions, "m")
     _write(file, "velocities", result.velocities, "m/s")
-    energies = file.create_group("energies")
-    for name, values in result.energies.items():
-        _write(energies, name, values, "J")
+    for group_name, columns in (("energies", result.energies), ("work", result.work)):
+        group = file.create_group(group_name)
+        for name, values in columns.items():
+            _write(group, name, values, "J")
     probes = file.create_group("probes")
     for name, probe in result.probes.items():
         _write(probes, name, np.asarray(probe), probe.unit)

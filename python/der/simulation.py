@@ -211,6 +211,7 @@ def _to_result(scenario: Scenario, recording: Recording) -> Result:
         positions=recording.positions,
         velocities=recording.velocities,
         energies=recording.energies,
+        work=recording.work,
         probes=make_probes(recording.probes, recording.probe_units, summary),
         summary=summary,
     )

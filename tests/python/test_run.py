@@ -24,6 +24,8 @@ def test_result_holds_what_the_scene_asks_for(tube):
     assert result.positions.shape == result.velocities.shape == (26, 21, 2)
     assert set(result.energies) == {"kinetic", "stretch", "bend", "gravity"}
     assert all(values.shape == (26,) for values in result.energies.values())
+    assert set(result.work) == {"loads", "supports", "drag", "numerical", "solver"}
+    assert all(values.shape == (26,) for values in result.work.values())
     assert list(result.probes) == ["deflection", "roller"]
     assert result.probes["roller"] == pytest.approx(result.positions[:, -1, 0])
     assert [rod.name for rod in result.rods] == ["beam"]

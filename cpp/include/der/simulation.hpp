@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "der/assembly/assembler.hpp"
@@ -12,6 +13,8 @@
 #include "der/solvers/linear_solver.hpp"
 #include "der/solvers/newton.hpp"
 #include "der/statics/equilibrium.hpp"
+#include "der/steppers/adaptive_stepper.hpp"
+#include "der/steppers/step_plan.hpp"
 #include "der/steppers/stepper.hpp"
 
 namespace der {
@@ -20,7 +23,8 @@ namespace der {
 struct Counters {
   std::int64_t steps = 0;
   std::int64_t newton_iterations = 0;
-  std::int64_t retried_steps = 0;  ///< steps that had to be done in smaller pieces
+  std::int64_t retried_steps = 0;   ///< steps that had to be done in smaller pieces
+  std::int64_t rejected_steps = 0;  ///< adaptive steps that were too long for the tolerance
 };
 
 /// One simulation: a scenario's model, its state, and the stepper that advances it. This is the
@@ -32,9 +36,14 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
-  /// Advances by one time step of the scene. A step that fails is retried in smaller pieces. Throws
-  /// NotConvergedError or DivergedError; the state is then that of the last good step.
+  /// Advances by one time step: of the scene's length, or, with a tolerance, of the length that the
+  /// error allows. A step that fails is retried in smaller pieces. Throws NotConvergedError or
+  /// DivergedError; the state is then that of the last good step.
   void step();
+  /// Sets the time [s] that adaptive steps do not go beyond; at first the scene's duration.
+  void set_horizon(double time) { horizon_ = time; }
+  /// Sets `result` to the state at a time within the last adaptive step.
+  void interpolate(double time, State& result) { adaptive_->interpolate(time, state_, result); }
   /// Replaces the state by the static equilibrium near it under the loads at the present time,
   /// velocities zero. Throws NotConvergedError.
   EquilibriumReport equilibrium();
@@ -47,15 +56,18 @@ class Simulation {
   /// Goes back (or forward) to a state copied earlier, without moving the vectors' memory.
   void restore(const State& saved);
   [[nodiscard]] const Counters& counters() const { return counters_; }
-  /// Number of steps from time 0 to the scene's duration.
-  [[nodiscard]] std::int64_t total_steps() const { return total_steps_; }
-  [[nodiscard]] bool finished() const { return state_.step >= total_steps_; }
+  [[nodiscard]] bool adaptive() const { return adaptive_.has_value(); }
+  [[nodiscard]] const StepPlan& plan() const { return plan_; }
+  /// Whether the scene's duration is reached; a static scene always is there.
+  [[nodiscard]] bool finished() const;
   [[nodiscard]] const StepperInfo& integrator() const { return stepper_info_; }
   [[nodiscard]] std::string_view linear_solver() const { return solver_.solver->name(); }
   [[nodiscard]] const std::string& linear_solver_reason() const { return solver_.reason; }
 
  private:
   void advance_to(double target);
+  void advance_adaptively();
+  [[noreturn]] void fail(const StepReport& report, double dt) const;
   [[nodiscard]] std::string describe_failure(const StepReport& report, double dt) const;
   [[nodiscard]] std::string describe_divergence(const StepReport& report, double dt) const;
 
@@ -66,9 +78,11 @@ class Simulation {
   Assembler assembler_;
   const StepperInfo& stepper_info_;
   std::unique_ptr<Stepper> stepper_;
+  StepPlan plan_;
+  std::optional<AdaptiveStepper> adaptive_;
+  double horizon_ = 0.0;
   State state_;
   Counters counters_;
-  std::int64_t total_steps_ = 0;
 };
 
 }  // namespace der

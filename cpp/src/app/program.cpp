@@ -1,5 +1,6 @@
 #include "der/app/program.hpp"
 
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -48,8 +49,13 @@ ExitCode run_scene(const Options& options, Simulation& simulation) {
   Progress progress(!options.quiet);
   const auto after_step = [&](const Simulation& now) {
     progress.update([&] {
-      return RunPosition{now.state().step, now.total_steps(), now.state().time,
-                         now.scenario().scene().time.duration};
+      const State& state = now.state();
+      const double duration = now.scenario().scene().time.duration;
+      // Adaptive steps: as many more as the time left asks for at the mean length so far.
+      const std::int64_t steps =
+          now.adaptive() ? std::llround(static_cast<double>(state.step) * duration / state.time)
+                         : now.plan().total_steps;
+      return RunPosition{state.step, steps, state.time, duration};
     });
     return InterruptGuard::signal() == 0;
   };

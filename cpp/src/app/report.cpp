@@ -112,9 +112,13 @@ std::string status_line(const Simulation& simulation, const RunOutcome& outcome,
 
 std::string what_ran(const Simulation& simulation) {
   if (is_static(simulation)) return "static equilibrium";
-  const auto& time = simulation.scenario().scene().time;
-  return fmt::format("{}, {} of {:g} s", simulation.integrator().name,
-                     format_count(simulation.total_steps(), "step"), time.step);
+  const std::string_view name = simulation.integrator().name;
+  if (simulation.adaptive()) {
+    return fmt::format("{}, adaptive steps for an error of {:g} of the size", name,
+                       simulation.scenario().scene().time.tolerance);
+  }
+  const StepPlan& plan = simulation.plan();
+  return fmt::format("{}, {} of {:g} s", name, format_count(plan.total_steps, "step"), plan.step);
 }
 
 std::string cost_line(const Simulation& simulation, const RunOutcome& outcome, const Style& style) {
@@ -122,8 +126,10 @@ std::string cost_line(const Simulation& simulation, const RunOutcome& outcome, c
   std::string text = format_seconds(outcome.wall_seconds);
   if (!is_static(simulation)) {
     const double speed = static_cast<double>(c.steps) / outcome.wall_seconds;
+    if (simulation.adaptive()) text += ", " + format_count(c.steps, "step");
     text += fmt::format(" ({} steps/s)", format_count(std::llround(speed)));
   }
+  if (c.rejected_steps > 0) text += ", " + format_count(c.rejected_steps, "rejected step");
   if (c.newton_iterations > 0) text += ", " + format_count(c.newton_iterations, "Newton iteration");
   if (c.retried_steps > 0) {
     text += ", " + format_count(c.retried_steps, "step") + " done again in smaller pieces";

@@ -1,5 +1,8 @@
 #include "der/model/model.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <utility>
 
 #include "der/core/error.hpp"
@@ -35,6 +38,19 @@ const RodLayout& Model::rod(const std::string& rod_name) const {
 
 RodLayout& Model::rod(const std::string& rod_name) {
   return rods[static_cast<std::size_t>(&std::as_const(*this).rod(rod_name) - rods.data())];
+}
+
+std::string describe_dof(const Model& model, Index dof) {
+  const Index node = dof / model.dimension;
+  const char component = "xyz"[dof % model.dimension];
+  for (const RodLayout& rod : model.rods) {
+    const auto found = std::find(rod.nodes.begin(), rod.nodes.end(), node);
+    if (found != rod.nodes.end()) {
+      return fmt::format("node {} of rod '{}' ({})", found - rod.nodes.begin(), rod.name,
+                         component);
+    }
+  }
+  return fmt::format("node {} ({})", node, component);
 }
 
 }  // namespace der

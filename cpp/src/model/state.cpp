@@ -35,4 +35,12 @@ Energies energies(const Model& model, const State& state) {
   return result;
 }
 
+double numerical_loss(const Work& work, const Energies& now) {
+  return work.start + work.loads + work.supports + work.solver - work.drag - now.total();
+}
+
+std::array<double, kLedgerNames.size()> ledger(const Work& work, const Energies& now) {
+  return {work.loads, work.supports, work.drag, numerical_loss(work, now), work.solver};
+}
+
 }  // namespace der

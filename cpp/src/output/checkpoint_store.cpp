@@ -11,6 +11,8 @@ using hdf5::Handle;
 
 constexpr hsize_t kHistoryChunk = 4096;
 constexpr hsize_t kSummaryValues = 5;  // of a ProbeSummary
+constexpr hsize_t kCounters = 4;       // of Counters
+constexpr hsize_t kWorkValues = 5;     // of Work
 
 Handle with_unit(Handle dataset, const std::string& unit) {
   hdf5::write_attribute(dataset.id(), "unit", unit);
@@ -75,10 +77,14 @@ CheckpointStore::Slot CheckpointStore::create_slot(hid_t group, const Model& mod
   slot.extra_force = create_doubles(group, "extra_force", dofs, "N");
   slot.accelerations = create_doubles(group, "accelerations", dofs, "m/s^2");
   slot.last_step = create_doubles(group, "last_step", {}, "s");
+  slot.next_step = create_doubles(group, "next_step", {}, "s");
+  slot.last_error = create_doubles(group, "last_error", {}, "");
+  slot.work = create_doubles(group, "work", {kWorkValues}, "J");
   if (num_probes > 0) {
     slot.extremes = create_doubles(group, "extremes", {num_probes, kSummaryValues}, "");
   }
-  slot.counters = with_unit(hdf5::create_fixed(group, "counters", H5T_NATIVE_INT64, {3}), "");
+  slot.counters =
+      with_unit(hdf5::create_fixed(group, "counters", H5T_NATIVE_INT64, {kCounters}), "");
   slot.wall_seconds = create_doubles(group, "wall_seconds", {}, "s");
   slot.history = create_list(group, "history", H5T_NATIVE_DOUBLE);
   slot.history_lengths = create_list(group, "history_lengths", H5T_NATIVE_INT64);
@@ -94,6 +100,9 @@ CheckpointStore::Slot CheckpointStore::open_slot(hid_t group) {
   slot.extra_force = hdf5::open_dataset(group, "extra_force");
   slot.accelerations = hdf5::open_dataset(group, "accelerations");
   slot.last_step = hdf5::open_dataset(group, "last_step");
+  slot.next_step = hdf5::open_dataset(group, "next_step");
+  slot.last_error = hdf5::open_dataset(group, "last_error");
+  slot.work = hdf5::open_dataset(group, "work");
   if (hdf5::exists(group, "extremes")) slot.extremes = hdf5::open_dataset(group, "extremes");
   slot.counters = hdf5::open_dataset(group, "counters");
   slot.wall_seconds = hdf5::open_dataset(group, "wall_seconds");
@@ -130,8 +139,8 @@ void CheckpointStore::write(const Checkpoint& checkpoint) {
   Slot& slot = slots_[static_cast<std::size_t>(written_)];
   // Taken apart so that a new member of State does not compile until it is saved here and read
   // below.
-  const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history] =
-      checkpoint.state;
+  const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
+               next_step, last_error, work] = checkpoint.state;
   hdf5::write_all(slot.time.id(), &time);
   hdf5::write_all(slot.step.id(), &step);
   hdf5::write_all(slot.positions.id(), positions.data());
@@ -139,11 +148,16 @@ void CheckpointStore::write(const Checkpoint& checkpoint) {
   hdf5::write_all(slot.extra_force.id(), extra_force.data());
   hdf5::write_all(slot.accelerations.id(), accelerations.data());
   hdf5::write_all(slot.last_step.id(), &last_step);
+  hdf5::write_all(slot.next_step.id(), &next_step);
+  hdf5::write_all(slot.last_error.id(), &last_error);
+  const auto& [start, loads, supports, drag, solver] = work;
+  const std::array<double, kWorkValues> works{start, loads, supports, drag, solver};
+  hdf5::write_all(slot.work.id(), works.data());
   const auto extremes = flatten(checkpoint.extremes);
   if (!extremes.empty()) hdf5::write_all(slot.extremes.id(), extremes.data());
-  const Counters& cost = checkpoint.counters;
-  const std::array<std::int64_t, 3> counters{cost.steps, cost.newton_iterations,
-                                             cost.retried_steps};
+  const auto& [steps, newton_iterations, retried_steps, rejected_steps] = checkpoint.counters;
+  const std::array<std::int64_t, kCounters> counters{steps, newton_iterations, retried_steps,
+                                                     rejected_steps};
   hdf5::write_all(slot.counters.id(), counters.data());
   hdf5::write_all(slot.wall_seconds.id(), &checkpoint.wall_seconds);
 
@@ -174,11 +188,15 @@ std::optional<Checkpoint> CheckpointStore::read() const {
   read_into(state.extra_force, slot.extra_force.id());
   read_into(state.accelerations, slot.accelerations.id());
   state.last_step = read_one<double>(slot.last_step.id());
+  state.next_step = read_one<double>(slot.next_step.id());
+  state.last_error = read_one<double>(slot.last_error.id());
+  const auto works = hdf5::read_vector<double>(slot.work.id());
+  state.work = {works.at(0), works.at(1), works.at(2), works.at(3), works.at(4)};
   if (slot.extremes.id() >= 0) {
     checkpoint.extremes = unflatten(hdf5::read_vector<double>(slot.extremes.id()));
   }
   const auto counters = hdf5::read_vector<std::int64_t>(slot.counters.id());
-  checkpoint.counters = {counters.at(0), counters.at(1), counters.at(2)};
+  checkpoint.counters = {counters.at(0), counters.at(1), counters.at(2), counters.at(3)};
   checkpoint.wall_seconds = read_one<double>(slot.wall_seconds.id());
 
   const auto history = hdf5::read_vector<double>(slot.history.id());

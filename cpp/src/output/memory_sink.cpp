@@ -18,6 +18,8 @@ void MemorySink::write(const Frame& frame) {
   stretch_energy.push_back(frame.energies.stretch);
   bend_energy.push_back(frame.energies.bend);
   gravity_energy.push_back(frame.energies.gravity);
+  const auto works = ledger(frame.work, frame.energies);
+  work.insert(work.end(), works.begin(), works.end());
   append(probes, frame.probes);
 }
 

@@ -16,37 +16,44 @@ bool is_finite(const Energies& e) {
 
 }  // namespace
 
-std::int64_t steps_between_frames(const scenario::Scene& scene) {
-  if (scene.analysis == scenario::AnalysisKind::Static) return 1;
-  return std::max<std::int64_t>(1, std::llround(scene.output.every / scene.time.step));
-}
-
 Recorder::Recorder(const Simulation& simulation)
     : probes_(make_probes(simulation.scenario().scene(), simulation.model())),
       summaries_(probes_.size()),
       values_(static_cast<Index>(probes_.size())),
-      every_(steps_between_frames(simulation.scenario().scene())),
       start_(std::chrono::steady_clock::now()) {}
 
-void Recorder::observe(const Simulation& simulation) {
+void Recorder::observe(Simulation& simulation) {
   const State& state = simulation.state();
   if (state.time == seen_time_) return;
-  const bool frame_due = state.step % every_ == 0 || simulation.finished();
-  const std::string problem = record(simulation, frame_due);
-  if (!problem.empty()) {
-    throw DivergedError("the motion diverged: at t = " + std::to_string(state.time) + " s " +
-                        problem + " is not a finite number. A smaller time.step may help.");
-  }
+  if (simulation.adaptive() && has_data()) record_frames_between(simulation);
+  record(simulation, state,
+         simulation.finished() || simulation.plan().is_frame(state.step, state.time));
   for (FrameSink* sink : sinks_) sink->stepped(simulation, *this);
 }
 
-void Recorder::finish(const Simulation& simulation) {
-  if (simulation.state().time != saved_time_) record(simulation, true);
+/// The frames due since the instant seen last and before the present one.
+void Recorder::record_frames_between(Simulation& simulation) {
+  const StepPlan& plan = simulation.plan();
+  const auto [first, last] = plan.frames_between(*seen_time_, simulation.state().time);
+  for (std::int64_t frame = first; frame <= last; ++frame) {
+    simulation.interpolate(static_cast<double>(frame) * plan.every, between_);
+    record(simulation, between_, true);
+  }
 }
 
-std::string Recorder::record(const Simulation& simulation, bool save) {
-  const State& state = simulation.state();
-  std::string problem = read_probes(simulation);
+void Recorder::finish(const Simulation& simulation) {
+  if (simulation.state().time != saved_time_) try_record(simulation, simulation.state(), true);
+}
+
+void Recorder::record(const Simulation& simulation, const State& state, bool save) {
+  const std::string problem = try_record(simulation, state, save);
+  if (problem.empty()) return;
+  throw DivergedError("the motion diverged: at t = " + std::to_string(state.time) + " s " +
+                      problem + " is not a finite number. A smaller time.step may help.");
+}
+
+std::string Recorder::try_record(const Simulation& simulation, const State& state, bool save) {
+  std::string problem = read_probes(simulation, state);
   if (!problem.empty()) return problem;
   if (save) {
     const Energies energy = der::energies(simulation.model(), state);
@@ -60,9 +67,9 @@ std::string Recorder::record(const Simulation& simulation, bool save) {
   return {};
 }
 
-std::string Recorder::read_probes(const Simulation& simulation) {
+std::string Recorder::read_probes(const Simulation& simulation, const State& state) {
   for (std::size_t i = 0; i < probes_.size(); ++i) {
-    const double value = probes_[i].value(simulation.model(), simulation.state());
+    const double value = probes_[i].value(simulation.model(), state);
     if (!std::isfinite(value)) return "probe '" + probes_[i].name() + "'";
     values_[static_cast<Index>(i)] = value;
   }
@@ -70,7 +77,8 @@ std::string Recorder::read_probes(const Simulation& simulation) {
 }
 
 void Recorder::hand_out(const State& state) {
-  const Frame frame{state.time, state.step, state.positions, state.velocities, *energies_, values_};
+  const Frame frame{state.time, state.step, state.positions, state.velocities,
+                    *energies_, state.work, values_};
   for (FrameSink* sink : sinks_) sink->write(frame);
   saved_time_ = state.time;
 }
@@ -102,7 +110,9 @@ void Recorder::restore(const Checkpoint& checkpoint, Simulation& simulation) {
   seen_time_ = checkpoint.state.time;
   // Of the earlier part only the regular frames are kept, so any other one is not saved yet.
   saved_time_.reset();
-  if (checkpoint.state.step % every_ == 0) saved_time_ = seen_time_;
+  if (simulation.plan().is_frame(checkpoint.state.step, checkpoint.state.time)) {
+    saved_time_ = seen_time_;
+  }
   counters_before_ = checkpoint.counters;
   seconds_before_ = checkpoint.wall_seconds;
 }
@@ -116,6 +126,7 @@ Counters Recorder::counters(const Simulation& simulation) const {
   total.steps += counters_before_.steps;
   total.newton_iterations += counters_before_.newton_iterations;
   total.retried_steps += counters_before_.retried_steps;
+  total.rejected_steps += counters_before_.rejected_steps;
   return total;
 }
 

@@ -22,7 +22,7 @@ using hdf5::Handle;
 using Seconds = std::chrono::duration<double>;
 
 /// Of the layout; readers refuse what they do not know.
-constexpr std::int64_t kFormatVersion = 1;
+constexpr std::int64_t kFormatVersion = 2;
 
 constexpr Seconds kFlushInterval{0.05};
 /// Flushing may take this share of a run's time on a slow disk.
@@ -48,8 +48,9 @@ hsize_t chunk_rows(hsize_t row_bytes, hsize_t total_rows) {
 
 /// Frames of a whole run.
 hsize_t expected_frames(const Simulation& simulation) {
-  const std::int64_t every = steps_between_frames(simulation.scenario().scene());
-  return static_cast<hsize_t>(1 + (simulation.total_steps() + every - 1) / every);
+  const StepPlan& plan = simulation.plan();
+  if (plan.every == 0.0) return 1;  // a static scene
+  return static_cast<hsize_t>(2.0 + simulation.scenario().scene().time.duration / plan.every);
 }
 
 /// A column of the file and the rows that are not in it yet.
@@ -140,7 +141,7 @@ class RunFile::Writer {
   void create_columns(const Simulation& simulation, const Recorder& recorder);
   void open_columns(const Recorder& recorder);
   void truncate(hsize_t frames);
-  [[nodiscard]] hsize_t frames_up_to(std::int64_t step, std::int64_t every) const;
+  [[nodiscard]] hsize_t frames_up_to(double time, const StepPlan& plan) const;
   void flush() { hdf5::flush(file_.id(), path_); }
   template <class F>
   void for_each_data_column(F&& f);
@@ -149,7 +150,7 @@ class RunFile::Writer {
   Handle file_;
   BufferedColumn<double> time_, positions_, velocities_;
   BufferedColumn<std::int64_t> step_;
-  std::vector<BufferedColumn<double>> energies_, probes_;
+  std::vector<BufferedColumn<double>> energies_, work_, probes_;
   CheckpointStore checkpoints_;
   bool abandoned_ = false;
   hsize_t gathered_ = 0;  // frames not written yet
@@ -204,6 +205,10 @@ void RunFile::Writer::create_columns(const Simulation& simulation, const Recorde
   for (const char* name : kEnergyNames) {
     energies_.push_back(create_scalar(energies.id(), name, "J"));
   }
+  const Handle work = hdf5::create_group(file_.id(), "work");
+  for (const char* name : kLedgerNames) {
+    work_.push_back(create_scalar(work.id(), name, "J"));
+  }
   const Handle probes = hdf5::create_group(file_.id(), "probes");
   for (const Probe& probe : recorder.probes()) {
     probes_.push_back(create_scalar(probes.id(), probe.name(), probe.unit()));
@@ -222,8 +227,7 @@ std::unique_ptr<RunFile::Writer> RunFile::Writer::resume(const std::filesystem::
       checkpoint->extremes.size() != recorder.probes().size()) {
     throw IoError("the checkpoint in '" + path.string() + "' does not fit the scene");
   }
-  writer->truncate(writer->frames_up_to(checkpoint->state.step,
-                                        steps_between_frames(simulation.scenario().scene())));
+  writer->truncate(writer->frames_up_to(checkpoint->state.time, simulation.plan()));
   writer->set_status("running");
   recorder.restore(*checkpoint, simulation);
   return writer;
@@ -238,6 +242,7 @@ void RunFile::Writer::open_columns(const Recorder& recorder) {
   for (const char* name : kEnergyNames) {
     energies_.emplace_back(open("energies/" + std::string(name)));
   }
+  for (const char* name : kLedgerNames) work_.emplace_back(open("work/" + std::string(name)));
   for (const Probe& probe : recorder.probes()) {
     probes_.emplace_back(open("probes/" + probe.name()));
   }
@@ -249,17 +254,20 @@ void RunFile::Writer::for_each_data_column(F&& f) {
   f(positions_);
   f(velocities_);
   for (auto& column : energies_) f(column);
+  for (auto& column : work_) f(column);
   for (auto& column : probes_) f(column);
 }
 
-/// Frames that an uninterrupted run would have saved up to `step`: an interrupted one ends with one
+/// Frames that an uninterrupted run would have saved up to `time`: an interrupted one ends with one
 /// more, off the beat.
-hsize_t RunFile::Writer::frames_up_to(std::int64_t step, std::int64_t every) const {
-  auto steps = hdf5::read_vector<std::int64_t>(step_.column().id());
-  steps.resize(std::min<std::size_t>(steps.size(), time_.column().rows()));
-  return static_cast<hsize_t>(std::count_if(steps.begin(), steps.end(), [&](std::int64_t saved) {
-    return saved <= step && saved % every == 0;
-  }));
+hsize_t RunFile::Writer::frames_up_to(double time, const StepPlan& plan) const {
+  const auto times = hdf5::read_vector<double>(time_.column().id());
+  const auto steps = hdf5::read_vector<std::int64_t>(step_.column().id());
+  hsize_t count = 0;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (times[i] <= time && plan.is_frame(steps[i], times[i])) ++count;
+  }
+  return count;
 }
 
 void RunFile::Writer::truncate(hsize_t frames) {
@@ -277,10 +285,12 @@ void RunFile::Writer::add(const Frame& frame) {
   const Energies& e = frame.energies;
   std::size_t i = 0;
   for (const double energy : {e.kinetic, e.stretch, e.bend, e.gravity}) energies_[i++].push(energy);
+  const auto works = ledger(frame.work, e);
+  for (i = 0; i < works.size(); ++i) work_[i].push(works[i]);
   for (i = 0; i < probes_.size(); ++i) probes_[i].push(frame.probes[static_cast<Index>(i)]);
   ++gathered_;
   bytes_per_frame_ = sizeof(double) * (2 * static_cast<std::size_t>(frame.positions.size()) +
-                                       probes_.size() + energies_.size() + 2);
+                                       probes_.size() + energies_.size() + work_.size() + 2);
 }
 
 bool RunFile::Writer::due() {

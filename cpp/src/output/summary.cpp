@@ -25,6 +25,13 @@ Json energies_json(const Energies& e) {
   return {{"kinetic", e.kinetic}, {"stretch", e.stretch}, {"bend", e.bend}, {"gravity", e.gravity}};
 }
 
+Json work_json(const Work& work, const Energies& now) {
+  Json json;
+  const auto values = ledger(work, now);
+  for (std::size_t i = 0; i < values.size(); ++i) json[kLedgerNames[i]] = values[i];
+  return json;
+}
+
 }  // namespace
 
 UsedSolver used_solver(const Simulation& simulation) {
@@ -52,6 +59,8 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
   summary["model"] = model.name;
   summary["model_reason"] = model.reason;
   summary["integrator"] = is_static ? "none" : simulation.integrator().name;
+  if (!is_static && !simulation.adaptive()) summary["step"] = simulation.plan().step;
+  if (simulation.adaptive()) summary["tolerance"] = scene.time.tolerance;
   const UsedSolver solver = used_solver(simulation);
   summary["linear_solver"] = solver.name;
   summary["linear_solver_reason"] = solver.reason;
@@ -62,12 +71,16 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
   summary["steps"] = outcome.counters.steps;
   summary["newton_iterations"] = outcome.counters.newton_iterations;
   summary["retried_steps"] = outcome.counters.retried_steps;
+  summary["rejected_steps"] = outcome.counters.rejected_steps;
   summary["wall_seconds"] = outcome.wall_seconds;
   if (outcome.equilibrium) {
     summary["residual"] = outcome.equilibrium->residual;
     summary["unstable_directions"] = outcome.equilibrium->negative_pivots;
   }
   if (recorder.energies()) summary["energies"] = energies_json(*recorder.energies());
+  if (recorder.energies() && !is_static) {
+    summary["work"] = work_json(simulation.state().work, *recorder.energies());
+  }
   summary["probes"] = probes_json(recorder);
   summary["scene"] = simulation.scenario().source();
   summary["der_version"] = version;

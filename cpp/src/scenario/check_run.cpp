@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "der/output/quantities.hpp"
+#include "der/steppers/names.hpp"
 #include "scenario/checks.hpp"
 
 namespace der::scenario {
@@ -9,6 +10,8 @@ namespace {
 
 /// Ten halvings of a step that fails.
 constexpr double kMinimumStepShare = 1.0 / 1024.0;
+/// Of the duration: with that, 1e-9 of it for adaptive steps.
+constexpr double kAdaptiveShare = 1e-6;
 /// More steps than anyone can wait for.
 constexpr double kMaxSteps = 1e12;
 /// Frames of a run where the scene does not say how often to save.
@@ -16,25 +19,64 @@ constexpr double kDefaultFrames = 1000.0;
 
 void check_every(SceneText& scene, Complaints& complaints) {
   const Path path{"output", "every"};
-  const double step = scene.time.step;
-  if (!scene.given_output.given_every) {
-    const double steps = std::round(scene.time.duration / kDefaultFrames / step);
-    scene.output.every = step * std::max(1.0, steps);
+  const Time& time = scene.time;
+  const double frame_time = time.duration / kDefaultFrames;
+  const auto& given = scene.given_output.given_every;
+  scene.output.every = given.value_or(frame_time);
+  if (time.stepping != Stepping::Fixed) return;
+  if (!given) {
+    scene.output.every = time.step * std::max(1.0, std::round(frame_time / time.step));
     return;
   }
-  const double every = *scene.given_output.given_every;
-  const double steps = every / step;
+  const double steps = *given / time.step;
   constexpr double same = 1e-6;  // of a step
   if (steps < 1.0 - same) {
-    complaints.add(path,
-                   fmt::format("must be at least the time step, {} s, got {} s", step, every));
-  } else if (std::abs(steps - std::round(steps)) > same) {
     complaints.add(
-        path, fmt::format("must be a whole multiple of the time step, {} s, but {} s is "
-                          "{:.6g} steps: write {:.9g} or {:.9g}",
-                          step, every, steps, step * std::floor(steps), step * std::ceil(steps)));
+        path, fmt::format("must be at least the time step, {} s, got {} s", time.step, *given));
+  } else if (std::abs(steps - std::round(steps)) > same) {
+    complaints.add(path, fmt::format("must be a whole multiple of the time step, {} s, but {} s is "
+                                     "{:.6g} steps: write {:.9g} or {:.9g}",
+                                     time.step, *given, steps, time.step * std::floor(steps),
+                                     time.step * std::ceil(steps)));
   }
-  scene.output.every = every;
+}
+
+void check_fixed_step(const Time& time, Complaints& complaints) {
+  if (time.step > time.duration) {
+    complaints.add({"time", "step"}, fmt::format("must not be greater than the duration, {} s, got "
+                                                 "{} s",
+                                                 time.duration, time.step));
+  }
+  if (time.duration / time.step > kMaxSteps) {
+    complaints.add({"time", "step"}, fmt::format("makes more than {:g} steps out of the duration, "
+                                                 "{} s",
+                                                 kMaxSteps, time.duration));
+  }
+}
+
+/// What only makes sense for some integrators.
+void check_integrator(const TimeText& given, Time& time, Complaints& complaints) {
+  if (given.given_spectral_radius) {
+    time.spectral_radius = *given.given_spectral_radius;
+    if (time.integrator != "generalized_alpha") {
+      complaints.add(
+          {"time", "spectral_radius"},
+          fmt::format("only generalized_alpha has a spectral radius, not {}", time.integrator));
+    }
+  }
+  const bool implicit = is_implicit(time.integrator);
+  if (time.stepping == Stepping::Automatic && implicit) {
+    complaints.add({"time", "step"},
+                   fmt::format("'auto' is the largest stable step of an explicit integrator; {} is "
+                               "stable with any: give a step, or 'tolerance'",
+                               time.integrator));
+  }
+  if (time.allow_unstable && (implicit || time.stepping != Stepping::Fixed)) {
+    complaints.add({"time", "allow_unstable"},
+                   implicit
+                       ? fmt::format("{} is stable with any step: remove this", time.integrator)
+                       : "only a fixed 'step' can be too large: remove this");
+  }
 }
 
 /// Where a probe can stand, by the kind of its quantity.
@@ -111,30 +153,25 @@ void check_time(CheckContext& context) {
   scene.output = static_cast<const Output&>(scene.given_output);
   if (scene.analysis == AnalysisKind::Static) return;
   if (complaints.under({"time"}) || complaints.under({"analysis"})) return;
-  const double step = scene.time.step;
-  if (step > scene.time.duration) {
-    complaints.add({"time", "step"}, fmt::format("must not be greater than the duration, {} s, got "
-                                                 "{} s",
-                                                 scene.time.duration, step));
+  const TimeText& given = scene.given_time;
+  Time& time = scene.time;
+  double longest = time.duration * kAdaptiveShare;  // that the smallest step is a share of
+  if (given.given_tolerance) {
+    time.stepping = Stepping::Adaptive;
+    time.tolerance = *given.given_tolerance;
+  } else if (const auto* step = std::get_if<double>(&*given.given_step)) {
+    time.step = *step;
+    check_fixed_step(time, complaints);
+    longest = time.step;
+  } else {
+    time.stepping = Stepping::Automatic;
   }
-  if (scene.time.duration / step > kMaxSteps) {
-    complaints.add({"time", "step"}, fmt::format("makes more than {:g} steps out of the duration, "
-                                                 "{} s",
-                                                 kMaxSteps, scene.time.duration));
-  }
-  scene.time.minimum_step = scene.given_time.given_minimum_step.value_or(step * kMinimumStepShare);
-  if (scene.time.minimum_step > step) {
+  check_integrator(given, time, complaints);
+  time.minimum_step = given.given_minimum_step.value_or(longest * kMinimumStepShare);
+  if (time.stepping == Stepping::Fixed && time.minimum_step > time.step) {
     complaints.add({"time", "minimum_step"},
-                   fmt::format("must not be greater than the step, {} s, got {} s", step,
-                               scene.time.minimum_step));
-  }
-  if (const auto& radius = scene.given_time.given_spectral_radius) {
-    scene.time.spectral_radius = *radius;
-    if (scene.time.integrator != "generalized_alpha") {
-      complaints.add({"time", "spectral_radius"},
-                     fmt::format("only generalized_alpha has a spectral radius, not {}",
-                                 scene.time.integrator));
-    }
+                   fmt::format("must not be greater than the step, {} s, got {} s", time.step,
+                               time.minimum_step));
   }
   if (!complaints.under({"output", "every"})) check_every(scene, complaints);
 }

@@ -81,13 +81,39 @@ Format<std::vector<Probe>> probes_format() {
           }};
 }
 
+/// A number, or the word `auto`.
+Format<std::variant<double, AutomaticStep>> step_format() {
+  const Format<double> fixed = number("s", positive());
+  const Format<bool> automatic =
+      choice<bool>({{{"auto", "the largest stable step of an explicit integrator"}, true}});
+  Shape shape{Shape::Kind::AnyOf};
+  shape.unit = fixed.shape.unit;
+  shape.parts = {fixed.shape, automatic.shape};
+  return {std::move(shape),
+          [fixed](const Shape& /*self*/, const Place& place, Complaints& complaints,
+                  std::variant<double, AutomaticStep>& out) {
+            const std::string* word = text_of(*place.value);
+            if (word && *word == "auto") {
+              out = AutomaticStep{};
+              return true;
+            }
+            return fixed.read(place, complaints, out.emplace<double>());
+          }};
+}
+
 }  // namespace
 
 Format<TimeText> time_format() {
   return mapping(
       Table<TimeText>("time", "A run over time.")
           .required("duration", &Time::duration, number("s", positive()), "End of the run.")
-          .required("step", &Time::step, number("s", positive()), "Time step.")
+          .optional("step", &TimeText::given_step, step_format(),
+                    "Time step; `auto`: the largest stable one of an explicit integrator, with a "
+                    "margin.")
+          .optional("tolerance", &TimeText::given_tolerance, number("", between(0, 1)),
+                    "In place of `step`: the error of positions that may come from the time steps, "
+                    "as a fraction of the structure's size. The steps adapt to it.")
+          .either({{"step"}, {"tolerance"}})
           .optional("integrator", &Time::integrator, one_of(words(integrator_names())),
                     "Time-stepping scheme.")
           .optional("spectral_radius", &TimeText::given_spectral_radius,
@@ -95,8 +121,11 @@ Format<TimeText> time_format() {
                     "For `generalized_alpha`: what a step leaves of the fastest motion, from 0 "
                     "(nothing) to 1 (all of it).",
                     "0.9")
+          .optional("allow_unstable", &Time::allow_unstable, boolean(),
+                    "Whether an explicit integrator may run with a step that is too large for it.")
           .optional("minimum_step", &TimeText::given_minimum_step, number("s", positive()),
-                    "A step that fails is retried in smaller ones, down to this.", "step / 1024"));
+                    "A step that fails is retried in smaller ones, down to this.",
+                    "step / 1024; with `tolerance`, about 1e-9 of the duration"));
 }
 
 Format<Solver> solver_format() {
@@ -114,12 +143,13 @@ Format<Solver> solver_format() {
 }
 
 Format<OutputText> output_format() {
-  return mapping(Table<OutputText>("output", "What is saved.")
-                     .optional("every", &OutputText::given_every, number("s", positive()),
-                               "Time between saved frames, a whole multiple of the step.",
-                               "a thousandth of the duration, or the step if that is longer")
-                     .optional("probes", &Output::probes, probes_format(),
-                               "Numbers to record, under names of your own."));
+  return mapping(
+      Table<OutputText>("output", "What is saved.")
+          .optional("every", &OutputText::given_every, number("s", positive()),
+                    "Time between saved frames; with a fixed step a whole multiple of it.",
+                    "a thousandth of the duration, or the step if that is longer")
+          .optional("probes", &Output::probes, probes_format(),
+                    "Numbers to record, under names of your own."));
 }
 
 const Format<SceneText>& scene_format() {

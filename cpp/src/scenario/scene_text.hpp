@@ -25,7 +25,12 @@ struct OutputText : Output {
   std::optional<double> given_every;
 };
 
+/// `step: auto`.
+struct AutomaticStep {};
+
 struct TimeText : Time {
+  std::optional<std::variant<double, AutomaticStep>> given_step;
+  std::optional<double> given_tolerance;
   std::optional<double> given_minimum_step;
   std::optional<double> given_spectral_radius;
 };

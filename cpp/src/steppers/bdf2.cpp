@@ -46,7 +46,7 @@ class Bdf2 final : public Stepper {
     state.history.resize(2);
     state.history[0] = state.positions;
     state.history[1] = state.velocities;
-    stage_.finish(stage_.positions, velocities_, dt, state);
+    stage_.book_and_finish(stage_.positions, velocities_, dt, state);
     return report;
   }
 

@@ -1,4 +1,5 @@
 #include "der/steppers/explicit_force.hpp"
+#include "der/steppers/step_finisher.hpp"
 #include "steppers.hpp"
 
 namespace der {
@@ -10,7 +11,12 @@ namespace {
 class ExplicitEuler final : public Stepper {
  public:
   ExplicitEuler(const Model& model, const Assembler& assembler)
-      : force_(model, assembler), acceleration_(model.num_dofs()), positions_(model.num_dofs()) {}
+      : force_(model, assembler),
+        finisher_(model),
+        acceleration_(model.num_dofs()),
+        positions_(model.num_dofs()),
+        displacement_(model.num_dofs()),
+        velocities_(model.num_dofs()) {}
 
   StepReport step(State& state, double dt) override {
     force_.acceleration(state, state.positions, state.velocities, state.time, 0.0, acceleration_);
@@ -19,16 +25,20 @@ class ExplicitEuler final : public Stepper {
     const StepReport report = force_.check(positions_);
     if (report.outcome != StepOutcome::Done) return report;
 
-    state.velocities = (positions_ - state.positions) / dt;
-    state.positions = positions_;
-    state.last_step = dt;
+    displacement_ = positions_ - state.positions;
+    force_.book(state.velocities, displacement_, state.work);
+    velocities_ = displacement_ / dt;
+    finisher_.finish(positions_, velocities_, dt, state);
     return report;
   }
 
  private:
   ExplicitForce force_;
+  StepFinisher finisher_;
   Vector acceleration_;
   Vector positions_;
+  Vector displacement_;
+  Vector velocities_;
 };
 
 }  // namespace

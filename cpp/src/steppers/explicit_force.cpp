@@ -1,6 +1,7 @@
 #include "der/steppers/explicit_force.hpp"
 
 #include "der/loads/loads.hpp"
+#include "der/steppers/work.hpp"
 #include "der/supports/supports.hpp"
 
 namespace der {
@@ -17,6 +18,8 @@ ExplicitForce::ExplicitForce(const Model& model, const Assembler& assembler)
       assembler_(assembler),
       mass_(model),
       controls_(Vector::Zero(model.controls.size())),
+      scratch_controls_(controls_),
+      positions_(Vector::Zero(model.num_dofs())),
       force_(Vector::Zero(model.num_dofs())),
       gradient_(Vector::Zero(model.num_dofs())) {}
 
@@ -26,13 +29,25 @@ void ExplicitForce::acceleration(const State& state, const Vector& positions,
   model_.controls.evaluate(time, controls_);
   external_force(model_, controls_, state.extra_force, force_);
   assembler_.gradient(positions, controls_, gradient_);
+  positions_ = positions;
   acceleration = force_ - gradient_ - model_.damping.cwiseProduct(velocities);
   mass_.solve(damping_time, acceleration);
 }
 
+void ExplicitForce::book(const Vector& velocities, const Vector& displacement, Work& work) const {
+  work.loads += displacement.dot(force_ - model_.gravity_force) +
+                moment_work(model_, positions_, controls_, displacement);
+  work.drag += displacement.dot(model_.damping.cwiseProduct(velocities));
+  for (const HeldDof& held : model_.held) {
+    const double reaction =
+        gradient_[held.dof] - force_[held.dof] + model_.damping[held.dof] * velocities[held.dof];
+    work.supports += displacement[held.dof] * reaction;
+  }
+}
+
 void ExplicitForce::place_held_at(double time, Vector& positions) {
-  model_.controls.evaluate(time, controls_);
-  place_held(model_, controls_, positions);
+  model_.controls.evaluate(time, scratch_controls_);
+  place_held(model_, scratch_controls_, positions);
 }
 
 StepReport ExplicitForce::check(const Vector& positions) const {

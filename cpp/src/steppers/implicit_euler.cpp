@@ -24,7 +24,7 @@ class ImplicitEuler final : public Stepper {
 
     velocities_ = (stage_.positions - state.positions) / dt;
     state.accelerations = (velocities_ - state.velocities) / dt;
-    stage_.finish(stage_.positions, velocities_, dt, state);
+    stage_.book_and_finish(stage_.positions, velocities_, dt, state);
     return report;
   }
 

@@ -34,7 +34,7 @@ class ImplicitMidpoint final : public Stepper {
     velocities_ = (2.0 / half) * (stage_.positions - state.positions) - state.velocities;
     stage_.place_held_at(state.time + dt, positions_);
     state.accelerations = (velocities_ - state.velocities) / dt;
-    stage_.finish(positions_, velocities_, dt, state);
+    stage_.book_and_finish(positions_, velocities_, dt, state);
     return report;
   }
 

@@ -1,6 +1,7 @@
 #include "der/steppers/implicit_stage.hpp"
 
 #include "der/loads/loads.hpp"
+#include "der/steppers/work.hpp"
 #include "der/supports/supports.hpp"
 
 namespace der {
@@ -10,7 +11,9 @@ ImplicitStage::ImplicitStage(const Model& model, const Assembler& assembler, Lin
     : equation(model),
       positions(Vector::Zero(model.num_dofs())),
       model_(model),
-      newton_(model, assembler, solver, options) {}
+      newton_(model, assembler, solver, options),
+      finisher_(model),
+      displacement_(Vector::Zero(model.num_dofs())) {}
 
 void ImplicitStage::place_held_at(double time, Vector& where) {
   model_.controls.evaluate(time, equation.controls);
@@ -31,17 +34,27 @@ StepReport ImplicitStage::solve(const State& state, double time) {
   return report;
 }
 
-void ImplicitStage::finish(const Vector& new_positions, const Vector& new_velocities, double dt,
-                           State& state) const {
-  for (const Index dof : model_.free_dofs) {
-    state.velocities[dof] = new_velocities[dof];
-    state.positions[dof] = new_positions[dof];
-  }
+void ImplicitStage::book(const Vector& displacement, Work& work) const {
+  const Vector& residual = newton_.residual();
+  work.loads += displacement.dot(equation.force - model_.gravity_force) +
+                moment_work(model_, positions, equation.controls, displacement);
+  work.drag +=
+      equation.velocity_factor *
+      displacement.dot(model_.damping.cwiseProduct(positions - equation.velocity_reference));
+  for (const Index dof : model_.free_dofs) work.solver += displacement[dof] * residual[dof];
   for (const HeldDof& held : model_.held) {
-    state.velocities[held.dof] = (new_positions[held.dof] - state.positions[held.dof]) / dt;
-    state.positions[held.dof] = new_positions[held.dof];
+    // Without the inertia that the scheme gives the held mass; `finish` has its energy.
+    const double inertial = equation.inertia * equation.mass.lumped[held.dof] *
+                            (positions[held.dof] - equation.inertia_target[held.dof]);
+    work.supports += displacement[held.dof] * (residual[held.dof] - inertial);
   }
-  state.last_step = dt;
+}
+
+void ImplicitStage::book_and_finish(const Vector& new_positions, const Vector& new_velocities,
+                                    double dt, State& state) {
+  displacement_ = new_positions - state.positions;
+  book(displacement_, state.work);
+  finisher_.finish(new_positions, new_velocities, dt, state);
 }
 
 }  // namespace der

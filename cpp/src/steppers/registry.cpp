@@ -39,4 +39,6 @@ const std::vector<std::string>& integrator_names() {
   return names;
 }
 
+bool is_implicit(const std::string& integrator) { return find_stepper(integrator).implicit; }
+
 }  // namespace der

@@ -1,37 +1,24 @@
 #include "der/steppers/stable_step.hpp"
 
+#include <Eigen/SparseCore>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "der/assembly/element_energy.hpp"
+#include "der/core/index.hpp"
 
 namespace der {
 namespace {
 
-/// The largest rate of one kind over the free degrees of freedom, and where.
-struct Fastest {
-  double rate = 0.0;  // squared frequency [1/s^2], or damping rate [1/s]
-  Index dof = -1;
-};
+using Matrix = Eigen::SparseMatrix<double>;
 
-Fastest largest(const Model& model, const Vector& rates) {
-  Fastest fastest;
-  for (const Index dof : model.free_dofs) {
-    if (rates[dof] > fastest.rate) fastest = {rates[dof], dof};
-  }
-  return fastest;
-}
-
-/// Row sums of |D^-1/2 K D^-1/2|, D a diagonal below the mass, over the elements booked under
-/// `term`, element by element: an upper bound even where entries of neighbours cancel.
-Vector scaled_row_sums(const Model& model, const Vector& positions, const Vector& controls,
-                       EnergyTerm term) {
-  Vector sums = Vector::Zero(model.num_dofs());
+/// D^-1/2 K D^-1/2 over the free degrees of freedom, from the elements booked under `term`; D is a
+/// diagonal that the mass is nowhere below.
+Matrix scaled_stiffness(const Model& model, const Vector& positions, const Vector& controls,
+                        EnergyTerm term) {
   const Vector mass = model.mass.lower_bound();
-  const auto weight = [&](Index dof) {
-    const bool free = model.free_index[static_cast<std::size_t>(dof)] >= 0;
-    return free ? 1.0 / std::sqrt(mass[dof]) : 0.0;
-  };
+  std::vector<Eigen::Triplet<double>> entries;
   for_each_list(model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if (Kernel::kTerm != term) return;
@@ -42,15 +29,35 @@ Vector scaled_row_sums(const Model& model, const Vector& positions, const Vector
                                                       gather(dofs, positions), local);
       for (int i = 0; i < Kernel::kDofs; ++i) {
         for (int j = 0; j < Kernel::kDofs; ++j) {
+          const Index a = model.free_index[at(dofs[at(i)])];
+          const Index b = model.free_index[at(dofs[at(j)])];
+          if (a < 0 || b < 0) continue;
           const double entry = i >= j ? local.hessian(i, j) : local.hessian(j, i);
-          const Index a = dofs[static_cast<std::size_t>(i)];
-          const Index b = dofs[static_cast<std::size_t>(j)];
-          sums[a] += weight(a) * weight(b) * std::abs(entry);
+          entries.emplace_back(a, b, entry / std::sqrt(mass[dofs[at(i)]] * mass[dofs[at(j)]]));
         }
       }
     }
   });
+  Matrix matrix(model.num_free(), model.num_free());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+/// Gershgorin: no eigenvalue is larger than the largest of these.
+Vector row_sums(const Matrix& matrix) {
+  Vector sums = Vector::Zero(matrix.rows());
+  for (Index column = 0; column < matrix.outerSize(); ++column) {
+    for (Matrix::InnerIterator it(matrix, column); it; ++it) sums[it.row()] += std::abs(it.value());
+  }
   return sums;
+}
+
+/// Damping rate [1/s] of each free degree of freedom.
+Vector damping_rates(const Model& model) {
+  const Vector rates = model.damping.cwiseQuotient(model.mass.lower_bound());
+  Vector free(model.num_free());
+  for (Index i = 0; i < free.size(); ++i) free[i] = rates[model.free_dofs[at(i)]];
+  return free;
 }
 
 }  // namespace
@@ -58,16 +65,14 @@ Vector scaled_row_sums(const Model& model, const Vector& positions, const Vector
 StableStep stable_step(const Model& model, const Vector& positions, bool drag_limits_step) {
   Vector controls;
   model.controls.evaluate(0.0, controls);
-  const Fastest stretch =
-      largest(model, scaled_row_sums(model, positions, controls, EnergyTerm::Stretch));
-  const Fastest bend =
-      largest(model, scaled_row_sums(model, positions, controls, EnergyTerm::Bend));
-  const Fastest drag = drag_limits_step
-                           ? largest(model, model.damping.cwiseQuotient(model.mass.lower_bound()))
-                           : Fastest{};
+  const Matrix stretch = scaled_stiffness(model, positions, controls, EnergyTerm::Stretch);
+  const Matrix bend = scaled_stiffness(model, positions, controls, EnergyTerm::Bend);
+  const Vector rates = drag_limits_step ? damping_rates(model) : Vector::Zero(model.num_free());
 
-  const double w2 = stretch.rate + bend.rate;
-  const double g = drag.rate;
+  Index fastest = 0;
+  Index most_damped = 0;
+  const double w2 = row_sums(stretch + bend).maxCoeff(&fastest);
+  const double g = rates.maxCoeff(&most_damped);
   StableStep result;
   if (w2 == 0.0 && g == 0.0) {
     result.step = std::numeric_limits<double>::infinity();
@@ -78,13 +83,11 @@ StableStep stable_step(const Model& model, const Vector& positions, bool drag_li
   result.step = 4.0 / (g + std::sqrt(g * g + 4.0 * w2));
   if (g * g >= w2) {
     result.limited_by = "drag";
-    result.worst_dof = drag.dof;
-  } else if (stretch.rate >= bend.rate) {
-    result.limited_by = "stretch";
-    result.worst_dof = stretch.dof;
+    result.worst_dof = model.free_dofs[at(most_damped)];
   } else {
-    result.limited_by = "bend";
-    result.worst_dof = bend.dof;
+    const bool stretches = row_sums(stretch)[fastest] >= row_sums(bend)[fastest];
+    result.limited_by = stretches ? "stretch" : "bend";
+    result.worst_dof = model.free_dofs[at(fastest)];
   }
   return result;
 }

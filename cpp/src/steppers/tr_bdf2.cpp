@@ -12,14 +12,17 @@ class TrBdf2 final : public Stepper {
  public:
   TrBdf2(const Model& model, const Assembler& assembler, LinearSolver& solver,
          const StepperOptions& options)
-      : stage_(model, assembler, solver, options.newton),
+      : model_(model),
+        stage_(model, assembler, solver, options.newton),
         force_(model, assembler),
         start_acceleration_(model.num_dofs()),
         middle_positions_(model.num_dofs()),
         middle_velocities_(model.num_dofs()),
         past_positions_(model.num_dofs()),
         past_velocities_(model.num_dofs()),
-        velocities_(model.num_dofs()) {}
+        velocities_(model.num_dofs()),
+        end_positions_(model.num_dofs()),
+        displacement_(model.num_dofs()) {}
 
   StepReport step(State& state, double dt) override {
     const double h = 0.5 * kGamma * dt;
@@ -27,6 +30,17 @@ class TrBdf2 final : public Stepper {
     stage_.equation.velocity_factor = 1.0 / h;
     StepReport report = trapezoidal_stage(state, h);
     if (report.outcome != StepOutcome::Done) return report;
+    // The weights of the three stages, also of their works; held degrees of freedom move evenly.
+    constexpr double early = 0.5 / (2.0 - kGamma);
+    constexpr double late = 1.0 - 2.0 * early;
+    work_ = state.work;
+    end_positions_ = state.positions;
+    stage_.place_held_at(state.time + dt, end_positions_);
+    set_displacement(state, early * dt, state.velocities, early);
+    force_.book(state.velocities, displacement_, work_);
+    set_displacement(state, early * dt, middle_velocities_, early);
+    stage_.book(displacement_, work_);
+
     const StepReport second = bdf2_stage(state, h, dt);
     report.outcome = second.outcome;
     report.newton_iterations += second.newton_iterations;
@@ -35,6 +49,9 @@ class TrBdf2 final : public Stepper {
     if (report.outcome != StepOutcome::Done) return report;
 
     velocities_ = (stage_.positions - past_positions_) / h;
+    set_displacement(state, late * dt, velocities_, late);
+    stage_.book(displacement_, work_);
+    state.work = work_;
     state.accelerations = (velocities_ - past_velocities_) / h;
     stage_.finish(stage_.positions, velocities_, dt, state);
     return report;
@@ -42,6 +59,14 @@ class TrBdf2 final : public Stepper {
 
  private:
   static constexpr double kGamma = 0.58578643762690495;  // 2 - sqrt(2)
+
+  /// A stage's share of the step's displacement.
+  void set_displacement(const State& state, double time, const Vector& velocities, double share) {
+    displacement_ = time * velocities;
+    for (const HeldDof& held : model_.held) {
+      displacement_[held.dof] = share * (end_positions_[held.dof] - state.positions[held.dof]);
+    }
+  }
 
   StepReport trapezoidal_stage(const State& state, double h) {
     const double time = state.time + 2.0 * h;
@@ -74,6 +99,7 @@ class TrBdf2 final : public Stepper {
     return stage_.solve(state, state.time + dt);
   }
 
+  const Model& model_;
   ImplicitStage stage_;
   ExplicitForce force_;
   Vector start_acceleration_;
@@ -82,6 +108,9 @@ class TrBdf2 final : public Stepper {
   Vector past_positions_;
   Vector past_velocities_;
   Vector velocities_;
+  Vector end_positions_;  // of held degrees of freedom
+  Vector displacement_;
+  Work work_;
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "der/steppers/explicit_force.hpp"
+#include "der/steppers/step_finisher.hpp"
 #include "steppers.hpp"
 
 namespace der {
@@ -11,10 +12,13 @@ namespace {
 class Verlet final : public Stepper {
  public:
   Verlet(const Model& model, const Assembler& assembler)
-      : model_(model),
-        force_(model, assembler),
+      : force_(model, assembler),
+        finisher_(model),
         positions_(model.num_dofs()),
-        acceleration_(model.num_dofs()) {}
+        acceleration_(model.num_dofs()),
+        mean_velocities_(model.num_dofs()),
+        displacement_(model.num_dofs()),
+        velocities_(model.num_dofs()) {}
 
   StepReport step(State& state, double dt) override {
     const double half = 0.5 * dt;
@@ -25,24 +29,24 @@ class Verlet final : public Stepper {
     StepReport report = force_.check(positions_);
     if (report.outcome != StepOutcome::Done) return report;
 
-    for (const Index dof : model_.free_dofs) {
-      state.velocities[dof] += dt * acceleration_[dof];
-      state.positions[dof] = positions_[dof] + half * state.velocities[dof];
-    }
+    positions_ = state.positions + dt * (state.velocities + half * acceleration_);
     force_.place_held_at(state.time + dt, positions_);
-    for (const HeldDof& held : model_.held) {
-      state.velocities[held.dof] = (positions_[held.dof] - state.positions[held.dof]) / dt;
-      state.positions[held.dof] = positions_[held.dof];
-    }
-    state.last_step = dt;
+    displacement_ = positions_ - state.positions;
+    mean_velocities_ = displacement_ / dt;
+    force_.book(mean_velocities_, displacement_, state.work);
+    velocities_ = state.velocities + dt * acceleration_;
+    finisher_.finish(positions_, velocities_, dt, state);
     return report;
   }
 
  private:
-  const Model& model_;
   ExplicitForce force_;
+  StepFinisher finisher_;
   Vector positions_;
   Vector acceleration_;
+  Vector mean_velocities_;
+  Vector displacement_;
+  Vector velocities_;
 };
 
 }  // namespace

@@ -120,6 +120,7 @@ TEST_CASE("a run that diverges is recorded up to its last good step, with finite
   const Recorded run(Scenario::parse(kSpheres, "spheres",
                                      {{"time.integrator", "explicit_euler"},
                                       {"time.step", "1e-4"},
+                                      {"time.allow_unstable", "true"},
                                       {"time.duration", "10"},
                                       {"output.every", "0.05"}}));
   CHECK(run.outcome.status == "diverged");

@@ -147,6 +147,7 @@ TEST_CASE("which runs can be resumed") {
 
   const Scenario unstable = scenario.with({{"time.integrator", "explicit_euler"},
                                            {"time.step", "1e-4"},
+                                           {"time.allow_unstable", "true"},
                                            {"time.duration", "10"},
                                            {"output.every", "0.05"}});
   CHECK(run_scene(folder, unstable).status == "diverged");

@@ -10,6 +10,7 @@
 #include "der/core/error.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/simulation.hpp"
+#include "der/steppers/stable_step.hpp"
 
 namespace der::test {
 namespace {
@@ -153,14 +154,78 @@ TEST_CASE("a state restored goes on bit for bit") {
   }
 }
 
-TEST_CASE("an unstable explicit step is named as such") {
-  Simulation simulation(Scenario::parse(
-      kDrivenRod, "driven rod",
-      {{"time.integrator", "explicit_euler"}, {"time.step", "0.1"}, {"time.duration", "10"}}));
+TEST_CASE("an explicit step above the stable one is refused, or diverges if the scene insists") {
+  const auto driven = [](const std::string& integrator, const std::string& step,
+                         const std::string& allow_unstable) {
+    return Scenario::parse(kDrivenRod, "driven rod",
+                           {{"time.integrator", integrator},
+                            {"time.step", step},
+                            {"time.duration", "10"},
+                            {"time.allow_unstable", allow_unstable}});
+  };
+  CHECK_THROWS_WITH_AS(Simulation(driven("explicit_euler", "0.1", "false")),
+                       doctest::Contains("which stretch at node 2 of rod 'rod' (x) sets"), Error);
+  Simulation simulation(driven("explicit_euler", "0.1", "true"));
   const auto run = [&] {
     while (!simulation.finished()) simulation.step();
   };
   CHECK_THROWS_WITH_AS(run(), doctest::Contains("above the stable step"), DivergedError);
+}
+
+TEST_CASE("an explicit stepper picks a step that is stable and fits the frames") {
+  for (const StepperInfo& info : stepper_registry()) {
+    if (info.implicit) continue;
+    CAPTURE(info.name);
+    Simulation simulation(Scenario::parse(kFreeRod, "free flight",
+                                          {{"time.integrator", std::string(info.name)},
+                                           {"time.step", "auto"},
+                                           {"output.every", "0.3"}}));
+    const StepPlan& plan = simulation.plan();
+    const StableStep stable = stable_step(
+        simulation.model(), simulation.model().initial_positions, info.drag_limits_step);
+    CHECK(plan.step <= 0.9 * stable.step);
+    CHECK(plan.step * static_cast<double>(plan.steps_per_frame) == doctest::Approx(0.3));
+    while (!simulation.finished()) simulation.step();
+    CHECK(simulation.state().time == 1.0);
+  }
+}
+
+TEST_CASE("the stable step is where the motion starts to blow up") {
+  // A straight rod, stretched by a little: its axial modes, up to the highest one. Verlet is stable
+  // for dt w <= 2 and grows without bound beyond.
+  const char* const text = R"(
+title: Axial waves
+rods:
+  - name: rod
+    nodes: 41
+    from: [0, 0]
+    to: [1, 0]
+    cross_section: {stiffness: {EA: 100, EI: 1e-6, mass_per_length: 1}}
+    initial_velocity: [0.01, 0]
+supports:
+  - {rod: rod, at: end, fix: [x, y]}
+time: {duration: 4, step: auto, integrator: verlet}
+)";
+  const StableStep stable = [&] {
+    Simulation simulation(Scenario::parse(text, "waves"));
+    return stable_step(simulation.model(), simulation.model().initial_positions, false);
+  }();
+  CHECK(stable.limited_by == "stretch");
+  const auto blows_up = [&](double step) {
+    Simulation simulation(
+        Scenario::parse(text, "waves",
+                        {{"time.step", fmt::format("{}", step)}, {"time.allow_unstable", "true"},
+                         {"output.every", fmt::format("{}", step)}}));
+    try {
+      while (!simulation.finished()) simulation.step();
+    } catch (const DivergedError&) {
+      return true;
+    }
+    return false;
+  };
+  CHECK_FALSE(blows_up(0.999 * stable.step));
+  // Gershgorin's bound is a few per cent on the safe side.
+  CHECK(blows_up(1.1 * stable.step));
 }
 
 }  // namespace der::test

@@ -106,4 +106,7 @@ struct Model {
   [[nodiscard]] RodLayout& rod(const std::string& rod_name);
 };
 
+/// "node 3 of rod 'beam' (y)"
+std::string describe_dof(const Model& model, Index dof);
+
 }  // namespace der

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -8,6 +9,15 @@
 namespace der {
 
 struct Model;
+
+/// What has gone in and out of a run's energy since its start [J] (docs/energy.md).
+struct Work {
+  double start = 0.0;     ///< energy at the start, of all kinds
+  double loads = 0.0;     ///< done by forces and moments but for weight
+  double supports = 0.0;  ///< done by supports that move
+  double drag = 0.0;      ///< taken by drag and linear damping
+  double solver = 0.0;    ///< done by what the solver has left of the residual
+};
 
 /// Everything that changes in a run. A plain value: copy it to save it, assign it to go back, bit
 /// for bit. Vectors have one entry a degree of freedom.
@@ -21,6 +31,9 @@ struct State {
   Vector accelerations;
   double last_step = 0.0;  ///< [s] length of the last step; 0: no step yet, `accelerations` not set
   std::vector<Vector> history;  ///< what a multi-step stepper remembers besides
+  double next_step = 0.0;       ///< [s] that adaptive steps want to go on with; 0: not known
+  double last_error = 0.0;      ///< of the last adaptive step, over what it was allowed
+  Work work;
 };
 
 /// The state at time 0.
@@ -36,5 +49,14 @@ struct Energies {
   [[nodiscard]] double total() const { return kinetic + elastic() + gravity; }
 };
 Energies energies(const Model& model, const State& state);
+
+/// Energy [J] that the time stepping itself has taken since the start: what is missing of the work
+/// that went in. Negative where the scheme made energy.
+double numerical_loss(const Work& work, const Energies& now);
+
+/// The ledger as it is recorded: the works, with the numerical loss.
+constexpr std::array<const char*, 5> kLedgerNames{"loads", "supports", "drag", "numerical",
+                                                  "solver"};
+std::array<double, kLedgerNames.size()> ledger(const Work& work, const Energies& now);
 
 }  // namespace der

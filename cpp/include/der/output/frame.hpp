@@ -18,6 +18,7 @@ struct Frame {
   const Vector& positions;   ///< [m], one entry a degree of freedom
   const Vector& velocities;  ///< [m/s]
   Energies energies;         ///< [J]
+  const Work& work;          ///< [J] since the start
   const Vector& probes;      ///< one value a probe, in the order of the scene
 };
 

@@ -23,6 +23,7 @@ class MemorySink : public FrameSink {
   std::vector<double> stretch_energy;  ///< [J]
   std::vector<double> bend_energy;     ///< [J]
   std::vector<double> gravity_energy;  ///< [J]
+  std::vector<double> work;            ///< frames x kLedgerNames [J]
   std::vector<double> probes;          ///< frames x probes, in the order of the scene
 };
 

@@ -16,7 +16,8 @@
 namespace der {
 
 /// Reads the probes after every step, keeps their extremes, and hands every saved instant to the
-/// sinks: the start, every `output.every` seconds, and the last instant of the run.
+/// sinks: the start, every `output.every` seconds, and the last instant of the run. Adaptive steps
+/// do not end at those times; then the frames are interpolated.
 class Recorder {
  public:
   /// The clock of `wall_seconds()` starts here.
@@ -26,7 +27,7 @@ class Recorder {
 
   /// To be called at the start and after each step; an instant that was seen before is not taken
   /// twice. Throws DivergedError if a value is not a finite number; such a state is not recorded.
-  void observe(const Simulation& simulation);
+  void observe(Simulation& simulation);
   /// To be called at the end, however the run ended: saves the present instant, if that has not
   /// been done and its values are finite.
   void finish(const Simulation& simulation);
@@ -48,9 +49,12 @@ class Recorder {
   [[nodiscard]] double wall_seconds() const;
 
  private:
-  /// Returns what is not a finite number, in words; empty if the instant has been recorded.
-  std::string record(const Simulation& simulation, bool save);
-  [[nodiscard]] std::string read_probes(const Simulation& simulation);
+  /// Records and, if asked for, saves the instant `state`. Throws as `observe` does.
+  void record(const Simulation& simulation, const State& state, bool save);
+  void record_frames_between(Simulation& simulation);
+  /// As `record`, but returns what is not a finite number, in words; empty if all is well.
+  std::string try_record(const Simulation& simulation, const State& state, bool save);
+  [[nodiscard]] std::string read_probes(const Simulation& simulation, const State& state);
   void update_extremes(double time);
   void hand_out(const State& state);
 
@@ -59,15 +63,12 @@ class Recorder {
   std::vector<FrameSink*> sinks_;
   Vector values_;  // of the probes, now
   std::optional<Energies> energies_;
-  std::int64_t every_ = 1;            // steps between saved frames
+  State between_;                     // within an adaptive step
   std::optional<double> seen_time_;   // [s] of the last instant recorded
   std::optional<double> saved_time_;  // [s] of the last instant handed to the sinks
   Counters counters_before_;          // of the earlier parts of a resumed run
   double seconds_before_ = 0.0;
   std::chrono::steady_clock::time_point start_;
 };
-
-/// Steps between two saved frames of a scene, at least 1.
-std::int64_t steps_between_frames(const scenario::Scene& scene);
 
 }  // namespace der

@@ -152,11 +152,21 @@ struct Load {
 enum class ModelChoice { Auto, Planar };
 enum class AnalysisKind { Dynamic, Static };
 
+/// How long the time steps are.
+enum class Stepping {
+  Fixed,      ///< `step: 0.01`
+  Automatic,  ///< `step: auto`: what an explicit integrator can take
+  Adaptive,   ///< `tolerance: 1e-3`: as the error demands
+};
+
 struct Time {
   double duration = 0.0;  ///< [s]
-  double step = 0.0;      ///< [s]
-  std::string integrator = "implicit_euler";
-  double minimum_step = 0.0;  ///< [s] floor for retries after a failed step
+  Stepping stepping = Stepping::Fixed;
+  double step = 0.0;       ///< [s] of Stepping::Fixed
+  double tolerance = 0.0;  ///< of Stepping::Adaptive: error of positions over the structure's size
+  std::string integrator = "tr_bdf2";
+  bool allow_unstable = false;  ///< whether an explicit step above the stable one may run
+  double minimum_step = 0.0;    ///< [s] floor for retries after a failed step
   /// Of generalized_alpha: what a step leaves of the fastest motion, 0 (nothing) .. 1 (all).
   double spectral_radius = 0.9;
 };
@@ -181,7 +191,8 @@ struct Probe {
 };
 
 struct Output {
-  double every = 0.0;  ///< [s] between saved frames
+  /// [s] between saved frames; 0: as Stepping::Automatic finds fit.
+  double every = 0.0;
   std::vector<Probe> probes;
 };
 

@@ -20,6 +20,9 @@ class ExplicitForce {
   /// one over the step under the damping of the mean velocity.
   void acceleration(const State& state, const Vector& positions, const Vector& velocities,
                     double time, double damping_time, Vector& acceleration);
+  /// Books what the forces evaluated last do along `displacement` [m], with the damping of
+  /// `velocities` [m/s].
+  void book(const Vector& velocities, const Vector& displacement, Work& work) const;
   /// Puts held degrees of freedom of `positions` where the tables have them at `time`.
   void place_held_at(double time, Vector& positions);
   /// Not done where a value is no longer a number or an edge is stretched beyond reason.
@@ -29,7 +32,9 @@ class ExplicitForce {
   const Model& model_;
   const Assembler& assembler_;
   MassSolver mass_;
-  Vector controls_;
+  Vector controls_;  // of the last evaluation
+  Vector scratch_controls_;
+  Vector positions_;  // of the last evaluation
   Vector force_;
   Vector gradient_;
 };

@@ -4,6 +4,7 @@
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 #include "der/solvers/newton.hpp"
+#include "der/steppers/step_finisher.hpp"
 #include "der/steppers/stepper.hpp"
 
 namespace der {
@@ -24,14 +25,21 @@ class ImplicitStage {
   void place_held_at(double time, Vector& where);
   /// Solves with tables and external forces at `time`.
   StepReport solve(const State& state, double time);
-  /// Completes a done step from the old positions in `state` to `new_positions`: held degrees of
-  /// freedom get the velocity of their motion over the step.
-  void finish(const Vector& new_positions, const Vector& new_velocities, double dt,
-              State& state) const;
+  /// Books what the forces of the stage solved last do along `displacement` [m].
+  void book(const Vector& displacement, Work& work) const;
+  /// Completes a done step: positions, velocities and the works that do not depend on the stepper.
+  void finish(const Vector& new_positions, const Vector& new_velocities, double dt, State& state) {
+    finisher_.finish(new_positions, new_velocities, dt, state);
+  }
+  /// As above for a stepper of one stage, which is booked along the step's displacement.
+  void book_and_finish(const Vector& new_positions, const Vector& new_velocities, double dt,
+                       State& state);
 
  private:
   const Model& model_;
   Newton newton_;
+  StepFinisher finisher_;
+  Vector displacement_;
 };
 
 }  // namespace der

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+#include "der/model/state.hpp"
+#include "der/steppers/stepper.hpp"
+
+namespace der {
+
+struct AdaptiveOptions {
+  double tolerance = 1e-3;  ///< error of positions over the model's size, gathered over `duration`
+  double duration = 1.0;    ///< [s]
+  double minimum_step = 0.0;  ///< [s]
+  double largest_step = 0.0;  ///< [s] that the stepper is stable with; infinite: any
+};
+
+/// What the attempts at one adaptive step cost.
+struct AdaptiveReport {
+  StepReport last;            ///< of the last attempt; done if the step was accepted
+  double tried = 0.0;         ///< [s] length of the last attempt
+  int newton_iterations = 0;  ///< of all attempts
+  int rejected = 0;           ///< attempts whose error was too large, or that did not converge
+};
+
+/// Steps of a length that keeps the error in time where it is wanted.
+///
+/// Each step is done once as a whole and once in two halves; the difference over 2^p - 1, p the
+/// stepper's order, estimates the error of the halves, which are kept (Hairer, Norsett and Wanner,
+/// Solving Ordinary Differential Equations I, section II.4). A step may add `tolerance * size`
+/// times its share of the duration, so that the sum of all estimates stays below `tolerance * size`
+/// and the error follows the tolerance in proportion. The next length comes from a
+/// proportional-integral controller (Gustafsson, ACM Trans. Math. Softw. 17, 1991). Entries of
+/// tables over time, where forces have kinks, are hit exactly.
+class AdaptiveStepper {
+ public:
+  AdaptiveStepper(const Model& model, Stepper& stepper, int order, const AdaptiveOptions& options);
+
+  /// Advances `state` by one step that ends at `horizon` [s] or before it. The state is untouched
+  /// if the report says that it was not done.
+  AdaptiveReport advance(State& state, double horizon);
+
+  /// Positions and velocities at `time` within the last step, by cubic Hermite interpolation over
+  /// its halves; everything else as in `state`, which is the state at the end of that step.
+  void interpolate(double time, const State& state, State& result);
+
+ private:
+  [[nodiscard]] double first_step(const State& state);
+  [[nodiscard]] double next_stop(double time, double horizon) const;
+  StepReport attempt(State& state, double length);
+  [[nodiscard]] double relative_error(const State& state, double length, Index& worst_dof) const;
+
+  const Model& model_;
+  Stepper& stepper_;
+  int order_;
+  AdaptiveOptions options_;
+  std::vector<double> breakpoints_;  // [s] ascending
+  State start_;                      // of the last step
+  State middle_;
+  State whole_;  // at the end of the step done as a whole
+  Vector controls_;
+};
+
+}  // namespace der

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+#include "der/model/state.hpp"
+
+namespace der {
+
+/// Completes a step that is done, the same for every stepper.
+class StepFinisher {
+ public:
+  explicit StepFinisher(const Model& model);
+
+  /// Moves `state`, still at the start of a step of `dt` [s], to its end. Held degrees of freedom
+  /// get the velocity of their motion over the step, free ones that of `velocities` [m/s]. Books
+  /// the work of clamps that turn and of what moves the mass of held nodes; that of the stages is
+  /// the stepper's to book.
+  void finish(const Vector& positions, const Vector& velocities, double dt, State& state);
+
+ private:
+  const Model& model_;
+  Vector controls_start_;
+  Vector controls_end_;
+};
+
+}  // namespace der

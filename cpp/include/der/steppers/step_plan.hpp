@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "der/model/model.hpp"
+#include "der/scenario/scenario.hpp"
+#include "der/steppers/stepper.hpp"
+
+namespace der {
+
+/// The time steps of a run, worked out from what the scene says and what the model bears.
+struct StepPlan {
+  double step = 0.0;                 ///< [s]; 0: adaptive, or a static scene
+  double every = 0.0;                ///< [s] between saved frames
+  std::int64_t steps_per_frame = 1;  ///< with equal steps
+  std::int64_t total_steps = 0;      ///< from time 0 to the duration; 0: not known
+  double largest_step = 0.0;         ///< [s] for adaptive steps; infinite: any
+
+  /// Whether a regular frame is due at that instant.
+  [[nodiscard]] bool is_frame(std::int64_t steps_done, double time) const;
+  /// First and last number of the frames at multiples of `every` between two times, these excluded.
+  [[nodiscard]] std::pair<std::int64_t, std::int64_t> frames_between(double from, double to) const;
+};
+
+/// Throws Error ("unstable_step") for a fixed step of an explicit integrator that is larger than
+/// the model bears, unless the scene allows it.
+StepPlan plan_steps(const scenario::Scene& scene, const Model& model, const StepperInfo& stepper);
+
+}  // namespace der

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+
+namespace der {
+
+// The parts of a step's energy ledger that do not depend on the stepper. A stage of a stepper
+// balances M a + C v + grad E - f = r, with r the reactions on held degrees of freedom and what the
+// solver leaves on free ones; along the step's displacement d that is an identity between works
+// (docs/energy.md).
+
+/// Work [J] of moments along `displacement` [m] at `positions`.
+double moment_work(const Model& model, const Vector& positions, const Vector& controls,
+                   const Vector& displacement);
+
+/// A step from `start` to `end` positions [m] and between the values of the tables there.
+struct StepEnds {
+  const Vector& start;
+  const Vector& end;
+  const Vector& controls_start;
+  const Vector& controls_end;
+};
+
+/// Work [J] of clamps that turn during a step: the energy that turning gives the elements, the mean
+/// of that at both ends.
+double rotation_work(const Model& model, const StepEnds& step);
+
+}  // namespace der

@@ -1,0 +1,166 @@
+#include "der/steppers/adaptive_stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "der/supports/supports.hpp"
+
+namespace der {
+namespace {
+
+// Of the controller.
+constexpr double kSafety = 0.9;
+constexpr double kProportional = 0.4;
+constexpr double kIntegral = 0.7;
+constexpr double kLeastFactor = 0.2;
+constexpr double kGreatestFactor = 2.0;
+/// After a step that did not converge.
+constexpr double kRetryFactor = 0.25;
+/// Two times closer than this share of a step are one.
+constexpr double kSameTime = 1e-9;
+
+std::vector<double> table_entries(const Model& model) {
+  std::vector<double> times;
+  for (Index i = 0; i < model.controls.size(); ++i) {
+    const auto& series = model.controls[i].times;
+    times.insert(times.end(), series.begin(), series.end());
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+/// The cubic with values x0, x1 and slopes v0, v1 at the ends of an interval of length h, and its
+/// slope, at the fraction u of it.
+struct Hermite {
+  Hermite(double u, double h)
+      : x0((1.0 + 2.0 * u) * (1.0 - u) * (1.0 - u)),
+        x1(u * u * (3.0 - 2.0 * u)),
+        v0(h * u * (1.0 - u) * (1.0 - u)),
+        v1(-h * u * u * (1.0 - u)),
+        slope_x((6.0 * u - 6.0 * u * u) / h),
+        slope_v0((1.0 - u) * (1.0 - 3.0 * u)),
+        slope_v1(u * (3.0 * u - 2.0)) {}
+  double x0, x1, v0, v1;
+  double slope_x, slope_v0, slope_v1;
+};
+
+}  // namespace
+
+AdaptiveStepper::AdaptiveStepper(const Model& model, Stepper& stepper, int order,
+                                 const AdaptiveOptions& options)
+    : model_(model),
+      stepper_(stepper),
+      order_(order),
+      options_(options),
+      breakpoints_(table_entries(model)),
+      start_(initial_state(model)),
+      middle_(start_),
+      whole_(start_),
+      controls_(Vector::Zero(model.controls.size())) {}
+
+AdaptiveReport AdaptiveStepper::advance(State& state, double horizon) {
+  AdaptiveReport report;
+  start_ = state;
+  const double stop = next_stop(state.time, horizon);
+  double wanted = state.next_step > 0.0 ? state.next_step : first_step(state);
+  while (true) {
+    wanted = std::min(std::max(wanted, options_.minimum_step), options_.largest_step);
+    const double left = stop - start_.time;
+    // No sliver is left for the next step.
+    const bool last = wanted >= left * (1.0 - kSameTime);
+    const double length = last ? left : std::min(wanted, 0.5 * left);
+    report.tried = length;
+    report.last = attempt(state, length);
+    report.newton_iterations += report.last.newton_iterations;
+
+    double factor = kRetryFactor;
+    if (report.last.outcome == StepOutcome::Done) {
+      const double error = relative_error(state, length, report.last.worst_dof);
+      factor = error > 0.0 ? kSafety * std::pow(error, -1.0 / order_) : kGreatestFactor;
+      if (error <= 1.0) {
+        if (error > 0.0 && start_.last_error > 0.0) {
+          factor = kSafety * std::pow(error, -kIntegral / order_) *
+                   std::pow(start_.last_error, kProportional / order_);
+        }
+        // After a rejection the step does not grow at once.
+        const double most = report.rejected > 0 ? 1.0 : kGreatestFactor;
+        state.time = last ? stop : start_.time + length;
+        state.last_error = error;
+        // A step cut short by a stop says little about the next one.
+        const double base = last && length < wanted ? wanted : length;
+        state.next_step = base * std::clamp(factor, kLeastFactor, most);
+        return report;
+      }
+    }
+    ++report.rejected;
+    state = start_;
+    wanted = length * std::clamp(factor, kLeastFactor, 0.5 + 0.5 * kSafety);
+    if (wanted < options_.minimum_step) {
+      if (report.last.outcome == StepOutcome::Done) {
+        report.last = {StepOutcome::NotConverged, 0, report.last.worst_dof,
+                       "the error in time stays above the tolerance"};
+      }
+      return report;
+    }
+  }
+}
+
+/// Sets `state` to the end of two halves, keeping the middle and the end of the whole step.
+StepReport AdaptiveStepper::attempt(State& state, double length) {
+  whole_ = start_;
+  StepReport report = stepper_.step(whole_, length);
+  for (int half = 0; half < 2 && report.outcome == StepOutcome::Done; ++half) {
+    if (half == 1) {
+      state.time = start_.time + 0.5 * length;
+      middle_ = state;
+    }
+    const int iterations = report.newton_iterations;
+    report = stepper_.step(state, 0.5 * length);
+    report.newton_iterations += iterations;
+  }
+  return report;
+}
+
+double AdaptiveStepper::relative_error(const State& state, double length, Index& worst_dof) const {
+  const double difference = (whole_.positions - state.positions).cwiseAbs().maxCoeff(&worst_dof);
+  const double estimate = difference / (std::pow(2.0, order_) - 1.0);
+  return estimate / (options_.tolerance * model_.size * length / options_.duration);
+}
+
+/// What the motion takes to cover the tolerated error; from rest a little of the duration. A step
+/// that is too long is rejected, which costs little.
+double AdaptiveStepper::first_step(const State& state) {
+  const double distance = options_.tolerance * model_.size;
+  const double speed = state.velocities.lpNorm<Eigen::Infinity>();
+  const double longest = options_.duration / 100.0;
+  return speed > 0.0 ? std::min(longest, distance / speed) : 1e-2 * longest;
+}
+
+double AdaptiveStepper::next_stop(double time, double horizon) const {
+  const double later = time + kSameTime * std::max(options_.duration, std::abs(time));
+  const auto next = std::upper_bound(breakpoints_.begin(), breakpoints_.end(), later);
+  return next == breakpoints_.end() ? horizon : std::min(horizon, *next);
+}
+
+void AdaptiveStepper::interpolate(double time, const State& state, State& result) {
+  const bool first = time <= middle_.time;
+  const State& a = first ? start_ : middle_;
+  const State& b = first ? middle_ : state;
+  const double h = b.time - a.time;
+  const double u = (time - a.time) / h;
+  const Hermite weight(u, h);
+  result = state;
+  for (double Work::* part : {&Work::loads, &Work::supports, &Work::drag, &Work::solver}) {
+    result.work.*part = (1.0 - u) * (a.work.*part) + u * (b.work.*part);
+  }
+  result.time = time;
+  result.positions = weight.x0 * a.positions + weight.x1 * b.positions + weight.v0 * a.velocities +
+                     weight.v1 * b.velocities;
+  result.velocities = weight.slope_x * (b.positions - a.positions) +
+                      weight.slope_v0 * a.velocities + weight.slope_v1 * b.velocities;
+  model_.controls.evaluate(time, controls_);
+  place_held(model_, controls_, result.positions);
+}
+
+}  // namespace der

@@ -1,0 +1,32 @@
+#include "der/steppers/step_finisher.hpp"
+
+#include "der/steppers/work.hpp"
+
+namespace der {
+
+StepFinisher::StepFinisher(const Model& model)
+    : model_(model),
+      controls_start_(Vector::Zero(model.controls.size())),
+      controls_end_(Vector::Zero(model.controls.size())) {}
+
+void StepFinisher::finish(const Vector& positions, const Vector& velocities, double dt,
+                          State& state) {
+  model_.controls.evaluate(state.time, controls_start_);
+  model_.controls.evaluate(state.time + dt, controls_end_);
+  state.work.supports +=
+      rotation_work(model_, {state.positions, positions, controls_start_, controls_end_});
+  for (const HeldDof& held : model_.held) {
+    const double before = state.velocities[held.dof];
+    const double after = (positions[held.dof] - state.positions[held.dof]) / dt;
+    state.work.supports += 0.5 * model_.mass.lumped[held.dof] * (after * after - before * before);
+    state.velocities[held.dof] = after;
+    state.positions[held.dof] = positions[held.dof];
+  }
+  for (const Index dof : model_.free_dofs) {
+    state.velocities[dof] = velocities[dof];
+    state.positions[dof] = positions[dof];
+  }
+  state.last_step = dt;
+}
+
+}  // namespace der

@@ -1,0 +1,53 @@
+#include "der/steppers/work.hpp"
+
+#include <type_traits>
+
+#include "der/assembly/element_energy.hpp"
+
+namespace der {
+namespace {
+
+bool any_clamp_turns(const Model& model) {
+  for (const RodLayout& rod : model.rods) {
+    for (const Clamp& clamp : rod.clamps) {
+      if (clamp.rotation >= 0) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+double moment_work(const Model& model, const Vector& positions, const Vector& controls,
+                   const Vector& displacement) {
+  double work = 0.0;
+  for_each_list(model.elements, [&](const auto& list) {
+    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+    if constexpr (Kernel::kTerm == EnergyTerm::Load) {
+      LocalTerm<Kernel::kDofs> local;
+      for (std::size_t e = 0; e < list.size(); ++e) {
+        Kernel::template evaluate<Derivatives::Gradient>(list.constants[e], controls,
+                                                         gather(list.dofs[e], positions), local);
+        work -= local.gradient.dot(gather(list.dofs[e], displacement));
+      }
+    }
+  });
+  return work;
+}
+
+double rotation_work(const Model& model, const StepEnds& step) {
+  if (!any_clamp_turns(model)) return 0.0;
+  double work = 0.0;
+  for_each_list(model.elements, [&](const auto& list) {
+    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+    if constexpr (Kernel::kTerm != EnergyTerm::Load) {
+      for (const Vector* positions : {&step.start, &step.end}) {
+        work += 0.5 * (element_energy(list, step.controls_end, *positions) -
+                       element_energy(list, step.controls_start, *positions));
+      }
+    }
+  });
+  return work;
+}
+
+}  // namespace der

@@ -153,6 +153,7 @@ Model build_model(const scenario::Scene& scene) {
   for (const auto& load : scene.loads) {
     std::visit([&](const auto& l) { add_load(l, scene, model); }, load.what);
   }
+  model.damped = (model.damping.array() != 0.0).any();
   number_free_dofs(model);
   for (const RodLayout& rod : model.rods) couple_masses(rod, model);
   return model;

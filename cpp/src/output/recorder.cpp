@@ -60,6 +60,7 @@ std::string Recorder::try_record(const Simulation& simulation, const State& stat
     if (!is_finite(energy)) return "the energy";
     if (!state.positions.allFinite() || !state.velocities.allFinite()) return "the motion";
     energies_ = energy;
+    largest_kinetic_energy_ = std::max(largest_kinetic_energy_, energy.kinetic);
     hand_out(state);
   }
   update_extremes(state.time);

@@ -1,5 +1,7 @@
 #include "der/output/summary.hpp"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "der/version.hpp"
@@ -8,6 +10,9 @@ namespace der {
 namespace {
 
 using Json = nlohmann::ordered_json;  // keys stay in the order in which a person wants to read them
+
+/// Of the largest kinetic energy: what a method makes of its own beyond this is worth a warning.
+constexpr double kMuchEnergy = 0.05;
 
 Json probes_json(const Recorder& recorder) {
   Json probes = Json::object();
@@ -41,6 +46,16 @@ UsedSolver used_solver(const Simulation& simulation) {
     return {std::string(simulation.linear_solver()), simulation.linear_solver_reason()};
   }
   return {"none", std::string(integrator.name) + " is explicit: it solves no equations"};
+}
+
+std::vector<std::string> warnings(const Simulation& simulation, const Recorder& recorder) {
+  if (!recorder.energies() || recorder.largest_kinetic_energy() == 0.0) return {};
+  const double made = -numerical_loss(simulation.state().work, *recorder.energies());
+  const double scale = recorder.largest_kinetic_energy();
+  if (made < kMuchEnergy * scale) return {};
+  return {fmt::format("the time stepping itself has made {:.2g} J of energy, against at most {:.2g} J "
+                      "of motion: take smaller steps, or tr_bdf2",
+                      made, scale)};
 }
 
 std::string summary_json(const Simulation& simulation, const Recorder& recorder,
@@ -81,6 +96,7 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
   if (recorder.energies() && !is_static) {
     summary["work"] = work_json(simulation.state().work, *recorder.energies());
   }
+  summary["warnings"] = warnings(simulation, recorder);
   summary["probes"] = probes_json(recorder);
   summary["scene"] = simulation.scenario().source();
   summary["der_version"] = version;

@@ -62,6 +62,9 @@ BandedLdlt::BandedLdlt(const Pattern& pattern)
   if (half_bandwidth_ == 5) {  // planar chains
     factorize_kernel_ = factorize_band<5>;
     solve_kernel_ = solve_band<5>;
+  } else if (half_bandwidth_ == 2) {  // their mass matrix
+    factorize_kernel_ = factorize_band<2>;
+    solve_kernel_ = solve_band<2>;
   }
   band_.setZero(static_cast<Eigen::Index>(size_ + half_bandwidth_) * (half_bandwidth_ + 1));
   right_side_.setZero(size_ + half_bandwidth_);

@@ -37,6 +37,7 @@ Newton::Newton(const Model& model, const Assembler& assembler, LinearSolver& sol
       solver_(solver),
       options_(options),
       residual_(Vector::Zero(model.num_dofs())),
+      term_(Vector::Zero(model.num_dofs())),
       values_(Vector::Zero(assembler.num_values())),
       direction_(Vector::Zero(model.num_free())),
       guess_(Vector::Zero(model.num_dofs())),
@@ -113,28 +114,31 @@ void Newton::evaluate_system(const Stage& stage, const Vector& positions) {
   assembler_.gradient_and_hessian(positions, stage.controls, residual_, values_);
   add_stage_forces(stage, positions);
   if (stage.inertia != 0.0) assembler_.add_mass(stage.mass, stage.inertia, values_);
-  if (stage.velocity_factor != 0.0) {
+  if (stage.velocity_factor != 0.0 && model_.damped) {
     assembler_.add_diagonal(model_.damping, stage.velocity_factor, values_);
   }
 }
 
 void Newton::add_stage_forces(const Stage& stage, const Vector& positions) {
-  acting_ = 0.0;
-  for (Index i = 0; i < residual_.size(); ++i) {
-    const double inertial =
-        stage.inertia * stage.mass.lumped[i] * (positions[i] - stage.inertia_target[i]);
-    const double viscous =
-        stage.velocity_factor * model_.damping[i] * (positions[i] - stage.velocity_reference[i]);
-    acting_ = std::max({acting_, std::abs(residual_[i]), std::abs(inertial), std::abs(viscous),
-                        std::abs(stage.force[i])});
-    residual_[i] += inertial + viscous - stage.force[i];
+  constexpr int largest = Eigen::Infinity;
+  acting_ = std::max(residual_.lpNorm<largest>(), stage.force.lpNorm<largest>());
+  residual_ -= stage.force;
+  if (stage.inertia != 0.0) {
+    term_ = stage.inertia * stage.mass.lumped.cwiseProduct(positions - stage.inertia_target);
+    acting_ = std::max(acting_, term_.lpNorm<largest>());
+    residual_ += term_;
+    const auto displacement = [&](Index dof) { return positions[dof] - stage.inertia_target[dof]; };
+    for (const auto& [a, b, mass] : stage.mass.coupling) {
+      const double inertial = stage.inertia * mass * (displacement(a) - displacement(b));
+      residual_[a] -= inertial;
+      residual_[b] += inertial;
+    }
   }
-  if (stage.inertia == 0.0) return;
-  const auto displacement = [&](Index dof) { return positions[dof] - stage.inertia_target[dof]; };
-  for (const auto& [a, b, mass] : stage.mass.coupling) {
-    const double inertial = stage.inertia * mass * (displacement(a) - displacement(b));
-    residual_[a] -= inertial;
-    residual_[b] += inertial;
+  if (stage.velocity_factor != 0.0 && model_.damped) {
+    term_ = stage.velocity_factor *
+            model_.damping.cwiseProduct(positions - stage.velocity_reference);
+    acting_ = std::max(acting_, term_.lpNorm<largest>());
+    residual_ += term_;
   }
 }
 

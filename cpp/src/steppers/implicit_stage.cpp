@@ -38,9 +38,11 @@ void ImplicitStage::book(const Vector& displacement, Work& work) const {
   const Vector& residual = newton_.residual();
   work.loads += displacement.dot(equation.force - model_.gravity_force) +
                 moment_work(model_, positions, equation.controls, displacement);
-  work.drag +=
-      equation.velocity_factor *
-      displacement.dot(model_.damping.cwiseProduct(positions - equation.velocity_reference));
+  if (model_.damped) {
+    work.drag += equation.velocity_factor *
+                 displacement.dot(
+                     model_.damping.cwiseProduct(positions - equation.velocity_reference));
+  }
   for (const Index dof : model_.free_dofs) work.solver += displacement[dof] * residual[dof];
   for (const HeldDof& held : model_.held) {
     // Without the inertia that the scheme gives the held mass; `finish` has its energy.

@@ -16,6 +16,7 @@ const std::vector<StepperInfo>& stepper_registry() {
       {"bdf2", 2, true, false, false, "L-stable: any step", "fast motion, some of the slow",
        make_bdf2},
       {"tr_bdf2", 2, true, false, false, "L-stable: any step", "fast motion", make_tr_bdf2},
+      {"sdirk4", 4, true, false, false, "L-stable: any step", "fast motion", make_sdirk4},
       {"verlet", 2, false, true, false, "below the stretch and bend limit", "none", make_verlet},
       {"explicit_euler", 1, false, true, true, "below the stretch, bend and drag limit", "none",
        make_explicit_euler},

@@ -107,7 +107,7 @@ TEST_CASE("every stepper converges at its stated order") {
   REQUIRE((midpoint - verlet).lpNorm<Eigen::Infinity>() < 5e-8);
   const Vector reference = 0.5 * (midpoint + verlet);
 
-  const std::map<int, std::vector<int>> counts = {{1, {1600, 3200, 6400}}, {2, {400, 800, 1600}}};
+  const std::map<int, std::vector<int>> counts = {{1, {1600, 3200, 6400}}, {2, {400, 800, 1600}}, {4, {50, 70, 100}}};
   for (const StepperInfo& info : stepper_registry()) {
     CAPTURE(info.name);
     std::vector<double> steps;
@@ -127,12 +127,14 @@ TEST_CASE("free flight keeps the momenta that a stepper promises to keep") {
     CAPTURE(info.name);
     Simulation simulation(Scenario::parse(kFreeRod, "free flight",
                                           {{"time.integrator", std::string(info.name)},
-                                           {"solver.residual_tolerance", "1e-12"},
+                                           {"solver.residual_tolerance", "1e-13"},
                                            {"solver.step_tolerance", "1e-13"}}));
     const Momenta start = momenta(simulation);
     while (!simulation.finished()) simulation.step();
     const Momenta end = momenta(simulation);
-    CHECK((end.linear - start.linear).norm() < 1e-10 * start.linear.norm());
+    // The weights of sdirk4, up to 8, magnify the rounding of positions.
+    const double rounding = info.name == "sdirk4" ? 1e-9 : 1e-10;
+    CHECK((end.linear - start.linear).norm() < rounding * start.linear.norm());
     if (info.keeps_angular_momentum) {
       CHECK(std::abs(end.angular - start.angular) < 1e-10 * std::abs(start.angular));
     }
@@ -181,8 +183,8 @@ TEST_CASE("an explicit stepper picks a step that is stable and fits the frames")
                                            {"time.step", "auto"},
                                            {"output.every", "0.3"}}));
     const StepPlan& plan = simulation.plan();
-    const StableStep stable = stable_step(
-        simulation.model(), simulation.model().initial_positions, info.drag_limits_step);
+    const StableStep stable = stable_step(simulation.model(), simulation.model().initial_positions,
+                                          info.drag_limits_step);
     CHECK(plan.step <= 0.9 * stable.step);
     CHECK(plan.step * static_cast<double>(plan.steps_per_frame) == doctest::Approx(0.3));
     while (!simulation.finished()) simulation.step();
@@ -212,10 +214,10 @@ time: {duration: 4, step: auto, integrator: verlet}
   }();
   CHECK(stable.limited_by == "stretch");
   const auto blows_up = [&](double step) {
-    Simulation simulation(
-        Scenario::parse(text, "waves",
-                        {{"time.step", fmt::format("{}", step)}, {"time.allow_unstable", "true"},
-                         {"output.every", fmt::format("{}", step)}}));
+    Simulation simulation(Scenario::parse(text, "waves",
+                                          {{"time.step", fmt::format("{}", step)},
+                                           {"time.allow_unstable", "true"},
+                                           {"output.every", fmt::format("{}", step)}}));
     try {
       while (!simulation.finished()) simulation.step();
     } catch (const DivergedError&) {

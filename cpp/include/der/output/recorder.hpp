@@ -44,6 +44,8 @@ class Recorder {
   [[nodiscard]] bool has_data() const { return seen_time_.has_value(); }
   /// Energies [J] of the last saved instant; none before it.
   [[nodiscard]] const std::optional<Energies>& energies() const { return energies_; }
+  /// [J] over the saved instants.
+  [[nodiscard]] double largest_kinetic_energy() const { return largest_kinetic_energy_; }
   /// Cost of the run so far, earlier parts of a resumed run included.
   [[nodiscard]] Counters counters(const Simulation& simulation) const;
   [[nodiscard]] double wall_seconds() const;
@@ -63,6 +65,7 @@ class Recorder {
   std::vector<FrameSink*> sinks_;
   Vector values_;  // of the probes, now
   std::optional<Energies> energies_;
+  double largest_kinetic_energy_ = 0.0;  // [J]
   State between_;                     // within an adaptive step
   std::optional<double> seen_time_;   // [s] of the last instant recorded
   std::optional<double> saved_time_;  // [s] of the last instant handed to the sinks

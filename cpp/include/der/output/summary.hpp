@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "der/output/recorder.hpp"
 #include "der/output/run.hpp"
@@ -14,6 +15,10 @@ struct UsedSolver {
   std::string reason;
 };
 UsedSolver used_solver(const Simulation& simulation);
+
+/// What makes a completed run doubtful, in sentences: the time stepping has made energy worth
+/// mentioning.
+std::vector<std::string> warnings(const Simulation& simulation, const Recorder& recorder);
 
 /// The summary of an ended run as JSON text (keys: docs/results.md). Values that the run did not
 /// come to (the probes of an equilibrium that was not found) are left out; no number is NaN or

@@ -80,6 +80,7 @@ class Newton {
   LinearSolver& solver_;
   NewtonOptions options_;
   Vector residual_;      // all degrees of freedom
+  Vector term_;          // likewise: one term of it
   Vector values_;        // of the matrix, shifted where need be
   Vector direction_;     // over the free degrees of freedom
   Vector guess_;         // positions that the solve started from

@@ -38,6 +38,15 @@ from der._core import (
     scene_reference,
     steppers,
 )
+from der.accuracy import (
+    ErrorEstimate,
+    Study,
+    StudyRow,
+    Verification,
+    VerifiedValue,
+    study,
+    verify,
+)
 from der.errors import DerError, Diagnostic, DivergedError, NotConvergedError, SceneError
 from der.probe_series import ProbeSeries
 from der.result import Result
@@ -56,6 +65,7 @@ __all__ = [
     "DivergedError",
     "Energies",
     "EquilibriumReport",
+    "ErrorEstimate",
     "HeldNode",
     "Model",
     "NotConvergedError",
@@ -67,6 +77,10 @@ __all__ = [
     "Simulation",
     "State",
     "StepperInfo",
+    "Study",
+    "StudyRow",
+    "Verification",
+    "VerifiedValue",
     "__version__",
     "equilibrium",
     "held_nodes",
@@ -77,6 +91,8 @@ __all__ = [
     "run",
     "scene_reference",
     "steppers",
+    "study",
+    "verify",
 ]
 
 

@@ -9,11 +9,14 @@ import sys
 from collections.abc import Sequence
 
 from der import __version__, commands
-from der.errors import DerError
+from der.errors import DerError, DivergedError, NotConvergedError
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a subcommand and return its exit code: 0, or 1 with a message on stderr.
+    """Run a subcommand and return its exit code, as der_run has them.
+
+    0, or with a message on stderr 3 if a run failed and 1 for anything else; a command may have
+    others of its own.
 
     Parameters
     ----------
@@ -23,6 +26,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     chosen = _make_parser().parse_args(arguments)
     try:
         return int(chosen.execute(chosen))
+    except (NotConvergedError, DivergedError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 3
     except (DerError, OSError, ValueError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TextIO
 
 #: Told now and then how much of a run is done, from 0 to 1.
@@ -43,6 +44,19 @@ class ProgressLine:
         self._stream.write("\r" + text.ljust(self._width))
         self._stream.flush()
         self._width = len(text)
+
+
+@contextmanager
+def progress_on_terminal() -> Iterator[ProgressLine | None]:
+    """Give a progress line for the time of a ``with`` block; None where no one is looking."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    line = ProgressLine()
+    try:
+        yield line
+    finally:
+        line.close()
 
 
 def _duration(seconds: float) -> str:

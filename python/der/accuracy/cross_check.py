@@ -1,0 +1,99 @@
+"""A check on the levels in time, which can agree with each other and be wrong together.
+
+A stepper with damping of its own, run with steps longer than a vibration, lets the vibration die at
+once, and does so again with half the step. A run with another stepper and steps that are smaller by
+far knows better: the witness.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from der._core import Scenario
+from der.accuracy.refinement import with_time
+from der.accuracy.time_levels import save_every_step
+from der.result import Result
+
+#: The witness's stepper: second order, stable in the hardest scenes, hardly any damping of motion
+#: that its steps resolve.
+WITNESS = "tr_bdf2"
+
+#: CPU time [s] that its steps are chosen for; they are never longer than those of the finest level.
+_BUDGET = 1.0
+#: A step costs about this many times one of another implicit stepper, which solves once, not twice.
+_COST = 2.0
+_MOST_HALVINGS = 10
+
+#: The witness contradicts if it differs this many times more than the two finest runs do ...
+_CONTRADICTION = 5.0
+#: ... and by more than this share of what the probe goes through in the run.
+_NOTABLE = 0.005
+
+
+def witness_halvings(cpu_seconds: float) -> int:
+    """Return how many times the finest step is to be halved.
+
+    Parameters
+    ----------
+    cpu_seconds
+        What the finest level costs [s].
+    """
+    affordable = _BUDGET / (_COST * max(cpu_seconds, 1e-6))
+    return min(max(0, math.floor(math.log2(affordable))), _MOST_HALVINGS)
+
+
+def witness_scenario(scenario: Scenario, step: float) -> Scenario:
+    """Return the scene with the witness's stepper and this step [s]."""
+    changed = with_time(
+        scenario,
+        integrator=WITNESS,
+        step=step,
+        tolerance=None,
+        minimum_step=None,
+        spectral_radius=None,
+        allow_unstable=None,
+        every=None,
+    )
+    return save_every_step(changed, step)
+
+
+def hidden_motion(
+    coarse: Result, fine: Result, witness: Result, probe: str, noise: float
+) -> float | None:
+    """Return how far the witness moves away from where the levels agree; None if it does not.
+
+    Parameters
+    ----------
+    coarse, fine
+        The two finest levels.
+    witness
+        The run with much smaller steps.
+    probe
+        Name of the probe to look at, over the second half of the run.
+    noise
+        Differences up to this say nothing.
+
+    Returns
+    -------
+    float or None
+        Largest difference in the second half, in the unit of the probe.
+    """
+    late = fine.times >= 0.5 * fine.times[-1]
+    times = fine.times[late]
+    expected = np.asarray(fine.probes[probe])[late]
+    away = _largest_difference(expected, witness, times, probe)
+    agreed = _largest_difference(expected, coarse, times, probe)
+    travelled = float(np.ptp(np.asarray(witness.probes[probe])))
+    if away > max(_CONTRADICTION * agreed, _NOTABLE * travelled, noise):
+        return away
+    return None
+
+
+def _largest_difference(
+    expected: NDArray[np.float64], other: Result, times: NDArray[np.float64], probe: str
+) -> float:
+    values = np.interp(times, other.times, np.asarray(other.probes[probe]))
+    return float(np.max(np.abs(values - expected)))

@@ -1,0 +1,175 @@
+"""The same scene with more elements, a smaller time step, or another stepper."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from der._core import Scenario
+from der.accuracy.resampling import arc_lengths, resample_line, resample_list
+
+#: Two places along a rod closer than this share of its length are the same.
+_SAME_PLACE = 1e-9
+
+
+def rods_that_cannot_be_refined(scenario: Scenario) -> dict[str, str]:
+    """Return the rods whose number of nodes is part of the model, with the reason for each.
+
+    Spheres or point forces on every node are: more nodes would mean more of them.
+    """
+    scene = scenario.to_dict()
+    reasons = {}
+    for rod in scene["rods"]:
+        name = rod["name"]
+        if any(sphere["at"] == "all" for sphere in rod.get("spheres") or []):
+            reasons[name] = "spheres at every node are part of the model"
+        for kind, load in _loads(scene):
+            if kind == "point_force" and load["rod"] == name and load["at"] == "all":
+                reasons[name] = "a force at every node is part of the model"
+    return reasons
+
+
+def belongs_to_its_mesh(scenario: Scenario, probe: str) -> bool:
+    """Whether a probe has no limit on finer meshes: a turning angle, of a rod that is refined."""
+    asked = scenario.to_dict()["output"]["probes"][probe]
+    fixed = rods_that_cannot_be_refined(scenario)
+    return asked["quantity"] == "turning_angle" and asked["rod"] not in fixed
+
+
+def with_elements(scenario: Scenario, factor: Fraction | int) -> Scenario:
+    """Return the scene with `factor` times as many elements in every rod that allows it.
+
+    Old nodes stay where they are when `factor` is a whole number: supports, loads and probes keep
+    their places, `{node: k}` becomes `{node: factor * k}`. Rods drawn by points get new nodes on a
+    smooth curve between corners (`der.accuracy.resampling`), lists with a value for each node are
+    interpolated.
+
+    Parameters
+    ----------
+    scenario
+        The scene.
+    factor
+        Of the number of elements; less than 1 makes the mesh coarser.
+
+    Raises
+    ------
+    ValueError
+        If a rod, or a node that the scene names, does not fit the new number of elements. A
+        `SceneError`, which is one too, if the scene is no longer valid.
+    """
+    factor = Fraction(factor)
+    if factor == 1:
+        return scenario
+    scene = scenario.to_dict()
+    fixed = rods_that_cannot_be_refined(scenario)
+    for rod in scene["rods"]:
+        if rod["name"] not in fixed:
+            _refine_rod(scene, rod, factor)
+    return Scenario.from_dict(scene)
+
+
+def count_elements(scenario: Scenario) -> dict[str, int]:
+    """Return the number of elements of each rod, by its name."""
+    return {rod["name"]: _count_elements(rod) for rod in scenario.to_dict()["rods"]}
+
+
+def with_time(scenario: Scenario, **changes: Any) -> Scenario:
+    """Return the scene with some keys of `time` replaced; None removes a key.
+
+    `every` stands for ``output.every``.
+    """
+    scene = scenario.to_dict()
+    if "every" in changes:
+        _set(scene.setdefault("output", {}), "every", changes.pop("every"))
+    for key, value in changes.items():
+        _set(scene["time"], key, value)
+    return Scenario.from_dict(scene)
+
+
+def _set(table: dict[str, Any], key: str, value: Any) -> None:
+    table.pop(key, None)
+    if value is not None:
+        table[key] = value
+
+
+def _count_elements(rod: dict[str, Any]) -> int:
+    return (len(rod["points"]) if "points" in rod else int(rod["nodes"])) - 1
+
+
+def _loads(scene: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    for load in scene.get("loads") or []:
+        ((kind, what),) = load.items()
+        if isinstance(what, dict):
+            yield kind, what
+
+
+def _refine_rod(scene: dict[str, Any], rod: dict[str, Any], factor: Fraction) -> None:
+    places = _Places(rod, factor)
+    for key in ("natural_curvature", "initial_velocity"):
+        if _is_per_node(rod.get(key), 1 if key == "natural_curvature" else 2):
+            rod[key] = resample_list(np.array(rod[key], dtype=float), places.elements).tolist()
+    if places.points is not None:
+        rod["points"] = places.points.tolist()
+    else:
+        rod["nodes"] = places.elements + 1
+    for item in _what_stands_on(scene, rod):
+        for key in ("at", "from", "to"):
+            if key in item:
+                item[key] = places.moved(item[key])
+
+
+def _is_per_node(value: Any, depth: int) -> bool:
+    return np.ndim(value) == depth if value is not None else False
+
+
+def _what_stands_on(scene: dict[str, Any], rod: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Yield everything that has a place along the rod."""
+    yield from rod.get("spheres") or []
+    probes = (scene.get("output") or {}).get("probes") or {}
+    loads = (what for _, what in _loads(scene))
+    for item in (*(scene.get("supports") or []), *loads, *probes.values()):
+        if item.get("rod") == rod["name"]:
+            yield item
+
+
+class _Places:
+    """Where the nodes of a rod are before and after a refinement."""
+
+    def __init__(self, rod: dict[str, Any], factor: Fraction) -> None:
+        before = _count_elements(rod)
+        self._name = rod["name"]
+        self._factor = factor
+        self.elements = max(1, round(before * factor))
+        self.points = None
+        if "points" in rod:
+            old = np.array(rod["points"], dtype=float)
+            self.points = resample_line(old, factor)
+            self._old_arc, self._new_arc = arc_lengths(old), arc_lengths(self.points)
+
+    def moved(self, place: Any) -> Any:
+        """Return what names, on the new mesh, the place that `place` names on the old one."""
+        if isinstance(place, dict):
+            return {"node": self._moved_node(int(place["node"]))}
+        if self.points is None or place in ("start", "end", "all"):
+            return place
+        # On a curve the arc length grows a little with each refinement: the place stays with its
+        # node, or with its share of an element.
+        length = self._old_arc[-1]
+        s = 0.5 * length if place == "middle" else float(place)
+        nearest = int(np.argmin(np.abs(self._old_arc - s)))
+        if abs(self._old_arc[nearest] - s) <= _SAME_PLACE * length:
+            at_node = self._moved_node(nearest)
+            return {"node": at_node} if place == "middle" else float(self._new_arc[at_node])
+        if self._factor.denominator != 1:
+            return place
+        return float(np.interp(s, self._old_arc, self._new_arc[:: self._factor.numerator]))
+
+    def _moved_node(self, node: int) -> int:
+        # A negative number counts from the end: -1 is the last.
+        moved = (node if node >= 0 else node + 1) * self._factor
+        if moved.denominator != 1:
+            raise ValueError(f"node {node} of rod {self._name!r} falls between two nodes")
+        return int(moved) if node >= 0 else int(moved) - 1

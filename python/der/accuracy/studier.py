@@ -1,0 +1,354 @@
+"""Studying a scene: many meshes, steppers and steps, measured against a reference."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from der._core import Scenario
+from der.accuracy.default_probes import with_default_probes
+from der.accuracy.refinement import belongs_to_its_mesh, count_elements
+from der.accuracy.study_plan import (
+    Mesh,
+    choose_meshes,
+    choose_steppers,
+    choose_steps,
+    common_interval,
+    find_leading_rod,
+    finer,
+    with_step,
+)
+from der.accuracy.study_reference import (
+    REFERENCE_STEPPER,
+    Reference,
+    converge_in_space,
+    converge_in_time,
+    reference_tasks,
+)
+from der.accuracy.study_result import Study, StudyRow, seconds_text
+from der.accuracy.time_levels import find_stepper
+from der.parallel import TOO_LONG, Outcome, Task, Workers, total_weight
+from der.progress import ProgressFunction
+from der.result import Result
+from der.simulation import SceneLike, as_scenario
+
+#: Runs are repeated while all of them together take less than this [s].
+_MEASURING_TIME = 0.3
+_MOST_REPEATS = 5
+#: The costliest run of the reference may take this many times what a configuration may.
+_REFERENCE_COST = 5.0
+#: Halvings of the scene's step in search of one that is stable for an explicit stepper.
+_MOST_HALVINGS = 30
+#: Steps that are tried for an explicit stepper from the longest stable one on.
+_EXPLICIT_STEPS = 2
+#: Cost of a step, against one of another implicit stepper.
+_COST_OF_STEP = {"tr_bdf2": 2.0, "verlet": 0.05, "explicit_euler": 0.05}
+
+UNSTABLE = "unstable"
+SKIPPED = "skipped"
+
+
+def study(
+    scenario: SceneLike,
+    *,
+    nodes: Sequence[int] | None = None,
+    steps: Sequence[float] | None = None,
+    steppers: Sequence[str] | None = None,
+    max_seconds: float = 2.0,
+    jobs: int | None = None,
+    progress: ProgressFunction | None = None,
+) -> Study:
+    """Measure cost against error over meshes, steppers and steps.
+
+    The error of a probe is its largest difference to a reference over the saved times. The
+    reference is extrapolated from finer meshes and smaller steps, and states its own error.
+
+    Parameters
+    ----------
+    scenario
+        A scenario, the path of a scene file, or a dict with the keys of a scene file.
+    nodes
+        Of the first rod whose mesh can be varied; those of other rods follow in proportion. Without
+        it, about half, once, twice and four times the scene's elements.
+    steps
+        Time steps [s]. Without them, four times to an eighth of the scene's step; for an explicit
+        stepper, the longest stable step among its halvings and the next.
+    steppers
+        Names of time integrators; without them, all.
+    max_seconds
+        Configurations that would take longer are skipped.
+    jobs
+        Runs at once for the reference; as many as the machine has cores, unless given. What is
+        measured runs alone.
+    progress
+        Told now and then how much is done, from 0 to 1.
+
+    Returns
+    -------
+    Study
+        With a table, a plot and advice.
+
+    Raises
+    ------
+    SceneError, NotConvergedError, DivergedError
+        If the scene itself, or a run that the reference needs, does not run to its end.
+    ValueError
+        For nodes, steps or steppers that the scene cannot take.
+    """
+    given = as_scenario(scenario)
+    scene = with_default_probes(given)
+    notes = []
+    if scene is not given:
+        notes.append("the scene has no probes: free ends and extreme points are shown")
+    if scene.is_static and (steps is not None or steppers is not None):
+        raise ValueError("a static scene has neither steps nor steppers: only nodes can be varied")
+    meshes = choose_meshes(scene, nodes)
+    workers = Workers(jobs, progress)
+    base = workers.run({0: Task([scene])})[0]
+    study_ = _Study(scene, meshes, base, max_seconds, workers, notes)
+    if scene.is_static:
+        study_.run_static()
+    else:
+        study_.run_dynamic(choose_steppers(steppers), steps)
+    return study_.finish()
+
+
+def _repeats(seconds: float) -> int:
+    return max(1, min(_MOST_REPEATS, int(_MEASURING_TIME / seconds)))
+
+
+@dataclass(frozen=True)
+class _Trial:
+    """A configuration and how its run went."""
+
+    mesh: int  # its place in the list of meshes
+    stepper: str
+    step: float
+    status: str
+    result: Result | None
+    cpu_seconds: float
+
+
+class _Study:
+    def __init__(
+        self,
+        scenario: Scenario,
+        meshes: list[Mesh],
+        base: Outcome,
+        max_seconds: float,
+        workers: Workers,
+        notes: list[str],
+    ) -> None:
+        self._scenario = scenario
+        self._meshes = meshes
+        self._base = base.value()
+        self._max_seconds = max_seconds
+        self._workers = workers
+        self._notes = notes
+        self._probes = self._choose_probes()
+        self._trials: list[_Trial] = []
+        self._every = 0.0
+        work = self._base.model.num_nodes * max(1, int(self._base.summary.get("steps", 1)))
+        self._seconds_per_step = base.cpu_seconds / work / self._cost_of_step(self._base_stepper)
+        self._on_mesh: list[Reference] = []
+        self._reference = Reference({}, {})
+
+    @property
+    def _base_stepper(self) -> str:
+        return "" if self._scenario.is_static else str(self._base.summary["integrator"])
+
+    def _choose_probes(self) -> list[str]:
+        """Return the probes that can be compared; a turning angle belongs to its mesh."""
+        probes = list(self._base.probes)
+        if find_leading_rod(self._scenario) is None:
+            self._notes.append("every rod has as many nodes as its model asks for: one mesh")
+            return probes
+        angles = [name for name in probes if belongs_to_its_mesh(self._scenario, name)]
+        for name in angles:
+            self._notes.append(
+                f"'{name}' is left out: a turning angle belongs to its mesh; 'curvature' does not"
+            )
+        if len(angles) == len(probes):
+            raise ValueError("no probe can be compared between meshes; add one under output.probes")
+        return [name for name in probes if name not in angles]
+
+    # Runs.
+
+    def run_static(self) -> None:
+        """Run every mesh, and the reference."""
+        tasks = {
+            i: Task([mesh.scenario], mesh.nodes, _MOST_REPEATS, keep_motion=False)
+            for i, mesh in enumerate(self._meshes)
+        }
+        references = reference_tasks(self._reference_meshes(), None, 0.0, 0.0, 1.0)
+        self._workers.expect(total_weight([*tasks.values(), *references.values()]))
+        for i, outcome in self._workers.run(tasks, jobs=1).items():
+            self._add_trial(i, "", 0.0, outcome)
+        self._converge(self._workers.run(references))
+
+    def run_dynamic(self, steppers: Sequence[str], steps: Sequence[float] | None) -> None:
+        """Run every configuration, and the reference."""
+        chosen = choose_steps(self._base, steps)
+        if steps is None:
+            self._leave_out_costly_steps(chosen)
+        self._every = common_interval(self._base, chosen)
+        seconds_per_node = self._seconds_per_step * self._scenario.duration / chosen[-1]
+        references = reference_tasks(
+            self._reference_meshes(), REFERENCE_STEPPER, chosen[-1], self._every, seconds_per_node
+        )
+        plan = [
+            (mesh, name, step)
+            for mesh in range(len(self._meshes))
+            for name in steppers
+            for step in (chosen if steps is not None or find_stepper(name).implicit else [])
+        ]
+        weights = [self._measuring_time(*configuration) for configuration in plan]
+        self._workers.expect(total_weight(references.values()) + sum(weights))
+        for (mesh, name, step), weight in zip(plan, weights, strict=True):
+            self._measure(mesh, name, step, weight)
+        if steps is None:
+            for mesh in range(len(self._meshes)):
+                for name in steppers:
+                    if not find_stepper(name).implicit:
+                        self._measure_explicit(mesh, name, chosen[0])
+        self._converge(self._workers.run(references))
+
+    def _leave_out_costly_steps(self, steps: list[float]) -> None:
+        """Drop the shortest steps until the reference, four times finer, is affordable."""
+        finest = list(self._reference_meshes().values())[-1]
+        nodes = sum(count_elements(finest).values())
+        per_step = self._seconds_per_step * nodes * self._scenario.duration
+        while len(steps) > 2 and 4.0 * per_step / steps[-1] > _REFERENCE_COST * self._max_seconds:
+            left_out = steps.pop()
+            self._notes.append(f"steps of {seconds_text(left_out)} are left out, for their cost")
+
+    def _measure(self, mesh: int, stepper: str, step: float, weight: float = 0.0) -> _Trial:
+        expected = self._expected_seconds(mesh, stepper, step)
+        if expected > self._max_seconds:
+            trial = _Trial(mesh, stepper, step, SKIPPED, None, math.nan)
+            self._trials.append(trial)
+            return trial
+        repeats = _repeats(expected)
+        scenario = with_step(self._meshes[mesh].scenario, stepper, step, self._every)
+        task = Task([scenario], weight, repeats, keep_motion=False, max_seconds=self._max_seconds)
+        return self._add_trial(mesh, stepper, step, self._workers.run({0: task}, jobs=1)[0])
+
+    def _measure_explicit(self, mesh: int, stepper: str, longest: float) -> None:
+        """Halve the step until it is stable; measure that and the next ones."""
+        stable = 0
+        for halvings in range(_MOST_HALVINGS):
+            trial = self._measure(mesh, stepper, longest / 2**halvings)
+            stable += trial.result is not None
+            if stable == _EXPLICIT_STEPS or trial.status == SKIPPED:
+                return
+
+    def _measuring_time(self, mesh: int, stepper: str, step: float) -> float:
+        """Return the expected CPU time of all repeats [s]; 0 of what will be skipped."""
+        expected = self._expected_seconds(mesh, stepper, step)
+        return 0.0 if expected > self._max_seconds else expected * _repeats(expected)
+
+    def _expected_seconds(self, mesh: int, stepper: str, step: float) -> float:
+        nodes = self._base.model.num_nodes * self._meshes[mesh].nodes / self._own_nodes()
+        steps = self._scenario.duration / step
+        return self._seconds_per_step * self._cost_of_step(stepper) * nodes * steps
+
+    def _own_nodes(self) -> int:
+        rod = find_leading_rod(self._scenario)
+        rods = self._base.rods
+        return len(next(r for r in rods if rod in (None, r.name)).nodes)
+
+    @staticmethod
+    def _cost_of_step(stepper: str) -> float:
+        return _COST_OF_STEP.get(stepper, 1.0)
+
+    def _add_trial(self, mesh: int, stepper: str, step: float, outcome: Outcome) -> _Trial:
+        result, status = outcome.result, ""
+        if outcome.error is not None:
+            explicit = stepper != "" and not find_stepper(stepper).implicit
+            status = outcome.error.status
+            if status == TOO_LONG:
+                status = SKIPPED
+            elif explicit:
+                status = UNSTABLE
+            result = None
+        elif result is not None:
+            status = result.status
+        cost = outcome.cpu_seconds if result is not None else math.nan
+        trial = _Trial(mesh, stepper, step, status, result, cost)
+        self._trials.append(trial)
+        return trial
+
+    # References.
+
+    def _reference_meshes(self) -> dict[int, Scenario]:
+        """Return the study's meshes by their place, and after them two finer ones."""
+        scenarios = [mesh.scenario for mesh in self._meshes]
+        if find_leading_rod(self._scenario) is not None:
+            scenarios += [finer(self._meshes[-1], factor).scenario for factor in (2, 4)]
+        return dict(enumerate(scenarios))
+
+    def _converge(self, outcomes: dict[tuple[int, int], Outcome]) -> None:
+        count = 1 + max(mesh for mesh, _ in outcomes)
+        by_mesh = [
+            [outcomes[key].value() for key in sorted(outcomes) if key[0] == mesh]
+            for mesh in range(count)
+        ]
+        converged = [converge_in_time(results, self._probes) for results in by_mesh]
+        self._on_mesh = converged[: len(self._meshes)]
+        varied = count > len(self._meshes)
+        self._reference = converge_in_space(converged[-3:]) if varied else converged[0]
+
+    # What came out.
+
+    def finish(self) -> Study:
+        """Return what was found."""
+        self._note_what_is_missing()
+        exact = self._reference.probes
+        ranges = {
+            name: float(np.ptp(exact[name]) if len(exact[name]) > 1 else np.abs(exact[name][0]))
+            for name in self._probes
+        }
+        rows = [self._row(name, trial) for name in self._probes for trial in self._trials]
+        return Study(self._scenario, tuple(rows), ranges, tuple(self._notes))
+
+    def _row(self, probe: str, trial: _Trial) -> StudyRow:
+        exact = self._reference.probes[probe]
+        on_mesh = self._on_mesh[trial.mesh].probes[probe]
+        error = time_error = math.nan
+        if trial.result is not None:
+            values = np.asarray(trial.result.probes[probe])
+            error = float(np.max(np.abs(values - exact)))
+            if trial.stepper:
+                time_error = float(np.max(np.abs(values - on_mesh)))
+        return StudyRow(
+            probe=probe,
+            unit=self._base.probes[probe].unit,
+            nodes=self._meshes[trial.mesh].nodes,
+            stepper=trial.stepper,
+            step=trial.step,
+            status=trial.status,
+            cpu_seconds=trial.cpu_seconds,
+            error=error,
+            space_error=float(np.max(np.abs(on_mesh - exact))),
+            time_error=time_error,
+            reference_error=self._reference.errors[probe],
+        )
+
+    def _note_what_is_missing(self) -> None:
+        for i, mesh in enumerate(self._meshes):
+            for stepper in dict.fromkeys(trial.stepper for trial in self._trials):
+                tried = [t for t in self._trials if (t.mesh, t.stepper) == (i, stepper)]
+                for status in dict.fromkeys(t.status for t in tried if t.result is None):
+                    steps = [t.step for t in tried if t.status == status]
+                    self._notes.append(self._missing(mesh, stepper, status, steps))
+
+    def _missing(self, mesh: Mesh, stepper: str, status: str, steps: list[float]) -> str:
+        what = f"{mesh.nodes} nodes, {stepper}" if stepper else f"{mesh.nodes} nodes"
+        longest, shortest = seconds_text(max(steps)), seconds_text(min(steps))
+        when = f" at {longest}" if longest == shortest else f" from {longest} to {shortest}"
+        if status == SKIPPED:
+            status = f"skipped, for more than {self._max_seconds:g} s of CPU time each"
+        return f"{what}: {status}{when if stepper else ''}"

@@ -1,0 +1,185 @@
+"""Which meshes, steppers and steps a study tries, and at which times it compares them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from der._core import Scenario, steppers
+from der.accuracy.refinement import (
+    count_elements,
+    rods_that_cannot_be_refined,
+    with_elements,
+    with_time,
+)
+from der.accuracy.time_levels import find_stepper, fixed_step
+from der.result import Result
+
+_DEFAULT_MESHES = (Fraction(1, 2), Fraction(1), Fraction(2), Fraction(4))
+_DEFAULT_STEPS = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125)
+#: Steps in the run for the longest step of a scene with a tolerance; each next step is half of it.
+_STEPS_OF_ADAPTIVE = 50
+_FEWEST_STEPS = 8
+_FEWEST_ELEMENTS = 4
+#: The times at which runs are compared are at most this many of the largest steps apart.
+_MOST_STEPS_APART = 1000
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """A mesh of a study.
+
+    Attributes
+    ----------
+    nodes
+        Of the rod that gives meshes their name.
+    scenario
+        The scene with this mesh.
+    """
+
+    nodes: int
+    scenario: Scenario
+
+
+def find_leading_rod(scenario: Scenario) -> str | None:
+    """Return the first rod whose mesh can be varied; None if there is none."""
+    fixed = rods_that_cannot_be_refined(scenario)
+    return next((name for name in count_elements(scenario) if name not in fixed), None)
+
+
+def choose_meshes(scenario: Scenario, nodes: Sequence[int] | None) -> list[Mesh]:
+    """Return the meshes to try, coarsest first.
+
+    Parameters
+    ----------
+    scenario
+        The scene.
+    nodes
+        Nodes of the leading rod; the elements of other rods are varied in proportion. Without it,
+        half, once, twice and four times the elements, as far as the scene allows.
+
+    Raises
+    ------
+    ValueError
+        If the scene cannot take one of `nodes`.
+    """
+    rod = find_leading_rod(scenario)
+    if rod is None:
+        if nodes is not None:
+            raise ValueError("this scene allows no other number of nodes than its own")
+        return [Mesh(next(iter(count_elements(scenario).values())) + 1, scenario)]
+    if nodes is None:
+        return _default_meshes(scenario, rod)
+    return [_mesh(scenario, rod, count) for count in sorted(set(nodes))]
+
+
+def _mesh(scenario: Scenario, rod: str, nodes: int) -> Mesh:
+    if nodes < 2:
+        raise ValueError(f"a rod has at least 2 nodes, got {nodes}")
+    factor = Fraction(nodes - 1, count_elements(scenario)[rod])
+    try:
+        return Mesh(nodes, with_elements(scenario, factor))
+    except ValueError as error:
+        raise ValueError(f"the scene cannot take {nodes} nodes: {error}") from error
+
+
+def _default_meshes(scenario: Scenario, rod: str) -> list[Mesh]:
+    meshes = []
+    elements = count_elements(scenario)[rod]
+    for factor in _DEFAULT_MESHES:
+        count = factor * elements
+        if count.denominator != 1 or (factor < 1 and count < _FEWEST_ELEMENTS):
+            continue
+        try:
+            meshes.append(_mesh(scenario, rod, int(count) + 1))
+        except ValueError:
+            continue  # a support in the middle, say, that has no node on this mesh
+    return meshes
+
+
+def finer(mesh: Mesh, factor: int) -> Mesh:
+    """Return a mesh with `factor` times the elements."""
+    return Mesh(factor * (mesh.nodes - 1) + 1, with_elements(mesh.scenario, factor))
+
+
+def choose_steppers(names: Sequence[str] | None) -> list[str]:
+    """Return the names of the steppers to try: those given, or all.
+
+    Raises
+    ------
+    ValueError
+        For a name that no stepper has.
+    """
+    if names is None:
+        return [info.name for info in steppers()]
+    return [find_stepper(name).name for name in dict.fromkeys(names)]
+
+
+def choose_steps(base: Result, steps: Sequence[float] | None) -> list[float]:
+    """Return the steps to try [s], longest first: those given, or some around the scene's own.
+
+    Raises
+    ------
+    ValueError
+        For a step that is not positive or longer than the run.
+    """
+    duration = base.scenario.duration
+    if steps is None:
+        own = fixed_step(base)
+        if "tolerance" in base.scenario.to_dict()["time"]:
+            own = duration / _STEPS_OF_ADAPTIVE / _DEFAULT_STEPS[0]
+        around = [factor * own for factor in _DEFAULT_STEPS]
+        return [step for step in around if duration >= _FEWEST_STEPS * step] or around[-1:]
+    for step in steps:
+        if not 0.0 < step <= duration:
+            raise ValueError(f"a step must lie between 0 and the duration, {duration:g} s: {step}")
+    return sorted(set(steps), reverse=True)
+
+
+def common_interval(base: Result, steps: Sequence[float]) -> float:
+    """Return the shortest interval [s] that is a multiple of every step, and not below the scene's.
+
+    Parameters
+    ----------
+    base
+        The scene as written; the interval between its frames is the least.
+    steps
+        All steps [s], longest first.
+
+    Raises
+    ------
+    ValueError
+        If the steps have no common multiple up to a thousand times the longest.
+    """
+    wanted = float(base.times[1] - base.times[0]) * (1.0 - 1e-9)
+    first = max(1, math.ceil(wanted / steps[0]))
+    for count in range(first, first + _MOST_STEPS_APART):
+        interval = count * steps[0]
+        if all(_divides(step, interval) for step in steps):
+            return interval
+    raise ValueError(
+        "the steps have no common multiple, and runs are compared at times that all of them reach: "
+        "choose steps that are whole parts of the longest one"
+    )
+
+
+def _divides(step: float, interval: float) -> bool:
+    count = interval / step
+    return abs(count - round(count)) <= 1e-6
+
+
+def with_step(scenario: Scenario, stepper: str, step: float, every: float) -> Scenario:
+    """Return the scene with a stepper and a fixed step, frames `every` so many seconds."""
+    changes: dict[str, object] = {
+        "integrator": stepper,
+        "step": step,
+        "every": every,
+        "tolerance": None,
+        "minimum_step": None,
+        "allow_unstable": None,
+    }
+    if stepper != "generalized_alpha":
+        changes["spectral_radius"] = None
+    return with_time(scenario, **changes)

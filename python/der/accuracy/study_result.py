@@ -1,0 +1,189 @@
+"""What a study of cost against error has found."""
+
+from __future__ import annotations
+
+import csv
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from der._core import Scenario
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: No advice is given for errors of more than this share of what a probe goes through.
+_USEFUL = 0.2
+
+
+@dataclass(frozen=True)
+class StudyRow:
+    """One probe of one configuration.
+
+    Attributes
+    ----------
+    probe, unit
+        The probe and its SI unit.
+    nodes
+        Nodes of the first rod whose mesh is varied.
+    stepper, step
+        Time integrator and step [s]; empty and 0 for a static scene.
+    status
+        As in ``summary.json``; ``skipped`` for a run that would take too long.
+    cpu_seconds
+        CPU time of building the simulation and running it [s], the best of some runs; NaN if it did
+        not run to its end, as are the errors.
+    error
+        Largest difference to the reference over the saved times, in the unit of the probe.
+    space_error
+        The same of this mesh with time converged.
+    time_error
+        Largest difference to this mesh with time converged.
+    reference_error
+        Estimated error of the reference: an `error` below it says only that much.
+    """
+
+    probe: str
+    unit: str
+    nodes: int
+    stepper: str
+    step: float
+    status: str
+    cpu_seconds: float
+    error: float
+    space_error: float
+    time_error: float
+    reference_error: float
+
+    @property
+    def completed(self) -> bool:
+        """Whether the run came to its end, so that there is an error and a cost."""
+        return not math.isnan(self.error)
+
+    @property
+    def claimed_error(self) -> float:
+        """The largest of the errors: of the whole, in space, in time, and of the reference.
+
+        Where errors in space and in time cancel, the whole is smaller than its parts by luck, which
+        another load or another moment would not have.
+        """
+        parts = (self.error, self.space_error, self.time_error, self.reference_error)
+        return max(part for part in parts if not math.isnan(part))
+
+    @property
+    def configuration(self) -> str:
+        """Return the configuration as people write it: ``41 nodes, tr_bdf2, 4 ms``."""
+        mesh = f"{self.nodes} nodes"
+        return f"{mesh}, {self.stepper}, {seconds_text(self.step)}" if self.stepper else mesh
+
+
+@dataclass(frozen=True)
+class Study:
+    """What `der.study` has found: cost against error.
+
+    Attributes
+    ----------
+    scenario
+        The scene that was varied.
+    rows
+        One for each probe and configuration.
+    ranges
+        By probe, what it goes through in the reference, largest less smallest value; of a static
+        scene its size.
+    notes
+        What the reader should know: what could not be varied, what was skipped.
+    """
+
+    scenario: Scenario
+    rows: tuple[StudyRow, ...]
+    ranges: dict[str, float]
+    notes: tuple[str, ...]
+
+    @property
+    def probes(self) -> list[str]:
+        """The names of the probes."""
+        return list(self.ranges)
+
+    def of(self, probe: str) -> list[StudyRow]:
+        """Return the rows of a probe.
+
+        Raises
+        ------
+        KeyError
+            If the study has no such probe.
+        """
+        if probe not in self.ranges:
+            raise KeyError(probe)
+        return [row for row in self.rows if row.probe == probe]
+
+    def cheapest(self, probe: str, error: float) -> StudyRow | None:
+        """Return the cheapest configuration whose error is at most `error`; None if none is."""
+        good = [row for row in self.of(probe) if row.completed and row.claimed_error <= error]
+        return min(good, key=lambda row: row.cpu_seconds, default=None)
+
+    def advice(self, errors: Sequence[float] | None = None) -> list[str]:
+        """Return one line for each probe and error: what to take for it, and what it costs.
+
+        Parameters
+        ----------
+        errors
+            In the units of the probes; without it, powers of ten that the configurations reach.
+        """
+        lines = []
+        for probe in self.probes:
+            wanted = self._decades(probe) if errors is None else errors
+            lines += [self._advice_line(probe, error) for error in wanted]
+            if not wanted:
+                lines.append(f"{probe}: no configuration of this study comes near: refine more")
+        return lines
+
+    def _advice_line(self, probe: str, error: float) -> str:
+        rows = self.of(probe)
+        size = self.ranges[probe]
+        share = f" ({100.0 * error / size:.2g} %)" if size > 0.0 else ""
+        best = self.cheapest(probe, error)
+        what = "no configuration of this study"
+        if best is not None:
+            what = f"{best.configuration}: {seconds_text(best.cpu_seconds)}"
+        unit = f" {rows[0].unit}" if rows[0].unit else ""
+        return f"{probe}: for {error:.3g}{unit}{share}: {what}"
+
+    def _decades(self, probe: str) -> list[float]:
+        found = [row.claimed_error for row in self.of(probe) if row.completed]
+        found = [error for error in found if error > 0.0]
+        if not found:
+            return []
+        lowest, highest = (math.ceil(math.log10(e) - 1e-9) for e in (min(found), max(found)))
+        if self.ranges[probe] > 0.0:
+            highest = min(highest, math.floor(math.log10(_USEFUL * self.ranges[probe])))
+        return [10.0**power for power in range(highest, lowest - 1, -1)]
+
+    def write_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write the rows as a table: one column for each attribute of `StudyRow`.
+
+        Numbers that are not known are empty.
+        """
+        names = [field.name for field in fields(StudyRow)]
+        with Path(path).open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(names)
+            for row in self.rows:
+                values = (getattr(row, name) for name in names)
+                writer.writerow(["" if value != value else value for value in values])
+
+    def plot(self) -> Figure:
+        """Draw cost against error, and the errors in space and in time, for each probe."""
+        from der.plotting.study import plot_study
+
+        return plot_study(self)
+
+
+def seconds_text(seconds: float) -> str:
+    """Return a time in as few digits as tell it: ``4 ms``, ``1.5 s``."""
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("µs", 1e-6)):
+        if seconds >= 0.9995 * size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds:.2g} s"

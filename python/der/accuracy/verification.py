@@ -1,0 +1,180 @@
+"""How far a scene's numbers can be trusted: each probe with an error bar."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from der._core import Scenario
+from der.accuracy.error_bars import ErrorEstimate
+
+#: A part of the error smaller than this share of the whole may converge as it likes.
+_COUNTS = 0.1
+
+
+@dataclass(frozen=True)
+class VerifiedValue:
+    """A number of a run, its error bar and its extrapolated value.
+
+    Attributes
+    ----------
+    probe, what, unit
+        Name of the probe; ``final``, ``min`` or ``max`` over the run; the SI unit.
+    value
+        As the scene gives it when it is run as written.
+    time_of_value
+        When it is reached [s].
+    space, time
+        Error by the mesh and by the step; None where there is nothing to refine.
+    solver
+        Bar of the rest: Newton's tolerance, measured with a tolerance a thousand times tighter, and
+        rounding.
+    solver_correction
+        What the tighter tolerance changed.
+    """
+
+    probe: str
+    what: str
+    unit: str
+    value: float
+    time_of_value: float
+    space: ErrorEstimate | None
+    time: ErrorEstimate | None
+    solver: float
+    solver_correction: float = 0.0
+
+    @property
+    def bar(self) -> float:
+        """The whole error bar: the truth is within value -bar .. +bar with 95 % confidence.
+
+        The truth is that of the rod as a continuum and of exact time; errors of space, time and
+        solver add up.
+        """
+        return self.solver + sum(part.bar for part in self._parts)
+
+    @property
+    def extrapolated(self) -> float:
+        """Best guess of the truth: Richardson's extrapolation in space and time."""
+        corrections = sum(part.correction for part in self._parts)
+        return self.value + self.solver_correction + corrections
+
+    @property
+    def flagged(self) -> bool:
+        """Whether what makes up its error does not converge at the expected order.
+
+        A part of the error that is less than a tenth of the whole bar does not count.
+        """
+        return any(part.flagged for _, part in self._parts_that_count)
+
+    @property
+    def verdict(self) -> str:
+        """``converged``, or what is wrong and where, such as ``slow in time``."""
+        found = [
+            f"{part.verdict} in {where}"
+            for where, part in self._parts_that_count
+            if part.flagged or part.verdict == "two levels"
+        ]
+        return ", ".join(found) or "converged"
+
+    @property
+    def _parts_that_count(self) -> list[tuple[str, ErrorEstimate]]:
+        named = (("space", self.space), ("time", self.time))
+        return [(w, p) for w, p in named if p is not None and not p.bar < _COUNTS * self.bar]
+
+    @property
+    def _parts(self) -> list[ErrorEstimate]:
+        return [part for part in (self.space, self.time) if part is not None]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything as JSON knows it; an unknown bar is null."""
+        return {
+            "probe": self.probe,
+            "what": self.what,
+            "unit": self.unit,
+            "value": self.value,
+            "time": self.time_of_value,
+            "bar": _finite(self.bar),
+            "extrapolated": self.extrapolated,
+            "verdict": self.verdict,
+            "flagged": self.flagged,
+            "space_error": _part_to_dict(self.space),
+            "time_error": _part_to_dict(self.time),
+            "solver_error": {"bar": self.solver, "correction": self.solver_correction},
+        }
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What `der.verify` found out about a scene.
+
+    Attributes
+    ----------
+    scenario
+        What was verified; with default probes if it had none.
+    values
+        Every probe's final value, and in a run over time its extremes.
+    meshes
+        What was run in space, coarsest first, such as ``51 nodes``; one entry if not refined.
+    steps
+        What was run in time, such as ``0.01 s``; empty for a static scene.
+    notes
+        What the reader should know: what could not be refined, which run failed.
+    cpu_seconds
+        CPU time of all runs [s].
+    """
+
+    scenario: Scenario
+    values: tuple[VerifiedValue, ...]
+    meshes: tuple[str, ...]
+    steps: tuple[str, ...]
+    notes: tuple[str, ...]
+    cpu_seconds: float
+
+    @property
+    def flagged(self) -> list[VerifiedValue]:
+        """The values that do not converge at the expected order."""
+        return [value for value in self.values if value.flagged]
+
+    def __getitem__(self, name: str | tuple[str, str]) -> VerifiedValue:
+        """Return a value by probe, or by probe and ``final`` (the default), ``min``, ``max``."""
+        probe, what = (name, "final") if isinstance(name, str) else name
+        for value in self.values:
+            if (value.probe, value.what) == (probe, what):
+                return value
+        raise KeyError(name)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything as JSON knows it."""
+        return {
+            "title": self.scenario.title,
+            "scene": self.scenario.source,
+            "converged": not self.flagged,
+            "meshes": list(self.meshes),
+            "steps": list(self.steps),
+            "values": [value.to_dict() for value in self.values],
+            "notes": list(self.notes),
+            "cpu_seconds": self.cpu_seconds,
+        }
+
+    def __str__(self) -> str:
+        """Return the table that ``der verify`` prints."""
+        from der.accuracy.verification_table import verification_table
+
+        return verification_table(self)
+
+
+def _part_to_dict(part: ErrorEstimate | None) -> dict[str, Any] | None:
+    if part is None:
+        return None
+    return {
+        "bar": _finite(part.bar),
+        "correction": part.correction,
+        "order": part.order,
+        "expected_order": part.expected_order,
+        "verdict": part.verdict,
+    }
+
+
+def _finite(number: float) -> float | None:
+    return number if math.isfinite(number) else None

@@ -1,0 +1,90 @@
+"""A verification as text."""
+
+from __future__ import annotations
+
+import math
+
+from der.accuracy.error_bars import ErrorEstimate
+from der.accuracy.verification import Verification, VerifiedValue
+
+
+def verification_table(verification: Verification) -> str:
+    """Return the table: one line for each value, then what was run, notes and a summary.
+
+    Extremes that tell nothing new, at the start of the run or equal to the final value, are left
+    out unless they are flagged.
+    """
+    duration = 0.0 if verification.scenario.is_static else verification.scenario.duration
+    shown = [value for value in verification.values if _tells(verification, value, duration)]
+    header = ("probe", "value", "error", "space", "time", "extrapolated", "orders", "verdict")
+    rows = [header, *(_row(value) for value in shown)]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(header))]
+    lines = [verification.scenario.title, ""]
+    for row in rows:
+        cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
+        lines.append("  ".join(cells).rstrip())
+    lines += ["", *_what_was_run(verification)]
+    lines += [f"Note: {note.rstrip('.')}." for note in verification.notes]
+    lines.append(_summary(verification))
+    return "\n".join(lines)
+
+
+def _tells(verification: Verification, value: VerifiedValue, duration: float) -> bool:
+    if value.what == "final" or value.flagged:
+        return True
+    same_as_final = abs(value.value - verification[value.probe].value) <= value.solver
+    return 0.0 < value.time_of_value < duration and not same_as_final
+
+
+def _row(value: VerifiedValue) -> tuple[str, ...]:
+    name = value.probe if value.what == "final" else f"{value.probe}, {value.what}"
+    unit = f" {value.unit}" if value.unit else ""
+    return (
+        name,
+        with_digits_of(value.value, value.bar) + unit,
+        f"± {_bar(value.bar)}",
+        _bar(None if value.space is None else value.space.bar),
+        _bar(None if value.time is None else value.time.bar),
+        with_digits_of(value.extrapolated, value.bar) + unit,
+        f"{_order(value.space)}, {_order(value.time)}",
+        value.verdict,
+    )
+
+
+def with_digits_of(value: float, bar: float) -> str:
+    """Return a value with the digits that its error bar leaves, at two digits of the bar."""
+    if not math.isfinite(bar) or bar <= 0.0:
+        return f"{value:.6g}"
+    least = math.floor(math.log10(bar)) - 1
+    leading = math.floor(math.log10(abs(value))) if value else least
+    digits = min(max(leading - least + 1, 1), 12)
+    return f"{value:#.{digits}g}".replace(".e", "e").rstrip(".")
+
+
+def _bar(bar: float | None) -> str:
+    if bar is None:
+        return "-"
+    return f"{bar:.2g}" if math.isfinite(bar) else "unknown"
+
+
+def _order(part: ErrorEstimate | None) -> str:
+    if part is None or part.order is None:
+        return "-"
+    return f"{part.order:.1f}"
+
+
+def _what_was_run(verification: Verification) -> list[str]:
+    lines = []
+    if len(verification.meshes) > 1:
+        lines.append(f"Space: {', '.join(verification.meshes)}.")
+    if len(verification.steps) > 1:
+        lines.append(f"Time: {', '.join(verification.steps)}.")
+    return lines
+
+
+def _summary(verification: Verification) -> str:
+    total, bad = len(verification.values), len(verification.flagged)
+    cost = f"{verification.cpu_seconds:.2g} s of CPU time"
+    if not bad:
+        return f"All {total} values converge at the expected order ({cost})."
+    return f"{bad} of {total} values do not converge at the expected order ({cost})."

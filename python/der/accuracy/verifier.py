@@ -1,0 +1,200 @@
+"""Verifying a scene: runs on finer meshes and with smaller steps, and what they say."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from der._core import Scenario
+from der.accuracy.cross_check import hidden_motion
+from der.accuracy.default_probes import with_default_probes
+from der.accuracy.error_bars import ErrorEstimate, estimate_error
+from der.accuracy.noise import noise_floor
+from der.accuracy.probe_extremes import probe_values
+from der.accuracy.refinement import belongs_to_its_mesh
+from der.accuracy.verification import Verification, VerifiedValue
+from der.accuracy.verification_runs import VerificationRuns, run_levels
+from der.parallel import Workers
+from der.progress import ProgressFunction
+from der.result import Result
+from der.simulation import SceneLike, as_scenario
+
+#: Order of the rods, and of every probe but the turning angle.
+_SPACE_ORDER = 2.0
+#: Where the witness contradicts, the error is at most this times the difference to it.
+_WITNESS_FACTOR = 1.25
+#: A contradiction by less than this times the noise is none.
+_LITTLE_NOISE = 10.0
+#: What a thousand times tighter Newton tolerance changes, is off by at most this times the change.
+_SOLVER_FACTOR = 2.0
+
+
+def verify(
+    scenario: SceneLike,
+    *,
+    levels: int | None = None,
+    jobs: int | None = None,
+    progress: ProgressFunction | None = None,
+) -> Verification:
+    """Run a scene on finer meshes and with smaller steps, and put an error bar on each probe.
+
+    The scene is run as written, then with 2 and 4 times as many elements, and with a half and a
+    quarter of the step; of a scene with ``time.tolerance`` the tolerance is refined. A scene
+    without probes is given some: positions of free ends, lowest and highest points.
+
+    Parameters
+    ----------
+    scenario
+        A scenario, the path of a scene file, or a dict with the keys of a scene file.
+    levels
+        2 or 3, the scene itself included. Three measure the order of convergence; without this, two
+        are done where three would take more than a minute.
+    jobs
+        Runs at once; as many as the machine has cores, unless given.
+    progress
+        Told now and then how much is done, from 0 to 1.
+
+    Returns
+    -------
+    Verification
+        Print it for a table.
+
+    Raises
+    ------
+    SceneError, NotConvergedError, DivergedError
+        If the scene itself does not run to its end. A finer run that fails is noted and flagged.
+    ValueError
+        For any other number of levels or less than one job.
+
+    Examples
+    --------
+    >>> verification = der.verify("configs/cantilever.yaml")
+    >>> verification["tip_y"].value, verification["tip_y"].bar
+    """
+    if levels not in (None, 2, 3):
+        raise ValueError(f"levels must be 2 or 3, got {levels}")
+    given = as_scenario(scenario)
+    scene = with_default_probes(given)
+    runs = run_levels(scene, levels, Workers(jobs, progress))
+    if scene is not given:
+        runs.notes.append("the scene has no probes: free ends and extreme points are shown")
+    evaluated = [_evaluate(runs, scene, probe) for probe in runs.base.probes]
+    labels = runs.time_levels
+    return Verification(
+        scenario=scene,
+        values=tuple(value for evaluation in evaluated for value in evaluation.values()),
+        meshes=tuple(runs.meshes),
+        steps=() if labels is None else tuple(labels.label(level) for level in range(runs.levels)),
+        notes=(*runs.notes, *_notes(runs, scene, evaluated)),
+        cpu_seconds=runs.cpu_seconds,
+    )
+
+
+def _evaluate(runs: VerificationRuns, scene: Scenario, probe: str) -> _Evaluation:
+    return _Evaluation(runs, probe, runs.space_is_refined and not belongs_to_its_mesh(scene, probe))
+
+
+def _notes(runs: VerificationRuns, scene: Scenario, evaluated: list[_Evaluation]) -> list[str]:
+    notes = []
+    for probe in runs.base.probes:
+        if runs.space_is_refined and belongs_to_its_mesh(scene, probe):
+            notes.append(
+                f"'{probe}' is a turning angle, which belongs to its mesh: it has no error in "
+                "space; 'curvature' has one"
+            )
+    damped = [f"'{evaluation.probe}'" for evaluation in evaluated if evaluation.hidden_motion]
+    if damped:
+        notes.append(
+            f"in {', '.join(damped)} {runs.base.summary['integrator']} damps a motion away that "
+            "smaller steps keep: for the shape at rest use 'analysis: static', for the motion a "
+            "smaller step"
+        )
+    return notes
+
+
+class _Evaluation:
+    """What the runs say about one probe."""
+
+    def __init__(self, runs: VerificationRuns, probe: str, measures_space: bool) -> None:
+        self._runs = runs
+        self.probe = probe
+        self._series = runs.base.probes[probe]
+        self._space = self._by_level(runs.space) if measures_space else None
+        self._time = self._by_level(runs.time)
+        self._noise = self._find_noise()
+        self.hidden_motion = self._find_hidden_motion()
+
+    def _by_level(self, results: dict[int, Result]) -> dict[int, dict[str, float]]:
+        return {level: probe_values(results[level], self.probe) for level in results}
+
+    def _find_noise(self) -> float:
+        base, levels = self._runs.base, self._runs.time_levels
+        largest = max(abs(self._series.summary["min"]), abs(self._series.summary["max"]))
+        step = math.inf
+        if levels is not None:
+            steps = int(base.summary["steps"]) * levels.cost(self._runs.levels - 1)
+            step = base.scenario.duration / steps
+        return noise_floor(base.model, self._series.unit, step, largest)
+
+    def _find_hidden_motion(self) -> float | None:
+        finest = sorted(self._runs.time)[-2:]
+        if self._runs.witness is None or len(finest) < 2:
+            return None
+        coarse, fine = (self._runs.time[level] for level in finest)
+        return hidden_motion(coarse, fine, self._runs.witness, self.probe, self._noise)
+
+    def values(self) -> list[VerifiedValue]:
+        """Return the final value and the extremes with their error bars."""
+        return [self._value(what) for what in probe_values(self._runs.base, self.probe)]
+
+    def _value(self, what: str) -> VerifiedValue:
+        summary = self._series.summary
+        # The scene as written against the same with every step saved and a tighter tolerance. At
+        # the end of the run that is Newton's doing, at an extreme mostly the step between samples.
+        shift = self._time[0][what] - summary[what] if 0 in self._time else 0.0
+        time = self._time_error(what)
+        solver = self._noise
+        if what != "final" and time is not None:
+            time = time.widened(abs(shift), shift)
+            shift = 0.0
+        return VerifiedValue(
+            probe=self.probe,
+            what=what,
+            unit=self._series.unit,
+            value=summary[what],
+            time_of_value=summary.get(f"t_{what}", self._runs.base.summary["time"]),
+            space=self._estimate(self._space, what, _SPACE_ORDER, 2.0),
+            time=time,
+            solver=solver + _SOLVER_FACTOR * abs(shift),
+            solver_correction=shift,
+        )
+
+    def _time_error(self, what: str) -> ErrorEstimate | None:
+        levels = self._runs.time_levels
+        if levels is None:
+            return None
+        estimate = self._estimate(self._time, what, levels.order, levels.ratio)
+        if estimate is None or self._runs.witness is None or 0 not in self._time:
+            return estimate
+        away = abs(probe_values(self._runs.witness, self.probe)[what] - self._time[0][what])
+        damped = self.hidden_motion is not None
+        if what == "final" and self.hidden_motion is not None:
+            away = max(away, self.hidden_motion)
+        elif away <= estimate.bar:
+            return estimate
+        bar = max(estimate.bar, _WITNESS_FACTOR * away)
+        if away <= _LITTLE_NOISE * self._noise:
+            return replace(estimate, bar=bar)
+        return replace(estimate, bar=bar, verdict="damped" if damped else "contradicted")
+
+    def _estimate(
+        self, by_level: dict[int, dict[str, float]] | None, what: str, order: float, ratio: float
+    ) -> ErrorEstimate | None:
+        if by_level is None:
+            return None
+        values: list[float] = []
+        while len(values) in by_level:
+            values.append(by_level[len(values)][what])
+        if len(values) < 2:
+            return ErrorEstimate(0.0, math.inf, None, order, "failed")
+        return estimate_error(values, order, self._noise, ratio)

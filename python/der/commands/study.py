@@ -1,0 +1,90 @@
+"""Measure what accuracy costs: vary nodes, step and stepper of a scene.
+
+Writes study.csv and study.png, and prints what to take for some errors. The error of a probe is its
+largest difference to a reference over the saved times, in the unit of the probe; the reference is
+extrapolated from finer meshes and smaller steps. The cost is CPU time, the best of up to five runs.
+Exit codes: 0, 1 for a mistake in the scene or the arguments, 3 if the scene itself fails.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from der.progress import progress_on_terminal
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("scene", metavar="SCENE", type=Path, help="scene file (YAML)")
+    parser.add_argument(
+        "--nodes",
+        nargs="+",
+        type=int,
+        metavar="N",
+        help="nodes of the first rod that can be refined (default: 1/2 to 4 times the elements)",
+    )
+    parser.add_argument(
+        "--steps",
+        nargs="+",
+        type=float,
+        metavar="DT",
+        help="time steps [s] (default: four times to an eighth of the scene's; for explicit "
+        "steppers the longest stable ones)",
+    )
+    parser.add_argument(
+        "--steppers", nargs="+", metavar="NAME", help="time integrators (default: all)"
+    )
+    parser.add_argument(
+        "--errors",
+        nargs="+",
+        type=float,
+        metavar="E",
+        help="errors to give advice for, in the units of the probes (default: powers of ten)",
+    )
+    parser.add_argument(
+        "--max-seconds",
+        type=float,
+        default=2.0,
+        metavar="S",
+        help="skip configurations that would take longer (default: %(default)g s)",
+    )
+    parser.add_argument(
+        "--jobs",
+        type=int,
+        metavar="N",
+        help="runs at once for the reference (default: as many as there are cores)",
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="folder to write to (default: SCENE_study)"
+    )
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Write table and picture, and print the advice."""
+    import matplotlib as mpl
+
+    from der.accuracy.studier import study
+
+    mpl.use("agg")  # a file is written and no window opened, on a screen or without
+    with progress_on_terminal() as progress:
+        found = study(
+            arguments.scene,
+            nodes=arguments.nodes,
+            steps=arguments.steps,
+            steppers=arguments.steppers,
+            max_seconds=arguments.max_seconds,
+            jobs=arguments.jobs,
+            progress=progress,
+        )
+    out = arguments.out or Path(f"{arguments.scene.stem}_study")
+    out.mkdir(parents=True, exist_ok=True)
+    found.write_csv(out / "study.csv")
+    found.plot().savefig(out / "study.png")
+    for note in found.notes:
+        print(f"Note: {note}.")
+    for line in found.advice(arguments.errors):
+        print(line)
+    print(out / "study.csv")
+    print(out / "study.png")
+    return 0

@@ -1,0 +1,49 @@
+"""Put an error bar on every probe of a scene, by runs on finer meshes and with smaller steps.
+
+Runs the scene as written, with 2 and 4 times as many elements, and with a half and a quarter of the
+step. Prints each probe with its error in space and in time, the value extrapolated to the limit,
+and whether it converges at the order that mesh and stepper have. Exit codes: 0 if every value does,
+5 if one does not, 1 for a mistake in the scene, 3 if the scene itself fails.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+from der.accuracy import verify
+from der.progress import progress_on_terminal
+
+_FLAGGED = 5
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("scene", metavar="SCENE", help="scene file (YAML)")
+    parser.add_argument(
+        "--json", type=Path, metavar="FILE", help="also write everything that was found to FILE"
+    )
+    parser.add_argument(
+        "--levels",
+        type=int,
+        choices=(2, 3),
+        help="2: one refinement, cheap; 3: two, which measure the order (default: 3 if that takes "
+        "less than a minute)",
+    )
+    parser.add_argument(
+        "--jobs", type=int, metavar="N", help="runs at once (default: as many as there are cores)"
+    )
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Print the table and return the exit code."""
+    with progress_on_terminal() as progress:
+        verification = verify(
+            arguments.scene, levels=arguments.levels, jobs=arguments.jobs, progress=progress
+        )
+    print(verification)
+    if arguments.json is not None:
+        text = json.dumps(verification.to_dict(), indent=2, ensure_ascii=False)
+        arguments.json.write_text(text + "\n", encoding="utf-8")
+    return _FLAGGED if verification.flagged else 0

@@ -1,0 +1,321 @@
+"""der.study and der study: cost against error."""
+
+import copy
+import csv
+import math
+
+import der
+import numpy as np
+import pytest
+from der.accuracy.study_plan import choose_meshes, common_interval
+from der.accuracy.study_reference import Reference, converge_in_space
+from der.accuracy.study_result import Study, StudyRow, seconds_text
+from der.cli import main
+from der.parallel import Task, Workers
+from matplotlib.image import imread
+
+SAGGING = {
+    "title": "Beam that falls into a sag",
+    "rods": [
+        {
+            "name": "arm",
+            "nodes": 11,
+            "from": [0, 0],
+            "to": [1, 0],
+            "cross_section": {"circle": {"radius": 0.01}},
+            "material": {"youngs_modulus": 1e7, "density": 1000},
+        }
+    ],
+    "supports": [
+        {"rod": "arm", "at": "start", "fix": ["x", "y"]},
+        {"rod": "arm", "at": "end", "fix": ["y"]},
+    ],
+    "loads": [{"gravity": [0, -9.81]}],
+    "time": {"duration": 0.3, "step": 0.005, "integrator": "implicit_midpoint"},
+    "output": {
+        "every": 0.005,
+        "probes": {"sag": {"rod": "arm", "at": "middle", "quantity": "y"}},
+    },
+}
+
+
+@pytest.fixture
+def sagging():
+    return copy.deepcopy(SAGGING)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return der.study(
+        copy.deepcopy(SAGGING),
+        nodes=[11, 21, 41],
+        steps=[0.01, 0.005, 0.0025],
+        steppers=["implicit_euler", "tr_bdf2", "explicit_euler"],
+    )
+
+
+def rows_of(found, **wanted):
+    return [
+        row
+        for row in found.rows
+        if all(getattr(row, name) == value for name, value in wanted.items())
+    ]
+
+
+def test_every_configuration_has_a_row(found):
+    configurations = {(row.nodes, row.stepper, row.step) for row in found.rows}
+    assert len(configurations) == len(found.rows) == 3 * 3 * 3
+    assert found.probes == ["sag"]
+
+
+def test_errors_against_an_independent_run(found, sagging):
+    """A run on a far finer mesh with far smaller steps of another stepper."""
+    exact = der.Scenario.from_dict(sagging).with_(
+        **{"rods.arm.nodes": 321, "time.step": 2.5e-4, "output.every": 0.01}
+    )
+    exact = np.asarray(der.run(exact).probes["sag"])
+    for row in rows_of(found, status="completed"):
+        scenario = der.Scenario.from_dict(sagging).with_(
+            **{
+                "rods.arm.nodes": row.nodes,
+                "time.step": row.step,
+                "time.integrator": row.stepper,
+                "output.every": 0.01,
+            }
+        )
+        error = np.max(np.abs(np.asarray(der.run(scenario).probes["sag"]) - exact))
+        assert row.error == pytest.approx(error, rel=0.1, abs=2e-5)
+
+
+def test_space_errors_are_of_second_order_and_do_not_hang_on_the_step(found):
+    errors = [rows_of(found, nodes=n)[0].space_error for n in (11, 21, 41)]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert orders == pytest.approx([2.0, 2.0], abs=0.4)
+    for nodes, error in zip((11, 21, 41), errors, strict=True):
+        assert {row.space_error for row in rows_of(found, nodes=nodes)} == {error}
+
+
+@pytest.mark.parametrize(("stepper", "order"), [("implicit_euler", 1), ("tr_bdf2", 2)])
+def test_time_errors_have_the_order_of_the_stepper(found, stepper, order):
+    errors = [
+        rows_of(found, nodes=11, stepper=stepper, step=step)[0].time_error
+        for step in (0.01, 0.005, 0.0025)
+    ]
+    assert np.log2(errors[0] / errors[2]) / 2 == pytest.approx(order, abs=0.4)
+
+
+def test_unstable_steps_are_rows_with_a_status_and_a_note(found):
+    for row in rows_of(found, stepper="explicit_euler", nodes=41):
+        assert row.status == "unstable"
+        assert math.isnan(row.error)
+        assert math.isnan(row.cpu_seconds)
+    assert any("41 nodes, explicit_euler: unstable" in note for note in found.notes)
+
+
+def test_reference_states_an_error_below_those_that_it_judges(found):
+    for row in rows_of(found, status="completed"):
+        assert 0.0 < row.reference_error < 0.5 * row.error
+
+
+def test_explicit_steppers_find_their_stable_step(sagging):
+    explicit = der.study(sagging, nodes=[11, 21], steppers=["verlet"])
+    for nodes in (11, 21):
+        rows = rows_of(explicit, nodes=nodes)
+        assert [row.status for row in rows][-2:] == ["completed", "completed"]
+        assert rows[0].status == "unstable"
+        assert rows[-1].step == pytest.approx(rows[-2].step / 2)
+
+
+def test_static_scene_varies_the_mesh(sagging):
+    sagging["analysis"] = "static"
+    del sagging["time"], sagging["output"]["every"]
+    found = der.study(sagging)
+    assert [row.nodes for row in found.rows] == [6, 11, 21, 41]
+    orders = np.log2([a.error / b.error for a, b in zip(found.rows, found.rows[1:], strict=False)])
+    assert orders[1:] == pytest.approx([2.0, 2.0], abs=0.3)
+    assert found.rows[0].configuration == "6 nodes"
+    with pytest.raises(ValueError, match="static"):
+        der.study(sagging, steps=[0.1])
+
+
+def test_mesh_that_is_part_of_the_model(spheres):
+    spheres["time"]["duration"] = 0.2
+    found = der.study(spheres, steppers=["implicit_euler"], steps=[0.02, 0.01])
+    assert {row.nodes for row in found.rows} == {3}
+    assert "angle" in found.probes  # comparable, with a single mesh
+    assert all(row.space_error == 0.0 for row in found.rows)
+    with pytest.raises(ValueError, match="no other number of nodes"):
+        der.study(spheres, nodes=[5])
+
+
+def test_turning_angles_are_left_out_of_several_meshes(sagging):
+    sagging["output"]["probes"]["angle"] = {
+        "rod": "arm",
+        "at": "middle",
+        "quantity": "turning_angle",
+    }
+    found = der.study(sagging, nodes=[11, 21], steps=[0.01], steppers=["tr_bdf2"])
+    assert found.probes == ["sag"]
+    assert any("'angle' is left out" in note for note in found.notes)
+    del sagging["output"]["probes"]["sag"]
+    with pytest.raises(ValueError, match="no probe"):
+        der.study(sagging)
+
+
+def test_runs_that_would_take_too_long_are_skipped_by_name(sagging):
+    found = der.study(sagging, nodes=[11], steps=[0.01], steppers=["tr_bdf2"], max_seconds=1e-9)
+    assert [row.status for row in found.rows] == ["skipped"]
+    assert any("tr_bdf2: skipped" in note for note in found.notes)
+    assert found.advice() == ["sag: no configuration of this study comes near: refine more"]
+    found.plot()  # with nothing to draw
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"steppers": ["rk4"]}, "rk4"),
+        ({"steps": [0.0]}, "step"),
+        ({"steps": [1.0]}, "duration"),
+        ({"steps": [0.01, 0.00912345]}, "common multiple"),
+        ({"nodes": [1]}, "2 nodes"),
+    ],
+)
+def test_wrong_arguments(sagging, options, words):
+    with pytest.raises(ValueError, match=words):
+        der.study(sagging, **options)
+
+
+def test_common_interval_is_a_multiple_of_every_step(sagging):
+    base = der.run(sagging)
+    assert common_interval(base, [0.01, 0.005, 0.002]) == pytest.approx(0.01)
+    assert common_interval(base, [0.003, 0.002]) == pytest.approx(0.006)
+    assert common_interval(base, [0.001]) == pytest.approx(0.005)  # not below the scene's
+
+
+def test_default_meshes_leave_out_what_the_scene_cannot_take(tube):
+    tube["supports"].append({"rod": "beam", "at": {"node": 5}, "fix": ["y"]})
+    meshes = choose_meshes(der.Scenario.from_dict(tube), None)
+    assert [mesh.nodes for mesh in meshes] == [21, 41, 81]
+
+
+# What the numbers say.
+
+
+def row(nodes, cpu_seconds, error, space=0.0, time=0.0, reference=1e-9):
+    return StudyRow(
+        "sag", "m", nodes, "tr_bdf2", 4e-3, "completed", cpu_seconds, error, space, time, reference
+    )
+
+
+@pytest.fixture
+def made(sagging):
+    rows = (
+        row(11, 0.001, 3e-2),
+        row(21, 0.004, 2e-3),
+        row(41, 0.012, 4e-4),
+        row(81, 0.002, 1e-4, space=5e-3, time=5.1e-3),  # good by luck
+        row(161, 0.1, 1e-7, reference=2e-6),  # better than anyone can tell
+    )
+    return Study(der.Scenario.from_dict(sagging), rows, {"sag": 0.5}, ())
+
+
+def test_cheapest_does_not_count_on_luck(made):
+    assert made.cheapest("sag", 1e-3).nodes == 41
+    assert made.cheapest("sag", 1e-2).nodes == 81
+
+
+def test_errors_below_the_reference_are_not_claimed(made):
+    assert made.cheapest("sag", 2e-6).nodes == 161
+    assert made.cheapest("sag", 1e-6) is None
+
+
+def test_advice(made):
+    lines = made.advice()
+    assert "sag: for 0.001 m (0.2 %): 41 nodes, tr_bdf2, 4 ms: 12 ms" in lines
+    assert [line.split()[2] for line in lines] == ["0.1", "0.01", "0.001", "0.0001", "1e-05"]
+    assert made.advice([1e-7]) == ["sag: for 1e-07 m (2e-05 %): no configuration of this study"]
+
+
+def test_seconds_text():
+    assert [seconds_text(s) for s in (1.5, 0.012, 4e-6)] == ["1.5 s", "12 ms", "4 µs"]
+
+
+def test_extrapolation_in_space_knows_its_error():
+    """Values 1 + h^2 + 10 h^4 at h = 1/8, 1/16, 1/32."""
+    meshes = [
+        Reference({"p": np.array([1.0 + h**2 + 10 * h**4])}, {"p": 0.0})
+        for h in (1 / 8, 1 / 16, 1 / 32)
+    ]
+    found = converge_in_space(meshes)
+    error = abs(found.probes["p"][0] - 1.0)
+    assert 0.0 < error <= found.errors["p"] < 1e-2 * (1 / 32) ** 2 * 100
+
+
+# Running many.
+
+
+def test_workers_keep_failures_and_try_the_next_scenario(sagging, unstable):
+    good, bad = der.Scenario.from_dict(sagging), der.Scenario.from_dict(unstable)
+    outcomes = Workers(2).run(
+        {"bad": Task([bad]), "rescued": Task([bad, good]), "slim": Task([good], keep_motion=False)}
+    )
+    assert isinstance(outcomes["bad"].error, der.DerError)
+    with pytest.raises(der.DerError):
+        outcomes["bad"].value()
+    assert outcomes["rescued"].error is None
+    assert outcomes["slim"].value().positions.shape == (0, 11, 2)
+    assert outcomes["slim"].cpu_seconds > 0.0
+
+
+def test_a_run_that_takes_too_long_is_broken_off(sagging):
+    sagging["time"] |= {"duration": 1e6, "step": 1e-3}
+    sagging["output"]["every"] = 1e6
+    task = Task([der.Scenario.from_dict(sagging)], max_seconds=0.05)
+    outcome = Workers(1).run({0: task})[0]
+    assert outcome.error.status == "too_long"
+    assert 0.05 < outcome.cpu_seconds < 1.0
+
+
+def test_an_interrupt_stops_the_other_runs(sagging, monkeypatch):
+    """One run ends with Ctrl-C; the other, endless one stops at its next tick."""
+    sagging["time"] |= {"duration": 1e6, "step": 1e-3}
+    sagging["output"]["every"] = 1e6
+    endless = der.Scenario.from_dict(sagging)
+    original = Workers._run_once
+
+    def interrupted(self, scenario, *rest):
+        if scenario is not endless:
+            raise KeyboardInterrupt
+        return original(self, scenario, *rest)
+
+    monkeypatch.setattr(Workers, "_run_once", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        Workers(2).run({0: Task([der.Scenario.from_dict(SAGGING)], weight=1), 1: Task([endless])})
+
+
+# The command.
+
+
+def test_command_writes_table_and_picture(sagging, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "arm.yaml").write_text(der.Scenario.from_dict(sagging).to_yaml())
+    options = ["--nodes", "11", "21", "--steps", "0.01", "0.005", "--errors", "0.1"]
+    assert main(["study", "arm.yaml", *options, "--steppers", "tr_bdf2", "implicit_euler"]) == 0
+    printed = capsys.readouterr()
+    assert printed.out.splitlines()[-2:] == ["arm_study/study.csv", "arm_study/study.png"]
+    assert "sag: for 0.1 m" in printed.out
+    assert printed.err == ""
+    with (tmp_path / "arm_study" / "study.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 8
+    assert float(rows[0]["error"]) > 0.0
+    assert rows[0]["unit"] == "m"
+    picture = imread(tmp_path / "arm_study" / "study.png")
+    assert len({tuple(pixel) for pixel in picture.reshape(-1, 4)}) > 50
+
+
+def test_command_with_a_wrong_argument(sagging, tmp_path, capsys):
+    path = tmp_path / "arm.yaml"
+    path.write_text(der.Scenario.from_dict(sagging).to_yaml())
+    assert main(["study", str(path), "--steppers", "rk4"]) == 1
+    assert "rk4" in capsys.readouterr().err

@@ -1,0 +1,411 @@
+"""der.verify and der verify: error bars, what is refined and what cannot be, what is flagged."""
+
+import json
+import math
+from fractions import Fraction
+
+import der
+import numpy as np
+import pytest
+from der.accuracy.error_bars import estimate_error
+from der.accuracy.probe_extremes import parabola_top
+from der.accuracy.refinement import rods_that_cannot_be_refined, with_elements, with_time
+from der.accuracy.resampling import find_corners, resample_line, resample_list
+from der.accuracy.verification_table import with_digits_of
+from der.cli import main
+
+# The cantilever of configs/, whose tip the elastica knows.
+ARM = {
+    "title": "Arm",
+    "rods": [
+        {
+            "name": "arm",
+            "nodes": 21,
+            "from": [0, 0],
+            "to": [1, 0],
+            "cross_section": {"stiffness": {"EA": 1e7, "EI": 1, "mass_per_length": 0.1}},
+        }
+    ],
+    "supports": [{"rod": "arm", "at": "start", "clamp": True}],
+    "loads": [{"point_force": {"rod": "arm", "at": "end", "force": [0, -1]}}],
+    "analysis": "static",
+    "output": {"probes": {"tip": {"rod": "arm", "at": "end", "quantity": "y"}}},
+}
+TIP = -0.3017207738
+
+
+@pytest.fixture
+def arm():
+    return json.loads(json.dumps(ARM))
+
+
+@pytest.fixture
+def sagging(swing):
+    """A soft beam on two supports falls into a sag: its middle converges cleanly."""
+    swing["rods"][0]["nodes"] = 21
+    swing["supports"] = [
+        {"rod": "arm", "at": "start", "fix": ["x", "y"]},
+        {"rod": "arm", "at": "end", "fix": ["y"]},
+    ]
+    swing["time"] = {"duration": 0.3, "step": 0.002, "integrator": "implicit_euler"}
+    swing["output"]["probes"] = {"sag": {"rod": "arm", "at": "middle", "quantity": "y"}}
+    return swing
+
+
+@pytest.fixture
+def half_circle(arm):
+    angle = np.linspace(0.0, np.pi, 17)
+    points = np.column_stack([np.cos(angle), np.sin(angle)])
+    arm["rods"][0] |= {"points": points.tolist()}
+    for key in ("nodes", "from", "to"):
+        del arm["rods"][0][key]
+    return arm
+
+
+# Error bars from values.
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0])
+def test_clean_convergence_gives_the_limit_and_a_quarter_more(order):
+    values = [3.0 + 0.1 / 2.0 ** (order * level) for level in range(3)]
+    estimate = estimate_error(values, order)
+    assert estimate.verdict == "converged"
+    assert not estimate.flagged
+    assert estimate.order == pytest.approx(order)
+    assert values[0] + estimate.correction == pytest.approx(3.0, abs=1e-12)
+    assert estimate.bar == pytest.approx(1.25 * 0.1)
+
+
+def test_two_levels_trust_the_expected_order_with_factor_three():
+    estimate = estimate_error([1.4, 1.1], 2.0)
+    assert estimate.verdict == "two levels"
+    assert 1.4 + estimate.correction == pytest.approx(1.0)
+    assert estimate.bar == pytest.approx(3 * 0.4)
+
+
+@pytest.mark.parametrize(
+    ("values", "verdict"),
+    [
+        ([1.0, 0.5, 0.2], "slow"),
+        ([1.0, 0.9, 0.7], "diverging"),
+        ([1.0, 0.5, 0.8], "oscillating"),
+    ],
+)
+def test_what_does_not_converge_at_order_two_is_flagged(values, verdict):
+    estimate = estimate_error(values, 2.0)
+    assert (estimate.verdict, estimate.flagged) == (verdict, True)
+    # At least three times what the refinements changed.
+    assert estimate.bar >= 3 * max(abs(np.diff(values)))
+
+
+def test_noise_is_not_mistaken_for_an_order():
+    estimate = estimate_error([1.0, 1.0 + 1e-13, 1.0 - 2e-13], 2.0, noise=1e-12)
+    assert (estimate.verdict, estimate.bar, estimate.order) == ("exact", 1e-12, None)
+
+
+def test_faster_than_expected_is_no_flaw():
+    estimate = estimate_error([1.0, 0.9, 0.8999], 1.0)
+    assert not estimate.flagged
+    assert estimate.bar > 0.1
+
+
+def test_number_of_levels():
+    with pytest.raises(ValueError, match="two or three"):
+        estimate_error([1.0], 2.0)
+
+
+def test_parabola_top():
+    times = np.array([1.0, 1.5, 2.5])
+    assert parabola_top(times, 4.0 - 3.0 * (times - 1.7) ** 2) == pytest.approx(4.0)
+
+
+# Refining a scene.
+
+
+def test_straight_rod_keeps_its_places(tube):
+    tube["rods"][0]["natural_curvature"] = np.linspace(0.0, 1.0, 21).tolist()
+    tube["rods"][0]["initial_velocity"] = [[0.1 * i, 0.0] for i in range(21)]
+    tube["output"]["probes"]["v"] = {"rod": "beam", "at": {"node": 5}, "quantity": "vy"}
+    tube["output"]["probes"]["w"] = {"rod": "beam", "at": {"node": -2}, "quantity": "vy"}
+    refined = with_elements(der.Scenario.from_dict(tube), 2).to_dict()
+    rod = refined["rods"][0]
+    assert rod["nodes"] == 41
+    assert rod["natural_curvature"] == pytest.approx(np.linspace(0.0, 1.0, 41))
+    assert np.array(rod["initial_velocity"])[:, 0] == pytest.approx(np.linspace(0.0, 2.0, 41))
+    assert refined["output"]["probes"]["v"]["at"] == {"node": 10}
+    assert refined["output"]["probes"]["w"]["at"] == {"node": -3}
+    assert refined["loads"] == tube["loads"]
+
+
+def test_points_of_a_curve_stay_on_the_curve(half_circle):
+    half_circle["loads"][0]["point_force"]["at"] = "middle"
+    finer = with_elements(der.Scenario.from_dict(half_circle), 4)
+    points = np.array(finer.to_dict()["rods"][0]["points"])
+    assert np.linalg.norm(points, axis=1) == pytest.approx(np.ones(65), abs=2e-4)
+    assert finer.to_dict()["loads"][0]["point_force"]["at"] == {"node": 32}
+
+
+def test_arc_lengths_on_a_curve_move_with_their_element(half_circle):
+    model = der.Model(der.Scenario.from_dict(half_circle))
+    arc = model.rods[0].arc_lengths
+    half_circle["output"]["probes"] = {
+        "node": {"rod": "arm", "at": arc[4], "quantity": "x"},
+        "between": {"rod": "arm", "at": 0.5 * (arc[4] + arc[5]), "quantity": "x"},
+    }
+    finer = with_elements(der.Scenario.from_dict(half_circle), 2)
+    new_arc = der.Model(finer).rods[0].arc_lengths
+    places = {name: probe["at"] for name, probe in finer.to_dict()["output"]["probes"].items()}
+    assert places["node"] == pytest.approx(new_arc[8])
+    assert places["between"] == pytest.approx(new_arc[9], rel=1e-3)
+    assert new_arc[-1] > arc[-1]
+
+
+def test_corners_stay_corners():
+    ell = np.array([[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0, 1.0]])
+    assert find_corners(ell) == [2]
+    finer = resample_line(ell, Fraction(2))
+    assert np.all((finer[:, 1] == 0.0) | (finer[:, 0] == 1.0))
+    x = np.linspace(0.0, 8.0, 17)
+    assert find_corners(np.column_stack([x, 0.1 * np.sin(x)])) == []
+    # One kink of 40 degrees in a straight line is a corner too.
+    kink = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.77, 0.64], [3.54, 1.28]])
+    assert find_corners(kink) == [2]
+
+
+def test_coarser_points_drop_nodes_but_no_corner():
+    line = np.column_stack([np.arange(9.0), np.zeros(9)])
+    assert np.array_equal(resample_line(line, Fraction(1, 2)), line[::2])
+    with pytest.raises(ValueError, match="1/3"):
+        resample_line(line, Fraction(1, 3))
+    with pytest.raises(ValueError, match="whole multiples"):
+        resample_line(line, Fraction(3, 2))
+
+
+def test_lists_with_a_jump_do_not_overshoot():
+    refined = resample_list(np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]), 20)
+    assert refined.min() >= 0.0
+    assert refined.max() <= 1.0
+
+
+def test_node_numbers_that_a_coarser_mesh_has_not(tube):
+    tube["output"]["probes"]["v"] = {"rod": "beam", "at": {"node": 5}, "quantity": "vy"}
+    with pytest.raises(ValueError, match="node 5"):
+        with_elements(der.Scenario.from_dict(tube), Fraction(1, 2))
+
+
+def test_spheres_and_forces_on_every_node_are_part_of_the_model(spheres, arm):
+    assert rods_that_cannot_be_refined(der.Scenario.from_dict(spheres)).keys() == {"rod"}
+    arm["loads"][0]["point_force"]["at"] = "all"
+    scenario = der.Scenario.from_dict(arm)
+    assert "force" in rods_that_cannot_be_refined(scenario)["arm"]
+    assert with_elements(scenario, 2).to_dict()["rods"][0]["nodes"] == 21
+
+
+def test_spheres_at_places_do_not_prevent_refinement(arm):
+    arm["rods"][0]["spheres"] = [{"at": "end", "radius": 0.01, "density": 1000}]
+    assert rods_that_cannot_be_refined(der.Scenario.from_dict(arm)) == {}
+
+
+# Verifying.
+
+
+def test_static_bar_holds_the_elastica(arm):
+    verification = der.verify(arm)
+    tip = verification["tip"]
+    assert tip.value == pytest.approx(der.run(arm).probes["tip"][0], rel=1e-12)
+    assert abs(tip.value - TIP) <= tip.bar < 3 * abs(tip.value - TIP)
+    assert abs(tip.extrapolated - TIP) < 0.01 * abs(tip.value - TIP)
+    assert tip.time is None
+    assert tip.space.order == pytest.approx(2.0, abs=0.1)
+    assert verification.meshes == ("21 nodes", "41 nodes", "81 nodes")
+    assert verification.flagged == []
+
+
+def test_dynamic_errors_in_space_and_time_apart(sagging):
+    verification = der.verify(sagging)
+    sag = verification["sag"]
+    assert sag.time.order == pytest.approx(1.0, abs=0.15)
+    assert sag.space.order == pytest.approx(2.0, abs=0.2)
+    assert sag.bar == pytest.approx(sag.space.bar + sag.time.bar + sag.solver)
+    assert verification["sag", "max"].time_of_value == 0.0
+    assert verification.steps == ("0.002 s", "0.001 s", "0.0005 s")
+    with pytest.raises(KeyError):
+        verification["top"]
+
+
+def test_turning_angles_have_no_error_in_space(swing):
+    swing["output"]["probes"]["angle"] = {
+        "rod": "arm",
+        "at": "middle",
+        "quantity": "turning_angle",
+    }
+    verification = der.verify(swing)
+    assert verification["angle"].space is None
+    assert verification["angle"].time is not None
+    assert any("turning angle" in note for note in verification.notes)
+
+
+def test_space_is_not_refined_where_spheres_are_on_every_node(spheres):
+    verification = der.verify(spheres)
+    assert verification.meshes == ()
+    assert verification["v_mid"].space is None
+    assert any("spheres at every node" in note for note in verification.notes)
+
+
+def test_numerical_damping_is_found_out(tube):
+    """At the end a load put on at once still swings; implicit Euler has damped it away, the same on
+    every level."""
+    deflection = der.verify(tube)["deflection"]
+    at_rest = der.equilibrium(tube).probes["deflection"][0]
+    assert deflection.value == pytest.approx(at_rest, rel=1e-6)
+    assert deflection.verdict == "damped in time"
+    assert 0.9 * abs(at_rest) < deflection.bar < 2 * abs(at_rest)
+
+
+def test_explicit_meshes_are_compared_at_a_stable_step(sagging):
+    """The scene's step is stable on its own mesh, but not on the finest."""
+    sagging["time"] = {"duration": 0.3, "step": 2.5e-4, "integrator": "verlet"}
+    with pytest.raises(der.DerError):
+        der.run(sagging | {"rods": [sagging["rods"][0] | {"nodes": 81}]})
+    verification = der.verify(sagging)
+    assert verification["sag"].space.order == pytest.approx(2.0, abs=0.2)
+    assert verification["sag"].time.bar < 1e-2 * verification["sag"].space.bar
+    assert verification.notes == ()
+
+
+def test_tolerance_is_refined_in_place_of_the_step(sagging):
+    sagging["time"] = {"duration": 0.3, "tolerance": 1e-3}
+    sagging["output"]["every"] = 0.1
+    verification = der.verify(sagging)
+    assert verification.steps == ("tolerance 0.001", "tolerance 0.00025", "tolerance 6.25e-05")
+    sag = verification["sag"]
+    finest = der.run(
+        sagging | {"time": {"duration": 0.3, "step": 1e-4, "integrator": "implicit_midpoint"}}
+    )
+    assert abs(sag.value - finest.probes["sag"][-1]) <= sag.time.bar + sag.solver
+    assert sag.time.bar < 1e-2
+
+
+def test_automatic_step_is_refined_from_what_it_was(sagging):
+    sagging["time"] = {"duration": 0.3, "step": "auto", "integrator": "verlet"}
+    verification = der.verify(sagging)
+    steps = [float(step.removesuffix(" s")) for step in verification.steps]
+    assert steps[0] == pytest.approx(der.run(sagging).summary["step"], rel=1e-3)
+    assert steps == pytest.approx([steps[0], steps[0] / 2, steps[0] / 4], rel=1e-3)
+    assert not verification["sag"].flagged
+
+
+def test_two_levels(arm):
+    verification = der.verify(arm, levels=2, jobs=1)
+    assert verification.meshes == ("21 nodes", "41 nodes")
+    assert verification["tip"].verdict == "two levels in space"
+    assert not verification.flagged
+    with pytest.raises(ValueError, match="levels"):
+        der.verify(arm, levels=4)
+    with pytest.raises(ValueError, match="jobs"):
+        der.verify(arm, jobs=0)
+
+
+def test_scene_without_probes_gets_some(arm, swing):
+    del arm["output"]
+    verification = der.verify(arm)
+    names = {value.probe for value in verification.values}
+    assert names == {"arm_end_x", "arm_end_y", "arm_lowest", "arm_highest"}
+    assert any("no probes" in note for note in verification.notes)
+
+
+def test_solver_tolerance_is_part_of_the_bar(arm):
+    exact = der.verify(arm)["tip"].solver
+    arm["solver"] = {"residual_tolerance": 1e-2, "step_tolerance": 1e-2}
+    loose = der.verify(arm)["tip"]
+    assert loose.solver > 10 * exact
+    assert abs(loose.value - TIP) <= loose.bar
+
+
+def test_failed_finer_run_is_flagged_with_a_note(arm, monkeypatch):
+    """A finer mesh that cannot be run leaves two levels; the finest alone none."""
+    original = der.accuracy.verification_runs.Workers.run
+
+    def fail_on_finer_meshes(self, tasks, **options):
+        outcomes = original(self, tasks, **options)
+        error = der.NotConvergedError("no convergence")
+        return {
+            key: type(outcome)(None, error, 0.0) if key == ("space", 1) else outcome
+            for key, outcome in outcomes.items()
+        }
+
+    monkeypatch.setattr(der.accuracy.verification_runs.Workers, "run", fail_on_finer_meshes)
+    verification = der.verify(arm)
+    assert verification["tip"].verdict == "failed in space"
+    assert math.isinf(verification["tip"].bar)
+    assert any("41 nodes failed: no convergence" in note for note in verification.notes)
+    json.dumps(verification.to_dict(), allow_nan=False)
+
+
+def test_scene_that_fails_is_a_clear_error(unstable):
+    with pytest.raises(der.DerError, match="drag"):
+        der.verify(unstable)
+
+
+def test_progress_runs_to_the_end(swing):
+    seen = []
+    der.verify(swing, progress=seen.append)
+    assert seen == sorted(seen) or max(seen) <= 1.0
+    assert seen[-1] == pytest.approx(1.0)
+
+
+def test_minimum_step_does_not_stand_in_the_way(swing):
+    swing["time"]["minimum_step"] = 0.002
+    scenario = der.Scenario.from_dict(swing)
+    assert der.verify(scenario)["tip"].time.order == pytest.approx(1.0, abs=0.1)
+    assert "tolerance" not in with_time(scenario, tolerance=None).to_dict()["time"]
+
+
+@pytest.mark.parametrize(
+    ("value", "bar", "text"),
+    [
+        (-0.30177, 7.1e-5, "-0.301770"),
+        (0.0, 1e-3, "0"),
+        (-7.6e-9, 1.5e-8, "-8e-09"),
+        (1234.5, 20.0, "1234"),
+        (2.0, math.inf, "2"),
+    ],
+)
+def test_digits_follow_the_bar(value, bar, text):
+    assert float(with_digits_of(value, bar)) == pytest.approx(float(text), rel=1e-3)
+    assert len(with_digits_of(value, bar)) <= len(text) + 1
+
+
+# The command.
+
+
+@pytest.fixture
+def scene_file(arm, tmp_path):
+    path = tmp_path / "arm.yaml"
+    path.write_text(der.Scenario.from_dict(arm).to_yaml())
+    return path
+
+
+def test_command_prints_a_table_and_writes_json(scene_file, tmp_path, capsys):
+    out = tmp_path / "arm.json"
+    assert main(["verify", str(scene_file), "--json", str(out), "--jobs", "1"]) == 0
+    printed = capsys.readouterr()
+    assert "tip" in printed.out
+    assert "±" in printed.out
+    assert "converge at the expected order" in printed.out
+    assert printed.err == ""  # no progress where no one is looking
+    found = json.loads(out.read_text())
+    assert found["converged"] is True
+    assert found["values"][0]["space_error"]["order"] == pytest.approx(2.0, abs=0.1)
+
+
+def test_exit_codes(tube, unstable, tmp_path, capsys):
+    flagged, failing, wrong = (tmp_path / f"{i}.yaml" for i in range(3))
+    flagged.write_text(der.Scenario.from_dict(tube).to_yaml())
+    failing.write_text(der.Scenario.from_dict(unstable).to_yaml())
+    wrong.write_text("title: nothing")
+    assert main(["verify", str(flagged)]) == 5
+    assert "analysis: static" in capsys.readouterr().out
+    assert main(["verify", str(failing)]) in (1, 3)
+    assert "error: " in capsys.readouterr().err
+    assert main(["verify", str(wrong)]) == 1

@@ -1,0 +1,109 @@
+"""The error bars of `der verify`, on every scene of configs/, against much finer runs.
+
+Long scenes are cut to some hundred of their steps, so that this stays quick; with fewer steps the
+bars have more to hold, not less.
+"""
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import der
+import pytest
+from der.accuracy.probe_extremes import probe_values
+from der.accuracy.refinement import with_elements, with_time
+from der.accuracy.time_levels import find_stepper, fixed_step, save_every_step
+
+CONFIGS = sorted((Path(__file__).resolve().parents[2] / "configs").glob("*.yaml"))
+MOST_STEPS = {"implicit": 200, "explicit": 100_000}
+
+
+def fails(path):
+    return "# expect: failure" in path.read_text(encoding="utf-8").splitlines()
+
+
+def shortened(path):
+    scenario = der.load(path)
+    if scenario.is_static:
+        return scenario
+    base = der.run(scenario)
+    implicit = find_stepper(base.summary["integrator"]).implicit
+    most = MOST_STEPS["implicit" if implicit else "explicit"] * fixed_step(base)
+    if scenario.duration <= most:
+        return scenario
+    return with_time(scenario, duration=most, every=most / 100)
+
+
+def truth(scenario):
+    """On four times the elements (refused where spheres are at every node), and in time with 64
+    times the steps of another stepper, or 8 times those of an explicit one."""
+    finer = with_elements(scenario, 4)
+    tight = {"solver.residual_tolerance": 1e-12, "solver.step_tolerance": 1e-13}
+    if scenario.is_static:
+        try:
+            return der.run(finer.with_(**tight))
+        except der.NotConvergedError:  # rounding does not allow as much everywhere
+            return der.run(finer)
+    base = der.run(scenario)
+    keys = ("every", "tolerance", "minimum_step", "spectral_radius", "allow_unstable")
+    changes = dict.fromkeys(keys)
+    if find_stepper(base.summary["integrator"]).implicit:
+        changes |= {"integrator": "generalized_alpha", "spectral_radius": 0.5}
+        changes["step"] = fixed_step(base) / 64
+    else:
+        changes["step"] = fixed_step(base) / 8
+    return der.run(save_every_step(with_time(finer, **changes), changes["step"]))
+
+
+def within_bars(path):
+    """For each value, whether the truth is within its bar."""
+    scenario = shortened(path)
+    verification = der.verify(scenario)
+    exact = truth(verification.scenario)
+    return {
+        (path.stem, value.probe, value.what): abs(
+            value.value - probe_values(exact, value.probe)[value.what]
+        )
+        <= value.bar
+        # The turning angle belongs to its mesh, and the truth stands on another one.
+        or (value.space is None and len(verification.meshes) > 1)
+        for value in verification.values
+    }
+
+
+def test_true_errors_lie_within_the_bars():
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        held = {}
+        for part in pool.map(within_bars, [path for path in CONFIGS if not fails(path)]):
+            held |= part
+    outside = [name for name, inside in held.items() if not inside]
+    assert len(held) >= 50
+    assert len(outside) <= 0.05 * len(held), outside
+
+
+@pytest.mark.parametrize(
+    ("name", "probe", "problem", "value", "offset", "sign"),
+    [
+        ("cantilever", "tip_y", "elastica", "tip_load.1.y", 0.0, -1.0),
+        ("cantilever", "tip_x", "elastica", "tip_load.1.x", 0.0, 1.0),
+        ("simply_supported", "deflection", "extensible_beam", "tube.2000.deflection", 0.0, -1.0),
+        ("simply_supported_20kN", "roller", "extensible_beam", "tube.20000.roller", 1.0, 1.0),
+    ],
+)
+def test_bars_of_equilibria_hold_the_continuum(
+    scene, reference, name, probe, problem, value, offset, sign
+):
+    """And are not wider than three times the true error."""
+    static = der.equilibrium(scene(name)).scenario
+    found = der.verify(static)[probe]
+    exact = offset + sign * reference(problem, value)
+    error = abs(found.value - exact)
+    assert error <= found.bar <= 3.0 * error
+    assert abs(found.extrapolated - exact) <= 0.1 * error
+    assert not found.flagged
+
+
+@pytest.mark.parametrize("path", [path for path in CONFIGS if fails(path)], ids=lambda p: p.stem)
+def test_scene_that_fails_has_nothing_to_verify(path):
+    with pytest.raises(der.DerError, match=r"time\.step"):
+        der.verify(path)

@@ -108,6 +108,39 @@ def convergence() -> Figure:
     return figure
 
 
+def study() -> Figure:
+    """Draw what accuracy costs on the swinging rod."""
+    found = der.study(
+        SWING,
+        nodes=[21, 41, 81],
+        steps=[0.01, 0.005, 0.0025, 0.00125],
+        steppers=["implicit_euler", "implicit_midpoint", "bdf2", "tr_bdf2"],
+    )
+    return found.plot()
+
+
+def tolerance() -> Figure:
+    """Draw the error in time that comes out against the tolerance that was asked for."""
+    asked = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
+    swing = der.Scenario.from_dict(
+        {**SWING, "time": {"duration": 1, "step": 2e-5, "integrator": "implicit_midpoint"}}
+    ).with_(**{"output.every": 0.01})
+    exact = der.run(swing).positions[:, -1]
+    figure, axes = new_axes()
+    axes.loglog(asked, asked, color="0.6", linestyle="--", label="what was asked for")
+    for name, marker in (("tr_bdf2", "o"), ("implicit_midpoint", "s"), ("bdf2", "^")):
+        errors = []
+        for value in asked:
+            scene = {**SWING, "time": {"duration": 1, "tolerance": value, "integrator": name}}
+            result = der.run(der.Scenario.from_dict({**scene, "output": {"every": 0.01}}))
+            errors.append(np.linalg.norm(result.positions[:, -1] - exact, axis=1).max())
+        axes.loglog(asked, errors, marker=marker, label=name)
+    axes.set(xlabel="tolerance [-]", ylabel="largest error of the tip in time [m]")
+    axes.invert_xaxis()
+    axes.legend()
+    return figure
+
+
 def new_axes() -> tuple[Figure, Axes]:
     """Return a figure with one set of axes."""
     return plt.subplots(figsize=(6, 4), layout="constrained")
@@ -115,7 +148,15 @@ def new_axes() -> tuple[Figure, Axes]:
 
 FIGURES: dict[str, Callable[[], Figure]] = {
     make.__name__: make
-    for make in (swing, falling_spheres, simply_supported_20kN, roll_up, convergence)
+    for make in (
+        swing,
+        falling_spheres,
+        simply_supported_20kN,
+        roll_up,
+        convergence,
+        study,
+        tolerance,
+    )
 }
 
 

@@ -97,5 +97,10 @@ def spheres() -> dict[str, Any]:
 @pytest.fixture
 def unstable(spheres: dict[str, Any]) -> dict[str, Any]:
     """The explicit scheme with a step at which drag makes it blow up."""
-    spheres["time"] = {"duration": 1, "step": 1e-4, "integrator": "explicit_euler", "allow_unstable": True}
+    spheres["time"] = {
+        "duration": 1,
+        "step": 1e-4,
+        "integrator": "explicit_euler",
+        "allow_unstable": True,
+    }
     return spheres

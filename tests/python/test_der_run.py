@@ -278,7 +278,14 @@ def test_a_static_analysis_is_one_frame(tmp_path: Path) -> None:
 def test_failures_are_named_and_leave_no_old_summary(scene: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     assert der_run(scene, "--out", out).returncode == 0
-    unstable = ["--set", "time.integrator=explicit_euler", "--set", "time.step=1e-4", "--set", "time.allow_unstable=true"]
+    unstable = [
+        "--set",
+        "time.integrator=explicit_euler",
+        "--set",
+        "time.step=1e-4",
+        "--set",
+        "time.allow_unstable=true",
+    ]
     done = der_run(scene, "--out", out, *unstable)
     assert done.returncode == 3
     assert "diverged" in done.stdout

@@ -131,8 +131,19 @@ def test_snippets_of_the_python_page(tmp_path, monkeypatch, capsys):
         assert comment in printed
 
 
+def test_snippets_of_the_verify_page(tmp_path, monkeypatch, capsys):
+    assert run_snippets(ROOT / "docs" / "verify.md", tmp_path, monkeypatch) == 1
+    assert "converged" in capsys.readouterr().out
+
+
+def test_snippets_of_the_study_page(tmp_path, monkeypatch):
+    assert run_snippets(ROOT / "docs" / "study.md", tmp_path, monkeypatch) == 1
+    assert (tmp_path / "study.csv").exists()
+    assert (tmp_path / "study.png").exists()
+
+
 def test_pictures_can_be_made(tmp_path, monkeypatch):
-    """docs/make_figures.py draws every picture."""
+    """docs/make_figures.py draws every picture but that of the peers, which takes them."""
     scripts = tmp_path / "docs"
     scripts.mkdir()
     (tmp_path / "configs").symlink_to(ROOT / "configs")
@@ -143,4 +154,4 @@ def test_pictures_can_be_made(tmp_path, monkeypatch):
     monkeypatch.setattr("sys.argv", ["make_figures.py"])
     make_figures.main()
     made = {path.name for path in (scripts / "images").iterdir()}
-    assert made == {path.name for path in (ROOT / "docs" / "images").iterdir()}
+    assert made | {"peers.png"} == {path.name for path in (ROOT / "docs" / "images").iterdir()}

@@ -1,7 +1,7 @@
 """Adaptive steps: the error asked for is the error that comes out.
 
-Reference for the error in time: the same mesh under another method, the midpoint rule in equal steps
-of 2e-5 s, whose own error in time (order 2, measured at 1e-3 s) is below 5e-8 m.
+Reference for the error in time: the same mesh under another method, the midpoint rule in equal
+steps of 2e-5 s, whose own error in time (order 2, measured at 1e-3 s) is below 5e-8 m.
 """
 
 import der

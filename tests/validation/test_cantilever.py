@@ -64,8 +64,8 @@ def test_both_curvature_measures_converge(scene, reference, fitted_order, curvat
 )
 def test_small_deflections_have_no_error_of_second_order(scene, load, deflection, error):
     """The linear theory (P L^3/3EI, M L^2/2EI, w L^4/8EI) at 10 elements, where a clamp that starts
-    its edge from the node is off by 0.5 (l/L)^2 = 5e-3. End loads are exact but for the load squared,
-    1e-6; a distributed load bends the moment within an edge, which is of order (l/L)^3."""
+    its edge from the node is off by 0.5 (l/L)^2 = 5e-3. End loads are exact but for the load
+    squared, 1e-6; a distributed load bends the moment within an edge, of order (l/L)^3."""
     small = scene("cantilever").to_dict()
     small["rods"][0]["cross_section"]["stiffness"]["EA"] = 1e7
     small["loads"] = [load]
@@ -111,8 +111,8 @@ def test_a_force_between_nodes_does_not_jump_to_one(scene, fitted_order):
 
 @pytest.mark.parametrize("name", ["roll_up", "natural_curvature"])
 def test_the_rod_closes_to_a_circle(scene, fitted_order, name):
-    """An end moment of 2 pi EI/L, or a natural curvature of 2 pi/L: the tip comes back to the clamp,
-    the diameter is L/pi."""
+    """An end moment of 2 pi EI/L, or a natural curvature of 2 pi/L: the tip comes back to the
+    clamp, the diameter is L/pi."""
     sizes = [10, 20, 40, 80]
     gaps = []
     diameters = []

@@ -1,7 +1,7 @@
 """The energy ledger: what goes in, what goes out, and what the time stepping makes of it.
 
-References: trapezoidal integrals of power, force times velocity, over the recorded steps, which know
-nothing of the stepper; exact balances.
+References: trapezoidal integrals of power, force times velocity, over the recorded steps, which
+know nothing of the stepper; exact balances.
 """
 
 import der

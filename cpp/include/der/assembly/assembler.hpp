@@ -27,6 +27,9 @@ class Assembler {
   /// As above, and sets `values` to the Hessian [N/m].
   void gradient_and_hessian(const Vector& positions, const Vector& controls, Vector& gradient,
                             Vector& values) const;
+  /// Adds the stiffness across the edges that a tension [N], one for each stretch element, gives
+  /// them.
+  void add_tension_stiffness(const Vector& positions, const Vector& tension, Vector& values) const;
   /// Adds `diagonal` (all degrees of freedom) times `factor` to the matrix diagonal.
   void add_diagonal(const Vector& diagonal, double factor, Vector& values) const;
   /// Adds `shift` to every diagonal entry of the matrix.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "der/core/error.hpp"
+#include "der/loads/loads.hpp"
 #include "der/model/builder.hpp"
 #include "der/steppers/stable_step.hpp"
 
@@ -39,6 +40,18 @@ std::string describe_dof(const Model& model, Index dof) {
     }
   }
   return fmt::format("node {} ({})", node, component);
+}
+
+/// What to try after a search for an equilibrium has failed.
+std::string advice(const std::string& status) {
+  if (status == "not_held") return "Add a support that holds it, or balance the loads.";
+  if (status == "unbounded") {
+    return "Is the structure held against every rigid motion, rotation included?";
+  }
+  if (status == "folded") return "Give the rod more nodes.";
+  if (status == "collapsed") return "Is the load, or the cross-section, the one that was meant?";
+  return "Does an equilibrium exist under this load? A start nearer to it, a finer mesh or a run "
+         "over time with damping may show.";
 }
 
 }  // namespace
@@ -92,21 +105,42 @@ void Simulation::advance_to(double target) {
   }
 }
 
-EquilibriumReport Simulation::equilibrium() {
+EquilibriumReport Simulation::equilibrium(bool leave_saddles) {
   Vector positions = state_.positions;
+  EquilibriumOptions options;
+  options.newton = stepper_options(scenario_.scene()).newton;
+  options.leave_saddles = leave_saddles;
   EquilibriumReport report =
-      find_equilibrium(model_, assembler_, *solver_.solver,
-                       stepper_options(scenario_.scene()).newton, state_, positions);
+      find_equilibrium(model_, assembler_, *solver_.solver, options, state_, positions);
   counters_.newton_iterations += report.newton_iterations;
   if (!report.converged) {
-    throw NotConvergedError(fmt::format(
-        "no equilibrium found ({}; unbalanced force {:.3g} N against {:.3g} N acting). Is the "
-        "structure held against every rigid motion, and does an equilibrium exist under this load?",
-        report.failure, report.residual, report.force_scale));
+    throw NotConvergedError(
+        fmt::format("no stable equilibrium found: {}. {}", report.failure, advice(report.status)),
+        report.status);
   }
   state_.positions = positions;
   state_.velocities.setZero();
   return report;
+}
+
+Vector Simulation::gradient() const {
+  Vector controls;
+  Vector force;
+  Vector gradient(model_.num_dofs());
+  model_.controls.evaluate(state_.time, controls);
+  external_force(model_, controls, state_.extra_force, force);
+  assembler_.gradient(state_.positions, controls, gradient);
+  return (gradient - force)(model_.free_dofs);
+}
+
+SymmetricMatrix Simulation::hessian() const {
+  Vector controls;
+  model_.controls.evaluate(state_.time, controls);
+  const Assembler assembler(model_, MatrixLayout::compressed(pattern_));
+  Vector gradient(model_.num_dofs());
+  Vector values(assembler.num_values());
+  assembler.gradient_and_hessian(state_.positions, controls, gradient, values);
+  return {pattern_, values.head(pattern_.nonzeros())};
 }
 
 void Simulation::restore(const State& saved) {

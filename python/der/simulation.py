@@ -6,7 +6,9 @@ import json
 import math
 import os
 from collections.abc import Callable, Mapping
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
 
 from der import _core
 from der._core import Recording, Scenario
@@ -14,6 +16,9 @@ from der.errors import error_for
 from der.probe_series import make_probes
 from der.progress import ProgressFunction, ProgressLine
 from der.result import Result
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array, dia_array
 
 #: A scenario, the path of a scene file, or a dict with the keys of a scene file.
 SceneLike: TypeAlias = "Scenario | str | os.PathLike[str] | dict[str, Any]"
@@ -100,6 +105,29 @@ class Simulation(_core.Simulation):
             error.result = result
             raise error
         return result
+
+    def hessian(self) -> csc_array:
+        """Return the stiffness: the Hessian [N/m] of the potential at the present state.
+
+        Sparse and symmetric, shape (free, free), over the degrees of freedom that no support holds;
+        `free_dofs` says where they are in ``positions.ravel()``. The loads' part of it (that of
+        moments) is included.
+        """
+        from scipy.sparse import csc_array, diags_array  # here, because it takes long to load
+
+        values, rows, starts = self.lower_hessian()
+        lower = csc_array((values, rows, starts), shape=(len(starts) - 1, len(starts) - 1))
+        return csc_array(lower + lower.T - diags_array(lower.diagonal()))
+
+    def mass(self) -> dia_array:
+        """Return the mass matrix [kg] over the free degrees of freedom, sparse and diagonal.
+
+        Shape (free, free), ordered as `hessian`.
+        """
+        from scipy.sparse import diags_array
+
+        dimension = self.positions.shape[1]
+        return diags_array(np.repeat(self.node_masses, dimension)[self.free_dofs])
 
     def _end_time(self, until: float | None) -> float:
         if until is None:

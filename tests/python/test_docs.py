@@ -124,11 +124,17 @@ def test_snippets_of_the_quick_start(tmp_path, monkeypatch):
 
 def test_snippets_of_the_python_page(tmp_path, monkeypatch, capsys):
     assert run_snippets(ROOT / "docs" / "python.md", tmp_path, monkeypatch) >= 10
+
     pictures = {"beam.png", "falling.png", "speed.png"}
     assert {path.name for path in tmp_path.glob("*.png")} == pictures
     printed = capsys.readouterr().out
     for comment in ("completed", "stopped", "diverged", "nods"):
         assert comment in printed
+
+
+@pytest.mark.parametrize(("page", "count"), [("statics", 1)])
+def test_statics_snippets_run(page, count, tmp_path, monkeypatch):
+    assert run_snippets(ROOT / "docs" / f"{page}.md", tmp_path, monkeypatch) == count
 
 
 def test_pictures_can_be_made(tmp_path, monkeypatch):

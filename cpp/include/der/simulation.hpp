@@ -23,6 +23,13 @@ struct Counters {
   std::int64_t retried_steps = 0;  ///< steps that had to be done in smaller pieces
 };
 
+/// The lower triangle of a symmetric matrix over the free degrees of freedom, in compressed
+/// columns.
+struct SymmetricMatrix {
+  const Pattern& pattern;
+  Vector values;  ///< as many as `pattern` has nonzeros
+};
+
 /// One simulation: a scenario's model, its state, and the stepper that advances it. This is the
 /// engine that der_run and Python both drive.
 class Simulation {
@@ -36,8 +43,15 @@ class Simulation {
   /// NotConvergedError or DivergedError; the state is then that of the last good step.
   void step();
   /// Replaces the state by the static equilibrium near it under the loads at the present time,
-  /// velocities zero. Throws NotConvergedError.
-  EquilibriumReport equilibrium();
+  /// velocities zero. One that is unstable is left for a stable one, unless `leave_saddles` is
+  /// false. Throws NotConvergedError.
+  EquilibriumReport equilibrium(bool leave_saddles = true);
+
+  /// Gradient [N] of the potential of elements and loads at the present state, over the free
+  /// degrees of freedom: zero in an equilibrium.
+  [[nodiscard]] Vector gradient() const;
+  /// Hessian [N/m] of the same potential.
+  [[nodiscard]] SymmetricMatrix hessian() const;
 
   [[nodiscard]] const Scenario& scenario() const { return scenario_; }
   [[nodiscard]] const Model& model() const { return model_; }

@@ -17,7 +17,7 @@ bool is_finite(const Energies& e) {
 }  // namespace
 
 std::int64_t steps_between_frames(const scenario::Scene& scene) {
-  if (scene.analysis == scenario::AnalysisKind::Static) return 1;
+  if (!scene.is_dynamic()) return 1;
   return std::max<std::int64_t>(1, std::llround(scene.output.every / scene.time.step));
 }
 

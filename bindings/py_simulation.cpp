@@ -46,11 +46,11 @@ void PySimulation::step(std::int64_t count, py::handle self) {
   }
 }
 
-EquilibriumReport PySimulation::equilibrium(py::handle self) {
+EquilibriumReport PySimulation::equilibrium(py::handle self, bool leave_saddles) {
   const Turn turn(*this);
   forces_.apply(engine_.model(), engine_.state(), self);
   const py::gil_scoped_release unlocked;
-  return engine_.equilibrium();
+  return engine_.equilibrium(leave_saddles);
 }
 
 RunOutcome PySimulation::run(Recorder& recorder, double until, const Callback& callback,

@@ -30,7 +30,7 @@ class PySimulation {
 
   /// `self` is the Python object of this simulation.
   void step(std::int64_t count, py::handle self);
-  EquilibriumReport equilibrium(py::handle self);
+  EquilibriumReport equilibrium(py::handle self, bool leave_saddles);
   /// Runs to the end of the scene, to time `until` [s], or until the callback says stop; with
   /// `out`, the run is also written to that folder.
   RunOutcome run(Recorder& recorder, double until, const Callback& callback, const Tick& tick,

@@ -72,8 +72,7 @@ void bind_facts(ScenarioClass& cls) {
       .def_property_readonly("source", &Scenario::source,
                              "Name of the file or text; empty for a dict.")
       .def_property_readonly(
-          "is_static",
-          [](const Scenario& s) { return s.scene().analysis == scenario::AnalysisKind::Static; },
+          "is_static", [](const Scenario& s) { return !s.scene().is_dynamic(); },
           "Whether the scene asks for an equilibrium (`analysis: static`), not for a motion.")
       .def_property_readonly(
           "duration", [](const Scenario& s) { return s.scene().time.duration; },

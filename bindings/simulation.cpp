@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -78,15 +79,36 @@ void bind_reports(py::module_& module) {
                     "Pseudo-time steps taken on the way; 0: Newton's method found it directly.")
       .def_readonly("residual", &EquilibriumReport::residual, "Largest unbalanced force [N].")
       .def_readonly("force_scale", &EquilibriumReport::force_scale, "Largest acting force [N].")
-      .def_readonly("negative_pivots", &EquilibriumReport::negative_pivots,
-                    "Unstable directions of the equilibrium found; 0: it is stable.")
+      .def_readonly("saddles_left", &EquilibriumReport::saddles_left,
+                    "Unstable equilibria that were found on the way and left downhill.")
+      .def_readonly("sharpest_turn", &EquilibriumReport::sharpest_turn,
+                    "Largest turning angle at a node [rad]; far above 1 the mesh is too coarse.")
+      .def_property_readonly(
+          "stability", [](const EquilibriumReport& r) { return r.stability.name(); },
+          "``stable``, ``unstable`` or ``neutral`` (flat to rounding in some direction).")
+      .def_property_readonly(
+          "unstable_directions",
+          [](const EquilibriumReport& r) { return r.stability.unstable_directions; },
+          "Independent directions in which the potential falls; 0 for a stable equilibrium.")
+      .def_property_readonly(
+          "neutral_directions",
+          [](const EquilibriumReport& r) { return r.stability.neutral_directions; },
+          "Directions in which the potential is flat to rounding.")
       .def("__repr__", [](const EquilibriumReport& r) {
-        return py::str("EquilibriumReport(residual={:.3g} N, negative_pivots={})")
-            .format(r.residual, r.negative_pivots);
+        return py::str("EquilibriumReport({}, residual={:.3g} N)")
+            .format(r.stability.name(), r.residual);
       });
 }
 
 using PySimulationClass = py::class_<PySimulation>;
+
+py::tuple to_columns(const SymmetricMatrix& matrix) {
+  const auto indices = [](const std::vector<Index>& list) {
+    return py::array_t<Index>(static_cast<py::ssize_t>(list.size()), list.data());
+  };
+  return py::make_tuple(Array(matrix.values.size(), matrix.values.data()),
+                        indices(matrix.pattern.inner), indices(matrix.pattern.outer));
+}
 
 void bind_arrays(PySimulationClass& cls) {
   cls.def_property_readonly(
@@ -104,7 +126,7 @@ void bind_arrays(PySimulationClass& cls) {
           "What is written acts, constant within a step, in every step until something else is "
           "written.\nForces of `add_force` come on top of it.")
       .def_property_readonly(
-          "mass",
+          "node_masses",
           [](const py::object& self) {
             const Model& model = self.cast<PySimulation&>().engine().model();
             const py::ssize_t stride = model.dimension * static_cast<py::ssize_t>(sizeof(double));
@@ -112,7 +134,33 @@ void bind_arrays(PySimulationClass& cls) {
             mass.attr("setflags")(false);
             return mass;
           },
-          "Mass lumped on each node [kg], shape (nodes,), read-only.");
+          "Mass lumped on each node [kg], shape (nodes,), read-only.")
+      .def_property_readonly(
+          "free_dofs",
+          [](const PySimulation& s) {
+            const std::vector<Index>& free = s.engine().model().free_dofs;
+            return py::array_t<Index>(static_cast<py::ssize_t>(free.size()), free.data());
+          },
+          "Places in `positions.ravel()` of the degrees of freedom that no support holds, shape\n"
+          "(free,), ascending: what `gradient`, `hessian` and `mass` are about.")
+      .def(
+          "gradient",
+          [](const PySimulation& s) {
+            const Vector gradient = s.engine().gradient();
+            return Array(gradient.size(), gradient.data());
+          },
+          "Gradient [N] of the potential energy of rods and loads, `extra_force` included, at the\n"
+          "present state, shape (free,): zero in an equilibrium.")
+      .def(
+          "lower_hessian",
+          [](const PySimulation& s) { return to_columns(s.engine().hessian()); },
+          "Lower triangle of the Hessian [N/m] over the free degrees of freedom, in compressed\n"
+          "columns: values, rows, column starts. `hessian` makes a matrix of it.")
+      .def(
+          "lower_mass",
+          [](const PySimulation& s) { return to_columns(s.engine().mass()); },
+          "Lower triangle of the mass matrix [kg], as `lower_hessian`. `mass` makes a matrix of "
+          "it.");
 }
 
 void bind_progress(PySimulationClass& cls) {
@@ -173,10 +221,15 @@ void bind_actions(PySimulationClass& cls) {
          "NotConvergedError or DivergedError; the state is then that of the last good step.")
       .def(
           "equilibrium",
-          [](const py::object& self) { return self.cast<PySimulation&>().equilibrium(self); },
+          [](const py::object& self, bool leave_saddles) {
+            return self.cast<PySimulation&>().equilibrium(self, leave_saddles);
+          },
+          py::arg("leave_saddles") = true,
           "Move to the static equilibrium near the present state.\n\n"
           "It is found under the loads at the present time, `extra_force` and the functions of\n"
-          "`add_force` (evaluated once, at the start) included. Velocities become zero. Raises\n"
+          "`add_force` (evaluated once, at the start) included. Velocities become zero. An "
+          "unstable\n"
+          "equilibrium is left for a stable one, unless `leave_saddles` is false. Raises\n"
           "NotConvergedError.")
       .def(
           "add_force",

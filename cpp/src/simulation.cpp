@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "der/core/error.hpp"
+#include "der/loads/loads.hpp"
 #include "der/model/builder.hpp"
 #include "der/steppers/stable_step.hpp"
 
@@ -27,6 +28,18 @@ StepperOptions stepper_options(const scenario::Scene& scene) {
   }
   options.spectral_radius = scene.time.spectral_radius;
   return options;
+}
+
+/// What to try after a search for an equilibrium has failed.
+std::string advice(const std::string& status) {
+  if (status == "not_held") return "Add a support that holds it, or balance the loads.";
+  if (status == "unbounded") {
+    return "Is the structure held against every rigid motion, rotation included?";
+  }
+  if (status == "folded") return "Give the rod more nodes.";
+  if (status == "collapsed") return "Is the load, or the cross-section, the one that was meant?";
+  return "Does an equilibrium exist under this load? A start nearer to it, a finer mesh or a run "
+         "over time with damping may show.";
 }
 
 }  // namespace
@@ -58,7 +71,7 @@ bool Simulation::finished() const {
 }
 
 void Simulation::step() {
-  if (scenario_.scene().analysis == scenario::AnalysisKind::Static) {
+  if (!scenario_.scene().is_dynamic()) {
     throw Error("model_error", "a static scene has no time steps: use equilibrium()");
   }
   if (adaptive_) {
@@ -108,24 +121,52 @@ void Simulation::fail(const StepReport& report, double dt) const {
   throw NotConvergedError(describe_failure(report, dt));
 }
 
-EquilibriumReport Simulation::equilibrium() {
+EquilibriumReport Simulation::equilibrium(bool leave_saddles) {
   Vector positions = state_.positions;
-  NewtonOptions newton = stepper_options(scenario_.scene()).newton;
+  EquilibriumOptions options;
+  options.newton = stepper_options(scenario_.scene()).newton;
   // Solved once, not at every step: one more iteration takes the last digits too.
-  newton.step_tolerance *= 0.01;
+  options.newton.step_tolerance *= 0.01;
+  options.leave_saddles = leave_saddles;
   EquilibriumReport report =
-      find_equilibrium(model_, assembler_, *solver_.solver, newton, state_, positions);
+      find_equilibrium(model_, assembler_, *solver_.solver, options, state_, positions);
   counters_.newton_iterations += report.newton_iterations;
   if (!report.converged) {
-    throw NotConvergedError(fmt::format(
-        "no equilibrium found ({}; unbalanced force {:.3g} N against {:.3g} N acting). Is the "
-        "structure held against every rigid motion, and does an equilibrium exist under this load?",
-        report.failure, report.residual, report.force_scale));
+    throw NotConvergedError(
+        fmt::format("no stable equilibrium found: {}. {}", report.failure, advice(report.status)),
+        report.status);
   }
   state_.positions = positions;
   state_.velocities.setZero();
   state_.work = {energies(model_, state_).total(), 0.0, 0.0, 0.0, 0.0};
   return report;
+}
+
+Vector Simulation::gradient() const {
+  Vector controls;
+  Vector force;
+  Vector gradient(model_.num_dofs());
+  model_.controls.evaluate(state_.time, controls);
+  external_force(model_, controls, state_.extra_force, force);
+  assembler_.gradient(state_.positions, controls, gradient);
+  return (gradient - force)(model_.free_dofs);
+}
+
+SymmetricMatrix Simulation::hessian() const {
+  Vector controls;
+  model_.controls.evaluate(state_.time, controls);
+  const Assembler assembler(model_, MatrixLayout::compressed(pattern_));
+  Vector gradient(model_.num_dofs());
+  Vector values(assembler.num_values());
+  assembler.gradient_and_hessian(state_.positions, controls, gradient, values);
+  return {pattern_, values.head(pattern_.nonzeros())};
+}
+
+SymmetricMatrix Simulation::mass() const {
+  const Assembler assembler(model_, MatrixLayout::compressed(pattern_));
+  Vector values = Vector::Zero(assembler.num_values());
+  assembler.add_mass(model_.mass, 1.0, values);
+  return {pattern_, values.head(pattern_.nonzeros())};
 }
 
 void Simulation::restore(const State& saved) {

@@ -62,7 +62,12 @@ class SceneError(DerError, ValueError):
 
 
 class NotConvergedError(DerError):
-    """Newton's method found no solution, even with the smallest allowed time step."""
+    """Newton's method found no solution, even with the smallest allowed time step.
+
+    In statics, no equilibrium was found; ``status`` says why: ``not_held`` (a load moves the structure
+    as a rigid body), ``unbounded`` (it moves on without end), ``collapsed`` (a part is pressed to a
+    point), ``folded`` (folded back on itself: too coarse a mesh) or ``not_converged``.
+    """
 
     def __init__(self, message: str, status: str = "not_converged") -> None:
         super().__init__(message, status)
@@ -77,5 +82,6 @@ class DivergedError(DerError):
 
 def error_for(status: str, message: str) -> DerError:
     """Return the error of the class that belongs to the status of a failed run."""
-    classes = {"not_converged": NotConvergedError, "diverged": DivergedError}
+    not_found = ("not_converged", "not_held", "unbounded", "collapsed", "folded")
+    classes = dict.fromkeys(not_found, NotConvergedError) | {"diverged": DivergedError}
     return classes.get(status, DerError)(message, status)

@@ -6,7 +6,9 @@ import json
 import math
 import os
 from collections.abc import Callable, Mapping
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
 
 from der import _core
 from der._core import Recording, Scenario
@@ -14,6 +16,10 @@ from der.errors import error_for
 from der.probe_series import make_probes
 from der.progress import ProgressFunction, ProgressLine
 from der.result import Result
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    from scipy.sparse import csc_array
 
 #: A scenario, the path of a scene file, or a dict with the keys of a scene file.
 SceneLike: TypeAlias = "Scenario | str | os.PathLike[str] | dict[str, Any]"
@@ -101,6 +107,23 @@ class Simulation(_core.Simulation):
             raise error
         return result
 
+    def hessian(self) -> csc_array:
+        """Return the stiffness: the Hessian [N/m] of the potential at the present state.
+
+        Sparse and symmetric, shape (free, free), over the degrees of freedom that no support holds;
+        `free_dofs` says where they are in ``positions.ravel()``. The loads' part of it (that of
+        moments) is included.
+        """
+        return _symmetric(*self.lower_hessian())
+
+    def mass(self) -> csc_array:
+        """Return the mass matrix [kg] over the free degrees of freedom.
+
+        Sparse and symmetric, shape (free, free), ordered as `hessian`. Massive edges couple their
+        two nodes.
+        """
+        return _symmetric(*self.lower_mass())
+
     def _end_time(self, until: float | None) -> float:
         if until is None:
             return math.inf
@@ -117,6 +140,15 @@ class Simulation(_core.Simulation):
     def _share_done(self, end: float) -> float:
         duration = min(end, self.scenario.duration)
         return self.time / duration if duration > 0.0 else 0.0
+
+
+def _symmetric(
+    values: NDArray[np.float64], rows: NDArray[np.int32], starts: NDArray[np.int32]
+) -> csc_array:
+    from scipy.sparse import csc_array, diags_array  # here, because it takes long to load
+
+    lower = csc_array((values, rows, starts), shape=(len(starts) - 1, len(starts) - 1))
+    return csc_array(lower + lower.T - diags_array(lower.diagonal()))
 
 
 def _goes_on(answer: bool | None) -> bool:

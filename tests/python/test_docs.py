@@ -81,7 +81,7 @@ def test_scene_reference_is_what_the_reader_generates():
 
 def test_steppers_page_has_every_integrator_with_its_order():
     text = (ROOT / "docs" / "steppers.md").read_text(encoding="utf-8")
-    listed = re.findall(r"^\| `(\w+)` \| ([12]) \|", text, flags=re.MULTILINE)
+    listed = re.findall(r"^\| `(\w+)` \| (\d) \|", text, flags=re.MULTILINE)
     assert listed == [(info.name, str(info.order)) for info in der.steppers()]
 
 
@@ -124,6 +124,7 @@ def test_snippets_of_the_quick_start(tmp_path, monkeypatch):
 
 def test_snippets_of_the_python_page(tmp_path, monkeypatch, capsys):
     assert run_snippets(ROOT / "docs" / "python.md", tmp_path, monkeypatch) >= 10
+
     pictures = {"beam.png", "falling.png", "speed.png"}
     assert {path.name for path in tmp_path.glob("*.png")} == pictures
     printed = capsys.readouterr().out
@@ -140,6 +141,11 @@ def test_snippets_of_the_study_page(tmp_path, monkeypatch):
     assert run_snippets(ROOT / "docs" / "study.md", tmp_path, monkeypatch) == 1
     assert (tmp_path / "study.csv").exists()
     assert (tmp_path / "study.png").exists()
+
+
+@pytest.mark.parametrize(("page", "count"), [("statics", 1)])
+def test_statics_snippets_run(page, count, tmp_path, monkeypatch):
+    assert run_snippets(ROOT / "docs" / f"{page}.md", tmp_path, monkeypatch) == count
 
 
 def test_pictures_can_be_made(tmp_path, monkeypatch):

@@ -27,6 +27,13 @@ struct Counters {
   std::int64_t rejected_steps = 0;  ///< adaptive steps that were too long for the tolerance
 };
 
+/// The lower triangle of a symmetric matrix over the free degrees of freedom, in compressed
+/// columns.
+struct SymmetricMatrix {
+  const Pattern& pattern;
+  Vector values;  ///< as many as `pattern` has nonzeros
+};
+
 /// One simulation: a scenario's model, its state, and the stepper that advances it. This is the
 /// engine that der_run and Python both drive.
 class Simulation {
@@ -45,8 +52,17 @@ class Simulation {
   /// Sets `result` to the state at a time within the last adaptive step.
   void interpolate(double time, State& result) { adaptive_->interpolate(time, state_, result); }
   /// Replaces the state by the static equilibrium near it under the loads at the present time,
-  /// velocities zero. Throws NotConvergedError.
-  EquilibriumReport equilibrium();
+  /// velocities zero. One that is unstable is left for a stable one, unless `leave_saddles` is
+  /// false. Throws NotConvergedError.
+  EquilibriumReport equilibrium(bool leave_saddles = true);
+
+  /// Gradient [N] of the potential of elements and loads at the present state, over the free
+  /// degrees of freedom: zero in an equilibrium.
+  [[nodiscard]] Vector gradient() const;
+  /// Hessian [N/m] of the same potential.
+  [[nodiscard]] SymmetricMatrix hessian() const;
+  /// The mass matrix [kg] over the free degrees of freedom.
+  [[nodiscard]] SymmetricMatrix mass() const;
 
   [[nodiscard]] const Scenario& scenario() const { return scenario_; }
   [[nodiscard]] const Model& model() const { return model_; }

@@ -16,9 +16,10 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-bool is_static(const Simulation& simulation) {
-  return simulation.scenario().scene().analysis == scenario::AnalysisKind::Static;
-}
+/// Turning angle at a node [rad] above which a mesh is certainly too coarse for the shape.
+constexpr double kSharpTurn = 1.0;
+
+bool is_static(const Simulation& simulation) { return !simulation.scenario().scene().is_dynamic(); }
 
 /// Rows of a table as lines, indented by two: the first and the last column to the left, numbers to
 /// the right.
@@ -87,6 +88,41 @@ std::string model_lines(const Simulation& simulation, const Style& style) {
          line("solver", fmt::format("{}: {}", solver.name, solver.reason), style);
 }
 
+std::string stability_text(const Stability& stability, const Style& style) {
+  if (stability.unstable_directions > 0) {
+    return style.warning(fmt::format("UNSTABLE in {}: a small push would move it on",
+                                     format_count(stability.unstable_directions, "direction")));
+  }
+  if (stability.neutral_directions > 0) {
+    return style.warning(
+        fmt::format("neutral in {}: nothing holds it there (free to move, or at a critical load)",
+                    format_count(stability.neutral_directions, "direction")));
+  }
+  return "stable";
+}
+
+std::string equilibrium_lines(const EquilibriumReport& report, const Style& style) {
+  std::string text = line("balance",
+                          fmt::format("unbalanced force {:.2g} N, largest acting force {:.4g} N",
+                                      report.residual, report.force_scale),
+                          style);
+  if (report.saddles_left > 0) {
+    text += line("",
+                 fmt::format("left {} (unstable equilibria) downhill along the softest direction",
+                             format_count(report.saddles_left, "saddle")),
+                 style);
+  }
+  if (report.sharpest_turn > kSharpTurn) {
+    text +=
+        line("",
+             style.warning(fmt::format("the rod turns by {:.2g} rad at a single node: more nodes "
+                                       "would resolve the bend",
+                                       report.sharpest_turn)),
+             style);
+  }
+  return text;
+}
+
 std::string status_line(const Simulation& simulation, const RunOutcome& outcome,
                         const Style& style) {
   std::string status = outcome.status;
@@ -100,14 +136,11 @@ std::string status_line(const Simulation& simulation, const RunOutcome& outcome,
                          simulation.scenario().scene().time.duration);
   }
   if (outcome.equilibrium) {
-    const Index unstable = outcome.equilibrium->negative_pivots;
-    status +=
-        unstable == 0
-            ? ", stable"
-            : ", " + style.warning(fmt::format("UNSTABLE in {}: a small push would move it on",
-                                               format_count(unstable, "direction")));
+    status += ", " + stability_text(outcome.equilibrium->stability, style);
   }
-  return line("status", status, style);
+  std::string text = line("status", status, style);
+  if (outcome.equilibrium) text += equilibrium_lines(*outcome.equilibrium, style);
+  return text;
 }
 
 std::string what_ran(const Simulation& simulation) {

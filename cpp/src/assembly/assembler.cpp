@@ -95,6 +95,26 @@ void Assembler::add_mass(const Mass& mass, double factor, Vector& values) const 
   }
 }
 
+void Assembler::add_tension_stiffness(const Vector& positions, const Vector& tension,
+                                      Vector& values) const {
+  const auto& edges = std::get<ElementList<Stretch<2>>>(model_.elements);
+  const auto& map = std::get<ScatterMap<ElementList<Stretch<2>>>>(scatter_);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const auto ends = gather(edges.dofs[i], positions);
+    const Vec2 e = ends.tail<2>() - ends.head<2>();
+    const double length = e.norm();
+    const Vec2 normal{-e.y() / length, e.x() / length};
+    const Mat2 block = tension[static_cast<Index>(i)] / length * normal * normal.transpose();
+    const Index* slot = map.slots[i].data();
+    for (int column = 0; column < 4; ++column) {
+      for (int row = column; row < 4; ++row) {
+        const double entry = block(row % 2, column % 2);
+        values[*slot++] += row / 2 == column / 2 ? entry : -entry;
+      }
+    }
+  }
+}
+
 void Assembler::add_diagonal(const Vector& diagonal, double factor, Vector& values) const {
   for (std::size_t i = 0; i < diagonal_slots_.size(); ++i) {
     values[diagonal_slots_[i]] += factor * diagonal[model_.free_dofs[i]];

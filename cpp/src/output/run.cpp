@@ -18,7 +18,7 @@ std::string advance(Simulation& simulation, Recorder& recorder, const StepCallba
 }  // namespace
 
 RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& after_step) {
-  const bool is_static = simulation.scenario().scene().analysis == scenario::AnalysisKind::Static;
+  const bool is_static = !simulation.scenario().scene().is_dynamic();
   RunOutcome outcome;
   const auto fail = [&](const Error& error) {
     outcome.status = error.status();
@@ -26,7 +26,8 @@ RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& a
   };
   try {
     if (is_static) {
-      outcome.equilibrium = simulation.equilibrium();
+      outcome.equilibrium = simulation.equilibrium(
+          std::get<scenario::StaticAnalysis>(simulation.scenario().scene().analysis).leave_saddles);
       recorder.observe(simulation);
       outcome.status = "static_converged";
     } else {

@@ -78,7 +78,7 @@ constexpr const char* kEnergyNames[] = {"kinetic", "stretch", "bend", "gravity"}
 
 void write_head(hid_t file, const Simulation& simulation) {
   const scenario::Scene& scene = simulation.scenario().scene();
-  const bool is_static = scene.analysis == scenario::AnalysisKind::Static;
+  const bool is_static = !scene.is_dynamic();
   hdf5::write_attribute(file, "format_version", kFormatVersion);
   hdf5::write_attribute(file, "der_version", std::string(version));
   hdf5::write_attribute(file, "status", std::string("running"));

@@ -40,7 +40,7 @@ Json work_json(const Work& work, const Energies& now) {
 }  // namespace
 
 UsedSolver used_solver(const Simulation& simulation) {
-  const bool is_static = simulation.scenario().scene().analysis == scenario::AnalysisKind::Static;
+  const bool is_static = !simulation.scenario().scene().is_dynamic();
   const StepperInfo& integrator = simulation.integrator();
   if (is_static || integrator.implicit) {
     return {std::string(simulation.linear_solver()), simulation.linear_solver_reason()};
@@ -62,7 +62,7 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
                          const RunOutcome& outcome) {
   const scenario::Scene& scene = simulation.scenario().scene();
   const Model& model = simulation.model();
-  const bool is_static = scene.analysis == scenario::AnalysisKind::Static;
+  const bool is_static = !scene.is_dynamic();
 
   Json summary;
   summary["title"] = scene.title;
@@ -90,7 +90,11 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
   summary["wall_seconds"] = outcome.wall_seconds;
   if (outcome.equilibrium) {
     summary["residual"] = outcome.equilibrium->residual;
-    summary["unstable_directions"] = outcome.equilibrium->negative_pivots;
+    summary["stability"] = outcome.equilibrium->stability.name();
+    summary["unstable_directions"] = outcome.equilibrium->stability.unstable_directions;
+    summary["neutral_directions"] = outcome.equilibrium->stability.neutral_directions;
+    summary["saddles_left"] = outcome.equilibrium->saddles_left;
+    summary["sharpest_turn"] = outcome.equilibrium->sharpest_turn;
   }
   if (recorder.energies()) summary["energies"] = energies_json(*recorder.energies());
   if (recorder.energies() && !is_static) {

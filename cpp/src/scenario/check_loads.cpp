@@ -75,7 +75,7 @@ class LoadCheck {
   }
 
   void check_constant(bool constant, const Path& where) {
-    if (constant || context_.scene.analysis == AnalysisKind::Dynamic) return;
+    if (constant || context_.scene.is_dynamic()) return;
     complain(where, "a static analysis has no time: give a constant in place of a table");
   }
 

@@ -246,7 +246,7 @@ void check_free_nodes(CheckContext& context) {
   for (int i = 0; i < static_cast<int>(context.lines.size()); ++i) {
     if (context.complaints.under(rod_path(i))) continue;
     check_bends(context, i);
-    if (context.scene.analysis == AnalysisKind::Dynamic) check_masses(context, i);
+    if (context.scene.is_dynamic()) check_masses(context, i);
   }
 }
 

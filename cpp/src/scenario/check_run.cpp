@@ -151,7 +151,7 @@ void check_time(CheckContext& context) {
   Complaints& complaints = context.complaints;
   scene.time = static_cast<const Time&>(scene.given_time);
   scene.output = static_cast<const Output&>(scene.given_output);
-  if (scene.analysis == AnalysisKind::Static) return;
+  if (!scene.is_dynamic()) return;
   if (complaints.under({"time"}) || complaints.under({"analysis"})) return;
   const TimeText& given = scene.given_time;
   Time& time = scene.time;

@@ -13,7 +13,7 @@ std::array<bool, 3> components_held(const Support& support) {
 }
 
 void check_constant(CheckContext& context, bool constant, const Path& path) {
-  if (constant || context.scene.analysis == AnalysisKind::Dynamic) return;
+  if (constant || context.scene.is_dynamic()) return;
   context.complaints.add(path,
                          "a static analysis has no time: give a constant in place of a table");
 }

@@ -170,9 +170,7 @@ const Format<SceneText>& scene_format() {
                     "What holds or moves the rods.")
           .optional("loads", &Scene::loads, list_of(load_format(), 0), "What acts on the rods.")
           .optional("time", &SceneText::given_time, time_format(), "A run over time.")
-          .optional("analysis", &Scene::analysis,
-                    choice<AnalysisKind>(
-                        {{{"static", "the equilibrium under the loads"}, AnalysisKind::Static}}),
+          .optional("analysis", &Scene::analysis, analysis_format(),
                     "In place of `time`: an analysis without it.")
           .either({{"time"}, {"analysis"}})
           .optional("solver", &Scene::solver, solver_format(), "Numerical settings.")

@@ -46,6 +46,7 @@ Format<Support> support_format();
 /// A distributed force without `to` reaches to infinity until the checks know the rod.
 Format<Load> load_format();
 Format<TimeText> time_format();
+Format<Analysis> analysis_format();
 Format<Solver> solver_format();
 Format<OutputText> output_format();
 

@@ -1,70 +1,335 @@
 #include "der/statics/equilibrium.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "der/assembly/element_energy.hpp"
+#include "der/core/constants.hpp"
+#include "der/core/index.hpp"
+#include "der/kinematics/planar_edge.hpp"
 #include "der/loads/loads.hpp"
+#include "der/statics/potential.hpp"
+#include "der/statics/rigid_motion.hpp"
+#include "der/supports/clamp.hpp"
 #include "der/supports/supports.hpp"
 
 namespace der {
 namespace {
 
-constexpr int kMaxRelaxations = 400;
+/// Pseudo-time steps of one descent.
+constexpr int kMaxRelaxations = 500;
+/// Saddles left in a row before the search gives up; each has a lower potential than the last.
+constexpr int kMaxSaddles = 30;
 /// A structure that has moved this many times its size is held by nothing.
 constexpr double kDrift = 100.0;
+/// What is left of the resistance after a step that turns the rod; gentler where steps fail.
+constexpr double kEasing = 0.3;
+/// The same beside a saddle, where the potential is not convex.
+constexpr double kEasingAtSaddle = 0.7;
+/// No pseudo-time step turns an edge by more [rad]: beyond it lies another valley.
+constexpr double kLargestTurn = 2.0;
+/// A Newton step to the end of a descent must not change an edge by more than this.
+constexpr double kLastTurn = 0.5;
+/// Potentials closer than this, against the largest force times the size, are the same.
+constexpr double kSamePotential = 1e-13;
+/// The first load step, as a share of the whole.
+constexpr double kSmallestShare = 1.0 / 256.0;
+/// Turning angle [rad] at a node beyond which the rod is folded: at pi the curvature has no sign.
+constexpr double kFolded = 3.0;
+/// Share of its rest length at which an edge counts as pressed to a point.
+constexpr double kCollapsed = 1e-2;
 
-/// Number of negative eigenvalues of the stiffness at a solution.
-Index unstable_directions(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                          const Vector& controls, const Vector& positions) {
-  Vector gradient(model.num_dofs());
-  Vector values(assembler.num_values());
-  assembler.gradient_and_hessian(positions, controls, gradient, values);
-  return solver.factorize(values).negative_pivots;
-}
+class Search {
+ public:
+  Search(const Model& model, const Assembler& assembler, LinearSolver& solver,
+         const EquilibriumOptions& options, const State& state)
+      : model_(model),
+        options_(options),
+        newton_(model, assembler, solver, options.newton),
+        stiffness_(model, assembler, solver),
+        stage_(model) {
+    stage_.mass = {Vector::Ones(model.num_dofs()), {}};
+    turned_.setZero(static_cast<Index>(std::get<ElementList<PlanarMoment>>(model.elements).size()));
+    for (const RodLayout& rod : model.rods) {
+      if (rod.EI > 0.0) softness_ = std::max(softness_, rod.rest_length() / rod.EI);
+    }
+    model.controls.evaluate(state.time, stage_.controls);
+    external_force(model, stage_.controls, state.extra_force, stage_.force);
+  }
+
+  EquilibriumReport run(Vector& positions) {
+    Vector x = positions;
+    place_held(model_, stage_.controls, x);
+    start_ = x;
+    if (const std::string unheld = find_unheld_part(model_, stage_.force); !unheld.empty()) {
+      fail("not_held", unheld);
+      return report_;
+    }
+    report_.converged = newton(x) || descend(x, report_.force_scale / model_.size) || step_loads(x);
+    if (report_.converged) judge(x);
+    while (report_.converged && options_.leave_saddles &&
+           report_.stability.unstable_directions > 0) {
+      if (report_.saddles_left == kMaxSaddles || !leave_saddle(x)) {
+        report_.converged = false;
+        fail("not_converged", "only unstable equilibria were found");
+        break;
+      }
+      judge(x);
+    }
+    if (report_.converged) positions = x;
+    return report_;
+  }
+
+ private:
+  /// Raises the loads from a small part to the whole, in doubling steps, each with a descent from
+  /// the shape before: a shape that the whole load would crush gives way first. Returns false and
+  /// leaves `x` at the start if that does not help.
+  bool step_loads(Vector& x) {
+    const Stage whole = stage_;
+    const auto& moments = std::get<ElementList<PlanarMoment>>(model_.elements);
+    const double scale = report_.force_scale;
+    const auto [status, failure] = std::make_pair(report_.status, report_.failure);
+    if (status == "unbounded") return false;
+    x = start_;
+    bool found = true;
+    for (double share = kSmallestShare; found && share <= 1.0; share *= 2.0) {
+      stage_.force = share * whole.force;
+      for (const auto& moment : moments.constants) {
+        stage_.controls[moment.moment] = share * whole.controls[moment.moment];
+      }
+      found = descend(x, share * scale / model_.size);
+    }
+    stage_ = whole;
+    if (!found) fail(status, failure);  // that of the whole load says more
+    return found;
+  }
+
+  void fail(std::string status, std::string why) {
+    report_.status = std::move(status);
+    report_.failure = std::move(why);
+  }
+
+  void judge(Vector& x) {
+    stiffness_.evaluate(x, stage_.controls);
+    report_.stability = stiffness_.stability();
+    if (report_.stability.neutral_directions == 0) polish(x);
+    report_.residual =
+        (stage_.force - stiffness_.gradient())(model_.free_dofs).lpNorm<Eigen::Infinity>();
+    report_.sharpest_turn = sharpest_turn(model_, x);
+    report_.status.clear();
+    report_.failure.clear();
+  }
+
+  /// Solves for the balance of forces, those of the pseudo-time included.
+  bool solve(Vector& x, bool downhill = false) {
+    const Vector before = x;
+    const NewtonReport report =
+        downhill ? newton_.solve_downhill(stage_, x) : newton_.solve(stage_, x);
+    report_.newton_iterations += report.iterations;
+    report_.residual = report.residual;
+    report_.force_scale = report.force_scale;
+    if (!report.converged) {
+      fail("not_converged", report.failure);
+      return false;
+    }
+    if ((x - start_).lpNorm<Eigen::Infinity>() > kDrift * model_.size) {
+      fail("unbounded", "the structure moves away: nothing holds it");
+      x = before;
+      return false;
+    }
+    if (shortest_edge(x) < kCollapsed) {
+      fail("collapsed",
+           "a part of a rod is pressed together to a point: the load is greater than "
+           "its stiffness against shortening, EA, can take");
+      x = before;
+      return false;
+    }
+    return true;
+  }
+
+  /// Length of the edge that is shortened most, against its rest length.
+  double shortest_edge(const Vector& x) const {
+    double shortest = 1.0;
+    const auto compare = [&](const Vec2& e, double rest_length) {
+      shortest = std::min(shortest, e.norm() / rest_length);
+    };
+    const auto& edges = std::get<ElementList<Stretch<2>>>(model_.elements);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      const auto ends = gather(edges.dofs[e], x);
+      compare(ends.tail<2>() - ends.head<2>(), edges.constants[e].rest_length);
+    }
+    const auto& links = std::get<ElementList<FromPivot<Stretch<2>>>>(model_.elements);
+    for (std::size_t e = 0; e < links.size(); ++e) {
+      const auto& c = links.constants[e];
+      const Link link{links.dofs[e], c.first, c.last};
+      compare(link.vector(x, c.first.turn(stage_.controls), c.last.turn(stage_.controls)),
+              c.element.rest_length);
+    }
+    return shortest;
+  }
+
+  bool newton(Vector& x) {
+    stage_.inertia = 0.0;
+    return solve(x);
+  }
+
+  double change(const Vector& from, const Vector& to) const {
+    return potential_change(model_, stage_.controls, stage_.force, from, to);
+  }
+  double same_potential() const { return kSamePotential * report_.force_scale * model_.size; }
+
+  /// Follows the gradient flow from `x` to an equilibrium of lower potential, to which it sets `x`.
+  /// `resistance` [N/m] is the inverse of the first pseudo-time step, `easing` what is left of it
+  /// after a step. Returns false if it gets to none; `fallen_` is the change of the potential [J].
+  bool descend(Vector& x, double resistance, double easing = kEasing) {
+    constexpr double kFarTooMuch = 1e12;
+    const double most = kFarTooMuch * std::max(resistance, report_.force_scale / model_.size);
+    turned_.setZero();
+    double turn_for_newton = 0.3;
+    fallen_ = 0.0;
+    Vector next;
+    for (int i = 0; i < kMaxRelaxations && resistance <= most; ++i) {
+      ++report_.relaxations;
+      const std::optional<double> fall = relax(x, resistance, next);
+      if (!fall) {
+        resistance *= 4.0;
+        easing = std::sqrt(easing);
+        continue;
+      }
+      const double turn = largest_edge_change(model_, next - x);
+      if (turns_without_end(x, next)) return false;
+      x = next;
+      fallen_ += *fall;
+      if (turn < turn_for_newton) {
+        if (finish(x)) return true;
+        turn_for_newton *= 0.3;
+      }
+      if (turn < 1.0) resistance *= turn < 0.1 ? easing * easing : easing;
+      easing = std::max(kEasing, 0.9 * easing);
+    }
+    if (report_.status == "not_converged" && sharpest_turn(model_, x) > kFolded) {
+      fail("folded",
+           "the rod folds back on itself at one node, where the curvature ends: the mesh is "
+           "too coarse for this load");
+    }
+    return false;
+  }
+
+  /// Follows how far the edges with a moment have turned. A moment can wind up a rod by M L / EI;
+  /// if it turns much further, nothing holds against it.
+  bool turns_without_end(const Vector& from, const Vector& to) {
+    const auto& moments = std::get<ElementList<PlanarMoment>>(model_.elements);
+    for (std::size_t i = 0; i < moments.size(); ++i) {
+      const auto before = gather(moments.dofs[i], from);
+      const auto after = gather(moments.dofs[i], to);
+      const Index n = static_cast<Index>(i);
+      turned_[n] +=
+          angle_between(before.tail<2>() - before.head<2>(), after.tail<2>() - after.head<2>());
+      const double moment = std::abs(stage_.controls[moments.constants[i].moment]);
+      if (std::abs(turned_[n]) > 4.0 * kPi + 2.0 * moment * softness_) {
+        fail("unbounded", "a moment turns the rod on and on");
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// One pseudo-time step from `x` to `next`. Returns the change of the potential [J], or nothing
+  /// if the step cannot be done, leads uphill or too far.
+  std::optional<double> relax(const Vector& x, double resistance, Vector& next) {
+    stage_.inertia = resistance;
+    stage_.inertia_target = x;
+    for (const bool downhill : {false, true}) {
+      next = x;
+      if (!solve(next, downhill) || largest_edge_change(model_, next - x) > kLargestTurn) continue;
+      const double fall = change(x, next);
+      if (fall <= same_potential()) return fall;
+    }
+    return std::nullopt;
+  }
+
+  /// Plain Newton to the equilibrium at the end of a descent, if it is near and not uphill.
+  bool finish(Vector& x) {
+    Vector last = x;
+    if (!newton(last) || largest_edge_change(model_, last - x) > kLastTurn) return false;
+    const double fall = change(x, last);
+    if (fall > same_potential()) return false;
+    x = last;
+    fallen_ += fall;
+    return true;
+  }
+
+  /// Takes a few more Newton steps as long as they get shorter: the residual of stiff stretching
+  /// ends at its rounding error when the soft bending can still be solved better.
+  void polish(Vector& x) {
+    constexpr int kSteps = 3;
+    double allowed = 1e-4 * model_.size;
+    Vector residual;
+    for (int i = 0; i < kSteps; ++i) {
+      residual = (stage_.force - stiffness_.gradient())(model_.free_dofs);
+      if (!stiffness_.factorize().factorised) return;
+      stiffness_.solve(residual);
+      const double step = residual.lpNorm<Eigen::Infinity>();
+      if (!(step < allowed)) return;
+      for (Index k = 0; k < model_.num_free(); ++k) x[model_.free_dofs[at(k)]] += residual[k];
+      stiffness_.evaluate(x, stage_.controls);
+      allowed = 0.5 * step;
+    }
+  }
+
+  /// Goes down from the saddle `x` to both sides of its softest direction and sets `x` to the
+  /// equilibrium of lower potential; of the first side where both are the same.
+  bool leave_saddle(Vector& x) {
+    stiffness_.evaluate(x, stage_.controls);
+    const SoftDirection soft = stiffness_.softest();
+    Vector direction = Vector::Zero(model_.num_dofs());
+    for (Index i = 0; i < model_.num_free(); ++i) {
+      direction[model_.free_dofs[at(i)]] = soft.direction[i];
+    }
+    direction /= largest_edge_change(model_, direction);
+    const double same = 1e-6;  // of the fall
+    for (const double turn : {0.05, 0.001}) {
+      std::optional<Vector> best;
+      double best_fall = -same_potential();
+      for (const double side : {1.0, -1.0}) {
+        Vector here = x + side * turn * direction;
+        const double push = change(x, here);
+        if (!descend(here, 2.0 * std::abs(soft.curvature), kEasingAtSaddle)) continue;
+        const double fall = push + fallen_;
+        if (fall < best_fall - same * std::abs(best_fall)) {
+          best = here;
+          best_fall = fall;
+        }
+      }
+      if (best) {
+        x = *best;
+        ++report_.saddles_left;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  const Model& model_;
+  const EquilibriumOptions& options_;
+  Newton newton_;
+  Stiffness stiffness_;
+  Stage stage_;
+  Vector start_;
+  double softness_ = 0.0;  // largest L / EI of a rod [1/(N m)]
+  Vector turned_;          // [rad] of each edge with a moment in the last descent
+  double fallen_ = 0.0;    // [J] in the last descent
+  EquilibriumReport report_;
+};
 
 }  // namespace
 
 EquilibriumReport find_equilibrium(const Model& model, const Assembler& assembler,
-                                   LinearSolver& solver, const NewtonOptions& options,
+                                   LinearSolver& solver, const EquilibriumOptions& options,
                                    const State& state, Vector& positions) {
-  Stage stage(model);
-  stage.mass = {Vector::Ones(model.num_dofs()), {}};
-  model.controls.evaluate(state.time, stage.controls);
-  external_force(model, stage.controls, state.extra_force, stage.force);
-  place_held(model, stage.controls, positions);
-  Newton newton(model, assembler, solver, options);
-
-  EquilibriumReport result;
-  const Vector start = positions;
-  bool drifted = false;
-  const auto attempt = [&] {
-    const NewtonReport report = newton.solve(stage, positions);
-    result.newton_iterations += report.iterations;
-    result.residual = report.residual;
-    result.force_scale = report.force_scale;
-    result.failure = report.failure;
-    drifted = (positions - start).lpNorm<Eigen::Infinity>() > kDrift * model.size;
-    if (drifted) result.failure = "the structure drifts away: nothing holds it";
-    return report.converged && !drifted;
-  };
-
-  result.converged = attempt();
-  // `inertia` is the inverse of the pseudo-time step. It starts where the unbalanced force alone
-  // would move a node by the size of the structure.
-  double resistance = result.force_scale / model.size;
-  while (!result.converged && !drifted && result.relaxations < kMaxRelaxations) {
-    ++result.relaxations;
-    stage.inertia = resistance;
-    stage.inertia_target = positions;
-    const bool moved = attempt();
-    resistance *= moved ? 0.25 : 4.0;
-    if (!moved) continue;
-    stage.inertia = 0.0;
-    result.converged = attempt();
-  }
-  if (result.converged) {
-    result.failure.clear();
-    result.negative_pivots =
-        unstable_directions(model, assembler, solver, stage.controls, positions);
-  }
-  return result;
+  return Search(model, assembler, solver, options, state).run(positions);
 }
 
 }  // namespace der

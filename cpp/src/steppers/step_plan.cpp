@@ -52,7 +52,7 @@ StepPlan plan_steps(const scenario::Scene& scene, const Model& model, const Step
   StepPlan plan;
   plan.every = scene.output.every;
   plan.largest_step = std::numeric_limits<double>::infinity();
-  if (scene.analysis == scenario::AnalysisKind::Static) return plan;
+  if (!scene.is_dynamic()) return plan;
 
   plan.step = time.step;
   if (!stepper.implicit) {

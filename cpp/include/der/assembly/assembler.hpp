@@ -29,6 +29,9 @@ class Assembler {
                             Vector& values) const;
   /// Adds `factor` times the mass matrix; its couplings are the model's or none.
   void add_mass(const Mass& mass, double factor, Vector& values) const;
+  /// Adds the stiffness across the edges that a tension [N], one for each plain stretch element,
+  /// gives them.
+  void add_tension_stiffness(const Vector& positions, const Vector& tension, Vector& values) const;
   /// Adds `diagonal` (all degrees of freedom) times `factor` to the matrix diagonal.
   void add_diagonal(const Vector& diagonal, double factor, Vector& values) const;
   /// Adds `shift` to every diagonal entry of the matrix.

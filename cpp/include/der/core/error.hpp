@@ -40,10 +40,13 @@ class SceneError : public Error {
   std::vector<Diagnostic> diagnostics_;
 };
 
-/// Newton's method found no solution, even with the smallest allowed time step.
+/// Newton's method found no solution, even with the smallest allowed time step; or there is no
+/// equilibrium, for a reason that `status` names (EquilibriumReport).
 class NotConvergedError : public Error {
  public:
-  explicit NotConvergedError(const std::string& message) : Error("not_converged", message) {}
+  explicit NotConvergedError(const std::string& message,
+                             const std::string& status = "not_converged")
+      : Error(status, message) {}
 };
 
 /// The motion grew without bound or a value stopped being a number.

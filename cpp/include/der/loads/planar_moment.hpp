@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cmath>
+
+#include "der/core/constants.hpp"
 #include "der/core/types.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/planar_edge.hpp"
@@ -16,6 +19,11 @@ struct PlanarMoment {
     double share = 1.0;  ///< part of the moment that this edge takes [-]
     Index moment = -1;   ///< control that holds the moment [N m]
   };
+
+  /// The energy [J] is known up to multiples of this.
+  static double period(const Constants& c, const Vector& controls) {
+    return 2.0 * kPi * std::abs(c.share * controls[c.moment]);
+  }
 
   template <Derivatives D>
   static void evaluate(const Constants& c, const Vector& controls,

@@ -150,7 +150,15 @@ struct Load {
 };
 
 enum class ModelChoice { Auto, Planar };
-enum class AnalysisKind { Dynamic, Static };
+
+/// A run over time: `time:`.
+struct DynamicAnalysis {};
+/// The static equilibrium under the loads.
+struct StaticAnalysis {
+  bool leave_saddles = true;  ///< whether an unstable equilibrium is left for a stable one
+};
+/// What is done with the scene.
+using Analysis = std::variant<DynamicAnalysis, StaticAnalysis>;
 
 /// How long the time steps are.
 enum class Stepping {
@@ -200,13 +208,17 @@ struct Scene {
   std::string title;
   int dimension = 2;  ///< of the vectors in the text: 2 or 3
   ModelChoice model = ModelChoice::Auto;
-  AnalysisKind analysis = AnalysisKind::Dynamic;
+  Analysis analysis = DynamicAnalysis{};
   std::vector<Rod> rods;
   std::vector<Support> supports;
   std::vector<Load> loads;
-  Time time;  ///< unused with AnalysisKind::Static
+  Time time;  ///< of a dynamic analysis
   Solver solver;
   Output output;
+
+  [[nodiscard]] bool is_dynamic() const {
+    return std::holds_alternative<DynamicAnalysis>(analysis);
+  }
 };
 
 }  // namespace der::scenario

@@ -45,9 +45,13 @@ struct NewtonReport {
 /// Newton's method for a Stage, on preallocated memory: an iteration allocates nothing.
 ///
 /// First plain Newton steps, which converge fastest though the residual may rise on the way (a rod
-/// that turns is first stretched by its step, then springs back). If they do not get there, again
-/// from the guess with a line search on the slope of the potential along the step. Where the matrix
-/// is not positive definite it is shifted until it is, so that every step leads downhill.
+/// that turns is first stretched by its step, then springs back). In the matrix the stiffness
+/// across the edges comes from the tension that the step predicted, and not from the one that the
+/// stretch of the second order has falsely put into them (the mixed-integration-point Newton of
+/// Magisano, Leonetti and Garcea, Comput. Methods Appl. Mech. Engrg. 313, 2017); in the solution
+/// the two are the same. If they do not get there, again from the guess with a line search on the
+/// slope of the potential along the step. Where the matrix is not positive definite it is shifted
+/// until it is, so that every step leads downhill.
 class Newton {
  public:
   Newton(const Model& model, const Assembler& assembler, LinearSolver& solver,
@@ -56,6 +60,8 @@ class Newton {
   /// Solves for `positions`: on entry the guess, with held degrees of freedom already at their
   /// values; on exit the solution, or the guess again if not converged.
   NewtonReport solve(const Stage& stage, Vector& positions);
+  /// As above with the line search only: slower, but it does not jump to another valley.
+  NewtonReport solve_downhill(const Stage& stage, Vector& positions);
 
   /// Left side of the stage's equation at the last iterate, over all degrees of freedom [N]; on
   /// held ones it is the force that the support has to provide.
@@ -72,6 +78,8 @@ class Newton {
   double limit_turn();
   void move(const Vector& start, double factor, Vector& positions) const;
   double line_search(const Stage& stage, Vector& positions);
+  void predict_tension(const Vector& positions, double factor);
+  void use_predicted_tension(const Vector& positions);
   [[nodiscard]] double slope() const;
   void measure(NewtonReport& report) const;
 
@@ -85,6 +93,8 @@ class Newton {
   Vector direction_;     // over the free degrees of freedom
   Vector guess_;         // positions that the solve started from
   Vector line_start_;    // positions that the line search starts from
+  Vector tension_;       // of each edge, as the last step predicted it [N]
+  Vector excess_;        // of that over the tension at hand [N]
   double acting_ = 0.0;  // largest acting force at the last iterate [N]
   double noise_ = 0.0;   // rounding error of a force [N]
   double last_shift_ = 0.0;

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+
+namespace der {
+
+/// Change of the potential energy [J] from one shape to another, elastic and of the loads. `force`
+/// [N] is what acts besides the elements, `controls` are the values of the model's tables.
+/// Differences are formed element by element, so that they are exact to rounding of the change and
+/// not of the whole. Between the two no edge may turn by more than half a turn: the potential of a
+/// moment is known up to whole turns.
+double potential_change(const Model& model, const Vector& controls, const Vector& force,
+                        const Vector& from, const Vector& to);
+
+/// d' K d [J] of the stiffness K at `positions` for a displacement `direction` (all degrees of
+/// freedom) [m]. Taken element by element relative to the element's first node, it loses nothing to
+/// the rounding of the assembled matrix: rigid motions of unloaded elements give 0.
+double second_variation(const Model& model, const Vector& controls, const Vector& positions,
+                        const Vector& direction);
+
+/// The largest change [rad, or strain] that a displacement makes to an edge, against its rest
+/// length.
+double largest_edge_change(const Model& model, const Vector& displacement);
+
+/// The largest turning angle [rad] at a node that bends.
+double sharpest_turn(const Model& model, const Vector& positions);
+
+}  // namespace der

@@ -1,0 +1,75 @@
+#pragma once
+
+#include "der/assembly/assembler.hpp"
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+#include "der/solvers/linear_solver.hpp"
+
+namespace der {
+
+/// How the potential curves around an equilibrium.
+struct Stability {
+  Index unstable_directions = 0;  ///< independent directions in which it falls
+  /// Directions in which it is flat to rounding: rigid motions that nothing holds, or a critical
+  /// load.
+  Index neutral_directions = 0;
+  [[nodiscard]] const char* name() const {
+    if (unstable_directions > 0) return "unstable";
+    return neutral_directions > 0 ? "neutral" : "stable";
+  }
+};
+
+/// A direction and the curvature of the potential along it.
+struct SoftDirection {
+  Vector direction;        ///< over the free degrees of freedom, of length 1
+  double curvature = 0.0;  ///< [N/m]
+};
+
+/// The stiffness K at one shape: the Hessian of the potential over the free degrees of freedom, in
+/// the sparse layout of the linear solver, which it borrows for its factorisations.
+class Stiffness {
+ public:
+  Stiffness(const Model& model, const Assembler& assembler, LinearSolver& solver);
+
+  void evaluate(const Vector& positions, const Vector& controls);
+  /// Gradient [N] of the elements' energies at the same shape, all degrees of freedom.
+  [[nodiscard]] const Vector& gradient() const { return gradient_; }
+  /// K in the layout of the linear solver.
+  [[nodiscard]] const Vector& values() const { return values_; }
+
+  /// Factorises K + shift I, or K + shift diag(weight) with a weight for each degree of freedom. A
+  /// pivot that vanishes moves the shift a little.
+  Inertia factorize(double shift = 0.0) { return factorize(shift, ones_); }
+  Inertia factorize(double shift, const Vector& weight);
+  /// Solves with the last factorisation, in place; over the free degrees of freedom.
+  void solve(Vector& right_side) { solver_.solve(right_side); }
+
+  /// Eigenvalues [N/m] smaller than this cannot be told from zero.
+  [[nodiscard]] double rounding() const;
+  /// Counts eigenvalues by the signs of the pivots of two factorisations, shifted by the rounding
+  /// error to either side.
+  Stability stability();
+  /// The eigenvector of the smallest eigenvalue, to a few digits, by inverse iteration with a shift
+  /// just beyond it, found from the inertia. Its sign makes the largest component positive.
+  SoftDirection softest();
+  /// The eigenvector of the eigenvalue nearest to zero, likewise.
+  SoftDirection nearest_to_zero();
+
+ private:
+  SoftDirection inverse_iteration();
+
+  const Model& model_;
+  const Assembler& assembler_;
+  LinearSolver& solver_;
+  Vector gradient_;
+  Vector values_;
+  Vector shifted_;
+  Vector ones_;
+  Vector positions_;
+  Vector controls_;
+};
+
+/// A vector without structure, always the same, to start an iteration from.
+Vector unstructured_vector(Index size);
+
+}  // namespace der

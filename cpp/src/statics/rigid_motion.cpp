@@ -1,0 +1,71 @@
+#include "der/statics/rigid_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "der/core/index.hpp"
+
+namespace der {
+namespace {
+
+/// Nodes that hang together through elements: for each node the first of its part.
+std::vector<Index> connected_parts(const Model& model) {
+  std::vector<Index> parent(at(model.num_nodes));
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](Index node) {
+    while (parent[at(node)] != node) node = parent[at(node)] = parent[at(parent[at(node)])];
+    return node;
+  };
+  for_each_list(model.elements, [&](const auto& list) {
+    for (const auto& dofs : list.dofs) {
+      for (const Index dof : dofs) {
+        const Index a = root(dofs.front() / model.dimension);
+        const Index b = root(dof / model.dimension);
+        parent[at(std::max(a, b))] = std::min(a, b);
+      }
+    }
+  });
+  for (Index node = 0; node < model.num_nodes; ++node) parent[at(node)] = root(node);
+  return parent;
+}
+
+std::string rod_of(const Model& model, Index node) {
+  for (const RodLayout& rod : model.rods) {
+    for (const Index candidate : rod.nodes) {
+      if (candidate == node) return rod.name;
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string find_unheld_part(const Model& model, const Vector& force) {
+  constexpr double kBalance = 1e-9;  // of the forces that act
+  const std::vector<Index> part = connected_parts(model);
+  for (int c = 0; c < model.dimension; ++c) {
+    std::vector<char> held(at(model.num_nodes), 0);
+    std::vector<double> net(at(model.num_nodes), 0.0);
+    std::vector<double> acting(at(model.num_nodes), 0.0);
+    for (Index node = 0; node < model.num_nodes; ++node) {
+      const Index dof = model.dof(node, c);
+      const std::size_t first = at(part[at(node)]);
+      if (model.free_index[at(dof)] < 0) held[first] = 1;
+      net[first] += force[dof];
+      acting[first] += std::abs(force[dof]);
+    }
+    for (Index node = 0; node < model.num_nodes; ++node) {
+      const std::size_t i = at(node);
+      if (held[i] != 0 || std::abs(net[i]) <= kBalance * acting[i]) continue;
+      return fmt::format(
+          "no support holds rod '{}' in {}, and {:.3g} N act on it in that direction",
+          rod_of(model, node), "xyz"[c], net[i]);
+    }
+  }
+  return "";
+}
+
+}  // namespace der

@@ -38,11 +38,12 @@ from der._core import (
     scene_reference,
     steppers,
 )
+from der.analyses import BucklingModes, Modes, Path
 from der.errors import DerError, Diagnostic, DivergedError, NotConvergedError, SceneError
 from der.probe_series import ProbeSeries
 from der.result import Result
 from der.run_folder import open_run
-from der.simulation import Simulation, equilibrium, run
+from der.simulation import Simulation, continuation, equilibrium, run
 
 if TYPE_CHECKING:
     from der.plotting import plot
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
 load = Scenario.load
 
 __all__ = [
+    "BucklingModes",
     "Counters",
     "DerError",
     "Diagnostic",
@@ -58,7 +60,9 @@ __all__ = [
     "EquilibriumReport",
     "HeldNode",
     "Model",
+    "Modes",
     "NotConvergedError",
+    "Path",
     "ProbeSeries",
     "Result",
     "Rod",
@@ -68,6 +72,7 @@ __all__ = [
     "State",
     "StepperInfo",
     "__version__",
+    "continuation",
     "equilibrium",
     "held_nodes",
     "json_schema",

@@ -36,6 +36,7 @@ class Stiffness {
   [[nodiscard]] const Vector& gradient() const { return gradient_; }
   /// K in the layout of the linear solver.
   [[nodiscard]] const Vector& values() const { return values_; }
+  [[nodiscard]] Vector& values() { return values_; }
 
   /// Factorises K + shift I, or K + shift diag(weight) with a weight for each degree of freedom. A
   /// pivot that vanishes moves the shift a little.

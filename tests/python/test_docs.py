@@ -132,7 +132,7 @@ def test_snippets_of_the_python_page(tmp_path, monkeypatch, capsys):
         assert comment in printed
 
 
-@pytest.mark.parametrize(("page", "count"), [("statics", 1)])
+@pytest.mark.parametrize(("page", "count"), [("statics", 1), ("modes", 2), ("continuation", 1)])
 def test_statics_snippets_run(page, count, tmp_path, monkeypatch):
     assert run_snippets(ROOT / "docs" / f"{page}.md", tmp_path, monkeypatch) == count
 

@@ -399,4 +399,16 @@ RunFileHead read_head(const std::filesystem::path& path) {
   return head;
 }
 
+LastFrame read_last_frame(const std::filesystem::path& path) {
+  const hdf5::Session session;
+  const Handle file = hdf5::open_file(path, H5F_ACC_RDONLY);
+  const hsize_t frames = hdf5::length_of(hdf5::open_dataset(file.id(), "time").id());
+  if (frames == 0) throw IoError("'" + path.string() + "' holds no frame");
+  const auto read = [&](const char* name) {
+    const auto row = hdf5::read_row(hdf5::open_dataset(file.id(), name).id(), frames - 1);
+    return Vector(Eigen::Map<const Vector>(row.data(), static_cast<Index>(row.size())));
+  };
+  return {read("positions"), read("velocities")};
+}
+
 }  // namespace der

@@ -139,6 +139,12 @@ void check_continuation(CheckContext& context) {
 void check_time(CheckContext& context) {
   SceneText& scene = context.scene;
   check_continuation(context);
+  if (!scene.is_dynamic() && scene.start_from == "equilibrium") {
+    context.complaints.add(
+        {"start_from"},
+        "an analysis looks for the equilibrium itself: name the folder of a run, or "
+        "leave the key out");
+  }
   Complaints& complaints = context.complaints;
   scene.time = static_cast<const Time&>(scene.given_time);
   scene.output = static_cast<const Output&>(scene.given_output);

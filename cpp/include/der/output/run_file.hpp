@@ -52,4 +52,11 @@ struct RunFileHead {
 };
 RunFileHead read_head(const std::filesystem::path& path);
 
+/// The last whole frame of a run file.
+struct LastFrame {
+  Vector positions;   ///< [m]
+  Vector velocities;  ///< [m/s]
+};
+LastFrame read_last_frame(const std::filesystem::path& path);
+
 }  // namespace der

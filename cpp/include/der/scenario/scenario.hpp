@@ -223,6 +223,8 @@ struct Scene {
   std::vector<Support> supports;
   std::vector<Load> loads;
   Time time;  ///< of a dynamic analysis
+  /// "equilibrium", or the folder of a run whose last frame is the start; empty: as drawn.
+  std::string start_from;
   Solver solver;
   Output output;
 

@@ -10,6 +10,7 @@
 
 #include "der/output/recorder.hpp"
 #include "der/output/run.hpp"
+#include "der/output/start.hpp"
 #include "der/simulation.hpp"
 #include "force_functions.hpp"
 
@@ -21,7 +22,7 @@ namespace py = pybind11;
 /// against two callers at once, which the lock does not prevent since stepping lets go of it.
 class PySimulation {
  public:
-  explicit PySimulation(Scenario scenario) : engine_(std::move(scenario)) {}
+  explicit PySimulation(Scenario scenario) : engine_(std::move(scenario)) { apply_start(engine_); }
 
   /// Called after every step of a run, with the lock held; returns false to stop.
   using Callback = std::function<bool()>;

@@ -77,6 +77,16 @@ py::dict work_columns(const Recording& recording) {
   return columns_by_name(recording.frames.work, kLedgerNames);
 }
 
+py::dict analysis_data(const Recording& recording) {
+  py::dict data;
+  for (const Dataset& dataset : recording.data) {
+    const std::vector<py::ssize_t> shape(dataset.shape.begin(), dataset.shape.end());
+    data[py::str(dataset.name)] =
+        py::make_tuple(py::array_t<double>(shape, dataset.values.data()), dataset.unit);
+  }
+  return data;
+}
+
 py::dict probe_units(const Recording& recording) {
   py::dict units;
   for (std::size_t i = 0; i < recording.probe_names.size(); ++i) {
@@ -102,6 +112,7 @@ std::unique_ptr<Recording> record(const py::object& self,
   }
   recording->outcome =
       simulation.run(recorder, until, to_callback(callback), to_tick(tick), out, self);
+  recording->data = datasets(simulation.engine(), recording->outcome);
   recording->summary_json = summary_json(simulation.engine(), recorder, recording->outcome);
   return recording;
 }
@@ -141,6 +152,8 @@ void bind_recording(py::module_& module) {
                              "What has gone in and out of the energy since the start [J] by name, "
                              "shape (frames,).")
       .def_property_readonly("probes", &probe_columns, "Probes by name, shape (frames,).")
+      .def_property_readonly("data", &analysis_data,
+                             "What an analysis found besides: (array, unit) by name.")
       .def_property_readonly("probe_units", &probe_units, "SI units of the probes by name.");
 }
 

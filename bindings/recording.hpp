@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "der/output/datasets.hpp"
 #include "der/output/memory_sink.hpp"
 #include "der/output/run.hpp"
 
@@ -20,6 +21,7 @@ struct Recording {
   RunOutcome outcome;
   std::string summary_json;
   MemorySink frames;
+  std::vector<Dataset> data;
   std::vector<std::string> probe_names;
   std::vector<std::string> probe_units;
   Index dimension = 0;

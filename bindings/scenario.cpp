@@ -73,7 +73,10 @@ void bind_facts(ScenarioClass& cls) {
                              "Name of the file or text; empty for a dict.")
       .def_property_readonly(
           "is_static", [](const Scenario& s) { return !s.scene().is_dynamic(); },
-          "Whether the scene asks for an equilibrium (`analysis: static`), not for a motion.")
+          "Whether the scene asks for an analysis of equilibria, not for a motion.")
+      .def_property_readonly(
+          "analysis", [](const Scenario& s) { return s.scene().analysis_name(); },
+          "``dynamic``, ``static``, ``modes``, ``buckling`` or ``continuation``.")
       .def_property_readonly(
           "duration", [](const Scenario& s) { return s.scene().time.duration; },
           "Duration of the motion [s]; 0 for a static scene.")

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <vector>
@@ -152,13 +153,11 @@ void bind_arrays(PySimulationClass& cls) {
           "Gradient [N] of the potential energy of rods and loads, `extra_force` included, at the\n"
           "present state, shape (free,): zero in an equilibrium.")
       .def(
-          "lower_hessian",
-          [](const PySimulation& s) { return to_columns(s.engine().hessian()); },
+          "lower_hessian", [](const PySimulation& s) { return to_columns(s.engine().hessian()); },
           "Lower triangle of the Hessian [N/m] over the free degrees of freedom, in compressed\n"
           "columns: values, rows, column starts. `hessian` makes a matrix of it.")
       .def(
-          "lower_mass",
-          [](const PySimulation& s) { return to_columns(s.engine().mass()); },
+          "lower_mass", [](const PySimulation& s) { return to_columns(s.engine().mass()); },
           "Lower triangle of the mass matrix [kg], as `lower_hessian`. `mass` makes a matrix of "
           "it.");
 }
@@ -231,6 +230,28 @@ void bind_actions(PySimulationClass& cls) {
           "unstable\n"
           "equilibrium is left for a stable one, unless `leave_saddles` is false. Raises\n"
           "NotConvergedError.")
+      .def(
+          "vibration_modes",
+          [](PySimulation& simulation, int count) {
+            if (count < 1) throw py::value_error("the number of modes must be at least 1");
+            const std::vector<Mode> modes = simulation.engine().modes(count);
+            const Model& model = simulation.engine().model();
+            Array frequencies(static_cast<py::ssize_t>(modes.size()));
+            Array growth_rates(static_cast<py::ssize_t>(modes.size()));
+            Array shapes({static_cast<py::ssize_t>(modes.size()), py::ssize_t{model.num_nodes},
+                          py::ssize_t{model.dimension}});
+            for (std::size_t i = 0; i < modes.size(); ++i) {
+              const auto k = static_cast<py::ssize_t>(i);
+              frequencies.mutable_at(k) = modes[i].frequency;
+              growth_rates.mutable_at(k) = modes[i].growth_rate;
+              std::copy_n(modes[i].shape.data(), modes[i].shape.size(),
+                          shapes.mutable_data(k, 0, 0));
+            }
+            return py::make_tuple(frequencies, growth_rates, shapes);
+          },
+          py::arg("count"),
+          "Frequencies [Hz], growth rates [1/s] and shapes of the lowest modes about the present\n"
+          "equilibrium; `modes` makes an object of them.")
       .def(
           "add_force",
           [](PySimulation& simulation, py::function function) {

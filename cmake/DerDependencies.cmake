@@ -1,11 +1,12 @@
 # Finds what the library and its program stand on. All of it is in Debian:
 # libeigen3-dev libyaml-cpp-dev libhdf5-dev libcli11-dev nlohmann-json3-dev libfmt-dev
-# libsuitesparse-dev, and doctest-dev, libbenchmark-dev for tests and benchmarks.
+# libspectra-dev libsuitesparse-dev, and doctest-dev, libbenchmark-dev for tests and benchmarks.
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
+find_package(Spectra 1.0 REQUIRED)  # Lanczos' method, headers only
 
 # yaml-cpp 0.7 names its target `yaml-cpp`, 0.8 `yaml-cpp::yaml-cpp`.
 find_package(yaml-cpp REQUIRED)

@@ -141,6 +141,21 @@ def tolerance() -> Figure:
     return figure
 
 
+def beam_modes() -> Figure:
+    """Draw four vibration modes of a cantilever."""
+    return der.run(CONFIGS / "beam_modes.yaml").plot()
+
+
+def euler_buckling() -> Figure:
+    """Draw the path of a column and its bent branches."""
+    return der.run(CONFIGS / "euler_buckling.yaml").plot(probes=["aside", "end_x"])
+
+
+def snap_through_arch() -> Figure:
+    """Draw the path of a shallow arch and its skew branches."""
+    return der.run(CONFIGS / "snap_through_arch.yaml").plot()
+
+
 def new_axes() -> tuple[Figure, Axes]:
     """Return a figure with one set of axes."""
     return plt.subplots(figsize=(6, 4), layout="constrained")
@@ -156,6 +171,9 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         convergence,
         study,
         tolerance,
+        beam_modes,
+        euler_buckling,
+        snap_through_arch,
     )
 }
 

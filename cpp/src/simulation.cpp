@@ -142,6 +142,67 @@ EquilibriumReport Simulation::equilibrium(bool leave_saddles) {
   return report;
 }
 
+std::vector<Mode> Simulation::modes(int count) {
+  constexpr double kBalanced = 1e-6;
+  Vector controls;
+  Vector force;
+  model_.controls.evaluate(state_.time, controls);
+  external_force(model_, controls, state_.extra_force, force);
+  Stiffness stiffness(model_, assembler_, *solver_.solver);
+  stiffness.evaluate(state_.positions, controls);
+  const double unbalanced =
+      (stiffness.gradient() - force)(model_.free_dofs).lpNorm<Eigen::Infinity>();
+  const double acting =
+      std::max(stiffness.gradient().lpNorm<Eigen::Infinity>(), force.lpNorm<Eigen::Infinity>());
+  if (unbalanced > kBalanced * acting + stiffness.rounding() * model_.size) {
+    throw Error("model_error",
+                fmt::format("vibration modes are those of an equilibrium, but {:.3g} N are not in "
+                            "balance here: call equilibrium() first",
+                            unbalanced));
+  }
+  return vibration_modes(model_, assembler_, *solver_.solver, state_.positions, controls, count);
+}
+
+std::vector<BucklingMode> Simulation::buckling(int count) {
+  const LoadPath loads(scenario_.scene(), model_, scenario::Varied::Loads, std::nullopt);
+  loads.apply(0.0, model_);
+  try {
+    equilibrium();
+  } catch (...) {
+    loads.apply(1.0, model_);
+    throw;
+  }
+  return buckling_modes(model_, loads, assembler_, *solver_.solver, state_.positions, count);
+}
+
+std::vector<PathBranch> Simulation::follow(const scenario::ContinuationAnalysis& analysis) {
+  load_path_.emplace(scenario_.scene(), model_, analysis.vary, analysis.number);
+  if (!load_path_->varies()) {
+    load_path_.reset();
+    throw Error("model_error", "nothing varies along the path: what it follows is zero");
+  }
+  load_path_->apply(analysis.from, model_);
+  equilibrium();
+  ContinuationOptions options;
+  options.newton = stepper_options(scenario_.scene()).newton;
+  options.from = analysis.from;
+  options.to = analysis.to;
+  options.largest_step = analysis.step;
+  options.max_points = analysis.points;
+  options.branching = analysis.branches;
+  auto path =
+      follow_path(model_, *load_path_, assembler_, *solver_.solver, options, state_.positions);
+  load_path_->apply(analysis.from, model_);
+  return path;
+}
+
+void Simulation::show(const PathPoint& point, std::int64_t index) {
+  load_path_->apply(point.factor, model_);
+  state_.positions = point.positions;
+  state_.step = index;
+  state_.time = static_cast<double>(index);
+}
+
 Vector Simulation::gradient() const {
   Vector controls;
   Vector force;

@@ -47,11 +47,12 @@ from der.accuracy import (
     study,
     verify,
 )
+from der.analyses import BucklingModes, Modes, Path
 from der.errors import DerError, Diagnostic, DivergedError, NotConvergedError, SceneError
 from der.probe_series import ProbeSeries
 from der.result import Result
 from der.run_folder import open_run
-from der.simulation import Simulation, equilibrium, run
+from der.simulation import Simulation, continuation, equilibrium, run
 
 if TYPE_CHECKING:
     from der.plotting import plot
@@ -59,6 +60,7 @@ if TYPE_CHECKING:
 load = Scenario.load
 
 __all__ = [
+    "BucklingModes",
     "Counters",
     "DerError",
     "Diagnostic",
@@ -68,7 +70,9 @@ __all__ = [
     "ErrorEstimate",
     "HeldNode",
     "Model",
+    "Modes",
     "NotConvergedError",
+    "Path",
     "ProbeSeries",
     "Result",
     "Rod",
@@ -82,6 +86,7 @@ __all__ = [
     "Verification",
     "VerifiedValue",
     "__version__",
+    "continuation",
     "equilibrium",
     "held_nodes",
     "json_schema",

@@ -4,15 +4,23 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
+from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from der._core import Model, Rod, Scenario
+from der.analyses import (
+    BucklingModes,
+    Modes,
+    Path,
+    make_buckling_modes,
+    make_modes,
+    make_path,
+)
 from der.probe_series import ProbeSeries
 
 if TYPE_CHECKING:
@@ -48,6 +56,9 @@ class Result:
         Probes by name, each an array of shape (frames,) with its ``unit`` and ``summary``.
     summary
         What ``summary.json`` of a run folder says: status, model, solver, costs, probes.
+    data
+        Arrays that an analysis found besides, by name, as in ``results.h5``; `modes`, `buckling`
+        and `path` make objects of them.
     """
 
     scenario: Scenario
@@ -59,11 +70,27 @@ class Result:
     work: dict[str, NDArray[np.float64]]
     probes: dict[str, ProbeSeries]
     summary: dict[str, Any]
+    data: dict[str, NDArray[np.float64]] = field(default_factory=dict)
 
     @property
     def status(self) -> str:
         """``completed``, ``static_converged``, ``stopped``, or the name of a failure."""
         return str(self.summary["status"])
+
+    @property
+    def modes(self) -> Modes | None:
+        """Vibration modes, of ``analysis: modes``."""
+        return make_modes(self.data)
+
+    @property
+    def buckling(self) -> BucklingModes | None:
+        """Buckling modes, of ``analysis: buckling``; None also where nothing buckles."""
+        return make_buckling_modes(self.data)
+
+    @property
+    def path(self) -> Path | None:
+        """The path of equilibria, of ``analysis: continuation``; its points are the frames."""
+        return make_path(self.data)
 
     @cached_property
     def model(self) -> Model:
@@ -88,7 +115,7 @@ class Result:
 
         return plot(self, what, times=times, probes=probes, title=title)
 
-    def save(self, folder: str | os.PathLike[str]) -> Path:
+    def save(self, folder: str | os.PathLike[str]) -> FilePath:
         """Write a run folder that `der.open_run` reads, and return its path.
 
         It has ``results.h5``, ``summary.json`` and ``scene.yaml``, as der_run writes them, but no

@@ -21,6 +21,13 @@ if TYPE_CHECKING:
     import h5py
 
 _FORMAT_VERSION = 2
+#: What analyses find besides frames, with the unit of each array.
+_DATA_GROUPS = ("modes", "buckling", "path")
+_DATA_UNITS = {
+    "modes/frequencies": "Hz",
+    "modes/growth_rates": "1/s",
+    "modes/shapes": "kg^-1/2 m",
+}
 
 
 def open_run(folder: str | os.PathLike[str]) -> Result:
@@ -82,7 +89,16 @@ def _read_results(file: h5py.File, folder: Path) -> Result:
             summary,
         ),
         summary=summary,
+        data=_read_data(file),
     )
+
+
+def _read_data(file: h5py.File) -> dict[str, NDArray[np.float64]]:
+    return {
+        f"{group}/{name}": dataset[:]
+        for group in _DATA_GROUPS
+        for name, dataset in file.get(group, {}).items()
+    }
 
 
 def _read_summary(folder: Path, status: str) -> dict[str, Any]:
@@ -113,7 +129,7 @@ def _write_results(file: h5py.File, result: Result) -> None:
     file.attrs["der_version"] = __version__
     file.attrs["status"] = result.status
     file.attrs["title"] = result.scenario.title
-    file.attrs["analysis"] = "static" if result.scenario.is_static else "dynamic"
+    file.attrs["analysis"] = result.scenario.analysis
     file.attrs["model"] = model.name
     file.attrs["dimension"] = np.int64(model.dimension)
     _write(file, "scene", _fixed_text(result.scenario.to_yaml()), "")
@@ -128,6 +144,8 @@ def _write_results(file: h5py.File, result: Result) -> None:
     probes = file.create_group("probes")
     for name, probe in result.probes.items():
         _write(probes, name, np.asarray(probe), probe.unit)
+    for name, values in result.data.items():
+        _write(file, name, values, _DATA_UNITS.get(name, ""))
     rods = file.create_group("rods")
     for rod in result.rods:
         _write_rod(rods.create_group(rod.name), rod)

@@ -12,6 +12,7 @@ import numpy as np
 
 from der import _core
 from der._core import Recording, Scenario
+from der.analyses import Modes
 from der.errors import error_for
 from der.probe_series import make_probes
 from der.progress import ProgressFunction, ProgressLine
@@ -106,6 +107,19 @@ class Simulation(_core.Simulation):
             error.result = result
             raise error
         return result
+
+    def modes(self, k: int = 6) -> Modes:
+        """Return the `k` modes of lowest frequency about the present state.
+
+        The state has to be an equilibrium: call `equilibrium` first. Tensions, moments and the
+        curved shape count; damping does not.
+
+        Raises
+        ------
+        DerError
+            If forces are not in balance, or a free node has no mass.
+        """
+        return Modes(*self.vibration_modes(k))
 
     def hessian(self) -> csc_array:
         """Return the stiffness: the Hessian [N/m] of the potential at the present state.
@@ -214,15 +228,72 @@ def equilibrium(scenario: SceneLike) -> Result:
         If no equilibrium is found.
     """
     scene = as_scenario(scenario)
-    return run(scene if scene.is_static else _as_static(scene))
+    return run(scene if scene.analysis == "static" else _as_static(scene))
+
+
+def continuation(
+    scenario: SceneLike,
+    *,
+    vary: str = "loads",
+    start: float = 0.0,
+    to: float = 1.0,
+    step: float = 0.05,
+    points: int = 500,
+    branches: int = 0,
+    out: str | os.PathLike[str] | None = None,
+) -> Result:
+    """Follow the equilibria of a scene while its loads change in proportion to a factor.
+
+    Parameters
+    ----------
+    scenario
+        A scenario, the path of a scene file, or a dict with the keys of a scene file; its `time` or
+        `analysis` does not count.
+    vary
+        ``loads``, ``supports`` (prescribed motions), or one of them by number, as ``loads.0``.
+    start, to
+        First and last factor.
+    step
+        Largest distance of two points: change of the factor against ``to - start``, and of the
+        shape in units of like size.
+    points
+        Largest number of points of a branch.
+    branches
+        How many bifurcations deep other branches are followed.
+    out
+        Folder to write the run to.
+
+    Returns
+    -------
+    Result
+        One frame for each point; ``result.path`` has factors, stability, folds and bifurcations.
+
+    Raises
+    ------
+    NotConvergedError
+        If there is no equilibrium at the first factor.
+    """
+    settings = {
+        "vary": vary,
+        "from": start,
+        "to": to,
+        "step": step,
+        "points": points,
+        "branches": branches,
+    }
+    return run(_with_analysis(as_scenario(scenario), {"continuation": settings}), out)
 
 
 def _as_static(scenario: Scenario) -> Scenario:
+    return _with_analysis(scenario, "static")
+
+
+def _with_analysis(scenario: Scenario, analysis: Any) -> Scenario:
     scene = scenario.to_dict()
     for key in ("time", "analysis"):
         scene.pop(key, None)
     scene.get("output", {}).pop("every", None)
-    return Scenario.from_dict({**scene, "analysis": "static"})
+    return Scenario.from_dict({**scene, "analysis": analysis})
 
 
 def as_scenario(scenario: SceneLike) -> Scenario:
@@ -246,4 +317,5 @@ def _to_result(scenario: Scenario, recording: Recording) -> Result:
         work=recording.work,
         probes=make_probes(recording.probes, recording.probe_units, summary),
         summary=summary,
+        data={name: array for name, (array, _) in recording.data.items()},
     )

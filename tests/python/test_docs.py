@@ -143,7 +143,7 @@ def test_snippets_of_the_study_page(tmp_path, monkeypatch):
     assert (tmp_path / "study.png").exists()
 
 
-@pytest.mark.parametrize(("page", "count"), [("statics", 1)])
+@pytest.mark.parametrize(("page", "count"), [("statics", 1), ("modes", 2), ("continuation", 1)])
 def test_statics_snippets_run(page, count, tmp_path, monkeypatch):
     assert run_snippets(ROOT / "docs" / f"{page}.md", tmp_path, monkeypatch) == count
 

@@ -316,6 +316,7 @@ def test_scene_without_probes_gets_some(arm, swing):
 
 def test_solver_tolerance_is_part_of_the_bar(sagging):
     sagging["time"]["step"] = 0.05
+    sagging["output"]["every"] = 0.05
     exact = der.verify(sagging)["sag"]
     sagging["solver"] = {"residual_tolerance": 1e-1, "step_tolerance": 1e-1}
     loose = der.verify(sagging)["sag"]

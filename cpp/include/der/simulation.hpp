@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "der/assembly/assembler.hpp"
 #include "der/assembly/pattern.hpp"
@@ -12,7 +13,10 @@
 #include "der/scenario/reader.hpp"
 #include "der/solvers/linear_solver.hpp"
 #include "der/solvers/newton.hpp"
+#include "der/statics/continuation.hpp"
 #include "der/statics/equilibrium.hpp"
+#include "der/statics/load_path.hpp"
+#include "der/statics/modes.hpp"
 #include "der/steppers/adaptive_stepper.hpp"
 #include "der/steppers/step_plan.hpp"
 #include "der/steppers/stepper.hpp"
@@ -55,6 +59,19 @@ class Simulation {
   /// velocities zero. One that is unstable is left for a stable one, unless `leave_saddles` is
   /// false. Throws NotConvergedError.
   EquilibriumReport equilibrium(bool leave_saddles = true);
+
+  /// The `count` modes of lowest frequency about the present state, which has to be an equilibrium
+  /// (Error if not).
+  [[nodiscard]] std::vector<Mode> modes(int count);
+  /// Replaces the state by the equilibrium without loads, and returns its linear buckling modes
+  /// under the scene's loads. Throws NotConvergedError.
+  std::vector<BucklingMode> buckling(int count);
+  /// Follows the equilibria of the scene along a factor, from the equilibrium at its first value.
+  /// Leaves the state there. Throws NotConvergedError.
+  std::vector<PathBranch> follow(const scenario::ContinuationAnalysis& analysis);
+  /// Shows a point of a path that `follow` has found, number `index` of all: the state, and the
+  /// loads of the model, are those of the point.
+  void show(const PathPoint& point, std::int64_t index);
 
   /// Gradient [N] of the potential of elements and loads at the present state, over the free
   /// degrees of freedom: zero in an equilibrium.
@@ -99,6 +116,7 @@ class Simulation {
   double horizon_ = 0.0;
   State state_;
   Counters counters_;
+  std::optional<LoadPath> load_path_;  // of the last continuation
 };
 
 }  // namespace der

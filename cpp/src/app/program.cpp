@@ -17,6 +17,7 @@
 #include "der/output/io_error.hpp"
 #include "der/output/recorder.hpp"
 #include "der/output/run_folder.hpp"
+#include "der/output/start.hpp"
 #include "der/scenario/reader.hpp"
 #include "der/simulation.hpp"
 
@@ -94,6 +95,7 @@ ExitCode execute(const Options& options) {
     if (!options.quiet) print(check_report(simulation, Style::of(stdout)));
     return ExitCode::Completed;
   }
+  if (!options.resume) apply_start(simulation);
   return run_scene(options, simulation);
 }
 
@@ -104,6 +106,8 @@ ExitCode guarded(const Options& options) {
     return fail(options, error);
   } catch (const IoError& error) {
     return fail(ExitCode::IoFailure, error.what());
+  } catch (const NotConvergedError& error) {
+    return fail(ExitCode::NumericalFailure, error.what());
   } catch (const Error& error) {
     return fail(ExitCode::SceneError, error.what());
   } catch (const std::exception& error) {

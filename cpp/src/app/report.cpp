@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "der/app/format.hpp"
+#include "der/output/datasets.hpp"
 #include "der/output/summary.hpp"
 
 namespace der::app {
@@ -144,7 +145,18 @@ std::string status_line(const Simulation& simulation, const RunOutcome& outcome,
 }
 
 std::string what_ran(const Simulation& simulation) {
-  if (is_static(simulation)) return "static equilibrium";
+  switch (simulation.scenario().scene().analysis.index()) {
+    case 1:
+      return "static equilibrium";
+    case 2:
+      return "vibration modes about the equilibrium";
+    case 3:
+      return "linear buckling loads";
+    case 4:
+      return "continuation of equilibria";
+    default:
+      break;
+  }
   const std::string_view name = simulation.integrator().name;
   if (simulation.adaptive()) {
     return fmt::format("{}, adaptive steps for an error of {:g} of the size", name,
@@ -170,6 +182,51 @@ std::string cost_line(const Simulation& simulation, const RunOutcome& outcome, c
   return line("cost", text, style);
 }
 
+std::string modes_table(const RunOutcome& outcome, const Style& style) {
+  std::vector<Row> rows{{"mode", "frequency [Hz]", "growth rate [1/s]", ""}};
+  for (std::size_t i = 0; i < outcome.modes.size(); ++i) {
+    const Mode& mode = outcome.modes[i];
+    const bool rigid = mode.frequency == 0.0 && mode.growth_rate == 0.0;
+    rows.push_back({std::to_string(i + 1), number(mode.frequency), number(mode.growth_rate),
+                    rigid ? "free to move" : ""});
+  }
+  return aligned(rows, style);
+}
+
+std::string buckling_table(const RunOutcome& outcome, const Style& style) {
+  if (outcome.buckling.empty()) return "  the loads do not make it buckle, however large\n";
+  std::vector<Row> rows{{"mode", "critical load factor", ""}};
+  for (std::size_t i = 0; i < outcome.buckling.size(); ++i) {
+    rows.push_back({std::to_string(i + 1), number(outcome.buckling[i].load_factor), ""});
+  }
+  return aligned(rows, style);
+}
+
+/// Where the path turns and where others cross it.
+std::string path_tables(const Recorder& recorder, const RunOutcome& outcome, const Style& style) {
+  std::vector<Row> rows{{"event", "branch", "load factor", "unstable in"}};
+  for (const Probe& probe : recorder.probes()) rows.front().push_back(probe.name());
+  rows.front().emplace_back();
+  std::size_t index = 0;
+  for (std::size_t number_of = 0; number_of < outcome.path.size(); ++number_of) {
+    const PathBranch& branch = outcome.path[number_of];
+    for (const PathPoint& point : branch.points) {
+      const auto& probes = outcome.path_probes[index++];
+      const bool last = &point == &branch.points.back();
+      if (&point != &branch.points.front() && point.event == PathEvent::None && !last) continue;
+      Row row{last                             ? "end"
+              : point.event == PathEvent::None ? "start"
+                                               : event_name(point.event),
+              std::to_string(number_of), number(point.factor),
+              std::to_string(point.stability.unstable_directions)};
+      for (const double value : probes) row.push_back(number(value));
+      row.push_back(last ? branch.ending : "");
+      rows.push_back(row);
+    }
+  }
+  return aligned(rows, style);
+}
+
 }  // namespace
 
 std::string run_report(const Simulation& simulation, const Recorder& recorder,
@@ -183,8 +240,14 @@ std::string run_report(const Simulation& simulation, const Recorder& recorder,
     text += line("warning", style.warning(warning), style);
   }
   text += line("results", (folder.path() / "").string(), style);
+  if (!outcome.path.empty()) return text + "\n" + path_tables(recorder, outcome, style);
   if (!recorder.probes().empty() && recorder.has_data()) {
     text += "\n" + probe_table(simulation, recorder, style);
+  }
+  const auto& analysis = simulation.scenario().scene().analysis;
+  if (!outcome.modes.empty()) text += "\n" + modes_table(outcome, style);
+  if (std::holds_alternative<scenario::BucklingAnalysis>(analysis) && outcome.ok()) {
+    text += "\n" + buckling_table(outcome, style);
   }
   return text;
 }

@@ -244,6 +244,24 @@ hsize_t length_of(hid_t dataset) {
                          std::multiplies<hsize_t>());
 }
 
+std::vector<double> read_row(hid_t dataset, hsize_t row) {
+  std::vector<hsize_t> block = dimensions_of(dataset);
+  std::vector<hsize_t> start(block.size(), 0);
+  start.front() = row;
+  block.front() = 1;
+  const Handle file_space(H5Dget_space(dataset), H5Sclose, "read a row");
+  check(H5Sselect_hyperslab(file_space.id(), H5S_SELECT_SET, start.data(), nullptr, block.data(),
+                            nullptr),
+        "read a row");
+  const Handle memory_space = simple_space(block, nullptr);
+  std::vector<double> values(
+      std::accumulate(block.begin(), block.end(), hsize_t{1}, std::multiplies<hsize_t>()));
+  check(H5Dread(dataset, H5T_NATIVE_DOUBLE, memory_space.id(), file_space.id(), H5P_DEFAULT,
+                values.data()),
+        "read a row");
+  return values;
+}
+
 Column Column::create(hid_t parent, const std::string& name, hid_t type,
                       const std::vector<hsize_t>& row, hsize_t chunk_rows) {
   std::vector<hsize_t> dimensions{0};

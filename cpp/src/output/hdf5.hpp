@@ -122,6 +122,9 @@ std::vector<T> read_vector(hid_t dataset) {
   return data;
 }
 
+/// Row number `row` of a dataset of doubles, flat.
+std::vector<double> read_row(hid_t dataset, hsize_t row);
+
 /// A dataset that grows by rows along its first dimension. Nothing is cached on our side of the
 /// operating system, so an appended row is one write at its place in the file.
 class Column {

@@ -15,24 +15,59 @@ std::string advance(Simulation& simulation, Recorder& recorder, const StepCallba
   return "completed";
 }
 
+/// Does one kind of analysis, puts its results into the outcome and its shapes into the recorder.
+/// Returns the status.
+struct Analyse {
+  Simulation& simulation;
+  Recorder& recorder;
+  const StepCallback& after_step;
+  RunOutcome& outcome;
+
+  std::string operator()(const scenario::DynamicAnalysis& /*analysis*/) const {
+    return advance(simulation, recorder, after_step);
+  }
+  std::string operator()(const scenario::StaticAnalysis& analysis) const {
+    outcome.equilibrium = simulation.equilibrium(analysis.leave_saddles);
+    recorder.observe(simulation);
+    return "static_converged";
+  }
+  std::string operator()(const scenario::ModesAnalysis& analysis) const {
+    outcome.equilibrium = simulation.equilibrium();
+    recorder.observe(simulation);
+    outcome.modes = simulation.modes(analysis.count);
+    return "completed";
+  }
+  std::string operator()(const scenario::BucklingAnalysis& analysis) const {
+    outcome.buckling = simulation.buckling(analysis.count);
+    recorder.observe(simulation);
+    return "completed";
+  }
+  std::string operator()(const scenario::ContinuationAnalysis& analysis) const {
+    outcome.path = simulation.follow(analysis);
+    std::int64_t index = 0;
+    for (const PathBranch& branch : outcome.path) {
+      for (const PathPoint& point : branch.points) {
+        simulation.show(point, index++);
+        recorder.observe(simulation);
+        auto& probes = outcome.path_probes.emplace_back();
+        for (const ProbeSummary& probe : recorder.summaries()) probes.push_back(probe.final);
+      }
+    }
+    return "completed";
+  }
+};
+
 }  // namespace
 
 RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& after_step) {
-  const bool is_static = !simulation.scenario().scene().is_dynamic();
   RunOutcome outcome;
   const auto fail = [&](const Error& error) {
     outcome.status = error.status();
     outcome.message = error.what();
   };
   try {
-    if (is_static) {
-      outcome.equilibrium = simulation.equilibrium(
-          std::get<scenario::StaticAnalysis>(simulation.scenario().scene().analysis).leave_saddles);
-      recorder.observe(simulation);
-      outcome.status = "static_converged";
-    } else {
-      outcome.status = advance(simulation, recorder, after_step);
-    }
+    outcome.status = std::visit(Analyse{simulation, recorder, after_step, outcome},
+                                simulation.scenario().scene().analysis);
   } catch (const NotConvergedError& error) {
     fail(error);
   } catch (const DivergedError& error) {

@@ -78,12 +78,11 @@ constexpr const char* kEnergyNames[] = {"kinetic", "stretch", "bend", "gravity"}
 
 void write_head(hid_t file, const Simulation& simulation) {
   const scenario::Scene& scene = simulation.scenario().scene();
-  const bool is_static = !scene.is_dynamic();
   hdf5::write_attribute(file, "format_version", kFormatVersion);
   hdf5::write_attribute(file, "der_version", std::string(version));
   hdf5::write_attribute(file, "status", std::string("running"));
   hdf5::write_attribute(file, "title", scene.title);
-  hdf5::write_attribute(file, "analysis", std::string(is_static ? "static" : "dynamic"));
+  hdf5::write_attribute(file, "analysis", std::string(scene.analysis_name()));
   hdf5::write_attribute(file, "model", simulation.model().name);
   hdf5::write_attribute(file, "dimension", std::int64_t{simulation.model().dimension});
   hdf5::write_text(file, "scene", simulation.scenario().to_yaml());
@@ -130,6 +129,7 @@ class RunFile::Writer {
     abandoned_ = true;
   }
   [[nodiscard]] bool abandoned() const { return abandoned_; }
+  void add(const std::vector<Dataset>& datasets);
   void set_status(const std::string& status);
   /// Writes the frames that have gathered: all but /time first, so that the length of /time counts
   /// the frames that are whole.
@@ -319,6 +319,19 @@ void RunFile::Writer::commit_frames() {
   flush();
 }
 
+void RunFile::Writer::add(const std::vector<Dataset>& datasets) {
+  for (const Dataset& dataset : datasets) {
+    const auto slash = dataset.name.find('/');
+    const std::string group = dataset.name.substr(0, slash);
+    if (!hdf5::exists(file_.id(), group)) hdf5::create_group(file_.id(), group);
+    const std::vector<hsize_t> dimensions(dataset.shape.begin(), dataset.shape.end());
+    const Handle handle =
+        hdf5::create_fixed(file_.id(), dataset.name, H5T_NATIVE_DOUBLE, dimensions);
+    hdf5::write_all(handle.id(), dataset.values.data());
+    hdf5::write_attribute(handle.id(), "unit", dataset.unit);
+  }
+}
+
 void RunFile::Writer::set_status(const std::string& status) {
   hdf5::write_attribute(file_.id(), "status", status);
   flush();
@@ -366,6 +379,10 @@ void RunFile::stepped(const Simulation& simulation, const Recorder& recorder) {
   if (writer_->due()) guarded([&] { writer_->commit(simulation, recorder); });
 }
 
+void RunFile::add(const std::vector<Dataset>& datasets) {
+  guarded([&] { writer_->add(datasets); });
+}
+
 void RunFile::finish(const std::string& status, const Simulation& simulation,
                      const Recorder& recorder) {
   guarded([&] {
@@ -390,6 +407,18 @@ RunFileHead read_head(const std::filesystem::path& path) {
     head.time = checkpoint->state.time;
   }
   return head;
+}
+
+LastFrame read_last_frame(const std::filesystem::path& path) {
+  const hdf5::Session session;
+  const Handle file = hdf5::open_file(path, H5F_ACC_RDONLY);
+  const hsize_t frames = hdf5::length_of(hdf5::open_dataset(file.id(), "time").id());
+  if (frames == 0) throw IoError("'" + path.string() + "' holds no frame");
+  const auto read = [&](const char* name) {
+    const auto row = hdf5::read_row(hdf5::open_dataset(file.id(), name).id(), frames - 1);
+    return Vector(Eigen::Map<const Vector>(row.data(), static_cast<Index>(row.size())));
+  };
+  return {read("positions"), read("velocities")};
 }
 
 }  // namespace der

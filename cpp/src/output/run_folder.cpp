@@ -69,6 +69,8 @@ RunOutcome run_into_file(RunFile& file, const RunFolder& folder, Simulation& sim
                          Recorder& recorder, const StepCallback& after_step) {
   recorder.add(file);
   const RunOutcome outcome = run(simulation, recorder, after_step);
+  file.add(datasets(simulation, outcome));
+  if (!outcome.path.empty()) write_file(folder.path_table(), path_csv(simulation, outcome));
   file.finish(outcome.status, simulation, recorder);
   write_file(folder.summary(), summary_json(simulation, recorder, outcome));
   return outcome;
@@ -94,7 +96,7 @@ void RunFolder::prepare() const {
   fs::create_directories(path_, error);
   if (error) throw IoError("cannot create '" + path_.string() + "': " + error.message());
   // The summary first: what is left must never look like the end of the run that begins now.
-  for (const fs::path& file : {summary(), results(), scene()}) remove_file(file);
+  for (const fs::path& file : {summary(), results(), scene(), path_table()}) remove_file(file);
 }
 
 RunFileHead check_resumable(const RunFolder& folder, const Scenario& scenario) {

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "der/output/datasets.hpp"
 #include "der/version.hpp"
 
 namespace der {
@@ -37,6 +38,47 @@ Json work_json(const Work& work, const Energies& now) {
   return json;
 }
 
+Json path_json(const RunOutcome& outcome, const Recorder& recorder) {
+  Json path;
+  path["points"] = outcome.path_probes.size();
+  path["branches"] = Json::array();
+  path["events"] = Json::array();
+  std::size_t row = 0;
+  for (std::size_t number = 0; number < outcome.path.size(); ++number) {
+    const PathBranch& branch = outcome.path[number];
+    path["branches"].push_back({{"parent", branch.parent},
+                                {"side", branch.side},
+                                {"points", branch.points.size()},
+                                {"ending", branch.ending}});
+    for (const PathPoint& point : branch.points) {
+      const std::vector<double>& values = outcome.path_probes[row++];
+      const bool begins = &point == &branch.points.front();  // told by its parent already
+      if (point.event == PathEvent::None || begins) continue;
+      Json probes = Json::object();
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        probes[recorder.probes()[i].name()] = values[i];
+      }
+      path["events"].push_back({{"kind", event_name(point.event)},
+                                {"branch", number},
+                                {"load_factor", point.factor},
+                                {"unstable_directions", point.stability.unstable_directions},
+                                {"probes", std::move(probes)}});
+    }
+  }
+  return path;
+}
+
+void add_analysis(const RunOutcome& outcome, const Recorder& recorder, Json& summary) {
+  for (const Mode& mode : outcome.modes) {
+    summary["frequencies_hz"].push_back(mode.frequency);
+    summary["growth_rates"].push_back(mode.growth_rate);
+  }
+  for (const BucklingMode& mode : outcome.buckling) {
+    summary["load_factors"].push_back(mode.load_factor);
+  }
+  if (!outcome.path.empty()) summary["path"] = path_json(outcome, recorder);
+}
+
 }  // namespace
 
 UsedSolver used_solver(const Simulation& simulation) {
@@ -53,9 +95,10 @@ std::vector<std::string> warnings(const Simulation& simulation, const Recorder& 
   const double made = -numerical_loss(simulation.state().work, *recorder.energies());
   const double scale = recorder.largest_kinetic_energy();
   if (made < kMuchEnergy * scale) return {};
-  return {fmt::format("the time stepping itself has made {:.2g} J of energy, against at most {:.2g} J "
-                      "of motion: take smaller steps, or tr_bdf2",
-                      made, scale)};
+  return {
+      fmt::format("the time stepping itself has made {:.2g} J of energy, against at most {:.2g} J "
+                  "of motion: take smaller steps, or tr_bdf2",
+                  made, scale)};
 }
 
 std::string summary_json(const Simulation& simulation, const Recorder& recorder,
@@ -70,7 +113,7 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
   if (outcome.failed()) {
     summary["failure"] = {{"message", outcome.message}, {"time", outcome.time}};
   }
-  summary["analysis"] = is_static ? "static" : "dynamic";
+  summary["analysis"] = scene.analysis_name();
   summary["model"] = model.name;
   summary["model_reason"] = model.reason;
   summary["integrator"] = is_static ? "none" : simulation.integrator().name;
@@ -96,6 +139,7 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
     summary["saddles_left"] = outcome.equilibrium->saddles_left;
     summary["sharpest_turn"] = outcome.equilibrium->sharpest_turn;
   }
+  add_analysis(outcome, recorder, summary);
   if (recorder.energies()) summary["energies"] = energies_json(*recorder.energies());
   if (recorder.energies() && !is_static) {
     summary["work"] = work_json(simulation.state().work, *recorder.energies());

@@ -1,4 +1,6 @@
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "scenario/scene_text.hpp"
 #include "scenario/table.hpp"
@@ -10,6 +12,45 @@ constexpr auto assign_analysis = [](Analysis& analysis, auto&& what) {
   analysis = std::forward<decltype(what)>(what);
 };
 
+struct ContinuationText : ContinuationAnalysis {
+  std::string given_vary = "loads";
+};
+
+constexpr auto assign_continuation = [](Analysis& analysis, ContinuationText&& text) {
+  analysis = static_cast<ContinuationAnalysis&&>(text);
+};
+
+/// Reads `loads`, `supports` or one of them with its number; false if it is neither.
+bool read_varied(const std::string& text, ContinuationAnalysis& out) {
+  const auto dot = text.find('.');
+  const std::string kind = text.substr(0, dot);
+  if (kind != "loads" && kind != "supports") return false;
+  out.vary = kind == "loads" ? Varied::Loads : Varied::Supports;
+  if (dot == std::string::npos) return true;
+  const std::string digits = text.substr(dot + 1);
+  if (digits.empty() || digits.size() > 6 ||
+      digits.find_first_not_of("0123456789") != std::string::npos) {
+    return false;
+  }
+  out.number = std::stoi(digits);
+  return true;
+}
+
+void check_continuation(ContinuationText& text, const Place& place, Complaints& complaints) {
+  const Mapping& entries = *place.value->mapping();
+  if (text.from == text.to) {
+    const Entry* to = find_entry(entries, "to");
+    complaints.add(to ? place.at(*to) : place,
+                   fmt::format("must differ from 'from', but both are {}", text.to));
+  }
+  if (!read_varied(text.given_vary, text)) {
+    complaints.add(place.at(*find_entry(entries, "vary")),
+                   fmt::format("expected 'loads', 'supports', or one by its number, as 'loads.0', "
+                               "got '{}'",
+                               text.given_vary));
+  }
+}
+
 Format<StaticAnalysis> static_format() {
   return mapping(
       Table<StaticAnalysis>("static analysis", "The equilibrium under the loads.")
@@ -20,17 +61,69 @@ Format<StaticAnalysis> static_format() {
                     "Which equilibrium is the answer."));
 }
 
+Format<ModesAnalysis> modes_format() {
+  return mapping(Table<ModesAnalysis>("modes analysis",
+                                      "Natural frequencies and shapes of free vibrations about the "
+                                      "equilibrium under the loads.")
+                     .optional("count", &ModesAnalysis::count, integer(at_least(1)),
+                               "How many, from the lowest frequency on.", "6"));
+}
+
+Format<BucklingAnalysis> buckling_format() {
+  return mapping(Table<BucklingAnalysis>(
+                     "buckling analysis",
+                     "Linear buckling: factors of all loads at which the shape without load, "
+                     "or little deformed, becomes unstable.")
+                     .optional("count", &BucklingAnalysis::count, integer(at_least(1)),
+                               "How many, from the lowest load on.", "3"));
+}
+
+Format<ContinuationText> continuation_format() {
+  return mapping(
+      Table<ContinuationText>("continuation",
+                              "The path of equilibria as loads change in proportion to a factor, "
+                              "through limit points; its folds and bifurcations.")
+          .optional("vary", &ContinuationText::given_vary, text(),
+                    "What the factor scales: `loads` (all of them), `supports` (all prescribed "
+                    "motions), or one by its number, as `loads.0`.",
+                    "`loads`")
+          .optional("from", &ContinuationAnalysis::from, number(""), "First factor.", "0")
+          .optional("to", &ContinuationAnalysis::to, number(""),
+                    "Last factor. A path also ends when it has gone as far to the other side of "
+                    "`from`.",
+                    "1")
+          .optional("step", &ContinuationAnalysis::step, number("", positive()),
+                    "Largest distance of two points: change of the factor against `to - from`, and "
+                    "of the shape in units of like size.",
+                    "0.05")
+          .optional("points", &ContinuationAnalysis::points, integer(at_least(2)),
+                    "Largest number of points of a branch.", "500")
+          .optional("branches", &ContinuationAnalysis::branches, integer(not_negative()),
+                    "How many bifurcations deep the paths that branch off are followed, to both "
+                    "sides; 0: only the first path.",
+                    "0")
+          .check(check_continuation));
+}
+
 /// The analyses with settings of their own.
 Format<Analysis> table_format() {
   return mapping(
       Table<Analysis>("analysis", "Exactly one of these keys, with the settings of that analysis.")
-          .kind("static", static_format(), assign_analysis, "The equilibrium under the loads."));
+          .kind("static", static_format(), assign_analysis, "The equilibrium under the loads.")
+          .kind("modes", modes_format(), assign_analysis, "Free vibrations about it.")
+          .kind("buckling", buckling_format(), assign_analysis, "Linear buckling loads.")
+          .kind("continuation", continuation_format(), assign_continuation,
+                "The path of equilibria along a load."));
 }
 
 /// The analyses as words, with their default settings.
 Format<Analysis> word_format() {
   const std::vector<std::pair<Word, Analysis>> options{
-      {{"static", "the equilibrium under the loads"}, StaticAnalysis{}}};
+      {{"static", "the equilibrium under the loads"}, StaticAnalysis{}},
+      {{"modes", "free vibrations about that equilibrium"}, ModesAnalysis{}},
+      {{"buckling", "linear buckling loads"}, BucklingAnalysis{}},
+      {{"continuation", "the path of equilibria from no load to the whole"},
+       ContinuationAnalysis{}}};
   Shape shape{Shape::Kind::Choice};
   for (const auto& [word, analysis] : options) shape.words.push_back(word);
   return {std::move(shape),

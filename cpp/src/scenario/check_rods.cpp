@@ -246,7 +246,8 @@ void check_free_nodes(CheckContext& context) {
   for (int i = 0; i < static_cast<int>(context.lines.size()); ++i) {
     if (context.complaints.under(rod_path(i))) continue;
     check_bends(context, i);
-    if (context.scene.is_dynamic()) check_masses(context, i);
+    const bool vibrates = std::holds_alternative<ModesAnalysis>(context.scene.analysis);
+    if (context.scene.is_dynamic() || vibrates) check_masses(context, i);
   }
 }
 

@@ -144,10 +144,49 @@ class ProbeCheck {
   bool supports_known_;  // otherwise nobody knows which ends are clamped
 };
 
+/// Whether what a continuation varies is there.
+void check_continuation(CheckContext& context) {
+  const auto* continuation = std::get_if<ContinuationAnalysis>(&context.scene.analysis);
+  if (!continuation || context.complaints.under({"analysis"})) return;
+  const bool loads = continuation->vary == Varied::Loads;
+  const char* const kind = loads ? "loads" : "supports";
+  if (context.complaints.under({kind})) return;
+  const std::size_t count = loads ? context.scene.loads.size() : context.scene.supports.size();
+  const Path path{"analysis", "continuation", "vary"};
+  if (continuation->number && static_cast<std::size_t>(*continuation->number) >= count) {
+    context.complaints.add(path, fmt::format("there is no {}.{}: the scene has {} of them, counted "
+                                             "from 0",
+                                             kind, *continuation->number, count));
+    return;
+  }
+  const auto moves = [](const Support& support) {
+    return !support.prescribe.empty() || support.rotation.has_value();
+  };
+  bool varies = loads && count > 0;
+  for (std::size_t i = 0; !loads && i < count; ++i) {
+    const bool chosen =
+        !continuation->number || static_cast<std::size_t>(*continuation->number) == i;
+    varies = varies || (chosen && moves(context.scene.supports[i]));
+  }
+  if (!varies) {
+    context.complaints.add(
+        path, loads
+                  ? "the scene has no loads that could vary"
+                  : "no such support has a prescribed motion that could vary: give it 'prescribe'");
+  }
+}
+
 }  // namespace
 
 void check_time(CheckContext& context) {
   SceneText& scene = context.scene;
+  check_continuation(context);
+  if (!scene.is_dynamic() && scene.start_from == "equilibrium") {
+    context.complaints.add(
+        {"start_from"},
+        "an analysis looks for the equilibrium itself: name the folder of a run, or "
+        "leave the key out");
+  }
   Complaints& complaints = context.complaints;
   scene.time = static_cast<const Time&>(scene.given_time);
   scene.output = static_cast<const Output&>(scene.given_output);

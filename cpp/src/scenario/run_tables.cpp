@@ -173,6 +173,11 @@ const Format<SceneText>& scene_format() {
           .optional("analysis", &Scene::analysis, analysis_format(),
                     "In place of `time`: an analysis without it.")
           .either({{"time"}, {"analysis"}})
+          .optional(
+              "start_from", &Scene::start_from, text(),
+              "Where to start: `equilibrium` (that under the loads at time 0), or the folder of "
+              "a run of the same rods, whose last frame it is.",
+              "the shape as drawn")
           .optional("solver", &Scene::solver, solver_format(), "Numerical settings.")
           .optional("output", &SceneText::given_output, output_format(), "What is saved."));
   return format;

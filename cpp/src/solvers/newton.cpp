@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "der/assembly/element_energy.hpp"
 #include "der/core/index.hpp"
 
 namespace der {
@@ -42,11 +41,8 @@ Newton::Newton(const Model& model, const Assembler& assembler, LinearSolver& sol
       values_(Vector::Zero(assembler.num_values())),
       direction_(Vector::Zero(model.num_free())),
       guess_(Vector::Zero(model.num_dofs())),
-      line_start_(Vector::Zero(model.num_dofs())) {
-  const auto edges = static_cast<Index>(std::get<ElementList<Stretch<2>>>(model.elements).size());
-  tension_.setZero(edges);
-  excess_.setZero(edges);
-}
+      line_start_(Vector::Zero(model.num_dofs())),
+      tension_(model, assembler) {}
 
 NewtonReport Newton::solve(const Stage& stage, Vector& positions) {
   guess_ = positions;
@@ -85,12 +81,12 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
     double step = direction_.lpNorm<Eigen::Infinity>();
     bool have_system = false;
     if (mode == Mode::FullSteps) {
-      predict_tension(positions, 1.0);
+      tension_.predict(positions, direction_);
       move(positions, 1.0, positions);
       have_system = step > kNearSolution * model_.size;
       if (have_system) {
         evaluate_system(stage, positions);
-        use_predicted_tension(positions);
+        tension_.use(positions, values_);
       } else {
         evaluate_residual(stage, positions);
       }
@@ -114,7 +110,7 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
     }
     if (have_system) continue;
     evaluate_system(stage, positions);
-    if (mode == Mode::FullSteps) use_predicted_tension(positions);
+    if (mode == Mode::FullSteps) tension_.use(positions, values_);
   }
   report.failure = "no convergence in " + std::to_string(options_.max_iterations) + " iterations";
   return report;
@@ -150,8 +146,8 @@ void Newton::add_stage_forces(const Stage& stage, const Vector& positions) {
     }
   }
   if (stage.velocity_factor != 0.0 && model_.damped) {
-    term_ = stage.velocity_factor *
-            model_.damping.cwiseProduct(positions - stage.velocity_reference);
+    term_ =
+        stage.velocity_factor * model_.damping.cwiseProduct(positions - stage.velocity_reference);
     acting_ = std::max(acting_, term_.lpNorm<largest>());
     residual_ += term_;
   }
@@ -210,38 +206,6 @@ double Newton::line_search(const Stage& stage, Vector& positions) {
     factor *= std::clamp(secant, 0.1, 0.7);
   }
   return factor;
-}
-
-/// Tension of each edge after `factor` times the direction, to first order.
-void Newton::predict_tension(const Vector& positions, double factor) {
-  const auto& edges = std::get<ElementList<Stretch<2>>>(model_.elements);
-  const auto component = [&](Index dof) {
-    const Index free = model_.free_index[at(dof)];
-    return free < 0 ? 0.0 : factor * direction_[free];
-  };
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const auto& dofs = edges.dofs[i];
-    const auto ends = gather(dofs, positions);
-    const Vec2 e = ends.tail<2>() - ends.head<2>();
-    const Vec2 change{component(dofs[2]) - component(dofs[0]),
-                      component(dofs[3]) - component(dofs[1])};
-    const double length = e.norm();
-    const auto& c = edges.constants[i];
-    tension_[static_cast<Index>(i)] =
-        c.EA * ((length + e.dot(change) / length) / c.rest_length - 1.0);
-  }
-}
-
-void Newton::use_predicted_tension(const Vector& positions) {
-  const auto& edges = std::get<ElementList<Stretch<2>>>(model_.elements);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const auto ends = gather(edges.dofs[i], positions);
-    const auto& c = edges.constants[i];
-    const Index n = static_cast<Index>(i);
-    excess_[n] =
-        tension_[n] - c.EA * ((ends.tail<2>() - ends.head<2>()).norm() / c.rest_length - 1.0);
-  }
-  assembler_.add_tension_stiffness(positions, excess_, values_);
 }
 
 double Newton::slope() const {

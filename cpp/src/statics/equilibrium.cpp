@@ -34,6 +34,8 @@ constexpr double kLargestTurn = 2.0;
 constexpr double kLastTurn = 0.5;
 /// Potentials closer than this, against the largest force times the size, are the same.
 constexpr double kSamePotential = 1e-13;
+/// Supports move by no more than this share of an edge at once.
+constexpr double kSupportStep = 0.3;
 /// The first load step, as a share of the whole.
 constexpr double kSmallestShare = 1.0 / 256.0;
 /// Turning angle [rad] at a node beyond which the rod is folded: at pi the curvature has no sign.
@@ -61,12 +63,13 @@ class Search {
 
   EquilibriumReport run(Vector& positions) {
     Vector x = positions;
-    place_held(model_, stage_.controls, x);
     start_ = x;
     if (const std::string unheld = find_unheld_part(model_, stage_.force); !unheld.empty()) {
       fail("not_held", unheld);
       return report_;
     }
+    move_supports(x);
+    start_ = x;
     report_.converged = newton(x) || descend(x, report_.force_scale / model_.size) || step_loads(x);
     if (report_.converged) judge(x);
     while (report_.converged && options_.leave_saddles &&
@@ -83,6 +86,22 @@ class Search {
   }
 
  private:
+  /// Puts the held degrees of freedom to their places. Where that would fold or crush the edges
+  /// beside them, it goes in short steps and lets the shape follow each.
+  void move_supports(Vector& x) {
+    const bool as_drawn = x(model_.free_dofs) == model_.initial_positions(model_.free_dofs);
+    if (as_drawn) x = model_.initial_positions;
+    Vector target = x;
+    place_held(model_, stage_.controls, target);
+    const Vector whole = target - x;
+    const double steps = std::ceil(largest_edge_change(model_, whole) / kSupportStep);
+    for (double k = 1.0; k < steps; ++k) {
+      x += whole / steps;
+      newton(x);
+    }
+    place_held(model_, stage_.controls, x);
+  }
+
   /// Raises the loads from a small part to the whole, in doubling steps, each with a descent from
   /// the shape before: a shape that the whole load would crush gives way first. Returns false and
   /// leaves `x` at the start if that does not help.

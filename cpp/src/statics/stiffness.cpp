@@ -21,7 +21,7 @@ Stiffness::Stiffness(const Model& model, const Assembler& assembler, LinearSolve
       solver_(solver),
       gradient_(Vector::Zero(model.num_dofs())),
       values_(Vector::Zero(assembler.num_values())),
-      ones_(Vector::Ones(model.num_dofs())) {}
+      ones_{Vector::Ones(model.num_dofs()), {}} {}
 
 void Stiffness::evaluate(const Vector& positions, const Vector& controls) {
   assembler_.gradient_and_hessian(positions, controls, gradient_, values_);
@@ -29,13 +29,13 @@ void Stiffness::evaluate(const Vector& positions, const Vector& controls) {
   controls_ = controls;
 }
 
-Inertia Stiffness::factorize(double shift, const Vector& weight) {
+Inertia Stiffness::factorize(double shift, const Mass& mass) {
   constexpr int kTrials = 5;
-  double nudge = rounding() / weight.lpNorm<Eigen::Infinity>() * 1e-2;
+  double nudge = rounding() / mass.lumped.lpNorm<Eigen::Infinity>() * 1e-2;
   Inertia inertia;
   for (int trial = 0; trial < kTrials && !inertia.factorised; ++trial, nudge *= 10.0) {
     shifted_ = values_;
-    assembler_.add_diagonal(weight, trial == 0 ? shift : shift + nudge, shifted_);
+    assembler_.add_mass(mass, trial == 0 ? shift : shift + nudge, shifted_);
     inertia = solver_.factorize(shifted_);
   }
   return inertia;

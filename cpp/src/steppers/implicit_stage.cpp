@@ -39,9 +39,9 @@ void ImplicitStage::book(const Vector& displacement, Work& work) const {
   work.loads += displacement.dot(equation.force - model_.gravity_force) +
                 moment_work(model_, positions, equation.controls, displacement);
   if (model_.damped) {
-    work.drag += equation.velocity_factor *
-                 displacement.dot(
-                     model_.damping.cwiseProduct(positions - equation.velocity_reference));
+    work.drag +=
+        equation.velocity_factor *
+        displacement.dot(model_.damping.cwiseProduct(positions - equation.velocity_reference));
   }
   for (const Index dof : model_.free_dofs) work.solver += displacement[dof] * residual[dof];
   for (const HeldDof& held : model_.held) {

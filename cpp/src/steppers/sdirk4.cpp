@@ -7,8 +7,8 @@ namespace der {
 namespace {
 
 /// The diagonally implicit Runge-Kutta method of order 4 with five stages of Hairer and Wanner
-/// (Solving Ordinary Differential Equations II, table IV.6.5): L-stable, one-step, its last stage is
-/// the result. A stage solves, with g = dt/4,
+/// (Solving Ordinary Differential Equations II, table IV.6.5): L-stable, one-step, its last stage
+/// is the result. A stage solves, with g = dt/4,
 ///   q_i = Q_i + g v_i,  v_i = V_i + g a_i,  M a_i = F(q_i, v_i, t + c_i dt),
 /// Q_i and V_i being q and v plus what the stages before contribute.
 class Sdirk4 final : public Stepper {
@@ -82,9 +82,8 @@ class Sdirk4 final : public Stepper {
     stage_.place_held_at(time, stage_.positions);
     for (const HeldDof& held : model_.held) {
       // So that the stage's velocity is that of the motion over the step.
-      past_positions_[held.dof] =
-          stage_.positions[held.dof] -
-          kDiagonal * (end_held_[held.dof] - state.positions[held.dof]);
+      past_positions_[held.dof] = stage_.positions[held.dof] -
+                                  kDiagonal * (end_held_[held.dof] - state.positions[held.dof]);
     }
     stage_.equation.inertia_target = past_positions_ + g * past_velocities_;
     stage_.equation.velocity_reference = past_positions_;

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from der._core import held_nodes
+from der.plotting.analyses import plot_modes, plot_path
 from der.plotting.probes import draw_probe, mark_times
 from der.plotting.shapes import draw_shapes, limits, pick_frames
 from der.plotting.style import MUTED, style, time_colours, time_text
@@ -64,17 +65,26 @@ def plot(
         For a time outside of the run, or a probe that the scene has not.
     """
     names = _probe_names(result, probes) if what != "shapes" else []
-    frames = _frames_to_draw(result, times)
+    kind = result.scenario.analysis
+    frames = [] if kind == "continuation" else _frames_to_draw(result, times)
     if what == "probes" and not names:
         raise ValueError("the scene has no probes to plot; add some under output.probes")
     with style():
-        if result.scenario.is_static:
+        if kind == "continuation" and what != "shapes":
+            figure = plot_path(result, names)
+        elif kind in ("modes", "buckling") and what != "probes":
+            figure = plot_modes(result)
+        elif result.scenario.is_static:
             figure = _plot_static(result, what, names)
         else:
             figure = _plot_motion(result, what, names, frames)
         text = result.scenario.title if title is None else title
         figure.align_ylabels()
-        figure.axes[0].set_title("\n".join(textwrap.wrap(text, 80)), pad=10)
+        text = "\n".join(textwrap.wrap(text, 80))
+        if kind == "continuation" and what != "shapes":
+            figure.suptitle(text)
+        else:
+            figure.axes[0].set_title(text, pad=10)
     return figure
 
 

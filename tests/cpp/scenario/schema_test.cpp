@@ -29,7 +29,7 @@ TEST_CASE("schema: has the keys of the contract and no others") {
        {"title", "model", "rods", "supports", "loads", "time", "analysis", "solver", "output"}) {
     CHECK(schema["properties"].contains(key));
   }
-  CHECK(schema["properties"].size() == 9);
+  CHECK(schema["properties"].size() == 10);
   const Json& rod = schema["$defs"]["rod"];
   CHECK(rod["properties"]["nodes"]["minimum"] == 2);
   CHECK(rod["properties"]["curvature"]["default"] == "angle");

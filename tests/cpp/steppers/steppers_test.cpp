@@ -107,7 +107,8 @@ TEST_CASE("every stepper converges at its stated order") {
   REQUIRE((midpoint - verlet).lpNorm<Eigen::Infinity>() < 5e-8);
   const Vector reference = 0.5 * (midpoint + verlet);
 
-  const std::map<int, std::vector<int>> counts = {{1, {1600, 3200, 6400}}, {2, {400, 800, 1600}}, {4, {50, 70, 100}}};
+  const std::map<int, std::vector<int>> counts = {
+      {1, {1600, 3200, 6400}}, {2, {400, 800, 1600}}, {4, {50, 70, 100}}};
   for (const StepperInfo& info : stepper_registry()) {
     CAPTURE(info.name);
     std::vector<double> steps;

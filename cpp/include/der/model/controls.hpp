@@ -17,6 +17,10 @@ class Controls {
   /// Adds a table and returns its number.
   Index add(scenario::Series series);
   [[nodiscard]] Index size() const { return static_cast<Index>(series_.size()); }
+  /// Replaces a table by a constant.
+  void set_constant(Index i, double value) {
+    series_[static_cast<std::size_t>(i)] = {{0.0}, {value}};
+  }
   /// Writes the value of every table at time `t` into `values`.
   void evaluate(double t, Vector& values) const;
   [[nodiscard]] const scenario::Series& operator[](Index i) const {

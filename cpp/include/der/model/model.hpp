@@ -83,7 +83,7 @@ struct Model {
   Vector initial_velocities;  ///< [m/s]
   Mass mass;
   Vector damping;        ///< [N s/m], one entry a degree of freedom: drag and linear damping
-  bool damped = false;        ///< whether any of that is there
+  bool damped = false;   ///< whether any of that is there
   Vector gravity_force;  ///< [N] weight without buoyancy
   Vector dead_force;     ///< [N] every constant force but weight: buoyancy, constant loads
   Controls controls;     ///< tables over time that forces and supports follow

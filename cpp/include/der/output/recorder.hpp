@@ -66,10 +66,10 @@ class Recorder {
   Vector values_;  // of the probes, now
   std::optional<Energies> energies_;
   double largest_kinetic_energy_ = 0.0;  // [J]
-  State between_;                     // within an adaptive step
-  std::optional<double> seen_time_;   // [s] of the last instant recorded
-  std::optional<double> saved_time_;  // [s] of the last instant handed to the sinks
-  Counters counters_before_;          // of the earlier parts of a resumed run
+  State between_;                        // within an adaptive step
+  std::optional<double> seen_time_;      // [s] of the last instant recorded
+  std::optional<double> saved_time_;     // [s] of the last instant handed to the sinks
+  Counters counters_before_;             // of the earlier parts of a resumed run
   double seconds_before_ = 0.0;
   std::chrono::steady_clock::time_point start_;
 };

@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "der/output/recorder.hpp"
 #include "der/simulation.hpp"
@@ -20,16 +21,20 @@ struct RunOutcome {
   double time = 0.0;          ///< [s] that the simulation has reached
   Counters counters;          ///< earlier parts of a resumed run included
   double wall_seconds = 0.0;  ///< earlier parts of a resumed run included
-  /// Of a static analysis that converged.
+  /// Of an analysis about an equilibrium, if that was found.
   std::optional<EquilibriumReport> equilibrium;
+  std::vector<Mode> modes;             ///< of a modes analysis
+  std::vector<BucklingMode> buckling;  ///< of a buckling analysis
+  std::vector<PathBranch> path;        ///< of a continuation, and the probes of each of its points
+  std::vector<std::vector<double>> path_probes;
   [[nodiscard]] bool ok() const { return status == "completed" || status == "static_converged"; }
   [[nodiscard]] bool failed() const { return !message.empty(); }
 };
 
-/// Runs a simulation from its present state to the end of the scene (or to its equilibrium, for a
-/// static analysis), feeding the recorder. Numerical failures end the run and are reported in the
-/// outcome, with everything up to the last good step recorded; other errors (of a sink, of the
-/// callback) are thrown on.
+/// Runs a simulation from its present state to the end of the scene, or does the scene's analysis,
+/// feeding the recorder: one frame with the equilibrium, or one for each point of a path. Numerical
+/// failures end the run and are reported in the outcome, with everything up to the last good step
+/// recorded; other errors (of a sink, of the callback) are thrown on.
 RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& after_step = {});
 
 }  // namespace der

@@ -3,8 +3,10 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "der/output/checkpoint.hpp"
+#include "der/output/datasets.hpp"
 #include "der/output/frame.hpp"
 
 namespace der {
@@ -27,6 +29,8 @@ class RunFile : public FrameSink {
 
   void write(const Frame& frame) override;
   void stepped(const Simulation& simulation, const Recorder& recorder) override;
+  /// Writes what an analysis found besides frames.
+  void add(const std::vector<Dataset>& datasets);
   /// To be called at the end of the run: writes all out, with the final status.
   void finish(const std::string& status, const Simulation& simulation, const Recorder& recorder);
 
@@ -47,5 +51,12 @@ struct RunFileHead {
   double time = 0.0;      ///< [s] of the checkpoint
 };
 RunFileHead read_head(const std::filesystem::path& path);
+
+/// The last whole frame of a run file.
+struct LastFrame {
+  Vector positions;   ///< [m]
+  Vector velocities;  ///< [m/s]
+};
+LastFrame read_last_frame(const std::filesystem::path& path);
 
 }  // namespace der

@@ -12,7 +12,8 @@
 
 namespace der {
 
-/// The folder of a run: summary.json, results.h5 and scene.yaml (docs/results.md).
+/// The folder of a run: summary.json, results.h5, scene.yaml and, after a continuation,
+/// path.csv (docs/results.md).
 class RunFolder {
  public:
   explicit RunFolder(std::filesystem::path path) : path_(std::move(path)) {}
@@ -20,6 +21,7 @@ class RunFolder {
   [[nodiscard]] std::filesystem::path summary() const { return path_ / "summary.json"; }
   [[nodiscard]] std::filesystem::path results() const { return path_ / "results.h5"; }
   [[nodiscard]] std::filesystem::path scene() const { return path_ / "scene.yaml"; }
+  [[nodiscard]] std::filesystem::path path_table() const { return path_ / "path.csv"; }
 
   /// Makes the folder ready for a new run: creates it, or removes the files of the run that it
   /// holds. Throws IoError, with nothing touched, if it is in use by another run or holds other

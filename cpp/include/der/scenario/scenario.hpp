@@ -157,8 +157,29 @@ struct DynamicAnalysis {};
 struct StaticAnalysis {
   bool leave_saddles = true;  ///< whether an unstable equilibrium is left for a stable one
 };
+/// Free vibrations about the equilibrium.
+struct ModesAnalysis {
+  int count = 6;
+};
+/// Linear buckling loads of the unloaded equilibrium.
+struct BucklingAnalysis {
+  int count = 3;
+};
+/// What a continuation scales: what acts, or what moves.
+enum class Varied { Loads, Supports };
+/// The path of equilibria as a factor of loads or prescribed motions changes.
+struct ContinuationAnalysis {
+  Varied vary = Varied::Loads;
+  std::optional<int> number;  ///< of the one load or support that varies; absent: all
+  double from = 0.0;          ///< first factor
+  double to = 1.0;            ///< last factor
+  double step = 0.05;         ///< largest distance of two points
+  int points = 500;           ///< largest number of points of a branch
+  int branches = 0;           ///< how many bifurcations deep other branches are followed
+};
 /// What is done with the scene.
-using Analysis = std::variant<DynamicAnalysis, StaticAnalysis>;
+using Analysis = std::variant<DynamicAnalysis, StaticAnalysis, ModesAnalysis, BucklingAnalysis,
+                              ContinuationAnalysis>;
 
 /// How long the time steps are.
 enum class Stepping {
@@ -213,11 +234,18 @@ struct Scene {
   std::vector<Support> supports;
   std::vector<Load> loads;
   Time time;  ///< of a dynamic analysis
+  /// "equilibrium", or the folder of a run whose last frame is the start; empty: as drawn.
+  std::string start_from;
   Solver solver;
   Output output;
 
   [[nodiscard]] bool is_dynamic() const {
     return std::holds_alternative<DynamicAnalysis>(analysis);
+  }
+  /// "dynamic", or the word of `analysis:`.
+  [[nodiscard]] const char* analysis_name() const {
+    constexpr const char* kNames[] = {"dynamic", "static", "modes", "buckling", "continuation"};
+    return kNames[analysis.index()];
   }
 };
 

@@ -6,6 +6,7 @@
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/solvers/linear_solver.hpp"
+#include "der/solvers/predicted_tension.hpp"
 
 namespace der {
 
@@ -45,11 +46,8 @@ struct NewtonReport {
 /// Newton's method for a Stage, on preallocated memory: an iteration allocates nothing.
 ///
 /// First plain Newton steps, which converge fastest though the residual may rise on the way (a rod
-/// that turns is first stretched by its step, then springs back). In the matrix the stiffness
-/// across the edges comes from the tension that the step predicted, and not from the one that the
-/// stretch of the second order has falsely put into them (the mixed-integration-point Newton of
-/// Magisano, Leonetti and Garcea, Comput. Methods Appl. Mech. Engrg. 313, 2017); in the solution
-/// the two are the same. If they do not get there, again from the guess with a line search on the
+/// that turns is first stretched by its step, then springs back), with the tensions of the matrix
+/// from PredictedTension. If they do not get there, again from the guess with a line search on the
 /// slope of the potential along the step. Where the matrix is not positive definite it is shifted
 /// until it is, so that every step leads downhill.
 class Newton {
@@ -78,8 +76,6 @@ class Newton {
   double limit_turn();
   void move(const Vector& start, double factor, Vector& positions) const;
   double line_search(const Stage& stage, Vector& positions);
-  void predict_tension(const Vector& positions, double factor);
-  void use_predicted_tension(const Vector& positions);
   [[nodiscard]] double slope() const;
   void measure(NewtonReport& report) const;
 
@@ -93,11 +89,10 @@ class Newton {
   Vector direction_;     // over the free degrees of freedom
   Vector guess_;         // positions that the solve started from
   Vector line_start_;    // positions that the line search starts from
-  Vector tension_;       // of each edge, as the last step predicted it [N]
-  Vector excess_;        // of that over the tension at hand [N]
   double acting_ = 0.0;  // largest acting force at the last iterate [N]
   double noise_ = 0.0;   // rounding error of a force [N]
   double last_shift_ = 0.0;
+  PredictedTension tension_;
 };
 
 }  // namespace der

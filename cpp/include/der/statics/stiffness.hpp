@@ -36,11 +36,11 @@ class Stiffness {
   [[nodiscard]] const Vector& gradient() const { return gradient_; }
   /// K in the layout of the linear solver.
   [[nodiscard]] const Vector& values() const { return values_; }
+  [[nodiscard]] Vector& values() { return values_; }
 
-  /// Factorises K + shift I, or K + shift diag(weight) with a weight for each degree of freedom. A
-  /// pivot that vanishes moves the shift a little.
+  /// Factorises K + shift I, or K + shift M. A pivot that vanishes moves the shift a little.
   Inertia factorize(double shift = 0.0) { return factorize(shift, ones_); }
-  Inertia factorize(double shift, const Vector& weight);
+  Inertia factorize(double shift, const Mass& mass);
   /// Solves with the last factorisation, in place; over the free degrees of freedom.
   void solve(Vector& right_side) { solver_.solve(right_side); }
 
@@ -64,7 +64,7 @@ class Stiffness {
   Vector gradient_;
   Vector values_;
   Vector shifted_;
-  Vector ones_;
+  Mass ones_;
   Vector positions_;
   Vector controls_;
 };

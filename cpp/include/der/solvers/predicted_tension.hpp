@@ -1,0 +1,31 @@
+#pragma once
+
+#include "der/assembly/assembler.hpp"
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+
+namespace der {
+
+/// Lets a Newton step take the stiffness across the edges from the tension that the step before
+/// predicted to first order, in place of the tension at hand. The latter holds what the
+/// second-order stretch of a turning step has falsely put into the edges, EA theta^2/2, which
+/// freezes the next step or makes its matrix indefinite; at the solution the two are the same (the
+/// mixed-integration-point Newton of Magisano, Leonetti and Garcea, Comput. Methods Appl. Mech.
+/// Engrg. 313, 2017).
+class PredictedTension {
+ public:
+  PredictedTension(const Model& model, const Assembler& assembler);
+
+  /// Tension of each edge after moving from `positions` by `direction` (free degrees of freedom).
+  void predict(const Vector& positions, const Vector& direction);
+  /// Puts it into a matrix just assembled at `positions`, in place of the tension there.
+  void use(const Vector& positions, Vector& values);
+
+ private:
+  const Model& model_;
+  const Assembler& assembler_;
+  Vector tension_;  // of each edge, predicted [N]
+  Vector excess_;   // of that over the tension at hand [N]
+};
+
+}  // namespace der

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "der/assembly/assembler.hpp"
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+#include "der/solvers/newton.hpp"
+#include "der/statics/load_path.hpp"
+#include "der/statics/stiffness.hpp"
+
+namespace der {
+
+enum class PathEvent {
+  None,
+  Fold,         ///< a limit point: the factor turns
+  Bifurcation,  ///< another path crosses
+};
+
+/// One equilibrium on a path.
+struct PathPoint {
+  double factor = 0.0;  ///< of the loads
+  double arc = 0.0;     ///< [-] length of the path so far
+  Stability stability;
+  PathEvent event = PathEvent::None;
+  Vector positions;  ///< all degrees of freedom [m]
+};
+
+/// A path of equilibria.
+struct PathBranch {
+  int parent = -1;     ///< branch that it leaves; -1 for the first
+  int side = 0;        ///< +1 or -1: to which side of its parent
+  std::string ending;  ///< why it ends where it does
+  std::vector<PathPoint> points;
+};
+
+struct ContinuationOptions {
+  NewtonOptions newton;
+  double from = 0.0;           ///< first factor
+  double to = 1.0;             ///< last factor
+  double largest_step = 0.05;  ///< of arc length
+  int max_points = 500;        ///< of a branch
+  int branching = 0;           ///< how many bifurcations deep other branches are followed
+};
+
+/// Follows the equilibria of a model while its loads change in proportion to a factor, through
+/// limit points, by pseudo-arclength (Keller, in Applications of Bifurcation Theory, 1977; Riks,
+/// Int. J. Solids Struct. 15, 1979): the next point lies on a plane across the predictor, which is
+/// the tangent of the path. Arc length adds (change of factor / (to - from))^2 and the mean square
+/// displacement of the nodes, in units in which both are of like size at the start.
+///
+/// The number of unstable directions comes from the inertia of the stiffness. Where it or the sense
+/// of the factor changes between two points, the place is found by bisection and put into the path:
+/// a fold where the factor turns, else a bifurcation. From there other branches start along the
+/// null vector of the stiffness, to both sides.
+///
+/// A branch ends at the factor `to`, when it has gone as far to the other side of `from`, at its
+/// largest number of points, where it closes on itself, or where no further point is found. `start`
+/// is an equilibrium at the factor `from`. Leaves the model at the factor of the last point
+/// computed.
+std::vector<PathBranch> follow_path(Model& model, const LoadPath& loads, const Assembler& assembler,
+                                    LinearSolver& solver, const ContinuationOptions& options,
+                                    const Vector& start);
+
+}  // namespace der

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+#include "der/scenario/scenario.hpp"
+
+namespace der {
+
+/// Loads and prescribed motions in proportion to one factor: 1 is the scene as written, 0 the scene
+/// without what varies. The one thing that changes a model after it was built.
+class LoadPath {
+ public:
+  /// What varies: all loads, all prescribed motions, or only number `number` of them.
+  LoadPath(const scenario::Scene& scene, const Model& model, scenario::Varied varied,
+           std::optional<int> number);
+
+  /// Sets weight, forces and tables of the model to their values at `factor`.
+  void apply(double factor, Model& model) const;
+  /// Whether the forces of a given shape are linear in the factor: not where supports move.
+  [[nodiscard]] bool is_linear() const { return linear_; }
+  /// Whether anything varies at all.
+  [[nodiscard]] bool varies() const {
+    return (controls1_ - controls0_).norm() + (gravity1_ - gravity0_).norm() +
+               (dead1_ - dead0_).norm() >
+           0.0;
+  }
+
+ private:
+  Vector gravity0_, gravity1_;  // [N]
+  Vector dead0_, dead1_;        // [N]
+  bool linear_;
+  Vector controls0_, controls1_;  // values of the tables at time 0
+};
+
+}  // namespace der

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "der/assembly/assembler.hpp"
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+#include "der/solvers/linear_solver.hpp"
+#include "der/statics/load_path.hpp"
+
+namespace der {
+
+/// One free vibration about an equilibrium: shape * cos(2 pi frequency t), or, where the
+/// equilibrium is unstable, shape * exp(growth_rate t).
+struct Mode {
+  double frequency = 0.0;    ///< [Hz]; 0 for a rigid motion that nothing holds, and where it grows
+  double growth_rate = 0.0;  ///< [1/s]; 0 where it vibrates
+  Vector shape;              ///< all degrees of freedom, of modal mass shape' M shape = 1 kg
+};
+
+/// The `count` modes of lowest frequency (fewer if there are not so many degrees of freedom) about
+/// the equilibrium `positions` under `controls`: K v = w^2 M v with the tangent stiffness, so that
+/// tensions, moments and curved shapes count. Lanczos' method on the sparse factorisation of K - s
+/// M (Ericsson and Ruhe, Math. Comp. 35, 1980; the library Spectra). Damping is left out. Throws
+/// Error if a degree of freedom has no mass or the iteration does not converge.
+std::vector<Mode> vibration_modes(const Model& model, const Assembler& assembler,
+                                  LinearSolver& solver, const Vector& positions,
+                                  const Vector& controls, int count);
+
+/// A load at which the straight or little deformed structure becomes unstable.
+struct BucklingMode {
+  double load_factor = 0.0;  ///< times the scene's loads
+  Vector shape;              ///< all degrees of freedom, the largest displacement 1
+};
+
+/// Linear buckling: the lowest positive factors a of all loads at which (K0 + a K1) v = 0 has a
+/// solution; K0 is the stiffness of the unloaded equilibrium `positions`, K1 its derivative along
+/// the displacement that the loads cause to first order. Exact where the structure does not deform
+/// before it buckles, an estimate elsewhere (then: continuation). Found by bisection on the inertia
+/// of the sparse factorisation. Empty if the loads do not make it buckle. Throws NotConvergedError
+/// if the unloaded structure is not stable. Leaves the model at the scene's loads.
+std::vector<BucklingMode> buckling_modes(Model& model, const LoadPath& loads,
+                                         const Assembler& assembler, LinearSolver& solver,
+                                         const Vector& positions, int count);
+
+}  // namespace der

@@ -1,0 +1,97 @@
+#include "der/output/datasets.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace der {
+namespace {
+
+/// Shapes one behind the other: number x nodes x dimension.
+template <class M>
+Dataset shapes(const std::string& name, const std::string& unit, const Model& model,
+               const std::vector<M>& modes) {
+  Dataset result{name,
+                 unit,
+                 {modes.size(), static_cast<std::size_t>(model.num_nodes),
+                  static_cast<std::size_t>(model.dimension)},
+                 {}};
+  for (const M& mode : modes) {
+    result.values.insert(result.values.end(), mode.shape.data(),
+                         mode.shape.data() + mode.shape.size());
+  }
+  return result;
+}
+
+template <class T, class F>
+Dataset column(const std::string& name, const std::string& unit, const std::vector<T>& items,
+               F&& value) {
+  Dataset result{name, unit, {items.size()}, {}};
+  for (const T& item : items) result.values.push_back(static_cast<double>(value(item)));
+  return result;
+}
+
+using PlacedPoint = std::pair<std::size_t, const PathPoint*>;  // number of the branch
+
+std::vector<PlacedPoint> points_of(const RunOutcome& outcome) {
+  std::vector<PlacedPoint> points;
+  for (std::size_t branch = 0; branch < outcome.path.size(); ++branch) {
+    for (const PathPoint& point : outcome.path[branch].points) points.emplace_back(branch, &point);
+  }
+  return points;
+}
+
+}  // namespace
+
+const char* event_name(PathEvent event) {
+  if (event == PathEvent::Fold) return "fold";
+  return event == PathEvent::Bifurcation ? "bifurcation" : "";
+}
+
+std::vector<Dataset> datasets(const Simulation& simulation, const RunOutcome& outcome) {
+  const Model& model = simulation.model();
+  std::vector<Dataset> result;
+  if (!outcome.modes.empty()) {
+    const auto& modes = outcome.modes;
+    result.push_back(
+        column("modes/frequencies", "Hz", modes, [](const Mode& mode) { return mode.frequency; }));
+    result.push_back(column("modes/growth_rates", "1/s", modes,
+                            [](const Mode& mode) { return mode.growth_rate; }));
+    result.push_back(shapes("modes/shapes", "kg^-1/2 m", model, modes));
+  }
+  if (!outcome.buckling.empty()) {
+    result.push_back(column("buckling/load_factors", "", outcome.buckling,
+                            [](const BucklingMode& mode) { return mode.load_factor; }));
+    result.push_back(shapes("buckling/shapes", "", model, outcome.buckling));
+  }
+  if (!outcome.path.empty()) {
+    const auto points = points_of(outcome);
+    const auto add = [&](const std::string& name, auto&& value) {
+      result.push_back(column("path/" + name, "", points, value));
+    };
+    add("branch", [](const PlacedPoint& p) { return p.first; });
+    add("factor", [](const PlacedPoint& p) { return p.second->factor; });
+    add("arc", [](const PlacedPoint& p) { return p.second->arc; });
+    add("unstable_directions",
+        [](const PlacedPoint& p) { return p.second->stability.unstable_directions; });
+    add("event", [](const PlacedPoint& p) { return static_cast<int>(p.second->event); });
+  }
+  return result;
+}
+
+std::string path_csv(const Simulation& simulation, const RunOutcome& outcome) {
+  std::string text = "branch,factor,arc,stability,unstable_directions,event";
+  for (const auto& probe : simulation.scenario().scene().output.probes) text += "," + probe.name;
+  text += "\n";
+  std::size_t row = 0;
+  for (const auto& [branch, point] : points_of(outcome)) {
+    text += fmt::format("{},{:.17g},{:.9g},{},{},{}", branch, point->factor, point->arc,
+                        point->stability.name(), point->stability.unstable_directions,
+                        event_name(point->event));
+    for (const double value : outcome.path_probes[row++]) text += fmt::format(",{:.17g}", value);
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace der

@@ -1,0 +1,112 @@
+"""What analyses find besides shapes: vibration modes, buckling modes, paths of equilibria."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_EVENTS = ("", "fold", "bifurcation")
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """Free vibrations about an equilibrium, in the order of their squared frequency.
+
+    Attributes
+    ----------
+    frequencies
+        Natural frequencies [Hz], shape (modes,); 0 for a rigid motion that nothing holds, and for a
+        motion that grows.
+    growth_rates
+        How fast a motion grows from an unstable equilibrium [1/s], shape (modes,); else 0.
+    shapes
+        Displacements of the nodes, shape (modes, nodes, dim), of modal mass 1 kg: the sum of mass
+        times squared displacement is 1.
+    """
+
+    frequencies: Array
+    growth_rates: Array
+    shapes: Array
+
+
+@dataclass(frozen=True, eq=False)
+class BucklingModes:
+    """Linear buckling.
+
+    Attributes
+    ----------
+    load_factors
+        Critical factors of the scene's loads, shape (modes,), ascending.
+    shapes
+        Displacements of the nodes, shape (modes, nodes, dim), the largest component 1.
+    """
+
+    load_factors: Array
+    shapes: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """Equilibria along a load, branch by branch; one row for each frame of the result.
+
+    Attributes
+    ----------
+    branch
+        Number of the branch, shape (points,); 0 is the one that starts at the first factor.
+    factor
+        Factor of the loads (or prescribed motions), shape (points,).
+    arc
+        Length of the branch so far, in units of its own, shape (points,).
+    unstable_directions
+        Independent directions in which the equilibrium is unstable, shape (points,).
+    events
+        ``fold``, ``bifurcation`` or nothing, shape (points,).
+    """
+
+    branch: NDArray[np.int64]
+    factor: Array
+    arc: Array
+    unstable_directions: NDArray[np.int64]
+    events: NDArray[np.str_]
+
+    @property
+    def stable(self) -> NDArray[np.bool_]:
+        """Whether each point is stable, shape (points,)."""
+        return np.asarray(self.unstable_directions == 0)
+
+    def rows(self, event: str, branch: int = 0) -> NDArray[np.int64]:
+        """Return the rows of the events of one kind on a branch, in the order of the path."""
+        found = np.flatnonzero((self.events == event) & (self.branch == branch))
+        return found[self.arc[found] > 0.0]  # a branch begins with a point of its parent
+
+
+def make_modes(data: Mapping[str, Array]) -> Modes | None:
+    """Collect vibration modes from the arrays of a run; None without any."""
+    if "modes/frequencies" not in data:
+        return None
+    return Modes(data["modes/frequencies"], data["modes/growth_rates"], data["modes/shapes"])
+
+
+def make_buckling_modes(data: Mapping[str, Array]) -> BucklingModes | None:
+    """Collect buckling modes from the arrays of a run; None without any."""
+    if "buckling/load_factors" not in data:
+        return None
+    return BucklingModes(data["buckling/load_factors"], data["buckling/shapes"])
+
+
+def make_path(data: Mapping[str, Array]) -> Path | None:
+    """Collect a path from the arrays of a run; None without one."""
+    if "path/factor" not in data:
+        return None
+    return Path(
+        data["path/branch"].astype(np.int64),
+        data["path/factor"],
+        data["path/arc"],
+        data["path/unstable_directions"].astype(np.int64),
+        np.array(_EVENTS)[data["path/event"].astype(np.int64)],
+    )

@@ -1,0 +1,68 @@
+"""Elastica: tip loads and self weight up to the large, and buckled columns, each as one solve.
+
+References: `references/elastica.py` (elliptic integrals; collocation for the self weight).
+"""
+
+import sys
+from pathlib import Path
+
+import der
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+from scenes import straight, tip_force
+
+SIZES = [20, 40, 80, 160]
+STEPS = [1 / n for n in SIZES]
+
+
+def settled(scene):
+    simulation = der.Simulation(der.Scenario.from_dict(scene))
+    report = simulation.equilibrium()
+    assert report.stability == "stable"
+    return simulation, report
+
+
+def tip_errors(exact, EA, loads, sizes=SIZES):
+    errors = []
+    for n in sizes:
+        simulation, _ = settled(straight(n, "clamped-free", EA, loads=loads))
+        x, y = simulation.positions[-1]
+        errors.append(np.hypot(x - exact[0], -y - exact[1]))
+    return errors
+
+
+@pytest.mark.parametrize("load", ["0.5", "1", "2", "5", "10", "100"])
+def test_tip_load_from_a_straight_start(reference, fitted_order, load):
+    exact = [reference("elastica", f"tip_load.{load}.{c}") for c in "xy"]
+    errors = tip_errors(exact, 1e9, tip_force(0, -float(load)))
+    assert fitted_order(STEPS, errors) > 1.9
+
+
+@pytest.mark.parametrize("weight", ["1", "10", "100", "1000"])
+def test_self_weight_from_a_straight_start(reference, fitted_order, weight):
+    exact = [reference("elastica", f"self_weight.{weight}.{c}") for c in "xy"]
+    sizes = [80, 160, 320] if weight == "1000" else SIZES[1:]
+    steps = [1 / n for n in sizes]
+    errors = tip_errors(exact, 1e10, [{"gravity": [0, -float(weight)]}], sizes)
+    # The bend at the clamp is (EI/w L^3)^(1/3) L long, 0.1 L at weight 1000.
+    assert fitted_order(steps, errors) > 1.9
+
+
+def largest_deflection(simulation, ends):
+    y = np.abs(simulation.positions[:, 1])
+    return y[-1] if ends == "clamped-free" else y.max()
+
+
+@pytest.mark.parametrize("factor", ["1.02", "1.1", "1.5", "2"])
+@pytest.mark.parametrize("ends", ["pinned-pinned", "clamped-free"])
+def test_buckled_columns_are_found_from_the_straight_one(reference, fitted_order, ends, factor):
+    load = reference("elastica", f"critical.{ends}") * float(factor)
+    exact = reference("elastica", f"buckled.{ends}.{factor}.deflection")
+    errors = []
+    for n in SIZES:
+        simulation, report = settled(straight(n, ends, loads=tip_force(-load, 0)))
+        assert report.saddles_left == 1
+        errors.append(np.abs(simulation.positions[:, 1]).max() - exact)
+    assert fitted_order(STEPS, errors) > 1.9

@@ -1,0 +1,79 @@
+"""Snap-through of arches and buckled beams: limit points, bifurcations and whole curves.
+
+References: `references/arch.py`, continuation of the continuum by collocation.
+"""
+
+import sys
+from pathlib import Path
+
+import der
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+from scenes import arch, buckled
+
+SIZES = [20, 40, 80]
+FINE = [80, 160, 320]  # for the sharp shapes of a pushed buckled beam
+
+
+def events(reference, problem, kind, count):
+    return [reference("arch", f"{problem}.{kind}.{i}.load") for i in range(1, count + 1)]
+
+
+def check_second_order(found, exact, fitted_order, sizes=SIZES):
+    errors = np.array(found) - np.array(exact)
+    for of_event in errors.T:
+        assert fitted_order([1 / n for n in sizes], of_event) > 1.9
+
+
+@pytest.mark.parametrize(("rise", "bifurcations"), [(0.03, 0), (0.05, 2)])
+def test_arch(reference, fitted_order, rise, bifurcations):
+    problem = f"arch.rise{rise}"
+    folds, crossings = [], []
+    for n in SIZES:
+        path = der.continuation(arch(n, rise), to=8.0).path
+        folds.append(path.factor[path.rows("fold")])
+        crossings.append(path.factor[path.rows("bifurcation")])
+    check_second_order(folds, events(reference, problem, "limits", 2), fitted_order)
+    exact = events(reference, problem, "bifurcations", bifurcations)
+    check_second_order(crossings, exact, fitted_order)
+
+
+def test_arch_follows_the_whole_curve(reference):
+    """Every reference point of the S-shaped curve lies on ours."""
+    result = der.continuation(arch(160, 0.05), to=8.0, step=0.01, points=2000)
+    drop = 0.05 - np.asarray(result.probes["middle"])
+    loads = np.array(reference("arch", "arch.rise0.05.path.load"))
+    drops = np.array(reference("arch", "arch.rise0.05.path.drop"))
+    inside = drops <= drop.max()
+    assert inside.sum() > 30
+    ours = np.interp(drops[inside], drop, result.path.factor)
+    assert ours == pytest.approx(loads[inside], abs=0.01)
+
+
+def test_arch_of_rise_0_05_has_skew_branches_between_its_bifurcations():
+    result = der.continuation(arch(40, 0.05), to=8.0, branches=1)
+    path = result.path
+    first, last = path.factor[path.rows("bifurcation")]
+    y = result.positions[:, :, 1]
+    skew = np.abs(y - y[:, ::-1]).max(axis=1)
+    assert skew[path.branch == 0].max() < 1e-6
+    # A loop through both bifurcations, where its load is greatest and least.
+    for branch in (1, 2):
+        on_branch = path.branch == branch
+        assert skew[on_branch].max() > 0.01
+        assert path.factor[on_branch].max() == pytest.approx(first, abs=1e-3)
+        assert path.factor[on_branch].min() == pytest.approx(last, abs=1e-2)
+
+
+@pytest.mark.parametrize("ends", ["clamped", "pinned"])
+def test_pushed_buckled_beam(reference, fitted_order, ends):
+    problem = f"buckled.{ends}.shortening0.02"
+    folds, crossings = [], []
+    for n in FINE:
+        path = der.continuation(buckled(n, ends), to=40.0, points=2000).path
+        folds.append(path.factor[path.rows("fold")][:2])
+        crossings.append(path.factor[path.rows("bifurcation")][:1])
+    check_second_order(folds, events(reference, problem, "limits", 2), fitted_order, FINE)
+    check_second_order(crossings, events(reference, problem, "bifurcations", 1), fitted_order, FINE)

@@ -130,7 +130,7 @@ double AdaptiveStepper::relative_error(const State& state, double length, Index&
 
 /// What the motion takes to cover the tolerated error; from rest a little of the duration. A step
 /// that is too long is rejected, which costs little.
-double AdaptiveStepper::first_step(const State& state) {
+double AdaptiveStepper::first_step(const State& state) const {
   const double distance = options_.tolerance * model_.size;
   const double speed = state.velocities.lpNorm<Eigen::Infinity>();
   const double longest = options_.duration / 100.0;

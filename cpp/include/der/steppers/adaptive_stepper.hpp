@@ -46,7 +46,7 @@ class AdaptiveStepper {
   void interpolate(double time, const State& state, State& result);
 
  private:
-  [[nodiscard]] double first_step(const State& state);
+  [[nodiscard]] double first_step(const State& state) const;
   [[nodiscard]] double next_stop(double time, double horizon) const;
   StepReport attempt(State& state, double length);
   [[nodiscard]] double relative_error(const State& state, double length, Index& worst_dof) const;

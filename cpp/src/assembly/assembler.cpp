@@ -15,17 +15,43 @@ void for_each_pair(Lists&& lists, Maps&& maps, F&& f, std::index_sequence<I...> 
   (f(std::get<I>(lists), std::get<I>(maps)), ...);
 }
 
+/// Slots of the lower triangle of an element's matrix, column by column.
+template <std::size_t N, class SlotOf>
+std::array<Index, N*(N + 1) / 2> element_slots(const std::array<Index, N>& dofs,
+                                               const SlotOf& slot_of) {
+  std::array<Index, N*(N + 1) / 2> slots;
+  std::size_t k = 0;
+  for (std::size_t column = 0; column < N; ++column) {
+    for (std::size_t row = column; row < N; ++row) slots[k++] = slot_of(dofs[row], dofs[column]);
+  }
+  return slots;
+}
+
+/// Which of the `size` elements of a kind no chain assembles.
+template <class Kernel>
+std::vector<std::size_t> loose_elements(std::size_t size, const std::vector<PlanarChain>& chains) {
+  std::vector<bool> in_chain(size, false);
+  for (const PlanarChain& chain : chains) {
+    const auto [first, count] = chain.elements_of<Kernel>();
+    std::fill_n(in_chain.begin() + static_cast<std::ptrdiff_t>(first), count, true);
+  }
+  std::vector<std::size_t> loose;
+  for (std::size_t e = 0; e < size; ++e) {
+    if (!in_chain[e]) loose.push_back(e);
+  }
+  return loose;
+}
+
 constexpr auto kKinds = std::make_index_sequence<std::tuple_size_v<ElementLists>>{};
 
 }  // namespace
 
 Assembler::Assembler(const Model& model, const MatrixLayout& layout)
-    : model_(model), num_values_(layout.num_values() + 1) {
-  const Index spare = layout.num_values();
+    : model_(model),
+      num_values_(layout.num_values() + 1),
+      chains_(PlanarChain::find(model, layout)) {
   const auto slot_of = [&](Index a, Index b) {
-    const Index i = model.free_index[at(a)];
-    const Index j = model.free_index[at(b)];
-    return i < 0 || j < 0 ? spare : layout.slot(std::max(i, j), std::min(i, j));
+    return layout.slot_or_spare(model.free_index[at(a)], model.free_index[at(b)]);
   };
   for (Index i = 0; i < model.num_free(); ++i) diagonal_slots_.push_back(layout.slot(i, i));
   for (const auto& [a, b, mass] : model.mass.coupling) {
@@ -34,17 +60,16 @@ Assembler::Assembler(const Model& model, const MatrixLayout& layout)
   for_each_pair(
       model.elements, scatter_,
       [&](const auto& list, auto& map) {
-        for (const auto& dofs : list.dofs) {
-          auto& slots = map.slots.emplace_back();
-          std::size_t k = 0;
-          for (std::size_t column = 0; column < dofs.size(); ++column) {
-            for (std::size_t row = column; row < dofs.size(); ++row) {
-              slots[k++] = slot_of(dofs[row], dofs[column]);
-            }
-          }
+        using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+        map.elements = loose_elements<Kernel>(list.size(), chains_);
+        for (const std::size_t e : map.elements) {
+          map.slots.push_back(element_slots(list.dofs[e], slot_of));
         }
       },
       kKinds);
+  for (const auto& dofs : std::get<ElementList<Stretch<2>>>(model.elements).dofs) {
+    edge_slots_.push_back(element_slots(dofs, slot_of));
+  }
 }
 
 template <Derivatives D>
@@ -52,18 +77,22 @@ void Assembler::assemble(const Vector& positions, const Vector& controls, Vector
                          Vector* values) const {
   gradient.setZero();
   if constexpr (D == Derivatives::Hessian) values->setZero();
+  for (const PlanarChain& chain : chains_) {
+    chain.add<D>(model_, positions, gradient, values == nullptr ? nullptr : values->data());
+  }
   for_each_pair(
       model_.elements, scatter_,
       [&](const auto& list, const auto& map) {
         using Kernel = typename std::decay_t<decltype(list)>::KernelType;
         constexpr int n = Kernel::kDofs;
         LocalTerm<n> local;
-        for (std::size_t e = 0; e < list.size(); ++e) {
+        for (std::size_t k = 0; k < map.elements.size(); ++k) {
+          const std::size_t e = map.elements[k];
           const auto& dofs = list.dofs[e];
           Kernel::template evaluate<D>(list.constants[e], controls, gather(dofs, positions), local);
           for (int i = 0; i < n; ++i) gradient[dofs[at(i)]] += local.gradient[i];
           if constexpr (D == Derivatives::Hessian) {
-            const Index* slot = map.slots[e].data();
+            const Index* slot = map.slots[k].data();
             double* entries = values->data();
             for (int column = 0; column < n; ++column) {
               for (int row = column; row < n; ++row) {
@@ -98,14 +127,13 @@ void Assembler::add_mass(const Mass& mass, double factor, Vector& values) const 
 void Assembler::add_tension_stiffness(const Vector& positions, const Vector& tension,
                                       Vector& values) const {
   const auto& edges = std::get<ElementList<Stretch<2>>>(model_.elements);
-  const auto& map = std::get<ScatterMap<ElementList<Stretch<2>>>>(scatter_);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const auto ends = gather(edges.dofs[i], positions);
     const Vec2 e = ends.tail<2>() - ends.head<2>();
     const double length = e.norm();
     const Vec2 normal{-e.y() / length, e.x() / length};
     const Mat2 block = tension[static_cast<Index>(i)] / length * normal * normal.transpose();
-    const Index* slot = map.slots[i].data();
+    const Index* slot = edge_slots_[i].data();
     for (int column = 0; column < 4; ++column) {
       for (int row = column; row < 4; ++row) {
         const double entry = block(row % 2, column % 2);

@@ -74,6 +74,10 @@ MatrixLayout MatrixLayout::band(Index size, Index half_bandwidth) {
   return layout;
 }
 
+Index MatrixLayout::slot_or_spare(Index i, Index j) const {
+  return i < 0 || j < 0 ? num_values_ : slot(std::max(i, j), std::min(i, j));
+}
+
 Index MatrixLayout::slot(Index row, Index column) const {
   assert(row >= column);
   if (pattern_ == nullptr) return column * width_ + (row - column);

@@ -1,15 +1,23 @@
 #include "der/solvers/banded_ldlt.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "der/core/index.hpp"
 
 namespace der {
 namespace {
 
 /// `kWidth` is the half-bandwidth, or 0 when it is only known at run time.
 template <Index kWidth>
-Inertia factorize_band(Index size, Index run_time_width, double* band) {
+Inertia factorize_band(Index size, Index run_time_width, double* band, double* scratch) {
   const Index width = kWidth > 0 ? kWidth : run_time_width;
   const Index stride = width + 1;
+  // The column at hand: a copy, in registers where its length is known, as the compiler would have
+  // to read the column again after every write to those behind it.
+  std::array<double, at(kWidth)> registers;
+  double* const entries = kWidth > 0 ? registers.data() : scratch;
   Inertia inertia;
   for (Index j = 0; j < size; ++j) {
     double* column = band + static_cast<std::ptrdiff_t>(j) * stride;
@@ -21,12 +29,13 @@ Inertia factorize_band(Index size, Index run_time_width, double* band) {
     inertia.negative_pivots += pivot < 0.0 ? 1 : 0;
     const double inverse = 1.0 / pivot;
     column[0] = inverse;
+    std::copy_n(column + 1, width, entries);
     for (Index k = 1; k <= width; ++k) {
-      const double multiplier = column[k] * inverse;
+      const double multiplier = entries[k - 1] * inverse;
+      column[k] = multiplier;
       double* target = column + k * stride;
-      for (Index m = k; m <= width; ++m) target[m - k] -= multiplier * column[m];
+      for (Index m = k; m <= width; ++m) target[m - k] -= multiplier * entries[m - 1];
     }
-    for (Index k = 1; k <= width; ++k) column[k] *= inverse;
   }
   inertia.factorised = true;
   return inertia;
@@ -68,13 +77,14 @@ BandedLdlt::BandedLdlt(const Pattern& pattern)
   }
   band_.setZero(static_cast<Eigen::Index>(size_ + half_bandwidth_) * (half_bandwidth_ + 1));
   right_side_.setZero(size_ + half_bandwidth_);
+  scratch_.setZero(half_bandwidth_);
 }
 
 Inertia BandedLdlt::factorize(const Vector& values) {
   const Index used = layout_.num_values();
   band_.head(used) = values.head(used);
   band_.tail(band_.size() - used).setZero();
-  return factorize_kernel_(size_, half_bandwidth_, band_.data());
+  return factorize_kernel_(size_, half_bandwidth_, band_.data(), scratch_.data());
 }
 
 void BandedLdlt::solve(Vector& b) {

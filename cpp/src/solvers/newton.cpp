@@ -81,12 +81,11 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
     double step = direction_.lpNorm<Eigen::Infinity>();
     bool have_system = false;
     if (mode == Mode::FullSteps) {
-      tension_.predict(positions, direction_);
       move(positions, 1.0, positions);
       have_system = step > kNearSolution * model_.size;
       if (have_system) {
         evaluate_system(stage, positions);
-        tension_.use(positions, values_);
+        tension_.use(positions, direction_, values_);
       } else {
         evaluate_residual(stage, positions);
       }
@@ -110,7 +109,7 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
     }
     if (have_system) continue;
     evaluate_system(stage, positions);
-    if (mode == Mode::FullSteps) tension_.use(positions, values_);
+    if (mode == Mode::FullSteps) tension_.use(positions, direction_, values_);
   }
   report.failure = "no convergence in " + std::to_string(options_.max_iterations) + " iterations";
   return report;
@@ -135,12 +134,12 @@ void Newton::add_stage_forces(const Stage& stage, const Vector& positions) {
   acting_ = std::max(residual_.lpNorm<largest>(), stage.force.lpNorm<largest>());
   residual_ -= stage.force;
   if (stage.inertia != 0.0) {
-    term_ = stage.inertia * stage.mass.lumped.cwiseProduct(positions - stage.inertia_target);
-    acting_ = std::max(acting_, term_.lpNorm<largest>());
-    residual_ += term_;
-    const auto displacement = [&](Index dof) { return positions[dof] - stage.inertia_target[dof]; };
+    // Minus the acceleration.
+    term_ = stage.inertia * (positions - stage.inertia_target);
+    acting_ = std::max(acting_, stage.mass.lumped.cwiseProduct(term_).lpNorm<largest>());
+    residual_ += stage.mass.lumped.cwiseProduct(term_);
     for (const auto& [a, b, mass] : stage.mass.coupling) {
-      const double inertial = stage.inertia * mass * (displacement(a) - displacement(b));
+      const double inertial = mass * (term_[a] - term_[b]);
       residual_[a] -= inertial;
       residual_[b] += inertial;
     }
@@ -239,10 +238,9 @@ void Newton::measure(NewtonReport& report) const {
   report.residual = 0.0;
   for (const Index dof : model_.free_dofs) {
     const double r = std::abs(residual_[dof]);
-    if (r > report.residual || !std::isfinite(r)) {
-      report.residual = r;
-      report.worst_dof = dof;
-    }
+    if (r <= report.residual) continue;
+    report.residual = r;  // or it is not a number
+    report.worst_dof = dof;
     if (!std::isfinite(r)) return;
   }
   report.force_scale = acting_;

@@ -180,13 +180,12 @@ class Follower {
       change.x = along + change.factor * across;
       const double length = norm(change);
       if (!std::isfinite(length) || length > 10.0 * std::max(step, 1e-3)) return std::nullopt;
-      tension_.predict(positions_, change.x);
       guess = combine(guess, 1.0, change);
       evaluate(guess);
       const double allowed = std::max(options_.newton.residual_tolerance * force_scale_,
                                       stiffness_.rounding() * model_.size);
       if (length < kLastStep && residual_.lpNorm<Eigen::Infinity>() <= allowed) return guess;
-      tension_.use(positions_, stiffness_.values());
+      tension_.use(positions_, change.x, stiffness_.values());
     }
     return std::nullopt;
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "der/assembly/pattern.hpp"
+#include "der/assembly/planar_chain.hpp"
 #include "der/core/types.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/model/model.hpp"
@@ -12,9 +13,9 @@
 namespace der {
 
 /// Sums the elements of a model into a gradient over all degrees of freedom and a Hessian over the
-/// free ones, straight into the solver's array of values. The scatter maps are built once;
-/// assembling allocates nothing. Entries of held degrees of freedom go to one spare slot at the end
-/// of the values.
+/// free ones, straight into the solver's array of values: chains as a whole, the other elements one
+/// by one. The scatter maps are built once; assembling allocates nothing. Entries of held degrees
+/// of freedom go to one spare slot at the end of the values.
 class Assembler {
  public:
   Assembler(const Model& model, const MatrixLayout& layout);
@@ -42,6 +43,8 @@ class Assembler {
   void assemble(const Vector& positions, const Vector& controls, Vector& gradient,
                 Vector* values) const;
 
+  std::vector<PlanarChain> chains_;
+
   struct CouplingSlots {
     Index a;  // diagonal entries
     Index b;
@@ -58,7 +61,8 @@ class Assembler {
   template <class Kernel>
   struct ScatterMap<ElementList<Kernel>> {
     static constexpr std::size_t kSlots = Kernel::kDofs * (Kernel::kDofs + 1) / 2;
-    std::vector<std::array<Index, kSlots>> slots;  // lower triangle, column by column
+    std::vector<std::size_t> elements;             // those that no chain assembles
+    std::vector<std::array<Index, kSlots>> slots;  // their lower triangles, column by column
   };
   template <class Lists>
   struct ScatterMaps;
@@ -67,6 +71,7 @@ class Assembler {
     using type = std::tuple<ScatterMap<Lists>...>;
   };
   typename ScatterMaps<ElementLists>::type scatter_;
+  std::vector<std::array<Index, 10>> edge_slots_;  // of every plain stretch element
 };
 
 }  // namespace der

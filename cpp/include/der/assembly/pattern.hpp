@@ -31,6 +31,9 @@ class MatrixLayout {
   static MatrixLayout band(Index size, Index half_bandwidth);
 
   [[nodiscard]] Index slot(Index row, Index column) const;
+  /// As above in either order; `num_values()`, a slot that no solver reads, where one is negative:
+  /// a held degree of freedom.
+  [[nodiscard]] Index slot_or_spare(Index i, Index j) const;
   [[nodiscard]] Index num_values() const { return num_values_; }
 
  private:

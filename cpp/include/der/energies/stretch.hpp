@@ -7,6 +7,14 @@
 
 namespace der {
 
+/// What a stretched edge answers with.
+struct StretchResponse {
+  double strain = 0.0;   ///< [-]
+  double tension = 0.0;  ///< [N]
+  double along = 0.0;    ///< material stiffness along the edge [N/m]
+  double across = 0.0;   ///< geometric stiffness across it, tension / length [N/m]
+};
+
 /// Axial stretching of an edge: E = 1/2 EA (|e|/l - 1)^2 l with e = x1 - x0 and rest length l
 /// (Bergou et al., Discrete Viscous Threads, SIGGRAPH 2010, eq. 3).
 template <int Dim>
@@ -18,6 +26,12 @@ struct Stretch {
     double rest_length = 0.0;  ///< [m]
   };
 
+  static StretchResponse response(const Constants& c, double length) {
+    const double strain = length / c.rest_length - 1.0;
+    const double tension = c.EA * strain;
+    return {strain, tension, c.EA / c.rest_length, tension / length};
+  }
+
   template <Derivatives D>
   static void evaluate(const Constants& c, const Vector& /*controls*/,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
@@ -25,22 +39,18 @@ struct Stretch {
     using Mat = Eigen::Matrix<double, Dim, Dim>;
     const Vec e = x.template tail<Dim>() - x.template head<Dim>();
     const double length = e.norm();
-    const double strain = length / c.rest_length - 1.0;
-    const double tension = c.EA * strain;
-    out.energy = 0.5 * tension * strain * c.rest_length;
+    const StretchResponse stretch = response(c, length);
+    out.energy = 0.5 * stretch.tension * stretch.strain * c.rest_length;
     if constexpr (D == Derivatives::Energy) return;
 
-    const double inverse_length = 1.0 / length;
-    const Vec tangent = inverse_length * e;
-    out.gradient.template head<Dim>() = -tension * tangent;
-    out.gradient.template tail<Dim>() = tension * tangent;
+    const Vec force = stretch.across * e;
+    out.gradient.template head<Dim>() = -force;
+    out.gradient.template tail<Dim>() = force;
     if constexpr (D == Derivatives::Gradient) return;
 
-    // Material stiffness along the edge, geometric stiffness across it.
-    const double across = tension * inverse_length;
-    const double along = c.EA / c.rest_length - across;
-    Mat block = along * tangent * tangent.transpose();
-    block.diagonal().array() += across;
+    const Vec tangent = e / length;
+    Mat block = (stretch.along - stretch.across) * tangent * tangent.transpose();
+    block.diagonal().array() += stretch.across;
     out.hessian.template topLeftCorner<Dim, Dim>() = block;
     out.hessian.template bottomLeftCorner<Dim, Dim>() = -block;
     out.hessian.template bottomRightCorner<Dim, Dim>() = block;

@@ -19,7 +19,8 @@ class BandedLdlt final : public LinearSolver {
   void solve(Vector& b) override;
 
  private:
-  using FactorizeKernel = Inertia (*)(Index size, Index half_bandwidth, double* band);
+  using FactorizeKernel = Inertia (*)(Index size, Index half_bandwidth, double* band,
+                                      double* scratch);
   using SolveKernel = void (*)(Index size, Index half_bandwidth, const double* band, double* b);
 
   Index size_ = 0;
@@ -31,6 +32,7 @@ class BandedLdlt final : public LinearSolver {
   // end.
   Vector band_;  ///< column j: 1 / d_j, then the multipliers l_{j+1,j} ..
   Vector right_side_;
+  Vector scratch_;  ///< of one column
 };
 
 }  // namespace der

@@ -16,16 +16,14 @@ class PredictedTension {
  public:
   PredictedTension(const Model& model, const Assembler& assembler);
 
-  /// Tension of each edge after moving from `positions` by `direction` (free degrees of freedom).
-  void predict(const Vector& positions, const Vector& direction);
-  /// Puts it into a matrix just assembled at `positions`, in place of the tension there.
-  void use(const Vector& positions, Vector& values);
+  /// Puts the tensions predicted by the step along `direction` (free degrees of freedom) that led
+  /// to `positions` into a matrix just assembled there, in place of the tensions there.
+  void use(const Vector& positions, const Vector& direction, Vector& values);
 
  private:
   const Model& model_;
   const Assembler& assembler_;
-  Vector tension_;  // of each edge, predicted [N]
-  Vector excess_;   // of that over the tension at hand [N]
+  Vector excess_;  // of each edge's predicted tension over that at hand [N]
 };
 
 }  // namespace der

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <type_traits>
+#include <vector>
+
+#include "der/assembly/pattern.hpp"
+#include "der/core/types.hpp"
+#include "der/energies/local_term.hpp"
+#include "der/model/model.hpp"
+
+namespace der {
+
+/// A run of plain planar stretch elements, each beginning where the one before ends, with the bend
+/// elements between them: nearly all of a rod. Taken together they are assembled three times as
+/// fast as one by one, since an edge's length, direction and their derivatives are worked out once
+/// and not for each element that it belongs to, and each entry of the matrix is written once. What
+/// is summed is what the kernels Stretch<2> and PlanarBend give, to rounding.
+class PlanarChain {
+ public:
+  /// All runs of a model that are at least two edges long.
+  static std::vector<PlanarChain> find(const Model& model, const MatrixLayout& layout);
+
+  /// Consecutive elements of a list.
+  struct Range {
+    std::size_t first = 0;
+    std::size_t count = 0;
+  };
+  /// Those of a kind that it assembles.
+  template <class Kernel>
+  [[nodiscard]] Range elements_of() const {
+    if constexpr (std::is_same_v<Kernel, Stretch<2>>) return edges_;
+    if constexpr (std::is_same_v<Kernel, PlanarBend<AngleCurvature>>)
+      return tangent_ ? Range{} : bends_;
+    if constexpr (std::is_same_v<Kernel, PlanarBend<TangentCurvature>>)
+      return tangent_ ? bends_ : Range{};
+    return {};
+  }
+
+  /// Adds to `gradient` (all degrees of freedom) and, for Derivatives::Hessian, to the matrix's
+  /// `values`.
+  template <Derivatives D>
+  void add(const Model& model, const Vector& positions, Vector& gradient, double* values) const;
+
+ private:
+  /// Where the entries of a node's own 2 x 2 block (lower triangle) and of the blocks below it, of
+  /// the next node and of the one after, lie; column by column.
+  using NodeSlots = std::array<Index, 3 + 4 + 4>;
+
+  void map_nodes(const Model& model, const MatrixLayout& layout);
+  template <Derivatives D, class Curvature>
+  void add_measured(const Model& model, const Vector& positions, Vector& gradient,
+                    double* values) const;
+
+  Range edges_;
+  Range bends_;
+  bool tangent_ = false;  ///< bends_ are of TangentCurvature, not of AngleCurvature
+  Index first_dof_ = 0;   ///< of the first node; the others follow, x before y
+  std::vector<NodeSlots> slots_;
+};
+
+}  // namespace der

@@ -1,0 +1,217 @@
+#include "der/assembly/planar_chain.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "der/core/index.hpp"
+
+namespace der {
+namespace {
+
+using Edges = ElementList<Stretch<2>>;
+template <class Curvature>
+using Bends = ElementList<PlanarBend<Curvature>>;
+
+/// The slope of an edge's energy by its vector e, and what the elements on both sides of a node
+/// need of the edge.
+struct EdgeTerms {
+  Vec2 vector;             ///< [m]
+  Vec2 turn;               ///< gradient of its direction angle [1/m]
+  double inverse_squared;  ///< 1 / |e|^2
+  StretchResponse stretch;
+
+  EdgeTerms(const Stretch<2>::Constants& c, const double* node)
+      : vector(node[2] - node[0], node[3] - node[1]) {
+    const double squared = vector.squaredNorm();
+    const double length = std::sqrt(squared);
+    inverse_squared = 1.0 / squared;
+    turn = direction_gradient(vector, inverse_squared);
+    stretch = Stretch<2>::response(c, length);
+  }
+};
+
+/// A symmetric 2 x 2 matrix.
+struct Symmetric {
+  double xx = 0.0;
+  double yx = 0.0;
+  double yy = 0.0;
+};
+
+/// Second derivative of the energy by the vector of an edge; `moment` is the moment of the node at
+/// its start less that at its end, `stiffness` the sum of the nodes' bending stiffnesses.
+Symmetric edge_hessian(const EdgeTerms& edge, double moment, double stiffness) {
+  const double w = edge.inverse_squared;
+  const double along = (edge.stretch.along - edge.stretch.across) * w;
+  const Vec2& e = edge.vector;
+  const Vec2& d = edge.turn;
+  const Mat2 bent = direction_hessian(e, d, w);
+  return {
+      along * e.x() * e.x() + edge.stretch.across + stiffness * d.x() * d.x() + moment * bent(0, 0),
+      along * e.x() * e.y() + stiffness * d.x() * d.y() + moment * bent(1, 0),
+      along * e.y() * e.y() + edge.stretch.across + stiffness * d.y() * d.y() +
+          moment * bent(1, 1)};
+}
+
+template <class Curvature>
+bool has_bend(const Bends<Curvature>& bends, std::size_t i, const std::array<Index, 4>& before,
+              const std::array<Index, 4>& after) {
+  return i < bends.size() && std::equal(before.begin(), before.end(), bends.dofs[i].begin()) &&
+         std::equal(after.begin(), after.end(), bends.dofs[i].begin() + 2);
+}
+
+/// Number of edges from `first` on that follow one another, with the bend elements from
+/// `first_bend` on between them.
+template <class Curvature>
+std::size_t run_length(const Edges& edges, std::size_t first, const Bends<Curvature>& bends,
+                       std::size_t first_bend) {
+  const auto consecutive = [](const std::array<Index, 4>& dofs) {
+    return dofs[1] == dofs[0] + 1 && dofs[2] == dofs[0] + 2 && dofs[3] == dofs[0] + 3;
+  };
+  std::size_t count = consecutive(edges.dofs[first]) ? 1 : 0;
+  while (count > 0 && first + count < edges.size() && consecutive(edges.dofs[first + count]) &&
+         has_bend(bends, first_bend + count - 1, edges.dofs[first + count - 1],
+                  edges.dofs[first + count])) {
+    ++count;
+  }
+  return count;
+}
+
+/// For each bend element the first of its degrees of freedom, with its place in the list.
+template <class Curvature>
+std::map<Index, std::size_t> bends_by_start(const Bends<Curvature>& bends) {
+  std::map<Index, std::size_t> starts;
+  for (std::size_t i = 0; i < bends.size(); ++i) starts.emplace(bends.dofs[i][0], i);
+  return starts;
+}
+
+struct Run {
+  PlanarChain::Range edges;
+  PlanarChain::Range bends;
+};
+
+template <class Curvature>
+std::vector<Run> find_runs(const Model& model) {
+  std::vector<Run> runs;
+  const auto& edges = std::get<Edges>(model.elements);
+  const auto& bends = std::get<Bends<Curvature>>(model.elements);
+  const auto starts = bends_by_start(bends);
+  for (std::size_t first = 0; first < edges.size();) {
+    const auto bend = starts.find(edges.dofs[first][0]);
+    const std::size_t count =
+        bend == starts.end() ? 0 : run_length(edges, first, bends, bend->second);
+    if (count >= 2) runs.push_back({{first, count}, {bend->second, count - 1}});
+    first += std::max<std::size_t>(count, 1);
+  }
+  return runs;
+}
+
+}  // namespace
+
+std::vector<PlanarChain> PlanarChain::find(const Model& model, const MatrixLayout& layout) {
+  std::vector<PlanarChain> chains;
+  for (const bool tangent : {false, true}) {
+    const auto runs =
+        tangent ? find_runs<TangentCurvature>(model) : find_runs<AngleCurvature>(model);
+    for (const Run& run : runs) {
+      PlanarChain& chain = chains.emplace_back();
+      chain.edges_ = run.edges;
+      chain.bends_ = run.bends;
+      chain.tangent_ = tangent;
+      chain.map_nodes(model, layout);
+    }
+  }
+  return chains;
+}
+
+void PlanarChain::map_nodes(const Model& model, const MatrixLayout& layout) {
+  first_dof_ = std::get<Edges>(model.elements).dofs[edges_.first][0];
+  const Index end = first_dof_ + 2 * static_cast<Index>(edges_.count + 1);
+  for (Index dof = first_dof_; dof < end; dof += 2) {
+    NodeSlots& slots = slots_.emplace_back();
+    std::size_t k = 0;
+    for (Index other = dof; other < dof + 6; other += 2) {
+      for (Index column = dof; column < dof + 2; ++column) {
+        for (Index row = std::max(column, other); row < other + 2; ++row) {
+          slots[k++] = layout.slot_or_spare(row < end ? model.free_index[at(row)] : -1,
+                                            model.free_index[at(column)]);
+        }
+      }
+    }
+  }
+}
+
+template <Derivatives D>
+void PlanarChain::add(const Model& model, const Vector& positions, Vector& gradient,
+                      double* values) const {
+  if (tangent_) {
+    add_measured<D, TangentCurvature>(model, positions, gradient, values);
+  } else {
+    add_measured<D, AngleCurvature>(model, positions, gradient, values);
+  }
+}
+
+/// With F_j, B_j the first and second derivative by the vector of edge j and C_j that by the
+/// vectors of edges j (rows) and j - 1: node j, at the start of edge j, has the gradient
+/// F_{j-1} - F_j and, in its columns of the Hessian,
+///   B_{j-1} + B_j - C_j - C_j',  then -B_j + C_j + C_{j+1},  then -C_{j+1}.
+template <Derivatives D, class Curvature>
+void PlanarChain::add_measured(const Model& model, const Vector& positions, Vector& gradient,
+                               double* values) const {
+  const auto* edge_constants = std::get<Edges>(model.elements).constants.data() + edges_.first;
+  const auto* bend_constants =
+      std::get<Bends<Curvature>>(model.elements).constants.data() + bends_.first;
+  const double* x = positions.data() + first_dof_;
+  double* g = gradient.data() + first_dof_;
+
+  EdgeTerms edge(edge_constants[0], x);
+  BendResponse start;               // of the node at the start of the edge
+  Symmetric before;                 // B_{j-1}
+  Mat2 from_before = Mat2::Zero();  // C_j
+  for (std::size_t j = 0; j < edges_.count; ++j, g += 2) {
+    const bool last = j + 1 == edges_.count;
+    const EdgeTerms next = last ? edge : EdgeTerms(edge_constants[j + 1], x + 2 * (j + 1));
+    BendResponse end;
+    if (!last) {
+      const auto& c = bend_constants[j];
+      end = bend_response<Curvature>(c.stiffness_per_length, c.rest_kappa,
+                                     angle_between(edge.vector, next.vector));
+    }
+    const double moment = start.moment - end.moment;
+    const Vec2 force = edge.stretch.across * edge.vector + moment * edge.turn;
+    g[0] -= force.x();
+    g[1] -= force.y();
+    g[2] += force.x();
+    g[3] += force.y();
+
+    if constexpr (D == Derivatives::Hessian) {
+      const Symmetric own = edge_hessian(edge, moment, start.stiffness + end.stiffness);
+      const Mat2 to_next = -end.stiffness * next.turn * edge.turn.transpose();
+      const Index* slot = slots_[j].data();
+      values[slot[0]] += before.xx + own.xx - 2.0 * from_before(0, 0);
+      values[slot[1]] += before.yx + own.yx - from_before(1, 0) - from_before(0, 1);
+      values[slot[2]] += before.yy + own.yy - 2.0 * from_before(1, 1);
+      values[slot[3]] += from_before(0, 0) + to_next(0, 0) - own.xx;
+      values[slot[4]] += from_before(1, 0) + to_next(1, 0) - own.yx;
+      values[slot[5]] += from_before(0, 1) + to_next(0, 1) - own.yx;
+      values[slot[6]] += from_before(1, 1) + to_next(1, 1) - own.yy;
+      for (int k = 0; k < 4; ++k) values[slot[7 + k]] -= to_next.data()[k];
+      before = own;
+      from_before = to_next;
+    }
+    edge = next;
+    start = end;
+  }
+  if constexpr (D == Derivatives::Hessian) {
+    const Index* slot = slots_.back().data();
+    values[slot[0]] += before.xx;
+    values[slot[1]] += before.yx;
+    values[slot[2]] += before.yy;
+  }
+}
+
+template void PlanarChain::add<Derivatives::Gradient>(const Model&, const Vector&, Vector&,
+                                                      double*) const;
+template void PlanarChain::add<Derivatives::Hessian>(const Model&, const Vector&, Vector&,
+                                                     double*) const;
+
+}  // namespace der

@@ -1,0 +1,116 @@
+// Chains, assembled as a whole, against the sum of their elements' kernels one by one: both are
+// exact, so they differ by rounding only.
+#include <doctest/doctest.h>
+
+#include <Eigen/Dense>
+#include <random>
+#include <string>
+
+#include "der/assembly/assembler.hpp"
+#include "der/assembly/element_energy.hpp"
+#include "der/core/index.hpp"
+#include "der/model/builder.hpp"
+#include "der/model/state.hpp"
+#include "der/scenario/reader.hpp"
+#include "der/simulation.hpp"
+
+namespace der::test {
+namespace {
+
+// Two rods with different stiffness and measure of curvature; ends of every kind; one node held in
+// the middle; an edge and a half between clamps.
+const char* const kRods = R"(
+title: Rods
+rods:
+  - {name: arm, nodes: 12, from: [0, 0], to: [1, 0.2], natural_curvature: 1.5,
+     cross_section: {stiffness: {EA: 900, EI: 0.7, mass_per_length: 0.3}}}
+  - {name: bow, nodes: 7, from: [0, 1], to: [2, 1], curvature: tangent,
+     cross_section: {stiffness: {EA: 50, EI: 2, mass_per_length: 0.1}}}
+  - {name: stub, nodes: 4, from: [0, 2], to: [1, 2],
+     cross_section: {stiffness: {EA: 50, EI: 2, mass_per_length: 0.1}}}
+supports:
+  - {rod: arm, at: start, clamp: true}
+  - {rod: bow, at: {node: 3}, fix: [y]}
+  - {rod: stub, at: start, clamp: true}
+  - {rod: stub, at: end, clamp: true}
+time: {duration: 1, step: 0.1}
+)";
+
+struct Derivatives2 {
+  Vector gradient;
+  Eigen::MatrixXd hessian;  // over all degrees of freedom
+};
+
+Derivatives2 sum_of_kernels(const Model& model, const Vector& controls, const Vector& positions) {
+  Derivatives2 sum{Vector::Zero(model.num_dofs()),
+                   Eigen::MatrixXd::Zero(model.num_dofs(), model.num_dofs())};
+  for_each_list(model.elements, [&](const auto& list) {
+    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+    LocalTerm<Kernel::kDofs> local;
+    for (std::size_t e = 0; e < list.size(); ++e) {
+      const auto& dofs = list.dofs[e];
+      Kernel::template evaluate<Derivatives::Hessian>(list.constants[e], controls,
+                                                      gather(dofs, positions), local);
+      for (Index i = 0; i < Kernel::kDofs; ++i) {
+        sum.gradient[dofs[at(i)]] += local.gradient[i];
+        for (Index j = 0; j <= i; ++j) {
+          sum.hessian(dofs[at(i)], dofs[at(j)]) += local.hessian(i, j);
+          if (i != j) sum.hessian(dofs[at(j)], dofs[at(i)]) += local.hessian(i, j);
+        }
+      }
+    }
+  });
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("chains are found where edges follow one another") {
+  const Model model = build_model(Scenario::parse(kRods).scene());
+  const Pattern pattern = build_pattern(model);
+  const auto chains = PlanarChain::find(model, MatrixLayout::compressed(pattern));
+  // Edges next to a clamp start from its pivot and are no plain stretch elements; the one edge that
+  // the clamps of the stub leave is no chain.
+  REQUIRE(chains.size() == 2);
+  CHECK(chains[0].elements_of<Stretch<2>>().count == 10);
+  CHECK(chains[0].elements_of<PlanarBend<AngleCurvature>>().count == 9);
+  CHECK(chains[0].elements_of<PlanarBend<TangentCurvature>>().count == 0);
+  CHECK(chains[1].elements_of<Stretch<2>>().count == 6);
+  CHECK(chains[1].elements_of<PlanarBend<TangentCurvature>>().count == 5);
+}
+
+TEST_CASE("a chain gives the gradient and the Hessian of its elements") {
+  const Model model = build_model(Scenario::parse(kRods).scene());
+  const Pattern pattern = build_pattern(model);
+  const Vector controls = Vector::Zero(model.controls.size());
+  std::mt19937_64 random(11);
+  for (const double disorder : {0.0, 0.01, 0.2, 2.0}) {
+    std::normal_distribution<double> shake(0.0, 0.1 * disorder);
+    Vector positions = initial_state(model).positions;
+    for (double& x : positions) x += disorder > 0.0 ? shake(random) : 0.0;
+    const Derivatives2 expected = sum_of_kernels(model, controls, positions);
+    const double rounding = 1e-14 * expected.hessian.lpNorm<Eigen::Infinity>();
+
+    for (const MatrixLayout& layout : {MatrixLayout::compressed(pattern),
+                                       MatrixLayout::band(pattern.size, pattern.half_bandwidth)}) {
+      const Assembler assembler(model, layout);
+      Vector gradient(model.num_dofs());
+      Vector values(assembler.num_values());
+      assembler.gradient(positions, controls, gradient);
+      CHECK((gradient - expected.gradient).lpNorm<Eigen::Infinity>() <= rounding);
+      assembler.gradient_and_hessian(positions, controls, gradient, values);
+      CHECK((gradient - expected.gradient).lpNorm<Eigen::Infinity>() <= rounding);
+      double worst = 0.0;
+      for (Index j = 0; j < pattern.size; ++j) {
+        for (Index k = pattern.outer[at(j)]; k < pattern.outer[at(j) + 1]; ++k) {
+          const Index i = pattern.inner[at(k)];
+          const double entry = expected.hessian(model.free_dofs[at(i)], model.free_dofs[at(j)]);
+          worst = std::max(worst, std::abs(values[layout.slot(i, j)] - entry));
+        }
+      }
+      CHECK(worst <= rounding);
+    }
+  }
+}
+
+}  // namespace der::test

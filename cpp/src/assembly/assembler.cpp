@@ -78,7 +78,11 @@ void Assembler::assemble(const Vector& positions, const Vector& controls, Vector
   gradient.setZero();
   if constexpr (D == Derivatives::Hessian) values->setZero();
   for (const PlanarChain& chain : chains_) {
-    chain.add<D>(model_, positions, gradient, values == nullptr ? nullptr : values->data());
+    if constexpr (D == Derivatives::Hessian) {
+      chain.add_gradient_and_hessian(model_, positions, gradient, values->data());
+    } else {
+      chain.add_gradient(model_, positions, gradient);
+    }
   }
   for_each_pair(
       model_.elements, scatter_,

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "der/core/index.hpp"
+#include "der/core/processor.hpp"
 
 namespace der {
 namespace {
@@ -164,9 +165,10 @@ void PlanarChain::add_measured(const Model& model, const Vector& positions, Vect
   double* g = gradient.data() + first_dof_;
 
   EdgeTerms edge(edge_constants[0], x);
-  BendResponse start;               // of the node at the start of the edge
-  Symmetric before;                 // B_{j-1}
-  Mat2 from_before = Mat2::Zero();  // C_j
+  BendResponse start;                // of the node at the start of the edge
+  Vec2 force_before = Vec2::Zero();  // F_{j-1}
+  Symmetric before;                  // B_{j-1}
+  Mat2 from_before = Mat2::Zero();   // C_j
   for (std::size_t j = 0; j < edges_.count; ++j, g += 2) {
     const bool last = j + 1 == edges_.count;
     const EdgeTerms next = last ? edge : EdgeTerms(edge_constants[j + 1], x + 2 * (j + 1));
@@ -178,10 +180,9 @@ void PlanarChain::add_measured(const Model& model, const Vector& positions, Vect
     }
     const double moment = start.moment - end.moment;
     const Vec2 force = edge.stretch.across * edge.vector + moment * edge.turn;
-    g[0] -= force.x();
-    g[1] -= force.y();
-    g[2] += force.x();
-    g[3] += force.y();
+    g[0] += force_before.x() - force.x();
+    g[1] += force_before.y() - force.y();
+    force_before = force;
 
     if constexpr (D == Derivatives::Hessian) {
       const Symmetric own = edge_hessian(edge, moment, start.stiffness + end.stiffness);
@@ -201,6 +202,8 @@ void PlanarChain::add_measured(const Model& model, const Vector& positions, Vect
     edge = next;
     start = end;
   }
+  g[0] += force_before.x();
+  g[1] += force_before.y();
   if constexpr (D == Derivatives::Hessian) {
     const Index* slot = slots_.back().data();
     values[slot[0]] += before.xx;
@@ -209,9 +212,16 @@ void PlanarChain::add_measured(const Model& model, const Vector& positions, Vect
   }
 }
 
-template void PlanarChain::add<Derivatives::Gradient>(const Model&, const Vector&, Vector&,
-                                                      double*) const;
-template void PlanarChain::add<Derivatives::Hessian>(const Model&, const Vector&, Vector&,
-                                                     double*) const;
+DER_FOR_EACH_PROCESSOR
+void PlanarChain::add_gradient(const Model& model, const Vector& positions,
+                               Vector& gradient) const {
+  add<Derivatives::Gradient>(model, positions, gradient, nullptr);
+}
+
+DER_FOR_EACH_PROCESSOR
+void PlanarChain::add_gradient_and_hessian(const Model& model, const Vector& positions,
+                                           Vector& gradient, double* values) const {
+  add<Derivatives::Hessian>(model, positions, gradient, values);
+}
 
 }  // namespace der

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "der/core/index.hpp"
+#include "der/core/processor.hpp"
 
 namespace der {
 namespace {
@@ -60,6 +61,16 @@ void solve_band(Index size, Index run_time_width, const double* band, double* b)
   }
 }
 
+// Planar chains.
+DER_FOR_EACH_PROCESSOR
+Inertia factorize_band_5(Index size, Index /*width*/, double* band, double* scratch) {
+  return factorize_band<5>(size, 5, band, scratch);
+}
+DER_FOR_EACH_PROCESSOR
+void solve_band_5(Index size, Index /*width*/, const double* band, double* b) {
+  solve_band<5>(size, 5, band, b);
+}
+
 }  // namespace
 
 BandedLdlt::BandedLdlt(const Pattern& pattern)
@@ -68,9 +79,9 @@ BandedLdlt::BandedLdlt(const Pattern& pattern)
       layout_(MatrixLayout::band(pattern.size, pattern.half_bandwidth)),
       factorize_kernel_(factorize_band<0>),
       solve_kernel_(solve_band<0>) {
-  if (half_bandwidth_ == 5) {  // planar chains
-    factorize_kernel_ = factorize_band<5>;
-    solve_kernel_ = solve_band<5>;
+  if (half_bandwidth_ == 5) {
+    factorize_kernel_ = factorize_band_5;
+    solve_kernel_ = solve_band_5;
   } else if (half_bandwidth_ == 2) {  // their mass matrix
     factorize_kernel_ = factorize_band<2>;
     solve_kernel_ = solve_band<2>;

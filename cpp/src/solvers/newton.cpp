@@ -67,6 +67,7 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
   const int limit = mode == Mode::FullSteps ? std::min(kFullStepIterations, options_.max_iterations)
                                             : options_.max_iterations;
   NewtonReport report;
+  external_ = stage.force.lpNorm<Eigen::Infinity>();
   evaluate_system(stage, positions);
   noise_ = values_.lpNorm<Eigen::Infinity>() * rounding(positions);
   measure(report);
@@ -131,7 +132,7 @@ void Newton::evaluate_system(const Stage& stage, const Vector& positions) {
 
 void Newton::add_stage_forces(const Stage& stage, const Vector& positions) {
   constexpr int largest = Eigen::Infinity;
-  acting_ = std::max(residual_.lpNorm<largest>(), stage.force.lpNorm<largest>());
+  acting_ = std::max(residual_.lpNorm<largest>(), external_);
   residual_ -= stage.force;
   if (stage.inertia != 0.0) {
     // Minus the acceleration.

@@ -52,8 +52,9 @@ void ImplicitStage::book(const Vector& displacement, Work& work) const {
   }
 }
 
-void ImplicitStage::book_and_finish(const Vector& new_positions, const Vector& new_velocities,
-                                    double dt, State& state) {
+void ImplicitStage::book_and_finish(const Vector& new_positions,
+                                    const Eigen::Ref<const Vector>& new_velocities, double dt,
+                                    State& state) {
   displacement_ = new_positions - state.positions;
   book(displacement_, state.work);
   finisher_.finish(new_positions, new_velocities, dt, state);

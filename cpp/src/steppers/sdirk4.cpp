@@ -1,6 +1,8 @@
 #include <array>
 
+#include "der/core/index.hpp"
 #include "der/steppers/implicit_stage.hpp"
+#include "der/steppers/work.hpp"
 #include "steppers.hpp"
 
 namespace der {
@@ -20,10 +22,9 @@ class Sdirk4 final : public Stepper {
         past_positions_(model.num_dofs()),
         past_velocities_(model.num_dofs()),
         end_held_(model.num_dofs()),
-        displacement_(model.num_dofs()) {
-    velocities_.fill(Vector::Zero(model.num_dofs()));
-    accelerations_.fill(Vector::Zero(model.num_dofs()));
-  }
+        displacement_(model.num_dofs()),
+        velocities_(model.num_dofs(), kStages),
+        accelerations_(model.num_dofs(), kStages) {}
 
   StepReport step(State& state, double dt) override {
     const double g = kDiagonal * dt;
@@ -34,7 +35,7 @@ class Sdirk4 final : public Stepper {
     work_ = state.work;
 
     StepReport report;
-    for (std::size_t i = 0; i < kStages; ++i) {
+    for (Index i = 0; i < kStages; ++i) {
       const StepReport solved = solve_stage(i, state, dt);
       report.newton_iterations += solved.newton_iterations;
       if (solved.outcome != StepOutcome::Done) {
@@ -43,23 +44,27 @@ class Sdirk4 final : public Stepper {
         report.failure = solved.failure;
         return report;
       }
-      velocities_[i] = (stage_.positions - past_positions_) / g;
-      accelerations_[i] = (velocities_[i] - past_velocities_) / g;
-      book_stage(i, state, dt);
+      velocities_.col(i) = (stage_.positions - past_positions_) * (1.0 / g);
+      accelerations_.col(i) = (velocities_.col(i) - past_velocities_) * (1.0 / g);
+      // The stages' works count with their weights in the result, the last row.
+      const double weight = i + 1 < kStages ? kWeights.back()[at(i)] : kDiagonal;
+      stage_displacement(model_, state.positions, end_held_, weight, dt, velocities_.col(i),
+                         displacement_);
+      stage_.book(displacement_, work_);
     }
     state.work = work_;
-    state.accelerations = accelerations_.back();
-    stage_.finish(stage_.positions, velocities_.back(), dt, state);
+    state.accelerations = accelerations_.col(kStages - 1);
+    stage_.finish(stage_.positions, velocities_.col(kStages - 1), dt, state);
     return report;
   }
 
  private:
-  static constexpr std::size_t kStages = 5;
+  static constexpr Index kStages = 5;
   static constexpr double kDiagonal = 0.25;
-  static constexpr std::array<double, kStages> kTimes{1.0 / 4.0, 3.0 / 4.0, 11.0 / 20.0, 1.0 / 2.0,
-                                                      1.0};
+  static constexpr std::array<double, at(kStages)> kTimes{1.0 / 4.0, 3.0 / 4.0, 11.0 / 20.0,
+                                                          1.0 / 2.0, 1.0};
   /// Below the diagonal.
-  static constexpr std::array<std::array<double, kStages - 1>, kStages> kWeights{{
+  static constexpr std::array<std::array<double, at(kStages - 1)>, at(kStages)> kWeights{{
       {},
       {1.0 / 2.0},
       {17.0 / 50.0, -1.0 / 25.0},
@@ -67,18 +72,21 @@ class Sdirk4 final : public Stepper {
       {25.0 / 24.0, -49.0 / 48.0, 125.0 / 16.0, -85.0 / 12.0},
   }};
 
-  StepReport solve_stage(std::size_t i, const State& state, double dt) {
+  StepReport solve_stage(Index i, const State& state, double dt) {
     const double g = kDiagonal * dt;
-    const double time = state.time + kTimes[i] * dt;
+    const double time = state.time + kTimes[at(i)] * dt;
+    const Eigen::Map<const Eigen::Vector4d> weights(kWeights[at(i)].data());
     past_positions_ = state.positions;
     past_velocities_ = state.velocities;
-    for (std::size_t j = 0; j < i; ++j) {
-      past_positions_ += kWeights[i][j] * dt * velocities_[j];
-      past_velocities_ += kWeights[i][j] * dt * accelerations_[j];
-    }
+    past_positions_.noalias() += velocities_.leftCols(i) * (dt * weights.head(i));
+    past_velocities_.noalias() += accelerations_.leftCols(i) * (dt * weights.head(i));
+    stage_.positions = past_positions_ + g * past_velocities_;
     // The acceleration is guessed to be that of the stage before.
-    const Vector& guess = i == 0 ? state.accelerations : accelerations_[i - 1];
-    stage_.positions = past_positions_ + g * (past_velocities_ + g * guess);
+    if (i == 0) {
+      stage_.positions += g * g * state.accelerations;
+    } else {
+      stage_.positions += g * g * accelerations_.col(i - 1);
+    }
     stage_.place_held_at(time, stage_.positions);
     for (const HeldDof& held : model_.held) {
       // So that the stage's velocity is that of the motion over the step.
@@ -90,24 +98,14 @@ class Sdirk4 final : public Stepper {
     return stage_.solve(state, time);
   }
 
-  /// The stages' works count with their weights in the result, the last row.
-  void book_stage(std::size_t i, const State& state, double dt) {
-    const double weight = i + 1 < kStages ? kWeights.back()[i] : kDiagonal;
-    displacement_ = weight * dt * velocities_[i];
-    for (const HeldDof& held : model_.held) {
-      displacement_[held.dof] = weight * (end_held_[held.dof] - state.positions[held.dof]);
-    }
-    stage_.book(displacement_, work_);
-  }
-
   const Model& model_;
   ImplicitStage stage_;
-  std::array<Vector, kStages> velocities_;
-  std::array<Vector, kStages> accelerations_;
   Vector past_positions_;
   Vector past_velocities_;
   Vector end_held_;  // held degrees of freedom at the end of the step
   Vector displacement_;
+  Eigen::Matrix<double, Eigen::Dynamic, kStages> velocities_;  // of each stage, a column
+  Eigen::Matrix<double, Eigen::Dynamic, kStages> accelerations_;
   Work work_;
 };
 

@@ -9,8 +9,8 @@ StepFinisher::StepFinisher(const Model& model)
       controls_start_(Vector::Zero(model.controls.size())),
       controls_end_(Vector::Zero(model.controls.size())) {}
 
-void StepFinisher::finish(const Vector& positions, const Vector& velocities, double dt,
-                          State& state) {
+void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector>& velocities,
+                          double dt, State& state) {
   model_.controls.evaluate(state.time, controls_start_);
   model_.controls.evaluate(state.time + dt, controls_end_);
   state.work.supports +=

@@ -1,5 +1,6 @@
 #include "der/steppers/explicit_force.hpp"
 #include "der/steppers/implicit_stage.hpp"
+#include "der/steppers/work.hpp"
 #include "steppers.hpp"
 
 namespace der {
@@ -36,9 +37,11 @@ class TrBdf2 final : public Stepper {
     work_ = state.work;
     end_positions_ = state.positions;
     stage_.place_held_at(state.time + dt, end_positions_);
-    set_displacement(state, early * dt, state.velocities, early);
+    stage_displacement(model_, state.positions, end_positions_, early, dt, state.velocities,
+                       displacement_);
     force_.book(state.velocities, displacement_, work_);
-    set_displacement(state, early * dt, middle_velocities_, early);
+    stage_displacement(model_, state.positions, end_positions_, early, dt, middle_velocities_,
+                       displacement_);
     stage_.book(displacement_, work_);
 
     const StepReport second = bdf2_stage(state, h, dt);
@@ -49,7 +52,8 @@ class TrBdf2 final : public Stepper {
     if (report.outcome != StepOutcome::Done) return report;
 
     velocities_ = (stage_.positions - past_positions_) / h;
-    set_displacement(state, late * dt, velocities_, late);
+    stage_displacement(model_, state.positions, end_positions_, late, dt, velocities_,
+                       displacement_);
     stage_.book(displacement_, work_);
     state.work = work_;
     state.accelerations = (velocities_ - past_velocities_) / h;
@@ -59,14 +63,6 @@ class TrBdf2 final : public Stepper {
 
  private:
   static constexpr double kGamma = 0.58578643762690495;  // 2 - sqrt(2)
-
-  /// A stage's share of the step's displacement.
-  void set_displacement(const State& state, double time, const Vector& velocities, double share) {
-    displacement_ = time * velocities;
-    for (const HeldDof& held : model_.held) {
-      displacement_[held.dof] = share * (end_positions_[held.dof] - state.positions[held.dof]);
-    }
-  }
 
   StepReport trapezoidal_stage(const State& state, double h) {
     const double time = state.time + 2.0 * h;

@@ -18,6 +18,15 @@ bool any_clamp_turns(const Model& model) {
 
 }  // namespace
 
+void stage_displacement(const Model& model, const Vector& start, const Vector& end, double share,
+                        double dt, const Eigen::Ref<const Vector>& velocities,
+                        Vector& displacement) {
+  displacement = share * dt * velocities;
+  for (const HeldDof& held : model.held) {
+    displacement[held.dof] = share * (end[held.dof] - start[held.dof]);
+  }
+}
+
 double moment_work(const Model& model, const Vector& positions, const Vector& controls,
                    const Vector& displacement) {
   double work = 0.0;

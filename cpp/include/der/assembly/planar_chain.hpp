@@ -37,10 +37,11 @@ class PlanarChain {
     return {};
   }
 
-  /// Adds to `gradient` (all degrees of freedom) and, for Derivatives::Hessian, to the matrix's
-  /// `values`.
-  template <Derivatives D>
-  void add(const Model& model, const Vector& positions, Vector& gradient, double* values) const;
+  /// Adds to `gradient` (all degrees of freedom).
+  void add_gradient(const Model& model, const Vector& positions, Vector& gradient) const;
+  /// As above, and to the matrix's `values`.
+  void add_gradient_and_hessian(const Model& model, const Vector& positions, Vector& gradient,
+                                double* values) const;
 
  private:
   /// Where the entries of a node's own 2 x 2 block (lower triangle) and of the blocks below it, of
@@ -48,6 +49,8 @@ class PlanarChain {
   using NodeSlots = std::array<Index, 3 + 4 + 4>;
 
   void map_nodes(const Model& model, const MatrixLayout& layout);
+  template <Derivatives D>
+  void add(const Model& model, const Vector& positions, Vector& gradient, double* values) const;
   template <Derivatives D, class Curvature>
   void add_measured(const Model& model, const Vector& positions, Vector& gradient,
                     double* values) const;

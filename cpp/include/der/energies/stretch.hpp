@@ -9,10 +9,10 @@ namespace der {
 
 /// What a stretched edge answers with.
 struct StretchResponse {
-  double strain = 0.0;   ///< [-]
-  double tension = 0.0;  ///< [N]
-  double along = 0.0;    ///< material stiffness along the edge [N/m]
-  double across = 0.0;   ///< geometric stiffness across it, tension / length [N/m]
+  double extension = 0.0;  ///< [m]
+  double tension = 0.0;    ///< [N]
+  double along = 0.0;      ///< material stiffness along the edge [N/m]
+  double across = 0.0;     ///< geometric stiffness across it, tension / length [N/m]
 };
 
 /// Axial stretching of an edge: E = 1/2 EA (|e|/l - 1)^2 l with e = x1 - x0 and rest length l
@@ -27,9 +27,10 @@ struct Stretch {
   };
 
   static StretchResponse response(const Constants& c, double length) {
-    const double strain = length / c.rest_length - 1.0;
-    const double tension = c.EA * strain;
-    return {strain, tension, c.EA / c.rest_length, tension / length};
+    const double extension = length - c.rest_length;
+    const double along = c.EA / c.rest_length;
+    const double tension = along * extension;
+    return {extension, tension, along, tension / length};
   }
 
   template <Derivatives D>
@@ -40,7 +41,7 @@ struct Stretch {
     const Vec e = x.template tail<Dim>() - x.template head<Dim>();
     const double length = e.norm();
     const StretchResponse stretch = response(c, length);
-    out.energy = 0.5 * stretch.tension * stretch.strain * c.rest_length;
+    out.energy = 0.5 * stretch.tension * stretch.extension;
     if constexpr (D == Derivatives::Energy) return;
 
     const Vec force = stretch.across * e;

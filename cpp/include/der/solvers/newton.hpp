@@ -83,14 +83,15 @@ class Newton {
   const Assembler& assembler_;
   LinearSolver& solver_;
   NewtonOptions options_;
-  Vector residual_;      // all degrees of freedom
-  Vector term_;          // likewise: one term of it
-  Vector values_;        // of the matrix, shifted where need be
-  Vector direction_;     // over the free degrees of freedom
-  Vector guess_;         // positions that the solve started from
-  Vector line_start_;    // positions that the line search starts from
-  double acting_ = 0.0;  // largest acting force at the last iterate [N]
-  double noise_ = 0.0;   // rounding error of a force [N]
+  Vector residual_;        // all degrees of freedom
+  Vector term_;            // likewise: one term of it
+  Vector values_;          // of the matrix, shifted where need be
+  Vector direction_;       // over the free degrees of freedom
+  Vector guess_;           // positions that the solve started from
+  Vector line_start_;      // positions that the line search starts from
+  double external_ = 0.0;  // largest external force of the stage [N]
+  double acting_ = 0.0;    // largest acting force at the last iterate [N]
+  double noise_ = 0.0;     // rounding error of a force [N]
   double last_shift_ = 0.0;
   PredictedTension tension_;
 };

@@ -28,12 +28,13 @@ class ImplicitStage {
   /// Books what the forces of the stage solved last do along `displacement` [m].
   void book(const Vector& displacement, Work& work) const;
   /// Completes a done step: positions, velocities and the works that do not depend on the stepper.
-  void finish(const Vector& new_positions, const Vector& new_velocities, double dt, State& state) {
+  void finish(const Vector& new_positions, const Eigen::Ref<const Vector>& new_velocities,
+              double dt, State& state) {
     finisher_.finish(new_positions, new_velocities, dt, state);
   }
   /// As above for a stepper of one stage, which is booked along the step's displacement.
-  void book_and_finish(const Vector& new_positions, const Vector& new_velocities, double dt,
-                       State& state);
+  void book_and_finish(const Vector& new_positions, const Eigen::Ref<const Vector>& new_velocities,
+                       double dt, State& state);
 
  private:
   const Model& model_;

@@ -15,7 +15,8 @@ class StepFinisher {
   /// get the velocity of their motion over the step, free ones that of `velocities` [m/s]. Books
   /// the work of clamps that turn and of what moves the mass of held nodes; that of the stages is
   /// the stepper's to book.
-  void finish(const Vector& positions, const Vector& velocities, double dt, State& state);
+  void finish(const Vector& positions, const Eigen::Ref<const Vector>& velocities, double dt,
+              State& state);
 
  private:
   const Model& model_;

@@ -10,6 +10,13 @@ namespace der {
 // solver leaves on free ones; along the step's displacement d that is an identity between works
 // (docs/energy.md).
 
+/// Sets `displacement` [m] to what a stage that counts with the weight `share` contributes to a
+/// step of `dt`: that share of `velocities` times `dt`. Held degrees of freedom move evenly from
+/// `start` to `end`.
+void stage_displacement(const Model& model, const Vector& start, const Vector& end, double share,
+                        double dt, const Eigen::Ref<const Vector>& velocities,
+                        Vector& displacement);
+
 /// Work [J] of moments along `displacement` [m] at `positions`.
 double moment_work(const Model& model, const Vector& positions, const Vector& controls,
                    const Vector& displacement);

@@ -3,14 +3,9 @@
 References: `references/elastica.py` (elliptic integrals; collocation for the self weight).
 """
 
-import sys
-from pathlib import Path
-
 import der
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
 from scenes import straight, tip_force
 
 SIZES = [20, 40, 80, 160]

@@ -3,14 +3,9 @@
 What is found is judged here again: the gradient, and the eigenvalues of the dense Hessian.
 """
 
-import sys
-from pathlib import Path
-
 import der
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
 from random_scenes import random_scene
 
 SEEDS = range(200)

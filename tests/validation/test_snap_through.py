@@ -3,14 +3,9 @@
 References: `references/arch.py`, continuation of the continuum by collocation.
 """
 
-import sys
-from pathlib import Path
-
 import der
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
 from scenes import arch, buckled
 
 SIZES = [20, 40, 80]

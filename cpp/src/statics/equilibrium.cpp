@@ -22,7 +22,8 @@ namespace {
 constexpr int kMaxRelaxations = 500;
 /// Saddles left in a row before the search gives up; each has a lower potential than the last.
 constexpr int kMaxSaddles = 30;
-/// A structure that has moved this many times its size is held by nothing.
+/// A structure that has moved this many times its size, and farther than its springs give way, is
+/// held by nothing.
 constexpr double kDrift = 100.0;
 /// What is left of the resistance after a step that turns the rod; gentler where steps fail.
 constexpr double kEasing = 0.3;
@@ -43,6 +44,28 @@ constexpr double kFolded = 3.0;
 /// Share of its rest length at which an edge counts as pressed to a point.
 constexpr double kCollapsed = 1e-2;
 
+/// How far [m] springs can let the structure move under `load` [N], counted from the drawn shape.
+double spring_travel(const Model& model, double load) {
+  double farthest = 0.0;
+  for_each_list(model.elements, [&](const auto& list) {
+    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+    if constexpr (HoldsElement<Kernel>::value) {
+      LocalTerm<Kernel::kDofs> drawn;
+      for (std::size_t e = 0; e < list.size(); ++e) {
+        Kernel::template evaluate<Derivatives::Energy>(
+            list.constants[e], {}, gather(list.dofs[e], model.initial_positions), drawn);
+        for (int c = 0; c < model.dimension; ++c) {
+          if (!Kernel::holds(list.constants[e], c)) continue;
+          const double stiffness = list.constants[e].stiffness[c];
+          farthest =
+              std::max(farthest, load / stiffness + std::sqrt(2.0 * drawn.energy / stiffness));
+        }
+      }
+    }
+  });
+  return farthest;
+}
+
 class Search {
  public:
   Search(const Model& model, const Assembler& assembler, LinearSolver& solver,
@@ -59,6 +82,7 @@ class Search {
     }
     model.controls.evaluate(state.time, stage_.controls);
     external_force(model, stage_.controls, state.extra_force, stage_.force);
+    spring_travel_ = spring_travel(model, stage_.force.lpNorm<1>());
   }
 
   EquilibriumReport run(Vector& positions) {
@@ -153,7 +177,7 @@ class Search {
       fail("not_converged", report.failure);
       return false;
     }
-    if ((x - start_).lpNorm<Eigen::Infinity>() > kDrift * model_.size) {
+    if ((x - start_).lpNorm<Eigen::Infinity>() > kDrift * (model_.size + spring_travel_)) {
       fail("unbounded", "the structure moves away: nothing holds it");
       x = before;
       return false;
@@ -337,9 +361,10 @@ class Search {
   Stiffness stiffness_;
   Stage stage_;
   Vector start_;
-  double softness_ = 0.0;  // largest L / EI of a rod [1/(N m)]
-  Vector turned_;          // [rad] of each edge with a moment in the last descent
-  double fallen_ = 0.0;    // [J] in the last descent
+  double softness_ = 0.0;       // largest L / EI of a rod [1/(N m)]
+  double spring_travel_ = 0.0;  // [m]
+  Vector turned_;               // [rad] of each edge with a moment in the last descent
+  double fallen_ = 0.0;         // [J] in the last descent
   EquilibriumReport report_;
 };
 

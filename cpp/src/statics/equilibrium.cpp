@@ -31,6 +31,12 @@ constexpr double kEasing = 0.3;
 constexpr double kEasingAtSaddle = 0.7;
 /// No pseudo-time step turns an edge by more [rad]: beyond it lies another valley.
 constexpr double kLargestTurn = 2.0;
+/// Of a swing: steps, turn of an edge [rad] in one of them, shortest one against the first, and
+/// friction times the first.
+constexpr int kMaxSwings = 3000;
+constexpr double kSwingTurn = 0.2;
+constexpr double kShortestSwing = 1e-6;
+constexpr double kFriction = 0.3;
 /// A Newton step to the end of a descent must not change an edge by more than this.
 constexpr double kLastTurn = 0.5;
 /// Potentials closer than this, against the largest force times the size, are the same.
@@ -94,7 +100,8 @@ class Search {
     }
     move_supports(x);
     start_ = x;
-    report_.converged = newton(x) || descend(x, report_.force_scale / model_.size) || step_loads(x);
+    report_.converged =
+        newton(x) || descend(x, report_.force_scale / model_.size) || step_loads(x) || swing(x);
     if (report_.converged) judge(x);
     while (report_.converged && options_.leave_saddles &&
            report_.stability.unstable_directions > 0) {
@@ -147,6 +154,48 @@ class Search {
     stage_ = whole;
     if (!found) fail(status, failure);  // that of the whole load says more
     return found;
+  }
+
+  /// Lets the structure swing from where it is drawn, with friction, in implicit Euler steps for
+  /// unit masses. Without momentum the flow may end at a wall, where a node folds or an edge is
+  /// crushed, past which the structure would swing on to an equilibrium. Returns false and leaves
+  /// `x` at the start if it comes to no rest.
+  bool swing(Vector& x) {
+    const auto [status, failure] = std::make_pair(report_.status, report_.failure);
+    if (status == "unbounded") return false;
+    x = start_;
+    Vector velocity = Vector::Zero(x.size());
+    Vector next;
+    stiffness_.evaluate(x, stage_.controls);
+    const double acting = std::max(stage_.force.lpNorm<Eigen::Infinity>(),
+                                   stiffness_.gradient().lpNorm<Eigen::Infinity>());
+    double step = std::sqrt(model_.size / acting);
+    const double friction = kFriction / step;
+    const double shortest = kShortestSwing * step;
+    double turn_for_newton = 0.1;
+    for (int i = 0; i < kMaxSwings && step > shortest; ++i) {
+      ++report_.relaxations;
+      const double slowed = 1.0 + friction * step;
+      stage_.inertia = slowed / (step * step);
+      stage_.inertia_target = x + step / slowed * velocity;
+      next = x;
+      const bool solved = solve(next);
+      const double turn = solved ? largest_edge_change(model_, next - x) : 0.0;
+      if (!solved || turn > kSwingTurn) {
+        step *= 0.5;
+        continue;
+      }
+      velocity = (next - x) / step;
+      x = next;
+      if (turn < 0.5 * kSwingTurn) step *= 1.2;
+      if (turn < turn_for_newton) {
+        if (finish(x)) return true;
+        turn_for_newton *= 0.5;
+      }
+    }
+    x = start_;
+    fail(status, failure);
+    return false;
   }
 
   void fail(std::string status, std::string why) {

@@ -9,6 +9,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "der/core/index.hpp"
 #include "der/model/builder.hpp"
 #include "der/model/location.hpp"
 #include "der/scenario/reader.hpp"
@@ -51,11 +52,40 @@ std::vector<HeldNode> held_nodes(const Scenario& scenario, double time) {
   const Model model = build_model(scenario.scene());
   std::vector<HeldNode> result;
   for (const scenario::Support& support : scenario.scene().supports) {
+    if (!support.holds()) continue;
     const RodLayout& rod = model.rod(support.rod);
     for (const Index place : nodes_at(support.at, rod)) {
       result.push_back({rod.name, rod.nodes[static_cast<std::size_t>(place)],
                         held_components(support, model.dimension),
                         clamp_angle(support, rod, place, model, time)});
+    }
+  }
+  return result;
+}
+
+/// A place that a spring holds, for drawings.
+struct SpringSupport {
+  std::string rod;
+  std::vector<Index> nodes;
+  std::vector<double> weights;
+  std::vector<double> stiffness;
+  double rotational_stiffness = 0.0;
+};
+
+std::vector<SpringSupport> springs(const Scenario& scenario) {
+  const Model model = build_model(scenario.scene());
+  std::vector<SpringSupport> result;
+  for (const scenario::Support& support : scenario.scene().supports) {
+    if (!support.spring) continue;
+    const RodLayout& rod = model.rod(support.rod);
+    SpringSupport& spring = result.emplace_back();
+    spring.rod = rod.name;
+    spring.stiffness = support.spring->stiffness;
+    if (spring.stiffness.empty()) spring.stiffness.assign(at(model.dimension), 0.0);
+    spring.rotational_stiffness = support.spring->rotational_stiffness;
+    for (const auto& [place, weight] : node_weights(rod, arc_length_of(support.at, rod))) {
+      spring.nodes.push_back(rod.nodes[at(place)]);
+      spring.weights.push_back(weight);
     }
   }
   return result;
@@ -118,11 +148,33 @@ void bind_held_node(py::module_& module) {
       "[s].");
 }
 
+void bind_spring(py::module_& module) {
+  py::class_<SpringSupport>(module, "SpringSupport",
+                            "A place that a spring of the scene holds: the weighted sum of nodes.")
+      .def_readonly("rod", &SpringSupport::rod, "Name of the rod.")
+      .def_property_readonly(
+          "nodes", [](const SpringSupport& spring) { return to_array(spring.nodes); },
+          "Row numbers in `positions` of the nodes whose weighted sum is the place.")
+      .def_property_readonly(
+          "weights", [](const SpringSupport& spring) { return to_array(spring.weights); },
+          "Weight of each of these nodes; their sum is 1.")
+      .def_readonly("stiffness", &SpringSupport::stiffness,
+                    "Stiffness along each axis [N/m]; 0 where the spring does not pull.")
+      .def_readonly("rotational_stiffness", &SpringSupport::rotational_stiffness,
+                    "Stiffness against turning [N m/rad]; 0 without.")
+      .def("__repr__", [](const SpringSupport& spring) {
+        return py::str("<der.SpringSupport on {!r}: {} N/m, {:.6g} N m/rad>")
+            .format(spring.rod, spring.stiffness, spring.rotational_stiffness);
+      });
+  module.def("springs", &springs, py::arg("scenario"), "Return every spring support of the scene.");
+}
+
 }  // namespace
 
 void bind_model(py::module_& module) {
   bind_rod(module);
   bind_held_node(module);
+  bind_spring(module);
   py::class_<Model>(module, "Model", "What stays constant in a run.")
       .def(py::init([](const Scenario& scenario) { return build_model(scenario.scene()); }),
            py::arg("scenario"), "Raises SceneError or DerError where no model can be built.")

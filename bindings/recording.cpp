@@ -44,16 +44,6 @@ py::array_t<double> column(const std::vector<double>& data, const py::object& se
   return table_view(data, {static_cast<py::ssize_t>(data.size())}, self);
 }
 
-py::dict energy_columns(const py::object& self) {
-  const MemorySink& frames = self.cast<const Recording&>().frames;
-  py::dict energies;
-  energies["kinetic"] = column(frames.kinetic_energy, self);
-  energies["stretch"] = column(frames.stretch_energy, self);
-  energies["bend"] = column(frames.bend_energy, self);
-  energies["gravity"] = column(frames.gravity_energy, self);
-  return energies;
-}
-
 /// The columns of a (frames x names) table by name, copied.
 template <class Names>
 py::dict columns_by_name(const std::vector<double>& table, const Names& names) {
@@ -67,6 +57,10 @@ py::dict columns_by_name(const std::vector<double>& table, const Names& names) {
     columns[py::str(names[i])] = py::array_t<double>({frames}, {row}, first);
   }
   return columns;
+}
+
+py::dict energy_columns(const Recording& recording) {
+  return columns_by_name(recording.frames.energies, kEnergyNames);
 }
 
 py::dict probe_columns(const Recording& recording) {

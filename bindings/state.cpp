@@ -57,13 +57,17 @@ void bind_energies(py::module_& module) {
       .def_readonly("kinetic", &Energies::kinetic, "Kinetic energy [J].")
       .def_readonly("stretch", &Energies::stretch, "Elastic energy of stretching [J].")
       .def_readonly("bend", &Energies::bend, "Elastic energy of bending [J].")
+      .def_readonly("spring", &Energies::spring, "Elastic energy of spring supports [J].")
       .def_readonly("gravity", &Energies::gravity,
                     "Potential energy of the weight [J], zero at the origin.")
-      .def_property_readonly("elastic", &Energies::elastic, "Stretching and bending together [J].")
+      .def_property_readonly("elastic", &Energies::elastic,
+                             "Stretching, bending and springs together [J].")
       .def_property_readonly("total", &Energies::total, "The sum of all [J].")
       .def("__repr__", [](const Energies& e) {
-        return py::str("Energies(kinetic={:.6g}, stretch={:.6g}, bend={:.6g}, gravity={:.6g}) J")
-            .format(e.kinetic, e.stretch, e.bend, e.gravity);
+        return py::str(
+                   "Energies(kinetic={:.6g}, stretch={:.6g}, bend={:.6g}, spring={:.6g}, "
+                   "gravity={:.6g}) J")
+            .format(e.kinetic, e.stretch, e.bend, e.spring, e.gravity);
       });
 }
 

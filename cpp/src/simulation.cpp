@@ -144,34 +144,27 @@ EquilibriumReport Simulation::equilibrium(bool leave_saddles) {
 
 std::vector<Mode> Simulation::modes(int count) {
   constexpr double kBalanced = 1e-6;
-  Vector controls;
-  Vector force;
-  model_.controls.evaluate(state_.time, controls);
-  external_force(model_, controls, state_.extra_force, force);
+  const Forces now = forces();
   Stiffness stiffness(model_, assembler_, *solver_.solver);
-  stiffness.evaluate(state_.positions, controls);
-  const double unbalanced =
-      (stiffness.gradient() - force)(model_.free_dofs).lpNorm<Eigen::Infinity>();
+  stiffness.evaluate(state_.positions, now.controls);
+  const double unbalanced = now.unbalanced(model_).lpNorm<Eigen::Infinity>();
   const double acting =
-      std::max(stiffness.gradient().lpNorm<Eigen::Infinity>(), force.lpNorm<Eigen::Infinity>());
+      std::max(now.gradient.lpNorm<Eigen::Infinity>(), now.external.lpNorm<Eigen::Infinity>());
   if (unbalanced > kBalanced * acting + stiffness.rounding() * model_.size) {
     throw Error("model_error",
                 fmt::format("vibration modes are those of an equilibrium, but {:.3g} N are not in "
                             "balance here: call equilibrium() first",
                             unbalanced));
   }
-  return vibration_modes(model_, assembler_, *solver_.solver, state_.positions, controls, count);
+  return vibration_modes(model_, assembler_, *solver_.solver, state_.positions, now.controls,
+                         count);
 }
 
 std::vector<BucklingMode> Simulation::buckling(int count) {
   const LoadPath loads(scenario_.scene(), model_, scenario::Varied::Loads, std::nullopt);
+  const FactorGuard back_to_the_scene(loads, model_);
   loads.apply(0.0, model_);
-  try {
-    equilibrium();
-  } catch (...) {
-    loads.apply(1.0, model_);
-    throw;
-  }
+  equilibrium();
   return buckling_modes(model_, loads, assembler_, *solver_.solver, state_.positions, count);
 }
 
@@ -181,6 +174,7 @@ std::vector<PathBranch> Simulation::follow(const scenario::ContinuationAnalysis&
     load_path_.reset();
     throw Error("model_error", "nothing varies along the path: what it follows is zero");
   }
+  FactorGuard afterwards(*load_path_, model_);
   load_path_->apply(analysis.from, model_);
   equilibrium();
   ContinuationOptions options;
@@ -192,7 +186,7 @@ std::vector<PathBranch> Simulation::follow(const scenario::ContinuationAnalysis&
   options.branching = analysis.branches;
   auto path =
       follow_path(model_, *load_path_, assembler_, *solver_.solver, options, state_.positions);
-  load_path_->apply(analysis.from, model_);
+  afterwards.leave_at(analysis.from);
   return path;
 }
 
@@ -203,15 +197,20 @@ void Simulation::show(const PathPoint& point, std::int64_t index) {
   state_.time = static_cast<double>(index);
 }
 
-Vector Simulation::gradient() const {
-  Vector controls;
-  Vector force;
-  Vector gradient(model_.num_dofs());
-  model_.controls.evaluate(state_.time, controls);
-  external_force(model_, controls, state_.extra_force, force);
-  assembler_.gradient(state_.positions, controls, gradient);
-  return (gradient - force)(model_.free_dofs);
+Vector Simulation::Forces::unbalanced(const Model& model) const {
+  return (gradient - external)(model.free_dofs);
 }
+
+Simulation::Forces Simulation::forces() const {
+  Forces now;
+  now.gradient.resize(model_.num_dofs());
+  model_.controls.evaluate(state_.time, now.controls);
+  external_force(model_, now.controls, state_.extra_force, now.external);
+  assembler_.gradient(state_.positions, now.controls, now.gradient);
+  return now;
+}
+
+Vector Simulation::gradient() const { return forces().unbalanced(model_); }
 
 SymmetricMatrix Simulation::hessian() const {
   Vector controls;
@@ -238,10 +237,9 @@ void Simulation::restore(const State& saved) {
 std::string Simulation::describe_failure(const StepReport& report, double dt) const {
   return fmt::format(
       "a step from t = {:.6g} s failed even with a length of {:.3g} s: {}; the worst residual is "
-      "at "
-      "{}. A load that rises too fast, a shape that snaps, or too tight a "
-      "solver.residual_tolerance "
-      "are the usual causes; a smaller time.step or smoother load tables help.",
+      "at {}. A load that rises too fast, a shape that snaps, or too tight a "
+      "solver.residual_tolerance are the usual causes; a smaller time.step or smoother load tables "
+      "help.",
       state_.time, dt, report.failure, describe_dof(model_, report.worst_dof));
 }
 

@@ -46,8 +46,8 @@ class Result:
     velocities
         Node velocities [m/s], shape (frames, nodes, dim).
     energies
-        Energies [J] by name (``kinetic``, ``stretch``, ``bend``, ``gravity``), each of shape
-        (frames,).
+        Energies [J] by name (``kinetic``, ``stretch``, ``bend``, ``spring``, ``gravity``), each of
+        shape (frames,).
     work
         What has gone in and out of the energy since the start [J] by name, each of shape (frames,):
         work of the ``loads`` (but for weight), of moving ``supports`` and of the ``solver``'s

@@ -20,7 +20,7 @@ from der.result import Result
 if TYPE_CHECKING:
     import h5py
 
-_FORMAT_VERSION = 2
+_FORMAT_VERSION = 3
 #: What analyses find besides frames, with the unit of each array.
 _DATA_GROUPS = ("modes", "buckling", "path")
 _DATA_UNITS = {

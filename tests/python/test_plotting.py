@@ -83,6 +83,28 @@ def test_supports_have_their_symbols(tube, swing):
     assert np.ptp(vertices[:, 1]) > np.ptp(vertices[:, 0])
 
 
+def test_springs_have_their_symbols(swing):
+    swing["supports"] = [
+        {"rod": "arm", "at": "start", "fix": ["x", "y"], "spring": {"rotational_stiffness": 1.0}},
+        {"rod": "arm", "at": 0.43, "spring": {"stiffness": [0, 3.0]}},
+        {"rod": "arm", "at": "end", "spring": {"stiffness": 2.0}},
+    ]
+    result = der.run(swing)
+    springs = der.springs(result.scenario)
+    assert [spring.stiffness for spring in springs] == [[0.0, 0.0], [0.0, 3.0], [2.0, 2.0]]
+    assert [spring.rotational_stiffness for spring in springs] == [1.0, 0.0, 0.0]
+    assert [len(spring.nodes) for spring in springs] == [1, 4, 1]
+    assert springs[1].weights.sum() == pytest.approx(1.0)
+    drawn = [line for line in result.plot("shapes").axes[0].lines if line.get_gid()]
+    at_end = [line for line in drawn if line.get_gid() == "spring-arm-2"]
+    assert [line.get_gid() for line in drawn].count("spring-arm-1") == 1
+    for line in at_end:
+        assert line.get_xydata()[0] == pytest.approx(result.positions[-1, -1])
+    sideways, down = (np.abs(line.get_marker().vertices).max(axis=0) for line in at_end)
+    assert sideways[0] > sideways[1]
+    assert down[1] > down[0]
+
+
 def test_held_nodes(swing):
     swing["supports"][0]["prescribe"] = {"angle": {"times": [0, 1], "values": [0, 0.5]}}
     swing["supports"].append({"rod": "arm", "at": "end", "fix": ["y"]})

@@ -22,7 +22,7 @@ def test_result_holds_what_the_scene_asks_for(tube):
     assert result.times == pytest.approx(np.arange(0.0, 0.501, 0.02))
     assert result.steps.tolist() == list(range(0, 51, 2))
     assert result.positions.shape == result.velocities.shape == (26, 21, 2)
-    assert set(result.energies) == {"kinetic", "stretch", "bend", "gravity"}
+    assert set(result.energies) == {"kinetic", "stretch", "bend", "spring", "gravity"}
     assert all(values.shape == (26,) for values in result.energies.values())
     assert set(result.work) == {"loads", "supports", "drag", "numerical", "solver"}
     assert all(values.shape == (26,) for values in result.work.values())

@@ -1,7 +1,9 @@
 """Random static scenes: hard ones, but such that an equilibrium exists.
 
 Lengths about 1, EI = 1, so that loads are in EI/L^2: forces and weights up to 1000, moments up to
-30, EA L^2/EI from 1e2 to 1e10, natural curvature up to 10, shapes from straight to crumpled.
+30, EA L^2/EI from 1e2 to 1e10, natural curvature up to 10, shapes from straight to crumpled. Two of
+three rods have springs, some hang from nothing else: 1e-2 to 1e8 EI/L^3 against moving, 1e-3 to 1e6
+EI/L against turning.
 """
 
 from __future__ import annotations
@@ -48,6 +50,43 @@ def supports(random: Random) -> list[Scene]:
         [{**start, "fix": ["x", "y"]}],
     ]
     return choices[random.integers(len(choices))]
+
+
+def springs(random: Random, length: float) -> list[Scene]:
+    """Up to three springs, soft and stiff, at any place."""
+    result: list[Scene] = []
+    for _ in range(random.integers(4)):
+        spring: Scene = {}
+        if random.random() < 0.7:
+            pair = [log_uniform(random, 1e-2, 1e8) for _ in range(2)]
+            spring["stiffness"] = pair if random.random() < 0.5 else pair[0]
+            if random.random() < 0.3:
+                spring["anchor"] = random.uniform(-1.0, 1.0, 2).tolist()
+        if not spring or random.random() < 0.3:
+            spring["rotational_stiffness"] = log_uniform(random, 1e-3, 1e6)
+        place = random.choice(["start", "middle", "end", "inside"])
+        at = float(random.uniform(0.0, length)) if place == "inside" else str(place)
+        result.append({"rod": "rod", "at": at, "spring": spring})
+    return result
+
+
+def with_springs(random: Random, held: list[Scene], length: float) -> list[Scene]:
+    """The supports and some springs, or springs in their place."""
+    added = springs(random, length)
+    pulls = sum("stiffness" in support["spring"] for support in added)
+    clamped = any("clamp" in support for support in held)
+    if pulls > 1 and not clamped and random.random() < 0.5:
+        return added
+    components = {str(s["at"]): {*s.get("fix", []), *("xya" if "clamp" in s else "")} for s in held}
+    for support in added:
+        there = components.get(support["at"], set())
+        spring = support["spring"]
+        if there & {"x", "y"}:
+            spring.pop("stiffness", None)
+            spring.pop("anchor", None)
+        if "a" in there:
+            spring.pop("rotational_stiffness", None)
+    return [*held, *(support for support in added if support["spring"])]
 
 
 def direction(random: Random) -> Any:
@@ -102,10 +141,11 @@ def random_scene(seed: int) -> Scene:
         rod["natural_curvature"] = random.uniform(-10.0, 10.0, nodes).tolist()
     held = supports(random)
     clamped = any("clamp" in support for support in held)
+    acting = loads(random, length, clamped)
     return {
         "title": f"Random scene {seed}",
         "rods": [rod],
-        "supports": held,
-        "loads": loads(random, length, clamped),
+        "supports": with_springs(random, held, length),
+        "loads": acting,
         "analysis": "static",
     }

@@ -1,4 +1,4 @@
-"""Scenes that several validation tests vary: one rod of length 1 with EI = 1."""
+"""Scenes that several validation tests vary: one rod of length 1, most with EI = 1."""
 
 from __future__ import annotations
 
@@ -68,3 +68,23 @@ def buckled(edges: int, ends: str, shortening: float = 0.02, EA: float = 1e4) ->
     scene["loads"] = [{"point_force": {"rod": "rod", "at": "middle", "force": force}}]
     scene["output"] = {"probes": {"middle": {"rod": "rod", "at": "middle", "quantity": "y"}}}
     return scene
+
+
+def swing(nodes: int, **time: Any) -> Scene:
+    """A soft clamped rod that swings down from the horizontal under its weight, for a second."""
+    rod = {
+        "name": "arm",
+        "nodes": nodes,
+        "from": [0, 0],
+        "to": [1, 0],
+        "cross_section": {"circle": {"radius": 0.01}},
+        "material": {"youngs_modulus": 1e7, "density": 1000},
+    }
+    return {
+        "title": "Swing",
+        "rods": [rod],
+        "supports": [{"rod": "arm", "at": "start", "clamp": True}],
+        "loads": [{"gravity": [0, -9.81]}],
+        "time": {"duration": 1.0, **time},
+        "output": {"every": 0.01},
+    }

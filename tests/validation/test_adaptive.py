@@ -7,28 +7,13 @@ steps of 2e-5 s, whose own error in time (order 2, measured at 1e-3 s) is below 
 import der
 import numpy as np
 import pytest
+import scenes
 
-SWING = {
-    "title": "Swing",
-    "rods": [
-        {
-            "name": "arm",
-            "nodes": 21,
-            "from": [0, 0],
-            "to": [1, 0],
-            "cross_section": {"circle": {"radius": 0.01}},
-            "material": {"youngs_modulus": 1e7, "density": 1000},
-        }
-    ],
-    "supports": [{"rod": "arm", "at": "start", "clamp": True}],
-    "loads": [{"gravity": [0, -9.81]}],
-    "output": {"every": 0.01},
-}
 TOLERANCES = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
 
 
 def swing(**time):
-    return der.Scenario.from_dict({**SWING, "time": {"duration": 1.0, **time}})
+    return der.Scenario.from_dict(scenes.swing(21, **time))
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +60,7 @@ def test_frames_come_at_the_times_asked_for_and_are_as_accurate(exact):
 def pulled(**changes):
     """A rod at rest that is pulled from 0.3 s on, and let go at 0.6 s."""
     scene = {
-        **SWING,
+        **scenes.swing(21),
         "loads": [
             {
                 "point_force": {

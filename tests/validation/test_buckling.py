@@ -1,13 +1,8 @@
 """Critical loads: linear buckling, and the bifurcations and branches of a continuation."""
 
-import sys
-from pathlib import Path
-
 import der
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
 from scenes import buckled, straight, tip_force
 
 SIZES = [20, 40, 80]

@@ -1,13 +1,8 @@
 """Natural frequencies, free and under load, against `references/frequencies.py`."""
 
-import sys
-from pathlib import Path
-
 import der
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
 from scenes import END, START, straight, tip_force
 
 SIZES = [20, 40, 80]

@@ -6,24 +6,9 @@ Reference: `references/swing.py`, cubic finite elements with high-order collocat
 import der
 import numpy as np
 import pytest
+from scenes import swing
 
-SWING = {
-    "title": "Swing",
-    "rods": [
-        {
-            "name": "arm",
-            "nodes": 51,
-            "from": [0, 0],
-            "to": [1, 0],
-            "cross_section": {"circle": {"radius": 0.01}},
-            "material": {"youngs_modulus": 1e7, "density": 1000},
-        }
-    ],
-    "supports": [{"rod": "arm", "at": "start", "clamp": True}],
-    "loads": [{"gravity": [0, -9.81]}],
-    "time": {"duration": 1.0, "step": 2e-4, "integrator": "implicit_midpoint"},
-    "output": {"every": 0.01},
-}
+SWING = swing(51, step=2e-4, integrator="implicit_midpoint")
 
 
 def tip_error(reference, **changes):

@@ -101,6 +101,15 @@ class Simulation {
   void advance_to(double target);
   void advance_adaptively();
   [[noreturn]] void fail(const StepReport& report, double dt) const;
+  /// What acts at the present state.
+  struct Forces {
+    Vector controls;
+    Vector external;  ///< [N]
+    Vector gradient;  ///< [N] of the elements' energies
+    /// Over the free degrees of freedom [N].
+    [[nodiscard]] Vector unbalanced(const Model& model) const;
+  };
+  [[nodiscard]] Forces forces() const;
   [[nodiscard]] std::string describe_failure(const StepReport& report, double dt) const;
   [[nodiscard]] std::string describe_divergence(const StepReport& report, double dt) const;
 

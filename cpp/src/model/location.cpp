@@ -9,9 +9,6 @@
 namespace der {
 namespace {
 
-/// Two arc lengths closer than this share of the rod's length are the same place.
-constexpr double kSamePlace = 1e-9;
-
 /// Of a moment at the very end, what the last edge takes beyond all of it and the edge before takes
 /// back: turns the last edge by l kappa/12 more, which brings the end from the chain's place beside
 /// the curve onto it (supports/clamp.hpp).
@@ -27,7 +24,7 @@ Index nearest_node(const RodLayout& rod, double s) {
 }
 
 bool is_node(const RodLayout& rod, Index i, double s) {
-  return std::abs(rod.arc_length[at(i)] - s) <= kSamePlace * rod.rest_length();
+  return std::abs(rod.arc_length[at(i)] - s) <= rod.same_place();
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "der/core/error.hpp"
@@ -29,6 +30,13 @@ const Clamp* RodLayout::clamp_at(Index place) const {
   return nullptr;
 }
 
+const TangentSpring* RodLayout::tangent_spring_at(double s) const {
+  for (const TangentSpring& spring : tangent_springs) {
+    if (std::abs(spring.arc_length - s) <= same_place()) return &spring;
+  }
+  return nullptr;
+}
+
 const RodLayout& Model::rod(const std::string& rod_name) const {
   for (const RodLayout& layout : rods) {
     if (layout.name == rod_name) return layout;
@@ -40,17 +48,22 @@ RodLayout& Model::rod(const std::string& rod_name) {
   return rods[static_cast<std::size_t>(&std::as_const(*this).rod(rod_name) - rods.data())];
 }
 
-std::string describe_dof(const Model& model, Index dof) {
-  const Index node = dof / model.dimension;
-  const char component = "xyz"[dof % model.dimension];
+NodePlace place_of(const Model& model, Index node) {
   for (const RodLayout& rod : model.rods) {
     const auto found = std::find(rod.nodes.begin(), rod.nodes.end(), node);
     if (found != rod.nodes.end()) {
-      return fmt::format("node {} of rod '{}' ({})", found - rod.nodes.begin(), rod.name,
-                         component);
+      return {rod.name, static_cast<Index>(found - rod.nodes.begin())};
     }
   }
-  return fmt::format("node {} ({})", node, component);
+  return {};
+}
+
+std::string describe_dof(const Model& model, Index dof) {
+  const Index node = dof / model.dimension;
+  const char component = "xyz"[dof % model.dimension];
+  const NodePlace place = place_of(model, node);
+  if (place.rod.empty()) return fmt::format("node {} ({})", node, component);
+  return fmt::format("node {} of rod '{}' ({})", place.place, place.rod, component);
 }
 
 }  // namespace der

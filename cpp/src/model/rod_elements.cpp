@@ -3,6 +3,7 @@
 #include "der/core/index.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/supports/clamp.hpp"
+#include "der/supports/spring.hpp"
 
 namespace der {
 namespace {
@@ -76,6 +77,7 @@ void add_rod_elements(RodLayout& rod, Model& model) {
     add_bend<TangentCurvature>(rod, model);
   }
   for (const Clamp& clamp : rod.clamps) add_clamp_cells(clamp, rod, model);
+  add_rotational_springs(rod, model);
 }
 
 }  // namespace der

@@ -31,8 +31,13 @@ Energies energies(const Model& model, const State& state) {
     const double energy = element_energy(list, controls, state.positions);
     if constexpr (Kernel::kTerm == EnergyTerm::Stretch) result.stretch += energy;
     if constexpr (Kernel::kTerm == EnergyTerm::Bend) result.bend += energy;
+    if constexpr (Kernel::kTerm == EnergyTerm::Spring) result.spring += energy;
   });
   return result;
+}
+
+std::array<double, kEnergyNames.size()> by_name(const Energies& energies) {
+  return {energies.kinetic, energies.stretch, energies.bend, energies.spring, energies.gravity};
 }
 
 double numerical_loss(const Work& work, const Energies& now) {

@@ -15,16 +15,24 @@ struct Terms {
   bool kinetic = false;
   bool stretch = false;
   bool bend = false;
+  bool spring = false;
   bool gravity = false;
+
+  [[nodiscard]] bool elastic() const { return stretch || bend || spring; }
+  [[nodiscard]] bool has(EnergyTerm term) const {
+    return (term == EnergyTerm::Stretch && stretch) || (term == EnergyTerm::Bend && bend) ||
+           (term == EnergyTerm::Spring && spring);
+  }
 };
 
 Terms terms_of(const std::string& quantity) {
-  if (quantity == "kinetic_energy") return {true, false, false, false};
-  if (quantity == "stretch_energy") return {false, true, false, false};
-  if (quantity == "bend_energy") return {false, false, true, false};
-  if (quantity == "elastic_energy") return {false, true, true, false};
-  if (quantity == "gravity_energy") return {false, false, false, true};
-  if (quantity == "total_energy") return {true, true, true, true};
+  if (quantity == "kinetic_energy") return {true, false, false, false, false};
+  if (quantity == "stretch_energy") return {false, true, false, false, false};
+  if (quantity == "bend_energy") return {false, false, true, false, false};
+  if (quantity == "spring_energy") return {false, false, false, true, false};
+  if (quantity == "elastic_energy") return {false, true, true, true, false};
+  if (quantity == "gravity_energy") return {false, false, false, false, true};
+  if (quantity == "total_energy") return {true, true, true, true, true};
   throw Error("model_error", "'" + quantity + "' is not an energy");
 }
 
@@ -43,7 +51,7 @@ class EnergyReader : public ProbeReader {
     double energy = 0.0;
     if (terms_.kinetic) energy += part_.mass.kinetic_energy(state.velocities);
     if (terms_.gravity) energy -= part_.gravity_force.dot(state.positions);
-    if (terms_.stretch || terms_.bend) energy += elastic(model, state);
+    if (terms_.elastic()) energy += elastic(model, state);
     return energy;
   }
 
@@ -53,10 +61,7 @@ class EnergyReader : public ProbeReader {
     double energy = 0.0;
     for_each_list(part_.elements, [&](const auto& list) {
       constexpr EnergyTerm term = std::decay_t<decltype(list)>::KernelType::kTerm;
-      if ((term == EnergyTerm::Stretch && terms_.stretch) ||
-          (term == EnergyTerm::Bend && terms_.bend)) {
-        energy += element_energy(list, controls_, state.positions);
-      }
+      if (terms_.has(term)) energy += element_energy(list, controls_, state.positions);
     });
     return energy;
   }

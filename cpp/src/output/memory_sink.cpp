@@ -14,10 +14,8 @@ void MemorySink::write(const Frame& frame) {
   steps.push_back(frame.step);
   append(positions, frame.positions);
   append(velocities, frame.velocities);
-  kinetic_energy.push_back(frame.energies.kinetic);
-  stretch_energy.push_back(frame.energies.stretch);
-  bend_energy.push_back(frame.energies.bend);
-  gravity_energy.push_back(frame.energies.gravity);
+  const auto energies_now = by_name(frame.energies);
+  energies.insert(energies.end(), energies_now.begin(), energies_now.end());
   const auto works = ledger(frame.work, frame.energies);
   work.insert(work.end(), works.begin(), works.end());
   append(probes, frame.probes);

@@ -19,9 +19,10 @@ const std::vector<Quantity>& quantities() {
       {"strain", "", Kind::Edge, "elongation per rest length"},
       {"tension", "N", Kind::Edge, "axial force, positive in tension"},
       {"kinetic_energy", "J", Kind::Energy, "energy of motion"},
-      {"elastic_energy", "J", Kind::Energy, "energy of stretching and bending"},
+      {"elastic_energy", "J", Kind::Energy, "energy of stretching, bending and springs"},
       {"stretch_energy", "J", Kind::Energy, "energy of stretching"},
       {"bend_energy", "J", Kind::Energy, "energy of bending"},
+      {"spring_energy", "J", Kind::Energy, "energy of spring supports"},
       {"gravity_energy", "J", Kind::Energy, "potential energy of the weight, zero at the origin"},
       {"total_energy", "J", Kind::Energy, "kinetic, elastic and gravity energy together"},
   };

@@ -10,8 +10,8 @@ namespace der {
 namespace {
 
 bool is_finite(const Energies& e) {
-  return std::isfinite(e.kinetic) && std::isfinite(e.stretch) && std::isfinite(e.bend) &&
-         std::isfinite(e.gravity);
+  const auto values = by_name(e);
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
 }  // namespace

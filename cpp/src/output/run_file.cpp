@@ -22,7 +22,7 @@ using hdf5::Handle;
 using Seconds = std::chrono::duration<double>;
 
 /// Of the layout; readers refuse what they do not know.
-constexpr std::int64_t kFormatVersion = 2;
+constexpr std::int64_t kFormatVersion = 3;
 
 constexpr Seconds kFlushInterval{0.05};
 /// Flushing may take this share of a run's time on a slow disk.
@@ -73,8 +73,6 @@ class BufferedColumn {
   Column column_;
   std::vector<T> rows_;
 };
-
-constexpr const char* kEnergyNames[] = {"kinetic", "stretch", "bend", "gravity"};
 
 void write_head(hid_t file, const Simulation& simulation) {
   const scenario::Scene& scene = simulation.scenario().scene();
@@ -282,12 +280,12 @@ void RunFile::Writer::add(const Frame& frame) {
   step_.push(frame.step);
   positions_.push(frame.positions);
   velocities_.push(frame.velocities);
-  const Energies& e = frame.energies;
-  std::size_t i = 0;
-  for (const double energy : {e.kinetic, e.stretch, e.bend, e.gravity}) energies_[i++].push(energy);
-  const auto works = ledger(frame.work, e);
-  for (i = 0; i < works.size(); ++i) work_[i].push(works[i]);
-  for (i = 0; i < probes_.size(); ++i) probes_[i].push(frame.probes[static_cast<Index>(i)]);
+  const auto energies = by_name(frame.energies);
+  for (std::size_t i = 0; i < energies.size(); ++i) energies_[i].push(energies[i]);
+  const auto works = ledger(frame.work, frame.energies);
+  for (std::size_t i = 0; i < works.size(); ++i) work_[i].push(works[i]);
+  for (std::size_t i = 0; i < probes_.size(); ++i)
+    probes_[i].push(frame.probes[static_cast<Index>(i)]);
   ++gathered_;
   bytes_per_frame_ = sizeof(double) * (2 * static_cast<std::size_t>(frame.positions.size()) +
                                        probes_.size() + energies_.size() + work_.size() + 2);

@@ -28,7 +28,10 @@ Json probes_json(const Recorder& recorder) {
 }
 
 Json energies_json(const Energies& e) {
-  return {{"kinetic", e.kinetic}, {"stretch", e.stretch}, {"bend", e.bend}, {"gravity", e.gravity}};
+  Json energies = Json::object();
+  const auto values = by_name(e);
+  for (std::size_t i = 0; i < values.size(); ++i) energies[kEnergyNames[i]] = values[i];
+  return energies;
 }
 
 Json work_json(const Work& work, const Energies& now) {

@@ -54,8 +54,48 @@ void check_support(CheckContext& context, int number) {
   }
   const std::optional<int> rod = context.find_rod(support.rod, path / "rod");
   if (!rod) return;
-  const auto nodes = context.nodes_at(*rod, support.at, path / "at", true);
-  if (nodes) hold(context, number, *rod, *nodes);
+  const auto nodes = context.nodes_at(*rod, support.at, path / "at", support.holds());
+  if (nodes && support.holds()) hold(context, number, *rod, *nodes);
+}
+
+bool does_not_bend(const RodText& rod) {
+  const auto* direct = std::get_if<Stiffness>(&rod.cross_section);
+  return direct != nullptr && direct->EI == 0.0;
+}
+
+/// A spring on what is held anyway, or on what takes no moment, is a slip.
+void check_spring(CheckContext& context, int number) {
+  const Path path{"supports", number};
+  Support& support = context.scene.supports[static_cast<std::size_t>(number)];
+  if (!support.spring || context.complaints.under(path)) return;
+  const std::optional<int> rod = context.find_rod(support.rod, path / "rod");
+  if (!rod) return;
+  const Path here = path / "spring";
+  if (support.at.kind == Location::Kind::All) {
+    context.complaints.add(path / "at", "'all' is no single place: a spring holds one");
+    return;
+  }
+  const bool turns = support.spring->rotational_stiffness > 0.0;
+  if (turns && does_not_bend(context.scene.given_rods[static_cast<std::size_t>(*rod)])) {
+    context.complaints.add(here / "rotational_stiffness",
+                           "the rod has no stiffness against bending, EI: nothing turns it");
+  }
+  const auto nodes = context.nodes_at(*rod, support.at, path / "at", false);
+  if (!nodes || nodes->empty()) return;
+  const HeldNode* held = context.held_at(*rod, nodes->front());
+  if (!held) return;
+  const auto complain = [&](std::size_t component, const char* name, const char* key) {
+    context.complaints.add(
+        here / key, fmt::format("{} of node {} of rod '{}' is held by support {}: a spring has no "
+                                "effect there",
+                                name, nodes->front(), support.rod, held->by[component]));
+  };
+  const Components& stiffness = support.spring->stiffness;
+  if (!stiffness.empty() && stiffness[0] > 0.0 && held->by[0] >= 0) complain(0, "x", "stiffness");
+  if (!stiffness.empty() && stiffness[1] > 0.0 && held->by[1] >= 0) complain(1, "y", "stiffness");
+  if (turns && held->by[HeldNode::kAngle] >= 0) {
+    complain(HeldNode::kAngle, "the angle", "rotational_stiffness");
+  }
 }
 
 }  // namespace
@@ -63,6 +103,7 @@ void check_support(CheckContext& context, int number) {
 void check_supports(CheckContext& context) {
   const auto count = static_cast<int>(context.scene.supports.size());
   for (int i = 0; i < count; ++i) check_support(context, i);
+  for (int i = 0; i < count; ++i) check_spring(context, i);
 }
 
 }  // namespace der::scenario

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "scenario/scene_text.hpp"
 #include "scenario/suggestion.hpp"
 #include "scenario/table.hpp"
@@ -33,17 +35,68 @@ Format<PrescribeText> prescribe_format() {
                     "`clamp: true`."));
 }
 
+/// One number for both axes, or one for each.
+Format<Components> point_stiffness() {
+  const Format<double> both = number("N/m", positive());
+  const Format<Components> each = vector("N/m");
+  Shape shape{Shape::Kind::AnyOf};
+  shape.unit = both.shape.unit;
+  shape.parts = {both.shape, each.shape};
+  return {std::move(shape), [both, each](const Shape& /*self*/, const Place& place,
+                                         Complaints& complaints, Components& out) {
+            if (!place.value->sequence()) {
+              double stiffness = 0.0;
+              if (!both.read(place, complaints, stiffness)) return false;
+              out = {stiffness, stiffness};
+              return true;
+            }
+            if (!each.read(place, complaints, out)) return false;
+            const bool negative =
+                std::any_of(out.begin(), out.end(), [](double k) { return k < 0; });
+            const bool none = std::all_of(out.begin(), out.end(), [](double k) { return k == 0; });
+            if (negative) complaints.add(place, "a stiffness must not be negative");
+            if (none) complaints.add(place, "one of the stiffnesses must be greater than 0");
+            return !negative && !none;
+          }};
+}
+
+Format<Spring> spring_format() {
+  return mapping(
+      Table<Spring>("spring", "An elastic support.")
+          .optional("stiffness", &Spring::stiffness, point_stiffness(),
+                    "Force per displacement from the anchor: one number, or one each along x and "
+                    "y, of which one may be 0.",
+                    "none")
+          .optional("anchor", &Spring::anchor, vector("m"),
+                    "Where the place is without a force of the spring.",
+                    "where the place is as drawn")
+          .optional("rotational_stiffness", &Spring::rotational_stiffness,
+                    number("N m/rad", positive()),
+                    "Moment per angle between the rod's tangent and its drawn direction.", "none")
+          .check([](Spring& spring, const Place& place, Complaints& complaints) {
+            if (spring.stiffness.empty() && spring.rotational_stiffness == 0.0) {
+              complaints.add(place, "give 'stiffness', 'rotational_stiffness' or both");
+            } else if (spring.stiffness.empty() && !spring.anchor.empty()) {
+              complaints.add(place.at(*find_entry(*place.value->mapping(), "anchor")),
+                             "only a spring with a 'stiffness' pulls to an anchor");
+            }
+          }));
+}
+
 /// What is wrong with the keys of one support together; "" if nothing.
 std::string contradiction(const SupportText& support) {
   const bool moves = support.motion.x || support.motion.y || support.motion.angle;
   if (support.clamp && !support.fix.empty()) {
     return "'clamp: true' holds every component already: remove 'fix'";
   }
+  if (support.clamp && support.spring) {
+    return "'clamp: true' holds all that a spring could: remove one of them";
+  }
   if (!support.clamp && support.motion.angle) {
     return "'angle' turns a clamp: add 'clamp: true', or remove it";
   }
-  if (!support.clamp && support.fix.empty() && !moves) {
-    return "this support holds nothing: give 'fix', 'clamp: true' or 'prescribe'";
+  if (!support.clamp && support.fix.empty() && !moves && !support.spring) {
+    return "this support holds nothing: give 'fix', 'clamp: true', 'prescribe' or 'spring'";
   }
   for (std::size_t i = 0; i < support.fix.size(); ++i) {
     const Component component = support.fix[i];
@@ -75,15 +128,18 @@ Support completed(SupportText text) {
 
 Format<Support> support_format() {
   Format<SupportText> as_written = mapping(
-      Table<SupportText>("support", "Holds or moves nodes of a rod.")
+      Table<SupportText>("support", "Holds or moves nodes of a rod, or holds a place by springs.")
           .required("rod", &Support::rod, name(), "Name of the rod.")
-          .required("at", &Support::at, location(), "The node, or all; there has to be a node.")
+          .required("at", &Support::at, location(),
+                    "The node, or all; there has to be a node. For a spring alone: any arc length.")
           .optional("fix", &Support::fix, list_of(component_format(), 1),
                     "Components that stay at their initial value.")
           .optional("clamp", &Support::clamp, boolean(),
                     "Whether the node and the direction of the rod at it are held.")
           .optional("prescribe", &SupportText::motion, prescribe_format(),
                     "Components that move over time.")
+          .optional("spring", &Support::spring, spring_format(),
+                    "Springs that hold the place. Several at one place add up.")
           .check(check_support));
   Shape shape = as_written.shape;
   return {std::move(shape),

@@ -59,6 +59,7 @@ class Pencil {
 std::vector<BucklingMode> buckling_modes(Model& model, const LoadPath& loads,
                                          const Assembler& assembler, LinearSolver& solver,
                                          const Vector& positions, int count) {
+  const FactorGuard back_to_the_scene(loads, model);
   Stiffness stiffness(model, assembler, solver);
   Vector controls;
   Vector force;
@@ -91,7 +92,6 @@ std::vector<BucklingMode> buckling_modes(Model& model, const LoadPath& loads,
   Vector k1 = stiffness.values();
   evaluate(-probe, positions - probe * displacement);
   k1 = (k1 - stiffness.values()) / (2.0 * probe);
-  loads.apply(1.0, model);
 
   Pencil pencil(solver, k0, k1);
   std::vector<BucklingMode> modes;

@@ -222,8 +222,8 @@ class Follower {
   };
 
   /// Finds the events between `start` + `low` and `start` + `high` by bisection. `before` and
-  /// `after` are the nodes there.
-  /// Places are told apart against the length `whole` of the first interval.
+  /// `after` are the nodes there; places are told apart against the length `whole` of the first
+  /// interval.
   void locate(const Node& start, double whole, double low, Node before, double high, Node after,
               std::vector<Located>& events) {
     if (same_state(before, after)) return;

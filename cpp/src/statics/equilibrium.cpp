@@ -22,7 +22,8 @@ namespace {
 constexpr int kMaxRelaxations = 500;
 /// Saddles left in a row before the search gives up; each has a lower potential than the last.
 constexpr int kMaxSaddles = 30;
-/// A structure that has moved this many times its size is held by nothing.
+/// A structure that has moved this many times its size, and farther than its springs give way, is
+/// held by nothing.
 constexpr double kDrift = 100.0;
 /// What is left of the resistance after a step that turns the rod; gentler where steps fail.
 constexpr double kEasing = 0.3;
@@ -30,6 +31,12 @@ constexpr double kEasing = 0.3;
 constexpr double kEasingAtSaddle = 0.7;
 /// No pseudo-time step turns an edge by more [rad]: beyond it lies another valley.
 constexpr double kLargestTurn = 2.0;
+/// Of a swing: steps, turn of an edge [rad] in one of them, shortest one against the first, and
+/// friction times the first.
+constexpr int kMaxSwings = 3000;
+constexpr double kSwingTurn = 0.2;
+constexpr double kShortestSwing = 1e-6;
+constexpr double kFriction = 0.3;
 /// A Newton step to the end of a descent must not change an edge by more than this.
 constexpr double kLastTurn = 0.5;
 /// Potentials closer than this, against the largest force times the size, are the same.
@@ -42,6 +49,28 @@ constexpr double kSmallestShare = 1.0 / 256.0;
 constexpr double kFolded = 3.0;
 /// Share of its rest length at which an edge counts as pressed to a point.
 constexpr double kCollapsed = 1e-2;
+
+/// How far [m] springs can let the structure move under `load` [N], counted from the drawn shape.
+double spring_travel(const Model& model, double load) {
+  double farthest = 0.0;
+  for_each_list(model.elements, [&](const auto& list) {
+    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+    if constexpr (HoldsElement<Kernel>::value) {
+      LocalTerm<Kernel::kDofs> drawn;
+      for (std::size_t e = 0; e < list.size(); ++e) {
+        Kernel::template evaluate<Derivatives::Energy>(
+            list.constants[e], {}, gather(list.dofs[e], model.initial_positions), drawn);
+        for (int c = 0; c < model.dimension; ++c) {
+          if (!Kernel::holds(list.constants[e], c)) continue;
+          const double stiffness = list.constants[e].stiffness[c];
+          farthest =
+              std::max(farthest, load / stiffness + std::sqrt(2.0 * drawn.energy / stiffness));
+        }
+      }
+    }
+  });
+  return farthest;
+}
 
 class Search {
  public:
@@ -59,6 +88,7 @@ class Search {
     }
     model.controls.evaluate(state.time, stage_.controls);
     external_force(model, stage_.controls, state.extra_force, stage_.force);
+    spring_travel_ = spring_travel(model, stage_.force.lpNorm<1>());
   }
 
   EquilibriumReport run(Vector& positions) {
@@ -70,7 +100,8 @@ class Search {
     }
     move_supports(x);
     start_ = x;
-    report_.converged = newton(x) || descend(x, report_.force_scale / model_.size) || step_loads(x);
+    report_.converged =
+        newton(x) || descend(x, report_.force_scale / model_.size) || step_loads(x) || swing(x);
     if (report_.converged) judge(x);
     while (report_.converged && options_.leave_saddles &&
            report_.stability.unstable_directions > 0) {
@@ -125,6 +156,48 @@ class Search {
     return found;
   }
 
+  /// Lets the structure swing from where it is drawn, with friction, in implicit Euler steps for
+  /// unit masses. Without momentum the flow may end at a wall, where a node folds or an edge is
+  /// crushed, past which the structure would swing on to an equilibrium. Returns false and leaves
+  /// `x` at the start if it comes to no rest.
+  bool swing(Vector& x) {
+    const auto [status, failure] = std::make_pair(report_.status, report_.failure);
+    if (status == "unbounded") return false;
+    x = start_;
+    Vector velocity = Vector::Zero(x.size());
+    Vector next;
+    stiffness_.evaluate(x, stage_.controls);
+    const double acting = std::max(stage_.force.lpNorm<Eigen::Infinity>(),
+                                   stiffness_.gradient().lpNorm<Eigen::Infinity>());
+    double step = std::sqrt(model_.size / acting);
+    const double friction = kFriction / step;
+    const double shortest = kShortestSwing * step;
+    double turn_for_newton = 0.1;
+    for (int i = 0; i < kMaxSwings && step > shortest; ++i) {
+      ++report_.relaxations;
+      const double slowed = 1.0 + friction * step;
+      stage_.inertia = slowed / (step * step);
+      stage_.inertia_target = x + step / slowed * velocity;
+      next = x;
+      const bool solved = solve(next);
+      const double turn = solved ? largest_edge_change(model_, next - x) : 0.0;
+      if (!solved || turn > kSwingTurn) {
+        step *= 0.5;
+        continue;
+      }
+      velocity = (next - x) / step;
+      x = next;
+      if (turn < 0.5 * kSwingTurn) step *= 1.2;
+      if (turn < turn_for_newton) {
+        if (finish(x)) return true;
+        turn_for_newton *= 0.5;
+      }
+    }
+    x = start_;
+    fail(status, failure);
+    return false;
+  }
+
   void fail(std::string status, std::string why) {
     report_.status = std::move(status);
     report_.failure = std::move(why);
@@ -153,7 +226,7 @@ class Search {
       fail("not_converged", report.failure);
       return false;
     }
-    if ((x - start_).lpNorm<Eigen::Infinity>() > kDrift * model_.size) {
+    if ((x - start_).lpNorm<Eigen::Infinity>() > kDrift * (model_.size + spring_travel_)) {
       fail("unbounded", "the structure moves away: nothing holds it");
       x = before;
       return false;
@@ -337,9 +410,10 @@ class Search {
   Stiffness stiffness_;
   Stage stage_;
   Vector start_;
-  double softness_ = 0.0;  // largest L / EI of a rod [1/(N m)]
-  Vector turned_;          // [rad] of each edge with a moment in the last descent
-  double fallen_ = 0.0;    // [J] in the last descent
+  double softness_ = 0.0;       // largest L / EI of a rod [1/(N m)]
+  double spring_travel_ = 0.0;  // [m]
+  Vector turned_;               // [rad] of each edge with a moment in the last descent
+  double fallen_ = 0.0;         // [J] in the last descent
   EquilibriumReport report_;
 };
 

@@ -58,7 +58,9 @@ double second_variation(const Model& model, const Vector& controls, const Vector
       Kernel::template evaluate<Derivatives::Hessian>(list.constants[e], controls,
                                                       gather(list.dofs[e], positions), local);
       auto d = gather(list.dofs[e], direction);
-      for (Eigen::Index i = d.size() - 1; i >= 0; --i) d[i] -= d[i % model.dimension];
+      if constexpr (!HoldsElement<Kernel>::value) {
+        for (Eigen::Index i = d.size() - 1; i >= 0; --i) d[i] -= d[i % model.dimension];
+      }
       total += d.dot(local.hessian.template selfadjointView<Eigen::Lower>() * d);
     }
   });

@@ -32,13 +32,18 @@ std::vector<Index> connected_parts(const Model& model) {
   return parent;
 }
 
-std::string rod_of(const Model& model, Index node) {
-  for (const RodLayout& rod : model.rods) {
-    for (const Index candidate : rod.nodes) {
-      if (candidate == node) return rod.name;
+/// Marks the parts that a spring holds in one component.
+void mark_held_by_springs(const Model& model, int component, const std::vector<Index>& part,
+                          std::vector<char>& held) {
+  for_each_list(model.elements, [&](const auto& list) {
+    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+    if constexpr (HoldsElement<Kernel>::value) {
+      for (std::size_t e = 0; e < list.size(); ++e) {
+        if (!Kernel::holds(list.constants[e], component)) continue;
+        held[at(part[at(list.dofs[e].front() / model.dimension)])] = 1;
+      }
     }
-  }
-  return "";
+  });
 }
 
 }  // namespace
@@ -57,12 +62,13 @@ std::string find_unheld_part(const Model& model, const Vector& force) {
       net[first] += force[dof];
       acting[first] += std::abs(force[dof]);
     }
+    mark_held_by_springs(model, c, part, held);
     for (Index node = 0; node < model.num_nodes; ++node) {
       const std::size_t i = at(node);
       if (held[i] != 0 || std::abs(net[i]) <= kBalance * acting[i]) continue;
       return fmt::format(
           "no support holds rod '{}' in {}, and {:.3g} N act on it in that direction",
-          rod_of(model, node), "xyz"[c], net[i]);
+          place_of(model, node).rod, "xyz"[c], net[i]);
     }
   }
   return "";

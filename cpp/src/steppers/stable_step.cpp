@@ -1,6 +1,7 @@
 #include "der/steppers/stable_step.hpp"
 
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -67,11 +68,12 @@ StableStep stable_step(const Model& model, const Vector& positions, bool drag_li
   model.controls.evaluate(0.0, controls);
   const Matrix stretch = scaled_stiffness(model, positions, controls, EnergyTerm::Stretch);
   const Matrix bend = scaled_stiffness(model, positions, controls, EnergyTerm::Bend);
+  const Matrix spring = scaled_stiffness(model, positions, controls, EnergyTerm::Spring);
   const Vector rates = drag_limits_step ? damping_rates(model) : Vector::Zero(model.num_free());
 
   Index fastest = 0;
   Index most_damped = 0;
-  const double w2 = row_sums(stretch + bend).maxCoeff(&fastest);
+  const double w2 = row_sums(stretch + bend + spring).maxCoeff(&fastest);
   const double g = rates.maxCoeff(&most_damped);
   StableStep result;
   if (w2 == 0.0 && g == 0.0) {
@@ -85,8 +87,10 @@ StableStep stable_step(const Model& model, const Vector& positions, bool drag_li
     result.limited_by = "drag";
     result.worst_dof = model.free_dofs[at(most_damped)];
   } else {
-    const bool stretches = row_sums(stretch)[fastest] >= row_sums(bend)[fastest];
-    result.limited_by = stretches ? "stretch" : "bend";
+    const double of_stretch = row_sums(stretch)[fastest];
+    const double of_bend = row_sums(bend)[fastest];
+    result.limited_by = of_stretch >= of_bend ? "stretch" : "bend";
+    if (row_sums(spring)[fastest] > std::max(of_stretch, of_bend)) result.limited_by = "spring";
     result.worst_dof = model.free_dofs[at(fastest)];
   }
   return result;

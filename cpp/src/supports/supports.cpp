@@ -4,6 +4,7 @@
 
 #include "der/model/location.hpp"
 #include "der/supports/clamp.hpp"
+#include "der/supports/spring.hpp"
 
 namespace der {
 namespace {
@@ -17,6 +18,8 @@ void hold(Model& model, Index dof, Index displacement) {
 }  // namespace
 
 void add_support(const scenario::Support& support, Model& model) {
+  if (support.spring) add_spring(support, model);
+  if (!support.holds()) return;
   RodLayout& rod = model.rod(support.rod);
   for (const Index place : nodes_at(support.at, rod)) {
     const Index node = rod.nodes[static_cast<std::size_t>(place)];

@@ -4,12 +4,13 @@ from der.plotting.overview import plot
 from der.plotting.probes import draw_probe
 from der.plotting.shapes import draw_shapes, pick_frames
 from der.plotting.style import PALETTE, style, time_colours
-from der.plotting.supports import draw_supports
+from der.plotting.supports import draw_springs, draw_supports
 
 __all__ = [
     "PALETTE",
     "draw_probe",
     "draw_shapes",
+    "draw_springs",
     "draw_supports",
     "pick_frames",
     "plot",

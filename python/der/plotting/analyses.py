@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from der._core import held_nodes
+from der._core import held_nodes, springs
 from der.plotting.shapes import draw_shapes, limits
 from der.plotting.style import MUTED, PALETTE, axis_label
-from der.plotting.supports import draw_supports
+from der.plotting.supports import draw_springs, draw_supports
 
 if TYPE_CHECKING:
     from der.result import Result
@@ -63,6 +63,7 @@ def _draw_mode(axes: Axes, result: Result, rest: Array, shape: Array, label: str
         line = (rest + shape)[rod.nodes]
         axes.plot(line[:, 0], line[:, 1], color=PALETTE[0], zorder=4)
     draw_supports(axes, result.rods, held_nodes(result.scenario, 0.0), rest)
+    draw_springs(axes, result.rods, springs(result.scenario), rest)
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_ylabel("y [m]")
     axes.text(1.01, 0.5, label, transform=axes.transAxes, va="center")
@@ -97,13 +98,16 @@ def _draw_branch(axes: Axes, chosen: NDArray[np.bool_], values: Array, result: R
     path = result.path
     assert path is not None
     rows = np.flatnonzero(chosen)
-    # A piece between two points is as stable as its later end, which lies behind any event.
-    stable = path.stable[rows]
-    starts = [0, *(np.flatnonzero(np.diff(stable[1:])) + 1).tolist()]
+    # An event is a point just behind the change, so that a piece between two points is as stable as
+    # its earlier end; but a branch starts at the bifurcation itself, where nothing is.
+    stable = path.stable[rows][:-1].copy()
+    if len(rows) > 1 and path.branch[rows[0]] > 0:
+        stable[0] = path.stable[rows[1]]
+    starts = [0, *(np.flatnonzero(np.diff(stable)) + 1).tolist()]
     ends = [*starts[1:], len(rows) - 1]
     for start, end in zip(starts, ends, strict=True):
         piece = rows[start : end + 1]
-        is_stable = bool(stable[end])
+        is_stable = bool(stable[start]) if len(stable) else bool(path.stable[rows[0]])
         axes.plot(
             values[piece],
             path.factor[piece],

@@ -12,12 +12,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from der._core import held_nodes
+from der._core import held_nodes, springs
 from der.plotting.analyses import plot_modes, plot_path
 from der.plotting.probes import draw_probe, mark_times
 from der.plotting.shapes import draw_shapes, limits, pick_frames
 from der.plotting.style import MUTED, style, time_colours, time_text
-from der.plotting.supports import draw_supports
+from der.plotting.supports import draw_springs, draw_supports
 
 if TYPE_CHECKING:
     from der.result import Result
@@ -178,6 +178,7 @@ def _draw_shape_panel(
     for positions, label, colour in zip(shapes, labels, time_colours(len(shapes)), strict=True):
         draw_shapes(axes, result.rods, positions, colour, label)
     draw_supports(axes, result.rods, held_nodes(result.scenario, time), shapes[-1])
+    draw_springs(axes, result.rods, springs(result.scenario), shapes[-1])
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.06)
     axes.autoscale_view()

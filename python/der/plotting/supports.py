@@ -10,7 +10,7 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 from numpy.typing import NDArray
 
-from der._core import HeldNode, Rod
+from der._core import HeldNode, Rod, SpringSupport
 from der.plotting.style import MUTED
 
 #: Length on paper [points] of one unit of the paths below.
@@ -35,6 +35,17 @@ _ROLLER = _strokes(_TRIANGLE, *_hatching(-1.3))
 _WALL = _strokes(*_hatching(0.0)).transformed(Affine2D().rotate_deg(-90))
 _SLEEVE = _strokes([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5), (-0.5, -0.5)])
 
+_ZIGZAG = [(0.3 * (-1) ** k, -0.45 - 0.2 * k) for k in range(5)]
+_SPRING = _strokes(
+    [(0.0, 0.0), (0.0, -0.35), *_ZIGZAG, (0.0, -1.35), (0.0, -1.65)], *_hatching(-1.65)
+)
+_TURNS = np.linspace(0.0, 4.5 * np.pi, 60)
+_SPIRAL = _strokes(
+    [(0.055 * t * np.cos(t), 0.055 * t * np.sin(t)) for t in _TURNS],
+    [(-0.35, 1.1), (0.35, 1.1)],
+    [(0.0, 0.055 * _TURNS[-1]), (0.0, 1.1)],
+)
+
 
 def draw_supports(
     axes: Axes, rods: Iterable[Rod], held: Iterable[HeldNode], positions: NDArray[np.float64]
@@ -58,22 +69,62 @@ def draw_supports(
     ends = {(rod.name, int(rod.nodes[i])): i for rod in rods for i in (0, -1)}
     for node in held:
         symbol, angle = _symbol(node, ends.get((node.rod, node.node)))
-        path = symbol.transformed(Affine2D().rotate(angle))
-        x, y = positions[node.node]
-        axes.plot(
-            [x],
-            [y],
-            marker=path,
-            # Matplotlib scales a path until its farthest coordinate reaches half the marker size.
-            markersize=2.0 * _UNIT * float(np.abs(path.vertices).max()),
-            markerfacecolor="white",
-            markeredgecolor=MUTED,
-            markeredgewidth=0.9,
-            linestyle="none",
-            zorder=2.5,
-            clip_on=False,
-            gid=f"support-{node.rod}-{node.node}",
-        )
+        _draw_symbol(axes, symbol, angle, positions[node.node], f"support-{node.rod}-{node.node}")
+
+
+def draw_springs(
+    axes: Axes,
+    rods: Iterable[Rod],
+    springs: Iterable[SpringSupport],
+    positions: NDArray[np.float64],
+) -> None:
+    """Draw a zigzag line to the ground for each spring, and a spiral for one against turning.
+
+    A horizontal spring lies on the side that is away from the middle of its rod.
+
+    Parameters
+    ----------
+    axes
+        Where to draw.
+    rods
+        The rods.
+    springs
+        The spring supports, from ``der.springs(scenario)``.
+    positions
+        Positions of all nodes [m], shape (nodes, 2).
+    """
+    middle = {rod.name: float(positions[rod.nodes, 0].mean()) for rod in rods}
+    for number, spring in enumerate(springs):
+        place = spring.weights @ positions[spring.nodes]
+        outwards = 0.5 * np.pi if place[0] > middle[spring.rod] else -0.5 * np.pi
+        drawn = [
+            (_SPRING, outwards, spring.stiffness[0]),
+            (_SPRING, 0.0, spring.stiffness[1]),
+            (_SPIRAL, 0.0, spring.rotational_stiffness),
+        ]
+        for symbol, angle, stiffness in drawn:
+            if stiffness > 0.0:
+                _draw_symbol(axes, symbol, angle, place, f"spring-{spring.rod}-{number}")
+
+
+def _draw_symbol(
+    axes: Axes, symbol: Path, angle: float, place: NDArray[np.float64], gid: str
+) -> None:
+    path = symbol.transformed(Affine2D().rotate(angle))
+    axes.plot(
+        [place[0]],
+        [place[1]],
+        marker=path,
+        # Matplotlib scales a path until its farthest coordinate reaches half the marker size.
+        markersize=2.0 * _UNIT * float(np.abs(path.vertices).max()),
+        markerfacecolor="none" if symbol in (_SPRING, _SPIRAL) else "white",
+        markeredgecolor=MUTED,
+        markeredgewidth=0.9,
+        linestyle="none",
+        zorder=2.5,
+        clip_on=False,
+        gid=gid,
+    )
 
 
 def _symbol(held: HeldNode, end: int | None) -> tuple[Path, float]:

@@ -10,6 +10,7 @@
 #include "der/app/progress.hpp"
 #include "der/app/report.hpp"
 #include "output/output_scenes.hpp"
+#include "statics/statics_scenes.hpp"
 
 namespace der::test {
 namespace {
@@ -100,6 +101,29 @@ TEST_CASE("the report names what ran, why, and every probe") {
     CHECK(report.find(part) != std::string::npos);
   }
   CHECK(report.find('\x1b') == std::string::npos);
+}
+
+TEST_CASE("the report of an analysis lists what it has found") {
+  const auto report_of = [](const std::string& analysis) {
+    Simulation simulation(
+        Scenario::parse(straight_rod(11, kPinned + kPush + "analysis: " + analysis + "\n")));
+    Recorder recorder(simulation);
+    const RunOutcome outcome = run(simulation, recorder);
+    return run_report(simulation, recorder, outcome, RunFolder("runs/rod"), Style::plain());
+  };
+  const auto has = [](const std::string& report, const std::string& part) {
+    CAPTURE(report);
+    CHECK(report.find(part) != std::string::npos);
+  };
+  const std::string modes = report_of("{modes: {count: 2}}");
+  has(modes, "vibration modes about the equilibrium");
+  has(modes, "Hz");
+  const std::string buckling = report_of("{buckling: {count: 1}}");
+  has(buckling, "linear buckling loads");
+  has(buckling, "9.7888");  // (20 sin(pi/20))^2, and 2 P/EA of it for the shortening
+  const std::string path = report_of("{continuation: {to: 12, branches: 1}}");
+  has(path, "bifurcation");
+  has(path, "branch");
 }
 
 }  // namespace der::test

@@ -43,6 +43,27 @@ inline PlanarMoment::Constants sample_constants(const PlanarMoment&, Random& ran
   return {uniform(random, 0.1, 1.0), 0};
 }
 
+template <int Nodes>
+typename PointSpring<Nodes>::Constants sample_constants(const PointSpring<Nodes>&, Random& random) {
+  typename PointSpring<Nodes>::Constants c;
+  c.stiffness << uniform(random, 0.5, 5.0), uniform(random, 0.0, 5.0);
+  c.anchor << uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0);
+  for (int i = 0; i < Nodes; ++i) c.weights[i] = uniform(random, -0.1, 1.0);
+  return c;
+}
+
+template <int Edges>
+typename RotationalSpring<Edges>::Constants sample_constants(const RotationalSpring<Edges>&,
+                                                             Random& random) {
+  typename RotationalSpring<Edges>::Constants c;
+  c.stiffness = uniform(random, 0.5, 5.0);
+  c.direction = uniform(random, -0.5, 0.5);
+  c.rest = uniform(random, -1.0, 1.0);
+  c.weights.back() = Edges == 1 ? 1.0 : uniform(random, -0.1, 1.1);
+  c.weights.front() = Edges == 1 ? 1.0 : 1.0 - c.weights.back();
+  return c;
+}
+
 template <class Kernel>
 typename FromPivot<Kernel>::Constants sample_constants(const FromPivot<Kernel>&, Random& random) {
   const auto pivot = [&] {

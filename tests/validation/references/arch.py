@@ -21,6 +21,15 @@ stability to a skew one where the linearised problem has a skew solution,
 
 found as a zero of its determinant: a bifurcation. Under a dead load the rod snaps at whichever
 comes first.
+
+Each half of the clamped buckled beam has equal conditions at its ends but for the load (theta = 0),
+so that its shape is unchanged by half a turn about its quarter point s = 1/4:
+
+    x(1/4) = span/4,   moment(1/4) = 0
+
+It loses this symmetry, but not that about the middle, where the linearised problem has a solution
+with dtheta(1/4) = 0 and dx(0) = dy(0) = dtheta(0) = 0, dn_x = 0: the load does no work on it. In
+the theory of small slopes that is at a thrust of 16 pi^2, wherever the load is.
 """
 
 from __future__ import annotations
@@ -87,6 +96,57 @@ class Snap:
         sign, size = np.linalg.slogdet(jacobian)
         return float(sign), float(size)
 
+    def quarter(self) -> Curve:
+        """The curve of a quarter of a clamped beam; parameters n_x and load."""
+
+        def rate(_k: int, _s: Array, y: Numbers, p: Numbers) -> Numbers:
+            return self._rate(y, p[0], -0.5 * p[1])
+
+        def ends(left: Numbers, right: Numbers, _p: Numbers) -> Numbers:
+            return np.array([*left[0, :3], right[0, 0] - 0.25 * self.span, right[0, 3]])
+
+        return Curve(Boundary(rate, ends), np.array([100.0, 100.0]))
+
+    def half_turn_determinant(self, point: Point) -> tuple[float, float]:
+        """Sign and logarithm of the determinant of the problem linearised about a quarter, for
+        shapes that half a turn about its end changes.
+        """
+        nx, load = point.solution.parameters
+
+        def rate(_k: int, _s: Array, y: Numbers, _p: Numbers) -> Numbers:
+            return self._rate(y, nx, -0.5 * load)
+
+        def ends(left: Numbers, right: Numbers, _p: Numbers) -> Numbers:
+            return np.array([*left[0, :3], right[0, 2]])
+
+        _, jacobian = Boundary(rate, ends).residual(replace(point.solution, parameters=np.zeros(0)))
+        sign, size = np.linalg.slogdet(jacobian)
+        return float(sign), float(size)
+
+    def half_turn_bifurcations(self) -> list[Event]:
+        """Where the symmetric curve of a clamped beam loses its symmetry under half a turn."""
+        degree = self.start.values.shape[2] - 1
+        start = constant_start(np.array([0.0, 0.25]), np.zeros(4), self.start.parameters, degree)
+        start.values[0] = self.start.at(start.points()[0])
+        curve = self.quarter()
+
+        def drop(point: Point) -> float:
+            return self.height - 2.0 * float(point.solution.values[0, 1, -1])
+
+        points = curve.trace(
+            curve.begin(start, np.array([0.0, 1.0])), 0.05, lambda p: drop(p) > 2.3 * self.height
+        )
+        _, reference = self.half_turn_determinant(points[0])
+
+        def broken(point: Point) -> float:
+            sign, size = self.half_turn_determinant(point)
+            return sign * float(np.exp(size - reference))
+
+        return [
+            Event(float(p.solution.parameters[1]), drop(p), -float(p.solution.parameters[0]))
+            for p in curve.zeros(points, broken)
+        ]
+
     def drop(self, point: Point) -> float:
         """How far the load has pushed the middle down."""
         return self.height - float(point.solution.values[0, 1, -1])
@@ -106,6 +166,7 @@ class Snap:
             [self._event(p) for p in points],
             [self._event(p) for p in curve.zeros(points, lambda point: point.rate(1))],
             [self._event(p) for p in curve.zeros(points, skew)],
+            self.half_turn_bifurcations() if self.ends == "clamped" else [],
             max(curve.problem.shooting_gap(p.solution) for p in points[:: len(points) // 6]),
         )
 
@@ -125,13 +186,14 @@ class Event:
 
 @dataclass(frozen=True)
 class Path:
-    """The symmetric curve in order, its limit points and its bifurcations; `shooting_gap` is
-    an independent error of coordinates on it.
+    """The symmetric curve in order, its limit points, its bifurcations to skew shapes and those to
+    symmetric ones; `shooting_gap` is an independent error of coordinates on it.
     """
 
     points: list[Event]
     limits: list[Event]
     bifurcations: list[Event]
+    symmetric_bifurcations: list[Event]
     shooting_gap: float
 
 
@@ -184,7 +246,7 @@ def _add(values: dict[str, Reference], label: str, fine: Snap, coarse: Snap) -> 
     floors = {"load": gap * fine.stretching, "drop": 10.0 * gap, "thrust": gap * fine.stretching}
     values[f"{label}.height"] = Reference(fine.height, 10.0 * gap, "length")
     values[f"{label}.thrust"] = Reference(best.points[0].thrust, floors["thrust"], "EI/length^2")
-    for kind in ("limits", "bifurcations"):
+    for kind in ("limits", "bifurcations", "symmetric_bifurcations"):
         pairs = zip(getattr(best, kind), getattr(other, kind), strict=True)
         for number, (event, again) in enumerate(pairs, 1):
             for name, floor in floors.items():
@@ -213,7 +275,8 @@ def references() -> Problem:
         "dead load at the middle, positive down, of a stress-free circular arch of span 1 with "
         "pinned ends, and of a straight beam of length 1 buckled upward by moving its ends "
         "together; EI = 1, EA = 1e4; symmetric curve with limit points (in order along it) and "
-        "bifurcations to skew shapes; drop is of the middle from the unloaded height",
+        "bifurcations to skew shapes, and to symmetric ones; drop is of the middle from the "
+        "unloaded height",
         "pseudo-arclength continuation of the extensible rod by Chebyshev collocation, degree 40 "
         "on half the rod; error: the larger of twice the change from degree 30 and the mismatch "
         "of shooting (for forces, times EA)",

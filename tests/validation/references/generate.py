@@ -21,7 +21,15 @@ from typing import Any
 from .record import Problem, Reference
 
 FILE = Path(__file__).with_name("values.json")
-PROBLEMS = ("falling_spheres", "elastica", "extensible_beam", "swing", "arch", "frequencies")
+PROBLEMS = (
+    "falling_spheres",
+    "elastica",
+    "extensible_beam",
+    "swing",
+    "arch",
+    "frequencies",
+    "springs",
+)
 
 
 def load_values(file: Path = FILE) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <type_traits>
 #include <vector>
 
 #include "der/core/types.hpp"
@@ -19,6 +20,8 @@ namespace der {
 ///   template <Derivatives D>
 ///   static void evaluate(const Constants&, const Vector& controls,
 ///                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out);
+/// and, if its energy changes with a translation of the element,
+///   static bool holds(const Constants&, int component);    against moving along x (0) or y (1)
 template <class Kernel>
 struct ElementList {
   using KernelType = Kernel;
@@ -32,5 +35,10 @@ struct ElementList {
     constants.push_back(element_constants);
   }
 };
+
+template <class Kernel, class = void>
+struct HoldsElement : std::false_type {};
+template <class Kernel>
+struct HoldsElement<Kernel, std::void_t<decltype(&Kernel::holds)>> : std::true_type {};
 
 }  // namespace der

@@ -9,7 +9,7 @@ namespace der {
 enum class Derivatives { Energy, Gradient, Hessian };
 
 /// What an element's energy is booked under in reports.
-enum class EnergyTerm { Stretch, Bend, Load };
+enum class EnergyTerm { Stretch, Bend, Spring, Load };
 
 /// Energy of one element [J] with its derivatives by the element's own N coordinates. The kernels
 /// fill the members up to the order asked for; of `hessian` only the lower triangle is set.

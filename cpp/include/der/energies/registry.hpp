@@ -8,6 +8,8 @@
 #include "der/energies/planar_clamp.hpp"
 #include "der/energies/stretch.hpp"
 #include "der/loads/planar_moment.hpp"
+#include "der/supports/point_spring.hpp"
+#include "der/supports/rotational_spring.hpp"
 
 namespace der {
 
@@ -22,7 +24,13 @@ using ElementLists = std::tuple<ElementList<Stretch<2>>,                        
                                 ElementList<FromPivot<PlanarBend<TangentCurvature>>>,   //
                                 ElementList<FromPivot<PlanarClamp<AngleCurvature>>>,    //
                                 ElementList<FromPivot<PlanarClamp<TangentCurvature>>>,  //
-                                ElementList<PlanarMoment>>;
+                                ElementList<PlanarMoment>,                              //
+                                ElementList<PointSpring<1>>,                            //
+                                ElementList<PointSpring<2>>,                            //
+                                ElementList<PointSpring<3>>,                            //
+                                ElementList<PointSpring<4>>,                            //
+                                ElementList<RotationalSpring<1>>,                       //
+                                ElementList<RotationalSpring<2>>>;
 
 /// Calls `f(list)` for each kind of element.
 template <class Lists, class F>

@@ -27,6 +27,12 @@ struct Clamp {
   Index rotation = -1;     ///< control that turns it [rad]; -1: none
 };
 
+/// A spring against turning of a rod's tangent.
+struct TangentSpring {
+  double arc_length = 0.0;  ///< [m]
+  double stiffness = 0.0;   ///< [N m/rad]
+};
+
 /// Where the nodes and edges of one rod are in the model, and what is known of it for probes and
 /// drawings. Only the builder assumes that a rod is a chain; everybody else reads these lists.
 struct RodLayout {
@@ -43,11 +49,14 @@ struct RodLayout {
   /// Natural turning angle at each node that bends [rad], at clamped ones of the clamp's cells; 0
   /// at free ends.
   std::vector<double> rest_turning_angle;
-  std::vector<Clamp> clamps;          ///< none on a rod that does not bend
+  std::vector<Clamp> clamps;                   ///< none on a rod that does not bend
+  std::vector<TangentSpring> tangent_springs;  ///< no two at the same place
   double draw_radius = 0.0;           ///< half the height of the section [m]; 0 if not known
   std::vector<double> sphere_radius;  ///< per node [m]; 0: no sphere
 
   [[nodiscard]] double rest_length() const { return arc_length.back(); }
+  /// Two arc lengths [m] closer than this are the same place.
+  [[nodiscard]] double same_place() const { return 1e-9 * rest_length(); }
   [[nodiscard]] Index num_edges() const { return static_cast<Index>(nodes.size()) - 1; }
   /// Voronoi length [m]: the rod's part that is nearer to this node than to another.
   [[nodiscard]] double voronoi_length(Index node) const;
@@ -55,6 +64,8 @@ struct RodLayout {
   [[nodiscard]] std::array<Index, 4> edge_dofs(Index edge, const Model& model) const;
   /// Null if the tangent at that node is free.
   [[nodiscard]] const Clamp* clamp_at(Index place) const;
+  /// Null if no spring turns against the tangent at that arc length [m].
+  [[nodiscard]] const TangentSpring* tangent_spring_at(double s) const;
 };
 
 /// A degree of freedom that the solver does not find: it keeps its initial value, plus a control.
@@ -106,6 +117,13 @@ struct Model {
   [[nodiscard]] const RodLayout& rod(const std::string& rod_name) const;
   [[nodiscard]] RodLayout& rod(const std::string& rod_name);
 };
+
+/// A node by its place in a rod.
+struct NodePlace {
+  std::string rod;  ///< the first rod that has it; empty if none does
+  Index place = 0;  ///< position in RodLayout::nodes
+};
+NodePlace place_of(const Model& model, Index node);
 
 /// "node 3 of rod 'beam' (y)"
 std::string describe_dof(const Model& model, Index dof);

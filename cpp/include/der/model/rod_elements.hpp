@@ -4,8 +4,8 @@
 
 namespace der {
 
-/// Makes the stretch and bend elements of a rod that is one of the model's, from its layout and
-/// clamps, and sets its rest turning angles.
+/// Makes the stretch and bend elements of a rod that is one of the model's, from its layout, clamps
+/// and springs against turning, and sets its rest turning angles.
 void add_rod_elements(RodLayout& rod, Model& model);
 
 }  // namespace der

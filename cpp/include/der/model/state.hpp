@@ -44,10 +44,15 @@ struct Energies {
   double kinetic = 0.0;
   double stretch = 0.0;
   double bend = 0.0;
+  double spring = 0.0;   ///< of elastic supports
   double gravity = 0.0;  ///< of the weight, zero at the origin
-  [[nodiscard]] double elastic() const { return stretch + bend; }
+  [[nodiscard]] double elastic() const { return stretch + bend + spring; }
   [[nodiscard]] double total() const { return kinetic + elastic() + gravity; }
 };
+/// The energies as they are recorded.
+constexpr std::array<const char*, 5> kEnergyNames{"kinetic", "stretch", "bend", "spring",
+                                                  "gravity"};
+std::array<double, kEnergyNames.size()> by_name(const Energies& energies);
 Energies energies(const Model& model, const State& state);
 
 /// Energy [J] that the time stepping itself has taken since the start: what is missing of the work

@@ -104,6 +104,13 @@ struct Prescribed {
   Series displacement;
 };
 
+/// An elastic support: pulls a place of a rod to an anchor, or its tangent to the drawn direction.
+struct Spring {
+  Components stiffness;               ///< [N/m] along each axis; empty: none
+  Components anchor;                  ///< [m]; empty: where the place is as drawn
+  double rotational_stiffness = 0.0;  ///< [N m/rad]; 0: none
+};
+
 struct Support {
   std::string rod;
   Location at;
@@ -111,7 +118,11 @@ struct Support {
   std::vector<Prescribed> prescribe;  ///< moved by a table
   bool clamp = false;                 ///< all components of the node and the tangent at it are held
   std::optional<Series> rotation;     ///< of the clamped tangent, from its initial direction [rad]
+  std::optional<Spring> spring;
   Mark mark;
+
+  /// Whether it holds nodes; otherwise it is only a spring, at any arc length.
+  [[nodiscard]] bool holds() const { return clamp || !fix.empty() || !prescribe.empty(); }
 };
 
 struct Gravity {

@@ -34,4 +34,21 @@ class LoadPath {
   Vector controls0_, controls1_;  // values of the tables at time 0
 };
 
+/// Sets a model back to a factor of its loads when it goes out of scope, however that comes about.
+class FactorGuard {
+ public:
+  FactorGuard(const LoadPath& loads, Model& model, double factor = 1.0)
+      : loads_(loads), model_(model), factor_(factor) {}
+  ~FactorGuard() { loads_.apply(factor_, model_); }
+  FactorGuard(const FactorGuard&) = delete;
+  FactorGuard& operator=(const FactorGuard&) = delete;
+  /// Another factor than that of the constructor.
+  void leave_at(double factor) { factor_ = factor; }
+
+ private:
+  const LoadPath& loads_;
+  Model& model_;
+  double factor_;
+};
+
 }  // namespace der

@@ -14,8 +14,9 @@ double potential_change(const Model& model, const Vector& controls, const Vector
                         const Vector& from, const Vector& to);
 
 /// d' K d [J] of the stiffness K at `positions` for a displacement `direction` (all degrees of
-/// freedom) [m]. Taken element by element relative to the element's first node, it loses nothing to
-/// the rounding of the assembled matrix: rigid motions of unloaded elements give 0.
+/// freedom) [m]. Taken element by element relative to the element's first node where a translation
+/// costs it no energy, it loses nothing to the rounding of the assembled matrix: rigid motions of
+/// unloaded elements give 0.
 double second_variation(const Model& model, const Vector& controls, const Vector& positions,
                         const Vector& direction);
 

@@ -10,7 +10,7 @@ namespace der {
 /// The largest step of the explicit steppers, and what sets it.
 struct StableStep {
   double step = 0.0;       ///< [s]; infinite where nothing limits it
-  std::string limited_by;  ///< "stretch", "bend" or "drag"
+  std::string limited_by;  ///< "stretch", "bend", "spring" or "drag"
   Index worst_dof = -1;    ///< full degree of freedom with the fastest motion of that kind
 };
 

@@ -6,7 +6,8 @@
 
 namespace der {
 
-/// Holds or moves the components that a support names, and enters its clamps into the rod's layout.
+/// Holds or moves the components that a support names, adds its spring, and enters its clamps into
+/// the rod's layout.
 /// Must run after the rods are laid out and before their elements are made.
 void add_support(const scenario::Support& support, Model& model);
 

@@ -1,0 +1,46 @@
+#pragma once
+
+#include "der/core/types.hpp"
+#include "der/energies/local_term.hpp"
+
+namespace der {
+
+/// A linear spring between an anchor a and a point p = sum w_i x_i of a rod, w the weights of a
+/// place (model/location.hpp): E = 1/2 (p - a)^T k (p - a), k diagonal. With the cubic weights of a
+/// point force it converges with order 2 wherever the place lies.
+template <int Nodes>
+struct PointSpring {
+  static constexpr int kDofs = 2 * Nodes;
+  static constexpr EnergyTerm kTerm = EnergyTerm::Spring;
+  struct Constants {
+    Vec2 stiffness = Vec2::Zero();  ///< [N/m] along x and y
+    Vec2 anchor = Vec2::Zero();     ///< [m]
+    Eigen::Matrix<double, Nodes, 1> weights;
+  };
+
+  /// Whether it holds the rod against moving along an axis: the energy of an element that holds
+  /// changes with a translation of the element.
+  static bool holds(const Constants& c, int component) { return c.stiffness[component] > 0.0; }
+
+  template <Derivatives D>
+  static void evaluate(const Constants& c, const Vector& /*controls*/,
+                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
+    const Vec2 stretch =
+        Eigen::Map<const Eigen::Matrix<double, 2, Nodes>>(x.data()) * c.weights - c.anchor;
+    const Vec2 force = c.stiffness.cwiseProduct(stretch);
+    out.energy = 0.5 * force.dot(stretch);
+    if constexpr (D == Derivatives::Energy) return;
+
+    for (int i = 0; i < Nodes; ++i) out.gradient.template segment<2>(2 * i) = c.weights[i] * force;
+    if constexpr (D == Derivatives::Gradient) return;
+
+    for (int i = 0; i < Nodes; ++i) {
+      for (int j = 0; j < Nodes; ++j) {
+        out.hessian.template block<2, 2>(2 * i, 2 * j) =
+            (c.weights[i] * c.weights[j] * c.stiffness).asDiagonal();
+      }
+    }
+  }
+};
+
+}  // namespace der

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "der/core/types.hpp"
+#include "der/energies/local_term.hpp"
+#include "der/kinematics/planar_edge.hpp"
+
+namespace der {
+
+/// A spring against turning: E = 1/2 k (sum w_i theta_i - rest)^2, theta the direction angles of
+/// one edge, or of two that share a node, from the drawn direction of the first; the weights w add
+/// up to 1. supports/spring.hpp says how the tangent of a rod is such a sum. The first edge is
+/// followed to half a turn from its drawn direction.
+template <int Edges>
+struct RotationalSpring {
+  static_assert(Edges == 1 || Edges == 2);
+  static constexpr int kDofs = 2 * (Edges + 1);
+  static constexpr EnergyTerm kTerm = EnergyTerm::Spring;
+  struct Constants {
+    double stiffness = 0.0;               ///< [N m/rad]
+    double direction = 0.0;               ///< of the first edge as drawn [rad]
+    double rest = 0.0;                    ///< [rad]
+    std::array<double, Edges> weights{};  ///< [-]
+  };
+
+  template <Derivatives D>
+  static void evaluate(const Constants& c, const Vector& /*controls*/,
+                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
+    using Coordinates = Eigen::Matrix<double, kDofs, 1>;
+    std::array<Vec2, Edges> edge;
+    for (int i = 0; i < Edges; ++i) {
+      edge[std::size_t(i)] = x.template segment<2>(2 * i + 2) - x.template segment<2>(2 * i);
+    }
+    const Vec2 drawn{std::cos(c.direction), std::sin(c.direction)};
+    double turn = angle_between(drawn, edge.front()) - c.rest;
+    if constexpr (Edges == 2) turn += c.weights[1] * angle_between(edge[0], edge[1]);
+    const double moment = c.stiffness * turn;
+    out.energy = 0.5 * moment * turn;
+    if constexpr (D == Derivatives::Energy) return;
+
+    Coordinates slope = Coordinates::Zero();  // of the turn
+    std::array<double, Edges> inverse;
+    std::array<Vec2, Edges> d;
+    for (int i = 0; i < Edges; ++i) {
+      const auto k = std::size_t(i);
+      inverse[k] = 1.0 / edge[k].squaredNorm();
+      d[k] = direction_gradient(edge[k], inverse[k]);
+      slope.template segment<2>(2 * i) -= c.weights[k] * d[k];
+      slope.template segment<2>(2 * i + 2) += c.weights[k] * d[k];
+    }
+    out.gradient = moment * slope;
+    if constexpr (D == Derivatives::Gradient) return;
+
+    out.hessian = c.stiffness * slope * slope.transpose();
+    for (int i = 0; i < Edges; ++i) {
+      const auto k = std::size_t(i);
+      const Mat2 h = moment * c.weights[k] * direction_hessian(edge[k], d[k], inverse[k]);
+      out.hessian.template block<2, 2>(2 * i, 2 * i) += h;
+      out.hessian.template block<2, 2>(2 * i + 2, 2 * i) -= h;
+      out.hessian.template block<2, 2>(2 * i + 2, 2 * i + 2) += h;
+    }
+  }
+};
+
+}  // namespace der

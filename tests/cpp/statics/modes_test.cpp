@@ -1,0 +1,91 @@
+// Vibration modes and linear buckling loads.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "der/core/constants.hpp"
+#include "der/core/error.hpp"
+#include "der/simulation.hpp"
+#include "statics/statics_scenes.hpp"
+
+namespace der::test {
+namespace {
+
+double product(const Model& model, const Vector& a, const Vector& b) {
+  return a.dot(model.mass.momentum(b));
+}
+
+}  // namespace
+
+TEST_CASE("modes of a pinned beam: frequencies, order, and shapes of unit modal mass") {
+  Simulation simulation(Scenario::parse(straight_rod(41, kPinned + kStatic)));
+  simulation.equilibrium();
+  const auto modes = simulation.modes(3);
+  REQUIRE(modes.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double k = kPi * static_cast<double>(i + 1);
+    CHECK(modes[i].frequency == doctest::Approx(k * k / (2.0 * kPi)).epsilon(1e-3));
+    CHECK(modes[i].growth_rate == 0.0);
+    for (std::size_t j = 0; j < 3; ++j) {
+      const double expected = i == j ? 1.0 : 0.0;
+      CHECK(std::abs(product(simulation.model(), modes[i].shape, modes[j].shape) - expected) <
+            1e-7);
+    }
+    for (const HeldDof& held : simulation.model().held) CHECK(modes[i].shape[held.dof] == 0.0);
+  }
+}
+
+TEST_CASE("more modes than degrees of freedom are all there are") {
+  Simulation simulation(Scenario::parse(straight_rod(3, kPinned + kStatic)));
+  simulation.equilibrium();
+  CHECK(simulation.modes(100).size() == 3);
+}
+
+TEST_CASE("an unstable equilibrium grows, one out of balance has no modes") {
+  const std::string loads = "loads:\n  - point_force: {rod: rod, at: end, force: [-15, 0]}\n";
+  Simulation simulation(Scenario::parse(straight_rod(41, kPinned + loads + kStatic)));
+  CHECK_THROWS_WITH_AS((void)simulation.modes(1),
+                       doctest::Contains("are not in balance here: call equilibrium() first"),
+                       Error);
+  simulation.equilibrium(false);
+  const auto modes = simulation.modes(2);
+  // w^2 = k^2 (k^2 - P)
+  CHECK(modes[0].frequency == 0.0);
+  CHECK(modes[0].growth_rate == doctest::Approx(kPi * std::sqrt(15.0 - kPi * kPi)).epsilon(1e-2));
+  CHECK(modes[1].growth_rate == 0.0);
+  CHECK(modes[1].frequency > 0.0);
+}
+
+TEST_CASE("a rod that nothing holds has three rigid motions") {
+  Simulation simulation(Scenario::parse(straight_rod(21, kStatic)));
+  CHECK(simulation.equilibrium().stability.neutral_directions == 3);
+  const auto modes = simulation.modes(4);
+  for (std::size_t i = 0; i < 3; ++i) CHECK(modes[i].frequency == 0.0);
+  CHECK(modes[3].frequency == doctest::Approx(4.73004 * 4.73004 / (2.0 * kPi)).epsilon(1e-2));
+}
+
+TEST_CASE("buckling loads of a column, and shapes whose largest displacement is 1") {
+  Simulation simulation(Scenario::parse(straight_rod(41, kPinned + kPush + kStatic)));
+  const Vector before = simulation.gradient();
+  const auto modes = simulation.buckling(3);
+  REQUIRE(modes.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double k = kPi * static_cast<double>(i + 1);
+    CHECK(modes[i].load_factor == doctest::Approx(k * k).epsilon(1e-2));
+    CHECK(modes[i].shape.lpNorm<Eigen::Infinity>() == doctest::Approx(1.0));
+  }
+  // The shape is that without loads, the loads are those of the scene.
+  CHECK((simulation.gradient() - before).norm() < 1e-9);
+}
+
+TEST_CASE("what never buckles has no buckling loads, what nothing holds is refused") {
+  const std::string pull = "loads:\n  - point_force: {rod: rod, at: end, force: [1, 0]}\n";
+  CHECK(
+      Simulation(Scenario::parse(straight_rod(11, kPinned + pull + kStatic))).buckling(2).empty());
+  Simulation loose(Scenario::parse(straight_rod(11, kPush + kStatic)));
+  const Vector before = loose.gradient();
+  CHECK_THROWS_AS(loose.buckling(1), NotConvergedError);
+  CHECK(loose.gradient() == before);
+}
+
+}  // namespace der::test

@@ -1,6 +1,6 @@
 """Measure what docs/choosing.md says about meshes, analyses and solvers.
 
-    python docs/measure_choices.py [mesh] [analysis] [solver]
+    python docs/measure_choices.py [mesh] [modes] [analysis] [solver]
 
 CPU times are those of whole runs in this process, the reading of the scene left out.
 """
@@ -91,6 +91,21 @@ def mesh() -> None:
         print(f"{nodes - 1:8}" + "".join(f" {error(nodes):14.1e}" for error in columns.values()))
 
 
+def modes() -> None:
+    """Print relative errors of the first bending frequencies of a cantilever, by elements."""
+
+    def frequencies(elements: int) -> Any:
+        found = der.run(load("beam_modes.yaml", **{"rods.0.nodes": elements + 1})).modes
+        assert found is not None
+        return found.frequencies[:4]
+
+    exact = frequencies(320)
+    print(f"{'elements':>8}" + "".join(f" {f'k = {k}':>8}" for k in range(1, 5)))
+    for elements in (4, 8, 12, 16):
+        errors = np.abs(frequencies(elements) / exact - 1.0)
+        print(f"{elements:8}" + "".join(f" {error:8.1e}" for error in errors))
+
+
 def analysis() -> None:
     """Compare ways to the tube at rest under 2 kN, 51 nodes: solved, damped out over time."""
     solved = load("simply_supported.yaml")
@@ -126,7 +141,12 @@ def solver() -> None:
         print(line)
 
 
-TABLES: dict[str, Callable[[], None]] = {"mesh": mesh, "analysis": analysis, "solver": solver}
+TABLES: dict[str, Callable[[], None]] = {
+    "mesh": mesh,
+    "modes": modes,
+    "analysis": analysis,
+    "solver": solver,
+}
 
 
 def main() -> None:

@@ -64,7 +64,7 @@ def linear(load: float) -> float:
 def elastica(load: float) -> float:
     """Return the deflection of the inextensible elastica [m], by elliptic integrals.
 
-    The slope of the tip, t, solves a = K(m) - F(p | m) with a^2 = P L^2/EI, m = (1 + sin t)/2 and
+    The slope t of the tip solves a = K(m) - F(p | m) with a^2 = P L^2/EI, m = (1 + sin t)/2,
     sin p = 1/sqrt(2 m); the deflection is L (1 - 2 (E(m) - E(p | m))/a).
     """
     a = np.sqrt(load * LENGTH**2 / EI)

@@ -35,8 +35,10 @@ ARM: dict[str, Any] = {
             "material": {"youngs_modulus": 3e7, "density": 1000},
         }
     ],
-    # `prescribe: {angle: 0}` is what makes the clamp a motor: the program turns it.
-    "supports": [{"rod": "arm", "at": "start", "clamp": True, "prescribe": {"angle": 0}}],
+    # What is prescribed makes the clamp a motor: the program turns it.
+    "supports": [
+        {"rod": "arm", "at": "start", "clamp": True, "prescribe": {"angle": 0}},
+    ],
     "loads": [{"gravity": [0, -9.81]}, {"damping": {"coefficient": 2.0}}],
     "start_from": "equilibrium",
     "time": {"duration": 16, "step": STEP},

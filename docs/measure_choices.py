@@ -154,7 +154,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("tables", nargs="*", metavar="TABLE", help=f"of {', '.join(TABLES)}")
     for name in parser.parse_args().tables or TABLES:
-        print(f"\n{TABLES[name].__doc__}\n")
+        print("\n" + (TABLES[name].__doc__ or "").removeprefix("Print ") + "\n")
         TABLES[name]()
 
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -230,6 +231,35 @@ void bind_actions(PySimulationClass& cls) {
           "unstable\n"
           "equilibrium is left for a stable one, unless `leave_saddles` is false. Raises\n"
           "NotConvergedError.")
+      .def(
+          "prescribe",
+          [](PySimulation& simulation, std::size_t support, std::optional<double> x,
+             std::optional<double> y, std::optional<double> angle) {
+            if (x) simulation.engine().prescribe(support, "x", *x);
+            if (y) simulation.engine().prescribe(support, "y", *y);
+            if (angle) simulation.engine().prescribe(support, "angle", *angle);
+          },
+          py::arg("support"), py::kw_only(), py::arg("x") = py::none(), py::arg("y") = py::none(),
+          py::arg("angle") = py::none(),
+          "Move a support, by its number in the scene, in place of the table that it has there.\n\n"
+          "`x`, `y` [m] count from its initial place, `angle` [rad] from the initial direction. "
+          "They are\nreached evenly, at the end of the next step, and kept until they are moved "
+          "again; `equilibrium`\nand static scenes take them at once. The scene has to prescribe "
+          "them (``prescribe: {angle: 0}``)\nand to have steps of one length: DerError if not.")
+      .def(
+          "prescribed",
+          [](const PySimulation& simulation, std::size_t support) {
+            const Simulation& engine = simulation.engine();
+            py::dict values;
+            for (const PrescribedControl& moved : engine.model().prescribed) {
+              if (moved.support != support) continue;
+              values[py::str(moved.component)] = engine.prescribed(support, moved.component);
+            }
+            return values;
+          },
+          py::arg("support"),
+          "Present values of what a support prescribes, by name: ``x``, ``y`` [m], ``angle`` "
+          "[rad].")
       .def(
           "vibration_modes",
           [](PySimulation& simulation, int count) {

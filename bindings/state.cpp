@@ -21,19 +21,23 @@ Vector to_vector(const Array& array) {
 
 py::tuple dump(const SavedState& saved) {
   const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
-               next_step, last_error, work] = saved.state;
+               next_step, last_error, work, ramps] = saved.state;
   py::list remembered;
   for (const Vector& vector : history) remembered.append(to_array(vector));
+  py::list moved;
+  for (const auto& [control, start, end, from, to] : ramps) {
+    moved.append(py::make_tuple(control, start, end, from, to));
+  }
   return py::make_tuple(saved.dimension, time, step, to_array(positions), to_array(velocities),
                         to_array(extra_force), to_array(accelerations), last_step, remembered,
                         next_step, last_error, work.start, work.loads, work.supports, work.drag,
-                        work.solver);
+                        work.solver, moved);
 }
 
 SavedState revive(const py::tuple& dumped) {
   SavedState saved;
   auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
-         next_step, last_error, work] = saved.state;
+         next_step, last_error, work, ramps] = saved.state;
   saved.dimension = dumped[0].cast<Index>();
   time = dumped[1].cast<double>();
   step = dumped[2].cast<std::int64_t>();
@@ -49,6 +53,10 @@ SavedState revive(const py::tuple& dumped) {
   last_error = dumped[10].cast<double>();
   const auto value = [&](std::size_t i) { return dumped[i].cast<double>(); };
   work = {value(11), value(12), value(13), value(14), value(15)};
+  for (const auto& ramp : dumped[16].cast<std::vector<py::tuple>>()) {
+    ramps.push_back({ramp[0].cast<Index>(), ramp[1].cast<double>(), ramp[2].cast<double>(),
+                     ramp[3].cast<double>(), ramp[4].cast<double>()});
+  }
   return saved;
 }
 

@@ -16,6 +16,7 @@ import der
 import matplotlib.pyplot as plt
 import numpy as np
 from der.plotting import PALETTE, style
+from tutorials import beam_study, control, falling_rod
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -156,6 +157,80 @@ def snap_through_arch() -> Figure:
     return der.run(CONFIGS / "snap_through_arch.yaml").plot()
 
 
+def tutorial_falling_rod() -> Figure:
+    """Draw the rod with beads of the first tutorial."""
+    return falling_rod.figure(der.run(falling_rod.SCENE))
+
+
+def tutorial_beam_study() -> Figure:
+    """Draw the study of the second tutorial."""
+    return beam_study.figure(beam_study.study())
+
+
+def tutorial_control() -> Figure:
+    """Draw the arm of the third tutorial, with and without feedback."""
+    return control.figure(control.run(control.PI()), control.run(control.open_loop))
+
+
+def data_flow() -> Figure:
+    """Draw what flows from where to where: the picture of docs/architecture.md."""
+    boxes = {
+        "scene": (0, 1, "scene.yaml\nor dict"),
+        "scenario": (1, 1, "Scenario"),
+        "model": (2, 1, "Model\n(constant)"),
+        "state": (3, 2, "State"),
+        "assembler": (3, 1, "Assembler"),
+        "newton": (3, 0, "Newton,\nLinearSolver"),
+        "stepper": (4, 1, "Stepper"),
+        "recorder": (4, 2, "Recorder"),
+        "folder": (5, 1.45, "run folder"),
+        "result": (5, 2.3, "der.Result"),
+        "plots": (6, 2.3, "plots,\nexports"),
+    }
+    arrows = [
+        ("scene", "scenario"),
+        ("scenario", "model"),
+        ("model", "state"),
+        ("model", "assembler"),
+        ("assembler", "stepper"),
+        ("newton", "stepper"),
+        ("stepper", "state"),
+        ("state", "recorder"),
+        ("recorder", "folder"),
+        ("recorder", "result"),
+        ("folder", "result"),
+        ("result", "plots"),
+    ]
+    figure, axes = plt.subplots(figsize=(9, 3.2), layout="constrained")
+    drawn = {}
+    for name, (x, y, label) in boxes.items():
+        drawn[name] = axes.text(
+            x,
+            y,
+            label,
+            ha="center",
+            va="center",
+            bbox={"boxstyle": "round,pad=0.5", "facecolor": "#eaf2f8", "edgecolor": PALETTE[0]},
+        )
+    for start, end in arrows:
+        axes.annotate(
+            "",
+            boxes[end][:2],
+            boxes[start][:2],
+            arrowprops={
+                "arrowstyle": "-|>",
+                "color": "#555555",
+                "patchA": drawn[start].get_bbox_patch(),
+                "patchB": drawn[end].get_bbox_patch(),
+                "shrinkA": 2,
+                "shrinkB": 3,
+            },
+        )
+    axes.set(xlim=(-0.5, 6.5), ylim=(-0.5, 2.8))
+    axes.axis("off")
+    return figure
+
+
 def new_axes() -> tuple[Figure, Axes]:
     """Return a figure with one set of axes."""
     return plt.subplots(figsize=(6, 4), layout="constrained")
@@ -174,6 +249,10 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         beam_modes,
         euler_buckling,
         snap_through_arch,
+        tutorial_falling_rod,
+        tutorial_beam_study,
+        tutorial_control,
+        data_flow,
     )
 }
 

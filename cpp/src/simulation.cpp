@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -42,6 +43,23 @@ std::string advice(const std::string& status) {
          "over time with damping may show.";
 }
 
+/// The first control that moves this component; Error if the scene prescribes none.
+const PrescribedControl& check_prescribed(const Model& model, std::size_t support,
+                                          const std::string& component) {
+  std::string known;
+  for (const PrescribedControl& candidate : model.prescribed) {
+    if (candidate.support == support && candidate.component == component) return candidate;
+    const std::string name =
+        fmt::format("{} of support {}", candidate.component, candidate.support);
+    if (known.find(name) == std::string::npos) known += (known.empty() ? "" : ", ") + name;
+  }
+  throw Error(
+      "model_error",
+      fmt::format("the scene does not prescribe {} of support {} (counted from 0): give that "
+                  "support 'prescribe: {{{}: 0}}'; it prescribes {}",
+                  component, support, component, known.empty() ? "nothing" : known));
+}
+
 }  // namespace
 
 Simulation::Simulation(Scenario scenario)
@@ -77,13 +95,16 @@ void Simulation::step() {
   if (adaptive_) {
     advance_adaptively();
   } else {
-    // Counted from the start, so that rounding does not add up over many steps.
-    double target = static_cast<double>(state_.step + 1) * plan_.step;
-    if (state_.step + 1 == plan_.total_steps) target = scenario_.scene().time.duration;
-    advance_to(target);
+    advance_to(next_time());
   }
   ++state_.step;
   ++counters_.steps;
+}
+
+double Simulation::next_time() const {
+  if (state_.step + 1 == plan_.total_steps) return scenario_.scene().time.duration;
+  // Counted from the start, so that rounding does not add up over many steps.
+  return static_cast<double>(state_.step + 1) * plan_.step;
 }
 
 void Simulation::advance_adaptively() {
@@ -121,7 +142,40 @@ void Simulation::fail(const StepReport& report, double dt) const {
   throw NotConvergedError(describe_failure(report, dt));
 }
 
+void Simulation::prescribe(std::size_t support, const std::string& component, double value) {
+  check_prescribed(model_, support, component);
+  if (adaptive_) {
+    throw Error("model_error",
+                "supports are moved from step to step, which takes steps of one length: give the "
+                "scene a time.step in place of its tolerance");
+  }
+  if (!std::isfinite(value)) {
+    throw Error("model_error", fmt::format("support {}: {} = {} is no number to move it to",
+                                           support, component, value));
+  }
+  const bool steps = scenario_.scene().is_dynamic();
+  for (const PrescribedControl& moved : model_.prescribed) {
+    if (moved.support != support || moved.component != component) continue;
+    const double now = model_.controls.value(moved.control, state_.time, state_.ramps);
+    const Ramp ramp{moved.control, state_.time, steps ? next_time() : state_.time, now, value};
+    const auto known =
+        std::find_if(state_.ramps.begin(), state_.ramps.end(),
+                     [&](const Ramp& earlier) { return earlier.control == moved.control; });
+    if (known == state_.ramps.end()) {
+      state_.ramps.push_back(ramp);
+    } else {
+      *known = ramp;
+    }
+  }
+}
+
+double Simulation::prescribed(std::size_t support, const std::string& component) const {
+  const PrescribedControl& found = check_prescribed(model_, support, component);
+  return model_.controls.value(found.control, state_.time, state_.ramps);
+}
+
 EquilibriumReport Simulation::equilibrium(bool leave_saddles) {
+  for (Ramp& ramp : state_.ramps) ramp.from = ramp.to;
   Vector positions = state_.positions;
   EquilibriumOptions options;
   options.newton = stepper_options(scenario_.scene()).newton;
@@ -204,7 +258,7 @@ Vector Simulation::Forces::unbalanced(const Model& model) const {
 Simulation::Forces Simulation::forces() const {
   Forces now;
   now.gradient.resize(model_.num_dofs());
-  model_.controls.evaluate(state_.time, now.controls);
+  model_.controls.evaluate(state_.time, state_.ramps, now.controls);
   external_force(model_, now.controls, state_.extra_force, now.external);
   assembler_.gradient(state_.positions, now.controls, now.gradient);
   return now;
@@ -214,7 +268,7 @@ Vector Simulation::gradient() const { return forces().unbalanced(model_); }
 
 SymmetricMatrix Simulation::hessian() const {
   Vector controls;
-  model_.controls.evaluate(state_.time, controls);
+  model_.controls.evaluate(state_.time, state_.ramps, controls);
   const Assembler assembler(model_, MatrixLayout::compressed(pattern_));
   Vector gradient(model_.num_dofs());
   Vector values(assembler.num_values());

@@ -25,8 +25,8 @@ class Modes:
     growth_rates
         How fast a motion grows from an unstable equilibrium [1/s], shape (modes,); else 0.
     shapes
-        Displacements of the nodes, shape (modes, nodes, dim), of modal mass 1 kg: the sum of mass
-        times squared displacement is 1.
+        Displacements of the nodes, shape (modes, nodes, dim), of modal mass 1 kg: ``v @ M @ v``
+        is 1 with the mass matrix M, in which massive edges couple their two nodes.
     """
 
     frequencies: Array

@@ -184,8 +184,14 @@ def run(
     ----------
     scenario
         A scenario, the path of a scene file, or a dict with the keys of a scene file.
-    out, callback, progress, check
-        As for `Simulation.run`.
+    out
+        Folder to write the run to.
+    callback
+        Called after every step; returning False stops the run.
+    progress
+        Whether to show how far the run is, or a function to tell.
+    check
+        Whether a failed run raises.
 
     Returns
     -------

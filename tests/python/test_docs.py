@@ -1,20 +1,27 @@
-"""README and docs: links lead somewhere, generated pages are fresh, Python snippets run."""
+"""README and docs: links lead somewhere, generated pages are fresh, tutorials say what is so.
 
+That every command and snippet runs is checked by scripts/check_docs.py, which .ci/run calls; here
+is a test of that program.
+"""
+
+import importlib
 import re
 import shutil
 from pathlib import Path
 
 import der
 import matplotlib.pyplot as plt
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PAGES = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").glob("*.md")])
+PAGES = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").rglob("*.md")])
+DOCS = ROOT / "docs"
+TUTORIALS = DOCS / "tutorials"
 
 FENCED = re.compile(r"^```.*?^```$", flags=re.DOTALL | re.MULTILINE)
 LINK = re.compile(r"\]\(\s*<?([^)\s>]+)>?[^)]*\)")
 PYTHON = re.compile(r"^```python\n(.*?)^```$", flags=re.DOTALL | re.MULTILINE)
-YAML = re.compile(r"^```yaml\n(.*?)^```$", flags=re.DOTALL | re.MULTILINE)
 
 
 def name(page):
@@ -36,22 +43,6 @@ def links(page):
     return [link for link in LINK.findall(text) if not re.match(r"[a-z]+:", link)]
 
 
-def run_snippets(page, folder, monkeypatch):
-    """Run the Python snippets of a page, one after the other, beside the scenes."""
-    (folder / "configs").symlink_to(ROOT / "configs")
-    monkeypatch.chdir(folder)
-    text = page.read_text(encoding="utf-8")
-    names = {}
-    count = 0
-    for match in PYTHON.finditer(text):
-        # The line numbers of an error are those of the page.
-        padding = "\n" * text.count("\n", 0, match.start(1))
-        exec(compile(padding + match[1], str(page), "exec"), names)
-        count += 1
-    plt.close("all")
-    return count
-
-
 @pytest.mark.parametrize("page", PAGES, ids=name)
 def test_relative_links_lead_somewhere(page):
     for link in links(page):
@@ -62,9 +53,11 @@ def test_relative_links_lead_somewhere(page):
             assert anchor in anchors(target), f"{name(page)} links to {link}: no such heading"
 
 
-def test_every_page_is_linked_from_the_readme():
-    linked = {(ROOT / link.partition("#")[0]).resolve() for link in links(ROOT / "README.md")}
-    assert [name(page) for page in PAGES if page.name != "README.md" and page not in linked] == []
+def test_every_page_is_in_the_navigation_of_the_site():
+    pages = {name(page).removeprefix("docs/") for page in PAGES if page.is_relative_to(DOCS)}
+    text = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
+    listed = re.findall(r"^ +- .*: ([\w/]+\.md)$", text, flags=re.MULTILINE)
+    assert sorted(listed) == sorted(pages)
 
 
 def test_every_picture_is_shown():
@@ -102,50 +95,156 @@ def test_tests_that_the_pages_name_exist():
             assert f"def {test}(" in code, f"{name(page)} names {test}"
 
 
-def test_scenes_of_the_quick_start(tmp_path):
-    text = (ROOT / "docs" / "quickstart.md").read_text(encoding="utf-8")
-    scenes = YAML.findall(text)
-    assert len(scenes) == 1
-    path = tmp_path / "swing.yaml"
-    path.write_text(scenes[0], encoding="utf-8")
-    assert der.run(path).status == "completed"
+@pytest.fixture
+def check_docs(monkeypatch):
+    monkeypatch.syspath_prepend(ROOT / "scripts")
+    import check_docs
+
+    return check_docs
 
 
-def test_snippets_of_the_readme(tmp_path, monkeypatch, capsys):
-    assert run_snippets(ROOT / "README.md", tmp_path, monkeypatch) == 1
-    assert (tmp_path / "runs" / "tube_20000N" / "plot.png").exists()
+SNIPPETS = """
+Save this as `small.yaml`:
+
+```yaml
+title: A small rod
+rods:
+  - name: rod
+    nodes: 5
+    from: [0, 0]
+    to: [1, 0]
+    cross_section: {circle: {radius: 0.01}}
+    material: {youngs_modulus: 1e7, density: 1000}
+supports: [{rod: rod, at: start, clamp: true}]
+loads: [{gravity: [0, -9.81]}]
+analysis: static
+```
+
+```python
+import der
+
+shape = der.run("small.yaml")
+```
+
+```python
+assert shape.positions.shape == (1, 5, 2)
+print("second block")
+```
+
+```yaml
+time: {duration: 1, step: 0.1}
+time: {duration: 1, tolerance: 1e-3}
+```
+
+<!-- exit-code: 3 -->
+```sh
+test -d configs && test -f small.yaml && exit 3
+```
+
+<!-- no-test: it cannot work -->
+```sh
+false
+```
+"""
+
+
+def checked(check_docs, text, tmp_path, capfd):
+    page = tmp_path / "page.md"
+    page.write_text(text, encoding="utf-8")
+    code = check_docs.main([str(page)])
+    return code, capfd.readouterr().out
+
+
+def test_snippets_that_work(check_docs, tmp_path, capfd):
+    code, printed = checked(check_docs, SNIPPETS, tmp_path, capfd)
+    assert code == 0, printed
+    assert "second block" in printed
+    assert "left out: it cannot work" in printed
+    assert printed.count(": ok (") == 5
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "complaint"),
+    [
+        ("import der", "import derr", "No module named 'derr'"),
+        ("(1, 5, 2)", "(1, 6, 2)", "AssertionError"),
+        ("exit 3", "exit 4", "exit code 4 and not 3"),
+        ("step: 0.1", "stepp: 0.1", "stepp"),
+        ("nodes: 5", "nodes: 0", "nodes"),
+        ("title: A small rod\n", "", "must be complete"),
+    ],
+)
+def test_snippets_that_do_not_work(check_docs, tmp_path, capfd, old, new, complaint):
+    text = SNIPPETS.replace(old, new, 1)
+    code, printed = checked(check_docs, text, tmp_path, capfd)
+    assert code == 1
+    assert "FAILED" in printed
+    assert complaint in printed
+
+
+def test_a_snippet_is_left_out_for_a_reason_only(check_docs, tmp_path, capfd):
+    with pytest.raises(SystemExit, match="say why"):
+        checked(check_docs, "<!-- no-test -->\n```sh\nfalse\n```\n", tmp_path, capfd)
+
+
+def test_python_of_the_readme(tmp_path, monkeypatch, capsys):
+    (tmp_path / "configs").symlink_to(ROOT / "configs")
+    monkeypatch.chdir(tmp_path)
+    (code,) = PYTHON.findall((ROOT / "README.md").read_text(encoding="utf-8"))
+    exec(compile(code, "README.md", "exec"), {})
     assert "2000 N: 0.037738 m" in capsys.readouterr().out
+    plt.close("all")
 
 
-def test_snippets_of_the_quick_start(tmp_path, monkeypatch):
-    assert run_snippets(ROOT / "docs" / "quickstart.md", tmp_path, monkeypatch) == 2
-    assert (tmp_path / "runs" / "swing" / "shapes.png").exists()
+@pytest.fixture
+def tutorial(monkeypatch):
+    monkeypatch.syspath_prepend(DOCS)
+    return lambda module: importlib.import_module(f"tutorials.{module}")
 
 
-def test_snippets_of_the_python_page(tmp_path, monkeypatch, capsys):
-    assert run_snippets(ROOT / "docs" / "python.md", tmp_path, monkeypatch) >= 10
-
-    pictures = {"beam.png", "falling.png", "speed.png"}
-    assert {path.name for path in tmp_path.glob("*.png")} == pictures
-    printed = capsys.readouterr().out
-    for comment in ("completed", "stopped", "diverged", "nods"):
-        assert comment in printed
-
-
-def test_snippets_of_the_verify_page(tmp_path, monkeypatch, capsys):
-    assert run_snippets(ROOT / "docs" / "verify.md", tmp_path, monkeypatch) == 1
-    assert "converged" in capsys.readouterr().out
+@pytest.mark.parametrize("module", ["falling_rod", "beam_study", "control"])
+def test_code_of_a_tutorial_is_that_of_its_program(module):
+    """Definitions are shown as they are; blocks that use them may be the page's own."""
+    program = (TUTORIALS / f"{module}.py").read_text(encoding="utf-8")
+    page = (TUTORIALS / f"{module}.md").read_text(encoding="utf-8")
+    for code in PYTHON.findall(page):
+        if re.search(r"^(def|class|[A-Z_]+\b.*=) ?", code, flags=re.MULTILINE):
+            assert code in program
+    for scene in re.findall(r"^```yaml\n(.*?)^```$", page, flags=re.DOTALL | re.MULTILINE):
+        assert scene == (TUTORIALS / f"{module}.yaml").read_text(encoding="utf-8")
 
 
-def test_snippets_of_the_study_page(tmp_path, monkeypatch):
-    assert run_snippets(ROOT / "docs" / "study.md", tmp_path, monkeypatch) == 1
-    assert (tmp_path / "study.csv").exists()
-    assert (tmp_path / "study.png").exists()
+def test_tutorial_of_the_falling_rod(tutorial):
+    falling_rod = tutorial("falling_rod")
+    result = der.run(falling_rod.SCENE)
+    expected = falling_rod.terminal_velocity(result.scenario)
+    assert expected == pytest.approx(-0.02434018, rel=1e-6)
+    assert result.probes["v_mid"][-1] == pytest.approx(expected, rel=1e-4)
+    ends, middle = result.positions[-1, [0, -1], 1], result.positions[-1, 5, 1]
+    assert np.all(ends - middle > 0.005)  # it bends
 
 
-@pytest.mark.parametrize(("page", "count"), [("statics", 1), ("modes", 2), ("continuation", 1)])
-def test_statics_snippets_run(page, count, tmp_path, monkeypatch):
-    assert run_snippets(ROOT / "docs" / f"{page}.md", tmp_path, monkeypatch) == count
+def test_tutorial_of_the_beam(tutorial):
+    beam_study = tutorial("beam_study")
+    points = beam_study.study()
+    assert beam_study.elastica(beam_study.EI / beam_study.LENGTH**2) == pytest.approx(
+        0.3017207738 * beam_study.LENGTH, rel=1e-8
+    )
+    for point in points:
+        assert point.verdict == "converged"
+        # The ruler stretches, which the elastica does not: 1e-8 of its length and less.
+        assert abs(point.found - point.exact) <= point.bar + 3e-9
+        assert point.bar < 5e-4 * point.found
+    assert points[-1].linear > 4 * points[-1].exact
+
+
+def test_tutorial_of_control(tutorial):
+    control = tutorial("control")
+    with_feedback, without = control.run(control.PI()), control.run(control.open_loop)
+    for start, end in ((4.0, control.PICKED_UP), (control.PICKED_UP + 2.0, 16.0)):
+        assert with_feedback.error(start, end) < 1e-3
+        assert without.error(start, end) > 0.05
+    assert np.abs(np.diff(with_feedback.angles)).max() < 0.05  # a motor could do it
 
 
 def test_pictures_can_be_made(tmp_path, monkeypatch):
@@ -153,7 +252,8 @@ def test_pictures_can_be_made(tmp_path, monkeypatch):
     scripts = tmp_path / "docs"
     scripts.mkdir()
     (tmp_path / "configs").symlink_to(ROOT / "configs")
-    shutil.copy(ROOT / "docs" / "make_figures.py", scripts)
+    shutil.copy(DOCS / "make_figures.py", scripts)
+    shutil.copytree(TUTORIALS, scripts / "tutorials")
     monkeypatch.syspath_prepend(scripts)
     import make_figures
 

@@ -284,3 +284,48 @@ def test_gradient_vanishes_in_equilibrium_and_mass_is_that_of_the_nodes(swing):
     simulation.velocities[...] = velocities.reshape(simulation.velocities.shape)
     moving = velocities[simulation.free_dofs]
     assert 0.5 * moving @ mass @ moving == pytest.approx(simulation.energies.kinetic)
+
+
+@pytest.fixture
+def turning(swing):
+    swing["supports"][0]["prescribe"] = {"y": 0, "angle": 0}
+    return der.Simulation(der.Scenario.from_dict(swing))
+
+
+def test_supports_can_be_moved_from_step_to_step(turning, swing):
+    swing["supports"][0]["prescribe"]["angle"] = {"times": [0, 1], "values": [0, 5]}
+    by_table = der.Simulation(der.Scenario.from_dict(swing))
+    while not turning.finished:
+        turning.prescribe(0, angle=5 * (turning.time + turning.time_step))
+        turning.step()
+        by_table.step()
+    assert turning.positions == pytest.approx(by_table.positions, abs=1e-10)
+    assert turning.prescribed(0) == {"y": 0.0, "angle": pytest.approx(1.0)}
+
+
+def test_a_callback_can_move_supports(turning):
+    def rise(simulation):
+        simulation.prescribe(0, y=simulation.time)
+
+    result = turning.run(rise)
+    # What is set after a step is reached at the end of the next one.
+    assert result.positions[-1, 0, 1] == pytest.approx(result.times[-1] - turning.time_step)
+
+
+def test_moved_supports_are_part_of_a_saved_state(turning):
+    turning.prescribe(0, angle=0.2)
+    state = pickle.loads(pickle.dumps(turning.save_state()))
+    turning.step(3)
+    once = turning.positions.copy()
+    turning.prescribe(0, angle=-0.3)
+    turning.step()
+    turning.restore_state(state)
+    turning.step(3)
+    assert np.array_equal(turning.positions, once)
+
+
+def test_only_what_the_scene_prescribes_can_be_moved(turning, tube):
+    with pytest.raises(der.DerError, match=r"prescribe: \{x: 0\}"):
+        turning.prescribe(0, x=1.0)
+    with pytest.raises(der.DerError, match="it prescribes nothing"):
+        der.Simulation(der.Scenario.from_dict(tube)).prescribe(0, angle=1.0)

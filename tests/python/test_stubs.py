@@ -50,6 +50,10 @@ def stub_signature(definition):
     defaults = [False] * (len(positional) - len(arguments.defaults))
     defaults += [True] * len(arguments.defaults)
     listed = [(*p, d) for p, d in zip(positional, defaults, strict=True) if p[1] != "self"]
+    listed += [
+        ("*", a.arg, default is not None)
+        for a, default in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True)
+    ]
     if arguments.kwarg:
         listed.append(("**", arguments.kwarg.arg, False))
     return listed
@@ -64,6 +68,8 @@ def docstring_signature(function):
         name = part.split(":")[0].split("=")[0].strip()
         if name == "/":
             kind = "/"
+        elif name == "*":
+            listed = [("*", *after[1:]) for after in listed]
         elif name.startswith("**"):
             # pybind11 calls them kwargs, the stub by what they are.
             listed.insert(0, ("**", "overrides", False))

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -60,6 +61,14 @@ class Simulation {
   /// false. Throws NotConvergedError.
   EquilibriumReport equilibrium(bool leave_saddles = true);
 
+  /// Moves what support number `support` prescribes, in place of its table: `component` ("x", "y"
+  /// [m] from the initial place, or "angle" [rad]) comes to `value` at the end of the next step,
+  /// evenly, and stays there until it is moved again; `equilibrium` and static scenes take it at
+  /// once. Throws Error where the scene does not prescribe that, and where steps adapt.
+  void prescribe(std::size_t support, const std::string& component, double value);
+  /// Present value of a component that a support prescribes. Throws Error if it does not.
+  [[nodiscard]] double prescribed(std::size_t support, const std::string& component) const;
+
   /// The `count` modes of lowest frequency about the present state, which has to be an equilibrium
   /// (Error if not).
   [[nodiscard]] std::vector<Mode> modes(int count);
@@ -98,6 +107,8 @@ class Simulation {
   [[nodiscard]] const std::string& linear_solver_reason() const { return solver_.reason; }
 
  private:
+  /// Time [s] at the end of the next step of equal ones.
+  [[nodiscard]] double next_time() const;
   void advance_to(double target);
   void advance_adaptively();
   [[noreturn]] void fail(const StepReport& report, double dt) const;

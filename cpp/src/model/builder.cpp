@@ -151,7 +151,9 @@ Model build_model(const scenario::Scene& scene) {
   choose_model(scene, model);
   place_nodes(scene, model);
   lay_out_rods(scene, model);
-  for (const auto& support : scene.supports) add_support(support, model);
+  for (std::size_t i = 0; i < scene.supports.size(); ++i) {
+    add_support(scene.supports[i], i, model);
+  }
   for (RodLayout& rod : model.rods) add_rod_elements(rod, model);
   for (const auto& load : scene.loads) {
     std::visit([&](const auto& l) { add_load(l, scene, model); }, load.what);

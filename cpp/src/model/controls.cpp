@@ -25,4 +25,15 @@ void Controls::evaluate(double t, Vector& values) const {
   for (Index i = 0; i < size(); ++i) values[i] = value_at((*this)[i], t);
 }
 
+void Controls::evaluate(double t, const std::vector<Ramp>& ramps, Vector& values) const {
+  evaluate(t, values);
+  for (const Ramp& ramp : ramps) values[ramp.control] = ramp.at(t);
+}
+
+double Controls::value(Index i, double t, const std::vector<Ramp>& ramps) const {
+  const auto ramp = std::find_if(ramps.begin(), ramps.end(),
+                                 [i](const Ramp& candidate) { return candidate.control == i; });
+  return ramp == ramps.end() ? value_at((*this)[i], t) : ramp->at(t);
+}
+
 }  // namespace der

@@ -22,7 +22,7 @@ State initial_state(const Model& model) {
 
 Energies energies(const Model& model, const State& state) {
   Vector controls;
-  model.controls.evaluate(state.time, controls);
+  model.controls.evaluate(state.time, state.ramps, controls);
   Energies result;
   result.kinetic = model.mass.kinetic_energy(state.velocities);
   result.gravity = -model.gravity_force.dot(state.positions);

@@ -11,8 +11,9 @@ using hdf5::Handle;
 
 constexpr hsize_t kHistoryChunk = 4096;
 constexpr hsize_t kSummaryValues = 5;  // of a ProbeSummary
-constexpr hsize_t kCounters = 4;       // of Counters
-constexpr hsize_t kWorkValues = 5;     // of Work
+constexpr std::size_t kRampValues = 5;
+constexpr hsize_t kCounters = 4;    // of Counters
+constexpr hsize_t kWorkValues = 5;  // of Work
 
 Handle with_unit(Handle dataset, const std::string& unit) {
   hdf5::write_attribute(dataset.id(), "unit", unit);
@@ -88,6 +89,7 @@ CheckpointStore::Slot CheckpointStore::create_slot(hid_t group, const Model& mod
   slot.wall_seconds = create_doubles(group, "wall_seconds", {}, "s");
   slot.history = create_list(group, "history", H5T_NATIVE_DOUBLE);
   slot.history_lengths = create_list(group, "history_lengths", H5T_NATIVE_INT64);
+  slot.ramps = create_list(group, "ramps", H5T_NATIVE_DOUBLE);
   return slot;
 }
 
@@ -108,6 +110,7 @@ CheckpointStore::Slot CheckpointStore::open_slot(hid_t group) {
   slot.wall_seconds = hdf5::open_dataset(group, "wall_seconds");
   slot.history = Column::open(group, "history");
   slot.history_lengths = Column::open(group, "history_lengths");
+  slot.ramps = Column::open(group, "ramps");
   return slot;
 }
 
@@ -140,7 +143,7 @@ void CheckpointStore::write(const Checkpoint& checkpoint) {
   // Taken apart so that a new member of State does not compile until it is saved here and read
   // below.
   const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
-               next_step, last_error, work] = checkpoint.state;
+               next_step, last_error, work, ramps] = checkpoint.state;
   hdf5::write_all(slot.time.id(), &time);
   hdf5::write_all(slot.step.id(), &step);
   hdf5::write_all(slot.positions.id(), positions.data());
@@ -169,6 +172,12 @@ void CheckpointStore::write(const Checkpoint& checkpoint) {
   }
   slot.history.assign(flat);
   slot.history_lengths.assign(lengths);
+
+  std::vector<double> moved;
+  for (const auto& [control, from_time, to_time, from, to] : ramps) {
+    moved.insert(moved.end(), {static_cast<double>(control), from_time, to_time, from, to});
+  }
+  slot.ramps.assign(moved);
 }
 
 void CheckpointStore::publish() {
@@ -204,6 +213,12 @@ std::optional<Checkpoint> CheckpointStore::read() const {
   for (const auto length : hdf5::read_vector<std::int64_t>(slot.history_lengths.id())) {
     state.history.emplace_back(Eigen::Map<const Vector>(next, static_cast<Index>(length)));
     next += length;
+  }
+
+  const auto ramps = hdf5::read_vector<double>(slot.ramps.id());
+  for (std::size_t i = 0; i + kRampValues <= ramps.size(); i += kRampValues) {
+    state.ramps.push_back(
+        {static_cast<Index>(ramps[i]), ramps[i + 1], ramps[i + 2], ramps[i + 3], ramps[i + 4]});
   }
   return checkpoint;
 }

@@ -30,6 +30,7 @@ class CheckpointStore {
     hdf5::Handle extremes, counters, wall_seconds;
     hdf5::Column history;          // all vectors one behind the other
     hdf5::Column history_lengths;  // of each vector
+    hdf5::Column ramps;            // five numbers each
   };
   static Slot create_slot(hid_t group, const Model& model, std::size_t num_probes);
   static Slot open_slot(hid_t group);

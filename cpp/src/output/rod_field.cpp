@@ -55,7 +55,8 @@ std::vector<double> edge_middles(const RodLayout& rod) {
 /// An edge's vector [m] as its elements see it.
 Vec2 vector_of(const Link& link, const Model& model, const State& state) {
   const auto turn = [&](const Pivot& pivot) {
-    return pivot.rotation >= 0 ? value_at(model.controls[pivot.rotation], state.time) : 0.0;
+    return pivot.rotation >= 0 ? model.controls.value(pivot.rotation, state.time, state.ramps)
+                               : 0.0;
   };
   return link.vector(state.positions, turn(link.first), turn(link.last));
 }
@@ -93,17 +94,19 @@ struct BendCell {
   double rest_angle = 0.0;     // [rad]
 };
 
-Vec2 tangent(const Clamp& clamp, const Model& model, double time) {
+Vec2 tangent(const Clamp& clamp, const Model& model, const State& state) {
   double angle = clamp.direction;
-  if (clamp.rotation >= 0) angle += value_at(model.controls[clamp.rotation], time);
+  if (clamp.rotation >= 0) {
+    angle += model.controls.value(clamp.rotation, state.time, state.ramps);
+  }
   return {std::cos(angle), std::sin(angle)};
 }
 
 double turning_angle(const BendCell& cell, const Model& model, const State& state) {
   const Vec2 before =
-      cell.start ? tangent(*cell.start, model, state.time) : vector_of(cell.before, model, state);
+      cell.start ? tangent(*cell.start, model, state) : vector_of(cell.before, model, state);
   const Vec2 after =
-      cell.end ? tangent(*cell.end, model, state.time) : vector_of(cell.after, model, state);
+      cell.end ? tangent(*cell.end, model, state) : vector_of(cell.after, model, state);
   return angle_between(before, after);
 }
 

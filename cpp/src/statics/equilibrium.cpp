@@ -86,7 +86,7 @@ class Search {
     for (const RodLayout& rod : model.rods) {
       if (rod.EI > 0.0) softness_ = std::max(softness_, rod.rest_length() / rod.EI);
     }
-    model.controls.evaluate(state.time, stage_.controls);
+    model.controls.evaluate(state.time, state.ramps, stage_.controls);
     external_force(model, stage_.controls, state.extra_force, stage_.force);
     spring_travel_ = spring_travel(model, stage_.force.lpNorm<1>());
   }

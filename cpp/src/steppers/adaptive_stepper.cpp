@@ -159,7 +159,7 @@ void AdaptiveStepper::interpolate(double time, const State& state, State& result
                      weight.v1 * b.velocities;
   result.velocities = weight.slope_x * (b.positions - a.positions) +
                       weight.slope_v0 * a.velocities + weight.slope_v1 * b.velocities;
-  model_.controls.evaluate(time, controls_);
+  model_.controls.evaluate(time, state.ramps, controls_);
   place_held(model_, controls_, result.positions);
 }
 

@@ -37,7 +37,7 @@ class Bdf2 final : public Stepper {
     equation.velocity_factor = 1.0 / h;
     equation.velocity_reference = past_positions_;
     stage_.positions = state.positions + dt * (state.velocities + 0.5 * dt * state.accelerations);
-    stage_.place_held_at(state.time + dt, stage_.positions);
+    stage_.place_held_at(state, state.time + dt, stage_.positions);
     const StepReport report = stage_.solve(state, state.time + dt);
     if (report.outcome != StepOutcome::Done) return report;
 

@@ -21,7 +21,7 @@ class ExplicitEuler final : public Stepper {
   StepReport step(State& state, double dt) override {
     force_.acceleration(state, state.positions, state.velocities, state.time, 0.0, acceleration_);
     positions_ = state.positions + dt * (state.velocities + dt * acceleration_);
-    force_.place_held_at(state.time + dt, positions_);
+    force_.place_held_at(state, state.time + dt, positions_);
     const StepReport report = force_.check(positions_);
     if (report.outcome != StepOutcome::Done) return report;
 

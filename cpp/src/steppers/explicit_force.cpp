@@ -26,7 +26,7 @@ ExplicitForce::ExplicitForce(const Model& model, const Assembler& assembler)
 void ExplicitForce::acceleration(const State& state, const Vector& positions,
                                  const Vector& velocities, double time, double damping_time,
                                  Vector& acceleration) {
-  model_.controls.evaluate(time, controls_);
+  model_.controls.evaluate(time, state.ramps, controls_);
   external_force(model_, controls_, state.extra_force, force_);
   assembler_.gradient(positions, controls_, gradient_);
   positions_ = positions;
@@ -45,8 +45,8 @@ void ExplicitForce::book(const Vector& velocities, const Vector& displacement, W
   }
 }
 
-void ExplicitForce::place_held_at(double time, Vector& positions) {
-  model_.controls.evaluate(time, scratch_controls_);
+void ExplicitForce::place_held_at(const State& state, double time, Vector& positions) {
+  model_.controls.evaluate(time, state.ramps, scratch_controls_);
   place_held(model_, scratch_controls_, positions);
 }
 

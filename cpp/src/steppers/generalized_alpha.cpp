@@ -44,13 +44,13 @@ class GeneralizedAlpha final : public Stepper {
                                   (beta_ / gamma_) * dt * (v + kept * dt * (1.0 - gamma_) * a);
 
     positions_ = q + dt * (v + 0.5 * dt * a);
-    stage_.place_held_at(state.time + dt, positions_);
+    stage_.place_held_at(state, state.time + dt, positions_);
     stage_.positions = kept * positions_ + alpha_f_ * q;
     const StepReport report = stage_.solve(state, state.time + kept * dt);
     if (report.outcome != StepOutcome::Done) return report;
 
     positions_ = (stage_.positions - alpha_f_ * q) / kept;
-    stage_.place_held_at(state.time + dt, positions_);
+    stage_.place_held_at(state, state.time + dt, positions_);
     accelerations_ = (positions_ - q - dt * v) / (beta_ * dt * dt) - ((0.5 - beta_) / beta_) * a;
     velocities_ = v + dt * ((1.0 - gamma_) * a + gamma_ * accelerations_);
     state.accelerations = accelerations_;

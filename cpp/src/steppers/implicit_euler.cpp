@@ -18,7 +18,7 @@ class ImplicitEuler final : public Stepper {
     equation.velocity_factor = 1.0 / dt;
     equation.velocity_reference = state.positions;
     stage_.positions = equation.inertia_target + dt * dt * state.accelerations;
-    stage_.place_held_at(state.time + dt, stage_.positions);
+    stage_.place_held_at(state, state.time + dt, stage_.positions);
     const StepReport report = stage_.solve(state, state.time + dt);
     if (report.outcome != StepOutcome::Done) return report;
 

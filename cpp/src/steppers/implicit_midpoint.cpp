@@ -25,14 +25,14 @@ class ImplicitMidpoint final : public Stepper {
 
     // Held degrees of freedom end the step where their table says, so their midpoint is the mean.
     positions_ = state.positions + dt * (state.velocities + half * state.accelerations);
-    stage_.place_held_at(state.time + dt, positions_);
+    stage_.place_held_at(state, state.time + dt, positions_);
     stage_.positions = 0.5 * (state.positions + positions_);
     const StepReport report = stage_.solve(state, state.time + half);
     if (report.outcome != StepOutcome::Done) return report;
 
     positions_ = 2.0 * stage_.positions - state.positions;
     velocities_ = (2.0 / half) * (stage_.positions - state.positions) - state.velocities;
-    stage_.place_held_at(state.time + dt, positions_);
+    stage_.place_held_at(state, state.time + dt, positions_);
     state.accelerations = (velocities_ - state.velocities) / dt;
     stage_.book_and_finish(positions_, velocities_, dt, state);
     return report;

@@ -15,13 +15,13 @@ ImplicitStage::ImplicitStage(const Model& model, const Assembler& assembler, Lin
       finisher_(model),
       displacement_(Vector::Zero(model.num_dofs())) {}
 
-void ImplicitStage::place_held_at(double time, Vector& where) {
-  model_.controls.evaluate(time, equation.controls);
+void ImplicitStage::place_held_at(const State& state, double time, Vector& where) {
+  model_.controls.evaluate(time, state.ramps, equation.controls);
   place_held(model_, equation.controls, where);
 }
 
 StepReport ImplicitStage::solve(const State& state, double time) {
-  model_.controls.evaluate(time, equation.controls);
+  model_.controls.evaluate(time, state.ramps, equation.controls);
   external_force(model_, equation.controls, state.extra_force, equation.force);
   const NewtonReport newton = newton_.solve(equation, positions);
   StepReport report;

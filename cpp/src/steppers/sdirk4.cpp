@@ -31,7 +31,7 @@ class Sdirk4 final : public Stepper {
     stage_.equation.inertia = 1.0 / (g * g);
     stage_.equation.velocity_factor = 1.0 / g;
     end_held_ = state.positions;
-    stage_.place_held_at(state.time + dt, end_held_);
+    stage_.place_held_at(state, state.time + dt, end_held_);
     work_ = state.work;
 
     StepReport report;
@@ -87,7 +87,7 @@ class Sdirk4 final : public Stepper {
     } else {
       stage_.positions += g * g * accelerations_.col(i - 1);
     }
-    stage_.place_held_at(time, stage_.positions);
+    stage_.place_held_at(state, time, stage_.positions);
     for (const HeldDof& held : model_.held) {
       // So that the stage's velocity is that of the motion over the step.
       past_positions_[held.dof] = stage_.positions[held.dof] -

@@ -11,8 +11,8 @@ StepFinisher::StepFinisher(const Model& model)
 
 void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector>& velocities,
                           double dt, State& state) {
-  model_.controls.evaluate(state.time, controls_start_);
-  model_.controls.evaluate(state.time + dt, controls_end_);
+  model_.controls.evaluate(state.time, state.ramps, controls_start_);
+  model_.controls.evaluate(state.time + dt, state.ramps, controls_end_);
   state.work.supports +=
       rotation_work(model_, {state.positions, positions, controls_start_, controls_end_});
   for (const HeldDof& held : model_.held) {

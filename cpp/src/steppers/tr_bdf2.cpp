@@ -36,7 +36,7 @@ class TrBdf2 final : public Stepper {
     constexpr double late = 1.0 - 2.0 * early;
     work_ = state.work;
     end_positions_ = state.positions;
-    stage_.place_held_at(state.time + dt, end_positions_);
+    stage_.place_held_at(state, state.time + dt, end_positions_);
     stage_displacement(model_, state.positions, end_positions_, early, dt, state.velocities,
                        displacement_);
     force_.book(state.velocities, displacement_, work_);
@@ -73,7 +73,7 @@ class TrBdf2 final : public Stepper {
         state.positions + h * (2.0 * state.velocities + h * start_acceleration_);
     equation.velocity_reference = state.positions + h * state.velocities;
     stage_.positions = state.positions + 2.0 * h * (state.velocities + h * start_acceleration_);
-    stage_.place_held_at(time, stage_.positions);
+    stage_.place_held_at(state, time, stage_.positions);
     const StepReport report = stage_.solve(state, time);
     middle_positions_ = stage_.positions;
     middle_velocities_ = (middle_positions_ - state.positions) / h - state.velocities;
@@ -91,7 +91,7 @@ class TrBdf2 final : public Stepper {
     stage_.positions =
         middle_positions_ + rest * middle_velocities_ +
         0.5 * rest * (rest / (kGamma * dt)) * (middle_velocities_ - state.velocities);
-    stage_.place_held_at(state.time + dt, stage_.positions);
+    stage_.place_held_at(state, state.time + dt, stage_.positions);
     return stage_.solve(state, state.time + dt);
   }
 

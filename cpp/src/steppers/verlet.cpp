@@ -23,14 +23,14 @@ class Verlet final : public Stepper {
   StepReport step(State& state, double dt) override {
     const double half = 0.5 * dt;
     positions_ = state.positions + half * state.velocities;
-    force_.place_held_at(state.time + half, positions_);
+    force_.place_held_at(state, state.time + half, positions_);
     force_.acceleration(state, positions_, state.velocities, state.time + half, half,
                         acceleration_);
     StepReport report = force_.check(positions_);
     if (report.outcome != StepOutcome::Done) return report;
 
     positions_ = state.positions + dt * (state.velocities + half * acceleration_);
-    force_.place_held_at(state.time + dt, positions_);
+    force_.place_held_at(state, state.time + dt, positions_);
     displacement_ = positions_ - state.positions;
     mean_velocities_ = displacement_ / dt;
     force_.book(mean_velocities_, displacement_, state.work);

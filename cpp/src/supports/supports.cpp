@@ -1,6 +1,7 @@
 #include "der/supports/supports.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "der/model/location.hpp"
 #include "der/supports/clamp.hpp"
@@ -8,6 +9,8 @@
 
 namespace der {
 namespace {
+
+constexpr std::array<const char*, 3> kComponentNames{"x", "y", "z"};
 
 void hold(Model& model, Index dof, Index displacement) {
   const auto known = std::find_if(model.held.begin(), model.held.end(),
@@ -17,14 +20,16 @@ void hold(Model& model, Index dof, Index displacement) {
 
 }  // namespace
 
-void add_support(const scenario::Support& support, Model& model) {
+void add_support(const scenario::Support& support, std::size_t number, Model& model) {
   if (support.spring) add_spring(support, model);
   if (!support.holds()) return;
   RodLayout& rod = model.rod(support.rod);
   for (const Index place : nodes_at(support.at, rod)) {
     const Index node = rod.nodes[static_cast<std::size_t>(place)];
     for (const auto& [component, displacement] : support.prescribe) {
-      hold(model, model.dof(node, static_cast<int>(component)), model.controls.add(displacement));
+      const Index control = model.controls.add(displacement);
+      hold(model, model.dof(node, static_cast<int>(component)), control);
+      model.prescribed.push_back({number, kComponentNames[static_cast<int>(component)], control});
     }
     for (const auto component : support.fix) {
       hold(model, model.dof(node, static_cast<int>(component)), -1);
@@ -32,6 +37,10 @@ void add_support(const scenario::Support& support, Model& model) {
     if (support.clamp) {
       for (int c = 0; c < model.dimension; ++c) hold(model, model.dof(node, c), -1);
       hold_tangent(support, place, rod, model);
+      const Clamp* clamp = rod.clamp_at(place);
+      if (support.rotation && clamp != nullptr && clamp->rotation >= 0) {
+        model.prescribed.push_back({number, "angle", clamp->rotation});
+      }
     }
   }
 }

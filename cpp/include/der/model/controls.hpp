@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "der/core/types.hpp"
+#include "der/model/ramp.hpp"
 #include "der/scenario/scenario.hpp"
 
 namespace der {
@@ -23,6 +24,10 @@ class Controls {
   }
   /// Writes the value of every table at time `t` into `values`.
   void evaluate(double t, Vector& values) const;
+  /// The same, with `ramps` in place of the tables that they name.
+  void evaluate(double t, const std::vector<Ramp>& ramps, Vector& values) const;
+  /// Value of one of them.
+  [[nodiscard]] double value(Index i, double t, const std::vector<Ramp>& ramps) const;
   [[nodiscard]] const scenario::Series& operator[](Index i) const {
     return series_[static_cast<std::size_t>(i)];
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,13 @@ struct HeldDof {
   Index displacement = -1;  ///< control that holds the displacement [m]; -1: none
 };
 
+/// A control that moves what a support prescribes.
+struct PrescribedControl {
+  std::size_t support = 0;  ///< its number in the scene
+  std::string component;    ///< as in the scene: "x", "y" or "angle"
+  Index control = 0;
+};
+
 /// weight * control[i] acts as a force on one degree of freedom.
 struct ControlledForce {
   Index dof = 0;
@@ -101,6 +109,7 @@ struct Model {
   std::vector<ControlledForce> controlled_forces;
 
   std::vector<HeldDof> held;
+  std::vector<PrescribedControl> prescribed;  ///< of all supports, in their order
   std::vector<Index> free_dofs;   ///< full number of each free degree of freedom, ascending
   std::vector<Index> free_index;  ///< of each degree of freedom: its place in `free_dofs`, or -1
 

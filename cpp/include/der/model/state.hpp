@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "der/core/types.hpp"
+#include "der/model/ramp.hpp"
 
 namespace der {
 
@@ -34,6 +35,7 @@ struct State {
   double next_step = 0.0;       ///< [s] that adaptive steps want to go on with; 0: not known
   double last_error = 0.0;      ///< of the last adaptive step, over what it was allowed
   Work work;
+  std::vector<Ramp> ramps;  ///< controls that a program has set, in place of their tables
 };
 
 /// The state at time 0.

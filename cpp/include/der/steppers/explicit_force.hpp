@@ -24,7 +24,7 @@ class ExplicitForce {
   /// `velocities` [m/s].
   void book(const Vector& velocities, const Vector& displacement, Work& work) const;
   /// Puts held degrees of freedom of `positions` where the tables have them at `time`.
-  void place_held_at(double time, Vector& positions);
+  void place_held_at(const State& state, double time, Vector& positions);
   /// Not done where a value is no longer a number or an edge is stretched beyond reason.
   [[nodiscard]] StepReport check(const Vector& positions) const;
 

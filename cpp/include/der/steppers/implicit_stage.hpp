@@ -22,7 +22,7 @@ class ImplicitStage {
   Vector positions;
 
   /// Puts the held degrees of freedom of `where` to where the tables have them at `time`.
-  void place_held_at(double time, Vector& where);
+  void place_held_at(const State& state, double time, Vector& where);
   /// Solves with tables and external forces at `time`.
   StepReport solve(const State& state, double time);
   /// Books what the forces of the stage solved last do along `displacement` [m].

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/scenario/scenario.hpp"
@@ -7,9 +9,9 @@
 namespace der {
 
 /// Holds or moves the components that a support names, adds its spring, and enters its clamps into
-/// the rod's layout.
-/// Must run after the rods are laid out and before their elements are made.
-void add_support(const scenario::Support& support, Model& model);
+/// the rod's layout. Must run after the rods are laid out and before their elements are made.
+/// `number` is its place in the scene.
+void add_support(const scenario::Support& support, std::size_t number, Model& model);
 
 /// Moves the held degrees of freedom of `positions` to where the tables put them.
 void place_held(const Model& model, const Vector& controls, Vector& positions);

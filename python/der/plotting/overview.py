@@ -87,7 +87,7 @@ def plot(
         figure.align_ylabels()
         text = "\n".join(textwrap.wrap(text, 80))
         if kind == "continuation" and what != "shapes":
-            figure.suptitle(text)
+            figure.suptitle(text, x=0.01, ha="left")
         else:
             figure.axes[0].set_title(text, pad=10)
         if figure.axes[0].get_aspect() == 1.0 and kind not in ("modes", "buckling"):

@@ -285,7 +285,8 @@ def _gif_palette() -> list[int]:
 
     from der.plotting.style import LOAD, MUTED, PALETTE
 
-    tones = np.linspace(0.0, 1.0, _GIF_TONES)[:, np.newaxis]
+    # Nothing close to white, or Pillow would take it for white.
+    tones = np.append(np.linspace(0.0, 0.94, _GIF_TONES - 1), 1.0)[:, np.newaxis]
     colours = [to_rgb(colour) for colour in (PALETTE[0], LOAD, MUTED, "black")]
     mixed = np.vstack([tones + (1.0 - tones) * np.array(colour) for colour in colours])
     return [int(value) for value in np.rint(255.0 * mixed).ravel()]

@@ -143,13 +143,21 @@ def test_snippets_of_the_study_page(tmp_path, monkeypatch):
     assert (tmp_path / "study.png").exists()
 
 
+def test_snippets_of_the_looking_page(tmp_path, monkeypatch):
+    for package in ("imageio_ffmpeg", "plotly", "pyevtk"):
+        pytest.importorskip(package)
+    assert run_snippets(ROOT / "docs" / "looking.md", tmp_path, monkeypatch) == 2
+    made = {path.name for path in (tmp_path / "runs" / "tube").iterdir()}
+    assert {"plot.png", "tube.gif", "tube.mp4", "view.html", "run.npz", "csv", "vtk"} <= made
+
+
 @pytest.mark.parametrize(("page", "count"), [("statics", 1), ("modes", 2), ("continuation", 1)])
 def test_statics_snippets_run(page, count, tmp_path, monkeypatch):
     assert run_snippets(ROOT / "docs" / f"{page}.md", tmp_path, monkeypatch) == count
 
 
 def test_pictures_can_be_made(tmp_path, monkeypatch):
-    """docs/make_figures.py draws every picture but that of the peers, which takes them."""
+    """docs/make_figures.py draws all but those that take the peers, or a browser."""
     scripts = tmp_path / "docs"
     scripts.mkdir()
     (tmp_path / "configs").symlink_to(ROOT / "configs")
@@ -160,4 +168,6 @@ def test_pictures_can_be_made(tmp_path, monkeypatch):
     monkeypatch.setattr("sys.argv", ["make_figures.py"])
     make_figures.main()
     made = {path.name for path in (scripts / "images").iterdir()}
-    assert made | {"peers.png"} == {path.name for path in (ROOT / "docs" / "images").iterdir()}
+    assert made | {"peers.png", "view.png"} == {
+        path.name for path in (ROOT / "docs" / "images").iterdir()
+    }

@@ -82,6 +82,29 @@ def test_supports_and_spheres(tube, spheres):
     assert data["low"][2] < -0.025 < 0.025 < data["high"][2], "spheres have a depth"
 
 
+def test_loads_and_gravity(tube):
+    table = {"times": [0, 0.1], "values": [[0, -1000], [0, -2000]]}
+    tube["loads"] = [
+        {"gravity": [0, -9.81]},
+        {"point_force": {"rod": "beam", "at": 0.76, "force": table}},
+        {"moment": {"rod": "beam", "at": "end", "moment": -3}},
+        {"distributed_force": {"rod": "beam", "force": [2, 0], "to": 0.5}},
+    ]
+    data = make_payload(der.run(tube))
+    assert data["note"] == "gravity (0, -9.81) m/s²"
+    first, last = (data["loads"][data["load_set"][frame]] for frame in (0, -1))
+    assert first[0] | {"share": 0} == {
+        **{"kind": "force", "rod": 0, "place": 15, "share": 0},
+        **{"along": [0, -1, 0], "text": "1 kN"},
+    }
+    assert first[0]["share"] == pytest.approx(0.2)
+    assert last[0]["text"] == "2 kN"
+    assert (last[1]["along"], last[1]["text"]) == ([0, 0, -1], "3 N m")
+    assert (last[1]["place"], last[1]["share"]) == (19, 1.0)
+    assert [load["text"] for load in last[2:] if load["text"]] == ["2 N/m"]
+    assert data["load_set"][5:] == [data["load_set"][5]] * (len(data["load_set"]) - 5)
+
+
 def test_static_modes_and_paths(tube):
     data = make_payload(der.equilibrium(tube))
     assert data["captions"] == ["as drawn", "equilibrium"]
@@ -138,7 +161,7 @@ def test_long_runs_leave_out_frames(swing, monkeypatch):
     data = make_payload(result)
     kept = len(data["captions"])
     assert 4 <= kept <= 7
-    assert data["note"] == f"{kept} of 21 saved frames"
+    assert data["note"].startswith(f"{kept} of 21 saved frames")
     assert data["times"][-1] == result.times[-1]
     assert data["chapters"][0]["last"] == kept - 1
 
@@ -311,6 +334,27 @@ def test_browser_keeps_scale_and_axes(browser, spheres, tmp_path):
         assert now == pytest.approx(then)
     ball = browser.execute_script("return document.getElementById('scene').data[2].x")
     assert np.ptp(ball) == pytest.approx(0.11, abs=0.002)
+    assert_no_errors(browser)
+
+
+def test_browser_draws_loads_and_supports(browser, tube, tmp_path):
+    result = der.equilibrium(tube)
+    open_page(browser, result.view(tmp_path / "view.html"))
+    supports, arrow, labels = browser.execute_script(
+        "const [a, b, c] = document.getElementById('scene').data.slice(3);"
+        "return [[a.x, a.y], [b.x, b.y], c.text]"
+    )
+    assert labels == ["2 kN"]
+    x, y = np.array(arrow)
+    place = np.array(
+        [np.interp(0.75, result.rods[0].arc_lengths, c) for c in result.positions[-1].T]
+    )
+    assert [x[y.argmin()], y.min()] == pytest.approx(place, abs=1e-6), "its tip is at the point"
+    x, y = np.array(supports)
+    assert y.max() == pytest.approx(0.0, abs=1e-6), "they stand below the ends"
+    assert [x.min(), x.max()] == pytest.approx(
+        [0, result.positions[-1, -1, 0]], abs=2 * payload_of(tmp_path / "view.html")["symbol"]
+    )
     assert_no_errors(browser)
 
 

@@ -64,10 +64,9 @@ def write_vtk(result: Result, out: Path, progress: ProgressFunction) -> list[Pat
 
 
 def _point_data(rods: list[RodFields], frame: int) -> PointData:
-    named = [fields.named() for fields in rods]
     data: PointData = {
-        name: np.concatenate([values[name][frame] for values in named])
-        for name in ("curvature", "tension")
+        "curvature": np.concatenate([fields.curvature[frame] for fields in rods]),
+        "tension": np.concatenate([fields.tension[frame] for fields in rods]),
     }
     data["velocity"] = _in_space(np.vstack([fields.velocities[frame] for fields in rods]))
     data["radius"] = np.concatenate(

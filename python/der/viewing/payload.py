@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from der._core import Rod
 from der.fields import FIELD_UNITS, held_at
-from der.film import Film, make_film, round_speed, speed_text
+from der.film import Film, make_film, mode_shapes, round_speed, speed_text
+from der.plotting.style import quantity_text
+from der.scene_loads import ActingLoads
 
 if TYPE_CHECKING:
     from der.result import Result
@@ -21,6 +23,8 @@ Array = NDArray[np.float64]
 _BUDGET = 4_000_000
 #: Size of the symbols of supports, against the structure's.
 _SYMBOL = 0.035
+#: Arrows of a distributed force.
+_LINE_ARROWS = 9
 #: Speeds on offer, against the one that suits the run.
 _SPEEDS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 
@@ -30,11 +34,15 @@ def make_payload(result: Result) -> dict[str, Any]:
     film = make_film(result)
     frames = _kept_frames(film)
     positions = _in_space(film.positions[frames])
-    low, high, symbol = _limits(result.rods, positions)
+    loads = _loads(result, film, frames)
+    low, high, symbol = _limits(result.rods, positions, any(loads["loads"]))
     span = 0.0 if film.times is None else float(film.times[-1] - film.times[0])
     note = result.scenario.analysis if result.scenario.is_static else ""
     if len(frames) < len(film.captions):
         note = f"{len(frames)} of {len(film.captions)} saved frames"
+    gravity = film.loads(result, 0).gravity
+    if gravity is not None:
+        note += f"{', ' if note else ''}gravity {_vector_text(gravity)} m/s²"
     return {
         "title": result.scenario.title,
         "note": note,
@@ -58,11 +66,16 @@ def make_payload(result: Result) -> dict[str, Any]:
             for k, rod in enumerate(result.rods)
         ],
         "supports": _supports(result),
+        **loads,
         "symbol": symbol,
         "low": low.tolist(),
         "high": high.tolist(),
         "flat": bool(np.all(positions[:, :, 2] == 0.0)),
     }
+
+
+def _vector_text(vector: Array) -> str:
+    return f"({', '.join(f'{value:.4g}' for value in vector)})"
 
 
 def _kept_frames(film: Film) -> NDArray[np.int64]:
@@ -124,7 +137,7 @@ def _in_space(positions: Array) -> Array:
     return full
 
 
-def _limits(rods: list[Rod], positions: Array) -> tuple[Array, Array, float]:
+def _limits(rods: list[Rod], positions: Array, loaded: bool) -> tuple[Array, Array, float]:
     """Return the corners [m] of all frames, symbols included, and the size of these [m]."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for rod in rods:
@@ -132,7 +145,70 @@ def _limits(rods: list[Rod], positions: Array) -> tuple[Array, Array, float]:
         low = np.minimum(low, (positions[:, rod.nodes] - around).min(axis=(0, 1)))
         high = np.maximum(high, (positions[:, rod.nodes] + around).max(axis=(0, 1)))
     symbol = _SYMBOL * float(np.max(high - low))
-    return low - 2.0 * symbol, high + 2.0 * symbol, symbol
+    room = (5.0 if loaded else 2.0) * symbol
+    depth = np.array([room, room, room if positions[:, :, 2].any() else 2.0 * symbol])
+    return low - depth, high + depth, symbol
+
+
+def _loads(result: Result, film: Film, frames: NDArray[np.int64]) -> dict[str, Any]:
+    """Return the different sets of loads that there are, and which of them acts at each frame.
+
+    A load has a ``kind``, its rod, the ``share`` of the edge after a ``place``, a unit vector
+    ``along`` (of moments the axis) and a ``text``. Modes are shown without loads, and gravity
+    stands in the page's note.
+    """
+    if mode_shapes(result).size:
+        return {"loads": [[]], "load_set": [0] * len(frames)}
+    sets: list[list[dict[str, Any]]] = []
+    chosen = []
+    known: dict[int, int] = {}  # of frames of the result
+    for frame in frames:
+        source = int(film.source[frame])
+        if source not in known:
+            found = _load_symbols(result, film.loads(result, int(frame)))
+            if found not in sets:
+                sets.append(found)
+            known[source] = sets.index(found)
+        chosen.append(known[source])
+    return {"loads": sets, "load_set": chosen}
+
+
+def _load_symbols(result: Result, loads: ActingLoads) -> list[dict[str, Any]]:
+    rods = {rod.name: (number, rod) for number, rod in enumerate(result.rods)}
+
+    def symbol(kind: str, rod: str, at: float, value: Array, text: str) -> dict[str, Any]:
+        number, own = rods[rod]
+        full = np.zeros(3)
+        if value.ndim:
+            full[: len(value)] = value
+        else:
+            full[2] = value  # a planar moment acts about z
+        right = int(np.clip(np.searchsorted(own.arc_lengths, at), 1, len(own.nodes) - 1))
+        left, length = own.arc_lengths[right - 1], np.diff(own.arc_lengths)[right - 1]
+        return {
+            "kind": kind,
+            "rod": number,
+            "place": right - 1,
+            "share": float((at - left) / length),
+            "along": (full / np.linalg.norm(full)).tolist(),
+            "text": text,
+        }
+
+    def amount(value: Array, unit: str) -> str:
+        return quantity_text(float(np.linalg.norm(value)), unit)
+
+    found = [
+        symbol("force", one.rod, one.at, one.value, amount(one.value, "N")) for one in loads.forces
+    ]
+    found += [
+        symbol("moment", one.rod, one.at, one.value, amount(one.value, "N m"))
+        for one in loads.moments
+    ]
+    for line in loads.lines:
+        for number, at in enumerate(np.linspace(line.start, line.end, _LINE_ARROWS)):
+            text = amount(line.value, "N/m") if number == _LINE_ARROWS // 2 else ""
+            found.append(symbol("line", line.rod, float(at), line.value, text))
+    return found
 
 
 def _supports(result: Result) -> list[dict[str, Any]]:

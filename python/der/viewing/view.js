@@ -9,6 +9,7 @@
   const PLAIN = "#0072B2";
   const SPHERE = "#56B4E9";
   const SUPPORT = "#8c8c8c";
+  const LOAD = "#D55E00";
 
   // Vectors.
   const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
@@ -177,6 +178,63 @@
     }
   };
 
+  // A cone whose tip is at `tip`, pointing along a unit vector.
+  const addCone = (mesh, tip, along, length) => {
+    const u = scale(0.36 * length, across(along));
+    const v = cross(along, u);
+    const base = sub(tip, scale(length, along));
+    const first = corner(mesh, tip, 0);
+    for (let side = 0; side < SIDES; side++) {
+      const angle = (2 * Math.PI * side) / SIDES;
+      const offset = add(scale(Math.cos(angle), u), scale(Math.sin(angle), v));
+      corner(mesh, add(base, offset), 0);
+    }
+    const middle = corner(mesh, base, 0);
+    for (let side = 0; side < SIDES; side++) {
+      const [a, b] = [first + 1 + side, first + 1 + ((side + 1) % SIDES)];
+      triangle(mesh, first, a, b);
+      triangle(mesh, middle, a, b);
+    }
+  };
+
+  const addArrow = (mesh, tail, tip, size) => {
+    const along = unit(sub(tip, tail), [1, 0, 0]);
+    addTube(mesh, [tail, sub(tip, scale(0.5 * size, along))], 0.07 * size, [0, 0]);
+    addCone(mesh, tip, along, size);
+  };
+
+  // An arrow ends at its point, but one that pulls an end along the rod begins there. Returns where
+  // its text stands, and in which direction from there.
+  const addForce = (mesh, load, point, line, size) => {
+    const last = line.length - 1;
+    const atStart = load.place === 0 && load.share < 1e-6;
+    const atEnd = load.place === last - 1 && load.share > 1 - 1e-6;
+    let outwards = [0, 0, 0];
+    if (atStart) outwards = unit(sub(line[0], line[1]), outwards);
+    if (atEnd) outwards = unit(sub(line[last], line[last - 1]), outwards);
+    const reach = scale((load.kind === "line" ? 2 : 4) * size, load.along);
+    const pulls = dot(outwards, load.along) > 0.5;
+    const [tail, tip] = pulls ? [point, add(point, reach)] : [sub(point, reach), point];
+    addArrow(mesh, tail, tip, (load.kind === "line" ? 0.6 : 1) * size);
+    return pulls ? [tip, load.along] : [tail, scale(-1, load.along)];
+  };
+
+  // Three quarters of a circle about the axis, with a head. Returns the same.
+  const addMoment = (mesh, axis, point, size) => {
+    const u = across(axis);
+    const v = cross(axis, u);
+    const arc = [];
+    for (let n = 0; n <= 24; n++) {
+      const angle = Math.PI * (-0.85 + (1.4 * n) / 24);
+      const offset = add(scale(Math.cos(angle), u), scale(Math.sin(angle), v));
+      arc.push(add(point, scale(1.6 * size, offset)));
+    }
+    addTube(mesh, arc, 0.07 * size, arc.map(() => 0));
+    const along = unit(sub(arc[24], arc[23]), v);
+    addCone(mesh, add(arc[24], scale(0.8 * size, along)), along, size);
+    return [add(point, [0, 1.6 * size, 0]), [0, 1, 0]];
+  };
+
   // What is drawn.
   const state = { frame: 0, chapter: 0, quantity: "", speed: 1, playing: false };
   const range = () => data.fields[state.quantity];
@@ -266,6 +324,31 @@
     return { type: "mesh3d", ...plain(mesh), ...look };
   };
 
+  const loads = (frame) => {
+    const mesh = newMesh();
+    const labels = { x: [], y: [], z: [], text: [], textposition: [] };
+    for (const load of data.loads[data.load_set[frame]]) {
+      const line = lineOf(rods[load.rod], frame);
+      const [from, to] = [line[load.place], line[load.place + 1]];
+      const point = add(from, scale(load.share, sub(to, from)));
+      const [place, away] =
+        load.kind === "moment"
+          ? addMoment(mesh, load.along, point, data.symbol)
+          : addForce(mesh, load, point, line, data.symbol);
+      for (const [n, list] of [labels.x, labels.y, labels.z].entries()) list.push(place[n]);
+      labels.text.push(load.text);
+      const sideways = Math.abs(away[0]) > Math.abs(away[1]);
+      const [x, y] = [away[0] > 0 ? "right" : "left", away[1] < 0 ? "bottom" : "top"];
+      labels.textposition.push(sideways ? `middle ${x}` : `${y} center`);
+    }
+    const look = { color: LOAD, lighting: LIGHT, hoverinfo: "skip" };
+    const font = { color: LOAD, size: 13 };
+    return [
+      { type: "mesh3d", ...plain(mesh), ...look },
+      { type: "scatter3d", mode: "text", hoverinfo: "skip", textfont: font, ...labels },
+    ];
+  };
+
   const axis = (name, n, shown) => ({
     title: { text: `${name} [m]` },
     range: [data.low[n], data.high[n]],
@@ -282,7 +365,7 @@
     const flat = data.flat;
     // At the distance of the camera about this much of height is seen, and of width by the window.
     const box = element("scene").getBoundingClientRect();
-    const seen = flat ? 0.95 : 1.1;
+    const seen = flat ? 0.88 : 1.0;
     const wide = (seen * box.width) / Math.max(box.height, 1);
     const zoom = flat
       ? Math.min((0.82 * wide) / size[0], seen / size[1])
@@ -313,7 +396,13 @@
     toImageButtonOptions: { filename: "der", scale: 2 },
   };
 
-  const traces = (frame) => [centreLines(frame), tubes(frame), spheres(frame), supports(frame)];
+  const traces = (frame) => [
+    centreLines(frame),
+    tubes(frame),
+    spheres(frame),
+    supports(frame),
+    ...loads(frame),
+  ];
   const draw = () => {
     element("slider").value = state.frame;
     element("caption").textContent = data.captions[state.frame];

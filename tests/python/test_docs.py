@@ -123,6 +123,7 @@ def test_snippets_of_the_quick_start(tmp_path, monkeypatch):
 
 
 def test_snippets_of_the_python_page(tmp_path, monkeypatch, capsys):
+    pytest.importorskip("plotly")
     assert run_snippets(ROOT / "docs" / "python.md", tmp_path, monkeypatch) >= 10
 
     pictures = {"beam.png", "falling.png", "speed.png"}

@@ -141,6 +141,6 @@ def make_exactly_equal(figure: Figure, axes: Axes) -> None:
     x, y = box.width / (right - left), box.height / (top - bottom)  # pixels a metre
     more_x, more_y = 0.5 * (right - left) * (x / y - 1.0), 0.5 * (top - bottom) * (y / x - 1.0)
     if more_x > 0.0:
-        axes.set_xlim(left - more_x, right + more_x)
+        axes.set_xlim(left - more_x, right + more_x, auto=None)
     else:
-        axes.set_ylim(bottom - more_y, top + more_y)
+        axes.set_ylim(bottom - more_y, top + more_y, auto=None)

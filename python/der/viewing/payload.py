@@ -145,8 +145,11 @@ def _limits(rods: list[Rod], positions: Array, loaded: bool) -> tuple[Array, Arr
         low = np.minimum(low, (positions[:, rod.nodes] - around).min(axis=(0, 1)))
         high = np.maximum(high, (positions[:, rod.nodes] + around).max(axis=(0, 1)))
     symbol = _SYMBOL * float(np.max(high - low))
-    room = (5.0 if loaded else 2.0) * symbol
-    depth = np.array([room, room, room if positions[:, :, 2].any() else 2.0 * symbol])
+    # Arrows are 4 symbols long, and texts beside them wider than high.
+    room = np.array([7.0, 5.0, 5.0] if loaded else [2.0, 2.0, 2.0])
+    if not positions[:, :, 2].any():
+        room[2] = 2.0
+    depth = symbol * room
     return low - depth, high + depth, symbol
 
 

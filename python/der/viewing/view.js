@@ -326,7 +326,7 @@
 
   const loads = (frame) => {
     const mesh = newMesh();
-    const labels = { x: [], y: [], z: [], text: [], textposition: [] };
+    const labels = { x: [], y: [], z: [], text: [] };
     for (const load of data.loads[data.load_set[frame]]) {
       const line = lineOf(rods[load.rod], frame);
       const [from, to] = [line[load.place], line[load.place + 1]];
@@ -335,17 +335,23 @@
         load.kind === "moment"
           ? addMoment(mesh, load.along, point, data.symbol)
           : addForce(mesh, load, point, line, data.symbol);
-      for (const [n, list] of [labels.x, labels.y, labels.z].entries()) list.push(place[n]);
+      const gap = (Math.abs(away[0]) > Math.abs(away[1]) ? 1.6 : 0.6) * data.symbol;
+      const beside = add(place, scale(gap, away));
+      for (const [n, list] of [labels.x, labels.y, labels.z].entries()) list.push(beside[n]);
       labels.text.push(load.text);
-      const sideways = Math.abs(away[0]) > Math.abs(away[1]);
-      const [x, y] = [away[0] > 0 ? "right" : "left", away[1] < 0 ? "bottom" : "top"];
-      labels.textposition.push(sideways ? `middle ${x}` : `${y} center`);
     }
     const look = { color: LOAD, lighting: LIGHT, hoverinfo: "skip" };
     const font = { color: LOAD, size: 13 };
     return [
       { type: "mesh3d", ...plain(mesh), ...look },
-      { type: "scatter3d", mode: "text", hoverinfo: "skip", textfont: font, ...labels },
+      {
+        type: "scatter3d",
+        mode: "text",
+        textposition: "middle center",
+        textfont: font,
+        hoverinfo: "skip",
+        ...labels,
+      },
     ];
   };
 

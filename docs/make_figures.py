@@ -2,12 +2,15 @@
 
     python docs/make_figures.py [NAME...]
 
-Writes docs/images/NAME.png for each NAME, or for all of them.
+Writes docs/images/NAME.png for each NAME, or for all of them. swinging is a GIF, and view, a
+screenshot, takes Chromium and selenium: without them it is left as it is.
 """
 
 from __future__ import annotations
 
 import argparse
+import shutil
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -231,6 +234,79 @@ def data_flow() -> Figure:
     return figure
 
 
+def symbols() -> Figure:
+    """Draw the symbols of supports and loads."""
+    tube = {
+        "cross_section": {"circle": {"radius": 0.01}},
+        "material": {"youngs_modulus": 1e9, "density": 1000},
+    }
+    scene = {
+        "title": "Symbols of supports and loads",
+        "rods": [
+            {"name": "upper", "nodes": 31, "from": [0, 0], "to": [1, 0], **tube},
+            {"name": "lower", "nodes": 31, "from": [0, -0.35], "to": [1, -0.35], **tube},
+        ],
+        "supports": [
+            {"rod": "upper", "at": "start", "clamp": True},
+            {"rod": "upper", "at": "end", "fix": ["y"]},
+            {"rod": "lower", "at": "start", "fix": ["x", "y"]},
+            {"rod": "lower", "at": "end", "fix": ["y"]},
+        ],
+        "loads": [
+            {"gravity": [0, -9.81]},
+            {"point_force": {"rod": "upper", "at": 0.35, "force": [0, -3]}},
+            {"moment": {"rod": "upper", "at": 0.7, "moment": 1}},
+            {"point_force": {"rod": "upper", "at": "end", "force": [20, 0]}},
+            {"distributed_force": {"rod": "lower", "from": 0.3, "to": 0.9, "force": [0, -5]}},
+            {"point_force": {"rod": "lower", "at": "end", "force": [-15, 0]}},
+        ],
+        "analysis": "static",
+    }
+    return der.run(scene).plot("shapes")
+
+
+def swinging(path: Path) -> None:
+    """Write an animation of the swinging rod at half its speed."""
+    der.run(SWING).animate(path, speed=0.5)
+
+
+def view(path: Path) -> None:
+    """Write a screenshot of an interactive view."""
+    from selenium import webdriver
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
+    if not chromium or not driver:
+        raise ModuleNotFoundError("a screenshot takes the Debian packages of Chromium")
+    scene = der.load(CONFIGS / "simply_supported_20kN.yaml", **{"time.integrator": "tr_bdf2"})
+    with tempfile.TemporaryDirectory() as folder:
+        page = der.run(scene).view(Path(folder) / "view.html")
+        options = webdriver.ChromeOptions()
+        options.binary_location = chromium
+        for flag in (
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--enable-unsafe-swiftshader",
+            "--disable-background-networking",
+            "--window-size=1000,640",
+            f"--user-data-dir={folder}/chromium",
+        ):
+            options.add_argument(flag)
+        browser = webdriver.Chrome(options=options, service=webdriver.ChromeService(driver))
+        try:
+            browser.get(page.as_uri())
+            wait = WebDriverWait(browser, 60)
+            wait.until(lambda b: b.find_elements("css selector", "body.ready"))
+            slider = "s = document.getElementById('slider')"
+            move = f"{slider}; s.value = s.max; s.dispatchEvent(new Event('input'))"
+            browser.execute_script(f"let {move}")
+            wait.until(lambda b: b.find_element("id", "caption").text == "t = 1.00 s")
+            browser.save_screenshot(str(path))
+        finally:
+            browser.quit()
+
+
 def new_axes() -> tuple[Figure, Axes]:
     """Return a figure with one set of axes."""
     return plt.subplots(figsize=(6, 4), layout="constrained")
@@ -253,27 +329,46 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         tutorial_beam_study,
         tutorial_control,
         data_flow,
+        symbols,
     )
+}
+# What writes its file itself, with its ending.
+FILES: dict[str, tuple[str, Callable[[Path], None]]] = {
+    "swinging": (".gif", swinging),
+    "view": (".png", view),
 }
 
 
 def main() -> None:
     """Write the pictures that the command line names."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(FIGURES))
-    names = parser.parse_args().names or list(FIGURES)
-    unknown = sorted(set(names) - set(FIGURES))
+    known = [*FIGURES, *FILES]
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(known))
+    names = parser.parse_args().names or known
+    unknown = sorted(set(names) - set(known))
     if unknown:
-        parser.error(f"no picture named {', '.join(unknown)}; there are {', '.join(FIGURES)}")
+        parser.error(f"no picture named {', '.join(unknown)}; there are {', '.join(known)}")
     plt.switch_backend("agg")  # files are written and no window opened
     (DOCS / "images").mkdir(exist_ok=True)
     for name in names:
-        with style():
-            figure = FIGURES[name]()
-            path = DOCS / "images" / f"{name}.png"
-            figure.savefig(path, dpi=150)
-        plt.close(figure)
-        print(path.relative_to(DOCS.parent))
+        path = DOCS / "images" / f"{name}{FILES[name][0] if name in FILES else '.png'}"
+        try:
+            write(name, path)
+        except ModuleNotFoundError as error:
+            print(f"{path.relative_to(DOCS.parent)} is left as it is: {error}")
+        else:
+            print(path.relative_to(DOCS.parent))
+
+
+def write(name: str, path: Path) -> None:
+    """Make one picture."""
+    if name in FILES:
+        FILES[name][1](path)
+        return
+    with style():
+        figure = FIGURES[name]()
+        figure.savefig(path, dpi=150)
+    plt.close(figure)
 
 
 if __name__ == "__main__":

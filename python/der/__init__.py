@@ -51,12 +51,15 @@ from der.accuracy import (
 )
 from der.analyses import BucklingModes, Modes, Path
 from der.errors import DerError, Diagnostic, DivergedError, NotConvergedError, SceneError
+from der.exporting import export
 from der.probe_series import ProbeSeries
 from der.result import Result
 from der.run_folder import open_run
 from der.simulation import Simulation, continuation, equilibrium, run
+from der.viewing import view
 
 if TYPE_CHECKING:
+    from der.animation import animate
     from der.plotting import plot
 
 load = Scenario.load
@@ -89,8 +92,10 @@ __all__ = [
     "Verification",
     "VerifiedValue",
     "__version__",
+    "animate",
     "continuation",
     "equilibrium",
+    "export",
     "held_nodes",
     "json_schema",
     "load",
@@ -102,6 +107,7 @@ __all__ = [
     "steppers",
     "study",
     "verify",
+    "view",
 ]
 
 
@@ -111,6 +117,10 @@ def __getattr__(name: str) -> Any:
         from der.plotting import plot
 
         return plot
+    if name == "animate":
+        from der.animation import animate
+
+        return animate
     raise AttributeError(f"module 'der' has no attribute {name!r}")
 
 

@@ -29,7 +29,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (NotConvergedError, DivergedError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 3
-    except (DerError, OSError, ValueError) as error:
+    except (DerError, OSError, ValueError, ModuleNotFoundError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:

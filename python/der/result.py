@@ -26,7 +26,9 @@ from der.probe_series import ProbeSeries
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from der.exporting import ExportFormat
     from der.plotting.overview import What
+    from der.progress import ProgressFunction
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,6 +116,37 @@ class Result:
         from der.plotting import plot  # here, because matplotlib takes long to load
 
         return plot(self, what, times=times, probes=probes, title=title)
+
+    def animate(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        fps: float = 25.0,
+        speed: float | None = None,
+        progress: ProgressFunction | None = None,
+    ) -> FilePath:
+        """Write a moving picture, GIF or MP4, true to time; see `der.animate`."""
+        from der.animation import animate  # here, because matplotlib takes long to load
+
+        return animate(self, path, fps=fps, speed=speed, progress=progress)
+
+    def export(
+        self,
+        format: ExportFormat,
+        out: str | os.PathLike[str],
+        *,
+        progress: ProgressFunction | None = None,
+    ) -> list[FilePath]:
+        """Write nodes, probes and quantities along rods for other programs; see `der.export`."""
+        from der.exporting import export
+
+        return export(self, format, out, progress=progress)
+
+    def view(self, path: str | os.PathLike[str], *, open: bool = False) -> FilePath:
+        """Write an interactive 3D view as one HTML file; see `der.view`."""
+        from der.viewing import view
+
+        return view(self, path, open=open)
 
     def save(self, folder: str | os.PathLike[str]) -> FilePath:
         """Write a run folder that `der.open_run` reads, and return its path.

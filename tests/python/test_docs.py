@@ -248,7 +248,7 @@ def test_tutorial_of_control(tutorial):
 
 
 def test_pictures_can_be_made(tmp_path, monkeypatch):
-    """docs/make_figures.py draws every picture but that of the peers, which takes them."""
+    """docs/make_figures.py draws all but those that take the peers, or a browser."""
     scripts = tmp_path / "docs"
     scripts.mkdir()
     (tmp_path / "configs").symlink_to(ROOT / "configs")
@@ -260,4 +260,6 @@ def test_pictures_can_be_made(tmp_path, monkeypatch):
     monkeypatch.setattr("sys.argv", ["make_figures.py"])
     make_figures.main()
     made = {path.name for path in (scripts / "images").iterdir()}
-    assert made | {"peers.png"} == {path.name for path in (ROOT / "docs" / "images").iterdir()}
+    assert made | {"peers.png", "view.png"} == {
+        path.name for path in (ROOT / "docs" / "images").iterdir()
+    }

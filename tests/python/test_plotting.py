@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from der.plotting import PALETTE, pick_frames, style, time_colours
 from der.plotting.shapes import outline
+from der.plotting.style import quantity_text
+from der.scene_loads import acting_loads
 from matplotlib.collections import PatchCollection, PolyCollection
 from matplotlib.colors import to_hex
 
@@ -22,8 +24,17 @@ def result(spheres):
 
 
 def lines_of(axes):
-    """What is drawn with a line; the symbols of supports are not."""
+    """What is drawn with a line; the symbols of supports and loads are not."""
     return [line for line in axes.lines if line.get_linestyle() != "None"]
+
+
+def symbols_of(axes, kind):
+    """Where the symbols of supports or loads are drawn, by their ids."""
+    return {
+        line.get_gid(): line.get_xydata()[0]
+        for line in axes.lines
+        if (line.get_gid() or "").startswith(kind) and len(line.get_xydata())
+    }
 
 
 def test_overview_has_shapes_and_every_probe(result):
@@ -54,7 +65,7 @@ def test_shapes_at_given_times(result):
     for line, frame in zip(drawn, (0, 10, 100), strict=True):
         assert np.array_equal(line.get_xydata(), result.positions[frame])
     labels = [text.get_text() for text in shape.get_legend().get_texts()]
-    assert labels == ["0 s", "0.1 s", "1 s"]
+    assert labels == ["0 s", "0.1 s", "1 s", "gravity 9.8 m/s²"]
     colours = [to_hex(line.get_color()) for line in drawn]
     assert colours == [to_hex(colour) for colour in time_colours(3)]
 
@@ -73,11 +84,11 @@ def test_thickness_and_spheres_are_to_scale(result):
 
 def test_supports_have_their_symbols(tube, swing):
     beam = der.run(tube).plot("shapes").axes[0]
-    marked = {line.get_gid(): line.get_xydata()[0] for line in beam.lines if line.get_gid()}
+    marked = symbols_of(beam, "support")
     assert set(marked) == {"support-beam-0", "support-beam-20"}
     assert marked["support-beam-20"][0] < 1.0, "a roller stands where its node has moved"
     arm = der.run(swing).plot("shapes").axes[0]
-    (wall,) = (line for line in arm.lines if line.get_gid())
+    (wall,) = (line for line in arm.lines if (line.get_gid() or "").startswith("support"))
     vertices = wall.get_marker().vertices
     assert vertices[:, 0].max() == pytest.approx(0.0, abs=1e-12), "the wall is behind the clamp"
     assert np.ptp(vertices[:, 1]) > np.ptp(vertices[:, 0])
@@ -103,6 +114,77 @@ def test_springs_have_their_symbols(swing):
     sideways, down = (np.abs(line.get_marker().vertices).max(axis=0) for line in at_end)
     assert sideways[0] > sideways[1]
     assert down[1] > down[0]
+
+
+LOADS = [
+    {"gravity": [0, -9.81]},
+    {"point_force": {"rod": "beam", "at": 0.75, "force": [0, -2000]}},
+    {"point_force": {"rod": "beam", "at": "end", "force": [0, 0]}},
+    {"moment": {"rod": "beam", "at": "middle", "moment": -0.5}},
+    {"distributed_force": {"rod": "beam", "from": 0.2, "to": 0.4, "force": [0, 3]}},
+]
+
+
+def test_loads_have_their_symbols(tube):
+    tube["loads"] = LOADS
+    result = der.equilibrium(tube)
+    axes = result.plot("shapes").axes[0]
+    marked = symbols_of(axes, "load")
+    assert [name for name in marked if "line" not in name] == ["load-beam-0.75", "load-beam-0.5"]
+    x, y = result.positions[-1].T
+    assert marked["load-beam-0.5"] == pytest.approx([x[10], y[10]])
+    along = [place[0] for name, place in marked.items() if "line" in name]
+    assert [min(along), max(along)] == pytest.approx([x[4], x[8]])
+    texts = [text.get_text() for text in axes.texts]
+    assert texts == ["2 kN", "3 N/m", "500 mN m"]
+    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert labels[-1] == "gravity 9.81 m/s²"
+
+
+def test_arrows_point_where_forces_do(tube):
+    tube["loads"] = [{"point_force": {"rod": "beam", "at": 0.5, "force": [0, -1]}}]
+    axes = der.equilibrium(tube).plot("shapes").axes[0]
+    shaft, head = (line for line in axes.lines if (line.get_gid() or "").startswith("load"))
+    assert shaft.get_marker().vertices[:, 1].min() > 0.0, "it comes from above"
+    assert head.get_marker().vertices[:, 1].min() == pytest.approx(0.0), "and ends at the rod"
+    tube["loads"] = [{"point_force": {"rod": "beam", "at": "end", "force": [1, 0]}}]
+    axes = der.equilibrium(tube).plot("shapes").axes[0]
+    shaft, head = (line for line in axes.lines if (line.get_gid() or "").startswith("load"))
+    assert shaft.get_marker().vertices[:, 0].min() == pytest.approx(0.0, abs=1e-9), "it pulls"
+    # The arrow and its text lie inside of the axes.
+    axes.figure.canvas.draw()
+    box = axes.get_window_extent()
+    (text,) = axes.texts
+    assert text.get_window_extent().x1 < box.x1 + 5
+
+
+def test_loads_follow_time_and_load_factor(tube):
+    table = {"times": [0, 0.5], "values": [[0, -100], [0, -300]]}
+    tube["loads"][0]["point_force"]["force"] = table
+    result = der.run(tube)
+    assert acting_loads(result, 0).forces[0].value == pytest.approx([0, -100])
+    frame = int(np.argmin(np.abs(result.times - 0.25)))
+    value = -100 - 400 * result.times[frame]
+    assert acting_loads(result, frame).forces[0].value == pytest.approx([0, value])
+    tube["loads"][0]["point_force"]["force"] = [0, -100]
+    path = der.continuation(tube, vary="loads.0", to=2.0)
+    assert path.path.factor[-1] == pytest.approx(2.0)
+    last = len(path.times) - 1
+    assert acting_loads(path, last).forces[0].value == pytest.approx([0, -200])
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (2000.0, "2 kN"),
+        (-0.00123456, "-1.23 mN"),
+        (999.9, "1 kN"),
+        (1e-30, "1e-18 pN"),
+        (0, "0 N"),
+    ],
+)
+def test_amounts_have_prefixes(value, text):
+    assert quantity_text(value, "N") == text
 
 
 def test_held_nodes(swing):
@@ -204,3 +286,14 @@ def test_lightness_of_time_colours_rises():
     lightness = [np.dot(colour[:3], [0.2126, 0.7152, 0.0722]) for colour in time_colours(6)]
     assert np.all(np.diff(lightness) > 0.05)
     assert lightness[-1] < 0.85
+
+
+def test_shapes_of_a_path_have_their_load_factors(tube):
+    path = der.continuation(tube, step=0.1)
+    axes = path.plot("shapes").axes[0]
+    drawn = lines_of(axes)
+    assert np.array_equal(drawn[0].get_xydata(), path.positions[0])
+    assert np.array_equal(drawn[-1].get_xydata(), path.positions[-1])
+    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert labels[0] == "load factor 0"
+    assert labels[-1] == "load factor 1"

@@ -1,5 +1,6 @@
 """Pictures of results: one style, shapes drawn to scale, quantities with their units."""
 
+from der.plotting.loads import draw_loads
 from der.plotting.overview import plot
 from der.plotting.probes import draw_probe
 from der.plotting.shapes import draw_shapes, pick_frames
@@ -8,6 +9,7 @@ from der.plotting.supports import draw_springs, draw_supports
 
 __all__ = [
     "PALETTE",
+    "draw_loads",
     "draw_probe",
     "draw_shapes",
     "draw_springs",

@@ -12,16 +12,20 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from der._core import held_nodes, springs
+from der._core import springs
+from der.fields import held_at
 from der.plotting.analyses import plot_modes, plot_path
+from der.plotting.loads import draw_loads, room_for_loads
 from der.plotting.probes import draw_probe, mark_times
-from der.plotting.shapes import draw_shapes, limits, pick_frames
-from der.plotting.style import MUTED, style, time_colours, time_text
+from der.plotting.shapes import draw_shapes, limits, make_exactly_equal, pick_frames
+from der.plotting.style import MUTED, PALETTE, style, time_colours, time_text
 from der.plotting.supports import draw_springs, draw_supports
+from der.scene_loads import acting_loads
 
 if TYPE_CHECKING:
     from der.result import Result
 
+Array = NDArray[np.float64]
 What = Literal["overview", "shapes", "probes"]
 
 _WIDTH = 7.2  # of the figure [inch]
@@ -74,6 +78,8 @@ def plot(
             figure = plot_path(result, names)
         elif kind in ("modes", "buckling") and what != "probes":
             figure = plot_modes(result)
+        elif kind == "continuation":
+            figure = _plot_path_shapes(result)
         elif result.scenario.is_static:
             figure = _plot_static(result, what, names)
         else:
@@ -82,9 +88,11 @@ def plot(
         figure.align_ylabels()
         text = "\n".join(textwrap.wrap(text, 80))
         if kind == "continuation" and what != "shapes":
-            figure.suptitle(text)
+            figure.suptitle(text, x=0.01, ha="left")
         else:
             figure.axes[0].set_title(text, pad=10)
+        if figure.axes[0].get_aspect() == 1.0 and kind not in ("modes", "buckling"):
+            make_exactly_equal(figure, figure.axes[0])
     return figure
 
 
@@ -117,9 +125,9 @@ def _plot_motion(result: Result, what: What, names: list[str], frames: list[int]
     if what == "probes":
         figure, panels = _figure(heights)
     else:
-        figure, panels = _figure([_shape_height(result, shapes), *heights])
+        figure, panels = _figure([_shape_height(result, shapes, frames[-1]), *heights])
         labels = [time_text(time) for time in marks]
-        _draw_shape_panel(panels.pop(0), result, shapes, labels, float(marks[-1]))
+        _draw_shape_panel(panels.pop(0), result, shapes, labels, frames[-1])
     for axes, name in zip(panels, names, strict=True):
         probe = result.probes[name]
         draw_probe(axes, result.times, probe, name, probe.unit)
@@ -132,18 +140,46 @@ def _plot_motion(result: Result, what: What, names: list[str], frames: list[int]
     return figure
 
 
+def _plot_path_shapes(result: Result) -> Figure:
+    """Draw shapes along a path: coloured by load factor, or by branch where there are several."""
+    path = result.path
+    if path is None:
+        raise ValueError("the run has found no path to draw")
+    if len(np.unique(path.branch)) == 1:
+        frames = pick_frames(result.positions, 6)
+        labels = [f"load factor {path.factor[frame]:.3g}" for frame in frames]
+        shapes = [result.positions[frame] for frame in frames]
+        figure, (axes,) = _figure([_shape_height(result, shapes, frames[-1])])
+        _draw_shape_panel(axes, result, shapes, labels, frames[-1])
+        return figure
+    low, high = limits(result.rods, list(result.positions))
+    figure, (axes,) = _figure([_panel_height(*(high - low))])
+    for branch in np.unique(path.branch):
+        rows = np.flatnonzero(path.branch == branch)
+        first, last = path.factor[rows[0]], path.factor[rows[-1]]
+        label: str | None = f"branch {branch}: load factor\n{first:.3g} to {last:.3g}"
+        for row in rows[pick_frames(result.positions[rows], 4)]:
+            colour = PALETTE[branch % len(PALETTE)]
+            draw_shapes(axes, result.rods, result.positions[row], colour, label)
+            label = None
+    draw_supports(axes, result.rods, held_at(result, 0), result.positions[0])
+    _finish_shape_panel(axes)
+    return figure
+
+
 def _plot_static(result: Result, what: What, names: list[str]) -> Figure:
     equilibrium = result.positions[-1]
     shapes = [result.model.initial_positions, equilibrium]
+    last = len(result.times) - 1
     table_height = 0.25 + 0.2 * len(names)
     if what == "probes":
         figure, panels = _figure([table_height])
     else:
-        heights = [_shape_height(result, shapes), *([table_height] if names else [])]
+        heights = [_shape_height(result, shapes, last), *([table_height] if names else [])]
         figure, panels = _figure(heights)
         axes = panels.pop(0)
         draw_shapes(axes, result.rods, shapes[0], MUTED, "as drawn", "--")
-        _draw_shape_panel(axes, result, [equilibrium], ["equilibrium"], float(result.times[-1]))
+        _draw_shape_panel(axes, result, [equilibrium], ["equilibrium"], last)
     if panels:
         _write_values(panels[0], result, names)
     return figure
@@ -161,24 +197,43 @@ def _figure(heights: list[float]) -> tuple[Figure, list[Axes]]:
     return figure, list(axes[:, 0])
 
 
-def _shape_height(result: Result, shapes: Sequence[NDArray[np.float64]]) -> float:
+def _shape_height(result: Result, shapes: Sequence[Array], frame: int) -> float:
     """Return the height [inch] at which the shapes fill the width, within bounds."""
+    low, high = _corners(result, shapes, frame)
+    return _panel_height(*(high - low))
+
+
+def _panel_height(width: float, height: float) -> float:
+    return float(np.clip(_SHAPE_WIDTH * height / max(width, 1e-300) + 0.5, *_SHAPE_HEIGHT))
+
+
+def _corners(result: Result, shapes: Sequence[Array], frame: int) -> tuple[Array, Array]:
+    """Return the lower left and upper right corner [m] of shapes and the symbols of loads."""
     low, high = limits(result.rods, shapes)
     width, height = high - low
-    return float(np.clip(_SHAPE_WIDTH * height / max(width, 1e-300) + 0.5, *_SHAPE_HEIGHT))
+    point = max(width / (72.0 * _SHAPE_WIDTH), height / (72.0 * (_SHAPE_HEIGHT[1] - 0.5)))
+    room = room_for_loads(result.rods, acting_loads(result, frame), shapes[-1], float(point))
+    return np.vstack([low, room]).min(axis=0), np.vstack([high, room]).max(axis=0)
 
 
 def _draw_shape_panel(
     axes: Axes,
     result: Result,
-    shapes: Sequence[NDArray[np.float64]],
+    shapes: Sequence[Array],
     labels: Sequence[str],
-    time: float,
+    frame: int,
 ) -> None:
+    """Draw shapes, with supports and loads at the last of them, that of a frame."""
     for positions, label, colour in zip(shapes, labels, time_colours(len(shapes)), strict=True):
         draw_shapes(axes, result.rods, positions, colour, label)
-    draw_supports(axes, result.rods, held_nodes(result.scenario, time), shapes[-1])
+    draw_supports(axes, result.rods, held_at(result, frame), shapes[-1])
     draw_springs(axes, result.rods, springs(result.scenario), shapes[-1])
+    draw_loads(axes, result.rods, acting_loads(result, frame), shapes[-1])
+    axes.update_datalim(np.array(_corners(result, shapes, frame)))
+    _finish_shape_panel(axes)
+
+
+def _finish_shape_panel(axes: Axes) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.06)
     axes.autoscale_view()

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PatchCollection, PolyCollection
 from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from matplotlib.typing import ColorType
 from numpy.typing import NDArray
@@ -84,14 +85,14 @@ def draw_shapes(
     rods
         The rods; their `nodes` pick rows of `positions`.
     positions
-        Positions of all nodes [m], shape (nodes, 2).
+        Positions of all nodes [m], shape (nodes, dim); the view is along z.
     colour, linestyle
         Of the centre line; thickness and spheres are a pale tone of the colour.
     label
         For the legend.
     """
     for rod in rods:
-        line = positions[rod.nodes]
+        line = positions[rod.nodes][:, :2]
         axes.plot(line[:, 0], line[:, 1], color=colour, linestyle=linestyle, label=label, zorder=3)
         label = None  # once for all rods of the instant
         if linestyle == "-":
@@ -123,6 +124,23 @@ def limits(rods: Sequence[Rod], shapes: Sequence[Array]) -> tuple[Array, Array]:
     for positions in shapes:
         for rod in rods:
             around = np.maximum(rod.sphere_radii, rod.radius)[:, np.newaxis]
-            low = np.minimum(low, (positions[rod.nodes] - around).min(axis=0))
-            high = np.maximum(high, (positions[rod.nodes] + around).max(axis=0))
+            line = positions[rod.nodes][:, :2]
+            low = np.minimum(low, (line - around).min(axis=0))
+            high = np.maximum(high, (line + around).max(axis=0))
     return low, high
+
+
+def make_exactly_equal(figure: Figure, axes: Axes) -> None:
+    """Widen the limits of axes that are set to be equal until they are.
+
+    Matplotlib leaves them up to half a percent apart where that saves it an adjustment.
+    """
+    figure.draw_without_rendering()
+    box = axes.get_window_extent()
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    x, y = box.width / (right - left), box.height / (top - bottom)  # pixels a metre
+    more_x, more_y = 0.5 * (right - left) * (x / y - 1.0), 0.5 * (top - bottom) * (y / x - 1.0)
+    if more_x > 0.0:
+        axes.set_xlim(left - more_x, right + more_x, auto=None)
+    else:
+        axes.set_ylim(bottom - more_y, top + more_y, auto=None)

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
 from cycler import cycler
 from matplotlib.typing import ColorType
 
@@ -15,6 +16,9 @@ PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 
 #: What is not the result itself: supports, zero lines, reference shapes.
 MUTED = "#6b6b6b"
+
+#: Loads: forces, moments, gravity.
+LOAD = PALETTE[1]
 
 _SETTINGS: dict[Any, Any] = {
     "axes.axisbelow": True,
@@ -72,3 +76,15 @@ def axis_label(name: str, unit: str) -> str:
 def time_text(seconds: float) -> str:
     """Return a time in as few digits as tell it, such as ``0.05 s``."""
     return f"{seconds:.4g} s"
+
+
+def quantity_text(value: float, unit: str) -> str:
+    """Return a value in three digits with its unit, such as ``2 kN`` or ``6.28 N m``.
+
+    Forces and moments (units that begin with N) take the prefixes of the SI.
+    """
+    if value == 0.0 or not unit.startswith("N"):
+        return f"{value:.3g} {unit}"
+    power = int(np.clip(np.floor(np.log10(abs(float(f"{value:.2e}"))) / 3.0), -4, 3))
+    prefix = ("p", "n", "µ", "m", "", "k", "M", "G")[power + 4]
+    return f"{value / 1000.0**power:.3g} {prefix}{unit}"

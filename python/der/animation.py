@@ -1,0 +1,318 @@
+"""Moving pictures of results, GIF and MP4, true to time and to scale."""
+
+from __future__ import annotations
+
+import os
+import textwrap
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from der.film import Film, make_film, round_speed, speed_text
+from der.progress import ProgressFunction
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from der.result import Result
+
+Array = NDArray[np.float64]
+Picture = NDArray[np.uint8]
+
+_MODE_SECONDS, _MODE_SWINGS = 2.0, 2  # how long each mode is shown, and how often it swings
+_PATH_SECONDS = 10.0  # how long a path of equilibria is shown
+
+_DPI = 110
+_WIDTH = 7.2  # of the picture [inch]
+_HEIGHT = (2.2, 7.0)  # least and most [inch]
+_MARGINS = (0.75, 0.2, 0.68, 0.55)  # left, right, top, bottom [inch]
+_CENTISECONDS = 100.0  # a GIF counts time in them ...
+_SHORTEST = 2  # ... and viewers slow down what is shorter than so many
+_GIF_TONES = 64  # between white and each colour of a picture
+
+
+@dataclass(frozen=True, eq=False)
+class _Cut:
+    """The pictures to draw: positions, the film's frame they belong to, and what is written."""
+
+    positions: Array
+    frames: NDArray[np.int64]
+    texts: list[str]
+    fps: float
+
+
+def animate(
+    result: Result,
+    path: str | os.PathLike[str],
+    *,
+    fps: float = 25.0,
+    speed: float | None = None,
+    progress: ProgressFunction | None = None,
+) -> Path:
+    """Write a result as a moving picture.
+
+    A motion is shown true to time: between saved frames its nodes move in straight lines. A path of
+    equilibria goes through its points, branch by branch; modes swing one after the other.
+
+    Parameters
+    ----------
+    result
+        What ``der.run`` or ``der.open_run`` returned.
+    path
+        File to write; its ending tells the format: ``.gif``, or ``.mp4``, which takes the package
+        imageio-ffmpeg.
+    fps
+        Pictures a second. A GIF counts hundredths of a second between pictures: what comes nearest
+        is taken.
+    speed
+        Simulated seconds that pass in a second; other than 1 it is written in the picture. Without
+        it 1 for runs of 1 to 20 s, and a round number that makes others last about 8 s.
+    progress
+        Told how much is done, from 0 to 1.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
+
+    Raises
+    ------
+    ValueError
+        For another ending, an fps or speed that cannot be, a run in which nothing moves (a static
+        one, or one of a single frame), and positions in space.
+    ModuleNotFoundError
+        For an MP4 without imageio-ffmpeg.
+    """
+    path = Path(path)
+    writers = {".gif": _write_gif, ".mp4": _write_mp4}
+    if path.suffix.lower() not in writers:
+        raise ValueError(f"cannot write {path.name}: an animation ends with .gif or .mp4")
+    if not 0.0 < fps <= 240.0:
+        raise ValueError(f"{fps:g} pictures a second cannot be shown: fps goes up to 240")
+    if speed is not None and not 0.0 < speed < np.inf:
+        raise ValueError(f"speed must be a positive number, not {speed:g}")
+    gif = path.suffix.lower() == ".gif"
+    cut = _cut(result, make_film(result), _gif_rate(fps) if gif else fps, speed)
+    pictures = _draw(result, cut, progress)
+    partial = path.with_name(f".{path.stem}.partial{path.suffix}")
+    try:
+        writers[path.suffix.lower()](pictures, partial, cut.fps)
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
+    return path
+
+
+def _gif_rate(fps: float) -> float:
+    return _CENTISECONDS / max(round(_CENTISECONDS / fps), _SHORTEST)
+
+
+def _cut(result: Result, film: Film, fps: float, speed: float | None) -> _Cut:
+    if result.positions.shape[2] != 2:
+        raise ValueError("an animation shows planar runs; der view shows rods in space")
+    if film.times is not None:
+        return _cut_motion(film, film.times, fps, speed)
+    if speed is not None:
+        raise ValueError(f"{result.scenario.analysis} has no time, and so no speed to show it at")
+    if result.scenario.analysis == "static":
+        raise ValueError(
+            "a static run has nothing that moves: der plot draws it, der view shows it"
+        )
+    frames = _frames_without_time(film, fps)
+    texts = [
+        (f"{chapter.title}: " if len(film.chapters) > 1 and not chapter.loops else "")
+        + film.captions[frame]
+        for frame in frames
+        for chapter in film.chapters
+        if chapter.first <= frame <= chapter.last
+    ]
+    return _Cut(film.positions[frames], frames, texts, fps)
+
+
+def _frames_without_time(film: Film, fps: float) -> NDArray[np.int64]:
+    if not film.chapters[0].loops:
+        count = max(round(_PATH_SECONDS * fps), 2)
+        return np.rint(np.linspace(0, len(film.positions) - 1, count)).astype(np.int64)
+    count = max(round(_MODE_SECONDS * fps), 2)
+    parts = []
+    for chapter in film.chapters:
+        length = chapter.last - chapter.first + 1
+        swing = np.floor(np.arange(count) / count * _MODE_SWINGS * length).astype(np.int64)
+        parts.append(chapter.first + swing % length)
+    return np.concatenate(parts)
+
+
+def _cut_motion(film: Film, times: Array, fps: float, speed: float | None) -> _Cut:
+    span = float(times[-1] - times[0])
+    if span <= 0.0:
+        raise ValueError("the run has a single frame: nothing moves")
+    speed = round_speed(span) if speed is None else speed
+    step = speed / fps  # simulated seconds between pictures
+    count = int(np.ceil(span / step * (1.0 - 1e-9))) + 1
+    instants = np.minimum(times[0] + step * np.arange(count), times[-1])
+    right = np.clip(np.searchsorted(times, instants), 1, len(times) - 1)
+    share = (instants - times[right - 1]) / (times[right] - times[right - 1])
+    weight = share[:, np.newaxis, np.newaxis]
+    positions = (1.0 - weight) * film.positions[right - 1] + weight * film.positions[right]
+    frames = np.where(share < 0.5, right - 1, right)
+    decimals = int(np.clip(np.ceil(-np.log10(step)), 0, 12))
+    note = "" if speed == 1.0 else f"   (shown at {speed_text(speed)})"
+    texts = [f"t = {instant:.{decimals}f} s{note}" for instant in instants]
+    return _Cut(positions, frames, texts, fps)
+
+
+def _draw(result: Result, cut: _Cut, progress: ProgressFunction | None) -> Iterator[Picture]:
+    """Draw one picture after the other, RGB, shape (height, width, 3), with even sizes."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    from der.plotting.style import style
+
+    with style():
+        axes = _set_stage(result, cut)
+        figure = axes.get_figure(root=True)
+        assert figure is not None
+        canvas: Any = FigureCanvasAgg(figure)  # matplotlib leaves its methods without types
+        canvas.draw()
+        # What does not change is drawn once.
+        background = canvas.copy_from_bbox(figure.bbox)
+        fixed = set(axes.get_children())
+        for number, (positions, frame, text) in enumerate(
+            zip(cut.positions, cut.frames, cut.texts, strict=True)
+        ):
+            canvas.restore_region(background)
+            _draw_moment(axes, result, positions, int(frame), text)
+            moving = [artist for artist in axes.get_children() if artist not in fixed]
+            for artist in sorted(moving, key=lambda artist: artist.get_zorder()):
+                axes.draw_artist(artist)
+                artist.remove()
+            yield np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
+            if progress is not None:
+                progress((number + 1) / len(cut.texts))
+
+
+def _draw_moment(axes: Axes, result: Result, positions: Array, frame: int, text: str) -> None:
+    from der.fields import held_at
+    from der.plotting.loads import draw_loads
+    from der.plotting.shapes import draw_shapes
+    from der.plotting.style import PALETTE
+    from der.plotting.supports import draw_supports
+    from der.scene_loads import acting_loads
+
+    source = min(frame, len(result.times) - 1)
+    draw_shapes(axes, result.rods, positions, PALETTE[0])
+    draw_supports(axes, result.rods, held_at(result, source), positions)
+    if result.modes is None and result.buckling is None:
+        loads = replace(acting_loads(result, source), gravity=None)  # stands in the legend
+        draw_loads(axes, result.rods, loads, positions)
+    axes.annotate(text, (0.0, 1.0), (0.0, 6.0), "axes fraction", "offset points", fontsize=11)
+
+
+def _set_stage(result: Result, cut: _Cut) -> Axes:
+    """Make a figure with one set of axes: equal, with limits that hold the whole motion."""
+    from matplotlib.figure import Figure
+
+    from der.plotting.loads import draw_loads
+    from der.scene_loads import ActingLoads, acting_loads
+
+    low, high = _extent(result, cut)
+    left, right, top, bottom = _MARGINS
+    room = _WIDTH - left - right  # for the axes
+    size = high - low
+    height = float(np.clip(room * size[1] / size[0] + top + bottom, *_HEIGHT))
+    height = 2.0 * round(0.5 * height * _DPI) / _DPI  # MP4 takes even numbers of pixels
+    figure = Figure(figsize=(_WIDTH, height), dpi=_DPI)
+    share = (room / _WIDTH, (height - top - bottom) / height)
+    axes = figure.add_axes((left / _WIDTH, bottom / height, *share))
+    scale = max(size[0] / room, size[1] / (height - top - bottom))  # metres an inch
+    half = 0.5 * scale * np.array([room, height - top - bottom])
+    middle = 0.5 * (low + high)
+    axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
+    axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]")
+    title = "\n".join(textwrap.wrap(result.scenario.title, 80)[:1])
+    figure.suptitle(title, x=left / _WIDTH, y=1.0 - 0.12 / height, ha="left", va="top")
+    gravity = acting_loads(result, 0).gravity
+    if gravity is not None:
+        draw_loads(axes, result.rods, ActingLoads(gravity=gravity), cut.positions[0])
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1)
+    return axes
+
+
+def _extent(result: Result, cut: _Cut) -> tuple[Array, Array]:
+    """Return the corners [m] of all that is drawn, with some room around it."""
+    from der.plotting.loads import room_for_loads
+    from der.plotting.shapes import limits
+    from der.scene_loads import acting_loads
+
+    low, high = limits(result.rods, list(cut.positions))
+    point = float(np.max(high - low)) / (72.0 * (_WIDTH - 1.0))
+    corners = [low, high]
+    for number in np.unique(np.linspace(0, len(cut.frames) - 1, 20).astype(np.int64)):
+        loads = acting_loads(result, min(int(cut.frames[number]), len(result.times) - 1))
+        corners.extend(room_for_loads(result.rods, loads, cut.positions[number], point))
+    low, high = np.min(corners, axis=0), np.max(corners, axis=0)
+    room = max(0.05 * float(np.max(high - low)), 20.0 * point)  # for the symbols of supports
+    return low - room, high + room
+
+
+def _write_gif(pictures: Iterator[Picture], path: Path, fps: float) -> None:
+    from PIL import Image
+
+    # One palette for all, without dithering: quick, small, and colours that do not flicker.
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(_gif_palette())
+    images = (
+        Image.fromarray(picture).quantize(palette=palette, dither=Image.Dither.NONE)
+        for picture in pictures
+    )
+    next(images).save(
+        path,
+        save_all=True,
+        append_images=images,
+        duration=round(1000.0 / fps),
+        loop=0,
+    )
+
+
+def _gif_palette() -> list[int]:
+    """Return red, green and blue of the colours that pictures are made of, and of their tones."""
+    from matplotlib.colors import to_rgb
+
+    from der.plotting.style import LOAD, MUTED, PALETTE
+
+    # Nothing close to white, or Pillow would take it for white.
+    tones = np.append(np.linspace(0.0, 0.94, _GIF_TONES - 1), 1.0)[:, np.newaxis]
+    colours = [to_rgb(colour) for colour in (PALETTE[0], LOAD, MUTED, "black")]
+    mixed = np.vstack([tones + (1.0 - tones) * np.array(colour) for colour in colours])
+    return [int(value) for value in np.rint(255.0 * mixed).ravel()]
+
+
+def _write_mp4(pictures: Iterator[Picture], path: Path, fps: float) -> None:
+    try:
+        import imageio_ffmpeg
+    except ModuleNotFoundError:
+        raise ModuleNotFoundError(
+            "an MP4 takes the package imageio-ffmpeg: pip install imageio-ffmpeg, or write a .gif"
+        ) from None
+    first = next(pictures)
+    writer = imageio_ffmpeg.write_frames(
+        str(path),
+        (first.shape[1], first.shape[0]),
+        fps=fps,
+        codec="libx264",
+        quality=None,
+        macro_block_size=2,
+        output_params=["-crf", "20", "-movflags", "+faststart"],
+    )
+    writer.send(None)
+    try:
+        writer.send(np.ascontiguousarray(first))
+        for picture in pictures:
+            writer.send(np.ascontiguousarray(picture))
+    finally:
+        writer.close()

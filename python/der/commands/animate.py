@@ -1,0 +1,46 @@
+"""Write a moving picture of a run: GIF or MP4, true to time and to scale.
+
+A path of equilibria goes through its points, and modes swing, one after the other. MP4 takes the
+package imageio-ffmpeg.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from der import open_run
+from der.progress import progress_on_terminal
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument("run", metavar="RUN", type=Path, help="run folder")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="FILE",
+        help="file to write, .gif or .mp4 (default: RUN/animation.gif)",
+    )
+    parser.add_argument(
+        "--fps", type=float, default=25.0, metavar="N", help="pictures a second (default: 25)"
+    )
+    parser.add_argument(
+        "--speed",
+        type=float,
+        metavar="X",
+        help="simulated seconds that pass in a second (default: 1 for runs of 1 to 20 s, else a "
+        "round number for about 8 s)",
+    )
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Write the file and print its path."""
+    from der.animation import animate
+
+    result = open_run(arguments.run)
+    out = arguments.out or arguments.run / "animation.gif"
+    with progress_on_terminal() as progress:
+        animate(result, out, fps=arguments.fps, speed=arguments.speed, progress=progress)
+    print(out)
+    return 0

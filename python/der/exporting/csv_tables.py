@@ -1,0 +1,109 @@
+"""CSV: a table of the nodes, one row for each frame and node, and a table of the probes."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TextIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from der.fields import FIELD_UNITS, rod_fields
+from der.film import mode_shapes
+from der.progress import ProgressFunction
+
+if TYPE_CHECKING:
+    from der.result import Result
+
+_AXES = "xyz"
+
+
+def write_csv(result: Result, out: Path, progress: ProgressFunction) -> list[Path]:
+    """Write ``nodes.csv`` and ``probes.csv`` into a folder; see `der.export`."""
+    out.mkdir(parents=True, exist_ok=True)
+    nodes, probes = out / "nodes.csv", out / "probes.csv"
+    with nodes.open("w", newline="", encoding="utf-8") as file:
+        _write_nodes(result, file, progress)
+    with probes.open("w", newline="", encoding="utf-8") as file:
+        _write_probes(result, file)
+    if not len(mode_shapes(result)):
+        return [nodes, probes]
+    modes = out / "modes.csv"
+    with modes.open("w", newline="", encoding="utf-8") as file:
+        _write_modes(result, file)
+    return [nodes, probes, modes]
+
+
+def _write_nodes(result: Result, file: TextIO, progress: ProgressFunction) -> None:
+    dimension = result.positions.shape[2]
+    writer = csv.writer(file)
+    writer.writerow(
+        [
+            *_frame_titles(result),
+            "rod",
+            "node",
+            "s [m]",
+            *(f"{axis} [m]" for axis in _AXES[:dimension]),
+            *(f"v{axis} [m/s]" for axis in _AXES[:dimension]),
+            *(f"{name} [{unit}]" for name, unit in FIELD_UNITS.items()),
+        ]
+    )
+    rods = [(fields, fields.named()) for fields in rod_fields(result)]
+    count = len(result.times)
+    for frame, start in enumerate(_frame_columns(result)):
+        for fields, named in rods:
+            table = np.column_stack(
+                [
+                    fields.rod.arc_lengths,
+                    fields.positions[frame],
+                    fields.velocities[frame],
+                    *(values[frame] for values in named.values()),
+                ]
+            )
+            rows = zip(fields.rod.nodes.tolist(), table.tolist(), strict=True)
+            writer.writerows([*start, fields.rod.name, node, *row] for node, row in rows)
+        progress((frame + 1) / count)
+
+
+def _write_probes(result: Result, file: TextIO) -> None:
+    writer = csv.writer(file)
+    titles = [
+        f"{name} [{probe.unit}]" if probe.unit else name for name, probe in result.probes.items()
+    ]
+    writer.writerow([*_frame_titles(result), *titles])
+    columns: list[NDArray[np.float64]] = [np.asarray(probe) for probe in result.probes.values()]
+    for frame, start in enumerate(_frame_columns(result)):
+        writer.writerow([*start, *(float(column[frame]) for column in columns)])
+
+
+def _write_modes(result: Result, file: TextIO) -> None:
+    if result.modes is not None:
+        kind, values = "frequency [Hz]", result.modes.frequencies
+    else:
+        assert result.buckling is not None
+        kind, values = "load factor", result.buckling.load_factors
+    axes = _AXES[: result.positions.shape[2]]
+    writer = csv.writer(file)
+    writer.writerow(["mode", kind, "rod", "node", "s [m]", *(f"d{axis}" for axis in axes)])
+    for number, (shape, value) in enumerate(zip(mode_shapes(result), values, strict=True), 1):
+        for rod in result.rods:
+            rows = np.column_stack([rod.arc_lengths, shape[rod.nodes]]).tolist()
+            writer.writerows(
+                [number, float(value), rod.name, node, *row]
+                for node, row in zip(rod.nodes.tolist(), rows, strict=True)
+            )
+
+
+def _frame_titles(result: Result) -> list[str]:
+    if result.path is None:
+        return ["frame", "time [s]"]
+    return ["frame", "branch", "load factor"]
+
+
+def _frame_columns(result: Result) -> list[list[Any]]:
+    """Return what begins each row of a frame: where on a path it is, or when."""
+    if result.path is None:
+        return [[frame, time] for frame, time in enumerate(result.times.tolist())]
+    places = zip(result.path.branch.tolist(), result.path.factor.tolist(), strict=True)
+    return [[frame, *place] for frame, place in enumerate(places)]

@@ -1,0 +1,198 @@
+"""What a result looks like from frame to frame, whatever the analysis: for animations and views."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from der._core import HeldNode
+from der.fields import FIELD_UNITS, held_at, rod_fields
+from der.scene_loads import ActingLoads, acting_loads
+
+if TYPE_CHECKING:
+    from der.result import Result
+
+Array = NDArray[np.float64]
+
+#: Largest displacement drawn of a mode, against the structure's size.
+MODE_SIZE = 0.12
+#: Frames of one swing of a mode.
+_MODE_FRAMES = 24
+
+#: Runs that last so long [s] are shown as fast as they are; others take about `_AIM` seconds.
+_SHOWN_AS_THEY_ARE = (1.0, 20.0)
+_AIM = 8.0
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """Frames that belong together, from `first` to `last` inclusive: a branch, a mode."""
+
+    title: str
+    first: int
+    last: int
+    loops: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Film:
+    """Frames to show one after the other.
+
+    Attributes
+    ----------
+    positions
+        Of all nodes [m], shape (frames, nodes, dim).
+    captions
+        What to write beside each frame; empty where `times` say it all.
+    chapters
+        Parts of the film, in order, without gaps; at least one.
+    times
+        When each frame is [s], shape (frames,), ascending; None where time plays no role.
+    source
+        The frame of the result that each frame belongs to, shape (frames,): its loads and supports.
+    fields
+        For each quantity of ``der.fields.FIELD_UNITS`` its values for each rod, of shape (frames,
+        nodes of the rod); empty for modes, whose size means nothing.
+    """
+
+    positions: Array
+    captions: list[str]
+    chapters: list[Chapter]
+    times: Array | None
+    source: NDArray[np.int64]
+    fields: dict[str, list[Array]]
+
+    def loads(self, result: Result, frame: int) -> ActingLoads:
+        """Return the loads of the scene at a frame."""
+        return acting_loads(result, int(self.source[frame]))
+
+    def held(self, result: Result, frame: int) -> list[HeldNode]:
+        """Return what the supports hold at a frame."""
+        return held_at(result, int(self.source[frame]))
+
+
+def make_film(result: Result) -> Film:
+    """Return the frames of a result.
+
+    A motion has its saved frames, a continuation its points, branch by branch. A static result has
+    two frames, the shape as drawn and the equilibrium; modes swing, magnified, one after the other.
+
+    Raises
+    ------
+    ValueError
+        If the run has no frame at all, or has found no modes.
+    """
+    if len(result.times) == 0:
+        raise ValueError(f"the run has no frame to show (status {result.status})")
+    kind = result.scenario.analysis
+    if kind in ("modes", "buckling"):
+        return _modes(result)
+    if kind == "continuation":
+        return _path(result)
+    if result.scenario.is_static:
+        return _equilibrium(result)
+    count = len(result.times)
+    whole = Chapter(result.scenario.title, 0, count - 1)
+    return Film(
+        result.positions,
+        [""] * count,
+        [whole],
+        result.times,
+        np.arange(count),
+        _fields(result, np.arange(count)),
+    )
+
+
+def _fields(result: Result, frames: NDArray[np.int64]) -> dict[str, list[Array]]:
+    rods = [rod.named() for rod in rod_fields(result)]
+    return {name: [rod[name][frames] for rod in rods] for name in FIELD_UNITS}
+
+
+def _path(result: Result) -> Film:
+    path = result.path
+    if path is None:
+        raise ValueError("the run has found no path to show")
+    captions = [
+        f"load factor {factor:.4g}, {'stable' if stable else 'unstable'}"
+        + (f", {event}" if event else "")
+        for factor, stable, event in zip(path.factor, path.stable, path.events, strict=True)
+    ]
+    chapters = []
+    for branch in np.unique(path.branch):
+        rows = np.flatnonzero(path.branch == branch)
+        chapters.append(Chapter(f"branch {branch}", int(rows[0]), int(rows[-1])))
+    frames = np.arange(len(captions))
+    fields = _fields(result, frames)
+    fields.pop("speed")
+    return Film(result.positions, captions, chapters, None, frames, fields)
+
+
+def _equilibrium(result: Result) -> Film:
+    """Put the shape as drawn before the equilibrium; a failed search has only frames of its own."""
+    last = len(result.times) - 1
+    positions = np.stack([result.model.initial_positions, result.positions[last]])
+    fields = {
+        name: [np.vstack([np.zeros_like(values), values]) for values in rods]
+        for name, rods in _fields(result, np.array([last])).items()
+        if name != "speed"
+    }
+    chapter = Chapter(result.scenario.title, 0, 1)
+    captions = ["as drawn", "equilibrium" if result.status == "static_converged" else result.status]
+    return Film(positions, captions, [chapter], None, np.array([last, last]), fields)
+
+
+def _modes(result: Result) -> Film:
+    shapes = mode_shapes(result)
+    if not len(shapes):
+        raise ValueError("the run has found no modes to show")
+    names = [f"mode {number}: {value}" for number, value in enumerate(_mode_values(result), 1)]
+    rest = result.positions[-1]
+    size = MODE_SIZE * float(np.max(rest.max(axis=0) - rest.min(axis=0)))
+    swing = np.sin(np.linspace(0.0, 2.0 * np.pi, _MODE_FRAMES, endpoint=False))
+    positions = [
+        rest + amplitude * size / np.abs(shape).max() * shape
+        for shape in shapes
+        for amplitude in swing
+    ]
+    captions = [f"{name}, not to scale" for name in names for _ in swing]
+    chapters = [
+        Chapter(name, number * _MODE_FRAMES, (number + 1) * _MODE_FRAMES - 1, loops=True)
+        for number, name in enumerate(names)
+    ]
+    source = np.full(len(positions), len(result.times) - 1)
+    return Film(np.stack(positions), captions, chapters, None, source, {})
+
+
+def mode_shapes(result: Result) -> Array:
+    """Return vibration or buckling modes, shape (modes, nodes, dim); of other runs none."""
+    found = result.modes or result.buckling
+    return found.shapes if found is not None else np.zeros((0, *result.positions.shape[1:]))
+
+
+def _mode_values(result: Result) -> list[str]:
+    if result.buckling is not None:
+        return [f"load factor {factor:.5g}" for factor in result.buckling.load_factors]
+    assert result.modes is not None
+    return [
+        f"grows at {growth:.4g} 1/s" if growth > 0.0 else f"{hertz:.4g} Hz"
+        for hertz, growth in zip(result.modes.frequencies, result.modes.growth_rates, strict=True)
+    ]
+
+
+def round_speed(span: float) -> float:
+    """Return 1 for spans [s] that can be watched as they are, else the 1, 2 or 5 that fits."""
+    if _SHOWN_AS_THEY_ARE[0] <= span <= _SHOWN_AS_THEY_ARE[1]:
+        return 1.0
+    wanted = np.log10(span / _AIM)
+    power = np.floor(wanted)
+    digits = np.log10([1.0, 2.0, 5.0, 10.0])
+    digit = (1.0, 2.0, 5.0, 10.0)[int(np.argmin(np.abs(digits - (wanted - power))))]
+    return float(f"{digit * 10.0**power:.1g}")
+
+
+def speed_text(speed: float) -> str:
+    """Return a speed in words, such as ``5x speed`` or ``1/50 speed``."""
+    return f"{speed:.4g}x speed" if speed >= 1.0 else f"1/{1.0 / speed:.4g} speed"

@@ -1,0 +1,66 @@
+"""Interactive 3D views of results: one HTML file that opens offline in a browser."""
+
+from __future__ import annotations
+
+import json
+import os
+import webbrowser
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from der.result import Result
+
+_FOLDER = Path(__file__).parent
+
+
+def view(result: Result, path: str | os.PathLike[str], *, open: bool = False) -> Path:
+    """Write an interactive view of a result as one HTML file.
+
+    Rods are tubes of their radius, coloured by curvature, tension or speed; a slider and a play
+    button go through the frames. Static runs have the shape as drawn and the equilibrium, paths of
+    equilibria their points by branch, and modes swing. The file holds all it needs.
+
+    Parameters
+    ----------
+    result
+        What ``der.run`` or ``der.open_run`` returned.
+    path
+        File to write.
+    open
+        Whether to show it in a browser.
+
+    Returns
+    -------
+    pathlib.Path
+        The file.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        Without the package plotly, whose script is put into the file.
+    ValueError
+        If the run has nothing to show.
+    """
+    try:
+        from plotly.offline import get_plotlyjs
+    except ModuleNotFoundError:
+        raise ModuleNotFoundError("a view takes the package plotly: pip install plotly") from None
+    from der.viewing.payload import make_payload
+
+    path = Path(path)
+    text = json.dumps(make_payload(result), separators=(",", ":"), allow_nan=False)
+    parts = {
+        "STYLE": (_FOLDER / "style.css").read_text(encoding="utf-8"),
+        "SCRIPT": (_FOLDER / "view.js").read_text(encoding="utf-8"),
+        "PLOTLY": get_plotlyjs(),
+        # Within a script element only this would end it.
+        "DATA": text.replace("</", "<\\/"),
+    }
+    page = (_FOLDER / "page.html").read_text(encoding="utf-8")
+    for name, part in parts.items():
+        page = page.replace("{{" + name + "}}", part, 1)
+    path.write_text(page, encoding="utf-8")
+    if open:
+        webbrowser.open(path.resolve().as_uri())
+    return path

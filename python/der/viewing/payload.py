@@ -1,0 +1,237 @@
+"""What a view shows, as numbers and texts for its script."""
+
+from __future__ import annotations
+
+import base64
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from der._core import Rod
+from der.fields import FIELD_UNITS, held_at
+from der.film import Film, make_film, mode_shapes, round_speed, speed_text
+from der.plotting.style import quantity_text
+from der.scene_loads import ActingLoads
+
+if TYPE_CHECKING:
+    from der.result import Result
+
+Array = NDArray[np.float64]
+
+#: Most numbers that a page may hold; longer films leave out frames.
+_BUDGET = 4_000_000
+#: Size of the symbols of supports, against the structure's.
+_SYMBOL = 0.035
+#: Arrows of a distributed force.
+_LINE_ARROWS = 9
+#: Speeds on offer, against the one that suits the run.
+_SPEEDS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
+
+
+def make_payload(result: Result) -> dict[str, Any]:
+    """Return what ``view.js`` reads; arrays are base64 of 32-bit floats, positions have x, y, z."""
+    film = make_film(result)
+    frames = _kept_frames(film)
+    positions = _in_space(film.positions[frames])
+    loads = _loads(result, film, frames)
+    low, high, symbol = _limits(result.rods, positions, any(loads["loads"]))
+    span = 0.0 if film.times is None else float(film.times[-1] - film.times[0])
+    note = result.scenario.analysis if result.scenario.is_static else ""
+    if len(frames) < len(film.captions):
+        note = f"{len(frames)} of {len(film.captions)} saved frames"
+    gravity = film.loads(result, 0).gravity
+    if gravity is not None:
+        note += f"{', ' if note else ''}gravity {_vector_text(gravity)} m/s²"
+    return {
+        "title": result.scenario.title,
+        "note": note,
+        "captions": _captions(film, frames),
+        "times": None if film.times is None else film.times[frames].tolist(),
+        "chapters": [
+            {
+                "title": chapter.title,
+                "first": int(np.searchsorted(frames, chapter.first)),
+                "last": int(np.searchsorted(frames, chapter.last)),
+                "loops": chapter.loops,
+            }
+            for chapter in film.chapters
+        ],
+        "start": len(frames) - 1 if result.scenario.analysis == "static" else 0,
+        "speeds": _speeds(span),
+        "fields": {name: _field_range(name, rods) for name, rods in film.fields.items()},
+        "quantity": next(iter(film.fields), ""),
+        "rods": [
+            _rod(rod, positions, {name: rods[k][frames] for name, rods in film.fields.items()})
+            for k, rod in enumerate(result.rods)
+        ],
+        "supports": _supports(result),
+        **loads,
+        "symbol": symbol,
+        "low": low.tolist(),
+        "high": high.tolist(),
+        "flat": bool(np.all(positions[:, :, 2] == 0.0)),
+    }
+
+
+def _vector_text(vector: Array) -> str:
+    return f"({', '.join(f'{value:.4g}' for value in vector)})"
+
+
+def _kept_frames(film: Film) -> NDArray[np.int64]:
+    """Return the frames that a page has room for; a chapter keeps its first and its last."""
+    numbers = film.positions[0].size + sum(len(rods[0][0]) for rods in film.fields.values())
+    stride = max(1, int(np.ceil(len(film.captions) * numbers / _BUDGET)))
+    kept = set(range(0, len(film.captions), stride))
+    kept |= {frame for chapter in film.chapters for frame in (chapter.first, chapter.last)}
+    return np.array(sorted(kept), dtype=np.int64)
+
+
+def _captions(film: Film, frames: NDArray[np.int64]) -> list[str]:
+    if film.times is None:
+        return [film.captions[frame] for frame in frames]
+    steps = np.diff(film.times)
+    least = float(steps[steps > 0.0].min()) if np.any(steps > 0.0) else 1.0
+    decimals = int(np.clip(np.ceil(-np.log10(least) - 1e-9), 0, 12))
+    return [f"t = {film.times[frame]:.{decimals}f} s" for frame in frames]
+
+
+def _speeds(span: float) -> list[tuple[float, str]]:
+    if span <= 0.0:
+        return []
+    speeds = [float(f"{round_speed(span) * factor:.3g}") for factor in _SPEEDS]
+    return [(speed, speed_text(speed)) for speed in speeds]
+
+
+def _field_range(name: str, rods: list[Array]) -> dict[str, Any]:
+    """Return unit and range of a quantity; one that is constant gets a range around it."""
+    low = min(float(values.min()) for values in rods)
+    high = max(float(values.max()) for values in rods)
+    size = max(abs(low), abs(high))
+    if high - low <= 1e-9 * size or size == 0.0:
+        room = 0.01 * size or 1.0
+        low, high = low - room, high + room
+    return {"unit": FIELD_UNITS[name], "low": low, "high": high}
+
+
+def _rod(rod: Rod, positions: Array, fields: dict[str, Array]) -> dict[str, Any]:
+    spheres = [(i, float(radius)) for i, radius in enumerate(rod.sphere_radii) if radius > 0.0]
+    return {
+        "name": rod.name,
+        "nodes": len(rod.nodes),
+        "radius": rod.radius,
+        "spheres": spheres,
+        "positions": _packed(positions[:, rod.nodes]),
+        "fields": {name: _packed(values) for name, values in fields.items()},
+    }
+
+
+def _packed(values: Array) -> str:
+    return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode("ascii")
+
+
+def _in_space(positions: Array) -> Array:
+    """Return positions with three columns; those of planar runs have z = 0."""
+    full = np.zeros((*positions.shape[:2], 3))
+    full[:, :, : positions.shape[2]] = positions
+    return full
+
+
+def _limits(rods: list[Rod], positions: Array, loaded: bool) -> tuple[Array, Array, float]:
+    """Return the corners [m] of all frames, symbols included, and the size of these [m]."""
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for rod in rods:
+        around = np.maximum(rod.sphere_radii, rod.radius)[:, np.newaxis]
+        low = np.minimum(low, (positions[:, rod.nodes] - around).min(axis=(0, 1)))
+        high = np.maximum(high, (positions[:, rod.nodes] + around).max(axis=(0, 1)))
+    symbol = _SYMBOL * float(np.max(high - low))
+    # Arrows are 4 symbols long, and texts beside them wider than high.
+    room = np.array([7.0, 5.0, 5.0] if loaded else [2.0, 2.0, 2.0])
+    if not positions[:, :, 2].any():
+        room[2] = 2.0
+    depth = symbol * room
+    return low - depth, high + depth, symbol
+
+
+def _loads(result: Result, film: Film, frames: NDArray[np.int64]) -> dict[str, Any]:
+    """Return the different sets of loads that there are, and which of them acts at each frame.
+
+    A load has a ``kind``, its rod, the ``share`` of the edge after a ``place``, a unit vector
+    ``along`` (of moments the axis) and a ``text``. Modes are shown without loads, and gravity
+    stands in the page's note.
+    """
+    if mode_shapes(result).size:
+        return {"loads": [[]], "load_set": [0] * len(frames)}
+    sets: list[list[dict[str, Any]]] = []
+    chosen = []
+    known: dict[int, int] = {}  # of frames of the result
+    for frame in frames:
+        source = int(film.source[frame])
+        if source not in known:
+            found = _load_symbols(result, film.loads(result, int(frame)))
+            if found not in sets:
+                sets.append(found)
+            known[source] = sets.index(found)
+        chosen.append(known[source])
+    return {"loads": sets, "load_set": chosen}
+
+
+def _load_symbols(result: Result, loads: ActingLoads) -> list[dict[str, Any]]:
+    rods = {rod.name: (number, rod) for number, rod in enumerate(result.rods)}
+
+    def symbol(kind: str, rod: str, at: float, value: Array, text: str) -> dict[str, Any]:
+        number, own = rods[rod]
+        full = np.zeros(3)
+        if value.ndim:
+            full[: len(value)] = value
+        else:
+            full[2] = value  # a planar moment acts about z
+        right = int(np.clip(np.searchsorted(own.arc_lengths, at), 1, len(own.nodes) - 1))
+        left, length = own.arc_lengths[right - 1], np.diff(own.arc_lengths)[right - 1]
+        return {
+            "kind": kind,
+            "rod": number,
+            "place": right - 1,
+            "share": float((at - left) / length),
+            "along": (full / np.linalg.norm(full)).tolist(),
+            "text": text,
+        }
+
+    def amount(value: Array, unit: str) -> str:
+        return quantity_text(float(np.linalg.norm(value)), unit)
+
+    found = [
+        symbol("force", one.rod, one.at, one.value, amount(one.value, "N")) for one in loads.forces
+    ]
+    found += [
+        symbol("moment", one.rod, one.at, one.value, amount(one.value, "N m"))
+        for one in loads.moments
+    ]
+    for line in loads.lines:
+        for number, at in enumerate(np.linspace(line.start, line.end, _LINE_ARROWS)):
+            text = amount(line.value, "N/m") if number == _LINE_ARROWS // 2 else ""
+            found.append(symbol("line", line.rod, float(at), line.value, text))
+    return found
+
+
+def _supports(result: Result) -> list[dict[str, Any]]:
+    """Return the symbol of each held node; clamps stand along the rod, wherever it goes."""
+    rods = {rod.name: (number, rod) for number, rod in enumerate(result.rods)}
+    dimension = result.positions.shape[2]
+    upright = 1 if dimension == 2 else 2  # the axis that points up
+    found = []
+    for held in held_at(result, 0):
+        number, rod = rods[held.rod]
+        down = np.zeros(3)
+        fixed = ["xyz".index(component) for component in held.components]
+        kind = "pin" if len(fixed) == dimension else "roller"
+        down[upright if upright in fixed or not fixed else fixed[0]] = -1.0
+        found.append(
+            {
+                "kind": "clamp" if held.tangent_angle is not None else kind,
+                "rod": number,
+                "place": int(np.flatnonzero(rod.nodes == held.node)[0]),
+                "down": down.tolist(),
+            }
+        )
+    return found

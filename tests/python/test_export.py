@@ -1,0 +1,185 @@
+"""Exports: what other programs read is what the engine computed."""
+
+import csv
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+
+import der
+import numpy as np
+import pytest
+
+
+def probes_at(scene, nodes):
+    """Add a probe of each quantity at some nodes of the first rod."""
+    rod = scene["rods"][0]["name"]
+    for quantity in ("curvature", "tension", "vx", "vy", "speed"):
+        for node in nodes:
+            scene["output"]["probes"][f"{quantity}-{node}"] = {
+                "rod": rod,
+                "at": {"node": node},
+                "quantity": quantity,
+            }
+    return scene
+
+
+def read_table(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.reader(file))
+    return rows[0], rows[1:]
+
+
+def test_csv(swing, tmp_path):
+    result = der.run(probes_at(swing, [0, 4]))
+    nodes, probes = result.export("csv", tmp_path / "tables")
+    titles, rows = read_table(nodes)
+    assert titles == [
+        *("frame", "time [s]", "rod", "node", "s [m]", "x [m]", "y [m]", "vx [m/s]", "vy [m/s]"),
+        *("curvature [1/m]", "tension [N]", "speed [m/s]"),
+    ]
+    assert len(rows) == len(result.times) * 11
+    for frame in (0, 7, len(result.times) - 1):
+        for node in (0, 4):
+            row = rows[frame * 11 + node]
+            assert row[:4] == [str(frame), repr(float(result.times[frame])), "arm", str(node)]
+            values = [float(value) for value in row[4:]]
+            assert values[1:3] == pytest.approx(result.positions[frame, node])
+            for column, name in enumerate(("vx", "vy", "curvature", "tension", "speed"), 3):
+                known = result.probes[f"{name}-{node}"][frame]
+                scale = np.abs(result.probes[f"{name}-{node}"]).max()
+                assert values[column] == pytest.approx(known, rel=1e-9, abs=1e-9 * scale + 1e-12)
+    titles, rows = read_table(probes)
+    assert titles[:3] == ["frame", "time [s]", "tip [m]"]
+    assert [float(row[2]) for row in rows] == np.asarray(result.probes["tip"]).tolist()
+
+
+def test_csv_of_paths_and_modes(tube, tmp_path):
+    path = der.continuation(tube)
+    nodes, probes = path.export("csv", tmp_path)
+    assert read_table(nodes)[0][:3] == ["frame", "branch", "load factor"]
+    assert [float(row[2]) for row in read_table(probes)[1]] == path.path.factor.tolist()
+    del tube["time"], tube["output"]["every"]
+    tube["analysis"] = {"modes": {"count": 2}}
+    result = der.run(tube)
+    *_, modes = result.export("csv", tmp_path)
+    titles, rows = read_table(modes)
+    assert titles == ["mode", "frequency [Hz]", "rod", "node", "s [m]", "dx", "dy"]
+    assert len(rows) == 2 * 21
+    assert float(rows[21 + 5][1]) == result.modes.frequencies[1]
+    assert [float(value) for value in rows[21 + 5][5:]] == result.modes.shapes[1, 5].tolist()
+
+
+def test_npz(swing, tmp_path):
+    result = der.run(probes_at(swing, [0, 4]))
+    (path,) = der.export(result, "npz", tmp_path / "deep" / "run")
+    assert path == tmp_path / "deep" / "run.npz"
+    with np.load(path) as arrays:
+        assert np.array_equal(arrays["positions"], result.positions)
+        assert np.array_equal(arrays["velocities"], result.velocities)
+        assert np.array_equal(arrays["times"], result.times)
+        assert np.array_equal(arrays["probes/tip"], np.asarray(result.probes["tip"]))
+        assert str(arrays["units/probes/tip"]) == "m"
+        assert np.array_equal(arrays["energies/bend"], result.energies["bend"])
+        for name in ("curvature", "tension"):
+            known = result.probes[f"{name}-4"]
+            scale = np.abs(known).max()
+            assert arrays[f"rods/arm/{name}"][:, 4] == pytest.approx(known, abs=1e-8 * scale)
+        again = der.Scenario.parse(str(arrays["scene"]))
+    assert again.to_dict() == result.scenario.to_dict()
+
+
+def read_vtk(path):
+    """Read a frame with VTK's own reader."""
+    vtk_io = pytest.importorskip("vtkmodules.vtkIOXML")
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    reader = vtk_io.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    grid = reader.GetOutput()
+    data = grid.GetPointData()
+    points = vtk_to_numpy(grid.GetPoints().GetData())
+    arrays = {
+        data.GetArrayName(i): vtk_to_numpy(data.GetArray(i))
+        for i in range(data.GetNumberOfArrays())
+    }
+    cells = [
+        [grid.GetCell(c).GetPointId(k) for k in range(grid.GetCell(c).GetNumberOfPoints())]
+        for c in range(grid.GetNumberOfCells())
+    ]
+    return points, arrays, cells
+
+
+def series(path):
+    """Return times and files of a .pvd."""
+    return [
+        (float(entry.get("timestep")), path.parent / entry.get("file"))
+        for entry in ET.parse(path).getroot().iter("DataSet")
+    ]
+
+
+def test_vtk_is_read_by_vtk(swing, tmp_path):
+    pytest.importorskip("pyevtk")
+    swing["rods"].append(
+        {**swing["rods"][0], "name": "other", "nodes": 7, "from": [0, 1], "to": [2, 1]}
+    )
+    result = der.run(probes_at(swing, [0, 4]))
+    (path,) = result.export("vtk", tmp_path / "vtk")
+    frames = series(path)
+    assert [time for time, _ in frames] == pytest.approx(result.times)
+    for frame in (0, 7, len(frames) - 1):
+        points, arrays, cells = read_vtk(frames[frame][1])
+        assert cells == [list(range(11)), list(range(11, 18))]
+        assert points[:, :2] == pytest.approx(result.positions[frame])
+        assert np.all(points[:, 2] == 0.0)
+        assert arrays["velocity"][:, :2] == pytest.approx(result.velocities[frame])
+        assert arrays["radius"] == pytest.approx(np.full(18, 0.01))
+        for name in ("curvature", "tension"):
+            for node in (0, 4):
+                known = result.probes[f"{name}-{node}"]
+                scale = np.abs(known).max()
+                assert arrays[name][node] == pytest.approx(known[frame], abs=1e-8 * scale)
+
+
+def test_vtk_replaces_an_earlier_export_and_has_modes(swing, tmp_path):
+    pytest.importorskip("pyevtk")
+    der.run(swing).export("vtk", tmp_path)
+    before = len(list((tmp_path / "frames").iterdir()))
+    del swing["time"], swing["output"]["every"]
+    swing["analysis"] = {"modes": {"count": 2}}
+    result = der.run(swing)
+    (path,) = result.export("vtk", tmp_path)
+    assert before > len(list((tmp_path / "frames").iterdir())) == len(series(path)) == 1
+    _, arrays, _ = read_vtk(series(path)[0][1])
+    assert arrays["mode_2"][:, :2] == pytest.approx(result.modes.shapes[1])
+
+
+def test_vtk_of_a_path_counts_its_points(tube, tmp_path):
+    pytest.importorskip("pyevtk")
+    result = der.continuation(tube)
+    (path,) = result.export("vtk", tmp_path)
+    assert [time for time, _ in series(path)] == list(range(len(result.times)))
+
+
+def test_mistakes(spheres, tmp_path, monkeypatch):
+    result = der.run(spheres)
+    with pytest.raises(ValueError, match="'xls'; there are csv, npz, vtk"):
+        result.export("xls", tmp_path)
+    monkeypatch.setitem(sys.modules, "pyevtk.hl", None)
+    with pytest.raises(ModuleNotFoundError, match="pip install pyevtk"):
+        result.export("vtk", tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("format", "files"),
+    [("csv", ["csv/nodes.csv", "csv/probes.csv"]), ("npz", ["run.npz"]), ("vtk", ["vtk/rods.pvd"])],
+)
+def test_command(swing, tmp_path, format, files):
+    if format == "vtk":
+        pytest.importorskip("pyevtk")
+    folder = tmp_path / "run"
+    der.run(swing, out=folder)
+    command = [sys.executable, "-m", "der", "export", str(folder), "--format", format]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines() == [str(folder / name) for name in files]
+    assert all((folder / name).exists() for name in files)

@@ -1,0 +1,393 @@
+"""Interactive views: what the page holds, and what a browser makes of it, offline."""
+
+import base64
+import io
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from dataclasses import replace
+
+import der
+import numpy as np
+import pytest
+from der.fields import rod_fields
+from der.viewing.payload import make_payload
+from PIL import Image
+
+REQUIRED = os.environ.get("DER_REQUIRE_BROWSER") == "1"
+# Without a screen and a graphics processor; nothing reaches out to the network.
+FLAGS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--enable-unsafe-swiftshader",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--window-size=1000,700",
+)
+
+if not REQUIRED:
+    pytest.importorskip("plotly")
+
+
+def unpack(text, *shape):
+    return np.frombuffer(base64.b64decode(text), "<f4").reshape(shape)
+
+
+def payload_of(page):
+    text = page.read_text(encoding="utf-8")
+    found = re.search(r'<script id="data" type="application/json">(.*?)</script>', text, re.DOTALL)
+    return json.loads(found[1])
+
+
+def test_page_holds_the_run_and_nothing_from_elsewhere(swing, tmp_path):
+    swing["title"] = "Swing </script><b>&amp;"
+    result = der.run(swing)
+    page = result.view(tmp_path / "view.html")
+    data = payload_of(page)
+    assert data["title"] == swing["title"]
+    count = len(result.times)
+    (rod,) = data["rods"]
+    positions = unpack(rod["positions"], count, 11, 3)
+    assert positions[:, :, :2] == pytest.approx(result.positions, abs=1e-6)
+    assert np.all(positions[:, :, 2] == 0.0)
+    assert rod["radius"] == 0.01
+    (fields,) = rod_fields(result)
+    for name, values in fields.named().items():
+        scale = np.abs(values).max()
+        assert unpack(rod["fields"][name], count, 11) == pytest.approx(values, abs=1e-6 * scale)
+        assert data["fields"][name]["high"] == pytest.approx(values.max())
+    assert data["captions"][3] == "t = 0.03 s"
+    assert data["supports"][0]["kind"] == "clamp"
+    # A script or style from elsewhere would need one of these.
+    before = page.read_text(encoding="utf-8").partition('<script id="data"')[0]
+    assert "src=" not in before
+    assert re.findall(r'href="(?!data:)', before) == []
+
+
+def test_supports_and_spheres(tube, spheres):
+    pin, roller = make_payload(der.run(tube))["supports"]
+    assert (pin["kind"], roller["kind"]) == ("pin", "roller")
+    assert pin["down"] == roller["down"] == [0.0, -1.0, 0.0]
+    assert (pin["place"], roller["place"]) == (0, 20)
+    data = make_payload(der.run(spheres))
+    assert data["rods"][0]["spheres"] == [(0, 0.005), (1, 0.025), (2, 0.005)]
+    assert data["low"][2] < -0.025 < 0.025 < data["high"][2], "spheres have a depth"
+
+
+def test_loads_and_gravity(tube):
+    table = {"times": [0, 0.1], "values": [[0, -1000], [0, -2000]]}
+    tube["loads"] = [
+        {"gravity": [0, -9.81]},
+        {"point_force": {"rod": "beam", "at": 0.76, "force": table}},
+        {"moment": {"rod": "beam", "at": "end", "moment": -3}},
+        {"distributed_force": {"rod": "beam", "force": [2, 0], "to": 0.5}},
+    ]
+    data = make_payload(der.run(tube))
+    assert data["note"] == "gravity (0, -9.81) m/s²"
+    first, last = (data["loads"][data["load_set"][frame]] for frame in (0, -1))
+    assert first[0] | {"share": 0} == {
+        **{"kind": "force", "rod": 0, "place": 15, "share": 0},
+        **{"along": [0, -1, 0], "text": "1 kN"},
+    }
+    assert first[0]["share"] == pytest.approx(0.2)
+    assert last[0]["text"] == "2 kN"
+    assert (last[1]["along"], last[1]["text"]) == ([0, 0, -1], "3 N m")
+    assert (last[1]["place"], last[1]["share"]) == (19, 1.0)
+    assert [load["text"] for load in last[2:] if load["text"]] == ["2 N/m"]
+    assert data["load_set"][5:] == [data["load_set"][5]] * (len(data["load_set"]) - 5)
+
+
+def test_static_modes_and_paths(tube):
+    data = make_payload(der.equilibrium(tube))
+    assert data["captions"] == ["as drawn", "equilibrium"]
+    assert (data["start"], data["times"], data["speeds"]) == (1, None, [])
+    assert "speed" not in data["fields"]
+    path = der.continuation(tube)
+    data = make_payload(path)
+    assert data["chapters"][0]["title"] == "branch 0"
+    assert data["captions"][-1] == "load factor 1, stable"
+    del tube["time"], tube["output"]["every"]
+    for analysis, words in (("modes", "Hz"), ("buckling", "load factor")):
+        tube["loads"] = [{"point_force": {"rod": "beam", "at": "end", "force": [-1, 0]}}]
+        tube["analysis"] = {analysis: {"count": 2}}
+        data = make_payload(der.run(tube))
+        assert [chapter["loops"] for chapter in data["chapters"]] == [True, True]
+        assert words in data["chapters"][1]["title"]
+        assert data["fields"] == {}
+        assert data["quantity"] == ""
+
+
+def test_run_with_one_frame(swing):
+    whole = der.run(swing)
+    single = replace(
+        whole,
+        times=whole.times[:1],
+        positions=whole.positions[:1],
+        velocities=whole.velocities[:1],
+    )
+    assert make_payload(single)["captions"] == ["t = 0 s"]
+    none = replace(single, times=whole.times[:0])
+    with pytest.raises(ValueError, match="no frame to show"):
+        make_payload(none)
+
+
+def test_rods_in_space(swing, monkeypatch):
+    """Positions with three columns, which no model has yet."""
+    whole = der.run(swing)
+    lifted = np.concatenate([whole.positions, whole.positions[:, :, :1] ** 2], axis=2)
+    resting = np.concatenate([whole.velocities, whole.velocities[:, :, :1]], axis=2)
+    model = type("Model", (), {"initial_positions": lifted[0], "rods": whole.rods})
+    result = replace(whole, positions=lifted, velocities=resting)
+    monkeypatch.setitem(result.__dict__, "model", model)
+    monkeypatch.setattr("der.fields.clamp_tangents", lambda result: {})
+    data = make_payload(result)
+    assert not data["flat"]
+    assert unpack(data["rods"][0]["positions"], len(lifted), 11, 3) == pytest.approx(
+        lifted, abs=1e-6
+    )
+
+
+def test_long_runs_leave_out_frames(swing, monkeypatch):
+    result = der.run(swing)
+    monkeypatch.setattr("der.viewing.payload._BUDGET", 11 * 6 * 5)
+    data = make_payload(result)
+    kept = len(data["captions"])
+    assert 4 <= kept <= 7
+    assert data["note"].startswith(f"{kept} of 21 saved frames")
+    assert data["times"][-1] == result.times[-1]
+    assert data["chapters"][0]["last"] == kept - 1
+
+
+def test_without_plotly(swing, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "plotly.offline", None)
+    with pytest.raises(ModuleNotFoundError, match="pip install plotly"):
+        der.run(swing).view(tmp_path / "view.html")
+
+
+def test_command(swing, tmp_path):
+    folder = tmp_path / "run"
+    der.run(swing, out=folder)
+    command = [sys.executable, "-m", "der", "view", str(folder)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout == f"{folder / 'view.html'}\n"
+    assert payload_of(folder / "view.html")["title"] == swing["title"]
+
+
+def test_open_shows_it_in_a_browser(swing, tmp_path, monkeypatch):
+    shown = []
+    monkeypatch.setattr("webbrowser.open", shown.append)
+    page = der.view(der.run(swing), tmp_path / "a b.html", open=True)
+    assert shown == [page.as_uri()]
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    """A headless Chromium; without one the test is skipped, or fails where it is required."""
+    try:
+        from selenium import webdriver
+    except ModuleNotFoundError:
+        return missing("selenium (pip install selenium)")
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    driver = shutil.which("chromedriver")
+    if not chromium or not driver:
+        return missing("Chromium (Debian packages chromium and chromium-driver)")
+    options = webdriver.ChromeOptions()
+    options.binary_location = chromium
+    for flag in (*FLAGS, f"--user-data-dir={tmp_path_factory.mktemp('chromium')}"):
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    window = webdriver.Chrome(options=options, service=webdriver.ChromeService(driver))
+    yield window
+    window.quit()
+
+
+def missing(what):
+    message = f"the view was not tried in a browser: no {what}"
+    if REQUIRED:
+        pytest.fail(message)
+    pytest.skip(message)
+
+
+def wait_for(browser, script, seconds=60):
+    """Wait until a script returns something true, and return that."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        found = browser.execute_script(f"return {script}")
+        if found:
+            return found
+        time.sleep(0.05)
+    pytest.fail(f"in vain: {script}; console: {browser.get_log('browser')}")
+    return None
+
+
+def open_page(browser, page):
+    browser.get(page.as_uri())
+    wait_for(browser, "document.body.classList.contains('ready')")
+
+
+def screenshot(browser):
+    return np.asarray(Image.open(io.BytesIO(browser.get_screenshot_as_png())).convert("RGB"))
+
+
+def rod_pixels(picture):
+    """Where a picture has saturated colours, as rods and their colour bar have; the bar is left."""
+    picture = picture[60:-80, : int(0.86 * picture.shape[1])].astype(int)
+    return np.argwhere(np.ptp(picture, axis=2) > 40)
+
+
+def move_slider(browser, frame):
+    browser.execute_script(
+        "const s = document.getElementById('slider'); s.value = arguments[0];"
+        "s.dispatchEvent(new Event('input'))",
+        frame,
+    )
+
+
+def drawn_line(browser, rods=1):
+    """Centre lines as Plotly has them, and the values of their colours."""
+    line = browser.execute_script(
+        "const t = document.getElementById('scene').data[0]; return [t.x, t.y, t.z, t.line.color]"
+    )
+    return np.array([list(values)[: -rods or None] for values in line], dtype=float)
+
+
+def assert_no_errors(browser):
+    severe = [entry for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]
+    assert severe == []
+
+
+def test_browser_draws_the_run(browser, swing, tmp_path):
+    result = der.run(swing)
+    (fields,) = rod_fields(result)
+    open_page(browser, result.view(tmp_path / "view.html"))
+    assert browser.title == "Swinging rod"
+    first = screenshot(browser)
+    lit = rod_pixels(first)
+    assert np.ptp(lit[:, 1]) > 300, "the rod spans much of the window"
+    drawn = drawn_line(browser)[:2].T
+    assert drawn == pytest.approx(result.positions[0], abs=1e-6)
+
+    move_slider(browser, 20)
+    wait_for(browser, "document.getElementById('caption').textContent == 't = 0.20 s'")
+    line = drawn_line(browser)
+    drawn = line[:2].T
+    assert drawn == pytest.approx(result.positions[20], abs=1e-6)
+    assert line[3] == pytest.approx(fields.curvature[20], rel=1e-5, abs=1e-6)
+    end = time.monotonic() + 20
+    while rod_pixels(second := screenshot(browser))[:, 0].max() < lit[:, 0].max() + 10:
+        assert time.monotonic() < end, "the tip does not fall on the screen"
+        time.sleep(0.1)
+    for name, picture in (("first", first), ("second", second)):
+        Image.fromarray(picture).save(tmp_path / f"{name}.png")  # kept by pytest for a look
+
+    browser.execute_script(
+        "const s = document.getElementById('quantity'); s.value = 'tension';"
+        "s.dispatchEvent(new Event('change'))"
+    )
+    assert drawn_line(browser)[3] == pytest.approx(fields.tension[20], rel=1e-5, abs=1e-6)
+    bar = "document.querySelector('#scene .cbtitle text, #scene [class*=cb] text.cbtitle') "
+    bar += "|| document.querySelector('#scene [class*=cbtitle]')"
+    assert "tension" in wait_for(browser, f"({bar})?.textContent")
+    mesh = browser.execute_script(
+        "const t = document.getElementById('scene').data[1]; return [t.x, t.y, t.z, t.intensity]"
+    )
+    x, y, z, _ = np.array(mesh)
+    assert np.ptp(z) == pytest.approx(0.02, rel=0.05), "the tube is as thick as the rod"
+    assert [x.min(), y.min()] == pytest.approx(result.positions[20].min(axis=0), abs=0.011)
+    assert_no_errors(browser)
+
+
+def test_browser_plays(browser, swing, tmp_path):
+    open_page(browser, der.run(swing).view(tmp_path / "view.html"))
+    play = browser.find_element("id", "play")
+    play.click()
+    wait_for(browser, "Number(document.getElementById('slider').value) == 20", 120)
+    wait_for(browser, "document.getElementById('play').textContent == 'Play'")
+    assert browser.find_element("id", "caption").text == "t = 0.20 s"
+    assert_no_errors(browser)
+
+
+def test_browser_keeps_scale_and_axes(browser, spheres, tmp_path):
+    open_page(browser, der.run(spheres).view(tmp_path / "view.html"))
+
+    def scene():
+        return browser.execute_script(
+            "const s = document.getElementById('scene')._fullLayout.scene;"
+            "return [s.xaxis.range, s.yaxis.range, s.zaxis.range,"
+            " [s.aspectratio.x, s.aspectratio.y, s.aspectratio.z]]"
+        )
+
+    *ranges, ratio = before = scene()
+    sizes = np.ptp(ranges, axis=1)
+    assert np.array(ratio) / sizes == pytest.approx(np.full(3, ratio[0] / sizes[0]))
+    move_slider(browser, 50)
+    wait_for(browser, "document.getElementById('caption').textContent == 't = 0.50 s'")
+    for now, then in zip(scene(), before, strict=True):
+        assert now == pytest.approx(then)
+    ball = browser.execute_script("return document.getElementById('scene').data[2].x")
+    assert np.ptp(ball) == pytest.approx(0.11, abs=0.002)
+    assert_no_errors(browser)
+
+
+def test_browser_draws_loads_and_supports(browser, tube, tmp_path):
+    result = der.equilibrium(tube)
+    open_page(browser, result.view(tmp_path / "view.html"))
+    supports, arrow, labels = browser.execute_script(
+        "const [a, b, c] = document.getElementById('scene').data.slice(3);"
+        "return [[a.x, a.y], [b.x, b.y], c.text]"
+    )
+    assert labels == ["2 kN"]
+    x, y = np.array(arrow)
+    place = np.array(
+        [np.interp(0.75, result.rods[0].arc_lengths, c) for c in result.positions[-1].T]
+    )
+    assert [x[y.argmin()], y.min()] == pytest.approx(place, abs=1e-6), "its tip is at the point"
+    x, y = np.array(supports)
+    assert y.max() == pytest.approx(0.0, abs=1e-6), "they stand below the ends"
+    assert [x.min(), x.max()] == pytest.approx(
+        [0, result.positions[-1, -1, 0]], abs=2 * payload_of(tmp_path / "view.html")["symbol"]
+    )
+    assert_no_errors(browser)
+
+
+def test_browser_switches_modes(browser, swing, tmp_path):
+    del swing["time"], swing["output"]["every"]
+    swing["analysis"] = {"modes": {"count": 2}}
+    result = der.run(swing)
+    open_page(browser, result.view(tmp_path / "view.html"))
+    browser.execute_script(
+        "const s = document.getElementById('chapter'); s.value = '1';"
+        "s.dispatchEvent(new Event('change'))"
+    )
+    move_slider(browser, 24 + 6)  # a quarter of a swing
+    caption = wait_for(browser, "document.getElementById('caption').textContent")
+    assert caption.startswith("mode 2")
+    line = browser.execute_script(
+        "const t = document.getElementById('scene').data[0]; return [t.x, t.y]"
+    )
+    moved = np.array([values[:-1] for values in line], float).T - result.positions[-1]
+    shape = result.modes.shapes[1]
+    assert moved / np.abs(moved).max() == pytest.approx(shape / np.abs(shape).max(), abs=1e-4)
+    assert browser.find_element("id", "quantity").is_displayed() is False
+    assert_no_errors(browser)
+
+
+def test_browser_without_webgl_says_so(browser, swing, tmp_path):
+    """Without WebGL there is a message in place of an empty page."""
+    page = der.run(swing).view(tmp_path / "view.html")
+    text = page.read_text(encoding="utf-8")
+    no_webgl = "<script>HTMLCanvasElement.prototype.getContext = () => null;</script>"
+    page.write_text(text.replace('<script id="data"', no_webgl + '<script id="data"'), "utf-8")
+    browser.get(page.as_uri())
+    shown = wait_for(browser, "document.getElementById('scene').textContent")
+    assert "needs WebGL" in shown
+    assert browser.find_element("id", "play").is_displayed() is False
+    assert_no_errors(browser)

@@ -19,7 +19,7 @@ _LOAD = PALETTE[1]
 def loaded_beam(m: Measurements) -> Figure:
     """Draw the tube at rest under 2 kN, with its supports and its load."""
     run = m.runs["beam"]
-    figure, axes = plt.subplots(figsize=(7.0, 2.6), layout="constrained")
+    figure, axes = plt.subplots(figsize=(7.0, 2.1), layout="constrained")
     draw_shapes(axes, run.rods, run.positions[0], MUTED, "unloaded", "--")
     shape = run.positions[-1]
     draw_shapes(axes, run.rods, shape, PALETTE[0], "under 2 kN")

@@ -206,7 +206,7 @@ def twenty_one_velocity(m: Measurements) -> Figure:
 
 def twenty_one_shapes(m: Measurements) -> Figure:
     """Draw 21 nodes over 3 nodes at 10 s and at 50 s."""
-    figure, panels = plt.subplots(1, 2, figsize=(8.6, 4.6), layout="constrained")
+    figure, panels = plt.subplots(1, 2, figsize=(8.6, 3.5), layout="constrained")
     for axes, time in zip(panels, (10.0, 50.0), strict=True):
         _overlay_shapes(axes, m, "twenty_one", "21 nodes", time)
         axes.set_title(time_text(time))

@@ -150,9 +150,15 @@ def measure(jobs: int | None, stages: Stages) -> Measurements:
         Runs at once; as many as the machine has cores, unless given.
     stages
         Told how far it is.
+
+    Raises
+    ------
+    ValueError
+        For less than one job.
     """
+    workers = Workers(jobs, stages.of("runs"))
     explicit, implicit = _measure_costs(stages)
-    outcomes = _run_all(jobs, stages)
+    outcomes = _run_all(workers)
     runs = {name: _result(outcomes[name], fails=name == _FAILS) for name in _RUNS}
     runs["three_explicit"] = explicit
     tell = stages.of("bars", 0, 2)
@@ -212,7 +218,7 @@ def _measure_costs(stages: Stages) -> tuple[Result, Result]:
     return outcomes["falling_beam_3_explicit"].value(), outcomes["falling_beam_3"].value()
 
 
-def _run_all(jobs: int | None, stages: Stages) -> dict[Key, Outcome]:
+def _run_all(workers: Workers) -> dict[Key, Outcome]:
     scenes: dict[Key, Scenario] = {name: _scene(*run) for name, run in _RUNS.items()}
     for density in DENSITIES:
         for nodes in NODES:
@@ -224,7 +230,6 @@ def _run_all(jobs: int | None, stages: Stages) -> dict[Key, Outcome]:
     for load in LOADS:
         scenes["load", load] = _scene("simply_supported", {_FORCE: [0, -load]})
     tasks = {key: Task([scene], weight=_weight(scene)) for key, scene in scenes.items()}
-    workers = Workers(jobs, stages.of("runs"))
     workers.expect(total_weight(tasks.values()))
     return workers.run(tasks)
 

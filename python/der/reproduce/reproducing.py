@@ -106,9 +106,14 @@ def _prepared(folder: Path) -> Iterator[Path]:
     """Give a draft folder that becomes `folder` if the block succeeds and vanishes if not."""
     _check_is_free(folder)
     target = folder.resolve()
-    target.parent.mkdir(parents=True, exist_ok=True)
-    # Beside it, for only within one file system is a folder moved at once.
-    draft = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=target.parent))
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        # Beside it, for only within one file system is a folder moved at once.
+        draft = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=target.parent))
+    except OSError as error:
+        raise OSError(
+            f"cannot write to {target.parent}: {error.strerror}; name another folder with --out"
+        ) from error
     try:
         draft.chmod(0o755)
         yield draft

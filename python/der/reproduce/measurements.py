@@ -33,7 +33,7 @@ STEPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 LOADS = (20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0, 20000.0)
 
 #: The stages of the work, and about how many seconds each takes.
-STAGES = {"costs": 3.0, "runs": 3.0, "bars": 5.0, "exact": 5.0, "figures": 9.0}
+STAGES = {"costs": 1.5, "runs": 3.0, "bars": 7.0, "exact": 4.0, "figures": 8.0}
 
 _LONG = 50.0  # duration of the long falls [s]
 _REPEATS = 3  # of the runs whose cost is measured

@@ -118,12 +118,25 @@ def _prepared(folder: Path) -> Iterator[Path]:
         draft.chmod(0o755)
         yield draft
         _check_is_free(folder)
-        if target.exists():
-            shutil.rmtree(target)
-        draft.rename(target)
+        _move_into_place(draft, target)
     except BaseException:
         shutil.rmtree(draft, ignore_errors=True)
         raise
+
+
+def _move_into_place(draft: Path, target: Path) -> None:
+    """Rename a draft; what it replaces is whole until then, and deleted after."""
+    if not target.exists():
+        draft.rename(target)
+        return
+    earlier = draft.with_name(f"{draft.name}-earlier")
+    target.rename(earlier)
+    try:
+        draft.rename(target)
+    except BaseException:
+        earlier.rename(target)
+        raise
+    shutil.rmtree(earlier)
 
 
 def _check_is_free(folder: Path) -> None:

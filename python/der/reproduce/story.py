@@ -65,7 +65,7 @@ def _picture(
     alt: str,
 ) -> Picture:
     """Return a picture that answers a figure of the report, or that the report has not."""
-    title = f"Figure {figure} of the report" if figure is not None else "Not in the report"
+    title = f"Figure {figure} of the report, ours" if figure is not None else "Not in the report"
     prefix = f"figure_{figure:02d}_" if figure is not None else "extra_"
     return Picture(prefix + name, title, caption, alt, partial(draw, m))
 
@@ -92,9 +92,9 @@ def _three_nodes(m: Measurements) -> Section:
         [
             Paragraph(
                 "Two small spheres and a large one, threaded on a soft rod, sink through a very "
-                "thick fluid. Drag is Stokes's; buoyancy is that of a fluid as dense as water. The "
-                "report does not name the density, but its speed at 10 s does: without buoyancy it "
-                f"would be {number(dry, 4)} m/s."
+                "thick fluid: 1000 Pa s, where the report writes N s/m. Drag is Stokes's; buoyancy "
+                "is that of a fluid as dense as water. The report does not name the density, but "
+                f"its speed at 10 s does: without buoyancy it would be {number(dry, 4)} m/s."
             ),
             picture(
                 1,
@@ -259,8 +259,8 @@ def _many_nodes(m: Measurements) -> Section:
                 14,
                 "twenty_one_over_three",
                 figures.twenty_one_over_three,
-                "Velocity with 21 nodes over that with 3. What differs in the end is buoyancy, not "
-                "the number of nodes.",
+                "Velocity with 21 nodes over that with 3. What differs in the end is buoyancy, "
+                "hardly the number of nodes.",
                 "Velocities over 50 s: 21 nodes with buoyancy end close to 3 nodes, without "
                 "buoyancy faster.",
             ),
@@ -301,7 +301,8 @@ def _many_nodes(m: Measurements) -> Section:
                 "the large sphere alone would sink at "
                 f"{number(FallingChain(3, WATER).lone_sphere_speed, 5)} m/s. From {inside} nodes "
                 "on some of the small spheres are inside the large one, and their drag is counted "
-                "all the same."
+                "all the same. But nothing diverges with more nodes, of which the report warns: "
+                f"{NODES[-1]} do as well as {NODES[2]}."
             ),
         ],
     )

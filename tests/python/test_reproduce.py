@@ -292,6 +292,16 @@ def test_folder_and_its_replacement(tmp_path, monkeypatch, capsys):
 
 
 @pytest.mark.usefixtures("quick")
+def test_snippet_of_the_page(tmp_path, monkeypatch):
+    page = (ROOT / "docs/reproduce.md").read_text(encoding="utf-8")
+    names = {}
+    monkeypatch.chdir(tmp_path)
+    exec(re.findall(r"^```python\n(.*?)^```", page, re.S | re.M)[0], names)
+    assert names["report"] == Path("reproduction/report.html")
+    assert names["report"].exists()
+
+
+@pytest.mark.usefixtures("quick")
 def test_a_new_folder_may_be_deep_or_empty(tmp_path):
     (tmp_path / "empty").mkdir()
     for folder in (tmp_path / "a" / "b", tmp_path / "empty"):

@@ -62,9 +62,14 @@ VERIFIED = {
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    out = tmp_path_factory.mktemp("reproduce") / "reproduction"
-    assert main(["reproduce", "--out", str(out)]) == 0
-    return out
+    """What the command of docs/reproduce.md writes."""
+    page = (ROOT / "docs/reproduce.md").read_text(encoding="utf-8")
+    program, *arguments = shlex.split(re.findall(r"^```sh\n(.*?)^```", page, re.S | re.M)[0])
+    assert program == "der"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(tmp_path_factory.mktemp("reproduce"))
+        assert main(arguments) == 0
+        return Path("reproduction").resolve()
 
 
 def read(path):

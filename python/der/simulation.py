@@ -234,7 +234,7 @@ def equilibrium(scenario: SceneLike) -> Result:
         If no equilibrium is found.
     """
     scene = as_scenario(scenario)
-    return run(scene if scene.analysis == "static" else _as_static(scene))
+    return run(scene if scene.analysis == "static" else as_static(scene))
 
 
 def continuation(
@@ -290,7 +290,8 @@ def continuation(
     return run(_with_analysis(as_scenario(scenario), {"continuation": settings}), out)
 
 
-def _as_static(scenario: Scenario) -> Scenario:
+def as_static(scenario: Scenario) -> Scenario:
+    """Return the scene whose answer is the equilibrium under the loads of a scene."""
     return _with_analysis(scenario, "static")
 
 

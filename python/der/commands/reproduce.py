@@ -1,0 +1,41 @@
+"""Reproduce the course report: every figure and number of it, beside ours and the exact one.
+
+Runs the report's three problems and writes report.html, which holds everything and needs no other
+file, report.md, every figure as PNG and the numbers as CSV. Takes about half a minute on two cores.
+Exit codes: 0, 1 if the folder cannot be written, 3 if a run fails; then nothing is written.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from der.progress import progress_on_terminal
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("reproduction"),
+        metavar="FOLDER",
+        help="folder to write to; an earlier reproduction there is replaced, anything else is left "
+        "alone (default: %(default)s)",
+    )
+    parser.add_argument(
+        "--jobs", type=int, metavar="N", help="runs at once (default: as many as there are cores)"
+    )
+
+
+def execute(arguments: argparse.Namespace) -> int:
+    """Write the folder and print the path of the report."""
+    import matplotlib as mpl
+
+    from der.reproduce import reproduce
+
+    mpl.use("agg")  # files are written and no window opened, on a screen or without
+    with progress_on_terminal() as progress:
+        report = reproduce(arguments.out, jobs=arguments.jobs, progress=progress)
+    print(report)
+    return 0

@@ -1,0 +1,324 @@
+"""All runs behind the report, their error bars, and the exact solutions beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from der._core import Scenario
+from der.accuracy import Verification, verify
+from der.errors import DerError, DivergedError
+from der.parallel import Outcome, Task, Workers, total_weight
+from der.reproduce.beam_exact import Tube, elastica_deflections
+from der.reproduce.falling_exact import Fall, FallingChain, fall
+from der.reproduce.stages import Stages
+from der.result import Result
+from der.scene_files import scene_file
+from der.simulation import Simulation, as_static
+
+Array = NDArray[np.float64]
+Key = Hashable
+
+#: Density of the fluid that the report's first problem is run with [kg/m^3].
+WATER = 1000.0
+#: With and without buoyancy [kg/m^3].
+DENSITIES = (0.0, WATER)
+#: What is varied: nodes, steps [s], loads [N].
+NODES = (3, 5, 7, 9, 11, 15, 21, 31, 51, 101)
+STEPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
+LOADS = (20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0, 20000.0)
+
+#: The stages of the work, and about how many seconds each takes.
+STAGES = {"costs": 1.5, "runs": 3.0, "bars": 7.0, "exact": 4.0, "figures": 8.0}
+
+_LONG = 50.0  # duration of the long falls [s]
+_REPEATS = 3  # of the runs whose cost is measured
+_TIMES = ("time.step", "time.duration", "output.every")
+_DENSITY, _FORCE = "loads.1.fluid.density", "loads.0.point_force.force"
+#: Run by name: a scene that comes with der, and what is changed in it.
+_RUNS: dict[str, tuple[str, dict[str, Any]]] = {
+    "three": ("falling_beam_3", {}),
+    "three_equal": ("falling_beam_3_equal", {}),
+    "three_dry": ("falling_beam_3", {_DENSITY: 0}),
+    "three_long": ("falling_beam_3", {"time.duration": _LONG, "output.every": 0.05}),
+    "three_unstable": ("falling_beam_3_explicit_unstable", {"output.every": 1e-4}),
+    "five": ("falling_beam_5", {}),
+    "five_buoyant": ("falling_beam_5", {_DENSITY: WATER}),
+    "five_long": ("falling_beam_5", {"time.duration": _LONG, "output.every": 0.05}),
+    "twenty_one": ("falling_beam_21", {}),
+    "twenty_one_buoyant": ("falling_beam_21", {_DENSITY: WATER}),
+    "twenty_one_coarse": ("falling_beam_21", {"time.step": STEPS[-1], "output.every": STEPS[-1]}),
+    "fifty_one": ("falling_beam_51", {}),
+    "fifty_one_buoyant": ("falling_beam_51", {_DENSITY: WATER}),
+    "beam": ("simply_supported", {}),
+    "beam_20kN": ("simply_supported_20kN", {}),
+    # The motion that the equations have, with a step that resolves it.
+    "beam_swing": (
+        "simply_supported",
+        {
+            "time.integrator": "implicit_midpoint",
+            "time.step": 1e-4,
+            "time.duration": 0.3,
+            "output.every": 5e-4,
+        },
+    ),
+}
+_FAILS = "three_unstable"
+#: The runs of which numbers stand in the table.
+_VERIFIED = (
+    "three",
+    "three_equal",
+    "three_long",
+    "five",
+    "five_buoyant",
+    "five_long",
+    "twenty_one",
+    "twenty_one_buoyant",
+    "twenty_one_coarse",
+)
+
+
+@dataclass(frozen=True)
+class Deflection:
+    """The largest deflection of the tube at the end of a run, with its error bar [m].
+
+    The bar is that of the equilibrium by `der.verify`, plus what the run is off from it.
+    """
+
+    value: float
+    bar: float
+
+
+@dataclass(frozen=True)
+class Speed:
+    """The speed of the middle sphere at the end of a run, downward, and its error bar [m/s]."""
+
+    value: float
+    bar: float
+
+
+@dataclass(frozen=True)
+class Measurements:
+    """What was run and solved.
+
+    Attributes
+    ----------
+    runs
+        Results by name.
+    bars
+        What `der.verify` says of the scenes of some of them.
+    speeds_by_nodes, speeds_by_step
+        Speed of the middle sphere after 50 s [m/s], downward, by number of nodes or step [s], and
+        density of the fluid [kg/m^3].
+    deflections
+        Largest deflection by load [N].
+    explicit_seconds, implicit_seconds
+        Least wall time of the two schemes of the first problem [s].
+    stable_step
+        Largest step [s] that der takes for the explicit scheme.
+    exact_falls
+        Exact solutions by the name of the run.
+    exact_start
+        The exact first milliseconds of the unstable run.
+    exact_deflections
+        Exact largest deflection [m] by place of the load [m] and load [N].
+    """
+
+    runs: dict[str, Result]
+    bars: dict[str, Verification]
+    speeds_by_nodes: dict[tuple[int, float], float]
+    speeds_by_step: dict[tuple[float, float], float]
+    deflections: dict[float, Deflection]
+    explicit_seconds: float
+    implicit_seconds: float
+    stable_step: float
+    exact_falls: dict[str, Fall]
+    exact_start: Fall
+    exact_deflections: dict[float, dict[float, float]]
+
+
+def measure(jobs: int | None, stages: Stages) -> Measurements:
+    """Run and solve everything.
+
+    Parameters
+    ----------
+    jobs
+        Runs at once; as many as the machine has cores, unless given.
+    stages
+        Told how far it is.
+
+    Raises
+    ------
+    ValueError
+        For less than one job.
+    """
+    workers = Workers(jobs, stages.of("runs"))
+    explicit, implicit = _measure_costs(stages)
+    outcomes = _run_all(workers)
+    runs = {name: _result(outcomes[name], fails=name == _FAILS) for name in _RUNS}
+    runs["three_explicit"] = explicit
+    tell = stages.of("bars", 0, 2)
+    bars = {}
+    for i, name in enumerate(_VERIFIED):
+        bars[name] = verify(_scene(*_RUNS[name]), jobs=jobs)
+        tell((i + 1) / len(_VERIFIED))
+    exact_falls, exact_start = _solve_falls(runs, stages)
+    return Measurements(
+        runs=runs,
+        bars=bars,
+        speeds_by_nodes={
+            (n, density): _speed(outcomes["nodes", n, density])
+            for n in NODES
+            for density in DENSITIES
+        },
+        speeds_by_step={
+            (step, density): _speed(outcomes["step", step, density])
+            for step in STEPS
+            for density in DENSITIES
+        },
+        deflections=_deflections(outcomes, jobs, stages),
+        explicit_seconds=float(explicit.summary["wall_seconds"]),
+        implicit_seconds=float(implicit.summary["wall_seconds"]),
+        stable_step=_largest_accepted_step(),
+        exact_falls=exact_falls,
+        exact_start=exact_start,
+        exact_deflections=_solve_beams(stages),
+    )
+
+
+def _scene(name: str, changes: Mapping[str, Any]) -> Scenario:
+    return Scenario.load(scene_file(name), **changes)
+
+
+def _result(outcome: Outcome, *, fails: bool = False) -> Result:
+    if not fails:
+        return outcome.value()
+    if not isinstance(outcome.error, DivergedError) or outcome.result is None:
+        raise DerError("the explicit scheme with steps of 1e-4 s should diverge and has not")
+    return outcome.result
+
+
+def _speed(outcome: Outcome) -> float:
+    return -float(outcome.value().summary["probes"]["v_mid"]["final"])
+
+
+def _measure_costs(stages: Stages) -> tuple[Result, Result]:
+    """Run both schemes of the first problem, one at a time; return explicit and implicit."""
+    workers = Workers(1, stages.of("costs"))
+    tasks = {
+        name: Task([_scene(name, {})], weight=weight, repeats=_REPEATS)
+        for name, weight in (("falling_beam_3_explicit", 1.0), ("falling_beam_3", 0.01))
+    }
+    workers.expect(total_weight(tasks.values()))
+    outcomes = workers.run(tasks)
+    return outcomes["falling_beam_3_explicit"].value(), outcomes["falling_beam_3"].value()
+
+
+def _run_all(workers: Workers) -> dict[Key, Outcome]:
+    scenes: dict[Key, Scenario] = {name: _scene(*run) for name, run in _RUNS.items()}
+    for density in DENSITIES:
+        for nodes in NODES:
+            scenes["nodes", nodes, density] = _chain(nodes, density)
+        for step in STEPS:
+            every = step * max(1, round(0.05 / step))
+            changes = {"time.step": step, "output.every": every, _DENSITY: density}
+            scenes["step", step, density] = _scene("falling_beam_21", changes)
+    for load in LOADS:
+        scenes["load", load] = _scene("simply_supported", {_FORCE: [0, -load]})
+    tasks = {key: Task([scene], weight=_weight(scene)) for key, scene in scenes.items()}
+    workers.expect(total_weight(tasks.values()))
+    return workers.run(tasks)
+
+
+def _chain(nodes: int, density: float) -> Scenario:
+    """Return the report's second problem with any number of nodes, over 50 s."""
+    edge = FallingChain(nodes).edge
+    return _scene(
+        "falling_beam_5",
+        {
+            "rods.rod.nodes": nodes,
+            "rods.rod.spheres.0.radius": 0.1 * edge,
+            _DENSITY: density,
+            "time.duration": _LONG,
+            "output.every": 0.05,
+        },
+    )
+
+
+def _weight(scene: Scenario) -> float:
+    tree = scene.to_dict()
+    return float(tree["rods"][0]["nodes"] * scene.duration / tree["time"]["step"])
+
+
+def _deflections(
+    outcomes: Mapping[Key, Outcome], jobs: int | None, stages: Stages
+) -> dict[float, Deflection]:
+    tell = stages.of("bars", 1, 2)
+    deflections = {}
+    for i, load in enumerate(LOADS):
+        run = outcomes["load", load].value()
+        value = -float(run.summary["probes"]["deflection"]["final"])
+        rest = verify(as_static(run.scenario), jobs=jobs)["deflection"]
+        deflections[load] = Deflection(value, rest.bar + abs(value + rest.value))
+        tell((i + 1) / len(LOADS))
+    return deflections
+
+
+def _largest_accepted_step() -> float:
+    """Return the largest step [s] of the explicit scheme that der does not refuse, by bisection."""
+    scene = _scene("falling_beam_3_explicit", {})
+    low, high = 1e-5, 1e-3  # taken, refused
+    while high - low > 1e-6 * low:
+        middle = 0.5 * (low + high)
+        try:
+            Simulation(scene.with_(**dict.fromkeys(_TIMES, middle)))
+        except DerError as error:
+            if error.status != "unstable_step":
+                raise
+            high = middle
+        else:
+            low = middle
+    return low
+
+
+def _solve_falls(runs: Mapping[str, Result], stages: Stages) -> tuple[dict[str, Fall], Fall]:
+    chains = {
+        "three": FallingChain(3, WATER),
+        "five": FallingChain(5, 0.0),
+        "five_buoyant": FallingChain(5, WATER),
+    }
+    falls = {}
+    for i, (name, chain) in enumerate(chains.items()):
+        falls[name] = fall(chain, runs[name].times)
+        stages.of("exact", i, len(chains) + 1)(1.0)
+    return falls, fall(chains["three"], np.linspace(0.0, runs[_FAILS].times[-1], 200))
+
+
+def _solve_beams(stages: Stages) -> dict[float, dict[float, float]]:
+    """Solve for the load at its place, and at the nodes of the mesh to both sides of it."""
+    places = (Tube().load_at, *nodes_beside_the_load())
+    found = {
+        place: dict(zip(LOADS, elastica_deflections(Tube(load_at=place), LOADS), strict=True))
+        for place in places
+    }
+    stages.of("exact")(1.0)
+    return found
+
+
+def nodes_beside_the_load() -> tuple[float, float]:
+    """Return the arc lengths [m] of the nodes of the report's mesh between which the load acts."""
+    tree = _scene("simply_supported", {}).to_dict()
+    edge = Tube().length / (tree["rods"][0]["nodes"] - 1)
+    left = edge * np.floor(Tube().load_at / edge)
+    return float(left), float(left + edge)
+
+
+def command_of(run: str) -> str:
+    """Return the command that does a run in a checkout."""
+    scene, changes = _RUNS[run]
+    sets = "".join(f" --set {path}={value}" for path, value in changes.items())
+    return f"der_run configs/{scene}.yaml{sets}"

@@ -12,7 +12,7 @@
 namespace der {
 
 /// A run of plain planar stretch elements, each beginning where the one before ends, with the bend
-/// elements between them: nearly all of a rod. Taken together they are assembled three times as
+/// elements between them: nearly all of a rod. Taken together they are assembled nearly twice as
 /// fast as one by one, since an edge's length, direction and their derivatives are worked out once
 /// and not for each element that it belongs to, and each entry of the matrix is written once. What
 /// is summed is what the kernels Stretch<2> and PlanarBend give, to rounding.

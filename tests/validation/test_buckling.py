@@ -4,6 +4,7 @@ import der
 import numpy as np
 import pytest
 from scenes import buckled, straight, tip_force
+from scipy import optimize, special
 
 SIZES = [20, 40, 80]
 ENDS = ["pinned-pinned", "clamped-free"]
@@ -51,6 +52,40 @@ def test_bifurcation_and_branches_of_a_column(reference, fitted_order, ends):
     sizes = [1 / n for n in SIZES]
     assert fitted_order(sizes, factors) > 1.9
     assert fitted_order(sizes, deflections) > 1.9
+
+
+def elastica_rise(shortening):
+    """Rise of an inextensible column of length 1 whose ends come nearer by `shortening`, pinned or
+    clamped: with modulus k, the ends are 2 E(k) / K(k) - 1 apart and the rise is k / K(k) (Love,
+    A Treatise on the Mathematical Theory of Elasticity, section 263).
+    """
+    apart = optimize.brentq(
+        lambda m: 2 * special.ellipe(m) / special.ellipk(m) - 2 + shortening, 1e-9, 1 - 1e-9
+    )
+    return np.sqrt(apart) / special.ellipk(apart)
+
+
+@pytest.mark.parametrize("EA", [1e4, 1e6, 1e8, 1e10])
+@pytest.mark.parametrize("ends", ["pinned-pinned", "clamped-clamped"])
+def test_columns_pushed_together_bow_in_one_arc(ends, EA):
+    """However stiff against shortening: crushed first, they would fold in a high mode and stay so.
+
+    With 10 edges the whole motion, 0.1, would put the end onto its neighbour.
+    """
+    for shortening in (0.01, 0.1, 0.3):
+        for n in (10, 40):
+            scene = straight(n, ends, EA=EA)
+            support = dict(scene["supports"][1])
+            support["prescribe"] = {"x": -shortening}
+            scene["supports"] = [scene["supports"][0], support]
+            simulation = der.Simulation(der.Scenario.from_dict(scene))
+            assert simulation.equilibrium().stability == "stable"
+            rise = np.abs(simulation.positions[:, 1]).max()
+            # Compression takes the strain P / EA off the shortening, 2 % of 0.01 at EA = 1e4 and
+            # P = 4 pi^2 doubled; the mesh errs by some 3 (l / L)^2.
+            squeezed = 8 * np.pi**2 / EA / shortening
+            exact = elastica_rise(shortening)
+            assert rise == pytest.approx(exact, rel=squeezed + 4 / n**2)
 
 
 def test_a_clamped_column_buckles_as_its_end_moves(reference, fitted_order):

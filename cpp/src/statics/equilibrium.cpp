@@ -43,6 +43,8 @@ constexpr double kLastTurn = 0.5;
 constexpr double kSamePotential = 1e-13;
 /// Supports move by no more than this share of an edge at once.
 constexpr double kSupportStep = 0.3;
+/// The first step of supports that move farther, as a share of the whole.
+constexpr double kFirstSupportShare = 1e-9;
 /// The first load step, as a share of the whole.
 constexpr double kSmallestShare = 1.0 / 256.0;
 /// Turning angle [rad] at a node beyond which the rod is folded: at pi the curvature has no sign.
@@ -118,19 +120,30 @@ class Search {
 
  private:
   /// Puts the held degrees of freedom to their places. Where that would fold or crush the edges
-  /// beside them, it goes in short steps and lets the shape follow each.
+  /// beside them, the shape follows on the way: first in tiny steps that double, so that a rod that
+  /// is pressed buckles near its first buckling load and not, crushed, in a high mode, whose folds
+  /// it would keep; then in short steps.
   void move_supports(Vector& x) {
     const bool as_drawn = x(model_.free_dofs) == model_.initial_positions(model_.free_dofs);
     if (as_drawn) x = model_.initial_positions;
     Vector target = x;
     place_held(model_, stage_.controls, target);
     const Vector whole = target - x;
-    const double steps = std::ceil(largest_edge_change(model_, whole) / kSupportStep);
-    for (double k = 1.0; k < steps; ++k) {
-      x += whole / steps;
-      newton(x);
+    const double longest = kSupportStep / largest_edge_change(model_, whole);
+    double step = longest < 1.0 ? kFirstSupportShare : 1.0;
+    for (double share = step; share < 1.0; share += step) {
+      x += step * whole;
+      follow(x);
+      step = std::min({2.0 * step, longest, 1.0 - share});
     }
     place_held(model_, stage_.controls, x);
+  }
+
+  /// Sets `x` to the stable equilibrium near it, as far as one is found.
+  void follow(Vector& x) {
+    if (!newton(x) && !descend(x, report_.force_scale / model_.size)) return;
+    stiffness_.evaluate(x, stage_.controls);
+    if (options_.leave_saddles && stiffness_.stability().unstable_directions > 0) leave_saddle(x);
   }
 
   /// Raises the loads from a small part to the whole, in doubling steps, each with a descent from

@@ -195,16 +195,18 @@ def _draw(result: Result, cut: _Cut, progress: ProgressFunction | None) -> Itera
 
 
 def _draw_moment(axes: Axes, result: Result, positions: Array, frame: int, text: str) -> None:
+    from der._core import springs
     from der.fields import held_at
     from der.plotting.loads import draw_loads
     from der.plotting.shapes import draw_shapes
     from der.plotting.style import PALETTE
-    from der.plotting.supports import draw_supports
+    from der.plotting.supports import draw_springs, draw_supports
     from der.scene_loads import acting_loads
 
     source = min(frame, len(result.times) - 1)
     draw_shapes(axes, result.rods, positions, PALETTE[0])
     draw_supports(axes, result.rods, held_at(result, source), positions)
+    draw_springs(axes, result.rods, springs(result.scenario), positions)
     if result.modes is None and result.buckling is None:
         loads = replace(acting_loads(result, source), gravity=None)  # stands in the legend
         draw_loads(axes, result.rods, loads, positions)

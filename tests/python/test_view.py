@@ -82,6 +82,24 @@ def test_supports_and_spheres(tube, spheres):
     assert data["low"][2] < -0.025 < 0.025 < data["high"][2], "spheres have a depth"
 
 
+def spring_supports(tube):
+    tube["supports"] = [
+        {"rod": "beam", "at": "start", "fix": ["x", "y"], "spring": {"rotational_stiffness": 50.0}},
+        {"rod": "beam", "at": "end", "spring": {"stiffness": [2e4, 1e4]}},
+        {"rod": "beam", "at": 0.31, "spring": {"stiffness": [0, 3e3]}},
+    ]
+    return tube
+
+
+def test_springs(tube):
+    turning, end, between = make_payload(der.run(spring_supports(tube)))["springs"]
+    assert (turning["along"], turning["turns"]) == ([], True)
+    assert (end["nodes"], end["weights"], end["turns"]) == ([20], [1.0], False)
+    assert end["along"] == [[1, 0, 0], [0, -1, 0]], "away from the rod, and to the ground"
+    assert between["along"] == [[0, -1, 0]]
+    assert between["nodes"] == [5, 6, 7, 8]
+
+
 def test_loads_and_gravity(tube):
     table = {"times": [0, 0.1], "values": [[0, -1000], [0, -2000]]}
     tube["loads"] = [
@@ -355,6 +373,26 @@ def test_browser_draws_loads_and_supports(browser, tube, tmp_path):
     assert [x.min(), x.max()] == pytest.approx(
         [0, result.positions[-1, -1, 0]], abs=2 * payload_of(tmp_path / "view.html")["symbol"]
     )
+    assert_no_errors(browser)
+
+
+def test_browser_draws_springs(browser, tube, tmp_path):
+    result = der.equilibrium(spring_supports(tube))
+    open_page(browser, result.view(tmp_path / "view.html"))
+    drawn = browser.execute_script(
+        "const t = document.getElementById('scene').data.at(-1); return [t.x, t.y]"
+    )
+    x, y = np.array(drawn, dtype=float)  # NaN where the pen is lifted
+    strokes = np.split(np.column_stack([x, y]), np.flatnonzero(np.isnan(x)))
+    starts = [stroke[~np.isnan(stroke[:, 0])][0] for stroke in strokes[:-1]]
+    last = result.positions[-1]
+    assert starts[0] == pytest.approx(last[0], abs=1e-6), "the spiral"
+    assert starts[1] == pytest.approx(last[-1], abs=1e-6)
+    assert starts[2] == pytest.approx(last[-1], abs=1e-6)
+    arc = result.rods[0].arc_lengths
+    place = [np.interp(0.31, arc, column) for column in last.T]
+    assert starts[3] == pytest.approx(place, abs=1e-3), "between two nodes"
+    assert len(starts) == 4
     assert_no_errors(browser)
 
 

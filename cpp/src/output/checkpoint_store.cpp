@@ -87,6 +87,7 @@ CheckpointStore::Slot CheckpointStore::create_slot(hid_t group, const Model& mod
   slot.counters =
       with_unit(hdf5::create_fixed(group, "counters", H5T_NATIVE_INT64, {kCounters}), "");
   slot.wall_seconds = create_doubles(group, "wall_seconds", {}, "s");
+  slot.largest_kinetic_energy = create_doubles(group, "largest_kinetic_energy", {}, "J");
   slot.history = create_list(group, "history", H5T_NATIVE_DOUBLE);
   slot.history_lengths = create_list(group, "history_lengths", H5T_NATIVE_INT64);
   slot.ramps = create_list(group, "ramps", H5T_NATIVE_DOUBLE);
@@ -108,6 +109,7 @@ CheckpointStore::Slot CheckpointStore::open_slot(hid_t group) {
   if (hdf5::exists(group, "extremes")) slot.extremes = hdf5::open_dataset(group, "extremes");
   slot.counters = hdf5::open_dataset(group, "counters");
   slot.wall_seconds = hdf5::open_dataset(group, "wall_seconds");
+  slot.largest_kinetic_energy = hdf5::open_dataset(group, "largest_kinetic_energy");
   slot.history = Column::open(group, "history");
   slot.history_lengths = Column::open(group, "history_lengths");
   slot.ramps = Column::open(group, "ramps");
@@ -163,6 +165,7 @@ void CheckpointStore::write(const Checkpoint& checkpoint) {
                                                      rejected_steps};
   hdf5::write_all(slot.counters.id(), counters.data());
   hdf5::write_all(slot.wall_seconds.id(), &checkpoint.wall_seconds);
+  hdf5::write_all(slot.largest_kinetic_energy.id(), &checkpoint.largest_kinetic_energy);
 
   std::vector<double> flat;
   std::vector<std::int64_t> lengths;
@@ -207,6 +210,7 @@ std::optional<Checkpoint> CheckpointStore::read() const {
   const auto counters = hdf5::read_vector<std::int64_t>(slot.counters.id());
   checkpoint.counters = {counters.at(0), counters.at(1), counters.at(2), counters.at(3)};
   checkpoint.wall_seconds = read_one<double>(slot.wall_seconds.id());
+  checkpoint.largest_kinetic_energy = read_one<double>(slot.largest_kinetic_energy.id());
 
   const auto history = hdf5::read_vector<double>(slot.history.id());
   const double* next = history.data();

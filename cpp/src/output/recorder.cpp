@@ -116,10 +116,12 @@ void Recorder::restore(const Checkpoint& checkpoint, Simulation& simulation) {
   }
   counters_before_ = checkpoint.counters;
   seconds_before_ = checkpoint.wall_seconds;
+  largest_kinetic_energy_ = checkpoint.largest_kinetic_energy;
 }
 
 Checkpoint Recorder::checkpoint(const Simulation& simulation) const {
-  return {simulation.state(), summaries_, counters(simulation), wall_seconds()};
+  return {simulation.state(), summaries_, counters(simulation), wall_seconds(),
+          largest_kinetic_energy_};
 }
 
 Counters Recorder::counters(const Simulation& simulation) const {

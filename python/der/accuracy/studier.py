@@ -45,7 +45,7 @@ _MOST_HALVINGS = 30
 #: Steps that are tried for an explicit stepper from the longest stable one on.
 _EXPLICIT_STEPS = 2
 #: Cost of a step, against one of another implicit stepper.
-_COST_OF_STEP = {"tr_bdf2": 2.0, "verlet": 0.05, "explicit_euler": 0.05}
+_COST_OF_STEP = {"tr_bdf2": 2.0, "sdirk4": 5.0, "verlet": 0.05, "explicit_euler": 0.05}
 
 UNSTABLE = "unstable"
 SKIPPED = "skipped"

@@ -163,6 +163,7 @@ def _plot_path_shapes(result: Result) -> Figure:
             draw_shapes(axes, result.rods, result.positions[row], colour, label)
             label = None
     draw_supports(axes, result.rods, held_at(result, 0), result.positions[0])
+    draw_springs(axes, result.rods, springs(result.scenario), result.positions[0])
     _finish_shape_panel(axes)
     return figure
 

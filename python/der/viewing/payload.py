@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from der._core import Rod
+from der._core import Rod, springs
 from der.fields import FIELD_UNITS, held_at
 from der.film import Film, make_film, mode_shapes, round_speed, speed_text
 from der.plotting.style import quantity_text
@@ -35,7 +35,9 @@ def make_payload(result: Result) -> dict[str, Any]:
     frames = _kept_frames(film)
     positions = _in_space(film.positions[frames])
     loads = _loads(result, film, frames)
-    low, high, symbol = _limits(result.rods, positions, any(loads["loads"]))
+    found_springs = _springs(result)
+    symbols = any(loads["loads"]) or bool(found_springs)
+    low, high, symbol = _limits(result.rods, positions, symbols)
     span = 0.0 if film.times is None else float(film.times[-1] - film.times[0])
     note = result.scenario.analysis if result.scenario.is_static else ""
     if len(frames) < len(film.captions):
@@ -66,6 +68,7 @@ def make_payload(result: Result) -> dict[str, Any]:
             for k, rod in enumerate(result.rods)
         ],
         "supports": _supports(result),
+        "springs": found_springs,
         **loads,
         "symbol": symbol,
         "low": low.tolist(),
@@ -137,7 +140,7 @@ def _in_space(positions: Array) -> Array:
     return full
 
 
-def _limits(rods: list[Rod], positions: Array, loaded: bool) -> tuple[Array, Array, float]:
+def _limits(rods: list[Rod], positions: Array, symbols: bool) -> tuple[Array, Array, float]:
     """Return the corners [m] of all frames, symbols included, and the size of these [m]."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for rod in rods:
@@ -146,7 +149,7 @@ def _limits(rods: list[Rod], positions: Array, loaded: bool) -> tuple[Array, Arr
         high = np.maximum(high, (positions[:, rod.nodes] + around).max(axis=(0, 1)))
     symbol = _SYMBOL * float(np.max(high - low))
     # Arrows are 4 symbols long, and texts beside them wider than high.
-    room = np.array([7.0, 5.0, 5.0] if loaded else [2.0, 2.0, 2.0])
+    room = np.array([7.0, 5.0, 5.0] if symbols else [2.0, 2.0, 2.0])
     if not positions[:, :, 2].any():
         room[2] = 2.0
     depth = symbol * room
@@ -232,6 +235,34 @@ def _supports(result: Result) -> list[dict[str, Any]]:
                 "rod": number,
                 "place": int(np.flatnonzero(rod.nodes == held.node)[0]),
                 "down": down.tolist(),
+            }
+        )
+    return found
+
+
+def _springs(result: Result) -> list[dict[str, Any]]:
+    """Return the symbol of each spring support.
+
+    It stands where the ``weights`` of the rod's nodes put it, has a zigzag line along each of the
+    unit vectors ``along``, and a spiral if it ``turns``, against rotation.
+    """
+    rods = {rod.name: (number, rod) for number, rod in enumerate(result.rods)}
+    found = []
+    for spring in springs(result.scenario):
+        number, rod = rods[spring.rod]
+        start = result.positions[0]
+        place = spring.weights @ start[spring.nodes]
+        along = np.zeros((len(spring.stiffness), 3))
+        np.fill_diagonal(along, -1.0)
+        if place[0] > start[rod.nodes, 0].mean():
+            along[0] *= -1.0  # away from the middle of the rod
+        found.append(
+            {
+                "rod": number,
+                "nodes": np.searchsorted(rod.nodes, spring.nodes).tolist(),
+                "weights": spring.weights.tolist(),
+                "along": along[np.array(spring.stiffness) > 0.0].tolist(),
+                "turns": spring.rotational_stiffness > 0.0,
             }
         )
     return found

@@ -324,6 +324,44 @@
     return { type: "mesh3d", ...plain(mesh), ...look };
   };
 
+  // Zigzag lines to the ground, and spirals of springs against turning.
+  const springs = (frame) => {
+    const path = { x: [], y: [], z: [] };
+    const draw = (points) => {
+      for (const point of points) {
+        for (const [n, list] of [path.x, path.y, path.z].entries()) list.push(point[n]);
+      }
+      for (const list of [path.x, path.y, path.z]) list.push(null); // the pen is lifted
+    };
+    const size = data.symbol;
+    for (const spring of data.springs) {
+      const line = lineOf(rods[spring.rod], frame);
+      const place = spring.nodes.reduce(
+        (sum, node, k) => add(sum, scale(spring.weights[k], line[node])),
+        [0, 0, 0],
+      );
+      for (const along of spring.along) {
+        const side = scale(0.5 * size, across(along));
+        const zigzag = [0, 0, 1, -1, 1, -1, 1, -1, 0, 0];
+        draw(
+          zigzag.map((share, k) =>
+            add(place, add(scale((3 * size * k) / (zigzag.length - 1), along), scale(share, side))),
+          ),
+        );
+      }
+      if (spring.turns) {
+        const turns = Array.from({ length: 49 }, (_, k) => k / 48);
+        draw(
+          turns.map((t) =>
+            add(place, scale(1.4 * size * t, [Math.cos(12.6 * t), Math.sin(12.6 * t), 0])),
+          ),
+        );
+      }
+    }
+    const look = { line: { color: SUPPORT, width: 4 }, hoverinfo: "skip" };
+    return { type: "scatter3d", mode: "lines", ...path, ...look };
+  };
+
   const loads = (frame) => {
     const mesh = newMesh();
     const labels = { x: [], y: [], z: [], text: [] };
@@ -408,6 +446,7 @@
     spheres(frame),
     supports(frame),
     ...loads(frame),
+    springs(frame),
   ];
   const draw = () => {
     element("slider").value = state.frame;

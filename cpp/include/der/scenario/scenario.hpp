@@ -231,7 +231,7 @@ struct Probe {
 };
 
 struct Output {
-  /// [s] between saved frames; 0: as Stepping::Automatic finds fit.
+  /// [s] between saved frames; always above 0 in a run over time.
   double every = 0.0;
   std::vector<Probe> probes;
 };

@@ -47,7 +47,10 @@ void Recorder::finish(const Simulation& simulation) {
 
 void Recorder::record(const Simulation& simulation, const State& state, bool save) {
   const std::string problem = try_record(simulation, state, save);
-  if (problem.empty()) return;
+  if (problem.empty()) {
+    if (save) largest_kinetic_energy_ = std::max(largest_kinetic_energy_, energies_->kinetic);
+    return;
+  }
   throw DivergedError("the motion diverged: at t = " + std::to_string(state.time) + " s " +
                       problem + " is not a finite number. A smaller time.step may help.");
 }
@@ -60,7 +63,6 @@ std::string Recorder::try_record(const Simulation& simulation, const State& stat
     if (!is_finite(energy)) return "the energy";
     if (!state.positions.allFinite() || !state.velocities.allFinite()) return "the motion";
     energies_ = energy;
-    largest_kinetic_energy_ = std::max(largest_kinetic_energy_, energy.kinetic);
     hand_out(state);
   }
   update_extremes(state.time);

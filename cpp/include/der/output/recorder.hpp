@@ -44,7 +44,7 @@ class Recorder {
   [[nodiscard]] bool has_data() const { return seen_time_.has_value(); }
   /// Energies [J] of the last saved instant; none before it.
   [[nodiscard]] const std::optional<Energies>& energies() const { return energies_; }
-  /// [J] over the saved instants.
+  /// [J] over the instants at which a frame is due.
   [[nodiscard]] double largest_kinetic_energy() const { return largest_kinetic_energy_; }
   /// Cost of the run so far, earlier parts of a resumed run included.
   [[nodiscard]] Counters counters(const Simulation& simulation) const;

@@ -98,10 +98,11 @@ std::vector<std::string> warnings(const Simulation& simulation, const Recorder& 
   const double made = -numerical_loss(simulation.state().work, *recorder.energies());
   const double scale = recorder.largest_kinetic_energy();
   if (made < kMuchEnergy * scale) return {};
+  const bool is_default = simulation.integrator().name == "tr_bdf2";
   return {
       fmt::format("the time stepping itself has made {:.2g} J of energy, against at most {:.2g} J "
-                  "of motion: take smaller steps, or tr_bdf2",
-                  made, scale)};
+                  "of motion: take smaller steps{}",
+                  made, scale, is_default ? "" : ", or tr_bdf2")};
 }
 
 std::string summary_json(const Simulation& simulation, const Recorder& recorder,

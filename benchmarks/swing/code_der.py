@@ -48,7 +48,9 @@ def grid(quick: bool) -> list[Config]:
     # Five stages a step, of order 4: fewer steps.
     implicit += [
         _implicit(n, m, "sdirk4")
-        for n, m in product((50, 60, 70, 75, 80, 90, 110, 140, 180, 240, 320), (1, 2, 3, 4, 5, 6, 8))
+        for n, m in product(
+            (50, 60, 70, 75, 80, 90, 110, 140, 180, 240, 320), (1, 2, 3, 4, 5, 6, 8)
+        )
     ]
     explicit: list[Config] = [
         {"elements": n, "integrator": "verlet", "steps": "fewest"}

@@ -43,8 +43,6 @@ class Assembler {
   void assemble(const Vector& positions, const Vector& controls, Vector& gradient,
                 Vector* values) const;
 
-  std::vector<PlanarChain> chains_;
-
   struct CouplingSlots {
     Index a;  // diagonal entries
     Index b;
@@ -53,6 +51,7 @@ class Assembler {
 
   const Model& model_;
   Index num_values_ = 0;
+  std::vector<PlanarChain> chains_;
   std::vector<Index> diagonal_slots_;          // of each free degree of freedom
   std::vector<CouplingSlots> coupling_slots_;  // of each of the model's mass couplings
 

@@ -29,7 +29,8 @@ void add_support(const scenario::Support& support, std::size_t number, Model& mo
     for (const auto& [component, displacement] : support.prescribe) {
       const Index control = model.controls.add(displacement);
       hold(model, model.dof(node, static_cast<int>(component)), control);
-      model.prescribed.push_back({number, kComponentNames[static_cast<int>(component)], control});
+      model.prescribed.push_back(
+          {number, kComponentNames[static_cast<std::size_t>(component)], control});
     }
     for (const auto component : support.fix) {
       hold(model, model.dof(node, static_cast<int>(component)), -1);

@@ -12,10 +12,10 @@
 namespace der {
 
 /// A run of plain planar stretch elements, each beginning where the one before ends, with the bend
-/// elements between them: nearly all of a rod. Taken together they are assembled nearly twice as
-/// fast as one by one, since an edge's length, direction and their derivatives are worked out once
-/// and not for each element that it belongs to, and each entry of the matrix is written once. What
-/// is summed is what the kernels Stretch<2> and PlanarBend give, to rounding.
+/// elements between them: nearly all of a rod. Taken together they cost less than one by one, since
+/// an edge's length, direction and their derivatives are worked out once and not for each element
+/// that it belongs to, and each entry of the matrix is written once. What is summed is what the
+/// kernels Stretch<2> and PlanarBend give, to rounding.
 class PlanarChain {
  public:
   /// All runs of a model that are at least two edges long.

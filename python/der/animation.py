@@ -18,6 +18,7 @@ from der.progress import ProgressFunction
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from der._core import SpringSupport
     from der.result import Result
 
 Array = NDArray[np.float64]
@@ -169,6 +170,7 @@ def _draw(result: Result, cut: _Cut, progress: ProgressFunction | None) -> Itera
     """Draw one picture after the other, RGB, shape (height, width, 3), with even sizes."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+    from der._core import springs
     from der.plotting.style import style
 
     with style():
@@ -180,11 +182,12 @@ def _draw(result: Result, cut: _Cut, progress: ProgressFunction | None) -> Itera
         # What does not change is drawn once.
         background = canvas.copy_from_bbox(figure.bbox)
         fixed = set(axes.get_children())
+        elastic = springs(result.scenario)
         for number, (positions, frame, text) in enumerate(
             zip(cut.positions, cut.frames, cut.texts, strict=True)
         ):
             canvas.restore_region(background)
-            _draw_moment(axes, result, positions, int(frame), text)
+            _draw_moment(axes, result, elastic, positions, int(frame), text)
             moving = [artist for artist in axes.get_children() if artist not in fixed]
             for artist in sorted(moving, key=lambda artist: artist.get_zorder()):
                 axes.draw_artist(artist)
@@ -194,8 +197,14 @@ def _draw(result: Result, cut: _Cut, progress: ProgressFunction | None) -> Itera
                 progress((number + 1) / len(cut.texts))
 
 
-def _draw_moment(axes: Axes, result: Result, positions: Array, frame: int, text: str) -> None:
-    from der._core import springs
+def _draw_moment(
+    axes: Axes,
+    result: Result,
+    elastic: list[SpringSupport],
+    positions: Array,
+    frame: int,
+    text: str,
+) -> None:
     from der.fields import held_at
     from der.plotting.loads import draw_loads
     from der.plotting.shapes import draw_shapes
@@ -206,7 +215,7 @@ def _draw_moment(axes: Axes, result: Result, positions: Array, frame: int, text:
     source = min(frame, len(result.times) - 1)
     draw_shapes(axes, result.rods, positions, PALETTE[0])
     draw_supports(axes, result.rods, held_at(result, source), positions)
-    draw_springs(axes, result.rods, springs(result.scenario), positions)
+    draw_springs(axes, result.rods, elastic, positions)
     if result.modes is None and result.buckling is None:
         loads = replace(acting_loads(result, source), gravity=None)  # stands in the legend
         draw_loads(axes, result.rods, loads, positions)

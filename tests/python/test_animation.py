@@ -55,6 +55,22 @@ def test_tip_is_drawn_where_it_is(swing, tmp_path):
     assert aside == pytest.approx(1.0 - result.positions[-1, :, 0].max(), abs=0.02)
 
 
+def test_springs_move_with_the_rod(swing, tmp_path, monkeypatch):
+    swing["supports"].append({"rod": "arm", "at": "end", "spring": {"stiffness": 0.5}})
+    result = der.run(swing)
+    drawn = []
+
+    def note(axes, rods, springs, positions):
+        drawn.extend(spring.weights @ positions[spring.nodes] for spring in springs)
+
+    monkeypatch.setattr("der.plotting.supports.draw_springs", note)
+    path = result.animate(tmp_path / "swing.gif", fps=20, speed=0.1)
+    assert len(drawn) == len(list(gif_frames(path)))
+    assert drawn[0] == pytest.approx(result.positions[0, -1])
+    assert drawn[-1] == pytest.approx(result.positions[-1, -1])
+    assert drawn[-1][1] < drawn[0][1]
+
+
 def test_mp4_has_its_pictures_and_duration(spheres, tmp_path):
     result = der.run(spheres)  # 1 s
     path = der.animate(result, tmp_path / "spheres.mp4", fps=30)

@@ -212,8 +212,8 @@ def prepare(folder: Path) -> None:
         (scripts / script).chmod(0o755)
 
 
-def passes(page: Path) -> bool:
-    """Run a page in a process and a folder of its own."""
+def failure(page: Path) -> str:
+    """Run a page in a process and a folder of its own; return its output if a block fails."""
     programs = Path(sys.executable).parent
     environment = os.environ | {
         "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}",
@@ -236,10 +236,11 @@ def passes(page: Path) -> bool:
         except subprocess.TimeoutExpired as late:
             output = late.stdout or b""
             text = output.decode() if isinstance(output, bytes) else output
-            print(f"{text}{page}: still running after {TIMEOUT_SECONDS} s", flush=True)
-            return False
+            return f"{text}{page}: still running after {TIMEOUT_SECONDS} s\n"
+    if run.returncode:
+        return run.stdout or f"{page}: exit code {run.returncode}\n"
     print(run.stdout, end="", flush=True)
-    return run.returncode == 0
+    return ""
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -256,7 +257,10 @@ def main(arguments: list[str] | None = None) -> int:
         print("no block to run: are the pages empty?", file=sys.stderr)
         return 1
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return 0 if all(list(pool.map(passes, chosen))) else 1
+        failures = "".join(pool.map(failure, chosen))
+    # Last, where they are seen even if only the end of the output is shown.
+    print(failures, end="")
+    return 1 if failures else 0
 
 
 if __name__ == "__main__":

@@ -7,7 +7,6 @@ CPU times are those of whole runs in this process, the reading of the scene left
 
 from __future__ import annotations
 
-import argparse
 import time
 from collections.abc import Callable
 from typing import Any
@@ -15,7 +14,7 @@ from typing import Any
 import der
 import numpy as np
 from make_figures import ARM, CONFIGS, TUBE
-from measure_steppers import reference, scene, tip_error
+from measure_steppers import print_tables, reference, scene, tip_error
 
 NODES = (11, 21, 41, 81)
 # First natural frequency of a cantilever over sqrt(EI/(mu L^4)), squared: 1.8751...^2.
@@ -77,7 +76,7 @@ def swing(nodes: int) -> float:
 
 
 def mesh() -> None:
-    """Print errors against elements, relative to the rod's length or frequency."""
+    """Errors against elements, relative to the rod's length or frequency."""
     columns: dict[str, Callable[[int], float]] = {
         "P L^2/EI = 1": lambda n: tip(n, 1.0, "angle"),
         "= 10": lambda n: tip(n, 10.0, "angle"),
@@ -92,7 +91,7 @@ def mesh() -> None:
 
 
 def modes() -> None:
-    """Print relative errors of the first bending frequencies of a cantilever, by elements."""
+    """Relative errors of the first bending frequencies of a cantilever, by elements."""
 
     def frequencies(elements: int) -> Any:
         found = der.run(load("beam_modes.yaml", **{"rods.0.nodes": elements + 1})).modes
@@ -124,7 +123,7 @@ def analysis() -> None:
 
 
 def solver() -> None:
-    """Print CPU times of the tube's run over 1 s, by linear solver."""
+    """CPU times of the tube's run over 1 s, by linear solver."""
     names = ("banded", "simplicial_ldlt", "cholmod")
     print(f"{'nodes':>8}" + "".join(f" {name:>16}" for name in names))
     for nodes in (51, 201, 801):
@@ -149,14 +148,5 @@ TABLES: dict[str, Callable[[], None]] = {
 }
 
 
-def main() -> None:
-    """Print the tables that are asked for, or all."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("tables", nargs="*", metavar="TABLE", help=f"of {', '.join(TABLES)}")
-    for name in parser.parse_args().tables or TABLES:
-        print("\n" + (TABLES[name].__doc__ or "").removeprefix("Print ") + "\n")
-        TABLES[name]()
-
-
 if __name__ == "__main__":
-    main()
+    print_tables(TABLES, __doc__)

@@ -133,14 +133,17 @@ TABLES: dict[str, Callable[[], None]] = {
 }
 
 
-def main() -> None:
-    """Print the tables that are asked for, or all."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("tables", nargs="*", metavar="TABLE", help=f"of {', '.join(TABLES)}")
-    for name in parser.parse_args().tables or TABLES:
-        print(f"\n{TABLES[name].__doc__}\n")
-        TABLES[name]()
+def print_tables(tables: dict[str, Callable[[], None]], description: str | None) -> None:
+    """Print those of the tables that the command line names, or all, under what they say."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("tables", nargs="*", metavar="TABLE", help=f"of {', '.join(tables)}")
+    names = parser.parse_args().tables
+    if unknown := set(names) - set(tables):
+        parser.error(f"no table {', '.join(sorted(unknown))}; there is {', '.join(tables)}")
+    for name in names or tables:
+        print(f"\n{tables[name].__doc__}\n")
+        tables[name]()
 
 
 if __name__ == "__main__":
-    main()
+    print_tables(TABLES, __doc__)

@@ -412,7 +412,7 @@
     ];
   };
 
-  const axis = (n, shown) => ({
+  const axis = (n, share, shown) => ({
     title: { text: data.flat ? "" : data.axes[n] },
     range: [data.low[n], data.high[n]],
     visible: shown,
@@ -422,7 +422,7 @@
     showbackground: false,
     gridcolor: "#d4d4d4",
     zeroline: false,
-    nticks: 7,
+    nticks: Math.min(7, 2 + Math.ceil(7 * share)), // short axes have room for few
   });
 
   const layout = (labels) => {
@@ -436,6 +436,7 @@
       ? Math.min((0.82 * wide) / size[0], seen / size[1])
       : Math.min(seen, wide) / Math.max(...size);
     const [x, y, z] = size.map((value) => zoom * value);
+    const share = (n) => size[n] / Math.max(...size);
     return {
       margin: { l: 0, r: 0, t: 0, b: 0 },
       showlegend: false,
@@ -443,9 +444,9 @@
       scene: {
         aspectmode: "manual",
         aspectratio: { x, y, z },
-        xaxis: axis(0, true),
-        yaxis: axis(1, true),
-        zaxis: axis(2, !flat),
+        xaxis: axis(0, share(0), true),
+        yaxis: axis(1, share(1), true),
+        zaxis: axis(2, share(2), !flat),
         annotations: flat ? [...axisTitles(), ...labels] : labels,
         dragmode: "orbit",
         camera: flat

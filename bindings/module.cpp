@@ -8,7 +8,6 @@ PYBIND11_MODULE(_core, module) {
   bindings::bind_errors(module);
   bindings::bind_scenario(module);
   bindings::bind_model(module);
-  bindings::bind_held_nodes(module);
   bindings::bind_replay(module);
   bindings::bind_state(module);
   bindings::bind_recording(module);

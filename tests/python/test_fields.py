@@ -213,3 +213,14 @@ def test_mistakes_are_named(swing):
         replace(result, velocities=result.velocities[1:]).along("arm", "tension")
     with pytest.raises(der.DerError, match="which this scene does not ask for"):
         der._core.Replay(result.scenario, [0.5], on_path=True)
+
+
+def test_node_that_two_supports_hold_is_held_in_both_directions(tube):
+    tube["supports"][0]["fix"] = ["x"]
+    tube["supports"].append({"rod": "beam", "at": "start", "fix": ["y"]})
+    held = der.held_nodes(der.Scenario.from_dict(tube))
+    assert [(node.node, node.components) for node in held] == [
+        (0, ["x", "y"]),
+        (20, ["y"]),
+        (0, ["x", "y"]),
+    ]

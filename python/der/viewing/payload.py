@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der._core import Rod, springs
-from der.fields import FIELD_UNITS, held_at
+from der.fields import FIELD_UNITS
 from der.film import Film, make_film, mode_shapes, round_speed, speed_text
 from der.plotting.lengths import LengthScale
 from der.plotting.style import quantity_text
@@ -243,7 +243,7 @@ def _supports(result: Result, source: NDArray[np.int64]) -> list[dict[str, Any]]
     upright = 1 if dimension == 2 else 2  # the axis that points up
     found = []
     angles = _clamp_angles(result, source)
-    for held, turned in zip(held_at(result, 0), angles, strict=True):
+    for held, turned in zip(result.held_nodes(0), angles, strict=True):
         number, rod = rods[held.rod]
         down = np.zeros(3)
         fixed = ["xyz".index(component) for component in held.components]
@@ -263,9 +263,9 @@ def _supports(result: Result, source: NDArray[np.int64]) -> list[dict[str, Any]]
 
 def _clamp_angles(result: Result, source: NDArray[np.int64]) -> list[list[float]]:
     """Return for each held node the angles of the tangent [rad] as `_supports` has them."""
-    frames = {frame: held_at(result, frame) for frame in np.unique(source).tolist()}
+    frames = {frame: result.held_nodes(frame) for frame in np.unique(source).tolist()}
     found: list[list[float]] = []
-    for number in range(len(held_at(result, 0))):
+    for number in range(len(result.held_nodes(0))):
         turns = [frames[frame][number].tangent_angle for frame in source.tolist()]
         angles = [angle for angle in turns if angle is not None]
         found.append(angles if len(set(angles)) > 1 else angles[:1])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -13,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from der.plotting.style import MUTED, PALETTE, axis_label, style
+from der.plotting.style import FIGURE_TITLE, MUTED, PALETTE, axis_label, style, wrapped
 
 if TYPE_CHECKING:
     from der.accuracy.study_result import Study, StudyRow
@@ -59,7 +58,8 @@ def plot_study(study: Study) -> Figure:
         for line, probe in zip(panels, study.probes, strict=True):
             for axes, function in zip(line, draw, strict=True):
                 function(axes, [row for row in study.of(probe) if row.completed])
-        figure.suptitle("\n".join(textwrap.wrap(study.scenario.title, 80)), x=0.01, ha="left")
+        lines = wrapped(study.scenario.title, FIGURE_TITLE, 0.98 * figure.get_figwidth())
+        figure.suptitle("\n".join(lines), x=0.01, ha="left", parse_math=False)
         if not static:
             handles, labels = panels[0][0].get_legend_handles_labels()
             figure.legend(handles, labels, loc="outside lower center", ncols=4)

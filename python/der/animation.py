@@ -205,7 +205,6 @@ def _draw_moment(
     frame: int,
     text: str,
 ) -> None:
-    from der.fields import held_at
     from der.plotting.loads import draw_loads
     from der.plotting.shapes import draw_shapes
     from der.plotting.style import PALETTE
@@ -214,7 +213,7 @@ def _draw_moment(
 
     source = min(frame, len(result.times) - 1)
     draw_shapes(axes, result.rods, positions, PALETTE[0])
-    draw_supports(axes, result.rods, held_at(result, source), positions)
+    draw_supports(axes, result.rods, result.held_nodes(source), positions)
     draw_springs(axes, result.rods, elastic, positions)
     if result.modes is None and result.buckling is None:
         loads = replace(acting_loads(result, source), gravity=None)  # stands in the legend

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from der._core import HeldNode
-from der.fields import FIELD_UNITS, held_at, rod_fields
+from der.fields import FIELD_UNITS, rod_fields
 from der.scene_loads import ActingLoads, acting_loads
 
 if TYPE_CHECKING:
@@ -68,10 +67,6 @@ class Film:
     def loads(self, result: Result, frame: int) -> ActingLoads:
         """Return the loads of the scene at a frame."""
         return acting_loads(result, int(self.source[frame]))
-
-    def held(self, result: Result, frame: int) -> list[HeldNode]:
-        """Return what the supports hold at a frame."""
-        return held_at(result, int(self.source[frame]))
 
 
 def make_film(result: Result) -> Film:

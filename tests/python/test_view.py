@@ -165,7 +165,7 @@ def test_rods_in_space(swing, monkeypatch):
     model = type("Model", (), {"initial_positions": lifted[0], "rods": whole.rods})
     result = replace(whole, positions=lifted, velocities=resting)
     monkeypatch.setitem(result.__dict__, "model", model)
-    monkeypatch.setattr("der.fields.clamp_tangents", lambda result: {})
+    monkeypatch.setattr("der.film.rod_fields", lambda result: rod_fields(whole))
     data = make_payload(result)
     assert not data["flat"]
     assert unpack(data["rods"][0]["positions"], len(lifted), 11, 3) == pytest.approx(

@@ -82,14 +82,14 @@ std::vector<Dataset> datasets(const Simulation& simulation, const RunOutcome& ou
 std::string path_csv(const Simulation& simulation, const RunOutcome& outcome) {
   std::string text = "branch,factor,arc,stability,unstable_directions,event";
   for (const auto& probe : simulation.scenario().scene().output.probes) text += "," + probe.name;
-  text += "\n";
+  text += '\n';
   std::size_t row = 0;
   for (const auto& [branch, point] : points_of(outcome)) {
     text += fmt::format("{},{:.17g},{:.9g},{},{},{}", branch, point->factor, point->arc,
                         point->stability.name(), point->stability.unstable_directions,
                         event_name(point->event));
     for (const double value : outcome.path_probes[row++]) text += fmt::format(",{:.17g}", value);
-    text += "\n";
+    text += '\n';
   }
   return text;
 }

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from der._core import held_nodes, springs
+from der._core import springs
 from der.plotting.shapes import draw_shapes, limits
 from der.plotting.style import MUTED, PALETTE, axis_label
 from der.plotting.supports import draw_springs, draw_supports
@@ -62,7 +62,7 @@ def _draw_mode(axes: Axes, result: Result, rest: Array, shape: Array, label: str
     for rod in result.rods:
         line = (rest + shape)[rod.nodes]
         axes.plot(line[:, 0], line[:, 1], color=PALETTE[0], zorder=4)
-    draw_supports(axes, result.rods, held_nodes(result.scenario, 0.0), rest)
+    draw_supports(axes, result.rods, result.held_nodes(0), rest)
     draw_springs(axes, result.rods, springs(result.scenario), rest)
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_ylabel("y [m]")

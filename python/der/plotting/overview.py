@@ -13,7 +13,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from der._core import springs
-from der.fields import held_at
 from der.plotting.analyses import plot_modes, plot_path
 from der.plotting.loads import draw_loads, room_for_loads
 from der.plotting.probes import draw_probe, mark_times
@@ -162,7 +161,7 @@ def _plot_path_shapes(result: Result) -> Figure:
             colour = PALETTE[branch % len(PALETTE)]
             draw_shapes(axes, result.rods, result.positions[row], colour, label)
             label = None
-    draw_supports(axes, result.rods, held_at(result, 0), result.positions[0])
+    draw_supports(axes, result.rods, result.held_nodes(0), result.positions[0])
     draw_springs(axes, result.rods, springs(result.scenario), result.positions[0])
     _finish_shape_panel(axes)
     return figure
@@ -227,7 +226,7 @@ def _draw_shape_panel(
     """Draw shapes, with supports and loads at the last of them, that of a frame."""
     for positions, label, colour in zip(shapes, labels, time_colours(len(shapes)), strict=True):
         draw_shapes(axes, result.rods, positions, colour, label)
-    draw_supports(axes, result.rods, held_at(result, frame), shapes[-1])
+    draw_supports(axes, result.rods, result.held_nodes(frame), shapes[-1])
     draw_springs(axes, result.rods, springs(result.scenario), shapes[-1])
     draw_loads(axes, result.rods, acting_loads(result, frame), shapes[-1])
     axes.update_datalim(np.array(_corners(result, shapes, frame)))

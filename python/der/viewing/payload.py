@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der._core import Rod, springs
-from der.fields import FIELD_UNITS, held_at
+from der.fields import FIELD_UNITS
 from der.film import Film, make_film, mode_shapes, round_speed, speed_text
 from der.plotting.style import quantity_text
 from der.scene_loads import ActingLoads
@@ -223,7 +223,7 @@ def _supports(result: Result) -> list[dict[str, Any]]:
     dimension = result.positions.shape[2]
     upright = 1 if dimension == 2 else 2  # the axis that points up
     found = []
-    for held in held_at(result, 0):
+    for held in result.held_nodes(0):
         number, rod = rods[held.rod]
         down = np.zeros(3)
         fixed = ["xyz".index(component) for component in held.components]

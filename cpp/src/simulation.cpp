@@ -78,7 +78,7 @@ Simulation::Simulation(Scenario scenario)
   const scenario::Time& time = scenario_.scene().time;
   if (time.stepping == scenario::Stepping::Adaptive) {
     adaptive_.emplace(
-        model_, *stepper_, stepper_info_.order,
+        model_, assembler_, *stepper_, stepper_info_.order,
         AdaptiveOptions{time.tolerance, time.duration, time.minimum_step, plan_.largest_step});
   }
 }

@@ -47,6 +47,26 @@ def test_summary_is_that_of_the_program(tube):
     assert deflection["min"] < result.probes["deflection"].min()
 
 
+def test_equal_steps_over_close_entries_of_a_table_are_warned_of_by_name(swing):
+    ramp = {
+        "times": [0, 0.5, 0.5004, 7, 7.0001],
+        "values": [[0, 0], [0, 0], [0, 1], [0, 1], [0, 0]],
+    }
+    slow = {"times": [0, 0.1], "values": [0, 0.01]}
+    swing["supports"][0]["prescribe"] = {"x": slow}
+    swing["loads"].append({"point_force": {"rod": "arm", "at": "end", "force": ramp}})
+    swing["time"] = {"duration": 0.6, "step": 1e-3}
+    [warning] = der.run(swing).summary["warnings"]
+    assert "loads.1.point_force.force" in warning
+    assert "0.5 and 0.5004 s" in warning
+    assert "step of 0.001 s" in warning
+    assert "time.tolerance" in warning
+    swing["time"]["step"] = 2e-4
+    assert der.run(swing).summary["warnings"] == []
+    swing["time"] = {"duration": 0.6, "tolerance": 1e-2}
+    assert der.run(swing).summary["warnings"] == []
+
+
 def test_probes_know_their_unit_and_summary(spheres):
     result = der.run(spheres)
     speed = result.probes["v_mid"]

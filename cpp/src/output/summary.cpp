@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "der/output/datasets.hpp"
+#include "der/steppers/fine_tables.hpp"
 #include "der/version.hpp"
 
 namespace der {
@@ -94,15 +95,20 @@ UsedSolver used_solver(const Simulation& simulation) {
 }
 
 std::vector<std::string> warnings(const Simulation& simulation, const Recorder& recorder) {
-  if (!recorder.energies() || recorder.largest_kinetic_energy() == 0.0) return {};
+  std::vector<std::string> found;
+  if (simulation.plan().step > 0.0) {
+    found = fine_table_warnings(simulation.scenario().scene(), simulation.plan().step);
+  }
+  if (!recorder.energies() || recorder.largest_kinetic_energy() == 0.0) return found;
   const double made = -numerical_loss(simulation.state().work, *recorder.energies());
   const double scale = recorder.largest_kinetic_energy();
-  if (made < kMuchEnergy * scale) return {};
+  if (made < kMuchEnergy * scale) return found;
   const bool is_default = simulation.integrator().name == "tr_bdf2";
-  return {
+  found.push_back(
       fmt::format("the time stepping itself has made {:.2g} J of energy, against at most {:.2g} J "
                   "of motion: take smaller steps{}",
-                  made, scale, is_default ? "" : ", or tr_bdf2")};
+                  made, scale, is_default ? "" : ", or tr_bdf2"));
+  return found;
 }
 
 std::string summary_json(const Simulation& simulation, const Recorder& recorder,

@@ -17,7 +17,7 @@ struct UsedSolver {
 UsedSolver used_solver(const Simulation& simulation);
 
 /// What makes a completed run doubtful, in sentences: the time stepping has made energy worth
-/// mentioning.
+/// mentioning, or its equal steps are longer than a table is fine.
 std::vector<std::string> warnings(const Simulation& simulation, const Recorder& recorder);
 
 /// The summary of an ended run as JSON text (keys: docs/results.md). Values that the run did not

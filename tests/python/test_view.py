@@ -418,6 +418,12 @@ def test_browser_titles_axes_beside_their_ticks(browser, spheres, tmp_path):
     assert 0.3 * width < right["x"] < 0.9 * width
     assert top["y"] < right["y"]
     assert top["x"] < right["x"]
+    placed, ranges = browser.execute_script(
+        "const s = document.getElementById('scene')._fullLayout.scene;"
+        "return [s.annotations.map((one) => [one.x, one.y]), [s.xaxis.range, s.yaxis.range]]"
+    )
+    for place in placed:  # on an end, rounding decides whether Plotly draws it
+        assert all(low < value < high for value, (low, high) in zip(place, ranges, strict=True))
 
 
 def test_browser_plays(browser, swing, tmp_path):

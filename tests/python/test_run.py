@@ -190,6 +190,47 @@ def test_equilibrium_of_static_and_of_moving_scenes(tube):
     assert settled.positions[-1] == pytest.approx(of_static.positions[-1], abs=1e-7)
 
 
+def test_equilibrium_takes_tables_at_time_0(tube):
+    tube["supports"][0] = {
+        "rod": "beam",
+        "at": "start",
+        "clamp": True,
+        "prescribe": {"angle": {"times": [-1, 1], "values": [0, 0.2]}},
+    }
+    load = tube["loads"][0]["point_force"]
+    load["force"] = {"times": [0, 1], "values": [[0, -100], [0, -200]]}
+    tube["start_from"] = "equilibrium"
+    found = der.equilibrium(tube)
+    started = der.Simulation(tube)  # which starts in the same equilibrium
+    assert found.positions[0] == pytest.approx(started.positions, abs=1e-9)
+    tube["supports"][0]["prescribe"]["angle"] = 0.1
+    load["force"] = [0, -100]
+    del tube["start_from"]
+    assert np.array_equal(found.positions, der.equilibrium(tube).positions)
+
+
+def test_continuation_takes_tables_at_time_0(tube):
+    tube["loads"][0]["point_force"]["force"] = {"times": [0, 1], "values": [[0, -100], [0, -200]]}
+    tube["start_from"] = "equilibrium"
+    last = der.continuation(tube, to=2).probes["deflection"][-1]
+    tube["loads"][0]["point_force"]["force"] = [0, -200]
+    assert last == pytest.approx(der.equilibrium(tube).probes["deflection"][-1], rel=1e-6)
+
+
+def test_everything_takes_a_scenario_a_path_or_a_dict(tube, tmp_path):
+    tube["time"] |= {"duration": 0.1}
+    scenario = der.Scenario.from_dict(tube)
+    path = tmp_path / "tube.yaml"
+    path.write_text(scenario.to_yaml())
+    for scene in (scenario, path, str(path), tube):
+        simulation = der.Simulation(scene)
+        simulation.step(10)
+        assert np.array_equal(simulation.positions, der.run(scene).positions[-1])
+        assert der.equilibrium(scene).status == "static_converged"
+    with pytest.raises(TypeError):
+        der.Simulation(3)
+
+
 def test_a_failed_run_raises_with_what_it_recorded(unstable):
     with pytest.raises(der.DivergedError) as caught:
         der.run(unstable)

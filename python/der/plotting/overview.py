@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
@@ -14,10 +13,20 @@ from numpy.typing import NDArray
 
 from der._core import springs
 from der.plotting.analyses import plot_modes, plot_path
+from der.plotting.lengths import label_positions
 from der.plotting.loads import draw_loads, room_for_loads
 from der.plotting.probes import draw_probe, mark_times
 from der.plotting.shapes import draw_shapes, limits, make_exactly_equal, pick_frames
-from der.plotting.style import MUTED, PALETTE, style, time_colours, time_text
+from der.plotting.style import (
+    AXES_TITLE,
+    FIGURE_TITLE,
+    MUTED,
+    PALETTE,
+    style,
+    time_colours,
+    time_text,
+    wrapped,
+)
 from der.plotting.supports import draw_springs, draw_supports
 from der.scene_loads import acting_loads
 
@@ -28,6 +37,7 @@ Array = NDArray[np.float64]
 What = Literal["overview", "shapes", "probes"]
 
 _WIDTH = 7.2  # of the figure [inch]
+_LEFT = 0.9  # of it, at most, is left of the axes [inch]
 _SHAPE_WIDTH = 5.6  # of the axes of the shapes, beside their legend [inch]
 _SHAPE_HEIGHT = (1.7, 5.5)  # least and most [inch]
 _PROBE_HEIGHT = 1.55  # [inch]
@@ -85,11 +95,12 @@ def plot(
             figure = _plot_motion(result, what, names, frames)
         text = result.scenario.title if title is None else title
         figure.align_ylabels()
-        text = "\n".join(textwrap.wrap(text, 80))
         if kind == "continuation" and what != "shapes":
-            figure.suptitle(text, x=0.01, ha="left")
+            lines = wrapped(text, FIGURE_TITLE, _WIDTH - 0.2)
+            figure.suptitle("\n".join(lines), x=0.01, ha="left", parse_math=False)
         else:
-            figure.axes[0].set_title(text, pad=10)
+            lines = wrapped(text, AXES_TITLE, _WIDTH - _LEFT)
+            figure.axes[0].set_title("\n".join(lines), pad=10, parse_math=False)
         if figure.axes[0].get_aspect() == 1.0 and kind not in ("modes", "buckling"):
             make_exactly_equal(figure, figure.axes[0])
     return figure
@@ -237,8 +248,7 @@ def _finish_shape_panel(axes: Axes) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.06)
     axes.autoscale_view()
-    axes.set_xlabel("x [m]")
-    axes.set_ylabel("y [m]")
+    label_positions(axes, np.array(axes.dataLim.min), np.array(axes.dataLim.max))
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
 
 

@@ -59,10 +59,17 @@ std::vector<Dataset> datasets(const Simulation& simulation, const RunOutcome& ou
                             [](const Mode& mode) { return mode.growth_rate; }));
     result.push_back(shapes("modes/shapes", "kg^-1/2 m", model, modes));
   }
-  if (!outcome.buckling.empty()) {
-    result.push_back(column("buckling/load_factors", "", outcome.buckling,
-                            [](const BucklingMode& mode) { return mode.load_factor; }));
-    result.push_back(shapes("buckling/shapes", "", model, outcome.buckling));
+  if (!outcome.buckling.modes.empty()) {
+    const LinearBuckling& buckling = outcome.buckling;
+    const auto add = [&](const char* name, const char* unit, double times) {
+      result.push_back(column(name, unit, buckling.modes, [times](const BucklingMode& mode) {
+        return times * mode.load_factor;
+      }));
+    };
+    add("buckling/load_factors", "", 1.0);
+    add("buckling/rotations", "rad", buckling.rotation);
+    add("buckling/strains", "", buckling.strain);
+    result.push_back(shapes("buckling/shapes", "", model, buckling.modes));
   }
   if (!outcome.path.empty()) {
     const auto points = points_of(outcome);

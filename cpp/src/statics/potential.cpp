@@ -50,7 +50,12 @@ double potential_change(const Model& model, const Vector& controls, const Vector
 
 double second_variation(const Model& model, const Vector& controls, const Vector& positions,
                         const Vector& direction) {
-  double total = 0.0;
+  return summed_variation(model, controls, positions, direction).value;
+}
+
+SummedVariation summed_variation(const Model& model, const Vector& controls,
+                                 const Vector& positions, const Vector& direction) {
+  SummedVariation total;
   for_each_list(model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     LocalTerm<Kernel::kDofs> local;
@@ -61,7 +66,10 @@ double second_variation(const Model& model, const Vector& controls, const Vector
       if constexpr (!HoldsElement<Kernel>::value) {
         for (Eigen::Index i = d.size() - 1; i >= 0; --i) d[i] -= d[i % model.dimension];
       }
-      total += d.dot(local.hessian.template selfadjointView<Eigen::Lower>() * d);
+      const auto size = d.cwiseAbs().eval();
+      total.value += d.dot(local.hessian.template selfadjointView<Eigen::Lower>() * d);
+      local.hessian = local.hessian.cwiseAbs().eval();
+      total.terms += size.dot(local.hessian.template selfadjointView<Eigen::Lower>() * size);
     }
   });
   return total;

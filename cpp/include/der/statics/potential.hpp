@@ -20,6 +20,14 @@ double potential_change(const Model& model, const Vector& controls, const Vector
 double second_variation(const Model& model, const Vector& controls, const Vector& positions,
                         const Vector& direction);
 
+/// The same, with |d|' |K| |d| summed likewise: some epsilons of that is what rounding may leave.
+struct SummedVariation {
+  double value = 0.0;
+  double terms = 0.0;
+};
+SummedVariation summed_variation(const Model& model, const Vector& controls,
+                                 const Vector& positions, const Vector& direction);
+
 /// The largest change [rad, or strain] that a displacement makes to an edge, against its rest
 /// length.
 double largest_edge_change(const Model& model, const Vector& displacement);

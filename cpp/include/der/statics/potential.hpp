@@ -20,6 +20,20 @@ double potential_change(const Model& model, const Vector& controls, const Vector
 double second_variation(const Model& model, const Vector& controls, const Vector& positions,
                         const Vector& direction);
 
+/// The same for several displacements at once, one a column.
+struct SecondVariations {
+  Eigen::MatrixXd values;  ///< d_i' K d_j [J]
+  /// Of each d_i' K d_i: the sum of all its terms without their signs [J], to which its rounding
+  /// error is relative.
+  Vector magnitudes;
+};
+SecondVariations second_variations(const Model& model, const Vector& controls,
+                                   const Vector& positions, const Eigen::MatrixXd& directions);
+
+/// K d [N] of the same stiffness, element by element as above; all degrees of freedom.
+Vector stiffness_product(const Model& model, const Vector& controls, const Vector& positions,
+                         const Vector& direction);
+
 /// The largest change [rad, or strain] that a displacement makes to an edge, against its rest
 /// length.
 double largest_edge_change(const Model& model, const Vector& displacement);

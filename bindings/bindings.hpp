@@ -11,6 +11,7 @@ namespace py = pybind11;
 void bind_errors(py::module_& module);
 void bind_scenario(py::module_& module);
 void bind_model(py::module_& module);
+void bind_replay(py::module_& module);
 void bind_state(py::module_& module);
 void bind_recording(py::module_& module);
 void bind_simulation(py::module_& module);

@@ -2,8 +2,6 @@
 
 #include <pybind11/stl.h>
 
-#include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,55 +11,9 @@
 #include "der/model/builder.hpp"
 #include "der/model/location.hpp"
 #include "der/scenario/reader.hpp"
-#include "der/supports/clamp.hpp"
 
 namespace der::python {
 namespace {
-
-/// A node that a support of the scene holds, for drawings.
-struct HeldNode {
-  std::string rod;
-  Index node = 0;
-  std::vector<std::string> components;  ///< held or moved by a table: x, y, z
-  std::optional<double> tangent_angle;  ///< [rad] from the x axis, of a clamp
-};
-
-std::vector<std::string> held_components(const scenario::Support& support, int dimension) {
-  const std::array<const char*, 3> names{"x", "y", "z"};
-  std::array<bool, 3> held{};
-  for (const auto component : support.fix) held[static_cast<std::size_t>(component)] = true;
-  for (const auto& moved : support.prescribe) {
-    held[static_cast<std::size_t>(moved.component)] = true;
-  }
-  std::vector<std::string> result;
-  for (std::size_t c = 0; c < static_cast<std::size_t>(dimension); ++c) {
-    if (held[c] || support.clamp) result.emplace_back(names[c]);
-  }
-  return result;
-}
-
-/// The angle that a clamp holds the tangent at, as its half cells do.
-std::optional<double> clamp_angle(const scenario::Support& support, const RodLayout& rod,
-                                  Index place, const Model& model, double time) {
-  if (!support.clamp) return std::nullopt;
-  const double turned = support.rotation ? value_at(*support.rotation, time) : 0.0;
-  return initial_tangent_angle(rod, place, model) + turned;
-}
-
-std::vector<HeldNode> held_nodes(const Scenario& scenario, double time) {
-  const Model model = build_model(scenario.scene());
-  std::vector<HeldNode> result;
-  for (const scenario::Support& support : scenario.scene().supports) {
-    if (!support.holds()) continue;
-    const RodLayout& rod = model.rod(support.rod);
-    for (const Index place : nodes_at(support.at, rod)) {
-      result.push_back({rod.name, rod.nodes[static_cast<std::size_t>(place)],
-                        held_components(support, model.dimension),
-                        clamp_angle(support, rod, place, model, time)});
-    }
-  }
-  return result;
-}
 
 /// A place that a spring holds, for drawings.
 struct SpringSupport {
@@ -129,25 +81,6 @@ void bind_rod(py::module_& module) {
       });
 }
 
-void bind_held_node(py::module_& module) {
-  py::class_<HeldNode>(module, "HeldNode", "A node that a support of the scene holds.")
-      .def_readonly("rod", &HeldNode::rod, "Name of the rod.")
-      .def_readonly("node", &HeldNode::node, "Row number of the node in `positions`.")
-      .def_readonly("components", &HeldNode::components,
-                    "Components that are held, or moved by a table: x, y, z.")
-      .def_readonly("tangent_angle", &HeldNode::tangent_angle,
-                    "Angle [rad] from the x axis that a clamp holds the tangent at; None without.")
-      .def("__repr__", [](const HeldNode& held) {
-        return py::str("<der.HeldNode {} of {!r}: {}{}>")
-            .format(held.node, held.rod, py::str(", ").attr("join")(held.components),
-                    held.tangent_angle ? ", clamped" : "");
-      });
-  module.def(
-      "held_nodes", &held_nodes, py::arg("scenario"), py::arg("time") = 0.0,
-      "Return every node that a support of the scene holds, with the angle of clamps at `time` "
-      "[s].");
-}
-
 void bind_spring(py::module_& module) {
   py::class_<SpringSupport>(module, "SpringSupport",
                             "A place that a spring of the scene holds: the weighted sum of nodes.")
@@ -173,7 +106,6 @@ void bind_spring(py::module_& module) {
 
 void bind_model(py::module_& module) {
   bind_rod(module);
-  bind_held_node(module);
   bind_spring(module);
   py::class_<Model>(module, "Model", "What stays constant in a run.")
       .def(py::init([](const Scenario& scenario) { return build_model(scenario.scene()); }),

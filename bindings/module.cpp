@@ -8,6 +8,7 @@ PYBIND11_MODULE(_core, module) {
   bindings::bind_errors(module);
   bindings::bind_scenario(module);
   bindings::bind_model(module);
+  bindings::bind_replay(module);
   bindings::bind_state(module);
   bindings::bind_recording(module);
   bindings::bind_simulation(module);

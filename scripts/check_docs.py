@@ -133,7 +133,9 @@ def run_shell(block: Block) -> None:
 def run_python(block: Block, names: dict[str, Any]) -> None:
     """Run the code of a block among the names of the blocks before it."""
     # The line numbers of an error are those of the page.
-    code = compile("\n" * block.line + block.code, str(block.page), "exec")
+    source = "\n" * block.line + block.code
+    # A reader's interpreter has none of the future statements of this file.
+    code = compile(source, str(block.page), "exec", dont_inherit=True)
     exec(code, names)
 
 

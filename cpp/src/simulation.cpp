@@ -85,7 +85,7 @@ Simulation::Simulation(Scenario scenario)
   const scenario::Time& time = scenario_.scene().time;
   if (time.stepping == scenario::Stepping::Adaptive) {
     adaptive_.emplace(
-        model_, *stepper_, stepper_info_.order,
+        model_, assembler_, *stepper_, stepper_info_.order,
         AdaptiveOptions{time.tolerance, time.duration, time.minimum_step, plan_.largest_step});
   }
 }
@@ -221,12 +221,12 @@ std::vector<Mode> Simulation::modes(int count) {
                          count);
 }
 
-std::vector<BucklingMode> Simulation::buckling(int count) {
+LinearBuckling Simulation::buckling(int count) {
   const LoadPath loads(scenario_.scene(), model_, scenario::Varied::Loads, std::nullopt);
   const FactorGuard back_to_the_scene(loads, model_);
   loads.apply(0.0, model_);
   equilibrium();
-  return buckling_modes(model_, loads, assembler_, *solver_.solver, state_.positions, count);
+  return linear_buckling(model_, loads, assembler_, *solver_.solver, state_.positions, count);
 }
 
 std::vector<PathBranch> Simulation::follow(const scenario::ContinuationAnalysis& analysis) {

@@ -36,7 +36,7 @@ class Modes:
 
 @dataclass(frozen=True, eq=False)
 class BucklingModes:
-    """Linear buckling.
+    """Linear buckling, and what tells whether it applies.
 
     Attributes
     ----------
@@ -44,10 +44,18 @@ class BucklingModes:
         Critical factors of the scene's loads, shape (modes,), ascending.
     shapes
         Displacements of the nodes, shape (modes, nodes, dim), the largest component 1.
+    rotations
+        Largest rotation [rad] of an edge that the loads have caused at each factor, by linear
+        theory, shape (modes,). Where it is not small, the structure bends before it buckles and
+        the factor may be far off: follow the path with `der.continuation`.
+    strains
+        Largest strain of an edge likewise, shape (modes,).
     """
 
     load_factors: Array
     shapes: Array
+    rotations: Array
+    strains: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +104,9 @@ def make_buckling_modes(data: Mapping[str, Array]) -> BucklingModes | None:
     """Collect buckling modes from the arrays of a run; None without any."""
     if "buckling/load_factors" not in data:
         return None
-    return BucklingModes(data["buckling/load_factors"], data["buckling/shapes"])
+    return BucklingModes(
+        *(data[f"buckling/{name}"] for name in ("load_factors", "shapes", "rotations", "strains"))
+    )
 
 
 def make_path(data: Mapping[str, Array]) -> Path | None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import textwrap
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from der.film import Film, make_film, round_speed, speed_text
+from der.film import Film, make_film, round_speed, speed_text, title_of
 from der.progress import ProgressFunction
 
 if TYPE_CHECKING:
@@ -30,7 +29,9 @@ _PATH_SECONDS = 10.0  # how long a path of equilibria is shown
 _DPI = 110
 _WIDTH = 7.2  # of the picture [inch]
 _HEIGHT = (2.2, 7.0)  # least and most [inch]
-_MARGINS = (0.75, 0.2, 0.68, 0.55)  # left, right, top, bottom [inch]
+_MARGINS = (0.75, 0.2, 0.68, 0.55)  # left, right, top, bottom [inch] with a title of one line
+_TITLE_LINE = 0.2  # that each further line takes [inch]
+_MOST_PICTURES = 20_000
 _CENTISECONDS = 100.0  # a GIF counts time in them ...
 _SHORTEST = 2  # ... and viewers slow down what is shorter than so many
 _GIF_TONES = 64  # between white and each colour of a picture
@@ -83,8 +84,8 @@ def animate(
     Raises
     ------
     ValueError
-        For another ending, an fps or speed that cannot be, a run in which nothing moves (a static
-        one, or one of a single frame), and positions in space.
+        For another ending, an fps or speed that cannot be or makes more than 20000 pictures, a run
+        in which nothing moves (a static one, or one of a single frame), and positions in space.
     ModuleNotFoundError
         For an MP4 without imageio-ffmpeg.
     """
@@ -153,7 +154,12 @@ def _cut_motion(film: Film, times: Array, fps: float, speed: float | None) -> _C
         raise ValueError("the run has a single frame: nothing moves")
     speed = round_speed(span) if speed is None else speed
     step = speed / fps  # simulated seconds between pictures
-    count = int(np.ceil(span / step * (1.0 - 1e-9))) + 1
+    pictures = np.ceil(span / step * (1.0 - 1e-9)) + 1.0
+    if not pictures <= _MOST_PICTURES:
+        raise ValueError(
+            f"that would be {pictures:.3g} pictures, {_MOST_PICTURES} at most: use a larger --speed"
+        )
+    count = int(pictures)
     instants = np.minimum(times[0] + step * np.arange(count), times[-1])
     right = np.clip(np.searchsorted(times, instants), 1, len(times) - 1)
     share = (instants - times[right - 1]) / (times[right] - times[right - 1])
@@ -205,7 +211,6 @@ def _draw_moment(
     frame: int,
     text: str,
 ) -> None:
-    from der.fields import held_at
     from der.plotting.loads import draw_loads
     from der.plotting.shapes import draw_shapes
     from der.plotting.style import PALETTE
@@ -214,7 +219,7 @@ def _draw_moment(
 
     source = min(frame, len(result.times) - 1)
     draw_shapes(axes, result.rods, positions, PALETTE[0])
-    draw_supports(axes, result.rods, held_at(result, source), positions)
+    draw_supports(axes, result.rods, result.held_nodes(source), positions)
     draw_springs(axes, result.rods, elastic, positions)
     if result.modes is None and result.buckling is None:
         loads = replace(acting_loads(result, source), gravity=None)  # stands in the legend
@@ -226,12 +231,16 @@ def _set_stage(result: Result, cut: _Cut) -> Axes:
     """Make a figure with one set of axes: equal, with limits that hold the whole motion."""
     from matplotlib.figure import Figure
 
+    from der.plotting.lengths import label_positions
     from der.plotting.loads import draw_loads
+    from der.plotting.style import FIGURE_TITLE, wrapped
     from der.scene_loads import ActingLoads, acting_loads
 
     low, high = _extent(result, cut)
     left, right, top, bottom = _MARGINS
     room = _WIDTH - left - right  # for the axes
+    title = wrapped(title_of(result), FIGURE_TITLE, room)
+    top += _TITLE_LINE * (len(title) - 1)
     size = high - low
     height = float(np.clip(room * size[1] / size[0] + top + bottom, *_HEIGHT))
     height = 2.0 * round(0.5 * height * _DPI) / _DPI  # MP4 takes even numbers of pixels
@@ -243,10 +252,15 @@ def _set_stage(result: Result, cut: _Cut) -> Axes:
     middle = 0.5 * (low + high)
     axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
     axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
-    axes.set_xlabel("x [m]")
-    axes.set_ylabel("y [m]")
-    title = "\n".join(textwrap.wrap(result.scenario.title, 80)[:1])
-    figure.suptitle(title, x=left / _WIDTH, y=1.0 - 0.12 / height, ha="left", va="top")
+    label_positions(axes, low, high)
+    figure.suptitle(
+        "\n".join(title),
+        x=left / _WIDTH,
+        y=1.0 - 0.12 / height,
+        ha="left",
+        va="top",
+        parse_math=False,
+    )
     gravity = acting_loads(result, 0).gravity
     if gravity is not None:
         draw_loads(axes, result.rods, ActingLoads(gravity=gravity), cut.positions[0])

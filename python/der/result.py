@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from der._core import Model, Rod, Scenario
+from der._core import HeldNode, Model, Replay, Rod, Scenario
 from der.analyses import (
     BucklingModes,
     Modes,
@@ -103,6 +103,51 @@ class Result:
     def rods(self) -> list[Rod]:
         """The rods: which nodes are theirs, arc lengths, radii."""
         return self.model.rods
+
+    @cached_property
+    def _replay(self) -> Replay:
+        path = self.path
+        instants = self.times if path is None else path.factor
+        return Replay(self.scenario, instants, path is not None)
+
+    def along(self, rod: str, quantity: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return a quantity along a rod at every frame, where the discrete rod has it.
+
+        Parameters
+        ----------
+        rod
+            Name of the rod.
+        quantity
+            Any quantity of probes but the energies, such as ``moment``, whether the scene has a
+            probe of it or not.
+
+        Returns
+        -------
+        arc_lengths
+            Of the places [m], shape (places,): the nodes, those that bend, or the middles of the
+            edges.
+        values
+            In the SI unit of the quantity, shape (frames, places).
+
+        Raises
+        ------
+        DerError
+            If there is no such rod or quantity.
+
+        Notes
+        -----
+        Clamps that `Simulation.prescribe` turned are taken to stand as the scene has them, since
+        frames do not tell; this concerns the values at the clamp and at the node or edge beside it.
+        """
+        return self._replay.along(rod, quantity, self.positions, self.velocities)
+
+    def held_nodes(self, frame: int) -> list[HeldNode]:
+        """Return every node that a support of the scene holds, clamps turned as at a frame.
+
+        Those that `Simulation.prescribe` turned stand as the scene has them. Raises `DerError` if
+        there is no such frame.
+        """
+        return self._replay.held_nodes(frame)
 
     def plot(
         self,

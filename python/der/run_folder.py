@@ -21,12 +21,14 @@ if TYPE_CHECKING:
     import h5py
 
 _FORMAT_VERSION = 3
-#: What analyses find besides frames, with the unit of each array.
+#: What analyses find besides frames.
 _DATA_GROUPS = ("modes", "buckling", "path")
-_DATA_UNITS = {
+#: Unit of each of these arrays that is no pure number.
+DATA_UNITS = {
     "modes/frequencies": "Hz",
     "modes/growth_rates": "1/s",
     "modes/shapes": "kg^-1/2 m",
+    "buckling/rotations": "rad",
 }
 
 
@@ -145,7 +147,7 @@ def _write_results(file: h5py.File, result: Result) -> None:
     for name, probe in result.probes.items():
         _write(probes, name, np.asarray(probe), probe.unit)
     for name, values in result.data.items():
-        _write(file, name, values, _DATA_UNITS.get(name, ""))
+        _write(file, name, values, DATA_UNITS.get(name, ""))
     rods = file.create_group("rods")
     for rod in result.rods:
         _write_rod(rods.create_group(rod.name), rod)

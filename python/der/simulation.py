@@ -17,6 +17,7 @@ from der.errors import error_for
 from der.probe_series import make_probes
 from der.progress import ProgressFunction, ProgressLine
 from der.result import Result
+from der.scene_loads import value_at
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -38,13 +39,16 @@ class Simulation(_core.Simulation):
     Parameters
     ----------
     scenario
-        What to simulate.
+        A scenario, the path of a scene file, or a dict with the keys of a scene file.
 
     Raises
     ------
     SceneError, DerError
         Where the scene cannot be simulated.
     """
+
+    def __init__(self, scenario: SceneLike) -> None:
+        super().__init__(as_scenario(scenario))
 
     def run(
         self,
@@ -210,8 +214,7 @@ def run(
     >>> result = der.run("configs/simply_supported.yaml")
     >>> result.summary["probes"]["deflection"]["final"]
     """
-    simulation = Simulation(as_scenario(scenario))
-    return simulation.run(callback, out=out, progress=progress, check=check)
+    return Simulation(scenario).run(callback, out=out, progress=progress, check=check)
 
 
 def equilibrium(scenario: SceneLike) -> Result:
@@ -220,8 +223,8 @@ def equilibrium(scenario: SceneLike) -> Result:
     Parameters
     ----------
     scenario
-        A scenario, the path of a scene file, or a dict with the keys of a scene file. The loads are
-        those at time 0.
+        A scenario, the path of a scene file, or a dict with the keys of a scene file. Loads and
+        prescribed motions are those at time 0.
 
     Returns
     -------
@@ -254,7 +257,7 @@ def continuation(
     ----------
     scenario
         A scenario, the path of a scene file, or a dict with the keys of a scene file; its `time` or
-        `analysis` does not count.
+        `analysis` does not count. Tables over time have their value at time 0.
     vary
         ``loads``, ``supports`` (prescribed motions), or one of them by number, as ``loads.0``.
     start, to
@@ -296,11 +299,27 @@ def as_static(scenario: Scenario) -> Scenario:
 
 
 def _with_analysis(scenario: Scenario, analysis: Any) -> Scenario:
+    """Return a scene with what belongs to a run over time taken out, tables at time 0."""
     scene = scenario.to_dict()
     for key in ("time", "analysis"):
         scene.pop(key, None)
     scene.get("output", {}).pop("every", None)
+    if scene.get("start_from") == "equilibrium":
+        del scene["start_from"]  # it is looked for anyway
+    for key in ("loads", "supports"):
+        if key in scene:
+            scene[key] = _at_time_0(scene[key])
     return Scenario.from_dict({**scene, "analysis": analysis})
+
+
+def _at_time_0(part: Any) -> Any:
+    if isinstance(part, Mapping):
+        if "times" in part:
+            return value_at(part, 0.0).tolist()
+        return {key: _at_time_0(value) for key, value in part.items()}
+    if isinstance(part, list):
+        return [_at_time_0(value) for value in part]
+    return part
 
 
 def as_scenario(scenario: SceneLike) -> Scenario:

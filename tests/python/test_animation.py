@@ -7,7 +7,7 @@ from dataclasses import replace
 import der
 import numpy as np
 import pytest
-from der.animation import _cut
+from der.animation import _cut, _set_stage
 from der.film import make_film, round_speed, speed_text
 from matplotlib.colors import to_rgb
 from PIL import Image
@@ -53,6 +53,42 @@ def test_tip_is_drawn_where_it_is(swing, tmp_path):
     assert below == pytest.approx(-result.positions[-1, :, 1].min(), abs=0.02)
     aside = (first[:, 1].max() - last[:, 1].max()) / pixels
     assert aside == pytest.approx(1.0 - result.positions[-1, :, 0].max(), abs=0.02)
+
+
+@pytest.mark.parametrize("words", [3, 30, 300])
+def test_long_titles_are_not_cut_off(swing, words):
+    swing["title"] = "wonderful " * words
+    result = der.run(swing)
+    cut = _cut(result, make_film(result), 10.0, None)
+    axes = _set_stage(result, cut)
+    figure = axes.get_figure(root=True)
+    figure.draw_without_rendering()
+    box = figure._suptitle.get_window_extent()
+    assert box.x1 < figure.bbox.width
+    assert box.y0 > axes.get_window_extent().y1 + 15, "there is room for the time below it"
+    assert figure.bbox.height % 2 == 0
+
+
+def test_pictures_say_that_a_run_failed(unstable):
+    with pytest.raises(der.DivergedError) as caught:
+        der.run(unstable)
+    result = caught.value.result
+    axes = _set_stage(result, _cut(result, make_film(result), 10.0, None))
+    title = axes.get_figure(root=True).get_suptitle()
+    assert title == f"Three spheres in a fluid (diverged at t = {result.times[-1]:g} s)"
+
+
+def test_axes_share_one_unit(swing):
+    swing["rods"][0] |= {"to": [2e-3, 0], "cross_section": {"circle": {"radius": 1e-4}}}
+    swing["time"] = {"duration": 1e-3, "step": 1e-5, "integrator": "implicit_euler"}
+    swing["output"] = {"every": 1e-4}
+    result = der.run(swing)
+    axes = _set_stage(result, _cut(result, make_film(result), 10.0, None))
+    axes.get_figure(root=True).draw_without_rendering()
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("x [mm]", "y [mm]")
+    labels = [label.get_text() for label in axes.get_xticklabels()]
+    assert {"0.0", "2.0"} <= set(labels)
+    assert [axis.get_offset_text().get_text() for axis in (axes.xaxis, axes.yaxis)] == ["", ""]
 
 
 def test_springs_move_with_the_rod(swing, tmp_path, monkeypatch):
@@ -151,6 +187,8 @@ def test_paths_go_through_their_points(tube):
         ("a.avi", {}, r"a\.avi.*\.gif or \.mp4"),
         ("a.gif", {"fps": 0}, "fps goes up to 240"),
         ("a.gif", {"speed": -1}, "positive"),
+        ("a.gif", {"speed": 1e-9}, r"2\.5e\+10 pictures.*use a larger --speed"),
+        ("a.gif", {"speed": 1e-320}, "inf pictures"),
     ],
 )
 def test_mistakes(spheres, tmp_path, name, arguments, words):

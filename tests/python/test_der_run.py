@@ -141,6 +141,18 @@ def test_a_run_prints_a_summary_and_writes_its_folder(scene: Path, tmp_path: Pat
     assert summary["probes"]["y_mid"]["final"] == pytest.approx(-0.066153, abs=5e-7)
 
 
+def test_a_table_finer_than_the_steps_is_warned_of(scene: Path, tmp_path: Path) -> None:
+    jump = "{times: [1, 1.001], values: [[0, 0], [0, 0.1]]}"
+    push = f"  - point_force: {{rod: rod, at: start, force: {jump}}}\n"
+    scene.write_text(SPHERES.replace("loads:\n", "loads:\n" + push))
+    done = der_run(scene, "--out", tmp_path / "out")
+    assert done.returncode == 0
+    assert "warning" in done.stdout
+    assert "loads.0.point_force.force" in done.stdout
+    [warning] = summary_of(tmp_path / "out")["warnings"]
+    assert "1 and 1.001 s" in warning
+
+
 def test_the_default_folder_is_named_after_the_scene(scene: Path, tmp_path: Path) -> None:
     assert der_run(scene.name, cwd=tmp_path).returncode == 0
     assert (tmp_path / "runs" / "spheres" / "summary.json").exists()

@@ -182,6 +182,14 @@ def test_snippets_that_do_not_work(check_docs, tmp_path, capfd, old, new, compla
     assert complaint in printed
 
 
+def test_snippets_do_not_inherit_from_the_program_that_runs_them(check_docs, tmp_path, capfd):
+    """The program delays annotations; for a reader, a name in one that is not imported fails."""
+    text = "```python\nnumbers: dict[str, Any] = {}\n```\n"
+    code, printed = checked(check_docs, text, tmp_path, capfd)
+    assert code == 1
+    assert "name 'Any' is not defined" in printed
+
+
 def test_a_snippet_is_left_out_for_a_reason_only(check_docs, tmp_path, capfd):
     with pytest.raises(SystemExit, match="say why"):
         checked(check_docs, "<!-- no-test -->\n```sh\nfalse\n```\n", tmp_path, capfd)

@@ -63,10 +63,15 @@ def test_csv_of_paths_and_modes(tube, tmp_path):
     result = der.run(tube)
     *_, modes = result.export("csv", tmp_path)
     titles, rows = read_table(modes)
-    assert titles == ["mode", "frequency [Hz]", "rod", "node", "s [m]", "dx", "dy"]
+    shapes = ["dx [kg^-1/2 m]", "dy [kg^-1/2 m]"]
+    assert titles == ["mode", "frequency [Hz]", "rod", "node", "s [m]", *shapes]
     assert len(rows) == 2 * 21
     assert float(rows[21 + 5][1]) == result.modes.frequencies[1]
     assert [float(value) for value in rows[21 + 5][5:]] == result.modes.shapes[1, 5].tolist()
+    tube["analysis"] = {"buckling": {"count": 2}}
+    tube["loads"] = [{"point_force": {"rod": "beam", "at": "end", "force": [-1, 0]}}]
+    *_, modes = der.run(tube).export("csv", tmp_path)
+    assert read_table(modes)[0][-2:] == ["dx [1]", "dy [1]"]
 
 
 def test_npz(swing, tmp_path):
@@ -85,6 +90,16 @@ def test_npz(swing, tmp_path):
             scale = np.abs(known).max()
             assert arrays[f"rods/arm/{name}"][:, 4] == pytest.approx(known, abs=1e-8 * scale)
         again = der.Scenario.parse(str(arrays["scene"]))
+        units = {key: str(arrays[f"units/{key}"]) for key in ("times", "positions", "velocities")}
+        assert units == {"times": "s", "positions": "m", "velocities": "m/s"}
+        assert str(arrays["units/energies/bend"]) == str(arrays["units/work/loads"]) == "J"
+        for name, unit in {"arc_lengths": "m", "radius": "m", "edge_tension": "N"}.items():
+            assert str(arrays[f"units/{name}"]) == unit
+        without = {"scene", "status"}
+        for key in set(arrays.files) - without:
+            if not key.startswith("units/"):
+                name = key.rpartition("/")[2] if key.startswith("rods/") else key
+                assert f"units/{name}" in arrays.files
     assert again.to_dict() == result.scenario.to_dict()
 
 
@@ -134,6 +149,7 @@ def test_vtk_is_read_by_vtk(swing, tmp_path):
         assert np.all(points[:, 2] == 0.0)
         assert arrays["velocity"][:, :2] == pytest.approx(result.velocities[frame])
         assert arrays["radius"] == pytest.approx(np.full(18, 0.01))
+        assert np.array_equal(arrays["twist"], np.zeros(18))
         for name in ("curvature", "tension"):
             for node in (0, 4):
                 known = result.probes[f"{name}-{node}"]

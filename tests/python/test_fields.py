@@ -1,4 +1,4 @@
-"""Quantities along rods: the same numbers as the engine's probes."""
+"""Quantities along rods and held nodes at every frame: the same numbers as the engine's probes."""
 
 from dataclasses import replace
 
@@ -72,6 +72,40 @@ def test_clamps_that_turn(swing, curvature):
     check(result)
 
 
+def test_every_quantity_where_the_rod_has_it(swing):
+    """With a clamp that turns at one end, so that there are 11 nodes, 10 edges and 10 bends."""
+    swing["rods"][0] |= {"curvature": "tangent", "natural_curvature": 0.7}
+    swing["supports"][0]["prescribe"] = {"angle": TURN}
+    rod = der.Model(der.Scenario.from_dict(swing)).rods[0]
+    middles = 0.5 * (rod.arc_lengths[1:] + rod.arc_lengths[:-1])
+    places = dict.fromkeys(("x", "y", "vx", "vy", "speed"), rod.arc_lengths)
+    places |= dict.fromkeys(("turning_angle", "curvature", "moment"), rod.arc_lengths[:-1])
+    places |= dict.fromkeys(("strain", "tension"), middles)
+    swing["output"]["probes"] = {
+        f"{quantity}-{i}": {"rod": "arm", "at": float(s), "quantity": quantity}
+        for quantity, known in places.items()
+        for i, s in enumerate(known)
+    }
+    result = der.run(swing)
+    for quantity, known in places.items():
+        found, values = result.along("arm", quantity)
+        probes = np.column_stack([result.probes[f"{quantity}-{i}"] for i in range(len(known))])
+        assert found == pytest.approx(known, abs=1e-15)
+        assert np.abs(values - probes).max() <= 1e-8 * np.abs(probes).max(), quantity
+
+
+def test_held_nodes_turn_with_their_clamps(swing):
+    swing["supports"][0]["prescribe"] = {"angle": TURN}
+    swing["supports"].append({"rod": "arm", "at": {"node": 6}, "clamp": True})
+    swing["supports"].append({"rod": "arm", "at": "end", "fix": ["y"]})
+    result = der.run(swing)
+    held = [result.held_nodes(frame) for frame in range(len(result.times))]
+    assert {tuple(node.node for node in nodes) for nodes in held} == {(0, 6, 10)}
+    assert [nodes[0].tangent_angle for nodes in held] == pytest.approx(0.1 - 4.5 * result.times)
+    assert all(nodes[1].tangent_angle == 0.0 for nodes in held)
+    assert all(nodes[2].tangent_angle is None for nodes in held)
+
+
 def test_clamp_beside_a_free_end(swing):
     check(der.run(with_probes(swing, lambda rod, i: i < len(rod.nodes) - 1)))
 
@@ -96,6 +130,36 @@ def test_supports_that_a_continuation_turns(swing):
     result = der.run(with_probes(swing, lambda rod, i: i < len(rod.nodes) - 1))
     assert result.path.factor[-1] == pytest.approx(1.0)
     check(result)
+    frames = range(len(result.times))
+    turned = [result.held_nodes(frame)[0].tangent_angle for frame in frames]
+    assert turned == pytest.approx(0.9 * result.path.factor)
+
+
+def test_one_of_two_supports_that_a_continuation_turns(swing):
+    del swing["time"], swing["loads"]
+    del swing["output"]["every"]
+    swing["supports"][0]["prescribe"] = {"angle": 0.9}
+    swing["supports"].append(
+        {"rod": "arm", "at": "end", "clamp": True, "prescribe": {"x": -0.05, "angle": 0.4}}
+    )
+    swing["analysis"] = {"continuation": {"vary": "supports.1", "from": 0.2, "to": 1.5}}
+    result = der.run(with_probes(swing, lambda rod, i: True))
+    assert result.path.factor[-1] == pytest.approx(1.5)
+    check(result)
+    for frame, factor in enumerate(result.path.factor):
+        start, end = (held.tangent_angle for held in result.held_nodes(frame))
+        assert (start, end) == pytest.approx((0.9, 0.4 * factor))
+
+
+def test_rod_without_bending_stiffness(swing):
+    """A clamp does not hold its tangent; the chain still has a shape, and so a curvature."""
+    del swing["rods"][0]["material"]
+    swing["rods"][0]["cross_section"] = {"stiffness": {"EA": 1e3, "EI": 0, "mass_per_length": 1}}
+    swing["supports"][0]["prescribe"] = {"angle": TURN}
+    result = der.run(with_probes(swing, inner))
+    check(result)
+    assert np.all(result.along("arm", "moment")[1] == 0.0)
+    assert result.held_nodes(20)[0].tangent_angle == 0.0
 
 
 def test_free_ends_carry_on_and_short_rods_are_straight(spheres):
@@ -109,16 +173,54 @@ def test_free_ends_carry_on_and_short_rods_are_straight(spheres):
     assert np.all(fields.curvature == 0.0)
 
 
-def test_rods_in_space_have_a_curvature_without_sign(swing):
-    """A circle that leaves the plane; the engine has no such model yet, but positions may."""
-    from der.fields import make_rod_fields
+def test_drawn_circle(swing):
+    angle = np.linspace(0.0, 1.0, 11)
+    circle = np.column_stack([np.sin(angle), 1.0 - np.cos(angle)])
+    for key in ("nodes", "from", "to"):
+        del swing["rods"][0][key]
+    swing["rods"][0]["points"] = circle.tolist()
+    swing["supports"][0] = {"rod": "arm", "at": "start", "fix": ["x", "y"]}
+    (fields,) = rod_fields(der.run(swing))
+    assert fields.curvature[0] == pytest.approx(np.ones(len(angle)), rel=1e-3)
+    assert fields.tension[0] == pytest.approx(0.0)
+    assert replace(fields, velocities=circle[np.newaxis]).speed.shape == (1, len(angle))
 
+
+def test_no_frames(swing):
+    whole = der.run(swing)
+    result = replace(
+        whole, times=whole.times[:0], positions=whole.positions[:0], velocities=whole.velocities[:0]
+    )
+    (fields,) = rod_fields(result)
+    assert {values.shape for values in fields.named().values()} == {(0, 11)}
+    assert fields.edge_tension.shape == (0, 10)
+    with pytest.raises(der.DerError, match="there is no frame 0: the run has 0"):
+        result.held_nodes(0)
+
+
+def test_mistakes_are_named(swing):
     result = der.run(swing)
-    rod = result.rods[0]
-    angle = np.linspace(0.0, 1.0, len(rod.nodes))
-    circle = np.column_stack([np.sin(angle), 0.6 * np.cos(angle), 0.8 * np.cos(angle)])
-    positions = circle[np.newaxis]
-    fields = make_rod_fields(rod, circle, positions, np.zeros_like(positions), {})
-    assert fields.curvature == pytest.approx(np.ones((1, len(angle))), rel=1e-3)
-    assert fields.tension == pytest.approx(0.0)
-    assert replace(fields, velocities=positions).speed.shape == (1, len(angle))
+    with pytest.raises(der.DerError, match="no rod named 'leg'"):
+        result.along("leg", "tension")
+    for quantity in ("torsion", "bend_energy"):
+        with pytest.raises(der.DerError, match=f"'{quantity}' is not.*these are: x, y, .*moment"):
+            result.along("arm", quantity)
+    in_space = replace(result, positions=np.zeros((21, 11, 3)))
+    shapes = r"positions has the shape \(21, 11, 3\), not \(frames, nodes, dim\) = \(21, 11, 2\)"
+    with pytest.raises(ValueError, match=shapes):
+        in_space.along("arm", "tension")
+    with pytest.raises(ValueError, match="velocities has the shape"):
+        replace(result, velocities=result.velocities[1:]).along("arm", "tension")
+    with pytest.raises(der.DerError, match="which this scene does not ask for"):
+        der._core.Replay(result.scenario, [0.5], on_path=True)
+
+
+def test_node_that_two_supports_hold_is_held_in_both_directions(tube):
+    tube["supports"][0]["fix"] = ["x"]
+    tube["supports"].append({"rod": "beam", "at": "start", "fix": ["y"]})
+    held = der.held_nodes(der.Scenario.from_dict(tube))
+    assert [(node.node, node.components) for node in held] == [
+        (0, ["x", "y"]),
+        (20, ["y"]),
+        (0, ["x", "y"]),
+    ]

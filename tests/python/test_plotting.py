@@ -5,8 +5,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from der.plotting import PALETTE, pick_frames, style, time_colours
+from der.plotting.lengths import LengthScale
 from der.plotting.shapes import outline
-from der.plotting.style import quantity_text
+from der.plotting.style import quantity_text, wrapped
 from der.scene_loads import acting_loads
 from matplotlib.collections import PatchCollection, PolyCollection
 from matplotlib.colors import to_hex
@@ -68,6 +69,67 @@ def test_shapes_at_given_times(result):
     assert labels == ["0 s", "0.1 s", "1 s", "gravity 9.8 m/s²"]
     colours = [to_hex(line.get_color()) for line in drawn]
     assert colours == [to_hex(colour) for colour in time_colours(3)]
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "titles"),
+    [
+        ((0, 0), (1, 0.0008), ("x [m]", "y [m]")),
+        ((0, -2e-6), (2e-5, 0), ("x [µm]", "y [µm]")),
+        ((0, 0), (3e-3, 1e-3), ("x [mm]", "y [mm]")),
+        ((0, 0), (3e4, 0), ("x [km]", "y [km]")),
+        ((1e6 - 0.3, 0), (1e6 + 0.5, 1), ("x - 1000000 [m]", "y [m]")),
+        ((-1000.0, 0), (-999.998, 0), ("x + 1000000 [mm]", "y [mm]")),
+        ((0, 0), (0, 0), ("x [nm]", "y [nm]")),
+    ],
+)
+def test_lengths_have_one_unit(low, high, titles):
+    scale = LengthScale.of(np.array(low, float), np.array(high, float))
+    assert (scale.label(0), scale.label(1)) == titles
+
+
+@pytest.mark.parametrize(("start", "length"), [(0.0, 2e-5), (0.0, 1.0), (1e6, 1.0)])
+def test_ticks_say_all_that_there_is_to_say(swing, start, length):
+    """No power of ten and no offset stands beside an axis; ticks are short and in its unit."""
+    swing["rods"][0] |= {"from": [start, 0], "to": [start + length, 0]}
+    swing["rods"][0]["cross_section"] = {"circle": {"radius": 0.01 * length}}
+    swing["time"] |= {"duration": 0.02}
+    axes = der.run(swing).plot("shapes").axes[0]
+    axes.figure.canvas.draw()
+    for axis in (axes.xaxis, axes.yaxis):
+        assert axis.get_offset_text().get_text() == ""
+        labels = [label.get_text() for label in axis.get_ticklabels()]
+        assert all(len(label) <= 5 for label in labels)
+    metres = {2e-5: 1e-6, 1.0: 1.0}[length]
+    for tick, label in zip(axes.get_xticks(), axes.get_xticklabels(), strict=True):
+        shown = float(label.get_text().replace("\N{MINUS SIGN}", "-"))
+        assert start + metres * shown == pytest.approx(tick, abs=1e-6 * length)
+
+
+def test_titles_are_wrapped_to_their_width():
+    long = "WWWWWWWWWW " * 12
+    lines = wrapped(long, 12.0, 5.0)
+    figure = plt.figure(figsize=(5.0, 3.0))
+    for line in lines:
+        text = figure.text(0, 0, line, fontsize=12)
+        assert 0.4 < text.get_window_extent().width / figure.bbox.width <= 1.0
+    assert len(lines) == 4
+    assert lines[-1].endswith("…")
+    assert wrapped("Costs $5 or $6", 12.0, 5.0) == ["Costs $5 or $6"]
+
+
+def test_a_title_is_no_formula(result):
+    figure = der.plot(result, title=r"Costs $5 \frac or $6")
+    figure.canvas.draw()
+    assert figure.axes[0].get_title(loc="left") == r"Costs $5 \frac or $6"
+
+
+def test_modes_are_not_to_scale(swing):
+    del swing["time"], swing["output"]["every"]
+    swing["analysis"] = {"modes": {"count": 2}}
+    figure = der.run(swing).plot()
+    assert ["not to scale" in axes.texts[0].get_text() for axes in figure.axes] == [True, True]
+    assert figure.axes[-1].get_xlabel() == "x [m]"
 
 
 def test_thickness_and_spheres_are_to_scale(result):
@@ -236,6 +298,24 @@ def test_rounding_errors_are_not_blown_up(spheres):
 def test_what_is_not_there_is_an_error(result, arguments, words):
     with pytest.raises(ValueError, match=words):
         result.plot(**arguments)
+
+
+def test_what_has_no_time_has_no_shapes_at_times(tube):
+    for result, kind in (
+        (der.equilibrium(tube), "static"),
+        (der.continuation(tube), "continuation"),
+    ):
+        with pytest.raises(ValueError, match=f"a {kind} run has no time"):
+            result.plot(times=[3.0])
+
+
+def test_pictures_say_that_a_run_failed(unstable):
+    with pytest.raises(der.DivergedError) as caught:
+        der.run(unstable)
+    result = caught.value.result
+    title = result.plot("shapes").axes[0].get_title(loc="left")
+    assert title == f"Three spheres in a fluid (diverged at t = {result.times[-1]:g} s)"
+    assert result.plot(title="Mine").axes[0].get_title(loc="left") == "Mine"
 
 
 def test_no_probes_to_plot(spheres):

@@ -47,6 +47,26 @@ def test_summary_is_that_of_the_program(tube):
     assert deflection["min"] < result.probes["deflection"].min()
 
 
+def test_equal_steps_over_close_entries_of_a_table_are_warned_of_by_name(swing):
+    ramp = {
+        "times": [0, 0.5, 0.5004, 7, 7.0001],
+        "values": [[0, 0], [0, 0], [0, 1], [0, 1], [0, 0]],
+    }
+    slow = {"times": [0, 0.1], "values": [0, 0.01]}
+    swing["supports"][0]["prescribe"] = {"x": slow}
+    swing["loads"].append({"point_force": {"rod": "arm", "at": "end", "force": ramp}})
+    swing["time"] = {"duration": 0.6, "step": 1e-3}
+    [warning] = der.run(swing).summary["warnings"]
+    assert "loads.1.point_force.force" in warning
+    assert "0.5 and 0.5004 s" in warning
+    assert "step of 0.001 s" in warning
+    assert "time.tolerance" in warning
+    swing["time"]["step"] = 2e-4
+    assert der.run(swing).summary["warnings"] == []
+    swing["time"] = {"duration": 0.6, "tolerance": 1e-2}
+    assert der.run(swing).summary["warnings"] == []
+
+
 def test_probes_know_their_unit_and_summary(spheres):
     result = der.run(spheres)
     speed = result.probes["v_mid"]
@@ -168,6 +188,47 @@ def test_equilibrium_of_static_and_of_moving_scenes(tube):
     assert np.array_equal(of_moving.positions, of_static.positions)
     settled = der.run({**tube, "time": {"duration": 2, "step": 0.01}})
     assert settled.positions[-1] == pytest.approx(of_static.positions[-1], abs=1e-7)
+
+
+def test_equilibrium_takes_tables_at_time_0(tube):
+    tube["supports"][0] = {
+        "rod": "beam",
+        "at": "start",
+        "clamp": True,
+        "prescribe": {"angle": {"times": [-1, 1], "values": [0, 0.2]}},
+    }
+    load = tube["loads"][0]["point_force"]
+    load["force"] = {"times": [0, 1], "values": [[0, -100], [0, -200]]}
+    tube["start_from"] = "equilibrium"
+    found = der.equilibrium(tube)
+    started = der.Simulation(tube)  # which starts in the same equilibrium
+    assert found.positions[0] == pytest.approx(started.positions, abs=1e-9)
+    tube["supports"][0]["prescribe"]["angle"] = 0.1
+    load["force"] = [0, -100]
+    del tube["start_from"]
+    assert np.array_equal(found.positions, der.equilibrium(tube).positions)
+
+
+def test_continuation_takes_tables_at_time_0(tube):
+    tube["loads"][0]["point_force"]["force"] = {"times": [0, 1], "values": [[0, -100], [0, -200]]}
+    tube["start_from"] = "equilibrium"
+    last = der.continuation(tube, to=2).probes["deflection"][-1]
+    tube["loads"][0]["point_force"]["force"] = [0, -200]
+    assert last == pytest.approx(der.equilibrium(tube).probes["deflection"][-1], rel=1e-6)
+
+
+def test_everything_takes_a_scenario_a_path_or_a_dict(tube, tmp_path):
+    tube["time"] |= {"duration": 0.1}
+    scenario = der.Scenario.from_dict(tube)
+    path = tmp_path / "tube.yaml"
+    path.write_text(scenario.to_yaml())
+    for scene in (scenario, path, str(path), tube):
+        simulation = der.Simulation(scene)
+        simulation.step(10)
+        assert np.array_equal(simulation.positions, der.run(scene).positions[-1])
+        assert der.equilibrium(scene).status == "static_converged"
+    with pytest.raises(TypeError):
+        der.Simulation(3)
 
 
 def test_a_failed_run_raises_with_what_it_recorded(unstable):

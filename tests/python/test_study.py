@@ -138,6 +138,82 @@ def test_static_scene_varies_the_mesh(sagging):
         der.study(sagging, steps=[0.1])
 
 
+@pytest.fixture
+def column(sagging):
+    """A pinned column; buckles at (k pi)^2 N: with 10 elements at 9.79 and 38.2 N, with 20 at 9.849
+    and 39.15, with 40 at 9.8646 and 39.40."""
+    sagging["rods"][0]["cross_section"] = {
+        "stiffness": {"EA": 1e8, "EI": 1, "mass_per_length": 0.1}
+    }
+    del sagging["rods"][0]["material"], sagging["time"], sagging["output"]["every"]
+    sagging["loads"] = [{"point_force": {"rod": "arm", "at": "end", "force": [-1, 0]}}]
+    sagging["output"]["probes"] = {"end_x": {"rod": "arm", "at": "end", "quantity": "x"}}
+    return sagging
+
+
+def test_a_path_is_compared_by_its_events(column):
+    column["analysis"] = {"continuation": {"to": 20, "branches": 1, "points": 40}}
+    found = der.study(column, nodes=[11, 21, 41])
+    assert found.probes == ["factor, bifurcation 1", "end_x, bifurcation 1", "end_x, end"]
+    for row in found.of("factor, bifurcation 1"):
+        exact = np.pi**2
+        with_nodes = der.Scenario.from_dict(column).with_(**{"rods.arm.nodes": row.nodes})
+        path = der.run(with_nodes).path
+        error = exact - path.factor[path.rows("bifurcation")[0]]
+        assert row.error == pytest.approx(error, rel=0.01)
+        assert row.reference_error < 0.01 * row.error
+    assert found.notes == ()
+    assert "end_x, end: exact in every configuration" in found.advice()
+    found.plot()
+
+
+def test_a_mesh_with_other_events_is_told_apart(column):
+    column["analysis"] = {"continuation": {"to": 39}}
+    found = der.study(column, nodes=[11, 21])
+    rows = found.of("factor, bifurcation 1")
+    assert [(row.nodes, row.status) for row in rows] == [(11, "unmatched"), (21, "completed")]
+    assert math.isnan(rows[0].error)
+    assert not math.isnan(rows[0].cpu_seconds)
+    assert found.notes == (
+        "bifurcation: 2 with 11 nodes, 1 with 21 nodes, 1 with 41 nodes, 1 with 81 nodes; "
+        "which are the same is not known",
+    )
+    assert {row.status for row in found.of("end_x, end")} == {"completed"}
+
+
+def test_events_that_the_reference_does_not_agree_on_are_left_out(column):
+    column["analysis"] = {"continuation": {"to": 9.86}}
+    found = der.study(column, nodes=[11, 21])
+    assert found.probes == ["end_x, end"]
+    assert found.notes[0].startswith("left out: bifurcation: 1 with 11 nodes, 1 with 21 nodes, 0")
+    column["analysis"]["continuation"]["points"] = 2
+    with pytest.raises(ValueError, match="nothing can be compared"):
+        der.study(column, nodes=[11, 21])
+
+
+@pytest.mark.parametrize("analysis", ["modes", "buckling"])
+def test_frequencies_and_buckling_loads_are_compared(column, analysis):
+    column["analysis"] = {analysis: {"count": 2}}
+    del column["output"]
+    found = der.study(column, nodes=[11, 21, 41])
+    name = {"modes": "frequency", "buckling": "load factor"}[analysis]
+    assert found.probes == [f"{name} 1", f"{name} 2"]
+    bending = np.pi * np.array([1, 2])
+    exact = {
+        "modes": np.sqrt((bending**4 - bending**2) / 0.1) / (2 * np.pi),
+        "buckling": bending**2,
+    }[analysis]
+    for probe, value in zip(found.probes, exact, strict=True):
+        for row in found.of(probe):
+            with_nodes = der.Scenario.from_dict(column).with_(**{"rods.arm.nodes": row.nodes})
+            result = der.run(with_nodes)
+            ours = {
+                "modes": lambda r: r.modes.frequencies,
+                "buckling": lambda r: r.buckling.load_factors,
+            }[analysis](result)[int(probe[-1]) - 1]
+            assert row.error == pytest.approx(abs(ours - value), rel=0.05, abs=1e-6)
+
+
 def test_mesh_that_is_part_of_the_model(spheres):
     spheres["time"]["duration"] = 0.2
     found = der.study(spheres, steppers=["implicit_euler"], steps=[0.02, 0.01])

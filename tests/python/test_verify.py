@@ -11,6 +11,9 @@ from der.accuracy.error_bars import estimate_error
 from der.accuracy.probe_extremes import parabola_top
 from der.accuracy.refinement import rods_that_cannot_be_refined, with_elements, with_time
 from der.accuracy.resampling import find_corners, resample_line, resample_list
+from der.accuracy.static_verifier import StaticVerifier
+from der.accuracy.verification import Verification
+from der.accuracy.verification_runs import VerificationRuns
 from der.accuracy.verification_table import with_digits_of
 from der.cli import main
 
@@ -60,6 +63,20 @@ def half_circle(arm):
     for key in ("nodes", "from", "to"):
         del arm["rods"][0][key]
     return arm
+
+
+@pytest.fixture
+def column():
+    """A pinned column; buckles at pi^2 N, with 20 elements at 9.8493, with 40 at 9.8646 N."""
+    column = json.loads(json.dumps(ARM))
+    column["rods"][0]["cross_section"]["stiffness"]["EA"] = 1e8
+    column["supports"] = [
+        {"rod": "arm", "at": "start", "fix": ["x", "y"]},
+        {"rod": "arm", "at": "end", "fix": ["y"]},
+    ]
+    column["loads"] = [{"point_force": {"rod": "arm", "at": "end", "force": [-1, 0]}}]
+    column["output"]["probes"] = {"end_x": {"rod": "arm", "at": "end", "quantity": "x"}}
+    return column
 
 
 # Error bars from values.
@@ -411,3 +428,88 @@ def test_exit_codes(tube, unstable, tmp_path, capsys):
     assert main(["verify", str(failing)]) in (1, 3)
     assert "error: " in capsys.readouterr().err
     assert main(["verify", str(wrong)]) == 1
+
+
+# Analyses that find more than probes.
+
+
+def test_a_path_is_verified_by_its_events_and_its_end(column):
+    column["analysis"] = {"continuation": {"to": 50, "branches": 1, "points": 40}}
+    found = der.verify(column)
+    assert [value.label for value in found.values] == [
+        "factor, bifurcation 1",
+        "end_x, bifurcation 1",
+        "factor, bifurcation 2",
+        "end_x, bifurcation 2",
+        "end_x, end",
+    ]
+    assert not found.flagged
+    for number in (1, 2):
+        value = found["factor", f"bifurcation {number}"]
+        exact = (number * np.pi) ** 2
+        assert abs(value.value - exact) <= value.bar <= 2 * abs(value.value - exact)
+        assert value.extrapolated == pytest.approx(exact, rel=1e-4)
+        assert value.space.order == pytest.approx(2.0, abs=0.1)
+    assert "factor, bifurcation 1" in str(found)
+
+
+def test_an_event_that_finer_meshes_do_not_find_is_flagged(column):
+    column["analysis"] = {"continuation": {"to": 9.86}}
+    found = der.verify(column)
+    event = found["factor", "bifurcation 1"]
+    assert (event.verdict, event.bar) == ("unmatched in space", math.inf)
+    assert event.value == pytest.approx(9.8493, abs=1e-4)
+    assert not found["end_x", "end"].flagged
+    (note,) = found.notes
+    assert note.startswith(
+        "bifurcation: 1 with the scene as written, 1 with a tight tolerance, 0 with 41 nodes"
+    )
+
+
+def test_an_event_that_only_finer_meshes_find_is_flagged(column):
+    column["analysis"] = {"continuation": {"to": 9.86}}
+    coarse = der.Scenario.from_dict(column)
+    fine = with_elements(coarse, 2)
+    runs = VerificationRuns(der.run(fine), meshes=["41 nodes", "21 nodes"])
+    runs.time[0] = runs.space[0] = runs.base
+    runs.space[1] = der.run(coarse)
+    verifier = StaticVerifier(runs)
+    event = next(v for v in verifier.values() if v.label == "factor, bifurcation 1")
+    assert math.isnan(event.value)
+    assert event.flagged
+    assert event.to_dict()["value"] is None
+    found = Verification(fine, (event,), (), (), (), 0.0)
+    assert str(found).splitlines()[3].split()[:4] == ["factor,", "bifurcation", "1", "-"]
+    assert len(verifier.notes()) == 1
+
+
+def test_a_path_that_stops_before_its_last_factor_has_no_end(column):
+    column["analysis"] = {"continuation": {"to": 50, "points": 8}}
+    assert [v.label for v in der.verify(column).values if v.what == "end"] == []
+
+
+def test_frequencies_have_bars(column):
+    """f = 1/(2 pi) sqrt(((k pi)^4 EI - P (k pi)^2) / m) of a pinned beam under P = 1 N."""
+    column["analysis"] = {"modes": {"count": 3}}
+    del column["output"]
+    found = der.verify(column)
+    assert [(v.probe, v.what, v.unit) for v in found.values] == [
+        (f"frequency {k}", "final", "Hz") for k in (1, 2, 3)
+    ]
+    assert found.notes == ()
+    for k in (1, 2, 3):
+        exact = np.sqrt(((k * np.pi) ** 4 - (k * np.pi) ** 2) / 0.1) / (2 * np.pi)
+        value = found[f"frequency {k}"]
+        assert 0 < abs(value.value - exact) <= value.bar
+        assert not value.flagged
+
+
+def test_buckling_loads_have_bars(column):
+    column["analysis"] = {"buckling": {"count": 3}}
+    found = der.verify(column)
+    for k in (1, 2, 3):
+        value = found[f"load factor {k}"]
+        error = abs(value.value - (k * np.pi) ** 2)
+        assert error <= value.bar <= 3 * error
+        assert value.extrapolated == pytest.approx((k * np.pi) ** 2, rel=1e-3)
+    assert not found.flagged

@@ -48,7 +48,7 @@ def payload_of(page):
 
 
 def test_page_holds_the_run_and_nothing_from_elsewhere(swing, tmp_path):
-    swing["title"] = "Swing </script><b>&amp;"
+    swing["title"] = "Swing </script><b>&amp; <!--<script>"
     result = der.run(swing)
     page = result.view(tmp_path / "view.html")
     data = payload_of(page)
@@ -80,6 +80,40 @@ def test_supports_and_spheres(tube, spheres):
     data = make_payload(der.run(spheres))
     assert data["rods"][0]["spheres"] == [(0, 0.005), (1, 0.025), (2, 0.005)]
     assert data["low"][2] < -0.025 < 0.025 < data["high"][2], "spheres have a depth"
+
+
+def test_clamps_turn_as_they_are_prescribed_to(swing):
+    still = make_payload(der.run(swing))
+    assert still["supports"][0]["angles"] == [0.0], "once, whatever the rod does"
+    swing["supports"][0]["prescribe"] = {"angle": {"times": [0, 0.2], "values": [0, 1]}}
+    result = der.run(swing)
+    (clamp,) = make_payload(result)["supports"]
+    assert clamp["angles"] == pytest.approx(5.0 * result.times, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("start", "length", "titles", "metres"),
+    [
+        (0.0, 1.0, ["x [m]", "y [m]"], 1.0),
+        (0.0, 2e-5, ["x [µm]", "y [µm]"], 1e-6),
+        (1e6, 1.0, ["x - 1000000 [m]", "y [m]"], 1.0),
+        (-3.0, 5e-3, ["x + 3000 [mm]", "y [mm]"], 1e-3),
+    ],
+)
+def test_lengths_are_those_of_the_axes(swing, start, length, titles, metres):
+    rod = swing["rods"][0]
+    rod |= {"from": [start, 0], "to": [start + length, 0]}
+    rod["cross_section"] = {"circle": {"radius": 0.01 * length}}
+    del swing["time"], swing["output"]["every"], swing["loads"]
+    swing["analysis"] = "static"
+    result = der.run(swing)
+    data = make_payload(result)
+    assert data["axes"][:2] == titles
+    origin = start if abs(start) > 100 * length else 0.0
+    drawn = unpack(data["rods"][0]["positions"], 2, 11, 3)[-1, :, 0].astype(np.float64)
+    assert origin + metres * drawn == pytest.approx(result.positions[-1, :, 0], abs=1e-6 * length)
+    assert data["rods"][0]["radius"] == pytest.approx(0.01 * length / metres)
+    assert 0.0 < data["high"][0] - length / metres < 0.5 * length / metres
 
 
 def spring_supports(tube):
@@ -121,6 +155,39 @@ def test_loads_and_gravity(tube):
     assert (last[1]["place"], last[1]["share"]) == (19, 1.0)
     assert [load["text"] for load in last[2:] if load["text"]] == ["2 N/m"]
     assert data["load_set"][5:] == [data["load_set"][5]] * (len(data["load_set"]) - 5)
+
+
+def test_failed_runs_say_so(unstable):
+    with pytest.raises(der.DivergedError) as caught:
+        der.run(unstable)
+    result = caught.value.result
+    note = make_payload(result)["note"]
+    assert note.startswith(f"diverged at t = {result.times[-1]:g} s, gravity")
+
+
+def test_rounding_is_not_coloured(swing):
+    """A straight rod that nothing loads, turned so that its coordinates are not round."""
+    swing["rods"][0]["to"] = [0.3, 0.7]
+    swing["loads"] = [{"point_force": {"rod": "arm", "at": "end", "force": [0.3e-9, 0.7e-9]}}]
+    result = der.run(swing)
+    (fields,) = rod_fields(result)
+    assert 0.0 < np.abs(fields.curvature).max() < 1e-9, "rounding"
+    data = make_payload(result)["fields"]
+    for name in ("curvature", "tension", "speed"):
+        assert (data[name]["low"], data[name]["high"]) == (-1.0, 1.0), name
+
+
+def test_small_quantities_are_coloured(swing):
+    """A micro-rod under a piconewton has small numbers, but they are no noise."""
+    swing["rods"][0] |= {"to": [1e-5, 0], "cross_section": {"circle": {"radius": 1e-7}}}
+    swing["loads"] = [{"point_force": {"rod": "arm", "at": "end", "force": [1e-12, -1e-12]}}]
+    del swing["time"], swing["output"]["every"]
+    swing["analysis"] = "static"
+    result = der.run(swing)
+    (fields,) = rod_fields(result)
+    data = make_payload(result)["fields"]
+    assert data["tension"]["high"] == pytest.approx(fields.tension.max())
+    assert data["curvature"]["low"] == pytest.approx(fields.curvature.min())
 
 
 def test_static_modes_and_paths(tube):
@@ -165,7 +232,7 @@ def test_rods_in_space(swing, monkeypatch):
     model = type("Model", (), {"initial_positions": lifted[0], "rods": whole.rods})
     result = replace(whole, positions=lifted, velocities=resting)
     monkeypatch.setitem(result.__dict__, "model", model)
-    monkeypatch.setattr("der.fields.clamp_tangents", lambda result: {})
+    monkeypatch.setattr("der.film.rod_fields", lambda result: rod_fields(whole))
     data = make_payload(result)
     assert not data["flat"]
     assert unpack(data["rods"][0]["positions"], len(lifted), 11, 3) == pytest.approx(
@@ -323,6 +390,42 @@ def test_browser_draws_the_run(browser, swing, tmp_path):
     assert_no_errors(browser)
 
 
+def test_browser_keeps_clamps_upright(browser, swing, tmp_path):
+    """The wall stays across the tangent that is held, however the first edge turns."""
+    swing["rods"][0]["material"]["youngs_modulus"] = 1e4
+    swing["rods"][0]["nodes"] = 5
+    result = der.run(swing)
+    first_edge = result.positions[-1, 1] - result.positions[-1, 0]
+    assert first_edge[1] < -0.1 * first_edge[0]
+    open_page(browser, result.view(tmp_path / "view.html"))
+    move_slider(browser, 20)
+    wait_for(browser, "document.getElementById('caption').textContent == 't = 0.20 s'")
+    wall = browser.execute_script(
+        "const t = document.getElementById('scene').data[3]; return [t.x, t.y]"
+    )
+    x, y = np.array(wall)
+    size = payload_of(tmp_path / "view.html")["symbol"]
+    assert [x.min(), x.max()] == pytest.approx([-0.24 * size, 0.0], abs=1e-6)
+    assert [y.min(), y.max()] == pytest.approx([-size, size])
+
+
+def test_browser_titles_axes_beside_their_ticks(browser, spheres, tmp_path):
+    open_page(browser, der.run(spheres).view(tmp_path / "view.html"))
+    Image.fromarray(screenshot(browser)).save(tmp_path / "axes.png")
+    shown = labels(browser)
+    right, top = shown["x [m]"], shown["y [m]"]
+    width = browser.execute_script("return document.getElementById('scene').clientWidth")
+    assert 0.3 * width < right["x"] < 0.9 * width
+    assert top["y"] < right["y"]
+    assert top["x"] < right["x"]
+    placed, ranges = browser.execute_script(
+        "const s = document.getElementById('scene')._fullLayout.scene;"
+        "return [s.annotations.map((one) => [one.x, one.y]), [s.xaxis.range, s.yaxis.range]]"
+    )
+    for place in placed:  # on an end, rounding decides whether Plotly draws it
+        assert all(low < value < high for value, (low, high) in zip(place, ranges, strict=True))
+
+
 def test_browser_plays(browser, swing, tmp_path):
     open_page(browser, der.run(swing).view(tmp_path / "view.html"))
     play = browser.find_element("id", "play")
@@ -358,11 +461,11 @@ def test_browser_keeps_scale_and_axes(browser, spheres, tmp_path):
 def test_browser_draws_loads_and_supports(browser, tube, tmp_path):
     result = der.equilibrium(tube)
     open_page(browser, result.view(tmp_path / "view.html"))
-    supports, arrow, labels = browser.execute_script(
-        "const [a, b, c] = document.getElementById('scene').data.slice(3);"
-        "return [[a.x, a.y], [b.x, b.y], c.text]"
+    supports, arrow = browser.execute_script(
+        "const [a, b] = document.getElementById('scene').data.slice(3);"
+        "return [[a.x, a.y], [b.x, b.y]]"
     )
-    assert labels == ["2 kN"]
+    assert labels(browser)["2 kN"]["height"] > 10
     x, y = np.array(arrow)
     place = np.array(
         [np.interp(0.75, result.rods[0].arc_lengths, c) for c in result.positions[-1].T]
@@ -373,6 +476,39 @@ def test_browser_draws_loads_and_supports(browser, tube, tmp_path):
     assert [x.min(), x.max()] == pytest.approx(
         [0, result.positions[-1, -1, 0]], abs=2 * payload_of(tmp_path / "view.html")["symbol"]
     )
+    assert_no_errors(browser)
+
+
+def labels(browser):
+    """What stands in the scene besides ticks: text by text where it is on the screen [pixels]."""
+    return browser.execute_script(
+        "const found = {};"
+        "for (const one of document.querySelectorAll('#scene .annotation-text, #scene text')) {"
+        "  const { x, y, width, height } = one.getBoundingClientRect();"
+        "  if (one.textContent && width) found[one.textContent] = { x, y, width, height }; }"
+        "return found"
+    )
+
+
+def test_browser_keeps_labels_readable_when_they_change(browser, swing, tmp_path):
+    force = {"times": [0, 0.2], "values": [[0, 0], [0, -0.2]]}
+    swing["loads"] = [{"point_force": {"rod": "arm", "at": "end", "force": force}}]
+    open_page(browser, der.run(swing).view(tmp_path / "view.html"))
+    assert not [text for text in labels(browser) if text.endswith("N")]
+    before = None
+    for frame, text in ((5, "50 mN"), (12, "120 mN"), (20, "200 mN")):
+        move_slider(browser, frame)
+        caption = f"t = {frame / 100:.2f} s"
+        wait_for(browser, f"document.getElementById('caption').textContent == '{caption}'")
+        end = time.monotonic() + 20
+        while text not in (shown := labels(browser)):
+            assert time.monotonic() < end, shown
+            time.sleep(0.05)
+        assert [one for one in shown if one.endswith("N")] == [text]
+        assert shown[text]["height"] > 10
+        before = before or shown[text]
+        assert shown[text]["height"] == pytest.approx(before["height"], abs=1.5)
+    Image.fromarray(screenshot(browser)).save(tmp_path / "labels.png")
     assert_no_errors(browser)
 
 
@@ -393,6 +529,13 @@ def test_browser_draws_springs(browser, tube, tmp_path):
     place = [np.interp(0.31, arc, column) for column in last.T]
     assert starts[3] == pytest.approx(place, abs=1e-3), "between two nodes"
     assert len(starts) == 4
+    size = payload_of(tmp_path / "view.html")["symbol"]
+    ground = browser.execute_script(
+        "const t = document.getElementById('scene').data[3]; return [t.x, t.y]"
+    )
+    x, y = np.array(ground)
+    assert x.max() == pytest.approx(last[-1, 0] + 3.16 * size), "the wall of the spring along x"
+    assert y.min() == pytest.approx(min(place[1], last[-1, 1]) - 3.16 * size, abs=1e-3)
     assert_no_errors(browser)
 
 

@@ -4,6 +4,7 @@ import der
 import numpy as np
 import pytest
 from scenes import END, START, straight, tip_force
+from scipy import linalg
 
 SIZES = [20, 40, 80]
 #: Where the edges that supports hold, which stay lumped, still show at 20: an error of order 3.
@@ -100,3 +101,103 @@ def test_string_under_tension(reference, fitted_order):
         errors.append(frequencies(scene, 4)[0] / exact - 1)
     for of_mode in np.array(errors).T:
         assert fitted_order([1 / n for n in FINE], of_mode) > 1.9
+
+
+def many(rods, edges):
+    """Equal cantilevers beside one another, which know nothing of each other."""
+    scene = straight(edges, "clamped-free", EA=1e6)
+    rod, support = scene["rods"][0], scene["supports"][0]
+    names = [f"rod{i}" for i in range(rods)]
+    scene["rods"] = [
+        {**rod, "name": name, "from": [0, i], "to": [1, i]} for i, name in enumerate(names)
+    ]
+    scene["supports"] = [{**support, "rod": name} for name in names]
+    return scene
+
+
+def dense_frequencies(scene):
+    """All frequencies [Hz], of the full matrices."""
+    simulation = der.Simulation(der.Scenario.from_dict(scene))
+    simulation.equilibrium()
+    matrices = simulation.hessian().toarray(), simulation.mass().toarray()
+    return np.sqrt(linalg.eigvalsh(*matrices)) / (2 * np.pi)
+
+
+@pytest.mark.parametrize(("rods", "edges", "count"), [(20, 40, 25), (6, 20, 8), (15, 20, 18)])
+def test_none_of_many_equal_frequencies_is_missed(rods, edges, count):
+    simulation = der.Simulation(der.Scenario.from_dict(many(rods, edges)))
+    simulation.equilibrium()
+    modes = simulation.modes(count)
+    exact = dense_frequencies(many(1, edges))
+    expected = np.repeat(exact[:3], rods)[:count]
+    assert modes.frequencies == pytest.approx(expected, rel=1e-6)
+    shapes = modes.shapes.reshape(count, -1)[:, simulation.free_dofs]
+    assert shapes @ simulation.mass() @ shapes.T == pytest.approx(np.eye(count), abs=1e-7)
+
+
+def test_all_modes_there_are():
+    scene = straight(100, "clamped-free", EA=1e6)
+    simulation = der.Simulation(der.Scenario.from_dict(scene))
+    simulation.equilibrium()
+    exact = dense_frequencies(scene)
+    for count in (1, 7, 99, 100, 101, 199, 200, 1000):
+        found = simulation.modes(count).frequencies
+        assert found.shape == (min(count, 200),)
+        assert found == pytest.approx(exact[:count], rel=1e-6)
+
+
+STEEL = {
+    "cross_section": {"rectangle": {"width": 0.05, "height": 0.05}},
+    "material": {"youngs_modulus": 2e11, "density": 7850},
+}
+
+
+def steel_bar(edges, to, **more):
+    """A bar of length 1, as good as rigid."""
+    rod = {"name": "rod", "nodes": edges + 1, "from": [0, 0], "to": to, **STEEL}
+    return {"rods": [rod], "analysis": "static", **more}
+
+
+COUNTS = (1, 2, 3, 4, 10, 20, 30, 40)
+
+
+def found_frequencies(scene):
+    """Frequencies for each of COUNTS, and whatever grows."""
+    simulation = der.Simulation(der.Scenario.from_dict(scene))
+    simulation.equilibrium()
+    for count in COUNTS:
+        modes = simulation.modes(count)
+        assert not modes.growth_rates.any()
+        yield modes.frequencies
+
+
+@pytest.mark.parametrize("edges", [20, 100, 1000])
+def test_a_stiff_pendulum_swings_whatever_the_number_of_modes(edges):
+    pin = {**START, "fix": ["x", "y"]}
+    scene = steel_bar(edges, [0, -1], supports=[pin], loads=[{"gravity": [0, -9.81]}])
+    for found in found_frequencies(scene):
+        assert found[0] == pytest.approx(np.sqrt(1.5 * 9.81) / (2 * np.pi), rel=2e-4)
+        assert (found[1:] > 1.0).all()
+
+
+@pytest.mark.parametrize("edges", [20, 100, 1000])
+@pytest.mark.parametrize("stiffness", [1e-2, 1e2])
+def test_a_bar_on_a_soft_spring_is_told_from_a_free_one(stiffness, edges):
+    """One spring along the bar: it swings in that direction, and is free in the other two."""
+    along = np.array([np.cos(0.3), np.sin(0.3)])
+    springs = [{"rod": "rod", "at": "middle", "spring": {"stiffness": [stiffness, 0]}}]
+    held = np.sqrt(stiffness / (7850 * 0.05**2)) / (2 * np.pi)
+    for direction in ([1.0, 0.0], along.tolist()):
+        scene = steel_bar(edges, direction, supports=springs)
+        for found in found_frequencies(scene):
+            assert (found[:2] == 0.0).all()
+            assert found[2:3] == pytest.approx(held, rel=1e-5)
+            assert (found[3:] > 100.0).all()
+
+
+@pytest.mark.parametrize("direction", [[1.0, 0.0], [np.cos(0.3), np.sin(0.3)]])
+@pytest.mark.parametrize("edges", [20, 100, 1000])
+def test_rigid_motions_have_no_frequency_whatever_the_number_of_modes(edges, direction):
+    for found in found_frequencies(steel_bar(edges, direction)):
+        assert (found[:3] == 0.0).all()
+        assert (found[3:] > 100.0).all()

@@ -179,6 +179,43 @@ def test_ours_is_what_der_run_gives(rows, tmp_path):
     }
 
 
+def test_what_no_probe_gives_is_printed_by_its_command(rows, tmp_path):
+    named = {key for key, row in rows.items() if row["command"] and not row["probe"]}
+    assert named == {"explicit_seconds", "implicit_seconds", "blow_up"}
+    assert rows["blow_up"]["command"].startswith("der_run configs/falling_beam_3_explicit_unstable")
+    _, *arguments = shlex.split(rows["blow_up"]["command"])
+    failed = subprocess.run(
+        [DER_RUN, *arguments, "--out", str(tmp_path / "run")],
+        cwd=ROOT,
+        check=False,
+        capture_output=True,
+        text=True,
+    )
+    assert failed.returncode != 0
+    assert f"diverged at t = {value(rows['blow_up']):g} s" in failed.stderr
+    without = {key for key, row in rows.items() if row["ours"] and not row["command"]}
+    assert without == {"stable_step", "mass_5_to_3"}
+
+
+@pytest.mark.parametrize(
+    ("table", "column", "probe"),
+    [
+        ("deflection_by_load", "ours_m", "deflection"),
+        ("terminal_speeds", "ours_m_s", "v_mid"),
+    ],
+)
+def test_rows_of_tables_are_what_their_commands_give(folder, tmp_path, table, column, probe):
+    """The first and the last, which is the longest fall with the longest step."""
+    rows = read(folder / f"data/{table}.csv")
+    for number, row in enumerate((rows[0], rows[-1])):
+        program, *arguments = shlex.split(row["command"])
+        assert program == "der_run"
+        out = tmp_path / str(number)
+        subprocess.run([DER_RUN, *arguments, "--quiet", "--out", str(out)], cwd=ROOT, check=True)
+        found = json.loads((out / "summary.json").read_text())["probes"][probe]
+        assert value(row, column) == abs(found["final"])
+
+
 def test_exact_values_are_those_of_the_references(rows, reference):
     for key, problem, name in (
         ("speed_3", "falling_spheres", "n3.buoyant.tangent.vy_mid.t10"),
@@ -204,7 +241,9 @@ def test_what_is_said_of_the_report(rows):
     assert "0.76 m" in rows["deflection_20kN"]["remark"]
     assert "1.2\u00a0%" in rows["mass_5_to_3"]["remark"]
     assert "60\u00a0%" in rows["euler_bernoulli_20kN"]["remark"]
-    for key in ("speed_3", "terminal_5", "terminal_21_dry", "euler_bernoulli_20kN"):
+    assert rows["terminal_5"]["report"] == "", "its number is that of 21 nodes"
+    assert "0.38\u00a0%" in rows["terminal_5"]["remark"]
+    for key in ("speed_3", "terminal_21_dry", "euler_bernoulli_20kN"):
         row = rows[key]
         decimals = len(row["report"].partition(".")[2])
         assert f"{value(row, 'exact'):.{decimals}f}" == row["report"], key

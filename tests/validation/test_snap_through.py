@@ -3,11 +3,14 @@
 References: `references/arch.py`, continuation of the continuum by collocation.
 """
 
+from pathlib import Path
+
 import der
 import numpy as np
 import pytest
 from scenes import arch, buckled
 
+COLUMN = Path(__file__).resolve().parents[2] / "configs/euler_buckling.yaml"
 SIZES = [20, 40, 80]
 FINE = [80, 160, 320]  # for the sharp shapes of a pushed buckled beam
 
@@ -62,34 +65,57 @@ def test_arch_of_rise_0_05_has_skew_branches_between_its_bifurcations():
         assert path.factor[on_branch].min() == pytest.approx(last, abs=1e-2)
 
 
-@pytest.mark.parametrize("ends", ["clamped", "pinned"])
-def test_pushed_buckled_beam(reference, fitted_order, ends):
+# Between the limits of the clamped beam are the folds of the next test.
+@pytest.mark.parametrize(("ends", "limits"), [("clamped", [0, -1]), ("pinned", [0, 1, 2, 3])])
+def test_pushed_buckled_beam(reference, fitted_order, ends, limits):
     problem = f"buckled.{ends}.shortening0.02"
     folds, crossings = [], []
     for n in FINE:
         path = der.continuation(buckled(n, ends), to=40.0, points=2000).path
-        folds.append(path.factor[path.rows("fold")][:2])
+        folds.append(path.factor[path.rows("fold")][limits])
         crossings.append(path.factor[path.rows("bifurcation")][:1])
-    check_second_order(folds, events(reference, problem, "limits", 2), fitted_order, FINE)
+    check_second_order(folds, events(reference, problem, "limits", len(limits)), fitted_order, FINE)
     check_second_order(crossings, events(reference, problem, "bifurcations", 1), fitted_order, FINE)
 
 
-def test_clamped_beam_loses_its_symmetry_under_half_a_turn(reference, fitted_order):
+@pytest.mark.parametrize("steps", [{}, {"step": 0.01}])
+def test_clamped_beam_loses_its_symmetry_under_half_a_turn(reference, fitted_order, steps):
     """A bifurcation between the limits, to shapes that are still symmetric about the middle.
 
     In the chain a clamp and the middle under its load differ by order 2 in the element length,
     which disturbs the crossing: the path turns off to one side at a fold, whose load is off by the
-    disturbance to the power 2/3, order 4/3.
+    disturbance to the power 2/3, order 4/3. Long steps could go straight across, and must not.
     """
     problem = "buckled.clamped.shortening0.02"
     exact = events(reference, problem, "symmetric_bifurcations", 2)
     assert exact[0] == pytest.approx(-exact[1], abs=1e-9)
     errors = []
     for n in FINE:
-        path = der.continuation(buckled(n, "clamped"), to=40.0, points=2000, step=0.01).path
+        path = der.continuation(buckled(n, "clamped"), to=40.0, points=2000, **steps).path
         limit, first, second, last = path.rows("fold")
         assert path.factor[limit] == pytest.approx(-path.factor[last], abs=1e-6)
         assert path.factor[first] == pytest.approx(-path.factor[second], abs=1e-6)
         assert list(path.unstable_directions[[limit - 1, limit, first]]) == [1, 2, 3]
         errors.append(path.factor[second] - exact[0])
     assert fitted_order([1 / n for n in FINE], errors) == pytest.approx(4 / 3, abs=0.15)
+
+
+def test_long_steps_stay_on_the_path():
+    """An arch so high that mirrored sheets of its path are nearer than the next point."""
+    found = []
+    for steps in ({}, {"step": 5e-3}):
+        path = der.continuation(arch(20, 0.17), to=255.0, points=4000, **steps).path
+        met = np.flatnonzero(path.events != "")
+        found.append((list(path.events[met]), path.factor[met]))
+    assert len(found[0][0]) == 18
+    assert found[0][0] == found[1][0]
+    assert found[0][1] == pytest.approx(found[1][1], abs=1e-4)
+
+
+@pytest.mark.parametrize("curvature", [1e-2, 1e-4, 1e-8])
+def test_an_imperfect_column_has_no_bifurcation(curvature):
+    """It bends to one side from the start; a step straight across to the other would find one."""
+    column = der.load(COLUMN, **{"rods.column.natural_curvature": curvature})
+    path = der.continuation(column).path
+    assert not (path.events != "").any()
+    assert not path.unstable_directions.any()

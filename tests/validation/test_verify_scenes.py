@@ -12,6 +12,7 @@ import der
 import pytest
 from der.accuracy.probe_extremes import probe_values
 from der.accuracy.refinement import with_elements, with_time
+from der.accuracy.static_readings import static_readings
 from der.accuracy.time_levels import find_stepper, fixed_step, save_every_step
 
 CONFIGS = sorted((Path(__file__).resolve().parents[2] / "configs").glob("*.yaml"))
@@ -60,11 +61,14 @@ def within_bars(path):
     scenario = shortened(path)
     verification = der.verify(scenario)
     exact = truth(verification.scenario)
+
+    def true_value(value):
+        if scenario.is_static:
+            return static_readings(exact)[value.label].value
+        return probe_values(exact, value.probe)[value.what]
+
     return {
-        (path.stem, value.probe, value.what): abs(
-            value.value - probe_values(exact, value.probe)[value.what]
-        )
-        <= value.bar
+        (path.stem, value.probe, value.what): abs(value.value - true_value(value)) <= value.bar
         # The turning angle belongs to its mesh, and the truth stands on another one.
         or (value.space is None and len(verification.meshes) > 1)
         for value in verification.values
@@ -101,6 +105,20 @@ def test_bars_of_equilibria_hold_the_continuum(
     assert error <= found.bar <= 3.0 * error
     assert abs(found.extrapolated - exact) <= 0.1 * error
     assert not found.flagged
+
+
+def test_bars_of_a_path_hold_the_limit_loads_of_the_continuum(scene, reference):
+    """And the loads at its bifurcations; `references/arch.py` follows the continuum."""
+    found = der.verify(scene("snap_through_arch"))
+    for event, problem in (("fold", "limits"), ("bifurcation", "bifurcations")):
+        for number in (1, 2):
+            exact = reference("arch", f"arch.rise0.05.{problem}.{number}.load")
+            value = found["factor", f"{event} {number}"]
+            error = abs(value.value - exact)
+            assert error <= value.bar <= 3.0 * error
+            assert abs(value.extrapolated - exact) <= 0.1 * error
+    assert not found.flagged
+    assert {value.what.split()[0] for value in found.values} == {"fold", "bifurcation", "end"}
 
 
 @pytest.mark.parametrize("path", [path for path in CONFIGS if fails(path)], ids=lambda p: p.stem)

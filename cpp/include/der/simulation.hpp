@@ -74,7 +74,7 @@ class Simulation {
   [[nodiscard]] std::vector<Mode> modes(int count);
   /// Replaces the state by the equilibrium without loads, and returns its linear buckling modes
   /// under the scene's loads. Throws NotConvergedError.
-  std::vector<BucklingMode> buckling(int count);
+  LinearBuckling buckling(int count);
   /// Follows the equilibria of the scene along a factor, from the equilibrium at its first value.
   /// Leaves the state there. Throws NotConvergedError.
   std::vector<PathBranch> follow(const scenario::ContinuationAnalysis& analysis);

@@ -202,10 +202,11 @@ std::string modes_table(const RunOutcome& outcome, const Style& style) {
 }
 
 std::string buckling_table(const RunOutcome& outcome, const Style& style) {
-  if (outcome.buckling.empty()) return "  the loads do not make it buckle, however large\n";
+  const auto& modes = outcome.buckling.modes;
+  if (modes.empty()) return "  no load factor is critical by linear theory\n";
   std::vector<Row> rows{{"mode", "critical load factor", ""}};
-  for (std::size_t i = 0; i < outcome.buckling.size(); ++i) {
-    rows.push_back({std::to_string(i + 1), number(outcome.buckling[i].load_factor), ""});
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    rows.push_back({std::to_string(i + 1), number(modes[i].load_factor), ""});
   }
   return aligned(rows, style);
 }
@@ -244,7 +245,7 @@ std::string run_report(const Simulation& simulation, const Recorder& recorder,
   text += line("ran", what_ran(simulation), style);
   text += model_lines(simulation, style);
   text += cost_line(simulation, outcome, style);
-  for (const std::string& warning : warnings(simulation, recorder)) {
+  for (const std::string& warning : warnings(simulation, recorder, outcome)) {
     text += line("warning", style.warning(warning), style);
   }
   text += line("results", (folder.path() / "").string(), style);

@@ -59,10 +59,17 @@ std::vector<Dataset> datasets(const Simulation& simulation, const RunOutcome& ou
                             [](const Mode& mode) { return mode.growth_rate; }));
     result.push_back(shapes("modes/shapes", "kg^-1/2 m", model, modes));
   }
-  if (!outcome.buckling.empty()) {
-    result.push_back(column("buckling/load_factors", "", outcome.buckling,
-                            [](const BucklingMode& mode) { return mode.load_factor; }));
-    result.push_back(shapes("buckling/shapes", "", model, outcome.buckling));
+  if (!outcome.buckling.modes.empty()) {
+    const LinearBuckling& buckling = outcome.buckling;
+    const auto add = [&](const char* name, const char* unit, double times) {
+      result.push_back(column(name, unit, buckling.modes, [times](const BucklingMode& mode) {
+        return times * mode.load_factor;
+      }));
+    };
+    add("buckling/load_factors", "", 1.0);
+    add("buckling/rotations", "rad", buckling.rotation);
+    add("buckling/strains", "", buckling.strain);
+    result.push_back(shapes("buckling/shapes", "", model, buckling.modes));
   }
   if (!outcome.path.empty()) {
     const auto points = points_of(outcome);
@@ -82,14 +89,14 @@ std::vector<Dataset> datasets(const Simulation& simulation, const RunOutcome& ou
 std::string path_csv(const Simulation& simulation, const RunOutcome& outcome) {
   std::string text = "branch,factor,arc,stability,unstable_directions,event";
   for (const auto& probe : simulation.scenario().scene().output.probes) text += "," + probe.name;
-  text += "\n";
+  text += '\n';
   std::size_t row = 0;
   for (const auto& [branch, point] : points_of(outcome)) {
     text += fmt::format("{},{:.17g},{:.9g},{},{},{}", branch, point->factor, point->arc,
                         point->stability.name(), point->stability.unstable_directions,
                         event_name(point->event));
     for (const double value : outcome.path_probes[row++]) text += fmt::format(",{:.17g}", value);
-    text += "\n";
+    text += '\n';
   }
   return text;
 }

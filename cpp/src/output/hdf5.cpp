@@ -171,7 +171,8 @@ void write_attribute(hid_t object, const std::string& name, const std::string& v
   const Handle type = text_type(H5T_VARIABLE);
   const Handle attribute = writable_attribute(object, name, type.id());
   const char* text = value.c_str();
-  check(H5Awrite(attribute.id(), type.id(), &text), "write attribute '" + name + "'");
+  check(H5Awrite(attribute.id(), type.id(), static_cast<const void*>(&text)),
+        "write attribute '" + name + "'");
 }
 
 void write_attribute(hid_t object, const std::string& name, double value) {
@@ -185,7 +186,7 @@ void write_attribute(hid_t object, const std::string& name, std::int64_t value) 
 std::string read_string_attribute(hid_t object, const std::string& name) {
   const Handle attribute = open_attribute(object, name);
   char* text = nullptr;
-  check(H5Aread(attribute.id(), text_type(H5T_VARIABLE).id(), &text),
+  check(H5Aread(attribute.id(), text_type(H5T_VARIABLE).id(), static_cast<void*>(&text)),
         "read attribute '" + name + "'");
   std::string result = text == nullptr ? "" : text;
   if (text != nullptr) H5free_memory(text);  // HDF5 has allocated it

@@ -147,11 +147,20 @@ Weights sample_weights(const std::vector<Weighted>& weights) {
   return result;
 }
 
+std::unique_ptr<RodField> make_probed_field(const scenario::Probe& probe, const RodLayout& rod,
+                                            const Model& model) {
+  auto field = make_rod_field(probe.quantity, rod, model);
+  if (field->arc_length().empty()) {
+    throw Error("model_error", "probe '" + probe.name + "': rod '" + rod.name + "' bends nowhere");
+  }
+  return field;
+}
+
 std::unique_ptr<ProbeReader> make_point_reader(const scenario::Probe& probe, QuantityKind kind,
                                                const RodLayout& rod, const Model& model) {
   const double s = arc_length_of(*probe.at, rod);
   if (probe.quantity == "speed") return std::make_unique<SpeedReader>(node_weights(rod, s), rod);
-  auto field = make_rod_field(probe.quantity, rod, model);
+  auto field = make_probed_field(probe, rod, model);
   const bool at_nodes = kind == QuantityKind::Position || kind == QuantityKind::Velocity;
   Weights weights =
       at_nodes ? sample_weights(node_weights(rod, s)) : linear_weights(field->arc_length(), s);
@@ -163,8 +172,7 @@ std::unique_ptr<ProbeReader> make_reader(const scenario::Probe& probe, QuantityK
   if (kind == QuantityKind::Energy) return make_energy_reader(probe.quantity, probe.rod, model);
   const RodLayout& rod = model.rod(probe.rod.value());
   if (probe.over == scenario::Reduce::None) return make_point_reader(probe, kind, rod, model);
-  return std::make_unique<ExtremeReader>(make_rod_field(probe.quantity, rod, model), rod,
-                                         probe.over);
+  return std::make_unique<ExtremeReader>(make_probed_field(probe, rod, model), rod, probe.over);
 }
 
 }  // namespace

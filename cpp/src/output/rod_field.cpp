@@ -1,6 +1,7 @@
 #include "output/rod_field.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
+
 #include <cmath>
 #include <optional>
 
@@ -8,6 +9,7 @@
 #include "der/core/index.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "der/output/quantities.hpp"
 #include "der/supports/clamp.hpp"
 
 namespace der {
@@ -95,10 +97,7 @@ struct BendCell {
 };
 
 Vec2 tangent(const Clamp& clamp, const Model& model, const State& state) {
-  double angle = clamp.direction;
-  if (clamp.rotation >= 0) {
-    angle += model.controls.value(clamp.rotation, state.time, state.ramps);
-  }
+  const double angle = tangent_angle(clamp, model, state);
   return {std::cos(angle), std::sin(angle)};
 }
 
@@ -193,9 +192,16 @@ std::unique_ptr<RodField> make_bend_field(const std::string& quantity, const Rod
   auto what = Field::What::Moment;
   if (quantity == "turning_angle") what = Field::What::TurningAngle;
   if (quantity == "curvature") what = Field::What::Curvature;
-  const std::vector<Index> places = bending_nodes(rod);
-  if (places.empty()) throw Error("model_error", "rod '" + rod.name + "' bends nowhere");
-  return std::make_unique<Field>(what, rod, places, model);
+  return std::make_unique<Field>(what, rod, bending_nodes(rod), model);
+}
+
+std::string quantities_along_rods() {
+  std::string names;
+  for (const Quantity& quantity : quantities()) {
+    if (quantity.kind == QuantityKind::Energy) continue;
+    names += (names.empty() ? "" : ", ") + quantity.name;
+  }
+  return names;
 }
 
 }  // namespace
@@ -217,7 +223,8 @@ std::unique_ptr<RodField> make_rod_field(const std::string& quantity, const RodL
                ? make_bend_field<AngleCurvature>(quantity, rod, model)
                : make_bend_field<TangentCurvature>(quantity, rod, model);
   }
-  throw Error("model_error", "'" + quantity + "' is not a quantity along a rod");
+  throw Error("model_error", fmt::format("'{}' is not a quantity along a rod; these are: {}",
+                                         quantity, quantities_along_rods()));
 }
 
 }  // namespace der

@@ -19,7 +19,7 @@ class RodField {
   RodField& operator=(const RodField&) = delete;
   virtual ~RodField() = default;
 
-  /// Rest arc length of each sample [m], ascending; at least one.
+  /// Rest arc length of each sample [m], ascending; none if the rod has the quantity nowhere.
   [[nodiscard]] const std::vector<double>& arc_length() const { return arc_length_; }
   /// The value of sample number `i`.
   [[nodiscard]] virtual double sample(std::size_t i, const Model& model,

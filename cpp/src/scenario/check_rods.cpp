@@ -141,10 +141,9 @@ void check_velocity(CheckContext& context, int i) {
   if (context.complaints.under(path)) return;
   if (auto* constant = std::get_if<Components>(&rod.given_velocity)) {
     rod.initial_velocity.assign(rod.points.size(), *constant);
-  } else if (auto* list = std::get_if<std::vector<Components>>(&rod.given_velocity)) {
-    if (one_for_each_node(context, list->size(), rod.points.size(), path)) {
-      rod.initial_velocity = std::move(*list);
-    }
+  } else if (auto* list = std::get_if<std::vector<Components>>(&rod.given_velocity);
+             list != nullptr && one_for_each_node(context, list->size(), rod.points.size(), path)) {
+    rod.initial_velocity = std::move(*list);
   }
 }
 

@@ -37,14 +37,15 @@ class Table {
 
   /// `Owner` is S or a base of it; a member of type std::optional<T> takes a Format<T>.
   template <class Owner, class Member, class T>
-  Table& required(std::string key, Member Owner::* member, Format<T> format, std::string doc) {
+  Table& required(std::string key, Member Owner::* member, const Format<T>& format,
+                  std::string doc) {
     return field({std::move(key), format.shape, true, {}, false, std::move(doc)}, format,
                  assign(member));
   }
 
   /// `default_words` says what holds without the key where that is not the member's own value.
   template <class Owner, class Member, class T>
-  Table& optional(std::string key, Member Owner::* member, Format<T> format, std::string doc,
+  Table& optional(std::string key, Member Owner::* member, const Format<T>& format, std::string doc,
                   std::string default_words = {}) {
     FieldInfo info{std::move(key),           format.shape, false,
                    std::move(default_words), false,        std::move(doc)};
@@ -59,7 +60,7 @@ class Table {
 
   /// One kind of a mapping whose only key says which kind it is.
   template <class T, class Assign>
-  Table& kind(std::string key, Format<T> format, Assign set, std::string doc) {
+  Table& kind(std::string key, const Format<T>& format, Assign set, std::string doc) {
     info_.one_key = true;
     return field({std::move(key), format.shape, false, {}, false, std::move(doc)}, format, set);
   }

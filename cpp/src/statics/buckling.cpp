@@ -1,7 +1,11 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "der/assembly/element_energy.hpp"
 #include "der/core/error.hpp"
+#include "der/core/index.hpp"
+#include "der/kinematics/planar_edge.hpp"
 #include "der/loads/loads.hpp"
 #include "der/statics/modes.hpp"
 #include "der/statics/potential.hpp"
@@ -10,12 +14,76 @@
 namespace der {
 namespace {
 
-/// Load factors beyond this are none.
-constexpr double kLargestFactor = 1e12;
-constexpr double kSmallestFactor = 1e-12;
-/// Largest change of an edge by the first-order displacement from which the stiffness's derivative
-/// is taken: small against 1, large against rounding.
-constexpr double kProbe = 1e-5;
+/// An edge of the unloaded shape, as its stretch element sees it, and what the loads do to it.
+struct LoadedEdge {
+  std::array<Index, 4> dofs{};
+  Vec2 turn;              ///< gradient of its direction angle by its vector [1/m]
+  double length = 0.0;    ///< [m]
+  double strain = 0.0;    ///< to first order in the load factor
+  double tension = 0.0;   ///< [N], likewise
+  double rotation = 0.0;  ///< [rad], likewise
+
+  /// How much a displacement turns the edge [rad].
+  [[nodiscard]] double turned_by(const Vector& displacement) const {
+    const auto d = gather(dofs, displacement);
+    return turn.dot(d.tail<2>() - d.head<2>());
+  }
+};
+
+std::vector<LoadedEdge> loaded_edges(const Model& model, const Vector& controls,
+                                     const Vector& positions, const Vector& displacement) {
+  std::vector<LoadedEdge> edges;
+  const auto add = [&](const std::array<Index, 4>& dofs, const Stretch<2>::Constants& c,
+                       const Vec2& between_pivots) {
+    const auto x = gather(dofs, positions);
+    const auto d = gather(dofs, displacement);
+    const Vec2 e = x.tail<2>() - x.head<2>() + between_pivots;
+    const Vec2 change = d.tail<2>() - d.head<2>();
+    LoadedEdge& edge = edges.emplace_back();
+    edge.dofs = dofs;
+    edge.length = e.norm();
+    edge.turn = direction_gradient(e, 1.0 / e.squaredNorm());
+    edge.strain = e.dot(change) / (edge.length * c.rest_length);
+    edge.tension = c.EA * edge.strain;
+    edge.rotation = edge.turn.dot(change);
+  };
+  const auto& plain = std::get<ElementList<Stretch<2>>>(model.elements);
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    add(plain.dofs[i], plain.constants[i], Vec2::Zero());
+  }
+  const auto& clamped = std::get<ElementList<FromPivot<Stretch<2>>>>(model.elements);
+  for (std::size_t i = 0; i < clamped.size(); ++i) {
+    const auto& c = clamped.constants[i];
+    add(clamped.dofs[i], c.element,
+        c.last.offset(c.last.turn(controls)) - c.first.offset(c.first.turn(controls)));
+  }
+  return edges;
+}
+
+template <class Member>
+double largest(const std::vector<LoadedEdge>& edges, Member member) {
+  double result = 0.0;
+  for (const LoadedEdge& edge : edges) result = std::max(result, std::abs(edge.*member));
+  return result;
+}
+
+/// K1 in the layout of a linear solver: the sum of tension * length * turn turn'.
+Vector initial_stress_stiffness(const Model& model, const MatrixLayout& layout,
+                                const std::vector<LoadedEdge>& edges) {
+  Vector values = Vector::Zero(layout.num_values() + 1);
+  for (const LoadedEdge& edge : edges) {
+    Eigen::Vector4d slope;  // of the direction angle
+    slope << -edge.turn, edge.turn;
+    for (int column = 0; column < 4; ++column) {
+      for (int row = column; row < 4; ++row) {
+        const Index slot = layout.slot_or_spare(model.free_index[at(edge.dofs[at(row)])],
+                                                model.free_index[at(edge.dofs[at(column)])]);
+        values[slot] += edge.tension * edge.length * slope[row] * slope[column];
+      }
+    }
+  }
+  return values;
+}
 
 /// K0 + a K1, and the number of critical factors below a.
 class Pencil {
@@ -56,65 +124,80 @@ class Pencil {
 
 }  // namespace
 
-std::vector<BucklingMode> buckling_modes(Model& model, const LoadPath& loads,
-                                         const Assembler& assembler, LinearSolver& solver,
-                                         const Vector& positions, int count) {
+LinearBuckling linear_buckling(Model& model, const LoadPath& loads, const Assembler& assembler,
+                               LinearSolver& solver, const Vector& positions, int count) {
   const FactorGuard back_to_the_scene(loads, model);
   Stiffness stiffness(model, assembler, solver);
   Vector controls;
   Vector force;
-  // Sets the stiffness at a load factor and a shape; returns the unbalanced force.
-  const auto evaluate = [&](double factor, const Vector& shape) -> Vector {
+  // Sets the stiffness at a load factor; returns the unbalanced force.
+  const auto evaluate = [&](double factor) -> Vector {
     loads.apply(factor, model);
     model.controls.evaluate(0.0, controls);
     external_force(model, controls, Vector::Zero(model.num_dofs()), force);
-    stiffness.evaluate(shape, controls);
+    stiffness.evaluate(positions, controls);
     return (force - stiffness.gradient())(model.free_dofs);
   };
-  const Vector loaded = evaluate(1.0, positions);
-  const Vector unloaded = evaluate(0.0, positions);
+  const Vector loaded = evaluate(1.0);
+  const Vector unloaded = evaluate(0.0);
   const Stability stability = stiffness.stability();
-  if (stability.unstable_directions + stability.neutral_directions > 0) {
+  if (stability.unstable_directions + stability.neutral_directions + stability.unknown_directions >
+      0) {
     throw NotConvergedError(
         "the structure without its loads is not stable: it has no buckling loads", "not_held");
   }
-  const Vector k0 = stiffness.values();
   Vector step = loaded - unloaded;
   stiffness.factorize();
   stiffness.solve(step);
   Vector displacement = Vector::Zero(model.num_dofs());
   displacement(model.free_dofs) = step;
-  const double change = largest_edge_change(model, displacement);
-  if (change == 0.0) return {};
+  const auto edges = loaded_edges(model, controls, positions, displacement);
 
-  const double probe = kProbe / change;
-  evaluate(probe, positions + probe * displacement);
-  Vector k1 = stiffness.values();
-  evaluate(-probe, positions - probe * displacement);
-  k1 = (k1 - stiffness.values()) / (2.0 * probe);
+  LinearBuckling result;
+  result.rotation = largest(edges, &LoadedEdge::rotation);
+  result.strain = largest(edges, &LoadedEdge::strain);
+  const double noise = stiffness.rounding() * step.lpNorm<Eigen::Infinity>();
+  if (largest(edges, &LoadedEdge::tension) <= noise) return result;
 
-  Pencil pencil(solver, k0, k1);
-  std::vector<BucklingMode> modes;
+  const Vector& k0 = stiffness.values();
+  Vector k1 = initial_stress_stiffness(model, solver.layout(), edges);
+  // Factors are sought in units in which both matrices are of a size, so that no load is too large
+  // or too small. As K0 is positive definite beyond rounding, none is less than that.
+  const auto entries = [&](const Vector& values) {
+    return values.head(solver.layout().num_values()).lpNorm<Eigen::Infinity>();
+  };
+  const double unit = entries(k0) / entries(k1);
+  constexpr double kLeast = 1e-18;
+  constexpr double kMost = 1e8;
+  Pencil pencil(solver, k0, unit * k1);
+  const Index available = std::min<Index>(count, pencil.critical_below(kMost));
   std::vector<Vector> same;  // shapes of the factor at hand
-  double low = kSmallestFactor;
-  for (Index i = 0; i < std::min<Index>(count, model.num_free()); ++i) {
-    double high = std::max(low, 1e-3);
-    while (high < kLargestFactor && pencil.critical_below(high) <= i) {
-      low = high;
-      high *= 2.0;
-    }
-    if (high >= kLargestFactor) break;
-    const double factor = pencil.bisect(i, low, high);
-    if (!modes.empty() && factor > modes.back().load_factor * (1.0 + 1e-9)) same.clear();
+  double low = kLeast;
+  double before = 0.0;
+  for (Index i = 0; i < available; ++i) {
+    const double factor = pencil.bisect(i, low, kMost);
+    if (factor > before * (1.0 + 1e-9)) same.clear();
     same.push_back(pencil.shape(factor, same, model.num_free()));
     Vector shape = Vector::Zero(model.num_dofs());
     shape(model.free_dofs) = same.back();
-    Eigen::Index largest = 0;
-    shape.cwiseAbs().maxCoeff(&largest);
-    modes.push_back({factor, shape / shape[largest]});
+    // Taken element by element, the quotient keeps the digits of slender rods.
+    double released = 0.0;
+    for (const LoadedEdge& edge : edges) {
+      const double turned = edge.turned_by(shape);
+      released -= edge.tension * edge.length * turned * turned;
+    }
+    const double exact = second_variation(model, controls, positions, shape) / released;
+    // Where K1 is much the larger of the two, its rounding makes critical factors that are none.
+    if (!(std::abs(exact / (unit * factor) - 1.0) < 0.5)) break;
+    Eigen::Index main = 0;
+    shape.cwiseAbs().maxCoeff(&main);
+    result.modes.push_back({exact, shape / shape[main]});
+    before = factor;
     low = factor * (1.0 - 1e-12);
   }
-  return modes;
+  std::sort(result.modes.begin(), result.modes.end(),
+            [](const auto& a, const auto& b) { return a.load_factor < b.load_factor; });
+  return result;
 }
 
 }  // namespace der

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "der/core/error.hpp"
@@ -29,8 +30,14 @@ constexpr double kLargestBend = 0.9;
 constexpr double kShortestStep = 1e-7;
 /// Events are located to this, against the step in which they lie ...
 constexpr double kEventPlace = 1e-11;
-/// ... and two of them that are nearer than this are one.
+/// ... and no two of them are told apart that are nearer than this.
 constexpr double kSameEvent = 1e-6;
+/// Events that are nearer than this, against the largest step, are one: where a stiffness vanishes
+/// with the square of the way, rounding hides its sign on the square root of rounding.
+constexpr double kOnePlace = 1e-4;
+/// Points to either side of a located event that are farther apart than this, against the largest
+/// step, lie on different paths.
+constexpr double kJump = 1e-3;
 
 /// Free degrees of freedom and the factor.
 struct Extended {
@@ -215,18 +222,26 @@ class Follower {
            a.stability.unstable_directions == b.stability.unstable_directions;
   }
 
+  /// Where the path turns in the factor, or directions gain or lose their stability.
   struct Located {
     double step = 0.0;  // from the node before
     Node node;
-    PathEvent event = PathEvent::None;
+    bool turns = false;
+    int lost_directions = 0;
+    /// At a limit point the factor turns and a direction loses its stability. Where only one of the
+    /// two happens another path crosses: on a branch that passes through a symmetric bifurcation
+    /// again the factor turns, but both of its sides are alike.
+    [[nodiscard]] PathEvent event() const {
+      return turns && lost_directions != 0 ? PathEvent::Fold : PathEvent::Bifurcation;
+    }
   };
 
   /// Finds the events between `start` + `low` and `start` + `high` by bisection. `before` and
   /// `after` are the nodes there; places are told apart against the length `whole` of the first
-  /// interval.
-  void locate(const Node& start, double whole, double low, Node before, double high, Node after,
+  /// interval. False if the nodes lie on different paths.
+  bool locate(const Node& start, double whole, double low, Node before, double high, Node after,
               std::vector<Located>& events) {
-    if (same_state(before, after)) return;
+    if (same_state(before, after)) return true;
     int iterations = 0;
     while (high - low > kEventPlace * whole) {
       const double middle = 0.5 * (low + high);
@@ -239,33 +254,39 @@ class Follower {
         high = middle;
         after = *found;
       } else if (high - low > kSameEvent * whole) {
-        locate(start, whole, low, before, middle, *found, events);
-        locate(start, whole, middle, *found, high, after, events);
-        return;
+        return locate(start, whole, low, before, middle, *found, events) &&
+               locate(start, whole, middle, *found, high, after, events);
       } else {
         break;  // the factor turns where the stiffness loses its rank: one event, to rounding
       }
     }
-    const bool turns = before.rising() != after.rising();
-    // Where the stiffness is singular, the tangent that it gives is made of rounding.
-    if (!turns) after.tangent = start.tangent;
-    events.push_back({high, after, turns ? PathEvent::Fold : PathEvent::Bifurcation});
+    if (norm(combine(after.at, -1.0, before.at)) > kJump * options_.largest_step) {
+      return false;
+    }
+    events.push_back({high, after, before.rising() != after.rising(),
+                      after.stability.unstable_directions - before.stability.unstable_directions});
+    return true;
   }
 
-  /// Two turns at one place are none: there the stiffness is singular, and the sense of the tangent
-  /// made of rounding. What is left is a bifurcation.
-  static void merge(std::vector<Located>& events, const Node& start, double whole) {
-    constexpr double kOnePlace = 1e-5;
-    for (std::size_t i = 0; i + 1 < events.size(); ++i) {
-      Located& second = events[i + 1];
-      if (events[i].event != PathEvent::Fold || second.event != PathEvent::Fold ||
-          second.step - events[i].step > kOnePlace * whole) {
+  /// Makes one of events at one place. Where the stiffness is singular, inertia and sense of the
+  /// tangent are made of rounding: they may change several times.
+  void merge(std::vector<Located>& events, const Node& start) const {
+    std::vector<Located> merged;
+    for (Located& located : events) {
+      if (merged.empty() || located.step - merged.back().step > kOnePlace * options_.largest_step) {
+        merged.push_back(std::move(located));
         continue;
       }
-      second.event = PathEvent::Bifurcation;
-      second.node.tangent = start.tangent;
-      events.erase(events.begin() + static_cast<std::ptrdiff_t>(i));
+      Located& place = merged.back();
+      place.turns = place.turns != located.turns;
+      place.lost_directions += located.lost_directions;
+      place.node = std::move(located.node);
     }
+    for (Located& located : merged) {
+      // Nor is the tangent at a bifurcation known from there.
+      if (located.event() == PathEvent::Bifurcation) located.node.tangent = start.tangent;
+    }
+    events = std::move(merged);
   }
 
   void add_point(PathBranch& branch, const Node& node, double arc, PathEvent event) const {
@@ -298,6 +319,31 @@ class Follower {
            std::max(norm(back), norm(ahead)) < 1.5 * length;
   }
 
+  /// Whether a point `step` ahead may be the next one: the path bends little up to it.
+  [[nodiscard]] bool is_near(const Node& node, double step, const Node& found) const {
+    return dot(found.tangent, node.tangent) >= kLargestBend &&
+           step >= kLargestBend * norm(combine(found.at, -1.0, node.at));
+  }
+
+  /// If the factor passes `to`, or goes as far to the other side, on the way to `found`, moves
+  /// `found`, `reached` ahead, to that place and says so.
+  std::string stop_at_limits(const Node& node, Node& found, double& reached) {
+    const double before = progress(node.at.factor);
+    const double now = progress(found.at.factor);
+    for (const double limit : {1.0, -1.0}) {
+      if ((before - limit) * (now - limit) >= 0.0 || before == limit) continue;
+      const double share = (limit - before) / (now - before);
+      const auto last = node_at_factor(node, options_.from + limit * range_,
+                                       combine(node.at, share, combine(found.at, -1.0, node.at)));
+      if (last) {
+        found = *last;
+        reached = dot(node.tangent, combine(found.at, -1.0, node.at));
+      }
+      return limit > 0.0 ? "last factor" : "as far to the other side";
+    }
+    return "";
+  }
+
   /// Follows a branch from `node` on, whose tangent shows the way, and then those that leave it.
   /// `root` is the bifurcation at which it begins, if any.
   void follow(Node node, const Node* root, int depth, int parent, int side) {
@@ -319,32 +365,21 @@ class Follower {
       }
       int iterations = 0;
       auto found = next(node, step, iterations);
-      if (!found || dot(found->tangent, node.tangent) < kLargestBend) {
+      double reached = step;
+      std::string ending;
+      std::vector<Located> events;
+      if (found && is_near(node, step, *found)) ending = stop_at_limits(node, *found, reached);
+      if (!found || !is_near(node, reached, *found) ||
+          !locate(node, reached, 0.0, node, reached, *found, events)) {
         step *= 0.5;
         if (step < kShortestStep * options_.largest_step) branch.ending = "no further point found";
         continue;
       }
-      double reached = step;
-      const double before = progress(node.at.factor);
-      const double now = progress(found->at.factor);
-      for (const double limit : {1.0, -1.0}) {
-        if ((before - limit) * (now - limit) >= 0.0 || before == limit) continue;
-        const double share = (limit - before) / (now - before);
-        const double factor = options_.from + limit * range_;
-        const auto last = node_at_factor(
-            node, factor, combine(node.at, share, combine(found->at, -1.0, node.at)));
-        if (last) {
-          found = last;
-          reached = dot(node.tangent, combine(found->at, -1.0, node.at));
-        }
-        branch.ending = limit > 0.0 ? "last factor" : "as far to the other side";
-      }
-      std::vector<Located> events;
-      locate(node, reached, 0.0, node, reached, *found, events);
-      merge(events, node, reached);
+      branch.ending = ending;
+      merge(events, node);
       for (const Located& located : events) {
-        add_point(branch, located.node, arc + located.step, located.event);
-        if (located.event == PathEvent::Bifurcation) bifurcations.push_back(located.node);
+        add_point(branch, located.node, arc + located.step, located.event());
+        if (located.event() == PathEvent::Bifurcation) bifurcations.push_back(located.node);
       }
       arc += reached;
       add_point(branch, *found, arc, PathEvent::None);

@@ -1,6 +1,8 @@
 #include "der/statics/modes.hpp"
 
 #include <Spectra/SymGEigsShiftSolver.h>
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +10,7 @@
 
 #include "der/core/constants.hpp"
 #include "der/core/error.hpp"
+#include "der/core/index.hpp"
 #include "der/statics/potential.hpp"
 #include "der/statics/stiffness.hpp"
 
@@ -17,12 +20,18 @@ namespace {
 /// Up to this many degrees of freedom the inverse is formed: Lanczos' method needs room.
 constexpr Index kSmall = 24;
 
-/// (K - shift M)^-1 as Spectra wants it, by the linear solver.
+/// (K - shift M)^-1 as Spectra wants it, by the linear solver, with the shapes that are known
+/// already left out of the result.
 class ShiftInvert {
  public:
   using Scalar = double;
-  ShiftInvert(Stiffness& stiffness, const Model& model)
-      : stiffness_(stiffness), mass_(model.mass), size_(model.num_free()) {}
+  ShiftInvert(Stiffness& stiffness, const Model& model, const Eigen::MatrixXd& known,
+              const Eigen::MatrixXd& momenta)
+      : stiffness_(stiffness),
+        mass_(model.mass),
+        size_(model.num_free()),
+        known_(known),
+        momenta_(momenta) {}
 
   [[nodiscard]] Eigen::Index rows() const { return size_; }
   [[nodiscard]] Eigen::Index cols() const { return size_; }
@@ -30,6 +39,7 @@ class ShiftInvert {
   void perform_op(const double* in, double* out) const {
     work_ = Eigen::Map<const Vector>(in, size_);
     stiffness_.solve(work_);
+    if (known_.cols() > 0) work_ -= known_ * (momenta_.transpose() * work_);
     Eigen::Map<Vector>(out, size_) = work_;
   }
 
@@ -37,6 +47,8 @@ class ShiftInvert {
   Stiffness& stiffness_;
   const Mass& mass_;
   Index size_;
+  const Eigen::MatrixXd& known_;    // one a column, of modal mass 1
+  const Eigen::MatrixXd& momenta_;  // M times those
   mutable Vector work_;
 };
 
@@ -78,35 +90,48 @@ Eigen::MatrixXd dense_vectors(const ShiftInvert& inverse, const MassProduct& mas
   return factor.matrixU().solve(scaled);
 }
 
-/// Eigenvectors of K v = w^2 M v, one a column, of the `count` eigenvalues nearest above `shift`.
-Eigen::MatrixXd lowest_vectors(ShiftInvert& inverse, MassProduct& mass, Index count, double shift) {
-  const Index size = static_cast<Index>(inverse.rows());
-  if (size <= kSmall) {
-    inverse.set_shift(shift);
-    return dense_vectors(inverse, mass, count);
+/// A shape v of modal mass 1 with the square of its angular frequency, v' K v.
+struct Shape {
+  double square = 0.0;  ///< [1/s^2]
+  double terms = 0.0;   ///< what was summed to get it, by size
+  Vector vector;        ///< all degrees of freedom
+};
+
+/// What rounding in the matrix K does to the squares w^2 of K v = w^2 M v.
+struct Noise {
+  /// [1/s^2] it moves them by up to this, and mixes shapes that are not further apart.
+  double square = 0.0;
+  Index below = 0;      ///< number of squares below -square: unstable directions
+  Index near_zero = 0;  ///< number of those between -square and square
+  /// [1/s^2] What it leaves in the square of a shape near zero, of the shapes that are not: they
+  /// come in with the share of the noise in their own square, and by the sum over many rounding
+  /// errors, not by the largest.
+  double left = 0.0;
+};
+
+Noise matrix_noise(Stiffness& stiffness, const Model& model) {
+  Noise noise;
+  noise.square = stiffness.rounding() / model.mass.lower_bound()(model.free_dofs).minCoeff();
+  const auto below = [&](double square) {
+    return stiffness.factorize(-square, model.mass).negative_pivots;
+  };
+  noise.below = below(-noise.square);
+  noise.near_zero = std::max<Index>(0, below(noise.square) - noise.below);
+  double next = noise.square;
+  while (below(4.0 * next) == noise.below + noise.near_zero &&
+         noise.below + noise.near_zero < model.num_free()) {
+    next *= 4.0;
   }
-  constexpr int kRestarts = 1000;
-  constexpr double kTolerance = 1e-12;
-  const Index basis = std::min(size, std::max<Index>(2 * count + 1, 20));
-  Spectra::SymGEigsShiftSolver<ShiftInvert, MassProduct, Spectra::GEigsMode::ShiftInvert> solver(
-      inverse, mass, count, basis, shift);
-  const Vector start = unstructured_vector(size);
-  solver.init(start.data());
-  solver.compute(Spectra::SortRule::LargestMagn, kRestarts, kTolerance,
-                 Spectra::SortRule::SmallestAlge);
-  if (solver.info() != Spectra::CompInfo::Successful) {
-    throw NotConvergedError("the vibration modes did not converge; ask for fewer, or for more");
-  }
-  return solver.eigenvectors();
+  const double typical = noise.square / (8.0 * std::sqrt(model.num_free()));
+  noise.left = typical * typical / next;
+  return noise;
 }
 
-/// A shift below all eigenvalues w^2 of K v = w^2 M v, near enough to the lowest ones for their
-/// digits; `highest` is set to about the highest of the `count` lowest ones.
-double shift_below(Stiffness& stiffness, const Model& model, Index count, double& highest) {
-  const double least = stiffness.rounding() / model.mass.lower_bound()(model.free_dofs).minCoeff();
+/// A shift below all squares w^2, near enough to the `count` lowest ones for their digits.
+double shift_below(Stiffness& stiffness, const Model& model, Index count, double least) {
   double below = least;
   while (stiffness.factorize(below, model.mass).negative_pivots > 0) below *= 4.0;
-  highest = least;
+  double highest = least;
   while (stiffness.factorize(-highest, model.mass).negative_pivots < count) highest *= 4.0;
   return -std::max(below, 0.01 * highest);
 }
@@ -123,48 +148,165 @@ Vector over_all(const Model& model, const Vector& free) {
   return full;
 }
 
-/// The largest component becomes positive.
-void fix_sign(Vector& shape) {
-  Eigen::Index largest = 0;
-  shape.cwiseAbs().maxCoeff(&largest);
-  if (shape[largest] < 0.0) shape = -shape;
-}
+/// The shapes of lowest square w^2, found in as many passes as it takes until none is missing.
+class ModeSearch {
+ public:
+  ModeSearch(const Model& model, Stiffness& stiffness, const Vector& positions,
+             const Vector& controls)
+      : model_(model),
+        stiffness_(stiffness),
+        positions_(positions),
+        controls_(controls),
+        known_(model.num_free(), 0),
+        momenta_(model.num_free(), 0) {}
+
+  /// The `count` lowest or more, by ascending square.
+  std::vector<Shape> lowest(Index count, const Noise& noise) {
+    constexpr int kPasses = 50;
+    const double shift = shift_below(stiffness_, model_, count, noise.square);
+    Index missing = count;
+    for (int pass = 0; pass < kPasses && missing > 0; ++pass) {
+      add(pass_vectors(missing, shift, pass));
+      missing = std::max(count - static_cast<Index>(shapes_.size()),
+                         missing_below_highest(count, shift, noise));
+    }
+    if (missing > 0) {
+      throw NotConvergedError(
+          fmt::format("{} of the {} lowest vibration modes cannot be found; ask for fewer, or for "
+                      "more",
+                      missing, count));
+    }
+    unmix(noise);
+    return std::move(shapes_);
+  }
+
+ private:
+  /// Lanczos' method sees one shape of a repeated square, and others only by rounding.
+  Eigen::MatrixXd pass_vectors(Index count, double shift, int pass) {
+    constexpr int kRestarts = 1000;
+    constexpr double kTolerance = 1e-12;
+    const Index size = model_.num_free();
+    ShiftInvert inverse(stiffness_, model_, known_, momenta_);
+    MassProduct mass(model_);
+    if (pass == 0 && (size <= kSmall || 2 * count >= size)) {
+      inverse.set_shift(shift);
+      return dense_vectors(inverse, mass, count);
+    }
+    const Index wanted = std::min(count, size - 1);
+    const Index basis = std::min(size, std::max<Index>(2 * wanted + 1, 20));
+    Spectra::SymGEigsShiftSolver<ShiftInvert, MassProduct, Spectra::GEigsMode::ShiftInvert> solver(
+        inverse, mass, wanted, basis, shift);
+    // Another start each time: of a repeated square, a start holds only one shape.
+    const Vector start = unstructured_vector((pass + 1) * size).tail(size);
+    solver.init(start.data());
+    solver.compute(Spectra::SortRule::LargestMagn, kRestarts, kTolerance,
+                   Spectra::SortRule::SmallestAlge);
+    if (solver.info() != Spectra::CompInfo::Successful) {
+      throw NotConvergedError("the vibration modes did not converge; ask for fewer, or for more");
+    }
+    return solver.eigenvectors();
+  }
+
+  void add(const Eigen::MatrixXd& vectors) {
+    const MassProduct mass(model_);
+    const Eigen::Index old = known_.cols();
+    known_.conservativeResize(Eigen::NoChange, old + vectors.cols());
+    momenta_.conservativeResize(Eigen::NoChange, old + vectors.cols());
+    for (Eigen::Index i = 0; i < vectors.cols(); ++i) {
+      const Shape& added = shapes_.emplace_back(measured(over_all(model_, vectors.col(i))));
+      known_.col(old + i) = added.vector(model_.free_dofs);
+      mass.perform_op(known_.col(old + i).data(), momenta_.col(old + i).data());
+    }
+    sort();
+  }
+
+  /// How many of the `count` lowest the inertia counts below the highest one but are not there.
+  Index missing_below_highest(Index count, double shift, const Noise& noise) {
+    constexpr double kSame = 1e-9;
+    const auto last = std::min(shapes_.size(), at(count)) - 1;
+    const double highest = shapes_[last].square;
+    const double cut = highest - kSame * (highest - shift) - noise.square;
+    const auto found = std::count_if(shapes_.begin(), shapes_.end(),
+                                     [cut](const Shape& s) { return s.square < cut; });
+    const Index there = stiffness_.factorize(-cut, model_.mass).negative_pivots;
+    return std::min(there, count) - static_cast<Index>(found);
+  }
+
+  /// Of shapes whose squares are near zero the matrix gives any mixture: rigid motions and a bar on
+  /// a soft spring, say. The energies of the elements know better.
+  void unmix(const Noise& noise) {
+    const auto size = static_cast<Eigen::Index>(noise.near_zero);
+    if (size < 2) return;
+    const auto at_zero = [&](Eigen::Index i) -> Shape& {
+      return shapes_[at(noise.below) + static_cast<std::size_t>(i)];
+    };
+    const auto energy = [&](const Vector& v) {
+      return second_variation(model_, controls_, positions_, v);
+    };
+    Eigen::MatrixXd stiffness(size, size);
+    Eigen::MatrixXd vectors(model_.num_dofs(), size);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const Vector& v = at_zero(i).vector;
+      vectors.col(i) = v;
+      stiffness(i, i) = at_zero(i).square;
+      for (Eigen::Index j = 0; j < i; ++j) {
+        const Vector& w = at_zero(j).vector;
+        stiffness(i, j) = 0.25 * (energy(v + w) - energy(v - w));
+      }
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness);  // lower triangle
+    for (Eigen::Index i = 0; i < size; ++i) {
+      at_zero(i) = measured(vectors * solver.eigenvectors().col(i));
+    }
+    sort();
+  }
+
+  /// A shape scaled to modal mass 1, its largest component positive.
+  [[nodiscard]] Shape measured(Vector v) const {
+    Eigen::Index largest = 0;
+    v.cwiseAbs().maxCoeff(&largest);
+    v *= std::copysign(1.0, v[largest]) / std::sqrt(2.0 * model_.mass.kinetic_energy(v));
+    // Taken element by element, which keeps the digits of soft modes of stiff rods.
+    const SummedVariation sum = summed_variation(model_, controls_, positions_, v);
+    return {sum.value, sum.terms, std::move(v)};
+  }
+
+  void sort() {
+    std::sort(shapes_.begin(), shapes_.end(),
+              [](const Shape& a, const Shape& b) { return a.square < b.square; });
+  }
+
+  const Model& model_;
+  Stiffness& stiffness_;
+  const Vector& positions_;
+  const Vector& controls_;
+  std::vector<Shape> shapes_;  // by ascending square
+  Eigen::MatrixXd known_;      // the same over the free degrees of freedom, as they were found
+  Eigen::MatrixXd momenta_;    // M times those
+};
 
 }  // namespace
 
 std::vector<Mode> vibration_modes(const Model& model, const Assembler& assembler,
                                   LinearSolver& solver, const Vector& positions,
                                   const Vector& controls, int count) {
-  /// Squares of frequencies below this share of the highest are those of rigid motions.
-  constexpr double kRigid = 1e-10;
   check_masses(model);
   const Index wanted = std::min<Index>(count, model.num_free());
   Stiffness stiffness(model, assembler, solver);
   stiffness.evaluate(positions, controls);
-  double highest = 0.0;
-  const double shift = shift_below(stiffness, model, wanted, highest);
-  ShiftInvert inverse(stiffness, model);
-  MassProduct mass(model);
-  const Index computed =
-      model.num_free() <= kSmall ? wanted : std::min(wanted, model.num_free() - 1);
-  const Eigen::MatrixXd vectors = lowest_vectors(inverse, mass, computed, shift);
+  const Noise noise = matrix_noise(stiffness, model);
+  auto shapes = ModeSearch(model, stiffness, positions, controls)
+                    .lowest(std::max(wanted, noise.below + noise.near_zero), noise);
+  shapes.resize(at(wanted));
 
-  std::vector<std::pair<double, Vector>> pairs;  // square of the angular frequency, shape
-  for (Index i = 0; i < vectors.cols(); ++i) {
-    Vector shape = over_all(model, vectors.col(i));
-    shape /= std::sqrt(2.0 * model.mass.kinetic_energy(shape));  // v^T M v = 1
-    fix_sign(shape);
-    // Taken element by element, which keeps the digits of soft modes of stiff rods.
-    const double square = second_variation(model, controls, positions, shape);
-    pairs.emplace_back(square, std::move(shape));
-  }
-  std::sort(pairs.begin(), pairs.end(),
-            [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Mode> modes;
-  for (auto& [square, shape] : pairs) {
-    const double rate = std::abs(square) <= kRigid * highest ? 0.0 : std::sqrt(std::abs(square));
+  for (Shape& shape : shapes) {
+    constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+    const bool free_to_move = std::abs(shape.square) <= kRounding * shape.terms + noise.left;
+    const double rate = free_to_move ? 0.0 : std::sqrt(std::abs(shape.square));
+    const bool grows = shape.square < 0.0;
     modes.push_back(
-        {square > 0.0 ? rate / (2.0 * kPi) : 0.0, square < 0.0 ? rate : 0.0, std::move(shape)});
+        {grows ? 0.0 : rate / (2.0 * kPi), grows ? rate : 0.0, std::move(shape.vector)});
   }
   return modes;
 }

@@ -84,11 +84,17 @@ double potential_change(const Model& model, const Vector& controls, const Vector
 
 double second_variation(const Model& model, const Vector& controls, const Vector& positions,
                         const Vector& direction) {
-  double total = 0.0;
+  return summed_variation(model, controls, positions, direction).value;
+}
+
+SummedVariation summed_variation(const Model& model, const Vector& controls,
+                                 const Vector& positions, const Vector& direction) {
+  SummedVariation total;
   for_each_hessian(model, controls, positions,
                    [&](const auto& dofs, const auto& hessian, int shared) {
                      const auto d = relative(dofs, direction, shared);
-                     total += d.dot(hessian * d);
+                     total.value += d.dot(hessian * d);
+                     total.terms += d.cwiseAbs().dot(hessian.cwiseAbs() * d.cwiseAbs());
                    });
   return total;
 }
@@ -105,8 +111,8 @@ SecondVariations second_variations(const Model& model, const Vector& controls,
           d.col(i) = relative(dofs, directions.col(i), shared);
         }
         result.values.noalias() += d.transpose() * (hessian * d).eval();
-        const auto terms = d.cwiseAbs().cwiseProduct(hessian.cwiseAbs() * d.cwiseAbs());
-        result.magnitudes += terms.colwise().sum().transpose();
+        const auto terms = d.cwiseAbs().cwiseProduct(hessian.cwiseAbs() * d.cwiseAbs()).eval();
+        result.terms += terms.colwise().sum().transpose();
       });
   return result;
 }

@@ -201,7 +201,7 @@ Stiffness::SoftSpace Stiffness::rayleigh_ritz(const Eigen::MatrixXd& basis, Inde
   space.directions = directions * solver.eigenvectors().leftCols(count);
   const SecondVariations final = variations(space.directions);
   space.curvatures = final.values.diagonal();
-  space.rounding = kRoundings * kEpsilon * final.magnitudes;
+  space.rounding = kRoundings * kEpsilon * final.terms;
   space.rounding.array() += kEpsilon * rounding();  // of the directions' own digits
   space.errors = Vector::Constant(count, std::numeric_limits<double>::infinity());
   return space;

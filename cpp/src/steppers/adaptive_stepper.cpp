@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "der/supports/supports.hpp"
-
 namespace der {
 namespace {
 
@@ -30,25 +28,10 @@ std::vector<double> table_entries(const Model& model) {
   return times;
 }
 
-/// The cubic with values x0, x1 and slopes v0, v1 at the ends of an interval of length h, and its
-/// slope, at the fraction u of it.
-struct Hermite {
-  Hermite(double u, double h)
-      : x0((1.0 + 2.0 * u) * (1.0 - u) * (1.0 - u)),
-        x1(u * u * (3.0 - 2.0 * u)),
-        v0(h * u * (1.0 - u) * (1.0 - u)),
-        v1(-h * u * u * (1.0 - u)),
-        slope_x((6.0 * u - 6.0 * u * u) / h),
-        slope_v0((1.0 - u) * (1.0 - 3.0 * u)),
-        slope_v1(u * (3.0 * u - 2.0)) {}
-  double x0, x1, v0, v1;
-  double slope_x, slope_v0, slope_v1;
-};
-
 }  // namespace
 
-AdaptiveStepper::AdaptiveStepper(const Model& model, Stepper& stepper, int order,
-                                 const AdaptiveOptions& options)
+AdaptiveStepper::AdaptiveStepper(const Model& model, const Assembler& assembler, Stepper& stepper,
+                                 int order, const AdaptiveOptions& options)
     : model_(model),
       stepper_(stepper),
       order_(order),
@@ -57,7 +40,7 @@ AdaptiveStepper::AdaptiveStepper(const Model& model, Stepper& stepper, int order
       start_(initial_state(model)),
       middle_(start_),
       whole_(start_),
-      controls_(Vector::Zero(model.controls.size())) {}
+      dense_(model, assembler) {}
 
 AdaptiveReport AdaptiveStepper::advance(State& state, double horizon) {
   AdaptiveReport report;
@@ -145,22 +128,7 @@ double AdaptiveStepper::next_stop(double time, double horizon) const {
 
 void AdaptiveStepper::interpolate(double time, const State& state, State& result) {
   const bool first = time <= middle_.time;
-  const State& a = first ? start_ : middle_;
-  const State& b = first ? middle_ : state;
-  const double h = b.time - a.time;
-  const double u = (time - a.time) / h;
-  const Hermite weight(u, h);
-  result = state;
-  for (double Work::* part : {&Work::loads, &Work::supports, &Work::drag, &Work::solver}) {
-    result.work.*part = (1.0 - u) * (a.work.*part) + u * (b.work.*part);
-  }
-  result.time = time;
-  result.positions = weight.x0 * a.positions + weight.x1 * b.positions + weight.v0 * a.velocities +
-                     weight.v1 * b.velocities;
-  result.velocities = weight.slope_x * (b.positions - a.positions) +
-                      weight.slope_v0 * a.velocities + weight.slope_v1 * b.velocities;
-  model_.controls.evaluate(time, state.ramps, controls_);
-  place_held(model_, controls_, result.positions);
+  dense_.evaluate(time, first ? start_ : middle_, first ? middle_ : state, result);
 }
 
 }  // namespace der

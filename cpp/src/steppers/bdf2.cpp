@@ -1,3 +1,4 @@
+#include "der/steppers/explicit_force.hpp"
 #include "der/steppers/implicit_stage.hpp"
 #include "steppers.hpp"
 
@@ -14,6 +15,7 @@ class Bdf2 final : public Stepper {
   Bdf2(const Model& model, const Assembler& assembler, LinearSolver& solver,
        const StepperOptions& options)
       : stage_(model, assembler, solver, options.newton),
+        force_(model, assembler),
         past_positions_(model.num_dofs()),
         past_velocities_(model.num_dofs()),
         velocities_(model.num_dofs()) {}
@@ -46,12 +48,13 @@ class Bdf2 final : public Stepper {
     state.history.resize(2);
     state.history[0] = state.positions;
     state.history[1] = state.velocities;
-    stage_.book_and_finish(stage_.positions, velocities_, dt, state);
+    stage_.book_and_finish(stage_.positions, velocities_, dt, 1.0, force_, state);
     return report;
   }
 
  private:
   ImplicitStage stage_;
+  ExplicitForce force_;
   Vector past_positions_;
   Vector past_velocities_;
   Vector velocities_;

@@ -1,5 +1,7 @@
 #include "der/steppers/explicit_force.hpp"
 
+#include <algorithm>
+
 #include "der/loads/loads.hpp"
 #include "der/steppers/work.hpp"
 #include "der/supports/supports.hpp"
@@ -11,11 +13,17 @@ namespace {
 /// steps, long before numbers overflow.
 constexpr double kLargestStretch = 100.0;
 
+bool any_support_moves(const Model& model) {
+  return std::any_of(model.held.begin(), model.held.end(),
+                     [](const HeldDof& held) { return held.displacement >= 0; });
+}
+
 }  // namespace
 
 ExplicitForce::ExplicitForce(const Model& model, const Assembler& assembler)
     : model_(model),
       assembler_(assembler),
+      supports_move_(any_support_moves(model)),
       mass_(model),
       controls_(Vector::Zero(model.controls.size())),
       scratch_controls_(controls_),
@@ -26,12 +34,22 @@ ExplicitForce::ExplicitForce(const Model& model, const Assembler& assembler)
 void ExplicitForce::acceleration(const State& state, const Vector& positions,
                                  const Vector& velocities, double time, double damping_time,
                                  Vector& acceleration) {
-  model_.controls.evaluate(time, state.ramps, controls_);
-  external_force(model_, controls_, state.extra_force, force_);
+  evaluate_loads(state, positions, time);
   assembler_.gradient(positions, controls_, gradient_);
-  positions_ = positions;
   acceleration = force_ - gradient_ - model_.damping.cwiseProduct(velocities);
   mass_.solve(damping_time, acceleration);
+}
+
+void ExplicitForce::evaluate_works(const State& state, const Vector& positions, double time) {
+  evaluate_loads(state, positions, time);
+  // Only the reactions on held degrees of freedom need it, and those work where supports move.
+  if (supports_move_) assembler_.gradient(positions, controls_, gradient_);
+}
+
+void ExplicitForce::evaluate_loads(const State& state, const Vector& positions, double time) {
+  model_.controls.evaluate(time, state.ramps, controls_);
+  external_force(model_, controls_, state.extra_force, force_);
+  positions_ = positions;
 }
 
 void ExplicitForce::book(const Vector& velocities, const Vector& displacement, Work& work) const {
@@ -39,9 +57,9 @@ void ExplicitForce::book(const Vector& velocities, const Vector& displacement, W
                 moment_work(model_, positions_, controls_, displacement);
   work.drag += displacement.dot(model_.damping.cwiseProduct(velocities));
   for (const HeldDof& held : model_.held) {
-    const double reaction =
-        gradient_[held.dof] - force_[held.dof] + model_.damping[held.dof] * velocities[held.dof];
-    work.supports += displacement[held.dof] * reaction;
+    // The step's finisher has the drag on held nodes.
+    work.drag -= displacement[held.dof] * model_.damping[held.dof] * velocities[held.dof];
+    work.supports += displacement[held.dof] * (gradient_[held.dof] - force_[held.dof]);
   }
 }
 

@@ -54,7 +54,7 @@ class GeneralizedAlpha final : public Stepper {
     accelerations_ = (positions_ - q - dt * v) / (beta_ * dt * dt) - ((0.5 - beta_) / beta_) * a;
     velocities_ = v + dt * ((1.0 - gamma_) * a + gamma_ * accelerations_);
     state.accelerations = accelerations_;
-    stage_.book_and_finish(positions_, velocities_, dt, state);
+    stage_.book_and_finish(positions_, velocities_, dt, kept, force_, state);
     return report;
   }
 

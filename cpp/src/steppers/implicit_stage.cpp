@@ -13,11 +13,12 @@ ImplicitStage::ImplicitStage(const Model& model, const Assembler& assembler, Lin
       model_(model),
       newton_(model, assembler, solver, options),
       finisher_(model),
+      held_controls_(Vector::Zero(model.controls.size())),
       displacement_(Vector::Zero(model.num_dofs())) {}
 
 void ImplicitStage::place_held_at(const State& state, double time, Vector& where) {
-  model_.controls.evaluate(time, state.ramps, equation.controls);
-  place_held(model_, equation.controls, where);
+  model_.controls.evaluate(time, state.ramps, held_controls_);
+  place_held(model_, held_controls_, where);
 }
 
 StepReport ImplicitStage::solve(const State& state, double time) {
@@ -35,7 +36,11 @@ StepReport ImplicitStage::solve(const State& state, double time) {
 }
 
 void ImplicitStage::book(const Vector& displacement, Work& work) const {
-  const Vector& residual = newton_.residual();
+  book_forces(displacement, work);
+  book_solver(displacement, work);
+}
+
+void ImplicitStage::book_forces(const Vector& displacement, Work& work) const {
   work.loads += displacement.dot(equation.force - model_.gravity_force) +
                 moment_work(model_, positions, equation.controls, displacement);
   if (model_.damped) {
@@ -43,13 +48,20 @@ void ImplicitStage::book(const Vector& displacement, Work& work) const {
         equation.velocity_factor *
         displacement.dot(model_.damping.cwiseProduct(positions - equation.velocity_reference));
   }
-  for (const Index dof : model_.free_dofs) work.solver += displacement[dof] * residual[dof];
   for (const HeldDof& held : model_.held) {
-    // Without the inertia that the scheme gives the held mass; `finish` has its energy.
+    // Without the inertia and the drag that the scheme gives the held node; `finish` has them.
     const double inertial = equation.inertia * equation.mass.lumped[held.dof] *
                             (positions[held.dof] - equation.inertia_target[held.dof]);
-    work.supports += displacement[held.dof] * (residual[held.dof] - inertial);
+    const double drag = equation.velocity_factor * model_.damping[held.dof] *
+                        (positions[held.dof] - equation.velocity_reference[held.dof]);
+    work.drag -= displacement[held.dof] * drag;
+    work.supports += displacement[held.dof] * (newton_.residual()[held.dof] - inertial - drag);
   }
+}
+
+void ImplicitStage::book_solver(const Vector& displacement, Work& work) const {
+  const Vector& residual = newton_.residual();
+  for (const Index dof : model_.free_dofs) work.solver += displacement[dof] * residual[dof];
 }
 
 void ImplicitStage::book_and_finish(const Vector& new_positions,
@@ -57,6 +69,22 @@ void ImplicitStage::book_and_finish(const Vector& new_positions,
                                     State& state) {
   displacement_ = new_positions - state.positions;
   book(displacement_, state.work);
+  finisher_.finish(new_positions, new_velocities, dt, state);
+}
+
+void ImplicitStage::book_and_finish(const Vector& new_positions,
+                                    const Eigen::Ref<const Vector>& new_velocities, double dt,
+                                    double place, ExplicitForce& at_start, State& state) {
+  // The rule with points at 0 and `place` that is exact for a power linear in time.
+  const double late = 0.5 / place;
+  displacement_ = (1.0 - late) * (new_positions - state.positions);
+  at_start.evaluate_works(state, state.positions, state.time);
+  at_start.book(state.velocities, displacement_, state.work);
+  displacement_ = late * (new_positions - state.positions);
+  book_forces(displacement_, state.work);
+  // All that the solver leaves is left in stages: none of it at the start.
+  displacement_ = new_positions - state.positions;
+  book_solver(displacement_, state.work);
   finisher_.finish(new_positions, new_velocities, dt, state);
 }
 

@@ -18,7 +18,10 @@ void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector
   for (const HeldDof& held : model_.held) {
     const double before = state.velocities[held.dof];
     const double after = (positions[held.dof] - state.positions[held.dof]) / dt;
-    state.work.supports += 0.5 * model_.mass.lumped[held.dof] * (after * after - before * before);
+    const double drag = model_.damping[held.dof] * after * after * dt;
+    state.work.drag += drag;
+    state.work.supports +=
+        drag + 0.5 * model_.mass.lumped[held.dof] * (after * after - before * before);
     state.velocities[held.dof] = after;
     state.positions[held.dof] = positions[held.dof];
   }

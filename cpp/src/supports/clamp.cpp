@@ -63,6 +63,11 @@ double initial_tangent_angle(const RodLayout& rod, Index place, const Model& mod
   return direction(drawn_edge(rod, edge, model)) + (leaves ? -curvature : curvature) * half;
 }
 
+double tangent_angle(const Clamp& clamp, const Model& model, const State& state) {
+  if (clamp.rotation < 0) return clamp.direction;
+  return clamp.direction + model.controls.value(clamp.rotation, state.time, state.ramps);
+}
+
 void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod, Model& model) {
   if (rod.EI == 0.0 || rod.clamp_at(place) != nullptr) return;
   const Index rotation = support.rotation ? model.controls.add(*support.rotation) : -1;

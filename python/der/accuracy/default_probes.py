@@ -8,14 +8,14 @@ from der._core import Model, Scenario, held_nodes
 
 
 def with_default_probes(scenario: Scenario) -> Scenario:
-    """Return the scene with probes if it has none.
+    """Return the scene with probes if it has none and its analysis finds no other numbers.
 
     For each rod: x and y of its ends, as far as no support holds them (``arm_end_y``), and the
     lowest and highest point (``arm_lowest``, ``arm_highest``).
     """
     scene = scenario.to_dict()
     output = scene.setdefault("output", {})
-    if output.get("probes"):
+    if output.get("probes") or scenario.analysis not in ("dynamic", "static"):
         return scenario
     output["probes"] = dict(_probes(scenario))
     return Scenario.from_dict(scene)

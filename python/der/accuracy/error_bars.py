@@ -12,7 +12,7 @@ M. Hoekstra, J. Comput. Phys. 262, 2014, 104-130).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -26,7 +26,8 @@ from typing import Literal
 #: - ``oscillating``: the value goes to and fro;
 #: - ``damped``: the stepper's own damping hides a motion;
 #: - ``contradicted``: another stepper with much smaller steps comes to another value;
-#: - ``failed``: a finer run failed.
+#: - ``failed``: a finer run failed;
+#: - ``unmatched``: finer meshes find another number of its kind, such as folds of a path.
 Verdict = Literal[
     "converged",
     "exact",
@@ -37,9 +38,10 @@ Verdict = Literal[
     "damped",
     "contradicted",
     "failed",
+    "unmatched",
 ]
 
-_FLAGGED = ("slow", "diverging", "oscillating", "damped", "contradicted", "failed")
+_FLAGGED = ("slow", "diverging", "oscillating", "damped", "contradicted", "failed", "unmatched")
 
 _FACTOR_AT_ORDER = 1.25
 _FACTOR_OFF_ORDER = 3.0
@@ -122,6 +124,26 @@ def estimate_error(
         bar = _FACTOR_OFF_ORDER * max(abs(first), abs(second)) + noise
         return ErrorEstimate(first + second, bar, None, order, "oscillating")
     return _monotone(first, second, order, noise, ratio)
+
+
+def estimate_from_levels(
+    by_level: Mapping[int, float], order: float, noise: float, ratio: float = 2.0
+) -> ErrorEstimate:
+    """Estimate the error of the value on level 0, as `estimate_error`.
+
+    Levels behind one that is missing do not count; with less than two the error is not known.
+    """
+    values: list[float] = []
+    while len(values) in by_level:
+        values.append(by_level[len(values)])
+    if len(values) < 2:
+        return unknown_error("failed", order)
+    return estimate_error(values, order, noise, ratio)
+
+
+def unknown_error(verdict: Verdict, order: float) -> ErrorEstimate:
+    """Return an estimate that says nothing but why it does not."""
+    return ErrorEstimate(0.0, math.inf, None, order, verdict)
 
 
 def _monotone(

@@ -11,19 +11,19 @@ Array = NDArray[np.float64]
 
 
 def probe_values(result: Result, name: str) -> dict[str, float]:
-    """Return ``final``, ``min`` and ``max`` of a probe; of a static run only ``final``.
+    """Return ``final``, ``min`` and ``max`` of a probe over time.
 
     Extremes inside the run are those of the parabola through the three saved frames around them, so
     that they converge with the step instead of jumping with the samples. That needs a run that has
     saved every step; where a step between the frames is farther out, that step counts.
     """
     probe = result.probes[name]
-    values = {"final": probe.summary["final"]}
-    if not result.scenario.is_static:
-        series = np.asarray(probe)
-        values["min"] = -_largest(result.times, -series, -probe.summary["min"])
-        values["max"] = _largest(result.times, series, probe.summary["max"])
-    return values
+    series = np.asarray(probe)
+    return {
+        "final": probe.summary["final"],
+        "min": -_largest(result.times, -series, -probe.summary["min"]),
+        "max": _largest(result.times, series, probe.summary["max"]),
+    }
 
 
 def _largest(times: Array, saved: Array, of_all_steps: float) -> float:

@@ -11,6 +11,9 @@ import numpy as np
 from der._core import Scenario
 from der.accuracy.resampling import arc_lengths, resample_line, resample_list
 
+#: Order of the rods in the length of their elements, and of every probe but the turning angle.
+SPACE_ORDER = 2.0
+
 #: Two places along a rod closer than this share of its length are the same.
 _SAME_PLACE = 1e-9
 
@@ -34,7 +37,9 @@ def rods_that_cannot_be_refined(scenario: Scenario) -> dict[str, str]:
 
 def belongs_to_its_mesh(scenario: Scenario, probe: str) -> bool:
     """Whether a probe has no limit on finer meshes: a turning angle, of a rod that is refined."""
-    asked = scenario.to_dict()["output"]["probes"][probe]
+    asked = (scenario.to_dict().get("output") or {}).get("probes", {}).get(probe)
+    if asked is None:
+        return False  # what an analysis finds besides
     fixed = rods_that_cannot_be_refined(scenario)
     return asked["quantity"] == "turning_angle" and asked["rod"] not in fixed
 

@@ -7,10 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from der._core import Scenario
 from der.accuracy.default_probes import with_default_probes
 from der.accuracy.refinement import belongs_to_its_mesh, count_elements
+from der.accuracy.static_comparison import StaticComparison
+from der.accuracy.static_readings import static_readings
 from der.accuracy.study_plan import (
     Mesh,
     choose_meshes,
@@ -27,6 +30,7 @@ from der.accuracy.study_reference import (
     converge_in_space,
     converge_in_time,
     reference_tasks,
+    static_reference,
 )
 from der.accuracy.study_result import Study, StudyRow, seconds_text
 from der.accuracy.time_levels import find_stepper
@@ -44,11 +48,14 @@ _REFERENCE_COST = 5.0
 _MOST_HALVINGS = 30
 #: Steps that are tried for an explicit stepper from the longest stable one on.
 _EXPLICIT_STEPS = 2
+#: The finest meshes, which the reference is extrapolated from.
+_REFERENCE_MESHES = 3
 #: Cost of a step, against one of another implicit stepper.
 _COST_OF_STEP = {"tr_bdf2": 2.0, "sdirk4": 5.0, "verlet": 0.05, "explicit_euler": 0.05}
 
 UNSTABLE = "unstable"
 SKIPPED = "skipped"
+UNMATCHED = "unmatched"
 
 
 def study(
@@ -64,7 +71,10 @@ def study(
     """Measure cost against error over meshes, steppers and steps.
 
     The error of a probe is its largest difference to a reference over the saved times. The
-    reference is extrapolated from finer meshes and smaller steps, and states its own error.
+    reference is extrapolated from finer meshes and smaller steps, and states its own error. Of
+    modes the frequencies are compared as well, of buckling the load factors; of a path of
+    equilibria the factor and the probes at its folds and bifurcations, and the probes where it
+    ends.
 
     Parameters
     ----------
@@ -116,6 +126,10 @@ def study(
     return study_.finish()
 
 
+def _largest_difference(a: NDArray[np.float64] | None, b: NDArray[np.float64] | None) -> float:
+    return math.nan if a is None or b is None else float(np.max(np.abs(a - b)))
+
+
 def _repeats(seconds: float) -> int:
     return max(1, min(_MOST_REPEATS, int(_MEASURING_TIME / seconds)))
 
@@ -148,7 +162,13 @@ class _Study:
         self._max_seconds = max_seconds
         self._workers = workers
         self._notes = notes
-        self._probes = self._choose_probes()
+        self._left_out = self._leave_out_angles()
+        self._units = {
+            name: probe.unit
+            for name, probe in self._base.probes.items()
+            if name not in self._left_out
+        }
+        self._compared: StaticComparison | None = None
         self._trials: list[_Trial] = []
         self._every = 0.0
         work = self._base.model.num_nodes * max(1, int(self._base.summary.get("steps", 1)))
@@ -160,34 +180,39 @@ class _Study:
     def _base_stepper(self) -> str:
         return "" if self._scenario.is_static else str(self._base.summary["integrator"])
 
-    def _choose_probes(self) -> list[str]:
-        """Return the probes that can be compared; a turning angle belongs to its mesh."""
+    def _leave_out_angles(self) -> list[str]:
+        """Return the probes that cannot be compared: a turning angle belongs to its mesh."""
         probes = list(self._base.probes)
         if find_leading_rod(self._scenario) is None:
             self._notes.append("every rod has as many nodes as its model asks for: one mesh")
-            return probes
+            return []
         angles = [name for name in probes if belongs_to_its_mesh(self._scenario, name)]
         for name in angles:
             self._notes.append(
                 f"'{name}' is left out: a turning angle belongs to its mesh; 'curvature' does not"
             )
-        if len(angles) == len(probes):
+        if len(angles) == len(probes) and not self._scenario.is_static:
             raise ValueError("no probe can be compared between meshes; add one under output.probes")
-        return [name for name in probes if name not in angles]
+        return angles
 
     # Runs.
 
     def run_static(self) -> None:
         """Run every mesh, and the reference."""
         tasks = {
-            i: Task([mesh.scenario], mesh.nodes, _MOST_REPEATS, keep_motion=False)
+            i: Task(
+                [mesh.scenario],
+                mesh.nodes,
+                _repeats(self._seconds_per_step * self._total_nodes(mesh)),
+                keep_motion=False,
+            )
             for i, mesh in enumerate(self._meshes)
         }
         references = reference_tasks(self._reference_meshes(), None, 0.0, 0.0, 1.0)
         self._workers.expect(total_weight([*tasks.values(), *references.values()]))
         for i, outcome in self._workers.run(tasks, jobs=1).items():
             self._add_trial(i, "", 0.0, outcome)
-        self._converge(self._workers.run(references))
+        self._converge_static(self._workers.run(references))
 
     def run_dynamic(self, steppers: Sequence[str], steps: Sequence[float] | None) -> None:
         """Run every configuration, and the reference."""
@@ -251,14 +276,16 @@ class _Study:
         return 0.0 if expected > self._max_seconds else expected * _repeats(expected)
 
     def _expected_seconds(self, mesh: int, stepper: str, step: float) -> float:
-        nodes = self._base.model.num_nodes * self._meshes[mesh].nodes / self._own_nodes()
+        nodes = self._total_nodes(self._meshes[mesh])
         steps = self._scenario.duration / step
         return self._seconds_per_step * self._cost_of_step(stepper) * nodes * steps
 
-    def _own_nodes(self) -> int:
+    def _total_nodes(self, mesh: Mesh) -> float:
+        """Return the nodes of all rods, if all are refined as the one is that names the mesh."""
         rod = find_leading_rod(self._scenario)
         rods = self._base.rods
-        return len(next(r for r in rods if rod in (None, r.name)).nodes)
+        own_nodes = len(next(r for r in rods if rod in (None, r.name)).nodes)
+        return self._base.model.num_nodes * mesh.nodes / own_nodes
 
     @staticmethod
     def _cost_of_step(stepper: str) -> float:
@@ -296,10 +323,32 @@ class _Study:
             [outcomes[key].value() for key in sorted(outcomes) if key[0] == mesh]
             for mesh in range(count)
         ]
-        converged = [converge_in_time(results, self._probes) for results in by_mesh]
+        self._settle([converge_in_time(results, list(self._units)) for results in by_mesh])
+
+    def _converge_static(self, outcomes: dict[tuple[int, int], Outcome]) -> None:
+        found = [static_readings(outcomes[key].value()) for key in sorted(outcomes)]
+        names = [self._mesh_name(scenario) for scenario in self._reference_meshes().values()]
+        reference_meshes = 1 if len(found) == len(self._meshes) else _REFERENCE_MESHES
+        self._compared = StaticComparison(
+            dict(zip(names, found, strict=True)), reference_meshes, self._left_out
+        )
+        self._notes += self._compared.notes
+        self._units = self._compared.units
+        self._settle([static_reference(self._compared.series(readings)) for readings in found])
+
+    def _settle(self, converged: list[Reference]) -> None:
+        """Take what is converged on every mesh, the finer ones of the reference included."""
         self._on_mesh = converged[: len(self._meshes)]
-        varied = count > len(self._meshes)
-        self._reference = converge_in_space(converged[-3:]) if varied else converged[0]
+        varied = len(converged) > len(self._meshes)
+        self._reference = (
+            converge_in_space(converged[-_REFERENCE_MESHES:]) if varied else converged[0]
+        )
+
+    @staticmethod
+    def _mesh_name(scenario: Scenario) -> str:
+        rod = find_leading_rod(scenario)
+        counts = count_elements(scenario)
+        return f"{(counts[rod] if rod else next(iter(counts.values()))) + 1} nodes"
 
     # What came out.
 
@@ -309,31 +358,39 @@ class _Study:
         exact = self._reference.probes
         ranges = {
             name: float(np.ptp(exact[name]) if len(exact[name]) > 1 else np.abs(exact[name][0]))
-            for name in self._probes
+            for name in self._units
         }
-        rows = [self._row(name, trial) for name in self._probes for trial in self._trials]
+        values = [self._values(trial) for trial in self._trials]
+        rows = [
+            self._row(name, trial, found.get(name))
+            for name in self._units
+            for trial, found in zip(self._trials, values, strict=True)
+        ]
         return Study(self._scenario, tuple(rows), ranges, tuple(self._notes))
 
-    def _row(self, probe: str, trial: _Trial) -> StudyRow:
+    def _values(self, trial: _Trial) -> dict[str, NDArray[np.float64]]:
+        """Return what can be compared of a trial, by name."""
+        if trial.result is None:
+            return {}
+        if self._compared is not None:
+            return self._compared.series(static_readings(trial.result))
+        return {name: np.asarray(trial.result.probes[name]) for name in self._units}
+
+    def _row(self, probe: str, trial: _Trial, values: NDArray[np.float64] | None) -> StudyRow:
         exact = self._reference.probes[probe]
-        on_mesh = self._on_mesh[trial.mesh].probes[probe]
-        error = time_error = math.nan
-        if trial.result is not None:
-            values = np.asarray(trial.result.probes[probe])
-            error = float(np.max(np.abs(values - exact)))
-            if trial.stepper:
-                time_error = float(np.max(np.abs(values - on_mesh)))
+        on_mesh = self._on_mesh[trial.mesh].probes.get(probe)
+        missing = trial.result is not None and (values is None or on_mesh is None)
         return StudyRow(
             probe=probe,
-            unit=self._base.probes[probe].unit,
+            unit=self._units[probe],
             nodes=self._meshes[trial.mesh].nodes,
             stepper=trial.stepper,
             step=trial.step,
-            status=trial.status,
+            status=UNMATCHED if missing else trial.status,
             cpu_seconds=trial.cpu_seconds,
-            error=error,
-            space_error=float(np.max(np.abs(on_mesh - exact))),
-            time_error=time_error,
+            error=_largest_difference(values, exact),
+            space_error=_largest_difference(on_mesh, exact),
+            time_error=_largest_difference(values, on_mesh) if trial.stepper else math.nan,
             reference_error=self._reference.errors[probe],
         )
 

@@ -26,13 +26,15 @@ class StudyRow:
     Attributes
     ----------
     probe, unit
-        The probe and its SI unit.
+        The probe and its SI unit; of an analysis also ``frequency 1``, ``load factor 1``, or where
+        on a path it is read: ``factor, fold 1``.
     nodes
         Nodes of the first rod whose mesh is varied.
     stepper, step
         Time integrator and step [s]; empty and 0 for a static scene.
     status
-        As in ``summary.json``; ``skipped`` for a run that would take too long.
+        As in ``summary.json``; ``skipped`` for a run that would take too long, ``unmatched`` where
+        its mesh finds another number of folds, say, than the reference does.
     cpu_seconds
         CPU time of building the simulation and running it [s], the best of some runs; NaN if it did
         not run to its end, as are the errors.
@@ -136,9 +138,16 @@ class Study:
         for probe in self.probes:
             wanted = self._decades(probe) if errors is None else errors
             lines += [self._advice_line(probe, error) for error in wanted]
-            if not wanted:
+            if not wanted and self.is_exact(probe):
+                lines.append(f"{probe}: exact in every configuration")
+            elif not wanted:
                 lines.append(f"{probe}: no configuration of this study comes near: refine more")
         return lines
+
+    def is_exact(self, probe: str) -> bool:
+        """Whether no configuration that came to its end has an error in this probe."""
+        errors = [row.claimed_error for row in self.of(probe) if row.completed]
+        return bool(errors) and max(errors) == 0.0
 
     def _advice_line(self, probe: str, error: float) -> str:
         rows = self.of(probe)

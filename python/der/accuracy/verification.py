@@ -9,6 +9,8 @@ from typing import Any
 from der._core import Scenario
 from der.accuracy.error_bars import ErrorEstimate
 
+#: What a thousand times tighter Newton tolerance changes, is off by at most this times the change.
+SOLVER_FACTOR = 2.0
 #: A part of the error smaller than this share of the whole may converge as it likes.
 _COUNTS = 0.1
 
@@ -20,11 +22,14 @@ class VerifiedValue:
     Attributes
     ----------
     probe, what, unit
-        Name of the probe; ``final``, ``min`` or ``max`` over the run; the SI unit.
+        Name of the probe, or of what the analysis finds (``frequency 1``, ``load factor 1``,
+        ``factor`` of a path); ``final``, ``min`` or ``max`` over the run, on a path where
+        (``fold 1``, ``bifurcation 1``, ``end``); the SI unit.
     value
-        As the scene gives it when it is run as written.
+        As the scene gives it when it is run as written; NaN for an event that only finer meshes
+        find.
     time_of_value
-        When it is reached [s].
+        When it is reached [s]; 0 without time.
     space, time
         Error by the mesh and by the step; None where there is nothing to refine.
     solver
@@ -43,6 +48,11 @@ class VerifiedValue:
     time: ErrorEstimate | None
     solver: float
     solver_correction: float = 0.0
+
+    @property
+    def label(self) -> str:
+        """What it is called in the table: ``tip_y``, or ``tip_y, min``."""
+        return self.probe if self.what == "final" else f"{self.probe}, {self.what}"
 
     @property
     def bar(self) -> float:
@@ -92,10 +102,10 @@ class VerifiedValue:
             "probe": self.probe,
             "what": self.what,
             "unit": self.unit,
-            "value": self.value,
+            "value": _finite(self.value),
             "time": self.time_of_value,
             "bar": _finite(self.bar),
-            "extrapolated": self.extrapolated,
+            "extrapolated": _finite(self.extrapolated),
             "verdict": self.verdict,
             "flagged": self.flagged,
             "space_error": _part_to_dict(self.space),
@@ -113,7 +123,8 @@ class Verification:
     scenario
         What was verified; with default probes if it had none.
     values
-        Every probe's final value, and in a run over time its extremes.
+        Every probe's final value, and in a run over time its extremes; of a path of equilibria, the
+        factor and every probe at each event.
     meshes
         What was run in space, coarsest first, such as ``51 nodes``; one entry if not refined.
     steps
@@ -137,7 +148,7 @@ class Verification:
         return [value for value in self.values if value.flagged]
 
     def __getitem__(self, name: str | tuple[str, str]) -> VerifiedValue:
-        """Return a value by probe, or by probe and ``final`` (the default), ``min``, ``max``."""
+        """Return a value by probe, or by probe and `VerifiedValue.what` (if not ``final``)."""
         probe, what = (name, "final") if isinstance(name, str) else name
         for value in self.values:
             if (value.probe, value.what) == (probe, what):

@@ -30,25 +30,29 @@ def verification_table(verification: Verification) -> str:
 
 
 def _tells(verification: Verification, value: VerifiedValue, duration: float) -> bool:
-    if value.what == "final" or value.flagged:
+    if value.what not in ("min", "max") or value.flagged:
         return True
     same_as_final = abs(value.value - verification[value.probe].value) <= value.solver
     return 0.0 < value.time_of_value < duration and not same_as_final
 
 
 def _row(value: VerifiedValue) -> tuple[str, ...]:
-    name = value.probe if value.what == "final" else f"{value.probe}, {value.what}"
-    unit = f" {value.unit}" if value.unit else ""
     return (
-        name,
-        with_digits_of(value.value, value.bar) + unit,
+        value.label,
+        _number(value.value, value),
         f"± {_bar(value.bar)}",
         _bar(None if value.space is None else value.space.bar),
         _bar(None if value.time is None else value.time.bar),
-        with_digits_of(value.extrapolated, value.bar) + unit,
+        _number(value.extrapolated, value),
         f"{_order(value.space)}, {_order(value.time)}",
         value.verdict,
     )
+
+
+def _number(number: float, value: VerifiedValue) -> str:
+    if math.isnan(number):
+        return "-"
+    return f"{with_digits_of(number, value.bar)} {value.unit}".rstrip()
 
 
 def with_digits_of(value: float, bar: float) -> str:

@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 from der._core import Scenario
 from der.accuracy.cross_check import hidden_motion
 from der.accuracy.default_probes import with_default_probes
-from der.accuracy.error_bars import ErrorEstimate, estimate_error
+from der.accuracy.error_bars import ErrorEstimate, estimate_from_levels
 from der.accuracy.noise import noise_floor
 from der.accuracy.probe_extremes import probe_values
-from der.accuracy.refinement import belongs_to_its_mesh
-from der.accuracy.verification import Verification, VerifiedValue
+from der.accuracy.refinement import SPACE_ORDER, belongs_to_its_mesh
+from der.accuracy.static_verifier import StaticVerifier
+from der.accuracy.time_levels import TimeLevels
+from der.accuracy.verification import SOLVER_FACTOR, Verification, VerifiedValue
 from der.accuracy.verification_runs import VerificationRuns, run_levels
 from der.parallel import Workers
 from der.progress import ProgressFunction
 from der.result import Result
 from der.simulation import SceneLike, as_scenario
 
-#: Order of the rods, and of every probe but the turning angle.
-_SPACE_ORDER = 2.0
 #: Where the witness contradicts, the error is at most this times the difference to it.
 _WITNESS_FACTOR = 1.25
 #: A contradiction by less than this times the noise is none.
 _LITTLE_NOISE = 10.0
-#: What a thousand times tighter Newton tolerance changes, is off by at most this times the change.
-_SOLVER_FACTOR = 2.0
 
 
 def verify(
@@ -39,8 +36,9 @@ def verify(
     """Run a scene on finer meshes and with smaller steps, and put an error bar on each probe.
 
     The scene is run as written, then with 2 and 4 times as many elements, and with a half and a
-    quarter of the step; of a scene with ``time.tolerance`` the tolerance is refined. A scene
-    without probes is given some: positions of free ends, lowest and highest points.
+    quarter of the step; of a scene with ``time.tolerance`` the tolerance is refined. Frequencies,
+    buckling loads, and factor and probes at the folds and bifurcations of a path get bars as well.
+    A scene without probes is given some: positions of free ends, lowest and highest points.
 
     Parameters
     ----------
@@ -78,30 +76,46 @@ def verify(
     runs = run_levels(scene, levels, Workers(jobs, progress))
     if scene is not given:
         runs.notes.append("the scene has no probes: free ends and extreme points are shown")
-    evaluated = [_evaluate(runs, scene, probe) for probe in runs.base.probes]
+    values, notes = _evaluate(runs, scene)
     labels = runs.time_levels
     return Verification(
         scenario=scene,
-        values=tuple(value for evaluation in evaluated for value in evaluation.values()),
+        values=tuple(values),
         meshes=tuple(runs.meshes),
         steps=() if labels is None else tuple(labels.label(level) for level in range(runs.levels)),
-        notes=(*runs.notes, *_notes(runs, scene, evaluated)),
+        notes=(*runs.notes, *_notes_on_angles(runs, scene), *notes),
         cpu_seconds=runs.cpu_seconds,
     )
 
 
-def _evaluate(runs: VerificationRuns, scene: Scenario, probe: str) -> _Evaluation:
-    return _Evaluation(runs, probe, runs.space_is_refined and not belongs_to_its_mesh(scene, probe))
+def _evaluate(runs: VerificationRuns, scene: Scenario) -> tuple[list[VerifiedValue], list[str]]:
+    if runs.time_levels is None:
+        found = StaticVerifier(runs)
+        return found.values(), found.notes()
+    evaluated = [
+        _Evaluation(
+            runs,
+            runs.time_levels,
+            probe,
+            runs.space_is_refined and not belongs_to_its_mesh(scene, probe),
+        )
+        for probe in runs.base.probes
+    ]
+    values = [value for evaluation in evaluated for value in evaluation.values()]
+    return values, _notes_on_damping(runs, evaluated)
 
 
-def _notes(runs: VerificationRuns, scene: Scenario, evaluated: list[_Evaluation]) -> list[str]:
+def _notes_on_angles(runs: VerificationRuns, scene: Scenario) -> list[str]:
+    return [
+        f"'{probe}' is a turning angle, which belongs to its mesh: it has no error in space; "
+        "'curvature' has one"
+        for probe in runs.base.probes
+        if runs.space_is_refined and belongs_to_its_mesh(scene, probe)
+    ]
+
+
+def _notes_on_damping(runs: VerificationRuns, evaluated: list[_Evaluation]) -> list[str]:
     notes = []
-    for probe in runs.base.probes:
-        if runs.space_is_refined and belongs_to_its_mesh(scene, probe):
-            notes.append(
-                f"'{probe}' is a turning angle, which belongs to its mesh: it has no error in "
-                "space; 'curvature' has one"
-            )
     damped = [f"'{evaluation.probe}'" for evaluation in evaluated if evaluation.hidden_motion]
     if damped:
         notes.append(
@@ -113,10 +127,13 @@ def _notes(runs: VerificationRuns, scene: Scenario, evaluated: list[_Evaluation]
 
 
 class _Evaluation:
-    """What the runs say about one probe."""
+    """What the runs say about one probe over time."""
 
-    def __init__(self, runs: VerificationRuns, probe: str, measures_space: bool) -> None:
+    def __init__(
+        self, runs: VerificationRuns, levels: TimeLevels, probe: str, measures_space: bool
+    ) -> None:
         self._runs = runs
+        self._levels = levels
         self.probe = probe
         self._series = runs.base.probes[probe]
         self._space = self._by_level(runs.space) if measures_space else None
@@ -128,13 +145,10 @@ class _Evaluation:
         return {level: probe_values(results[level], self.probe) for level in results}
 
     def _find_noise(self) -> float:
-        base, levels = self._runs.base, self._runs.time_levels
+        base = self._runs.base
         largest = max(abs(self._series.summary["min"]), abs(self._series.summary["max"]))
-        step = math.inf
-        if levels is not None:
-            steps = int(base.summary["steps"]) * levels.cost(self._runs.levels - 1)
-            step = base.scenario.duration / steps
-        return noise_floor(base.model, self._series.unit, step, largest)
+        steps = int(base.summary["steps"]) * self._levels.cost(self._runs.levels - 1)
+        return noise_floor(base.model, self._series.unit, base.scenario.duration / steps, largest)
 
     def _find_hidden_motion(self) -> float | None:
         finest = sorted(self._runs.time)[-2:]
@@ -154,7 +168,7 @@ class _Evaluation:
         shift = self._time[0][what] - summary[what] if 0 in self._time else 0.0
         time = self._time_error(what)
         solver = self._noise
-        if what != "final" and time is not None:
+        if what != "final":
             time = time.widened(abs(shift), shift)
             shift = 0.0
         return VerifiedValue(
@@ -163,18 +177,24 @@ class _Evaluation:
             unit=self._series.unit,
             value=summary[what],
             time_of_value=summary.get(f"t_{what}", self._runs.base.summary["time"]),
-            space=self._estimate(self._space, what, _SPACE_ORDER, 2.0),
+            space=self._space_error(what),
             time=time,
-            solver=solver + _SOLVER_FACTOR * abs(shift),
+            solver=solver + SOLVER_FACTOR * abs(shift),
             solver_correction=shift,
         )
 
-    def _time_error(self, what: str) -> ErrorEstimate | None:
-        levels = self._runs.time_levels
-        if levels is None:
+    def _space_error(self, what: str) -> ErrorEstimate | None:
+        if self._space is None:
             return None
-        estimate = self._estimate(self._time, what, levels.order, levels.ratio)
-        if estimate is None or self._runs.witness is None or 0 not in self._time:
+        by_level = {level: values[what] for level, values in self._space.items()}
+        return estimate_from_levels(by_level, SPACE_ORDER, self._noise)
+
+    def _time_error(self, what: str) -> ErrorEstimate:
+        by_level = {level: values[what] for level, values in self._time.items()}
+        estimate = estimate_from_levels(
+            by_level, self._levels.order, self._noise, self._levels.ratio
+        )
+        if self._runs.witness is None or 0 not in self._time:
             return estimate
         away = abs(probe_values(self._runs.witness, self.probe)[what] - self._time[0][what])
         damped = self.hidden_motion is not None
@@ -186,15 +206,3 @@ class _Evaluation:
         if away <= _LITTLE_NOISE * self._noise:
             return replace(estimate, bar=bar)
         return replace(estimate, bar=bar, verdict="damped" if damped else "contradicted")
-
-    def _estimate(
-        self, by_level: dict[int, dict[str, float]] | None, what: str, order: float, ratio: float
-    ) -> ErrorEstimate | None:
-        if by_level is None:
-            return None
-        values: list[float] = []
-        while len(values) in by_level:
-            values.append(by_level[len(values)][what])
-        if len(values) < 2:
-            return ErrorEstimate(0.0, math.inf, None, order, "failed")
-        return estimate_error(values, order, self._noise, ratio)

@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 from der.fields import FIELD_UNITS, rod_fields
 from der.film import mode_shapes
 from der.progress import ProgressFunction
+from der.run_folder import DATA_UNITS
 
 if TYPE_CHECKING:
     from der.result import Result
 
 _AXES = "xyz"
+_MODE_UNIT = DATA_UNITS["modes/shapes"]
 
 
 def write_csv(result: Result, out: Path, progress: ProgressFunction) -> list[Path]:
@@ -79,13 +81,14 @@ def _write_probes(result: Result, file: TextIO) -> None:
 
 def _write_modes(result: Result, file: TextIO) -> None:
     if result.modes is not None:
-        kind, values = "frequency [Hz]", result.modes.frequencies
+        kind, values, unit = "frequency [Hz]", result.modes.frequencies, _MODE_UNIT
     else:
         assert result.buckling is not None
-        kind, values = "load factor", result.buckling.load_factors
-    axes = _AXES[: result.positions.shape[2]]
+        # Buckling modes have no size: the largest displacement counts as 1.
+        kind, values, unit = "load factor", result.buckling.load_factors, "1"
+    shapes = [f"d{axis} [{unit}]" for axis in _AXES[: result.positions.shape[2]]]
     writer = csv.writer(file)
-    writer.writerow(["mode", kind, "rod", "node", "s [m]", *(f"d{axis}" for axis in axes)])
+    writer.writerow(["mode", kind, "rod", "node", "s [m]", *shapes])
     for number, (shape, value) in enumerate(zip(mode_shapes(result), values, strict=True), 1):
         for rod in result.rods:
             rows = np.column_stack([rod.arc_lengths, shape[rod.nodes]]).tolist()

@@ -10,9 +10,23 @@ from numpy.typing import NDArray
 
 from der.fields import FIELD_UNITS, rod_fields
 from der.progress import ProgressFunction
+from der.run_folder import DATA_UNITS
 
 if TYPE_CHECKING:
     from der.result import Result
+
+#: Unit of each array, of those of a rod by their last name; pure numbers have an empty one.
+_UNITS = {
+    "times": "s",
+    "steps": "",
+    "positions": "m",
+    "velocities": "m/s",
+    "nodes": "",
+    "arc_lengths": "m",
+    "radius": "m",
+    "sphere_radii": "m",
+    "edge_tension": "N",
+}
 
 
 def write_npz(result: Result, out: Path, progress: ProgressFunction) -> list[Path]:
@@ -27,12 +41,15 @@ def write_npz(result: Result, out: Path, progress: ProgressFunction) -> list[Pat
         "positions": result.positions,
         "velocities": result.velocities,
     }
+    units = _UNITS | FIELD_UNITS
     for group, columns in (("energies", result.energies), ("work", result.work)):
         arrays |= {f"{group}/{name}": values for name, values in columns.items()}
+        units |= {f"{group}/{name}": "J" for name in columns}
     for name, probe in result.probes.items():
         arrays[f"probes/{name}"] = np.asarray(probe)
-        arrays[f"units/probes/{name}"] = np.array(probe.unit)
+        units[f"probes/{name}"] = probe.unit
     arrays |= result.data
+    units |= {name: DATA_UNITS.get(name, "") for name in result.data}
     for fields in rod_fields(result):
         prefix = f"rods/{fields.rod.name}"
         arrays |= {
@@ -43,7 +60,7 @@ def write_npz(result: Result, out: Path, progress: ProgressFunction) -> list[Pat
             f"{prefix}/edge_tension": fields.edge_tension,
         }
         arrays |= {f"{prefix}/{name}": values for name, values in fields.named().items()}
-    arrays |= {f"units/{name}": np.array(unit) for name, unit in FIELD_UNITS.items()}
+    arrays |= {f"units/{name}": np.array(unit) for name, unit in units.items()}
     with out.open("wb") as file:
         np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
     progress(1.0)

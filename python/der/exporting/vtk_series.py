@@ -68,6 +68,8 @@ def _point_data(rods: list[RodFields], frame: int) -> PointData:
         "curvature": np.concatenate([fields.curvature[frame] for fields in rods]),
         "tension": np.concatenate([fields.tension[frame] for fields in rods]),
     }
+    # Rods in a plane do not twist: 0 [1/m], for programs that read it of rods in space as well.
+    data["twist"] = np.zeros_like(data["tension"])
     data["velocity"] = _in_space(np.vstack([fields.velocities[frame] for fields in rods]))
     data["radius"] = np.concatenate(
         [np.full(len(fields.rod.nodes), fields.rod.radius) for fields in rods]

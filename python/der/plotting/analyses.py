@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from der._core import held_nodes, springs
+from der._core import springs
+from der.plotting.lengths import label_positions
 from der.plotting.shapes import draw_shapes, limits
 from der.plotting.style import MUTED, PALETTE, axis_label
 from der.plotting.supports import draw_springs, draw_supports
@@ -52,7 +53,8 @@ def plot_modes(result: Result) -> Figure:
     )
     for axes, shape, label in zip(panels[:, 0], shapes, labels, strict=True):
         _draw_mode(axes, result, rest, shape * size / np.abs(shape).max(), label)
-    panels[-1, 0].set_xlabel("x [m]")
+        label_positions(axes, low, high)
+        axes.label_outer()
     return figure
 
 
@@ -62,11 +64,10 @@ def _draw_mode(axes: Axes, result: Result, rest: Array, shape: Array, label: str
     for rod in result.rods:
         line = (rest + shape)[rod.nodes]
         axes.plot(line[:, 0], line[:, 1], color=PALETTE[0], zorder=4)
-    draw_supports(axes, result.rods, held_nodes(result.scenario, 0.0), rest)
+    draw_supports(axes, result.rods, result.held_nodes(0), rest)
     draw_springs(axes, result.rods, springs(result.scenario), rest)
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_ylabel("y [m]")
-    axes.text(1.01, 0.5, label, transform=axes.transAxes, va="center")
+    axes.text(1.01, 0.5, f"{label},\nnot to scale", transform=axes.transAxes, va="center")
 
 
 def plot_path(result: Result, names: list[str]) -> Figure:

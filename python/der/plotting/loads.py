@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.path import Path
+from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Affine2D
 from numpy.typing import NDArray
 
@@ -214,6 +215,8 @@ def _write(axes: Axes, point: Array, offset: Array, away: Array, text: str) -> N
         va="center" if sideways else ("bottom" if away[1] > 0.0 else "top"),
         annotation_clip=False,
         zorder=5,
+        # A white rim, so that it can be read where it lies on a support or a rod.
+        path_effects=[withStroke(linewidth=3.0, foreground="white")],
     )
 
 

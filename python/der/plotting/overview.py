@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
@@ -13,12 +12,22 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from der._core import springs
-from der.fields import held_at
+from der.film import title_of
 from der.plotting.analyses import plot_modes, plot_path
+from der.plotting.lengths import label_positions
 from der.plotting.loads import draw_loads, room_for_loads
 from der.plotting.probes import draw_probe, mark_times
 from der.plotting.shapes import draw_shapes, limits, make_exactly_equal, pick_frames
-from der.plotting.style import MUTED, PALETTE, style, time_colours, time_text
+from der.plotting.style import (
+    AXES_TITLE,
+    FIGURE_TITLE,
+    MUTED,
+    PALETTE,
+    style,
+    time_colours,
+    time_text,
+    wrapped,
+)
 from der.plotting.supports import draw_springs, draw_supports
 from der.scene_loads import acting_loads
 
@@ -29,6 +38,7 @@ Array = NDArray[np.float64]
 What = Literal["overview", "shapes", "probes"]
 
 _WIDTH = 7.2  # of the figure [inch]
+_LEFT = 0.9  # of it, at most, is left of the axes [inch]
 _SHAPE_WIDTH = 5.6  # of the axes of the shapes, beside their legend [inch]
 _SHAPE_HEIGHT = (1.7, 5.5)  # least and most [inch]
 _PROBE_HEIGHT = 1.55  # [inch]
@@ -66,10 +76,12 @@ def plot(
     Raises
     ------
     ValueError
-        For a time outside of the run, or a probe that the scene has not.
+        For a time outside of the run or of a run without time, or a probe that the scene has not.
     """
     names = _probe_names(result, probes) if what != "shapes" else []
     kind = result.scenario.analysis
+    if times is not None and result.scenario.is_static:
+        raise ValueError(f"a {kind} run has no time, and so no shapes at times")
     frames = [] if kind == "continuation" else _frames_to_draw(result, times)
     if what == "probes" and not names:
         raise ValueError("the scene has no probes to plot; add some under output.probes")
@@ -84,13 +96,14 @@ def plot(
             figure = _plot_static(result, what, names)
         else:
             figure = _plot_motion(result, what, names, frames)
-        text = result.scenario.title if title is None else title
+        text = title_of(result) if title is None else title
         figure.align_ylabels()
-        text = "\n".join(textwrap.wrap(text, 80))
         if kind == "continuation" and what != "shapes":
-            figure.suptitle(text, x=0.01, ha="left")
+            lines = wrapped(text, FIGURE_TITLE, _WIDTH - 0.2)
+            figure.suptitle("\n".join(lines), x=0.01, ha="left", parse_math=False)
         else:
-            figure.axes[0].set_title(text, pad=10)
+            lines = wrapped(text, AXES_TITLE, _WIDTH - _LEFT)
+            figure.axes[0].set_title("\n".join(lines), pad=10, parse_math=False)
         if figure.axes[0].get_aspect() == 1.0 and kind not in ("modes", "buckling"):
             make_exactly_equal(figure, figure.axes[0])
     return figure
@@ -162,7 +175,7 @@ def _plot_path_shapes(result: Result) -> Figure:
             colour = PALETTE[branch % len(PALETTE)]
             draw_shapes(axes, result.rods, result.positions[row], colour, label)
             label = None
-    draw_supports(axes, result.rods, held_at(result, 0), result.positions[0])
+    draw_supports(axes, result.rods, result.held_nodes(0), result.positions[0])
     draw_springs(axes, result.rods, springs(result.scenario), result.positions[0])
     _finish_shape_panel(axes)
     return figure
@@ -180,7 +193,8 @@ def _plot_static(result: Result, what: What, names: list[str]) -> Figure:
         figure, panels = _figure(heights)
         axes = panels.pop(0)
         draw_shapes(axes, result.rods, shapes[0], MUTED, "as drawn", "--")
-        _draw_shape_panel(axes, result, [equilibrium], ["equilibrium"], last)
+        label = "equilibrium" if result.status == "static_converged" else "where it ended"
+        _draw_shape_panel(axes, result, [equilibrium], [label], last)
     if panels:
         _write_values(panels[0], result, names)
     return figure
@@ -227,7 +241,7 @@ def _draw_shape_panel(
     """Draw shapes, with supports and loads at the last of them, that of a frame."""
     for positions, label, colour in zip(shapes, labels, time_colours(len(shapes)), strict=True):
         draw_shapes(axes, result.rods, positions, colour, label)
-    draw_supports(axes, result.rods, held_at(result, frame), shapes[-1])
+    draw_supports(axes, result.rods, result.held_nodes(frame), shapes[-1])
     draw_springs(axes, result.rods, springs(result.scenario), shapes[-1])
     draw_loads(axes, result.rods, acting_loads(result, frame), shapes[-1])
     axes.update_datalim(np.array(_corners(result, shapes, frame)))
@@ -238,8 +252,7 @@ def _finish_shape_panel(axes: Axes) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.06)
     axes.autoscale_view()
-    axes.set_xlabel("x [m]")
-    axes.set_ylabel("y [m]")
+    label_positions(axes, np.array(axes.dataLim.min), np.array(axes.dataLim.max))
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections import Counter
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -13,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from der.plotting.style import MUTED, PALETTE, axis_label, style
+from der.plotting.style import FIGURE_TITLE, MUTED, PALETTE, axis_label, style, wrapped
 
 if TYPE_CHECKING:
     from der.accuracy.study_result import Study, StudyRow
@@ -29,7 +28,7 @@ def plot_study(study: Study) -> Figure:
 
     The grey band holds errors below that of the reference, of which nothing is known. Of the
     configurations of a stepper only those are joined that nothing cheaper is as good as; the others
-    are small dots. A static scene has no panel for time.
+    are small dots. A static scene has no panel for time. Probes without any error are left out.
 
     Parameters
     ----------
@@ -43,6 +42,7 @@ def plot_study(study: Study) -> Figure:
     """
     static = study.scenario.is_static
     meshes = len({row.nodes for row in study.rows})
+    probes = [probe for probe in study.probes if not study.is_exact(probe)] or study.probes[:1]
     draw = [_draw_cost]
     if not static:
         draw.append(_draw_time)
@@ -50,16 +50,17 @@ def plot_study(study: Study) -> Figure:
         draw.append(_draw_space)
     with style():
         figure, panels = plt.subplots(
-            len(study.probes),
+            len(probes),
             len(draw),
             squeeze=False,
-            figsize=(_WIDTH * len(draw) / 3, _HEIGHT * len(study.probes)),
+            figsize=(_WIDTH * len(draw) / 3, _HEIGHT * len(probes)),
             layout="constrained",
         )
-        for line, probe in zip(panels, study.probes, strict=True):
+        for line, probe in zip(panels, probes, strict=True):
             for axes, function in zip(line, draw, strict=True):
                 function(axes, [row for row in study.of(probe) if row.completed])
-        figure.suptitle("\n".join(textwrap.wrap(study.scenario.title, 80)), x=0.01, ha="left")
+        lines = wrapped(study.scenario.title, FIGURE_TITLE, 0.98 * figure.get_figwidth())
+        figure.suptitle("\n".join(lines), x=0.01, ha="left", parse_math=False)
         if not static:
             handles, labels = panels[0][0].get_legend_handles_labels()
             figure.legend(handles, labels, loc="outside lower center", ncols=4)

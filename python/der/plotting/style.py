@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -9,6 +10,8 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from cycler import cycler
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import text_to_path
 from matplotlib.typing import ColorType
 
 #: Colours of Okabe and Ito, told apart with every common form of colour blindness.
@@ -19,6 +22,10 @@ MUTED = "#6b6b6b"
 
 #: Loads: forces, moments, gravity.
 LOAD = PALETTE[1]
+
+#: Font sizes of titles [points].
+AXES_TITLE, FIGURE_TITLE = 11.0, 12.0
+_TITLE_LINES = 4  # what is longer ends with three dots
 
 _SETTINGS: dict[Any, Any] = {
     "axes.axisbelow": True,
@@ -32,9 +39,9 @@ _SETTINGS: dict[Any, Any] = {
     "axes.spines.right": False,
     "axes.spines.top": False,
     "axes.titlelocation": "left",
-    "axes.titlesize": 11,
+    "axes.titlesize": AXES_TITLE,
     "figure.dpi": 110,
-    "figure.titlesize": 12,
+    "figure.titlesize": FIGURE_TITLE,
     "font.size": 9,
     "grid.color": "#e4e4e4",
     "grid.linewidth": 0.6,
@@ -54,6 +61,24 @@ def style() -> Iterator[None]:
     """Draw in the style of der within a ``with`` block; settings outside stay as they are."""
     with mpl.rc_context(_SETTINGS):
         yield
+
+
+def wrapped(text: str, points: float, width: float) -> list[str]:
+    """Return a title in lines no wider than `width` [inch] at a font size; at most four.
+
+    Write them with ``parse_math=False``: a dollar sign in a title is a dollar sign.
+    """
+    font = FontProperties(size=points)
+
+    def fits(line: str) -> bool:
+        across, _, _ = text_to_path.get_text_width_height_descent(line, font, ismath=False)
+        return bool(across <= 72.0 * width)
+
+    for letters in range(max(len(text), 2), 1, -1):
+        lines = textwrap.wrap(text, letters, max_lines=_TITLE_LINES, placeholder="…")
+        if all(fits(line) for line in lines):
+            break
+    return lines
 
 
 def time_colours(count: int) -> list[ColorType]:

@@ -62,7 +62,7 @@ def draw_supports(
     rods
         The rods.
     held
-        The held nodes, from ``der.held_nodes(scenario, time)``.
+        The held nodes, from `Result.held_nodes` or ``der.held_nodes(scenario, time)``.
     positions
         Positions of all nodes at that time [m], shape (nodes, 2).
     """

@@ -7,7 +7,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from der._core import held_nodes
 from der.plotting import PALETTE, draw_shapes, draw_supports
 from der.plotting.style import MUTED
 from der.reproduce.beam_exact import Tube, euler_bernoulli_deflection
@@ -23,7 +22,7 @@ def loaded_beam(m: Measurements) -> Figure:
     draw_shapes(axes, run.rods, run.positions[0], MUTED, "unloaded", "--")
     shape = run.positions[-1]
     draw_shapes(axes, run.rods, shape, PALETTE[0], "under 2 kN")
-    draw_supports(axes, run.rods, held_nodes(run.scenario, float(run.times[-1])), shape)
+    draw_supports(axes, run.rods, run.held_nodes(len(run.times) - 1), shape)
     arc = run.rods[0].arc_lengths
     _draw_load(
         axes,

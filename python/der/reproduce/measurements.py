@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -33,7 +34,13 @@ STEPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 LOADS = (20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0, 20000.0)
 
 #: The stages of the work, and about how many seconds each takes.
-STAGES = {"costs": 1.5, "runs": 3.0, "bars": 7.0, "exact": 4.0, "figures": 8.0}
+STAGES = {
+    "costs of the schemes": 1.5,
+    "runs": 3.0,
+    "error bars": 7.0,
+    "exact solutions": 4.0,
+    "figures": 8.0,
+}
 
 _LONG = 50.0  # duration of the long falls [s]
 _REPEATS = 3  # of the runs whose cost is measured
@@ -68,6 +75,11 @@ _RUNS: dict[str, tuple[str, dict[str, Any]]] = {
     ),
 }
 _FAILS = "three_unstable"
+#: The runs whose cost is measured, one at a time.
+_COSTS: dict[str, tuple[str, dict[str, Any]]] = {
+    "three_explicit": ("falling_beam_3_explicit", {}),
+    "three_implicit": ("falling_beam_3", {}),
+}
 #: The runs of which numbers stand in the table.
 _VERIFIED = (
     "three",
@@ -161,7 +173,7 @@ def measure(jobs: int | None, stages: Stages) -> Measurements:
     outcomes = _run_all(workers)
     runs = {name: _result(outcomes[name], fails=name == _FAILS) for name in _RUNS}
     runs["three_explicit"] = explicit
-    tell = stages.of("bars", 0, 2)
+    tell = stages.of("error bars", 0, 2)
     bars = {}
     for i, name in enumerate(_VERIFIED):
         bars[name] = verify(_scene(*_RUNS[name]), jobs=jobs)
@@ -208,45 +220,49 @@ def _speed(outcome: Outcome) -> float:
 
 def _measure_costs(stages: Stages) -> tuple[Result, Result]:
     """Run both schemes of the first problem, one at a time; return explicit and implicit."""
-    workers = Workers(1, stages.of("costs"))
+    workers = Workers(1, stages.of("costs of the schemes"))
     tasks = {
-        name: Task([_scene(name, {})], weight=weight, repeats=_REPEATS)
-        for name, weight in (("falling_beam_3_explicit", 1.0), ("falling_beam_3", 0.01))
+        name: Task([_scene(*_COSTS[name])], weight=weight, repeats=_REPEATS)
+        for name, weight in (("three_explicit", 1.0), ("three_implicit", 0.01))
     }
     workers.expect(total_weight(tasks.values()))
     outcomes = workers.run(tasks)
-    return outcomes["falling_beam_3_explicit"].value(), outcomes["falling_beam_3"].value()
+    return outcomes["three_explicit"].value(), outcomes["three_implicit"].value()
 
 
-def _run_all(workers: Workers) -> dict[Key, Outcome]:
-    scenes: dict[Key, Scenario] = {name: _scene(*run) for name, run in _RUNS.items()}
+def _all_runs() -> dict[Key, tuple[str, dict[str, Any]]]:
+    """Return scene and changes of every run: of those with a name, and of those that vary."""
+    runs: dict[Key, tuple[str, dict[str, Any]]] = {}
+    for name, run in (_RUNS | _COSTS).items():
+        runs[name] = run
     for density in DENSITIES:
         for nodes in NODES:
-            scenes["nodes", nodes, density] = _chain(nodes, density)
+            runs["nodes", nodes, density] = ("falling_beam_5", _chain(nodes, density))
         for step in STEPS:
             every = step * max(1, round(0.05 / step))
             changes = {"time.step": step, "output.every": every, _DENSITY: density}
-            scenes["step", step, density] = _scene("falling_beam_21", changes)
+            runs["step", step, density] = ("falling_beam_21", changes)
     for load in LOADS:
-        scenes["load", load] = _scene("simply_supported", {_FORCE: [0, -load]})
+        runs["load", load] = ("simply_supported", {_FORCE: [0, -load]})
+    return runs
+
+
+def _run_all(workers: Workers) -> dict[Key, Outcome]:
+    scenes = {key: _scene(*run) for key, run in _all_runs().items() if key not in _COSTS}
     tasks = {key: Task([scene], weight=_weight(scene)) for key, scene in scenes.items()}
     workers.expect(total_weight(tasks.values()))
     return workers.run(tasks)
 
 
-def _chain(nodes: int, density: float) -> Scenario:
-    """Return the report's second problem with any number of nodes, over 50 s."""
-    edge = FallingChain(nodes).edge
-    return _scene(
-        "falling_beam_5",
-        {
-            "rods.rod.nodes": nodes,
-            "rods.rod.spheres.0.radius": 0.1 * edge,
-            _DENSITY: density,
-            "time.duration": _LONG,
-            "output.every": 0.05,
-        },
-    )
+def _chain(nodes: int, density: float) -> dict[str, Any]:
+    """Return what makes the scene with 5 nodes one with any number of nodes, over 50 s."""
+    return {
+        "rods.rod.nodes": nodes,
+        "rods.rod.spheres.0.radius": 0.1 * FallingChain(nodes).edge,
+        _DENSITY: density,
+        "time.duration": _LONG,
+        "output.every": 0.05,
+    }
 
 
 def _weight(scene: Scenario) -> float:
@@ -257,7 +273,7 @@ def _weight(scene: Scenario) -> float:
 def _deflections(
     outcomes: Mapping[Key, Outcome], jobs: int | None, stages: Stages
 ) -> dict[float, Deflection]:
-    tell = stages.of("bars", 1, 2)
+    tell = stages.of("error bars", 1, 2)
     deflections = {}
     for i, load in enumerate(LOADS):
         run = outcomes["load", load].value()
@@ -294,7 +310,7 @@ def _solve_falls(runs: Mapping[str, Result], stages: Stages) -> tuple[dict[str, 
     falls = {}
     for i, (name, chain) in enumerate(chains.items()):
         falls[name] = fall(chain, runs[name].times)
-        stages.of("exact", i, len(chains) + 1)(1.0)
+        stages.of("exact solutions", i, len(chains) + 1)(1.0)
     return falls, fall(chains["three"], np.linspace(0.0, runs[_FAILS].times[-1], 200))
 
 
@@ -305,7 +321,7 @@ def _solve_beams(stages: Stages) -> dict[float, dict[float, float]]:
         place: dict(zip(LOADS, elastica_deflections(Tube(load_at=place), LOADS), strict=True))
         for place in places
     }
-    stages.of("exact")(1.0)
+    stages.of("exact solutions")(1.0)
     return found
 
 
@@ -317,8 +333,12 @@ def nodes_beside_the_load() -> tuple[float, float]:
     return float(left), float(left + edge)
 
 
-def command_of(run: str) -> str:
-    """Return the command that does a run in a checkout."""
-    scene, changes = _RUNS[run]
-    sets = "".join(f" --set {path}={value}" for path, value in changes.items())
-    return f"der_run configs/{scene}.yaml{sets}"
+def command_of(run: Key) -> str:
+    """Return the command that does a run in a checkout.
+
+    Runs have a name, or are of the sets ``("nodes", nodes, density)``, ``("step", step, density)``
+    and ``("load", load)``.
+    """
+    scene, changes = _all_runs()[run]
+    sets = [shlex.quote(f"{path}={value}") for path, value in changes.items()]
+    return " ".join([f"der_run configs/{scene}.yaml", *(f"--set {change}" for change in sets)])

@@ -50,7 +50,8 @@ class Quantity:
     command
         Prints `ours`; empty where no single run does.
     probe
-        The probe that `ours` is the final value of, but for its sign.
+        The probe that `ours` is the final value of, but for its sign; empty where the command
+        prints it elsewhere.
     digits
         To print of `ours` where there is no error bar.
     """
@@ -147,9 +148,9 @@ def deflection_table(m: Measurements) -> Table:
 
 def deflection_csv(m: Measurements) -> str:
     """Return deflection against load with all digits."""
-    heads = ["load_N", "ours_m", "error_bar_m", "exact_m", "euler_bernoulli_m"]
+    heads = ["load_N", "ours_m", "error_bar_m", "exact_m", "euler_bernoulli_m", "command"]
     rows = [
-        [repr(x) for x in (load, ours.value, ours.bar, exact, linear)]
+        [*map(repr, (load, ours.value, ours.bar, exact, linear)), command_of(("load", load))]
         for load, ours, exact, linear in _deflections(m)
     ]
     return to_csv([heads, *rows])
@@ -157,13 +158,15 @@ def deflection_csv(m: Measurements) -> str:
 
 def speeds_csv(m: Measurements) -> str:
     """Return the speed after 50 s against nodes and against the step, with all digits."""
-    rows = [["nodes", "step_s", "fluid_density_kg_m3", "ours_m_s", "terminal_m_s"]]
+    rows = [["nodes", "step_s", "fluid_density_kg_m3", "ours_m_s", "terminal_m_s", "command"]]
     for (nodes, density), speed in m.speeds_by_nodes.items():
         balance = FallingChain(nodes, density).terminal_speed
-        rows.append([repr(x) for x in (nodes, 0.01, density, speed, balance)])
+        numbers = (nodes, 0.01, density, speed, balance)
+        rows.append([*map(repr, numbers), command_of(("nodes", nodes, density))])
     for (step, density), speed in m.speeds_by_step.items():
         balance = FallingChain(21, density).terminal_speed
-        rows.append([repr(x) for x in (21, step, density, speed, balance)])
+        numbers = (21, step, density, speed, balance)
+        rows.append([*map(repr, numbers), command_of(("step", step, density))])
     return to_csv(rows)
 
 
@@ -256,6 +259,7 @@ def _schemes(m: Measurements) -> list[Quantity]:
             f"{steps:,} steps at {number(1e6 * m.explicit_seconds / steps, 2)} \u00b5s "
             f"each. An hour would be {duration(report.EXPLICIT_SECONDS.value / steps)} each: the "
             "price of an interpreted loop, not of the scheme. Wall times depend on the machine.",
+            command_of("three_explicit"),
             digits=2,
         ),
         Quantity(
@@ -269,6 +273,7 @@ def _schemes(m: Measurements) -> list[Quantity]:
             f"{int(implicit.summary['steps']):,} steps. The explicit scheme costs "
             f"{number(ours_ratio, 2)} times as much, in the report at least "
             f"{number(least_ratio, 2)} times.",
+            command_of("three_implicit"),
             digits=2,
         ),
         Quantity(
@@ -292,6 +297,7 @@ def _schemes(m: Measurements) -> list[Quantity]:
             None,
             f"After {int(unstable.summary['steps'])} steps an edge is a hundred times too long, "
             "and the run ends with an error. What goes on from there says nothing about the rod.",
+            command_of("three_unstable"),
             digits=2,
         ),
     ]
@@ -350,11 +356,11 @@ def _many_nodes(m: Measurements) -> list[Quantity]:
             "terminal_5",
             "5 nodes, no buoyancy: terminal speed",
             "m/s",
-            report.TERMINAL_SPEED_21,
+            "",
             terminal_5,
             terminal_5_bar,
             five.terminal_speed,
-            "In print the same as with 21 nodes; it is "
+            "The report gives a number for 21 nodes only, and calls that of 5 overlapping; it is "
             f"{percent(five.terminal_speed / FallingChain(21, 0.0).terminal_speed - 1.0)} more.",
             command_of("five_long"),
             "v_mid",

@@ -157,7 +157,7 @@ def _three_nodes(m: Measurements) -> Section:
                 "Both schemes against the exact motion, and their cost. The report's times are "
                 "what it says in words.",
                 "Left: errors of the displacement over time, larger for the implicit "
-                "scheme. Right: bars of wall times.",
+                "scheme. Right: dots of wall times.",
             ),
             Paragraph(
                 "With ten times the step the explicit scheme blows up. Its longest stable step is "
@@ -373,7 +373,7 @@ def _how(rows: Sequence[Quantity]) -> Section:
     return Section(
         "How the numbers were made",
         [
-            Paragraph("Each of ours is what these commands print, in a checkout of der:"),
+            Paragraph("These commands, in a checkout of der, print ours:"),
             Bullets([f"`{command}`: {'; '.join(names)}" for command, names in by_command.items()]),
             Paragraph("The rest:"),
             Bullets(
@@ -386,8 +386,16 @@ def _how(rows: Sequence[Quantity]) -> Section:
                     "sum of the Stokes drags.",
                     "Exact deflections: the extensible elastica as a boundary value problem, by "
                     "shooting with SciPy's DOP853 to a relative tolerance of 10⁻¹².",
-                    "Wall times: the least of three runs, one at a time, on the machine at hand. "
-                    "All else does not depend on the machine, but for rounding.",
+                    "Wall times: what stands under `cost`, the least of three runs, one at a time, "
+                    "on the machine at hand. All else does not depend on the machine, but for "
+                    "rounding.",
+                    "The longest stable step: by bisection of the steps with which "
+                    "`der.Simulation` takes the explicit scene. The command that blows up says it "
+                    "in its error, with the time that it reaches.",
+                    "The masses: the sums of `der.Simulation(scene).node_masses` for "
+                    "`configs/falling_beam_3.yaml` and `configs/falling_beam_5.yaml`.",
+                    "Deflection by load, and speeds by nodes and by step: the command stands in "
+                    "each row of `data/deflection_by_load.csv` and `data/terminal_speeds.csv`.",
                     "The numbers with all their digits: `data/comparison.csv`, "
                     "`data/deflection_by_load.csv`, `data/terminal_speeds.csv`.",
                     f"Versions: der {__version__}, Python {platform.python_version()}, NumPy "

@@ -54,8 +54,8 @@ def view(result: Result, path: str | os.PathLike[str], *, open: bool = False) ->
         "STYLE": (_FOLDER / "style.css").read_text(encoding="utf-8"),
         "SCRIPT": (_FOLDER / "view.js").read_text(encoding="utf-8"),
         "PLOTLY": get_plotlyjs(),
-        # Within a script element only this would end it.
-        "DATA": text.replace("</", "<\\/"),
+        # Within a script element "</script" would end it, and "<!--" change how it ends.
+        "DATA": text.replace("<", "\\u003c"),
     }
     page = (_FOLDER / "page.html").read_text(encoding="utf-8")
     for name, part in parts.items():

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der._core import Rod, springs
-from der.fields import FIELD_UNITS, held_at
-from der.film import Film, make_film, mode_shapes, round_speed, speed_text
+from der.fields import FIELD_UNITS
+from der.film import Film, failure_text, make_film, mode_shapes, round_speed, speed_text
+from der.plotting.lengths import LengthScale
 from der.plotting.style import quantity_text
 from der.scene_loads import ActingLoads
 
@@ -30,24 +31,31 @@ _SPEEDS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 
 
 def make_payload(result: Result) -> dict[str, Any]:
-    """Return what ``view.js`` reads; arrays are base64 of 32-bit floats, positions have x, y, z."""
+    """Return what ``view.js`` reads; arrays are base64 of 32-bit floats, positions have x, y, z.
+
+    All lengths are in the unit of the axes, and positions count from where these begin: 32 bits
+    are too few for a rod far from zero.
+    """
     film = make_film(result)
     frames = _kept_frames(film)
-    positions = _in_space(film.positions[frames])
+    in_metres = _in_space(film.positions[frames])
+    scale = LengthScale.of(in_metres.min(axis=(0, 1)), in_metres.max(axis=(0, 1)))
+    positions = scale.shown(in_metres)
     loads = _loads(result, film, frames)
     found_springs = _springs(result)
     symbols = any(loads["loads"]) or bool(found_springs)
-    low, high, symbol = _limits(result.rods, positions, symbols)
+    low, high, symbol = _limits(result.rods, positions, scale.metres, symbols)
     span = 0.0 if film.times is None else float(film.times[-1] - film.times[0])
-    note = result.scenario.analysis if result.scenario.is_static else ""
+    noise = _noise(result.rods, span)
+    notes = [failure_text(result), result.scenario.analysis if result.scenario.is_static else ""]
     if len(frames) < len(film.captions):
-        note = f"{len(frames)} of {len(film.captions)} saved frames"
+        notes.append(f"{len(frames)} of {len(film.captions)} saved frames")
     gravity = film.loads(result, 0).gravity
     if gravity is not None:
-        note += f"{', ' if note else ''}gravity {_vector_text(gravity)} m/s²"
+        notes.append(f"gravity {_vector_text(gravity)} m/s²")
     return {
         "title": result.scenario.title,
-        "note": note,
+        "note": ", ".join(note for note in notes if note),
         "captions": _captions(film, frames),
         "times": None if film.times is None else film.times[frames].tolist(),
         "chapters": [
@@ -61,18 +69,26 @@ def make_payload(result: Result) -> dict[str, Any]:
         ],
         "start": len(frames) - 1 if result.scenario.analysis == "static" else 0,
         "speeds": _speeds(span),
-        "fields": {name: _field_range(name, rods) for name, rods in film.fields.items()},
+        "fields": {
+            name: _field_range(name, rods, noise[name]) for name, rods in film.fields.items()
+        },
         "quantity": next(iter(film.fields), ""),
         "rods": [
-            _rod(rod, positions, {name: rods[k][frames] for name, rods in film.fields.items()})
+            _rod(
+                rod,
+                positions,
+                scale.metres,
+                {name: rods[k][frames] for name, rods in film.fields.items()},
+            )
             for k, rod in enumerate(result.rods)
         ],
-        "supports": _supports(result),
+        "supports": _supports(result, film.source[frames]),
         "springs": found_springs,
         **loads,
         "symbol": symbol,
         "low": low.tolist(),
         "high": high.tolist(),
+        "axes": [scale.label(axis) for axis in range(3)],
         "flat": bool(np.all(positions[:, :, 2] == 0.0)),
     }
 
@@ -106,24 +122,43 @@ def _speeds(span: float) -> list[tuple[float, str]]:
     return [(speed, speed_text(speed)) for speed in speeds]
 
 
-def _field_range(name: str, rods: list[Array]) -> dict[str, Any]:
-    """Return unit and range of a quantity; one that is constant gets a range around it."""
+def _noise(rods: list[Rod], span: float) -> dict[str, float]:
+    """Return for each quantity how much of it may be rounding, by the size of the rods.
+
+    A curvature that turns the longest rod by a billionth, a strain of 1e-12, and a speed that takes
+    a rod a billionth of its length along in the whole run (`span` [s]).
+    """
+    length = max(rod.length for rod in rods)
+    return {
+        "curvature": 1e-9 / length,
+        "tension": 1e-12 * max(rod.EA for rod in rods),
+        "speed": 1e-9 * length / span if span > 0.0 else 0.0,
+    }
+
+
+def _field_range(name: str, rods: list[Array], noise: float) -> dict[str, Any]:
+    """Return unit and range of a quantity; one that is constant gets a range around it.
+
+    What varies by no more than `noise` is constant, and what is no larger is 0.
+    """
     low = min(float(values.min()) for values in rods)
     high = max(float(values.max()) for values in rods)
     size = max(abs(low), abs(high))
-    if high - low <= 1e-9 * size or size == 0.0:
-        room = 0.01 * size or 1.0
+    if size <= noise:
+        low, high = -1.0, 1.0
+    elif high - low <= max(1e-9 * size, noise):
+        room = max(0.01 * size, noise)
         low, high = low - room, high + room
     return {"unit": FIELD_UNITS[name], "low": low, "high": high}
 
 
-def _rod(rod: Rod, positions: Array, fields: dict[str, Array]) -> dict[str, Any]:
-    spheres = [(i, float(radius)) for i, radius in enumerate(rod.sphere_radii) if radius > 0.0]
+def _rod(rod: Rod, positions: Array, unit: float, fields: dict[str, Array]) -> dict[str, Any]:
+    radii = (rod.sphere_radii / unit).tolist()
     return {
         "name": rod.name,
         "nodes": len(rod.nodes),
-        "radius": rod.radius,
-        "spheres": spheres,
+        "radius": rod.radius / unit,
+        "spheres": [(i, radius) for i, radius in enumerate(radii) if radius > 0.0],
         "positions": _packed(positions[:, rod.nodes]),
         "fields": {name: _packed(values) for name, values in fields.items()},
     }
@@ -140,11 +175,13 @@ def _in_space(positions: Array) -> Array:
     return full
 
 
-def _limits(rods: list[Rod], positions: Array, symbols: bool) -> tuple[Array, Array, float]:
-    """Return the corners [m] of all frames, symbols included, and the size of these [m]."""
+def _limits(
+    rods: list[Rod], positions: Array, unit: float, symbols: bool
+) -> tuple[Array, Array, float]:
+    """Return the corners of all frames, symbols included, and the size of these, in the unit."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for rod in rods:
-        around = np.maximum(rod.sphere_radii, rod.radius)[:, np.newaxis]
+        around = np.maximum(rod.sphere_radii, rod.radius)[:, np.newaxis] / unit
         low = np.minimum(low, (positions[:, rod.nodes] - around).min(axis=(0, 1)))
         high = np.maximum(high, (positions[:, rod.nodes] + around).max(axis=(0, 1)))
     symbol = _SYMBOL * float(np.max(high - low))
@@ -217,13 +254,18 @@ def _load_symbols(result: Result, loads: ActingLoads) -> list[dict[str, Any]]:
     return found
 
 
-def _supports(result: Result) -> list[dict[str, Any]]:
-    """Return the symbol of each held node; clamps stand along the rod, wherever it goes."""
+def _supports(result: Result, source: NDArray[np.int64]) -> list[dict[str, Any]]:
+    """Return the symbol of each held node.
+
+    Clamps have the ``angles`` of the tangent that they hold [rad]: one for all frames, or one for
+    each frame of the page, which are frames ``source`` of the result.
+    """
     rods = {rod.name: (number, rod) for number, rod in enumerate(result.rods)}
     dimension = result.positions.shape[2]
     upright = 1 if dimension == 2 else 2  # the axis that points up
     found = []
-    for held in held_at(result, 0):
+    angles = _clamp_angles(result, source)
+    for held, turned in zip(result.held_nodes(0), angles, strict=True):
         number, rod = rods[held.rod]
         down = np.zeros(3)
         fixed = ["xyz".index(component) for component in held.components]
@@ -235,8 +277,20 @@ def _supports(result: Result) -> list[dict[str, Any]]:
                 "rod": number,
                 "place": int(np.flatnonzero(rod.nodes == held.node)[0]),
                 "down": down.tolist(),
+                "angles": turned,
             }
         )
+    return found
+
+
+def _clamp_angles(result: Result, source: NDArray[np.int64]) -> list[list[float]]:
+    """Return for each held node the angles of the tangent [rad] as `_supports` has them."""
+    frames = {frame: result.held_nodes(frame) for frame in np.unique(source).tolist()}
+    found: list[list[float]] = []
+    for number in range(len(result.held_nodes(0))):
+        turns = [frames[frame][number].tangent_angle for frame in source.tolist()]
+        angles = [angle for angle in turns if angle is not None]
+        found.append(angles if len(set(angles)) > 1 else angles[:1])
     return found
 
 

@@ -158,20 +158,20 @@
     addBox(mesh, ground, scale(1.6, u), scale(1.6, v), scale(0.08 * size, down));
   };
 
-  const addSupport = (mesh, support, line) => {
+  const addSupport = (mesh, support, line, frame) => {
     const node = line[support.place];
     const size = data.symbol;
     if (support.kind !== "clamp") {
       addPyramid(mesh, node, support.down, size, support.kind === "roller");
       return;
     }
-    const last = line.length - 1;
-    const inner = support.place > 0 ? support.place - 1 : 1;
-    const along = unit(sub(node, line[inner]), [1, 0, 0]);
+    const angle = support.angles[support.angles.length > 1 ? frame : 0];
+    const along = [Math.cos(angle), Math.sin(angle), 0];
     const u = scale(size, across(along));
     const v = scale(size, unit(cross(along, u), [0, 0, 1]));
+    const last = line.length - 1;
     if (support.place === 0 || support.place === last) {
-      const thick = scale(0.12 * size, along);
+      const thick = scale((support.place === 0 ? -0.12 : 0.12) * size, along);
       addBox(mesh, add(node, thick), u, v, thick); // a wall behind the end
     } else {
       addBox(mesh, node, scale(0.6, u), scale(0.6, v), scale(0.6 * size, along));
@@ -315,10 +315,32 @@
     return { type: "mesh3d", ...plain(mesh), ...look };
   };
 
+  const springPlace = (spring, frame) => {
+    const line = lineOf(rods[spring.rod], frame);
+    return spring.nodes.reduce(
+      (sum, node, k) => add(sum, scale(spring.weights[k], line[node])),
+      [0, 0, 0],
+    );
+  };
+  const SPRING = 3; // length of a spring, and where the spiral ends, in symbols
+  const SPIRAL = 1.4;
+
   const supports = (frame) => {
     const mesh = newMesh();
+    const size = data.symbol;
     for (const support of data.supports) {
-      addSupport(mesh, support, lineOf(rods[support.rod], frame));
+      addSupport(mesh, support, lineOf(rods[support.rod], frame), frame);
+    }
+    for (const spring of data.springs) {
+      const place = springPlace(spring, frame);
+      const ground = (distance, along, width) => {
+        const u = scale(width * size, across(along));
+        const v = scale(width * size, unit(cross(along, u), [0, 0, 1]));
+        const thick = scale(0.08 * size, along);
+        addBox(mesh, add(add(place, scale(distance * size, along)), thick), u, v, thick);
+      };
+      for (const along of spring.along) ground(SPRING, along, 0.8);
+      if (spring.turns) ground(SPIRAL, [1, 0, 0], 0.4);
     }
     const look = { color: SUPPORT, flatshading: true, lighting: LIGHT, hoverinfo: "skip" };
     return { type: "mesh3d", ...plain(mesh), ...look };
@@ -335,25 +357,20 @@
     };
     const size = data.symbol;
     for (const spring of data.springs) {
-      const line = lineOf(rods[spring.rod], frame);
-      const place = spring.nodes.reduce(
-        (sum, node, k) => add(sum, scale(spring.weights[k], line[node])),
-        [0, 0, 0],
-      );
+      const place = springPlace(spring, frame);
       for (const along of spring.along) {
         const side = scale(0.5 * size, across(along));
         const zigzag = [0, 0, 1, -1, 1, -1, 1, -1, 0, 0];
+        const pitch = (SPRING * size) / (zigzag.length - 1);
         draw(
-          zigzag.map((share, k) =>
-            add(place, add(scale((3 * size * k) / (zigzag.length - 1), along), scale(share, side))),
-          ),
+          zigzag.map((share, k) => add(place, add(scale(pitch * k, along), scale(share, side)))),
         );
       }
       if (spring.turns) {
         const turns = Array.from({ length: 49 }, (_, k) => k / 48);
         draw(
           turns.map((t) =>
-            add(place, scale(1.4 * size * t, [Math.cos(12.6 * t), Math.sin(12.6 * t), 0])),
+            add(place, scale(SPIRAL * size * t, [Math.cos(12.6 * t), Math.sin(12.6 * t), 0])),
           ),
         );
       }
@@ -362,9 +379,11 @@
     return { type: "scatter3d", mode: "lines", ...path, ...look };
   };
 
+  // Arrows, and what stands beside them. Texts are annotations: Plotly shrinks those of a trace
+  // when they change.
   const loads = (frame) => {
     const mesh = newMesh();
-    const labels = { x: [], y: [], z: [], text: [] };
+    const labels = [];
     for (const load of data.loads[data.load_set[frame]]) {
       const line = lineOf(rods[load.rod], frame);
       const [from, to] = [line[load.place], line[load.place + 1]];
@@ -374,37 +393,41 @@
           ? addMoment(mesh, load.along, point, data.symbol)
           : addForce(mesh, load, point, line, data.symbol);
       const gap = (Math.abs(away[0]) > Math.abs(away[1]) ? 1.6 : 0.6) * data.symbol;
-      const beside = add(place, scale(gap, away));
-      for (const [n, list] of [labels.x, labels.y, labels.z].entries()) list.push(beside[n]);
-      labels.text.push(load.text);
+      if (load.text) labels.push(note(load.text, add(place, scale(gap, away)), { color: LOAD, size: 13 }));
     }
     const look = { color: LOAD, lighting: LIGHT, hoverinfo: "skip" };
-    const font = { color: LOAD, size: 13 };
+    return [{ type: "mesh3d", ...plain(mesh), ...look }, labels];
+  };
+
+  // A text at a point, always upright and of the same size on the screen.
+  const note = (text, [x, y, z], font, place) => ({ x, y, z, text, font, showarrow: false, ...place });
+
+  // Seen from the front, Plotly's own titles of axes lie on their ticks: these stand at their ends.
+  const axisTitles = () => {
+    // Inside by a little: Plotly leaves out what rounding puts beyond the ends.
+    const inside = (n, share) => data.low[n] + share * (data.high[n] - data.low[n]);
+    const [low, high] = [0, 1].map((end) => [0, 1].map((n) => inside(n, 1e-6 + end * (1 - 2e-6))));
+    const font = { color: "#444", size: 13 };
     return [
-      { type: "mesh3d", ...plain(mesh), ...look },
-      {
-        type: "scatter3d",
-        mode: "text",
-        textposition: "middle center",
-        textfont: font,
-        hoverinfo: "skip",
-        ...labels,
-      },
+      note(data.axes[0], [high[0], low[1], 0], font, { xanchor: "left", xshift: 10 }),
+      note(data.axes[1], [low[0], high[1], 0], font, { yanchor: "bottom", yshift: 10 }),
     ];
   };
 
-  const axis = (name, n, shown) => ({
-    title: { text: `${name} [m]` },
+  const axis = (n, share, shown) => ({
+    title: { text: data.flat ? "" : data.axes[n] },
     range: [data.low[n], data.high[n]],
     visible: shown,
+    ...(data.flat ? { tickangle: 0 } : {}),
+    exponentformat: "none",
     showspikes: false,
     showbackground: false,
     gridcolor: "#d4d4d4",
     zeroline: false,
-    nticks: 7,
+    nticks: Math.min(7, 2 + Math.ceil(7 * share)), // short axes have room for few
   });
 
-  const layout = () => {
+  const layout = (labels) => {
     const size = data.high.map((value, n) => value - data.low[n]);
     const flat = data.flat;
     // At the distance of the camera about this much of height is seen, and of width by the window.
@@ -415,6 +438,7 @@
       ? Math.min((0.82 * wide) / size[0], seen / size[1])
       : Math.min(seen, wide) / Math.max(...size);
     const [x, y, z] = size.map((value) => zoom * value);
+    const share = (n) => size[n] / Math.max(...size);
     return {
       margin: { l: 0, r: 0, t: 0, b: 0 },
       showlegend: false,
@@ -422,12 +446,14 @@
       scene: {
         aspectmode: "manual",
         aspectratio: { x, y, z },
-        xaxis: axis("x", 0, true),
-        yaxis: axis("y", 1, true),
-        zaxis: axis("z", 2, !flat),
+        xaxis: axis(0, share(0), true),
+        yaxis: axis(1, share(1), true),
+        zaxis: axis(2, share(2), !flat),
+        annotations: flat ? [...axisTitles(), ...labels] : labels,
         dragmode: "orbit",
+        // From the left, where Plotly puts the ticks of y on the left, beside their title.
         camera: flat
-          ? { eye: { x: 0.14, y: 0.2, z: 1.4 }, up: { x: 0, y: 1, z: 0 } }
+          ? { eye: { x: -0.14, y: 0.2, z: 1.4 }, up: { x: 0, y: 1, z: 0 } }
           : { eye: { x: 1.0, y: -1.35, z: 0.7 }, up: { x: 0, y: 0, z: 1 } },
       },
     };
@@ -440,18 +466,13 @@
     toImageButtonOptions: { filename: "der", scale: 2 },
   };
 
-  const traces = (frame) => [
-    centreLines(frame),
-    tubes(frame),
-    spheres(frame),
-    supports(frame),
-    ...loads(frame),
-    springs(frame),
-  ];
   const draw = () => {
-    element("slider").value = state.frame;
-    element("caption").textContent = data.captions[state.frame];
-    return Plotly.react("scene", traces(state.frame), layout(), config);
+    const { frame } = state;
+    element("slider").value = frame;
+    element("caption").textContent = data.captions[frame];
+    const [arrows, labels] = loads(frame);
+    const own = [centreLines(frame), tubes(frame), spheres(frame), supports(frame)];
+    return Plotly.react("scene", [...own, arrows, springs(frame)], layout(labels), config);
   };
 
   // Controls.

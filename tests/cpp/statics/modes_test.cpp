@@ -67,11 +67,15 @@ TEST_CASE("a rod that nothing holds has three rigid motions") {
 TEST_CASE("buckling loads of a column, and shapes whose largest displacement is 1") {
   Simulation simulation(Scenario::parse(straight_rod(41, kPinned + kPush + kStatic)));
   const Vector before = simulation.gradient();
-  const auto modes = simulation.buckling(3);
+  const LinearBuckling buckling = simulation.buckling(3);
+  const auto& modes = buckling.modes;
   REQUIRE(modes.size() == 3);
+  CHECK(buckling.rotation == 0.0);
+  CHECK(buckling.strain == doctest::Approx(1e-6));
   for (std::size_t i = 0; i < 3; ++i) {
-    const double k = kPi * static_cast<double>(i + 1);
-    CHECK(modes[i].load_factor == doctest::Approx(k * k).epsilon(1e-2));
+    // of the chain, exactly
+    const double k = 80.0 * std::sin(kPi * static_cast<double>(i + 1) / 80.0);
+    CHECK(modes[i].load_factor == doctest::Approx(k * k).epsilon(1e-8));
     CHECK(modes[i].shape.lpNorm<Eigen::Infinity>() == doctest::Approx(1.0));
   }
   // The shape is that without loads, the loads are those of the scene.
@@ -80,12 +84,49 @@ TEST_CASE("buckling loads of a column, and shapes whose largest displacement is 
 
 TEST_CASE("what never buckles has no buckling loads, what nothing holds is refused") {
   const std::string pull = "loads:\n  - point_force: {rod: rod, at: end, force: [1, 0]}\n";
-  CHECK(
-      Simulation(Scenario::parse(straight_rod(11, kPinned + pull + kStatic))).buckling(2).empty());
+  const LinearBuckling pulled =
+      Simulation(Scenario::parse(straight_rod(11, kPinned + pull + kStatic))).buckling(2);
+  CHECK(pulled.modes.empty());
+  CHECK(pulled.rotation == 0.0);
   Simulation loose(Scenario::parse(straight_rod(11, kPush + kStatic)));
   const Vector before = loose.gradient();
   CHECK_THROWS_AS(loose.buckling(1), NotConvergedError);
   CHECK(loose.gradient() == before);
+}
+
+TEST_CASE("loads across a rod press nothing: no buckling loads, but a rotation") {
+  const std::string across = "loads:\n  - point_force: {rod: rod, at: end, force: [0, -1]}\n";
+  const std::string clamp = "supports:\n  - {rod: rod, at: start, clamp: true}\n";
+  Simulation simulation(Scenario::parse(straight_rod(41, clamp + across + kStatic)));
+  const LinearBuckling bent = simulation.buckling(2);
+  CHECK(bent.modes.empty());
+  CHECK(bent.rotation == doctest::Approx(0.5).epsilon(1e-3));  // P L^2 / 2 EI
+}
+
+TEST_CASE("the size of the loads does not matter to their buckling") {
+  for (const std::string force : {"1e-25", "1e-6", "1e16"}) {
+    const std::string push =
+        "loads:\n  - point_force: {rod: rod, at: end, force: [-" + force + ", 0]}\n";
+    Simulation simulation(Scenario::parse(straight_rod(11, kPinned + push + kStatic)));
+    const auto modes = simulation.buckling(9).modes;
+    REQUIRE(modes.size() == 9);
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      const double k = 20.0 * std::sin(kPi * static_cast<double>(i + 1) / 20.0);
+      CHECK(modes[i].load_factor * std::stod(force) == doctest::Approx(k * k).epsilon(1e-9));
+    }
+  }
+}
+
+TEST_CASE("all modes of many degrees of freedom are orthogonal and in order") {
+  Simulation simulation(Scenario::parse(straight_rod(41, kPinned + kStatic)));
+  simulation.equilibrium();
+  const Index size = simulation.model().num_free();
+  const auto modes = simulation.modes(size);
+  REQUIRE(modes.size() == static_cast<std::size_t>(size));
+  for (std::size_t i = 1; i < modes.size(); ++i) {
+    CHECK(modes[i].frequency > modes[i - 1].frequency);
+    CHECK(std::abs(product(simulation.model(), modes[i].shape, modes[i - 1].shape)) < 1e-7);
+  }
 }
 
 }  // namespace der::test

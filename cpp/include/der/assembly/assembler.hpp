@@ -69,7 +69,7 @@ class Assembler {
   struct ScatterMaps<std::tuple<Lists...>> {
     using type = std::tuple<ScatterMap<Lists>...>;
   };
-  typename ScatterMaps<ElementLists>::type scatter_;
+  ScatterMaps<ElementLists>::type scatter_;
   std::vector<std::array<Index, 10>> edge_slots_;  // of every plain stretch element
 };
 

@@ -23,9 +23,9 @@ struct RunOutcome {
   double wall_seconds = 0.0;  ///< earlier parts of a resumed run included
   /// Of an analysis about an equilibrium, if that was found.
   std::optional<EquilibriumReport> equilibrium;
-  std::vector<Mode> modes;             ///< of a modes analysis
-  std::vector<BucklingMode> buckling;  ///< of a buckling analysis
-  std::vector<PathBranch> path;        ///< of a continuation, and the probes of each of its points
+  std::vector<Mode> modes;       ///< of a modes analysis
+  LinearBuckling buckling;       ///< of a buckling analysis
+  std::vector<PathBranch> path;  ///< of a continuation, and the probes of each of its points
   std::vector<std::vector<double>> path_probes;
   [[nodiscard]] bool ok() const { return status == "completed" || status == "static_converged"; }
   [[nodiscard]] bool failed() const { return !message.empty(); }

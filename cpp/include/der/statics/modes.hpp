@@ -21,8 +21,9 @@ struct Mode {
 /// The `count` modes of lowest frequency (fewer if there are not so many degrees of freedom) about
 /// the equilibrium `positions` under `controls`: K v = w^2 M v with the tangent stiffness, so that
 /// tensions, moments and curved shapes count. Lanczos' method on the sparse factorisation of K - s
-/// M (Ericsson and Ruhe, Math. Comp. 35, 1980; the library Spectra). Damping is left out. Throws
-/// Error if a degree of freedom has no mass or the iteration does not converge.
+/// M (Ericsson and Ruhe, Math. Comp. 35, 1980; the library Spectra), repeated until the inertia of
+/// the factorisation says that none is missing. Damping is left out. Throws Error if a degree of
+/// freedom has no mass, NotConvergedError if modes cannot be found.
 std::vector<Mode> vibration_modes(const Model& model, const Assembler& assembler,
                                   LinearSolver& solver, const Vector& positions,
                                   const Vector& controls, int count);
@@ -33,14 +34,26 @@ struct BucklingMode {
   Vector shape;              ///< all degrees of freedom, the largest displacement 1
 };
 
+/// What linear buckling finds, and what tells whether it applies: it takes the shape without loads
+/// for the one that buckles, so its factors are good where the loads have hardly changed it there.
+struct LinearBuckling {
+  std::vector<BucklingMode> modes;
+  /// Largest rotation [rad] and strain of an edge in the linear response to the scene's loads, that
+  /// is for each unit of the load factor.
+  double rotation = 0.0;
+  double strain = 0.0;
+};
+
 /// Linear buckling: the lowest positive factors a of all loads at which (K0 + a K1) v = 0 has a
-/// solution; K0 is the stiffness of the unloaded equilibrium `positions`, K1 its derivative along
-/// the displacement that the loads cause to first order. Exact where the structure does not deform
-/// before it buckles, an estimate elsewhere (then: continuation). Found by bisection on the inertia
-/// of the sparse factorisation. Empty if the loads do not make it buckle. Throws NotConvergedError
-/// if the unloaded structure is not stable. Leaves the model at the scene's loads.
-std::vector<BucklingMode> buckling_modes(Model& model, const LoadPath& loads,
-                                         const Assembler& assembler, LinearSolver& solver,
-                                         const Vector& positions, int count);
+/// solution. K0 is the stiffness of the unloaded equilibrium `positions`; K1 is the stiffness
+/// across the edges from the tensions that the loads cause to first order, the initial-stress
+/// stiffness of the classical theory. Moments are left out of K1: they would couple the turning of
+/// an edge with its stretching, which makes a straight beam buckle under a load across it of about
+/// sqrt(EA EI), where terms of second order in the displacement, left out too, cancel that.
+/// Found by bisection on the inertia of the sparse factorisation. No modes if the loads do not make
+/// it buckle. Throws NotConvergedError if the unloaded structure is not stable. Leaves the model at
+/// the scene's loads.
+LinearBuckling linear_buckling(Model& model, const LoadPath& loads, const Assembler& assembler,
+                               LinearSolver& solver, const Vector& positions, int count);
 
 }  // namespace der

@@ -20,12 +20,18 @@ double potential_change(const Model& model, const Vector& controls, const Vector
 double second_variation(const Model& model, const Vector& controls, const Vector& positions,
                         const Vector& direction);
 
-/// The same for several displacements at once, one a column.
+/// The same, with |d|' |K| |d| summed likewise: some epsilons of that is what rounding may leave.
+struct SummedVariation {
+  double value = 0.0;
+  double terms = 0.0;
+};
+SummedVariation summed_variation(const Model& model, const Vector& controls,
+                                 const Vector& positions, const Vector& direction);
+
+/// d_i' K d_j likewise, for several displacements at once, one a column.
 struct SecondVariations {
   Eigen::MatrixXd values;  ///< d_i' K d_j [J]
-  /// Of each d_i' K d_i: the sum of all its terms without their signs [J], to which its rounding
-  /// error is relative.
-  Vector magnitudes;
+  Vector terms;            ///< of each d_i' K d_i the terms as above [J]
 };
 SecondVariations second_variations(const Model& model, const Vector& controls,
                                    const Vector& positions, const Eigen::MatrixXd& directions);

@@ -5,6 +5,7 @@
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
+#include "der/steppers/dense_output.hpp"
 #include "der/steppers/stepper.hpp"
 
 namespace der {
@@ -35,14 +36,15 @@ struct AdaptiveReport {
 /// tables over time, where forces have kinks, are hit exactly.
 class AdaptiveStepper {
  public:
-  AdaptiveStepper(const Model& model, Stepper& stepper, int order, const AdaptiveOptions& options);
+  AdaptiveStepper(const Model& model, const Assembler& assembler, Stepper& stepper, int order,
+                  const AdaptiveOptions& options);
 
   /// Advances `state` by one step that ends at `horizon` [s] or before it. The state is untouched
   /// if the report says that it was not done.
   AdaptiveReport advance(State& state, double horizon);
 
-  /// Positions and velocities at `time` within the last step, by cubic Hermite interpolation over
-  /// its halves; everything else as in `state`, which is the state at the end of that step.
+  /// Positions, velocities and works at `time` within the last step, by `DenseOutput` over its
+  /// halves; everything else as in `state`, which is the state at the end of that step.
   void interpolate(double time, const State& state, State& result);
 
  private:
@@ -59,7 +61,7 @@ class AdaptiveStepper {
   State start_;                      // of the last step
   State middle_;
   State whole_;  // at the end of the step done as a whole
-  Vector controls_;
+  DenseOutput dense_;
 };
 
 }  // namespace der

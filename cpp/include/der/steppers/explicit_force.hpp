@@ -9,8 +9,8 @@
 
 namespace der {
 
-/// What every explicit stepper shares: the acceleration of a given state, the motion of held
-/// degrees of freedom, and the check that the motion has not blown up.
+/// The forces at a given state, and what every explicit stepper shares besides: the acceleration,
+/// the motion of held degrees of freedom, and the check that the motion has not blown up.
 class ExplicitForce {
  public:
   ExplicitForce(const Model& model, const Assembler& assembler);
@@ -20,8 +20,10 @@ class ExplicitForce {
   /// one over the step under the damping of the mean velocity.
   void acceleration(const State& state, const Vector& positions, const Vector& velocities,
                     double time, double damping_time, Vector& acceleration);
+  /// Evaluates at `time` what `book` needs, which is less than the acceleration does.
+  void evaluate_works(const State& state, const Vector& positions, double time);
   /// Books what the forces evaluated last do along `displacement` [m], with the damping of
-  /// `velocities` [m/s].
+  /// `velocities` [m/s]. Along a velocity in place of the displacement: powers [W].
   void book(const Vector& velocities, const Vector& displacement, Work& work) const;
   /// Puts held degrees of freedom of `positions` where the tables have them at `time`.
   void place_held_at(const State& state, double time, Vector& positions);
@@ -29,8 +31,11 @@ class ExplicitForce {
   [[nodiscard]] StepReport check(const Vector& positions) const;
 
  private:
+  void evaluate_loads(const State& state, const Vector& positions, double time);
+
   const Model& model_;
   const Assembler& assembler_;
+  bool supports_move_;
   MassSolver mass_;
   Vector controls_;  // of the last evaluation
   Vector scratch_controls_;

@@ -4,6 +4,7 @@
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 #include "der/solvers/newton.hpp"
+#include "der/steppers/explicit_force.hpp"
 #include "der/steppers/step_finisher.hpp"
 #include "der/steppers/stepper.hpp"
 
@@ -35,11 +36,19 @@ class ImplicitStage {
   /// As above for a stepper of one stage, which is booked along the step's displacement.
   void book_and_finish(const Vector& new_positions, const Eigen::Ref<const Vector>& new_velocities,
                        double dt, State& state);
+  /// As above for a stage at the fraction `place`, at least one half, of the step: the forces at
+  /// the start of the step count besides, so that works are right to second order.
+  void book_and_finish(const Vector& new_positions, const Eigen::Ref<const Vector>& new_velocities,
+                       double dt, double place, ExplicitForce& at_start, State& state);
 
  private:
+  void book_forces(const Vector& displacement, Work& work) const;
+  void book_solver(const Vector& displacement, Work& work) const;
+
   const Model& model_;
   Newton newton_;
   StepFinisher finisher_;
+  Vector held_controls_;  // those of `equation` are the solved stage's until it is booked
   Vector displacement_;
 };
 

@@ -5,6 +5,7 @@
 #include "der/core/types.hpp"
 #include "der/energies/from_pivot.hpp"
 #include "der/model/model.hpp"
+#include "der/model/state.hpp"
 #include "der/scenario/scenario.hpp"
 
 namespace der {
@@ -19,6 +20,9 @@ namespace der {
 /// Angle [rad] of the tangent at a node of the initial shape: that of the circle through the node's
 /// neighbourhood, so that a clamp on a drawn arc holds the arc's tangent and not the chord's.
 double initial_tangent_angle(const RodLayout& rod, Index place, const Model& model);
+
+/// Angle [rad] from the x axis at which a clamp holds the tangent in a state.
+double tangent_angle(const Clamp& clamp, const Model& model, const State& state);
 
 /// Enters a clamp into the layout of `rod`, which is one of the model's. The rod's elements are
 /// made after it. Without effect on a rod that does not bend.

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+#include "der/model/state.hpp"
+#include "der/scenario/reader.hpp"
+#include "der/statics/load_path.hpp"
+
+namespace der {
+
+/// One frame a row.
+using FrameTable = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// A quantity along a rod at every frame.
+struct RodSeries {
+  std::vector<double> arc_length;  ///< [m] of each sample, ascending; none if there is no sample
+  FrameTable values;               ///< frames x samples
+};
+
+/// Goes through the frames of a run that is over, to read off them what was not saved. Supports
+/// stand as the scene has them, not as `Simulation::prescribe` may have moved them.
+class Replay {
+ public:
+  /// `instants` tells what each frame is of: a time [s], or, `on_path`, the factor of a point on
+  /// the scene's continuation. Throws SceneError or Error where no model can be built, and where
+  /// the scene has no continuation to be on.
+  Replay(Scenario scenario, std::vector<double> instants, bool on_path);
+
+  [[nodiscard]] std::size_t num_frames() const { return instants_.size(); }
+  [[nodiscard]] const Scenario& scenario() const { return scenario_; }
+  /// With the loads and supports of the frame shown last.
+  [[nodiscard]] const Model& model() const { return model_; }
+  /// Its time is that of the frame shown last.
+  [[nodiscard]] const State& state() const { return state_; }
+
+  /// Puts loads and supports to a frame. Throws Error if there is no such frame.
+  void show(std::size_t frame);
+  /// The values of a quantity (output/quantities.hpp, but for the energies) where the discrete rod
+  /// has it: at its nodes, at those that bend, or at the middles of its edges. `positions` [m] and
+  /// `velocities` [m/s] are frames x degrees of freedom. Throws Error for an unknown rod or
+  /// quantity.
+  RodSeries along(const std::string& rod, const std::string& quantity,
+                  const Eigen::Ref<const FrameTable>& positions,
+                  const Eigen::Ref<const FrameTable>& velocities);
+
+ private:
+  Scenario scenario_;
+  Model model_;
+  State state_;
+  std::vector<double> instants_;
+  std::optional<LoadPath> path_;
+};
+
+}  // namespace der

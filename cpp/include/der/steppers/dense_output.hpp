@@ -1,0 +1,40 @@
+#pragma once
+
+#include "der/assembly/assembler.hpp"
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+#include "der/model/state.hpp"
+#include "der/steppers/explicit_force.hpp"
+
+namespace der {
+
+/// The state within a step.
+///
+/// Positions follow the cubics that have the values and velocities of both ends, velocities their
+/// slopes, and works the cubics that have the works booked at both ends and the powers there. So a
+/// work is right to the order of the motion, and that of a constant force is exactly the force
+/// along the interpolated path. Held degrees of freedom are where the tables have them, with the
+/// velocity that `StepFinisher` gives them for the step: where it jumps, it does so at the start.
+class DenseOutput {
+ public:
+  DenseOutput(const Model& model, const Assembler& assembler);
+
+  /// Sets positions, velocities, works and time of `result` to those at `time` [s] within the step
+  /// from `start` to `end`, in which tables are straight; everything else is that of `end`.
+  void evaluate(double time, const State& start, const State& end, State& result);
+
+ private:
+  /// Powers [W] at `where`, the start or the end of the step.
+  Work powers(const State& where, const State& start, const State& end);
+  /// Power [W] of clamps that turn.
+  double rotation_power(const State& where, const State& start, const State& end);
+
+  const Model& model_;
+  ExplicitForce force_;
+  Vector velocities_;
+  Vector controls_;
+  Vector controls_before_;
+  Vector controls_after_;
+};
+
+}  // namespace der

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "der/scenario/scenario.hpp"
+
+namespace der {
+
+/// Warnings, in sentences, about the tables over time that have entries closer together than equal
+/// steps of `step` [s]: such steps go over kinks without seeing them, so that no stepper keeps its
+/// order.
+std::vector<std::string> fine_table_warnings(const scenario::Scene& scene, double step);
+
+}  // namespace der

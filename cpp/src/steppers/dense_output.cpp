@@ -1,0 +1,91 @@
+#include "der/steppers/dense_output.hpp"
+
+#include "der/steppers/work.hpp"
+#include "der/supports/supports.hpp"
+
+namespace der {
+namespace {
+
+/// The cubic with values x0, x1 and slopes v0, v1 at the ends of an interval of length h, and its
+/// slope, at the fraction u of it.
+struct Hermite {
+  Hermite(double u, double h)
+      : x0((1.0 + 2.0 * u) * (1.0 - u) * (1.0 - u)),
+        x1(u * u * (3.0 - 2.0 * u)),
+        v0(h * u * (1.0 - u) * (1.0 - u)),
+        v1(-h * u * u * (1.0 - u)),
+        slope_x((6.0 * u - 6.0 * u * u) / h),
+        slope_v0((1.0 - u) * (1.0 - 3.0 * u)),
+        slope_v1(u * (3.0 * u - 2.0)) {}
+  double x0, x1, v0, v1;
+  double slope_x, slope_v0, slope_v1;
+};
+
+}  // namespace
+
+DenseOutput::DenseOutput(const Model& model, const Assembler& assembler)
+    : model_(model),
+      force_(model, assembler),
+      velocities_(Vector::Zero(model.num_dofs())),
+      controls_(Vector::Zero(model.controls.size())),
+      controls_before_(controls_),
+      controls_after_(controls_) {}
+
+void DenseOutput::evaluate(double time, const State& start, const State& end, State& result) {
+  const double h = end.time - start.time;
+  const Hermite weight((time - start.time) / h, h);
+  result = end;
+  result.time = time;
+  result.positions = weight.x0 * start.positions + weight.x1 * end.positions +
+                     weight.v0 * start.velocities + weight.v1 * end.velocities;
+  result.velocities = weight.slope_x * (end.positions - start.positions) +
+                      weight.slope_v0 * start.velocities + weight.slope_v1 * end.velocities;
+  model_.controls.evaluate(time, end.ramps, controls_);
+  place_held(model_, controls_, result.positions);
+
+  Work work_start = start.work;
+  for (const HeldDof& held : model_.held) {
+    const double before = start.velocities[held.dof];
+    const double after = end.velocities[held.dof];
+    result.velocities[held.dof] = after;
+    work_start.supports += 0.5 * model_.mass.lumped[held.dof] * (after * after - before * before);
+  }
+  const Work power_start = powers(start, start, end);
+  const Work power_end = powers(end, start, end);
+  for (double Work::* part : {&Work::loads, &Work::supports, &Work::drag, &Work::solver}) {
+    result.work.*part = weight.x0 * (work_start.*part) + weight.x1 * (end.work.*part) +
+                        weight.v0 * (power_start.*part) + weight.v1 * (power_end.*part);
+  }
+}
+
+Work DenseOutput::powers(const State& where, const State& start, const State& end) {
+  Work power;
+  power.solver = (end.work.solver - start.work.solver) / (end.time - start.time);
+  power.supports = rotation_power(where, start, end);
+  velocities_ = where.velocities;
+  for (const HeldDof& held : model_.held) {
+    const double velocity = end.velocities[held.dof];
+    const double drag = model_.damping[held.dof] * velocity * velocity;
+    velocities_[held.dof] = velocity;
+    power.drag += drag;
+    power.supports += drag;
+  }
+  force_.evaluate_works(start, where.positions, where.time);
+  force_.book(velocities_, velocities_, power);
+  return power;
+}
+
+/// By a central difference over the length of the step.
+double DenseOutput::rotation_power(const State& where, const State& start, const State& end) {
+  model_.controls.evaluate(start.time, end.ramps, controls_before_);
+  model_.controls.evaluate(end.time, end.ramps, controls_after_);
+  controls_ = 0.5 * (controls_after_ - controls_before_);
+  model_.controls.evaluate(where.time, end.ramps, controls_before_);
+  controls_after_ = controls_before_ + controls_;
+  controls_before_ -= controls_;
+  return rotation_work(model_,
+                       {where.positions, where.positions, controls_before_, controls_after_}) /
+         (end.time - start.time);
+}
+
+}  // namespace der

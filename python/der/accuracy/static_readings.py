@@ -1,0 +1,132 @@
+"""The numbers of a scene without time by which meshes can be compared.
+
+Points of a path of equilibria cannot be: where the steps of a continuation end is its own affair.
+Its events can, and the place where the factor comes to its end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from der.analyses import Path
+from der.result import Result
+from der.scene_loads import continuation_settings
+
+#: The factor is where the scene wants it, to this share of its range.
+_SAME_FACTOR = 1e-9
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A number of a run.
+
+    Attributes
+    ----------
+    probe
+        Name of a probe, or of what an analysis itself finds: ``factor`` on a path, ``frequency 1``
+        and ``growth rate 1`` of modes, ``load factor 1`` of buckling.
+    what
+        ``final``; on a path the place: ``fold 1``, ``bifurcation 1``, counted along it, ``end``
+        where the factor comes to its last value, ``far side`` where it comes as far to the other
+        side of its first.
+    unit
+        In SI.
+    value
+        The number.
+    largest
+        Largest absolute value of the probe in the run.
+    """
+
+    probe: str
+    what: str
+    unit: str
+    value: float
+    largest: float
+
+    @property
+    def label(self) -> str:
+        """What it is called: ``tip_y``, or ``tip_y, fold 1``."""
+        return self.probe if self.what == "final" else f"{self.probe}, {self.what}"
+
+    @property
+    def kind(self) -> str:
+        """What it is counted with: ``fold``; of a number that is not on a path, its own name."""
+        return self.probe if self.what == "final" else self.what.rstrip(" 0123456789")
+
+
+#: By their label, in the order in which they are told.
+Readings: TypeAlias = dict[str, Reading]
+
+
+def static_readings(result: Result) -> Readings:
+    """Return the comparable numbers of a run without time."""
+    path = result.path
+    found = _finals(result) if path is None else _on_path(result, path)
+    return {reading.label: reading for reading in found}
+
+
+def _finals(result: Result) -> Iterator[Reading]:
+    for name, probe in result.probes.items():
+        yield _final(name, probe.unit, probe.summary["final"])
+    if result.modes is not None:
+        rates = zip(result.modes.frequencies, result.modes.growth_rates, strict=True)
+        for number, (frequency, growth) in enumerate(rates, 1):
+            if growth > 0.0:
+                yield _final(f"growth rate {number}", "1/s", growth)
+            else:
+                yield _final(f"frequency {number}", "Hz", frequency)
+    if result.buckling is not None:
+        for number, factor in enumerate(result.buckling.load_factors, 1):
+            yield _final(f"load factor {number}", "", factor)
+
+
+def _final(name: str, unit: str, value: float) -> Reading:
+    return Reading(name, "final", unit, float(value), abs(float(value)))
+
+
+def _on_path(result: Result, path: Path) -> Iterator[Reading]:
+    series: dict[str, tuple[str, NDArray[np.float64]]] = {"factor": ("", path.factor)}
+    series |= {name: (probe.unit, np.asarray(probe)) for name, probe in result.probes.items()}
+    for what, row in _places(result, path):
+        for name, (unit, values) in series.items():
+            if name != "factor" or path.events[row]:  # at its end the scene gives it
+                largest = float(np.max(np.abs(values)))
+                yield Reading(name, what, unit, float(values[row]), largest)
+
+
+def _places(result: Result, path: Path) -> list[tuple[str, int]]:
+    """Return the places of the first branch with their rows, in the order of the path."""
+    places = [
+        (f"{event} {number}", int(row))
+        for event in ("fold", "bifurcation")
+        for number, row in enumerate(path.rows(event), 1)
+    ]
+    last = int(np.flatnonzero(path.branch == 0)[-1])
+    settings = continuation_settings(result.scenario.to_dict())
+    start, to = float(settings.get("from", 0.0)), float(settings.get("to", 1.0))
+    for what, factor in (("end", to), ("far side", 2.0 * start - to)):
+        if abs(path.factor[last] - factor) <= _SAME_FACTOR * abs(to - start):
+            places.append((what, last))
+    return sorted(places, key=lambda place: place[1])
+
+
+def count_kind(readings: Readings, kind: str) -> int:
+    """Return how many places or numbers of a kind there are."""
+    return len({reading.what for reading in readings.values() if reading.kind == kind})
+
+
+def differing_kinds(levels: Sequence[Readings]) -> list[str]:
+    """Return the kinds of which not all runs have as many, so that which is which is not known."""
+    kinds = dict.fromkeys(reading.kind for level in levels for reading in level.values())
+    return [kind for kind in kinds if len({count_kind(level, kind) for level in levels}) > 1]
+
+
+def describe_difference(kind: str, runs: Mapping[str, Readings]) -> str:
+    """Return how often a kind is found in each run, in words."""
+    counts = ", ".join(f"{count_kind(found, kind)} with {run}" for run, found in runs.items())
+    return f"{kind}: {counts}; which are the same is not known"

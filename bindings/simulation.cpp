@@ -87,7 +87,9 @@ void bind_reports(py::module_& module) {
                     "Largest turning angle at a node [rad]; far above 1 the mesh is too coarse.")
       .def_property_readonly(
           "stability", [](const EquilibriumReport& r) { return r.stability.name(); },
-          "``stable``, ``unstable`` or ``neutral`` (flat to rounding in some direction).")
+          "``stable``, ``unstable``, ``neutral`` (flat to rounding in some direction) or "
+          "``unknown`` "
+          "(rounding hides whether it is stable).")
       .def_property_readonly(
           "unstable_directions",
           [](const EquilibriumReport& r) { return r.stability.unstable_directions; },
@@ -96,6 +98,10 @@ void bind_reports(py::module_& module) {
           "neutral_directions",
           [](const EquilibriumReport& r) { return r.stability.neutral_directions; },
           "Directions in which the potential is flat to rounding.")
+      .def_property_readonly(
+          "unknown_directions",
+          [](const EquilibriumReport& r) { return r.stability.unknown_directions; },
+          "Directions of which rounding hides whether the potential rises or falls.")
       .def("__repr__", [](const EquilibriumReport& r) {
         return py::str("EquilibriumReport({}, residual={:.3g} N)")
             .format(r.stability.name(), r.residual);

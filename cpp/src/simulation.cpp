@@ -38,7 +38,14 @@ std::string advice(const std::string& status) {
     return "Is the structure held against every rigid motion, rotation included?";
   }
   if (status == "folded") return "Give the rod more nodes.";
-  if (status == "collapsed") return "Is the load, or the cross-section, the one that was meant?";
+  if (status == "collapsed") {
+    return "Is the load, or the cross-section, the one that was meant? If so, a start from a bent "
+           "shape may find an equilibrium.";
+  }
+  if (status == "too_fine") {
+    return "Give the rod fewer nodes (half as many lose sixteen times less to rounding) or a "
+           "smaller EA.";
+  }
   return "Does an equilibrium exist under this load? A start nearer to it, a finer mesh or a run "
          "over time with damping may show.";
 }

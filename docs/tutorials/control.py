@@ -110,7 +110,8 @@ def figure(controlled: Track, uncontrolled: Track) -> Figure:
         left, right = figure.subfigures(1, 2, width_ratios=[1, 1.5], squeeze=False)[0]
         arm = left.subplots()
         arm.plot([], [], "_", color="0.3", markersize=14, label="target")
-        for time, colour in zip((2.5, 5.0, 7.5), PALETTE, strict=False):
+        # Other colours than on the right, where they tell with feedback from without.
+        for time, colour in ((2.5, PALETTE[2]), (5.0, PALETTE[3]), (7.5, PALETTE[5])):
             shape = controlled.shapes[round(time / STEP) - 1]
             arm.plot(*shape.T, color=colour, linewidth=2.5, label=f"{time:g} s")
             arm.plot(LENGTH * 0.99, target(time), "_", color=colour, markersize=14)

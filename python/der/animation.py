@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from der.film import Film, make_film, round_speed, speed_text
+from der.film import Film, make_film, round_speed, speed_text, title_of
 from der.progress import ProgressFunction
 
 if TYPE_CHECKING:
@@ -239,7 +239,7 @@ def _set_stage(result: Result, cut: _Cut) -> Axes:
     low, high = _extent(result, cut)
     left, right, top, bottom = _MARGINS
     room = _WIDTH - left - right  # for the axes
-    title = wrapped(result.scenario.title, FIGURE_TITLE, room)
+    title = wrapped(title_of(result), FIGURE_TITLE, room)
     top += _TITLE_LINE * (len(title) - 1)
     size = high - low
     height = float(np.clip(room * size[1] / size[0] + top + bottom, *_HEIGHT))

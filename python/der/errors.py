@@ -66,7 +66,8 @@ class NotConvergedError(DerError):
 
     In statics, no equilibrium was found; ``status`` says why: ``not_held`` (a load moves the
     structure as a rigid body), ``unbounded`` (it moves on without end), ``collapsed`` (a part is
-    pressed to a point), ``folded`` (folded back on itself: too coarse a mesh) or ``not_converged``.
+    pressed to a point), ``folded`` (folded back on itself: too coarse a mesh), ``too_fine`` (a mesh
+    beyond double precision) or ``not_converged``.
     """
 
     def __init__(self, message: str, status: str = "not_converged") -> None:
@@ -82,6 +83,6 @@ class DivergedError(DerError):
 
 def error_for(status: str, message: str) -> DerError:
     """Return the error of the class that belongs to the status of a failed run."""
-    not_found = ("not_converged", "not_held", "unbounded", "collapsed", "folded")
+    not_found = ("not_converged", "not_held", "unbounded", "collapsed", "folded", "too_fine")
     classes = dict.fromkeys(not_found, NotConvergedError) | {"diverged": DivergedError}
     return classes.get(status, DerError)(message, status)

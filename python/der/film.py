@@ -69,6 +69,22 @@ class Film:
         return acting_loads(result, int(self.source[frame]))
 
 
+def failure_text(result: Result) -> str:
+    """Return how a run failed, such as ``diverged at t = 0.0041 s``, or an empty text."""
+    if result.status in ("completed", "static_converged", "stopped"):
+        return ""
+    words = result.status.replace("_", " ")
+    if result.scenario.is_static or len(result.times) == 0:
+        return words
+    return f"{words} at t = {result.times[-1]:.4g} s"
+
+
+def title_of(result: Result) -> str:
+    """Return the title of a picture of a run: the scene's, and how it failed if it did."""
+    failure = failure_text(result)
+    return f"{result.scenario.title} ({failure})" if failure else result.scenario.title
+
+
 def make_film(result: Result) -> Film:
     """Return the frames of a result.
 

@@ -28,6 +28,7 @@ DATA_UNITS = {
     "modes/frequencies": "Hz",
     "modes/growth_rates": "1/s",
     "modes/shapes": "kg^-1/2 m",
+    "buckling/rotations": "rad",
 }
 
 

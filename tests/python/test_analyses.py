@@ -7,6 +7,7 @@ from dataclasses import fields
 from pathlib import Path
 
 import der
+import h5py
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
@@ -86,6 +87,11 @@ def test_a_folder_of_der_run_holds_the_same(result, tmp_path):
     out = tmp_path / "run"
     subprocess.run([DER_RUN, scene, "--out", out, "--quiet"], check=True)
     check_same(found(der.open_run(out)), found(result))
+    # Saved from Python, the arrays have the same units.
+    saved = result.save(tmp_path / "saved")
+    with h5py.File(out / "results.h5") as of_run, h5py.File(saved / "results.h5") as of_python:
+        for name in result.data:
+            assert of_python[name].attrs["unit"] == of_run[name].attrs["unit"], name
 
 
 @pytest.mark.parametrize(("kind", "labels"), [("modes", "Hz"), ("buckling", "load factor")])

@@ -69,6 +69,15 @@ def test_long_titles_are_not_cut_off(swing, words):
     assert figure.bbox.height % 2 == 0
 
 
+def test_pictures_say_that_a_run_failed(unstable):
+    with pytest.raises(der.DivergedError) as caught:
+        der.run(unstable)
+    result = caught.value.result
+    axes = _set_stage(result, _cut(result, make_film(result), 10.0, None))
+    title = axes.get_figure(root=True).get_suptitle()
+    assert title == f"Three spheres in a fluid (diverged at t = {result.times[-1]:g} s)"
+
+
 def test_axes_share_one_unit(swing):
     swing["rods"][0] |= {"to": [2e-3, 0], "cross_section": {"circle": {"radius": 1e-4}}}
     swing["time"] = {"duration": 1e-3, "step": 1e-5, "integrator": "implicit_euler"}

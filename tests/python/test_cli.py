@@ -109,7 +109,12 @@ def test_plot_writes_a_picture(tube, tmp_path, capsys):
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
-    [(["plot", "no_such_run"], "no_such_run"), (["plot", "RUN", "--probes", "speed"], "speed")],
+    [
+        (["plot", "no_such_run"], "no_such_run"),
+        (["plot", "RUN", "--probes", "speed"], "speed"),
+        (["plot", "RUN", "--out", "a.jpg"], "a.jpg: a picture ends with .png, .svg or .pdf"),
+        (["plot", "RUN", "--out", "a"], "cannot write a:"),
+    ],
 )
 def test_errors_are_one_line_on_stderr(tube, tmp_path, capsys, arguments, words):
     der.run(tube, out=tmp_path / "run")

@@ -300,6 +300,24 @@ def test_what_is_not_there_is_an_error(result, arguments, words):
         result.plot(**arguments)
 
 
+def test_what_has_no_time_has_no_shapes_at_times(tube):
+    for result, kind in (
+        (der.equilibrium(tube), "static"),
+        (der.continuation(tube), "continuation"),
+    ):
+        with pytest.raises(ValueError, match=f"a {kind} run has no time"):
+            result.plot(times=[3.0])
+
+
+def test_pictures_say_that_a_run_failed(unstable):
+    with pytest.raises(der.DivergedError) as caught:
+        der.run(unstable)
+    result = caught.value.result
+    title = result.plot("shapes").axes[0].get_title(loc="left")
+    assert title == f"Three spheres in a fluid (diverged at t = {result.times[-1]:g} s)"
+    assert result.plot(title="Mine").axes[0].get_title(loc="left") == "Mine"
+
+
 def test_no_probes_to_plot(spheres):
     del spheres["output"]
     result = der.run(spheres)

@@ -132,6 +132,14 @@ def test_stages_go_forward_only():
     Stages({"one": 1.0}, None).of("one")(1.0)
 
 
+def test_stages_are_named_once():
+    names = []
+    stages = Stages({"one": 1.0, "two": 3.0}, None, names.append)
+    for stage, share in (("one", 0.5), ("one", 1.0), ("two", 0.5), ("one", 1.0)):
+        stages.of(stage)(share)
+    assert names == ["one", "two"]
+
+
 # Exact solutions, against the references of the validation tests and closed forms.
 
 
@@ -284,7 +292,9 @@ def test_folder_and_its_replacement(tmp_path, monkeypatch, capsys):
     ]
     for _ in range(2):
         assert main(["reproduce"]) == 0
-        assert Path(capsys.readouterr().out.strip()) == Path("reproduction/report.html")
+        told = capsys.readouterr()
+        assert Path(told.out.strip()) == Path("reproduction/report.html")
+        assert told.err == "figures\n", "the stages, where no terminal shows a progress line"
         assert names(tmp_path / "reproduction") == written
         (tmp_path / "reproduction/figures/old.png").touch()
     assert [path.name for path in tmp_path.iterdir()] == ["reproduction"]

@@ -157,6 +157,39 @@ def test_loads_and_gravity(tube):
     assert data["load_set"][5:] == [data["load_set"][5]] * (len(data["load_set"]) - 5)
 
 
+def test_failed_runs_say_so(unstable):
+    with pytest.raises(der.DivergedError) as caught:
+        der.run(unstable)
+    result = caught.value.result
+    note = make_payload(result)["note"]
+    assert note.startswith(f"diverged at t = {result.times[-1]:g} s, gravity")
+
+
+def test_rounding_is_not_coloured(swing):
+    """A straight rod that nothing loads, turned so that its coordinates are not round."""
+    swing["rods"][0]["to"] = [0.3, 0.7]
+    swing["loads"] = [{"point_force": {"rod": "arm", "at": "end", "force": [0.3e-9, 0.7e-9]}}]
+    result = der.run(swing)
+    (fields,) = rod_fields(result)
+    assert 0.0 < np.abs(fields.curvature).max() < 1e-9, "rounding"
+    data = make_payload(result)["fields"]
+    for name in ("curvature", "tension", "speed"):
+        assert (data[name]["low"], data[name]["high"]) == (-1.0, 1.0), name
+
+
+def test_small_quantities_are_coloured(swing):
+    """A micro-rod under a piconewton has small numbers, but they are no noise."""
+    swing["rods"][0] |= {"to": [1e-5, 0], "cross_section": {"circle": {"radius": 1e-7}}}
+    swing["loads"] = [{"point_force": {"rod": "arm", "at": "end", "force": [1e-12, -1e-12]}}]
+    del swing["time"], swing["output"]["every"]
+    swing["analysis"] = "static"
+    result = der.run(swing)
+    (fields,) = rod_fields(result)
+    data = make_payload(result)["fields"]
+    assert data["tension"]["high"] == pytest.approx(fields.tension.max())
+    assert data["curvature"]["low"] == pytest.approx(fields.curvature.min())
+
+
 def test_static_modes_and_paths(tube):
     data = make_payload(der.equilibrium(tube))
     assert data["captions"] == ["as drawn", "equilibrium"]
@@ -385,6 +418,12 @@ def test_browser_titles_axes_beside_their_ticks(browser, spheres, tmp_path):
     assert 0.3 * width < right["x"] < 0.9 * width
     assert top["y"] < right["y"]
     assert top["x"] < right["x"]
+    placed, ranges = browser.execute_script(
+        "const s = document.getElementById('scene')._fullLayout.scene;"
+        "return [s.annotations.map((one) => [one.x, one.y]), [s.xaxis.range, s.yaxis.range]]"
+    )
+    for place in placed:  # on an end, rounding decides whether Plotly draws it
+        assert all(low < value < high for value, (low, high) in zip(place, ranges, strict=True))
 
 
 def test_browser_plays(browser, swing, tmp_path):

@@ -9,7 +9,7 @@ import pytest
 from random_scenes import random_scene
 
 SEEDS = range(200)
-NAMES = {"not_converged", "not_held", "unbounded", "collapsed", "folded"}
+NAMES = {"not_converged", "not_held", "unbounded", "collapsed", "folded", "too_fine"}
 
 
 def is_verified(simulation, report):

@@ -94,6 +94,11 @@ std::string stability_text(const Stability& stability, const Style& style) {
     return style.warning(fmt::format("UNSTABLE in {}: a small push would move it on",
                                      format_count(stability.unstable_directions, "direction")));
   }
+  if (stability.unknown_directions > 0) {
+    return style.warning(
+        fmt::format("stability not known in {}: rounding hides it, the mesh is too fine",
+                    format_count(stability.unknown_directions, "direction")));
+  }
   if (stability.neutral_directions > 0) {
     return style.warning(
         fmt::format("neutral in {}: nothing holds it there (free to move, or at a critical load)",
@@ -130,7 +135,10 @@ std::string status_line(const Simulation& simulation, const RunOutcome& outcome,
   if (outcome.ok()) {
     status = style.good(status);
   } else if (outcome.failed()) {
-    status = style.bad(status) + fmt::format(" at t = {:.6g} s", outcome.time);
+    status = style.bad(status);
+    if (simulation.scenario().scene().is_dynamic()) {
+      status += fmt::format(" at t = {:.6g} s", outcome.time);
+    }
   } else {
     status = style.warning(status) +
              fmt::format(" at t = {:.6g} s of {:.6g} s; go on with --resume", outcome.time,

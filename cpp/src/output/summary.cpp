@@ -192,6 +192,7 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
     summary["stability"] = outcome.equilibrium->stability.name();
     summary["unstable_directions"] = outcome.equilibrium->stability.unstable_directions;
     summary["neutral_directions"] = outcome.equilibrium->stability.neutral_directions;
+    summary["unknown_directions"] = outcome.equilibrium->stability.unknown_directions;
     summary["saddles_left"] = outcome.equilibrium->saddles_left;
     summary["sharpest_turn"] = outcome.equilibrium->sharpest_turn;
   }

@@ -141,7 +141,8 @@ LinearBuckling linear_buckling(Model& model, const LoadPath& loads, const Assemb
   const Vector loaded = evaluate(1.0);
   const Vector unloaded = evaluate(0.0);
   const Stability stability = stiffness.stability();
-  if (stability.unstable_directions + stability.neutral_directions > 0) {
+  if (stability.unstable_directions + stability.neutral_directions + stability.unknown_directions >
+      0) {
     throw NotConvergedError(
         "the structure without its loads is not stable: it has no buckling loads", "not_held");
   }

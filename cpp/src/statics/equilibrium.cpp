@@ -1,9 +1,12 @@
 #include "der/statics/equilibrium.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "der/assembly/element_energy.hpp"
 #include "der/core/constants.hpp"
@@ -39,14 +42,29 @@ constexpr double kShortestSwing = 1e-6;
 constexpr double kFriction = 0.3;
 /// A Newton step to the end of a descent must not change an edge by more than this.
 constexpr double kLastTurn = 0.5;
+/// A last Newton step that moves a node by more than this share of the size is too long to trust.
+constexpr double kLastStep = 1e-1;
+/// Share of the size to which the last step must show the equilibrium.
+constexpr double kKnown = 1e-6;
+/// Share of the acting forces that a neutral equilibrium may leave unbalanced.
+constexpr double kBalanced = 1e-3;
 /// Potentials closer than this, against the largest force times the size, are the same.
 constexpr double kSamePotential = 1e-13;
 /// Supports move by no more than this share of an edge at once.
 constexpr double kSupportStep = 0.3;
+/// By as much [rad] may the edge beside a clamp be bent away from it and the clamp still not have
+/// moved.
+constexpr double kTurned = 1.0;
 /// The first step of supports that move farther, as a share of the whole.
 constexpr double kFirstSupportShare = 1e-9;
 /// The first load step, as a share of the whole.
 constexpr double kSmallestShare = 1.0 / 256.0;
+/// An edge is along an axis if the difference across it is less than this share of its length.
+constexpr double kAligned = 1e-9;
+/// Largest turns of an edge [rad] of the bent shapes from which the search starts again.
+constexpr std::array<double, 3> kBentStarts{0.3, 1.0, 3.0};
+/// Directions of the straight ones.
+constexpr int kStraightStarts = 8;
 /// Turning angle [rad] at a node beyond which the rod is folded: at pi the curvature has no sign.
 constexpr double kFolded = 3.0;
 /// Share of its rest length at which an edge counts as pressed to a point.
@@ -102,8 +120,8 @@ class Search {
     }
     move_supports(x);
     start_ = x;
-    report_.converged =
-        newton(x) || descend(x, report_.force_scale / model_.size) || step_loads(x) || swing(x);
+    report_.converged = newton(x) || descend(x, report_.force_scale / model_.size) ||
+                        step_loads(x) || swing(x) || start_elsewhere(x);
     if (report_.converged) judge(x);
     while (report_.converged && options_.leave_saddles &&
            report_.stability.unstable_directions > 0) {
@@ -114,29 +132,115 @@ class Search {
       }
       judge(x);
     }
+    if (report_.converged && !whole_turns_.empty() && whole_turns(x) != whole_turns_) {
+      report_.converged = false;
+      fail("folded",
+           "a clamp that turns does not take the rod along: a node folds over on the way, the mesh "
+           "is too coarse for the bend there");
+    }
     if (report_.converged) positions = x;
     return report_;
   }
 
  private:
-  /// Puts the held degrees of freedom to their places. Where that would fold or crush the edges
-  /// beside them, the shape follows on the way: first in tiny steps that double, so that a rod that
-  /// is pressed buckles near its first buckling load and not, crushed, in a high mode, whose folds
-  /// it would keep; then in short steps.
+  /// Puts the held degrees of freedom to their places and turns the clamps. Where that would fold
+  /// or crush the edges beside them, the shape follows on the way: first in tiny steps that double,
+  /// so that a rod that is pressed buckles near its first buckling load and not, crushed, in a high
+  /// mode, whose folds it would keep; then in short steps. A clamp that turns by more than a step
+  /// takes the rod along: at once it would be known up to whole turns only.
   void move_supports(Vector& x) {
     const bool as_drawn = x(model_.free_dofs) == model_.initial_positions(model_.free_dofs);
     if (as_drawn) x = model_.initial_positions;
     Vector target = x;
     place_held(model_, stage_.controls, target);
     const Vector whole = target - x;
-    const double longest = kSupportStep / largest_edge_change(model_, whole);
+    const Vector turned = stage_.controls;
+    const Vector turns = turned - (as_drawn ? drawn_controls() : present_controls(x));
+    const double longest = kSupportStep / std::max(largest_edge_change(model_, whole),
+                                                   turns.lpNorm<Eigen::Infinity>());
+    stage_.controls = turned - turns;
+    if (!turns.isZero(0.0)) whole_turns_ = whole_turns(x);
     double step = longest < 1.0 ? kFirstSupportShare : 1.0;
     for (double share = step; share < 1.0; share += step) {
       x += step * whole;
+      stage_.controls = turned - (1.0 - share) * turns;
       follow(x);
       step = std::min({2.0 * step, longest, 1.0 - share});
     }
+    stage_.controls = turned;
     place_held(model_, stage_.controls, x);
+  }
+
+  /// By how many whole turns the rods wind up between their clamps besides what the directions of
+  /// the clamps say. It stays the same as long as no node folds over.
+  std::vector<double> whole_turns(const Vector& x) const {
+    std::vector<double> turns;
+    for (const RodLayout& rod : model_.rods) {
+      for (const Clamp& first : rod.clamps) {
+        for (const Clamp& last : rod.clamps) {
+          if (first.place >= last.place) continue;
+          const double between =
+              turning_angle(rod, first, last, x) - tangent_angle(last) + tangent_angle(first);
+          turns.push_back(std::round(between / (2.0 * kPi)));
+        }
+      }
+    }
+    return turns;
+  }
+
+  double tangent_angle(const Clamp& clamp) const {
+    return clamp.direction + (clamp.rotation >= 0 ? stage_.controls[clamp.rotation] : 0.0);
+  }
+
+  /// Sum of the turning angles [rad] at all nodes from a clamp to another, these included.
+  double turning_angle(const RodLayout& rod, const Clamp& first, const Clamp& last,
+                       const Vector& x) const {
+    const auto tangent = [&](const Clamp& clamp) {
+      return Vec2(std::cos(tangent_angle(clamp)), std::sin(tangent_angle(clamp)));
+    };
+    double sum = 0.0;
+    Vec2 before = tangent(first);
+    for (Index edge = first.place; edge < last.place; ++edge) {
+      const Link link = link_of(rod, edge, model_);
+      const Vec2 here =
+          link.vector(x, link.first.turn(stage_.controls), link.last.turn(stage_.controls));
+      sum += angle_between(before, here);
+      before = here;
+    }
+    return sum + angle_between(before, tangent(last));
+  }
+
+  /// The controls, with the clamps as drawn.
+  Vector drawn_controls() const {
+    Vector controls = stage_.controls;
+    for_each_turning_clamp(
+        [&](const RodLayout& /*rod*/, const Clamp& clamp) { controls[clamp.rotation] = 0.0; });
+    return controls;
+  }
+
+  /// The controls, with each clamp turned as the edge beside it is in the shape `x`. That is known
+  /// up to whole turns: the way from there to what the control says is the shorter one.
+  Vector present_controls(const Vector& x) const {
+    Vector controls = stage_.controls;
+    for_each_turning_clamp([&](const RodLayout& rod, const Clamp& clamp) {
+      const Index edge = std::min(clamp.place, rod.num_edges() - 1);
+      const Link link{rod.edge_dofs(edge, model_), {}, {}};
+      const double turn =
+          angle_between(link.vector(model_.initial_positions, 0.0, 0.0), link.vector(x, 0.0, 0.0));
+      const double control = stage_.controls[clamp.rotation];
+      const double from_control = std::remainder(turn - control, 2.0 * kPi);
+      if (std::abs(from_control) > kTurned) controls[clamp.rotation] = control + from_control;
+    });
+    return controls;
+  }
+
+  template <class Use>
+  void for_each_turning_clamp(const Use& use) const {
+    for (const RodLayout& rod : model_.rods) {
+      for (const Clamp& clamp : rod.clamps) {
+        if (clamp.rotation >= 0) use(rod, clamp);
+      }
+    }
   }
 
   /// Sets `x` to the stable equilibrium near it, as far as one is found.
@@ -211,20 +315,71 @@ class Search {
     return false;
   }
 
+  /// Starts again from other shapes: bent along the softest direction, to both sides, as a load
+  /// that presses a straight rod to a point may let a bent one give way; then laid out straight,
+  /// which undoes crumpled ones. Returns false and leaves `x` at the start if none helps.
+  bool start_elsewhere(Vector& x) {
+    const auto [status, failure] = std::make_pair(report_.status, report_.failure);
+    if (status == "unbounded") return false;
+    stiffness_.evaluate(start_, stage_.controls);
+    const Vector soft = bend(stiffness_.softest());
+    std::vector<Vector> starts;
+    for (const double turn : kBentStarts) {
+      for (const double side : {1.0, -1.0}) starts.emplace_back(start_ + side * turn * soft);
+    }
+    for (int i = 0; i < kStraightStarts; ++i) {
+      starts.push_back(laid_out(2.0 * kPi * i / kStraightStarts));
+    }
+    for (Vector& start : starts) {
+      x = std::move(start);
+      if (descend(x, report_.force_scale / model_.size)) return true;
+    }
+    x = start_;
+    fail(status, failure);
+    return false;
+  }
+
+  /// Every rod straight from its first node in one direction [rad], but for what is held.
+  Vector laid_out(double direction) const {
+    Vector x = start_;
+    for (const RodLayout& rod : model_.rods) {
+      const Vec2 first = start_.segment<2>(model_.dof(rod.nodes.front(), 0));
+      for (std::size_t i = 0; i < rod.nodes.size(); ++i) {
+        x.segment<2>(model_.dof(rod.nodes[i], 0)) =
+            first + rod.arc_length[i] * Vec2(std::cos(direction), std::sin(direction));
+      }
+    }
+    place_held(model_, stage_.controls, x);
+    return x;
+  }
+
+  /// The displacement along a direction that changes an edge by 1 at most.
+  Vector bend(const SoftDirection& soft) const {
+    Vector displacement = Vector::Zero(model_.num_dofs());
+    displacement(model_.free_dofs) = soft.direction;
+    return displacement / largest_edge_change(model_, displacement);
+  }
+
   void fail(std::string status, std::string why) {
     report_.status = std::move(status);
     report_.failure = std::move(why);
   }
 
+  /// Sets the verdict on `x`, which gets its last digits.
   void judge(Vector& x) {
     stiffness_.evaluate(x, stage_.controls);
     report_.stability = stiffness_.stability();
+    report_.status.clear();
+    report_.failure.clear();
     if (report_.stability.neutral_directions == 0) polish(x);
     report_.residual =
         (stage_.force - stiffness_.gradient())(model_.free_dofs).lpNorm<Eigen::Infinity>();
+    // In a neutral equilibrium a Newton step says nothing: there the forces must.
+    if (report_.stability.neutral_directions > 0 &&
+        report_.residual > kBalanced * report_.force_scale) {
+      lose_in_rounding();
+    }
     report_.sharpest_turn = sharpest_turn(model_, x);
-    report_.status.clear();
-    report_.failure.clear();
   }
 
   /// Solves for the balance of forces, those of the pseudo-time included.
@@ -244,10 +399,10 @@ class Search {
       x = before;
       return false;
     }
-    if (shortest_edge(x) < kCollapsed) {
+    if (shortest_edge(x) < kCollapsed || turned_inside_out(x)) {
       fail("collapsed",
-           "a part of a rod is pressed together to a point: the load is greater than "
-           "its stiffness against shortening, EA, can take");
+           "every way that was tried presses a part of a rod together to a point, past which it is "
+           "no rod: the load may be too great for its stiffness against shortening, EA");
       x = before;
       return false;
     }
@@ -273,6 +428,24 @@ class Search {
               c.element.rest_length);
     }
     return shortest;
+  }
+
+  /// Whether an edge that supports guide along an axis, so that it cannot turn, points backwards.
+  bool turned_inside_out(const Vector& x) const {
+    const auto held = [&](Index dof) { return model_.free_index[at(dof)] < 0; };
+    return std::any_of(model_.edges.begin(), model_.edges.end(), [&](const Edge& edge) {
+      const auto now = gather(edge.dofs, x);
+      const auto drawn = gather(edge.dofs, model_.initial_positions);
+      const Vec2 e = now.tail<2>() - now.head<2>();
+      const Vec2 e0 = drawn.tail<2>() - drawn.head<2>();
+      for (const int c : {0, 1}) {
+        const bool guided = held(edge.dofs[at(c)]) && held(edge.dofs[at(2 + c)]);
+        const bool slides = !held(edge.dofs[at(1 - c)]) || !held(edge.dofs[at(3 - c)]);
+        const bool aligned = std::abs(e[c]) < kAligned * edge.rest_length;
+        if (guided && slides && aligned && e[1 - c] * e0[1 - c] < 0.0) return true;
+      }
+      return false;
+    });
   }
 
   bool newton(Vector& x) {
@@ -367,21 +540,40 @@ class Search {
   }
 
   /// Takes a few more Newton steps as long as they get shorter: the residual of stiff stretching
-  /// ends at its rounding error when the soft bending can still be solved better.
+  /// ends at its rounding error when the soft bending can still be solved better. Steps that remain
+  /// long are those of no equilibrium: the residual, then, was all rounding error.
   void polish(Vector& x) {
-    constexpr int kSteps = 3;
-    double allowed = 1e-4 * model_.size;
-    Vector residual;
+    constexpr int kSteps = 8;
+    double step = std::numeric_limits<double>::infinity();
+    Vector correction;
     for (int i = 0; i < kSteps; ++i) {
-      residual = (stage_.force - stiffness_.gradient())(model_.free_dofs);
-      if (!stiffness_.factorize().factorised) return;
-      stiffness_.solve(residual);
-      const double step = residual.lpNorm<Eigen::Infinity>();
-      if (!(step < allowed)) return;
-      for (Index k = 0; k < model_.num_free(); ++k) x[model_.free_dofs[at(k)]] += residual[k];
+      correction = (stage_.force - stiffness_.gradient())(model_.free_dofs);
+      const double next = solve_last(correction) ? correction.lpNorm<Eigen::Infinity>() : step;
+      if (!(next < 0.5 * step)) break;
+      step = next;
+      if (step > kLastStep * model_.size) break;
+      for (Index k = 0; k < model_.num_free(); ++k) x[model_.free_dofs[at(k)]] += correction[k];
       stiffness_.evaluate(x, stage_.controls);
-      allowed = 0.5 * step;
     }
+    if (!(step <= kKnown * model_.size)) lose_in_rounding();
+  }
+
+  void lose_in_rounding() {
+    report_.converged = false;
+    fail("too_fine",
+         "the forces balance to their rounding error, and that hides the shape: the mesh is too "
+         "fine, or the rod too stiff against stretching, for double precision");
+  }
+
+  /// Solves for a Newton step at the end. False if it cannot be had.
+  bool solve_last(Vector& step) {
+    const Stability& stability = report_.stability;
+    if (stability.doubtful_directions > 0 && stability.unstable_directions == 0) {
+      return stiffness_.solve_by_elements(step);
+    }
+    if (!stiffness_.factorize().factorised) return false;
+    stiffness_.solve(step);
+    return true;
   }
 
   /// Goes down from the saddle `x` to both sides of its softest direction and sets `x` to the
@@ -389,11 +581,7 @@ class Search {
   bool leave_saddle(Vector& x) {
     stiffness_.evaluate(x, stage_.controls);
     const SoftDirection soft = stiffness_.softest();
-    Vector direction = Vector::Zero(model_.num_dofs());
-    for (Index i = 0; i < model_.num_free(); ++i) {
-      direction[model_.free_dofs[at(i)]] = soft.direction[i];
-    }
-    direction /= largest_edge_change(model_, direction);
+    const Vector direction = bend(soft);
     const double same = 1e-6;  // of the fall
     for (const double turn : {0.05, 0.001}) {
       std::optional<Vector> best;
@@ -423,10 +611,11 @@ class Search {
   Stiffness stiffness_;
   Stage stage_;
   Vector start_;
-  double softness_ = 0.0;       // largest L / EI of a rod [1/(N m)]
-  double spring_travel_ = 0.0;  // [m]
-  Vector turned_;               // [rad] of each edge with a moment in the last descent
-  double fallen_ = 0.0;         // [J] in the last descent
+  double softness_ = 0.0;            // largest L / EI of a rod [1/(N m)]
+  double spring_travel_ = 0.0;       // [m]
+  std::vector<double> whole_turns_;  // before clamps turn; empty if none does
+  Vector turned_;                    // [rad] of each edge with a moment in the last descent
+  double fallen_ = 0.0;              // [J] in the last descent
   EquilibriumReport report_;
 };
 

@@ -1,6 +1,7 @@
 #include "der/statics/potential.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <type_traits>
 #include <utility>
@@ -38,6 +39,39 @@ double energy_change(const ElementList<Kernel>& list, const Vector& controls, co
   return total;
 }
 
+/// Calls use(dofs, hessian, shared) for each element; of its displacement the first `shared`
+/// components, those of its first node, may be taken from all nodes at no cost of energy.
+template <class Use>
+void for_each_hessian(const Model& model, const Vector& controls, const Vector& positions,
+                      const Use& use) {
+  for_each_list(model.elements, [&](const auto& list) {
+    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+    constexpr int kDofs = Kernel::kDofs;
+    LocalTerm<kDofs> local;
+    for (std::size_t e = 0; e < list.size(); ++e) {
+      Kernel::template evaluate<Derivatives::Hessian>(list.constants[e], controls,
+                                                      gather(list.dofs[e], positions), local);
+      const Eigen::Matrix<double, kDofs, kDofs> hessian =
+          local.hessian.template selfadjointView<Eigen::Lower>();
+      use(list.dofs[e], hessian, HoldsElement<Kernel>::value ? 0 : model.dimension);
+    }
+  });
+}
+
+/// An element's part of a displacement, less that of its first node in `shared` components.
+template <std::size_t N, class Displacement>
+Eigen::Matrix<double, static_cast<int>(N), 1> relative(const std::array<Index, N>& dofs,
+                                                       const Displacement& displacement,
+                                                       int shared) {
+  Eigen::Matrix<double, static_cast<int>(N), 1> d;
+  for (std::size_t i = 0; i < N; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    d[k] = displacement[dofs[i]];
+    if (shared > 0) d[k] -= displacement[dofs[i % static_cast<std::size_t>(shared)]];
+  }
+  return d;
+}
+
 }  // namespace
 
 double potential_change(const Model& model, const Vector& controls, const Vector& force,
@@ -56,23 +90,44 @@ double second_variation(const Model& model, const Vector& controls, const Vector
 SummedVariation summed_variation(const Model& model, const Vector& controls,
                                  const Vector& positions, const Vector& direction) {
   SummedVariation total;
-  for_each_list(model.elements, [&](const auto& list) {
-    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
-    LocalTerm<Kernel::kDofs> local;
-    for (std::size_t e = 0; e < list.size(); ++e) {
-      Kernel::template evaluate<Derivatives::Hessian>(list.constants[e], controls,
-                                                      gather(list.dofs[e], positions), local);
-      auto d = gather(list.dofs[e], direction);
-      if constexpr (!HoldsElement<Kernel>::value) {
-        for (Eigen::Index i = d.size() - 1; i >= 0; --i) d[i] -= d[i % model.dimension];
-      }
-      const auto size = d.cwiseAbs().eval();
-      total.value += d.dot(local.hessian.template selfadjointView<Eigen::Lower>() * d);
-      local.hessian = local.hessian.cwiseAbs().eval();
-      total.terms += size.dot(local.hessian.template selfadjointView<Eigen::Lower>() * size);
-    }
-  });
+  for_each_hessian(model, controls, positions,
+                   [&](const auto& dofs, const auto& hessian, int shared) {
+                     const auto d = relative(dofs, direction, shared);
+                     total.value += d.dot(hessian * d);
+                     total.terms += d.cwiseAbs().dot(hessian.cwiseAbs() * d.cwiseAbs());
+                   });
   return total;
+}
+
+SecondVariations second_variations(const Model& model, const Vector& controls,
+                                   const Vector& positions, const Eigen::MatrixXd& directions) {
+  const Eigen::Index count = directions.cols();
+  SecondVariations result{Eigen::MatrixXd::Zero(count, count), Vector::Zero(count)};
+  for_each_hessian(
+      model, controls, positions, [&](const auto& dofs, const auto& hessian, int shared) {
+        constexpr int kDofs = std::decay_t<decltype(hessian)>::RowsAtCompileTime;
+        Eigen::Matrix<double, kDofs, Eigen::Dynamic> d(kDofs, count);
+        for (Eigen::Index i = 0; i < count; ++i) {
+          d.col(i) = relative(dofs, directions.col(i), shared);
+        }
+        result.values.noalias() += d.transpose() * (hessian * d).eval();
+        const auto terms = d.cwiseAbs().cwiseProduct(hessian.cwiseAbs() * d.cwiseAbs()).eval();
+        result.terms += terms.colwise().sum().transpose();
+      });
+  return result;
+}
+
+Vector stiffness_product(const Model& model, const Vector& controls, const Vector& positions,
+                         const Vector& direction) {
+  Vector product = Vector::Zero(direction.size());
+  for_each_hessian(model, controls, positions,
+                   [&](const auto& dofs, const auto& hessian, int shared) {
+                     const auto force = (hessian * relative(dofs, direction, shared)).eval();
+                     for (std::size_t i = 0; i < dofs.size(); ++i) {
+                       product[dofs[i]] += force[static_cast<Eigen::Index>(i)];
+                     }
+                   });
+  return product;
 }
 
 double largest_edge_change(const Model& model, const Vector& displacement) {

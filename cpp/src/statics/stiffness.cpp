@@ -1,9 +1,12 @@
 #include "der/statics/stiffness.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "der/statics/potential.hpp"
 
@@ -12,6 +15,14 @@ namespace {
 
 /// Rounding errors of the largest entry that assembling and factorising leave in an eigenvalue.
 constexpr double kRoundings = 8.0;
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+/// More directions in doubt than this are not looked at one by one.
+constexpr Index kMostDoubtful = 40;
+/// What is as flat as this against the next stiffer direction is neutral, if rounding hides its
+/// sign.
+constexpr double kFlat = 1e-3;
+/// Of the energy that a residual can still free, the share that may be missing in a curvature.
+constexpr double kErrorShare = 4.0;
 
 }  // namespace
 
@@ -43,37 +54,64 @@ Inertia Stiffness::factorize(double shift, const Mass& mass) {
 
 double Stiffness::rounding() const {
   // The spare slot at the end collects what belongs to held degrees of freedom.
-  return kRoundings * std::numeric_limits<double>::epsilon() *
-         values_.head(values_.size() - 1).lpNorm<Eigen::Infinity>();
+  return kRoundings * kEpsilon * values_.head(values_.size() - 1).lpNorm<Eigen::Infinity>();
 }
 
 Stability Stiffness::stability() {
   const double margin = rounding();
   Stability result;
   result.unstable_directions = factorize(margin).negative_pivots;
-  result.neutral_directions =
+  result.doubtful_directions =
       std::max<Index>(0, factorize(-margin).negative_pivots - result.unstable_directions);
+  if (result.doubtful_directions > 0) judge_doubtful(result);
   return result;
 }
 
-SoftDirection Stiffness::softest() {
+void Stiffness::judge_doubtful(Stability& stability) {
+  const Index count = stability.unstable_directions + stability.doubtful_directions;
+  if (count > kMostDoubtful) {
+    stability.unknown_directions = stability.doubtful_directions;
+    return;
+  }
+  const SoftSpace space = softest_space(count);
+  // What is flat against the first direction beyond is neutral.
+  const double flat = kFlat * space.curvatures[space.curvatures.size() - 1];
+  stability.unstable_directions = 0;
+  for (Index i = 0; i < count; ++i) {
+    const double curvature = space.curvatures[i];
+    if (curvature < -space.rounding[i]) {  // along any direction, this proves it
+      ++stability.unstable_directions;
+    } else if (const double error = space.rounding[i] + space.errors[i]; curvature <= error) {
+      ++(error <= flat ? stability.neutral_directions : stability.unknown_directions);
+    }
+  }
+}
+
+/// Factorises K plus the smallest shift that makes it positive definite, to about a third, and
+/// returns the shift; at least the rounding error.
+double Stiffness::factorize_positive() {
   const auto positive = [&](double shift) {
     const Inertia inertia = factorize(shift);
     return inertia.factorised && inertia.negative_pivots == 0;
   };
-  // The smallest shift that makes K positive definite, to about a third.
   double high = rounding();
   double low = 0.0;
   while (!positive(high) && std::isfinite(high)) {
     low = high;
     high *= 16.0;
   }
-  for (int i = 0; low > 0.0 && i < 4; ++i) {
+  if (low == 0.0) return high;
+  for (int i = 0; i < 4; ++i) {
     const double middle = std::sqrt(low * high);
     (positive(middle) ? high : low) = middle;
   }
   factorize(high);
-  return inverse_iteration();
+  return high;
+}
+
+SoftDirection Stiffness::softest() {
+  if (factorize_positive() > rounding()) return inverse_iteration();
+  return soft_direction(softest_space(1).directions.col(0));
 }
 
 SoftDirection Stiffness::nearest_to_zero() {
@@ -94,15 +132,112 @@ SoftDirection Stiffness::inverse_iteration() {
     x = next;
     if (1.0 - cosine < kSameDirection) break;
   }
-  Eigen::Index largest = 0;
-  x.cwiseAbs().maxCoeff(&largest);
-  if (x[largest] < 0.0) x = -x;
+  return soft_direction(x);
+}
 
-  Vector full = Vector::Zero(model_.num_dofs());
-  for (Index i = 0; i < model_.num_free(); ++i) {
-    full[model_.free_dofs[static_cast<std::size_t>(i)]] = x[i];
+SoftDirection Stiffness::soft_direction(Vector free) const {
+  Eigen::Index largest = 0;
+  free.cwiseAbs().maxCoeff(&largest);
+  if (free[largest] < 0.0) free = -free;
+  const double curvature = second_variation(model_, controls_, positions_, over_all(free));
+  return {std::move(free), curvature};
+}
+
+/// Block iteration on the residuals (Knyazev, SIAM J. Sci. Comput. 23, 2001, without its third
+/// block): every step minimises the second variation over the present directions and the residuals
+/// that the factorised matrix has answered. All that counts is taken element by element.
+Stiffness::SoftSpace Stiffness::softest_space(Index count) {
+  constexpr int kIterations = 30;
+  constexpr double kSettled = 1e-3;
+  constexpr Index kSpare = 2;
+  const Index size = model_.num_free();
+  const Index wanted = std::min(count + kSpare, size);
+  factorize_positive();
+  Vector column = unstructured_vector(size * wanted);
+  Eigen::MatrixXd basis = Eigen::Map<Eigen::MatrixXd>(column.data(), size, wanted);
+  for (Index i = 0; i < wanted; ++i) {
+    column = basis.col(i);
+    solver_.solve(column);
+    basis.col(i) = column.normalized();
   }
-  return {x, second_variation(model_, controls_, positions_, full)};
+  SoftSpace space = rayleigh_ritz(basis, wanted);
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    Eigen::MatrixXd answers(size, wanted);
+    bool settled = true;
+    for (Index i = 0; i < wanted; ++i) {
+      const Vector& x = space.directions.col(i);
+      const Vector force =
+          stiffness_product(model_, controls_, positions_, over_all(x))(model_.free_dofs) -
+          space.curvatures[i] * x;
+      column = force;
+      solver_.solve(column);
+      space.errors[i] = kErrorShare * std::abs(force.dot(column));
+      answers.col(i) = column.normalized();
+      const double small = std::max(kSettled * std::abs(space.curvatures[i]), space.rounding[i]);
+      settled = settled && (i >= count || space.errors[i] <= small);
+    }
+    if (settled || wanted == size) break;
+    basis.resize(size, std::min(2 * wanted, size));
+    basis << space.directions, answers.leftCols(basis.cols() - wanted);
+    space = rayleigh_ritz(basis, wanted);
+  }
+  return space;
+}
+
+/// The softest directions in the span of `basis`.
+Stiffness::SoftSpace Stiffness::rayleigh_ritz(const Eigen::MatrixXd& basis, Index count) const {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(basis);
+  const Eigen::MatrixXd directions =
+      qr.householderQ() * Eigen::MatrixXd::Identity(basis.rows(), basis.cols());
+  Eigen::MatrixXd full = Eigen::MatrixXd::Zero(model_.num_dofs(), basis.cols());
+  const auto variations = [&](const Eigen::MatrixXd& free) {
+    full.resize(full.rows(), free.cols());
+    full.setZero();
+    full(model_.free_dofs, Eigen::all) = free;
+    return second_variations(model_, controls_, positions_, full);
+  };
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(variations(directions).values);
+  SoftSpace space;
+  space.directions = directions * solver.eigenvectors().leftCols(count);
+  const SecondVariations final = variations(space.directions);
+  space.curvatures = final.values.diagonal();
+  space.rounding = kRoundings * kEpsilon * final.terms;
+  space.rounding.array() += kEpsilon * rounding();  // of the directions' own digits
+  space.errors = Vector::Constant(count, std::numeric_limits<double>::infinity());
+  return space;
+}
+
+bool Stiffness::solve_by_elements(Vector& b) {
+  constexpr int kIterations = 200;
+  constexpr double kReduction = 1e-20;  // of the error's energy
+  factorize_positive();
+  Vector rest = b;
+  Vector answer = rest;
+  solver_.solve(answer);
+  Vector direction = answer;
+  double energy = rest.dot(answer);
+  const double first = energy;
+  b.setZero();
+  for (int i = 0; i < kIterations; ++i) {
+    if (energy <= kReduction * first) return b.allFinite();
+    const Vector full = over_all(direction);
+    const double curvature = second_variation(model_, controls_, positions_, full);
+    if (!(curvature > 0.0)) return false;
+    const double step = energy / curvature;
+    b += step * direction;
+    rest -= step * stiffness_product(model_, controls_, positions_, full)(model_.free_dofs);
+    answer = rest;
+    solver_.solve(answer);
+    const double before = std::exchange(energy, rest.dot(answer));
+    direction = answer + energy / before * direction;
+  }
+  return false;
+}
+
+Vector Stiffness::over_all(const Vector& free) const {
+  Vector full = Vector::Zero(model_.num_dofs());
+  full(model_.free_dofs) = free;
+  return full;
 }
 
 Vector unstructured_vector(Index size) {

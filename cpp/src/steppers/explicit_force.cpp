@@ -55,12 +55,10 @@ void ExplicitForce::evaluate_loads(const State& state, const Vector& positions, 
 void ExplicitForce::book(const Vector& velocities, const Vector& displacement, Work& work) const {
   work.loads += displacement.dot(force_ - model_.gravity_force) +
                 moment_work(model_, positions_, controls_, displacement);
-  if (model_.damped) {
-    for (const Index dof : model_.free_dofs) {
-      work.drag += displacement[dof] * model_.damping[dof] * velocities[dof];
-    }
-  }
+  work.drag += displacement.dot(model_.damping.cwiseProduct(velocities));
   for (const HeldDof& held : model_.held) {
+    // The step's finisher has the drag on held nodes.
+    work.drag -= displacement[held.dof] * model_.damping[held.dof] * velocities[held.dof];
     work.supports += displacement[held.dof] * (gradient_[held.dof] - force_[held.dof]);
   }
 }

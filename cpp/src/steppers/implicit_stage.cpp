@@ -41,21 +41,21 @@ void ImplicitStage::book(const Vector& displacement, Work& work) const {
 }
 
 void ImplicitStage::book_forces(const Vector& displacement, Work& work) const {
-  const auto drag = [this](Index dof) {
-    return equation.velocity_factor * model_.damping[dof] *
-           (positions[dof] - equation.velocity_reference[dof]);
-  };
   work.loads += displacement.dot(equation.force - model_.gravity_force) +
                 moment_work(model_, positions, equation.controls, displacement);
   if (model_.damped) {
-    for (const Index dof : model_.free_dofs) work.drag += displacement[dof] * drag(dof);
+    work.drag +=
+        equation.velocity_factor *
+        displacement.dot(model_.damping.cwiseProduct(positions - equation.velocity_reference));
   }
   for (const HeldDof& held : model_.held) {
     // Without the inertia and the drag that the scheme gives the held node; `finish` has them.
     const double inertial = equation.inertia * equation.mass.lumped[held.dof] *
                             (positions[held.dof] - equation.inertia_target[held.dof]);
-    work.supports +=
-        displacement[held.dof] * (newton_.residual()[held.dof] - inertial - drag(held.dof));
+    const double drag = equation.velocity_factor * model_.damping[held.dof] *
+                        (positions[held.dof] - equation.velocity_reference[held.dof]);
+    work.drag -= displacement[held.dof] * drag;
+    work.supports += displacement[held.dof] * (newton_.residual()[held.dof] - inertial - drag);
   }
 }
 

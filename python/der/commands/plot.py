@@ -7,12 +7,17 @@ from pathlib import Path
 
 from der import open_run
 
+_ENDINGS = (".png", ".svg", ".pdf")
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("run", metavar="RUN", type=Path, help="run folder")
     parser.add_argument(
-        "--out", type=Path, metavar="FILE", help="picture to write (default: RUN/plot.png)"
+        "--out",
+        type=Path,
+        metavar="FILE",
+        help="picture to write, .png, .svg or .pdf (default: RUN/plot.png)",
     )
     parser.add_argument(
         "--what", choices=("overview", "shapes", "probes"), default="overview", help="what to draw"
@@ -27,10 +32,12 @@ def execute(arguments: argparse.Namespace) -> int:
     """Write the picture and print its path."""
     import matplotlib as mpl
 
+    out = arguments.out or arguments.run / "plot.png"
+    if out.suffix.lower() not in _ENDINGS:
+        raise ValueError(f"cannot write {out.name}: a picture ends with .png, .svg or .pdf")
     mpl.use("agg")  # a file is written and no window opened, on a screen or without
     result = open_run(arguments.run)
     figure = result.plot(arguments.what, times=arguments.times, probes=arguments.probes)
-    out = arguments.out or arguments.run / "plot.png"
     figure.savefig(out)
     print(out)
     return 0

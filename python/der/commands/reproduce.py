@@ -8,6 +8,7 @@ Exit codes: 0, 1 if the folder cannot be written, 3 if a run fails; then nothing
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from der.progress import progress_on_terminal
@@ -36,6 +37,12 @@ def execute(arguments: argparse.Namespace) -> int:
 
     mpl.use("agg")  # files are written and no window opened, on a screen or without
     with progress_on_terminal() as progress:
-        report = reproduce(arguments.out, jobs=arguments.jobs, progress=progress)
+        begun = progress.label if progress is not None else _print_stage
+        report = reproduce(arguments.out, jobs=arguments.jobs, progress=progress, begun=begun)
     print(report)
     return 0
+
+
+def _print_stage(name: str) -> None:
+    """Tell on the error stream, where the path of the report does not go."""
+    print(name, file=sys.stderr, flush=True)

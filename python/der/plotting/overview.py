@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from der._core import springs
+from der.film import title_of
 from der.plotting.analyses import plot_modes, plot_path
 from der.plotting.lengths import label_positions
 from der.plotting.loads import draw_loads, room_for_loads
@@ -75,10 +76,12 @@ def plot(
     Raises
     ------
     ValueError
-        For a time outside of the run, or a probe that the scene has not.
+        For a time outside of the run or of a run without time, or a probe that the scene has not.
     """
     names = _probe_names(result, probes) if what != "shapes" else []
     kind = result.scenario.analysis
+    if times is not None and result.scenario.is_static:
+        raise ValueError(f"a {kind} run has no time, and so no shapes at times")
     frames = [] if kind == "continuation" else _frames_to_draw(result, times)
     if what == "probes" and not names:
         raise ValueError("the scene has no probes to plot; add some under output.probes")
@@ -93,7 +96,7 @@ def plot(
             figure = _plot_static(result, what, names)
         else:
             figure = _plot_motion(result, what, names, frames)
-        text = result.scenario.title if title is None else title
+        text = title_of(result) if title is None else title
         figure.align_ylabels()
         if kind == "continuation" and what != "shapes":
             lines = wrapped(text, FIGURE_TITLE, _WIDTH - 0.2)
@@ -190,7 +193,8 @@ def _plot_static(result: Result, what: What, names: list[str]) -> Figure:
         figure, panels = _figure(heights)
         axes = panels.pop(0)
         draw_shapes(axes, result.rods, shapes[0], MUTED, "as drawn", "--")
-        _draw_shape_panel(axes, result, [equilibrium], ["equilibrium"], last)
+        label = "equilibrium" if result.status == "static_converged" else "where it ended"
+        _draw_shape_panel(axes, result, [equilibrium], [label], last)
     if panels:
         _write_values(panels[0], result, names)
     return figure

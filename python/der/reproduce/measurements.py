@@ -34,7 +34,13 @@ STEPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 LOADS = (20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0, 20000.0)
 
 #: The stages of the work, and about how many seconds each takes.
-STAGES = {"costs": 1.5, "runs": 3.0, "bars": 7.0, "exact": 4.0, "figures": 8.0}
+STAGES = {
+    "costs of the schemes": 1.5,
+    "runs": 3.0,
+    "error bars": 7.0,
+    "exact solutions": 4.0,
+    "figures": 8.0,
+}
 
 _LONG = 50.0  # duration of the long falls [s]
 _REPEATS = 3  # of the runs whose cost is measured
@@ -167,7 +173,7 @@ def measure(jobs: int | None, stages: Stages) -> Measurements:
     outcomes = _run_all(workers)
     runs = {name: _result(outcomes[name], fails=name == _FAILS) for name in _RUNS}
     runs["three_explicit"] = explicit
-    tell = stages.of("bars", 0, 2)
+    tell = stages.of("error bars", 0, 2)
     bars = {}
     for i, name in enumerate(_VERIFIED):
         bars[name] = verify(_scene(*_RUNS[name]), jobs=jobs)
@@ -214,7 +220,7 @@ def _speed(outcome: Outcome) -> float:
 
 def _measure_costs(stages: Stages) -> tuple[Result, Result]:
     """Run both schemes of the first problem, one at a time; return explicit and implicit."""
-    workers = Workers(1, stages.of("costs"))
+    workers = Workers(1, stages.of("costs of the schemes"))
     tasks = {
         name: Task([_scene(*_COSTS[name])], weight=weight, repeats=_REPEATS)
         for name, weight in (("three_explicit", 1.0), ("three_implicit", 0.01))
@@ -267,7 +273,7 @@ def _weight(scene: Scenario) -> float:
 def _deflections(
     outcomes: Mapping[Key, Outcome], jobs: int | None, stages: Stages
 ) -> dict[float, Deflection]:
-    tell = stages.of("bars", 1, 2)
+    tell = stages.of("error bars", 1, 2)
     deflections = {}
     for i, load in enumerate(LOADS):
         run = outcomes["load", load].value()
@@ -304,7 +310,7 @@ def _solve_falls(runs: Mapping[str, Result], stages: Stages) -> tuple[dict[str, 
     falls = {}
     for i, (name, chain) in enumerate(chains.items()):
         falls[name] = fall(chain, runs[name].times)
-        stages.of("exact", i, len(chains) + 1)(1.0)
+        stages.of("exact solutions", i, len(chains) + 1)(1.0)
     return falls, fall(chains["three"], np.linspace(0.0, runs[_FAILS].times[-1], 200))
 
 
@@ -315,7 +321,7 @@ def _solve_beams(stages: Stages) -> dict[float, dict[float, float]]:
         place: dict(zip(LOADS, elastica_deflections(Tube(load_at=place), LOADS), strict=True))
         for place in places
     }
-    stages.of("exact")(1.0)
+    stages.of("exact solutions")(1.0)
     return found
 
 

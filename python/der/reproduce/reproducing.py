@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -36,6 +36,7 @@ def reproduce(
     *,
     jobs: int | None = None,
     progress: ProgressFunction | None = None,
+    begun: Callable[[str], None] | None = None,
 ) -> Path:
     """Run the course report's three problems and write what came out beside what it says.
 
@@ -51,6 +52,8 @@ def reproduce(
         Runs at once; as many as the machine has cores, unless given.
     progress
         Told now and then how much is done, from 0 to 1.
+    begun
+        Told the name of each stage of the work, such as ``error bars``.
 
     Returns
     -------
@@ -66,7 +69,7 @@ def reproduce(
     """
     folder = Path(folder)
     with _prepared(folder) as draft:
-        stages = Stages(STAGES, progress)
+        stages = Stages(STAGES, progress, begun)
         m = measure(jobs, stages)
         rows = quantities(m)
         document = write_story(m, rows)

@@ -157,7 +157,7 @@ def _three_nodes(m: Measurements) -> Section:
                 "Both schemes against the exact motion, and their cost. The report's times are "
                 "what it says in words.",
                 "Left: errors of the displacement over time, larger for the implicit "
-                "scheme. Right: bars of wall times.",
+                "scheme. Right: dots of wall times.",
             ),
             Paragraph(
                 "With ten times the step the explicit scheme blows up. Its longest stable step is "

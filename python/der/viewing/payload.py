@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from der._core import Rod, springs
 from der.fields import FIELD_UNITS
-from der.film import Film, make_film, mode_shapes, round_speed, speed_text
+from der.film import Film, failure_text, make_film, mode_shapes, round_speed, speed_text
 from der.plotting.lengths import LengthScale
 from der.plotting.style import quantity_text
 from der.scene_loads import ActingLoads
@@ -46,15 +46,16 @@ def make_payload(result: Result) -> dict[str, Any]:
     symbols = any(loads["loads"]) or bool(found_springs)
     low, high, symbol = _limits(result.rods, positions, scale.metres, symbols)
     span = 0.0 if film.times is None else float(film.times[-1] - film.times[0])
-    note = result.scenario.analysis if result.scenario.is_static else ""
+    noise = _noise(result.rods, span)
+    notes = [failure_text(result), result.scenario.analysis if result.scenario.is_static else ""]
     if len(frames) < len(film.captions):
-        note = f"{len(frames)} of {len(film.captions)} saved frames"
+        notes.append(f"{len(frames)} of {len(film.captions)} saved frames")
     gravity = film.loads(result, 0).gravity
     if gravity is not None:
-        note += f"{', ' if note else ''}gravity {_vector_text(gravity)} m/s²"
+        notes.append(f"gravity {_vector_text(gravity)} m/s²")
     return {
         "title": result.scenario.title,
-        "note": note,
+        "note": ", ".join(note for note in notes if note),
         "captions": _captions(film, frames),
         "times": None if film.times is None else film.times[frames].tolist(),
         "chapters": [
@@ -68,7 +69,9 @@ def make_payload(result: Result) -> dict[str, Any]:
         ],
         "start": len(frames) - 1 if result.scenario.analysis == "static" else 0,
         "speeds": _speeds(span),
-        "fields": {name: _field_range(name, rods) for name, rods in film.fields.items()},
+        "fields": {
+            name: _field_range(name, rods, noise[name]) for name, rods in film.fields.items()
+        },
         "quantity": next(iter(film.fields), ""),
         "rods": [
             _rod(
@@ -119,13 +122,32 @@ def _speeds(span: float) -> list[tuple[float, str]]:
     return [(speed, speed_text(speed)) for speed in speeds]
 
 
-def _field_range(name: str, rods: list[Array]) -> dict[str, Any]:
-    """Return unit and range of a quantity; one that is constant gets a range around it."""
+def _noise(rods: list[Rod], span: float) -> dict[str, float]:
+    """Return for each quantity how much of it may be rounding, by the size of the rods.
+
+    A curvature that turns the longest rod by a billionth, a strain of 1e-12, and a speed that takes
+    a rod a billionth of its length along in the whole run (`span` [s]).
+    """
+    length = max(rod.length for rod in rods)
+    return {
+        "curvature": 1e-9 / length,
+        "tension": 1e-12 * max(rod.EA for rod in rods),
+        "speed": 1e-9 * length / span if span > 0.0 else 0.0,
+    }
+
+
+def _field_range(name: str, rods: list[Array], noise: float) -> dict[str, Any]:
+    """Return unit and range of a quantity; one that is constant gets a range around it.
+
+    What varies by no more than `noise` is constant, and what is no larger is 0.
+    """
     low = min(float(values.min()) for values in rods)
     high = max(float(values.max()) for values in rods)
     size = max(abs(low), abs(high))
-    if high - low <= 1e-9 * size or size == 0.0:
-        room = 0.01 * size or 1.0
+    if size <= noise:
+        low, high = -1.0, 1.0
+    elif high - low <= max(1e-9 * size, noise):
+        room = max(0.01 * size, noise)
         low, high = low - room, high + room
     return {"unit": FIELD_UNITS[name], "low": low, "high": high}
 

@@ -404,7 +404,9 @@
 
   // Seen from the front, Plotly's own titles of axes lie on their ticks: these stand at their ends.
   const axisTitles = () => {
-    const [low, high] = [data.low, data.high];
+    // Inside by a little: Plotly leaves out what rounding puts beyond the ends.
+    const inside = (n, share) => data.low[n] + share * (data.high[n] - data.low[n]);
+    const [low, high] = [0, 1].map((end) => [0, 1].map((n) => inside(n, 1e-6 + end * (1 - 2e-6))));
     const font = { color: "#444", size: 13 };
     return [
       note(data.axes[0], [high[0], low[1], 0], font, { xanchor: "left", xshift: 10 }),
@@ -449,8 +451,9 @@
         zaxis: axis(2, share(2), !flat),
         annotations: flat ? [...axisTitles(), ...labels] : labels,
         dragmode: "orbit",
+        // From the left, where Plotly puts the ticks of y on the left, beside their title.
         camera: flat
-          ? { eye: { x: 0.14, y: 0.2, z: 1.4 }, up: { x: 0, y: 1, z: 0 } }
+          ? { eye: { x: -0.14, y: 0.2, z: 1.4 }, up: { x: 0, y: 1, z: 0 } }
           : { eye: { x: 1.0, y: -1.35, z: 0.7 }, up: { x: 0, y: 0, z: 1 } },
       },
     };

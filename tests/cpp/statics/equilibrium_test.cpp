@@ -1,8 +1,10 @@
 // Static equilibria: found, judged, or refused with a reason.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "der/core/error.hpp"
 #include "der/simulation.hpp"
@@ -21,6 +23,27 @@ rods:
     cross_section: {stiffness: {EA: 1e5, EI: 1, mass_per_length: 1}}
 )" + (supports.empty() ? "" : "supports:\n" + supports) +
          "loads:\n  - point_force: {rod: rod, at: end, force: " + force + "}\nanalysis: static\n";
+}
+
+/// Status and message of a failure, or what was found.
+std::string failure(const std::string& text, const std::vector<Override>& overrides = {}) {
+  try {
+    Simulation simulation(Scenario::parse(text, "scene", overrides));
+    return simulation.equilibrium().stability.name();
+  } catch (const NotConvergedError& error) {
+    return error.status() + ": " + error.what();
+  }
+}
+
+/// Angle by which the rod's edges turn from the first to the last, without whole turns.
+double total_turn(const Vector& x) {
+  double turn = 0.0;
+  for (Index i = 4; i + 1 < x.size(); i += 2) {
+    const Vec2 before = x.segment<2>(i - 2) - x.segment<2>(i - 4);
+    const Vec2 after = x.segment<2>(i) - x.segment<2>(i - 2);
+    turn += std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
+  }
+  return turn;
 }
 
 const std::string kClamp = "  - {rod: rod, at: start, clamp: true}\n";
@@ -60,14 +83,6 @@ TEST_CASE("the state of lower potential is taken of the two beside a saddle") {
 }
 
 TEST_CASE("what has no equilibrium fails with a name") {
-  const auto failure = [](const std::string& text) {
-    try {
-      Simulation(Scenario::parse(text)).equilibrium();
-    } catch (const NotConvergedError& error) {
-      return error.status() + ": " + error.what();
-    }
-    return std::string("an equilibrium was found");
-  };
   const std::string pin = "  - {rod: rod, at: start, fix: [x, y]}\n";
   const std::string unheld = failure(scene("  - {rod: rod, at: end, fix: [y]}\n", "[3, 0]"));
   CHECK(unheld.rfind("not_held: ", 0) == 0);
@@ -126,6 +141,114 @@ TEST_CASE("a rod that hangs from a pin finds its way down") {
   CHECK(x[x.size() - 2] == doctest::Approx(0.0).epsilon(1e-6));
   // Hooke's law: 3 N stretch the metre by 3 / EA.
   CHECK(x[x.size() - 1] == doctest::Approx(-(1.0 + 3.0 / 1e5)).epsilon(1e-9));
+}
+
+TEST_CASE("a saddle is known where the assembled stiffness drowns its softest eigenvalue") {
+  // Pinned, at 1.5 times its buckling load; the elastica's midpoint lies at 0.39425 there.
+  const std::string pinned =
+      "  - {rod: rod, at: start, fix: [x, y]}\n  - {rod: rod, at: end, fix: [y]}\n";
+  const auto buckled = [&](const std::string& EA, const std::string& nodes) {
+    CAPTURE(EA);
+    CAPTURE(nodes);
+    Simulation simulation(
+        Scenario::parse(scene(pinned, "[-14.8, 0]"), "scene",
+                        {{"rods.rod.cross_section.stiffness.EA", EA}, {"rods.rod.nodes", nodes}}));
+    const EquilibriumReport report = simulation.equilibrium();
+    CHECK(report.saddles_left == 1);
+    CHECK(report.stability.name() == std::string("stable"));
+    const Vector& x = simulation.state().positions;
+    CHECK(std::abs(x[x.size() / 2]) == doctest::Approx(0.39425).epsilon(1e-3));
+  };
+  buckled("1e14", "51");
+  buckled("1e10", "2001");
+  buckled("1e6", "10001");
+}
+
+TEST_CASE("a fine or stiff cantilever is stable, not neutral") {
+  // The elastica's tip under 1 EI/L^2: (0.943567, -0.301721).
+  const auto check = [](const std::string& EA, const std::string& nodes) {
+    CAPTURE(EA);
+    CAPTURE(nodes);
+    Simulation simulation(
+        Scenario::parse(scene(kClamp, "[0, -1]"), "scene",
+                        {{"rods.rod.cross_section.stiffness.EA", EA}, {"rods.rod.nodes", nodes}}));
+    CHECK(simulation.equilibrium().stability.name() == std::string("stable"));
+    const Vector& x = simulation.state().positions;
+    CHECK(x[x.size() - 1] == doctest::Approx(-0.301721).epsilon(1e-5));
+  };
+  check("1e10", "1001");
+  check("1e6", "10001");
+}
+
+TEST_CASE("beyond double precision no shape is given that is none") {
+  // The tension of one edge is known to EA/l times the rounding of a coordinate: more than the
+  // load.
+  std::string inclined = scene(kClamp, "[0, -1]");
+  inclined.replace(inclined.find("to: [1, 0]"), 10, "to: [0.6, 0.8]");
+  const auto outcome = [&](const std::string& EA, const std::string& nodes) {
+    return failure(inclined,
+                   {{"rods.rod.cross_section.stiffness.EA", EA}, {"rods.rod.nodes", nodes}});
+  };
+  CHECK(outcome("1e15", "1001").rfind("too_fine: ", 0) == 0);
+  CHECK(outcome("1e16", "201").rfind("too_fine: ", 0) == 0);
+}
+
+TEST_CASE("a clamp that turns takes the rod along, beyond half a turn too") {
+  // At the other end, which slides, a stiff spring holds the drawn direction: from there to here
+  // the rod turns by the whole angle, but for the half cells at the ends.
+  const auto turned = [](const std::string& angle) {
+    return Scenario::parse(
+        scene("  - {rod: rod, at: start, clamp: true, prescribe: {angle: " + angle +
+                  "}}\n  - {rod: rod, at: end, fix: [y], spring: {rotational_stiffness: 1e6}}\n",
+              "[0, 0]"));
+  };
+  for (const double angle : {2.5, 3.3, 5.0, 6.283185307179586}) {
+    CAPTURE(angle);
+    Simulation simulation(turned(fmt::format("{}", angle)));
+    CHECK(simulation.equilibrium().stability.name() == std::string("stable"));
+    CHECK(total_turn(simulation.state().positions) == doctest::Approx(-angle).epsilon(0.05));
+  }
+  // From shape to shape it goes the shorter way.
+  Simulation simulation(turned("2.5"));
+  simulation.equilibrium();
+  simulation.prescribe(0, "angle", 4.0);
+  simulation.equilibrium();
+  CHECK(total_turn(simulation.state().positions) == doctest::Approx(-4.0).epsilon(0.05));
+}
+
+TEST_CASE("a clamp whose edge folds over instead of following is no equilibrium of its angle") {
+  // EA L^2/EI = 1e6: taut between two clamps, the rod bends within less than an edge.
+  const std::string taut =
+      "  - {rod: rod, at: start, clamp: true, prescribe: {angle: 5}}\n"
+      "  - {rod: rod, at: end, clamp: true}\n";
+  const std::string outcome =
+      failure(scene(taut, "[0, 0]"),
+              {{"rods.rod.cross_section.stiffness.EA", "1e6"}, {"rods.rod.nodes", "81"}});
+  CHECK(outcome.rfind("folded: ", 0) == 0);
+}
+
+TEST_CASE("a rod that its load could crush gives way to the side") {
+  // EA is little more than the load: pressed straight, a tenth of the length is left.
+  for (const std::string force : {"[-450, 0]", "[-4000, 0]"}) {
+    CAPTURE(force);
+    Simulation simulation(Scenario::parse(
+        scene(kClamp, force), "scene",
+        {{"rods.rod.cross_section.stiffness.EA", "500"}, {"rods.rod.nodes", "33"}}));
+    CHECK(simulation.equilibrium().stability.name() == std::string("stable"));
+    // It hangs from the clamp along the force.
+    const Vector& x = simulation.state().positions;
+    CHECK(x[x.size() - 2] < -1.0);
+  }
+}
+
+TEST_CASE("a rod is not turned inside out") {
+  // Guided along x it cannot give way: the load would press it through zero length.
+  const std::string guided =
+      "  - {rod: rod, at: start, fix: [x, y]}\n  - {rod: rod, at: end, fix: [y]}\n";
+  const std::string outcome =
+      failure(scene(guided, "[-2, 0]"),
+              {{"rods.rod.cross_section.stiffness.EA", "1"}, {"rods.rod.nodes", "2"}});
+  CHECK(outcome.rfind("collapsed: ", 0) == 0);
 }
 
 }  // namespace der::test

@@ -28,6 +28,18 @@ struct SummedVariation {
 SummedVariation summed_variation(const Model& model, const Vector& controls,
                                  const Vector& positions, const Vector& direction);
 
+/// d_i' K d_j likewise, for several displacements at once, one a column.
+struct SecondVariations {
+  Eigen::MatrixXd values;  ///< d_i' K d_j [J]
+  Vector terms;            ///< of each d_i' K d_i the terms as above [J]
+};
+SecondVariations second_variations(const Model& model, const Vector& controls,
+                                   const Vector& positions, const Eigen::MatrixXd& directions);
+
+/// K d [N] of the same stiffness, element by element as above; all degrees of freedom.
+Vector stiffness_product(const Model& model, const Vector& controls, const Vector& positions,
+                         const Vector& direction);
+
 /// The largest change [rad, or strain] that a displacement makes to an edge, against its rest
 /// length.
 double largest_edge_change(const Model& model, const Vector& displacement);

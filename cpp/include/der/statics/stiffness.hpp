@@ -13,8 +13,14 @@ struct Stability {
   /// Directions in which it is flat to rounding: rigid motions that nothing holds, or a critical
   /// load.
   Index neutral_directions = 0;
+  /// Directions of which rounding hides whether it rises or falls: the mesh is too fine.
+  Index unknown_directions = 0;
+  /// Directions that the assembled stiffness leaves in doubt, so that they were judged element by
+  /// element.
+  Index doubtful_directions = 0;
   [[nodiscard]] const char* name() const {
     if (unstable_directions > 0) return "unstable";
+    if (unknown_directions > 0) return "unknown";
     return neutral_directions > 0 ? "neutral" : "stable";
   }
 };
@@ -44,19 +50,41 @@ class Stiffness {
   /// Solves with the last factorisation, in place; over the free degrees of freedom.
   void solve(Vector& right_side) { solver_.solve(right_side); }
 
-  /// Eigenvalues [N/m] smaller than this cannot be told from zero.
+  /// Solves K x = b in place where the rounding of the assembled matrix is not small against the
+  /// softest eigenvalues: conjugate gradients on K taken element by element, the matrix being the
+  /// preconditioner. Returns false, `b` being of no use, if K is not positive definite or no
+  /// solution is reached.
+  bool solve_by_elements(Vector& b);
+
+  /// Eigenvalues [N/m] smaller than this cannot be told from zero in the assembled matrix.
   [[nodiscard]] double rounding() const;
   /// Counts eigenvalues by the signs of the pivots of two factorisations, shifted by the rounding
-  /// error to either side.
+  /// error to either side. Those between are judged by second variations, which keep their digits:
+  /// each element's terms are taken of differences.
   Stability stability();
-  /// The eigenvector of the smallest eigenvalue, to a few digits, by inverse iteration with a shift
-  /// just beyond it, found from the inertia. Its sign makes the largest component positive.
+  /// The eigenvector of the smallest eigenvalue, to a few digits: by inverse iteration with a shift
+  /// just beyond it, found from the inertia, or, if it is too small for the matrix, by second
+  /// variations. Its sign makes the largest component positive.
   SoftDirection softest();
   /// The eigenvector of the eigenvalue nearest to zero, likewise.
   SoftDirection nearest_to_zero();
 
  private:
+  /// The softest directions, in the order of their curvatures.
+  struct SoftSpace {
+    Eigen::MatrixXd directions;  // of length 1, over the free degrees of freedom, one a column
+    Vector curvatures;           // [N/m]
+    Vector rounding;             // of the curvatures [N/m]
+    Vector errors;               // by which the iteration may have missed the eigenvalues [N/m]
+  };
+
+  double factorize_positive();
+  void judge_doubtful(Stability& stability);
+  SoftSpace softest_space(Index count);
+  SoftSpace rayleigh_ritz(const Eigen::MatrixXd& basis, Index count) const;
   SoftDirection inverse_iteration();
+  [[nodiscard]] SoftDirection soft_direction(Vector free) const;
+  [[nodiscard]] Vector over_all(const Vector& free) const;
 
   const Model& model_;
   const Assembler& assembler_;

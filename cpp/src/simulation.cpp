@@ -67,6 +67,17 @@ const PrescribedControl& check_prescribed(const Model& model, std::size_t suppor
                   component, support, component, known.empty() ? "nothing" : known));
 }
 
+/// A program may have written anything into the state.
+void check_finite(const Model& model, const Vector& values, const std::string& what) {
+  for (Index dof = 0; dof < model.num_dofs(); ++dof) {
+    if (std::isfinite(values[dof])) continue;
+    throw Error("model_error",
+                fmt::format("{} of {} is {}, not a finite number: write one there, or begin again "
+                            "with a new simulation",
+                            what, describe_dof(model, dof), values[dof]));
+  }
+}
+
 }  // namespace
 
 Simulation::Simulation(Scenario scenario)
@@ -81,7 +92,7 @@ Simulation::Simulation(Scenario scenario)
       plan_(plan_steps(scenario_.scene(), model_, stepper_info_)),
       horizon_(scenario_.scene().time.duration),
       state_(initial_state(model_)) {
-  state_.work.start = energies(model_, state_).total();
+  start_ledger(model_, state_);
   const scenario::Time& time = scenario_.scene().time;
   if (time.stepping == scenario::Stepping::Adaptive) {
     adaptive_.emplace(
@@ -181,7 +192,13 @@ double Simulation::prescribed(std::size_t support, const std::string& component)
   return model_.controls.value(found.control, state_.time, state_.ramps);
 }
 
+void Simulation::check_finite_state() const {
+  check_finite(model_, state_.positions, "the position");
+  check_finite(model_, state_.extra_force, "the extra force");
+}
+
 EquilibriumReport Simulation::equilibrium(bool leave_saddles) {
+  check_finite_state();
   for (Ramp& ramp : state_.ramps) ramp.from = ramp.to;
   Vector positions = state_.positions;
   EquilibriumOptions options;
@@ -199,11 +216,12 @@ EquilibriumReport Simulation::equilibrium(bool leave_saddles) {
   }
   state_.positions = positions;
   state_.velocities.setZero();
-  state_.work = {energies(model_, state_).total(), 0.0, 0.0, 0.0, 0.0};
+  start_ledger(model_, state_);
   return report;
 }
 
 std::vector<Mode> Simulation::modes(int count) {
+  check_finite_state();
   constexpr double kBalanced = 1e-6;
   const Forces now = forces();
   Stiffness stiffness(model_, assembler_, *solver_.solver);

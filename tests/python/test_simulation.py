@@ -220,6 +220,17 @@ def test_equilibrium_of_a_simulation(simulation):
     assert simulation.positions == pytest.approx(settled, abs=1e-7)
 
 
+@pytest.mark.parametrize("call", ["equilibrium", "modes"])
+@pytest.mark.parametrize(
+    ("view", "what"), [("positions", "the position"), ("extra_force", "the extra force")]
+)
+def test_what_is_not_a_number_is_named(swing, call, view, what):
+    simulation = der.Simulation(swing)
+    getattr(simulation, view)[3, 1] = np.nan
+    with pytest.raises(der.DerError, match=rf"{what} of node 3 of rod 'arm' \(y\) is nan"):
+        getattr(simulation, call)()
+
+
 def test_equilibrium_without_supports_is_an_error(swing):
     swing["supports"] = []
     simulation = der.Simulation(der.Scenario.from_dict(swing))

@@ -35,11 +35,110 @@ def test_a_run_of_other_rods_is_refused(swing, tmp_path):
     der.run(swing, out=tmp_path / "first")
     swing["rods"][0]["nodes"] += 1
     swing["start_from"] = str(tmp_path / "first")
-    with pytest.raises(der.DerError, match="needs a run of the same rods"):
+    with pytest.raises(der.DerError, match="'arm' has 11 nodes there and 12 here"):
         der.Simulation(der.Scenario.from_dict(swing))
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"to": [2, 0]}, "'arm' is 1 m long there and 2 m here"),
+        ({"name": "leg"}, "it has no rod 'leg' but 'arm'"),
+    ],
+)
+def test_rods_that_differ_are_refused_and_named(swing, tmp_path, changes, words):
+    der.run(swing, out=tmp_path / "first")
+    swing["rods"][0] |= changes
+    for item in (swing["supports"][0], swing["output"]["probes"]["tip"]):
+        item["rod"] = swing["rods"][0]["name"]
+    swing["start_from"] = str(tmp_path / "first")
+    with pytest.raises(der.DerError, match=words) as caught:
+        der.Simulation(swing)
+    assert str(caught.value).startswith("start_from: ")
+    assert "scene.yaml" in str(caught.value)  # which has the right rods
+
+
+def test_nodes_at_other_places_along_the_rod_are_refused(swing, tmp_path):
+    rod = swing["rods"][0]
+    for key in ("nodes", "from", "to"):
+        del rod[key]
+    rod["points"] = [[0, 0], [0.5, 0], [1, 0]]
+    der.run(swing, out=tmp_path / "first")
+    rod["points"] = [[0, 0], [0.6, 0], [1, 0]]
+    swing["start_from"] = str(tmp_path / "first")
+    with pytest.raises(der.DerError, match=r"node 1 of rod 'arm' is at 0.5 m .* 0.6 m here"):
+        der.Simulation(swing)
+
+
+def test_the_order_of_the_rods_counts(swing, tmp_path):
+    other = {**swing["rods"][0], "name": "other", "from": [0, 1], "to": [1, 1]}
+    swing["supports"].append({"rod": "other", "at": "start", "clamp": True})
+    swing["rods"].append(other)
+    der.run(swing, out=tmp_path / "both")
+    swing["start_from"] = str(tmp_path / "both")
+    der.Simulation(swing)
+    swing["rods"].reverse()
+    with pytest.raises(der.DerError, match="list the rods in the same order"):
+        der.Simulation(swing)
+    del swing["rods"][0], swing["supports"][1]
+    with pytest.raises(der.DerError, match="has 2 rods, 'arm', 'other', and this scene 1"):
+        der.Simulation(swing)
+
+
+def test_other_stiffness_is_the_same_rod(swing, tmp_path):
+    first = der.run(swing, out=tmp_path / "first")
+    swing["rods"][0]["material"]["youngs_modulus"] = 2e7
+    swing["start_from"] = str(tmp_path / "first")
+    assert np.array_equal(der.Simulation(swing).positions, first.positions[-1])
 
 
 def test_a_folder_without_a_run_is_refused(swing, tmp_path):
+    for folder in (tmp_path, tmp_path / "nowhere"):
+        swing["start_from"] = str(folder)
+        with pytest.raises(der.DerError, match=r"^start_from: there is no run in .*written to"):
+            der.Simulation(swing)
+    (tmp_path / "results.h5").write_text("nothing of the kind")
     swing["start_from"] = str(tmp_path)
-    with pytest.raises(der.DerError, match="cannot open"):
-        der.Simulation(der.Scenario.from_dict(swing))
+    with pytest.raises(der.DerError, match=r"^start_from: cannot open"):
+        der.Simulation(swing)
+
+
+def test_a_run_from_another_keeps_a_book_of_its_own(swing, tmp_path):
+    """A rod is let go: what it holds is what it begins with, not what the steps have made."""
+    held = {key: value for key, value in swing.items() if key not in ("time", "output")}
+    pull = {"point_force": {"rod": "arm", "at": "end", "force": [0, 5]}}
+    held |= {"analysis": "static", "loads": [*swing["loads"], pull]}
+    first = der.run(held, out=tmp_path / "first")
+    swing["time"] |= {"integrator": "tr_bdf2"}
+    swing["start_from"] = str(tmp_path / "first")
+    second = der.run(swing)
+    total = sum(second.energies.values())
+    assert total[0] > 1.0
+    assert total[0] == pytest.approx(sum(first.energies.values())[-1], rel=1e-12)
+    assert {name: book[0] for name, book in second.work.items()} == dict.fromkeys(second.work, 0.0)
+    assert second.work["numerical"][-1] == pytest.approx(total[0] - total[-1], rel=1e-9)
+    assert second.summary["warnings"] == []
+
+
+def test_supports_are_where_the_scene_has_them(swing, tmp_path):
+    swing["supports"][0]["prescribe"] = {"y": {"times": [0, 0.2], "values": [0, 0.01]}}
+    der.run(swing, out=tmp_path / "first")
+    swing["supports"][0]["prescribe"] = {"y": 0.02}
+    swing["start_from"] = str(tmp_path / "first")
+    assert der.Simulation(swing).positions[0, 1] == 0.02
+
+
+@pytest.mark.parametrize("stepper", ["implicit_midpoint", "tr_bdf2", "generalized_alpha"])
+def test_a_run_at_rest_has_made_no_energy(swing, stepper):
+    """But rounding, which is more than the rounding that it moves by."""
+    swing["loads"] = [{"gravity": [0, -50]}]
+    swing["start_from"] = "equilibrium"
+    swing["time"] |= {"integrator": stepper, "duration": 1.0, "step": 0.01}
+    assert der.run(swing).summary["warnings"] == []
+
+
+def test_energy_that_steps_have_made_is_still_told(swing):
+    swing["time"] |= {"integrator": "implicit_midpoint", "duration": 2, "step": 0.005}
+    del swing["output"]["every"]
+    (warning,) = der.run(swing).summary["warnings"]
+    assert "time stepping itself has made" in warning

@@ -58,7 +58,7 @@ class Simulation {
   void interpolate(double time, State& result) { adaptive_->interpolate(time, state_, result); }
   /// Replaces the state by the static equilibrium near it under the loads at the present time,
   /// velocities zero. One that is unstable is left for a stable one, unless `leave_saddles` is
-  /// false. Throws NotConvergedError.
+  /// false. Throws NotConvergedError; Error if a position or an extra force is not finite.
   EquilibriumReport equilibrium(bool leave_saddles = true);
 
   /// Moves what support number `support` prescribes, in place of its table: `component` ("x", "y"
@@ -112,6 +112,8 @@ class Simulation {
   void advance_to(double target);
   void advance_adaptively();
   [[noreturn]] void fail(const StepReport& report, double dt) const;
+  /// Throws Error if a position or an extra force is not a finite number.
+  void check_finite_state() const;
   /// What acts at the present state.
   struct Forces {
     Vector controls;

@@ -40,6 +40,11 @@ std::array<double, kEnergyNames.size()> by_name(const Energies& energies) {
   return {energies.kinetic, energies.stretch, energies.bend, energies.spring, energies.gravity};
 }
 
+void start_ledger(const Model& model, State& state) {
+  state.work = {};
+  state.work.start = energies(model, state).total();
+}
+
 double numerical_loss(const Work& work, const Energies& now) {
   return work.start + work.loads + work.supports + work.solver - work.drag - now.total();
 }

@@ -163,6 +163,24 @@ bool exists(hid_t parent, const std::string& name) {
   return H5Lexists(parent, name.c_str(), H5P_DEFAULT) > 0;
 }
 
+std::vector<std::string> names_in(hid_t parent, const std::string& group) {
+  const Handle opened(H5Gopen2(parent, group.c_str(), H5P_DEFAULT), H5Gclose,
+                      "open '" + group + "'");
+  H5G_info_t info;
+  check(H5Gget_info(opened.id(), &info), "list '" + group + "'");
+  std::vector<std::string> names;
+  for (hsize_t i = 0; i < info.nlinks; ++i) {
+    const auto read = [&](char* text, std::size_t size) {
+      return H5Lget_name_by_idx(opened.id(), ".", H5_INDEX_NAME, H5_ITER_INC, i, text, size,
+                                H5P_DEFAULT);
+    };
+    std::string name(static_cast<std::size_t>(std::max<ssize_t>(0, read(nullptr, 0))), '\0');
+    if (read(name.data(), name.size() + 1) < 0) check(-1, "list '" + group + "'");
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
 bool has_attribute(hid_t object, const std::string& name) {
   return H5Aexists(object, name.c_str()) > 0;
 }

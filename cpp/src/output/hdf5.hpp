@@ -83,6 +83,8 @@ void flush(hid_t file, const std::filesystem::path& path);
 void abandon(hid_t file) noexcept;
 
 bool exists(hid_t parent, const std::string& name);
+/// Names of what a group holds, in alphabetical order.
+std::vector<std::string> names_in(hid_t parent, const std::string& group);
 bool has_attribute(hid_t object, const std::string& name);
 
 /// Attributes. Writing replaces one that is there.

@@ -389,13 +389,23 @@ void RunFile::finish(const std::string& status, const Simulation& simulation,
   });
 }
 
-RunFileHead read_head(const std::filesystem::path& path) {
-  const hdf5::Session session;
-  const Handle file = hdf5::open_file(path, H5F_ACC_RDONLY);
+namespace {
+
+/// Opens a run file to read it.
+Handle open_run_file(const std::filesystem::path& path) {
+  Handle file = hdf5::open_file(path, H5F_ACC_RDONLY);
   if (!hdf5::has_attribute(file.id(), "format_version") ||
       hdf5::read_integer_attribute(file.id(), "format_version") != kFormatVersion) {
     throw IoError("'" + path.string() + "' is not a run file of this version of der");
   }
+  return file;
+}
+
+}  // namespace
+
+RunFileHead read_head(const std::filesystem::path& path) {
+  const hdf5::Session session;
+  const Handle file = open_run_file(path);
   RunFileHead head;
   head.der_version = hdf5::read_string_attribute(file.id(), "der_version");
   head.status = hdf5::read_string_attribute(file.id(), "status");
@@ -409,14 +419,21 @@ RunFileHead read_head(const std::filesystem::path& path) {
 
 LastFrame read_last_frame(const std::filesystem::path& path) {
   const hdf5::Session session;
-  const Handle file = hdf5::open_file(path, H5F_ACC_RDONLY);
+  const Handle file = open_run_file(path);
   const hsize_t frames = hdf5::length_of(hdf5::open_dataset(file.id(), "time").id());
   if (frames == 0) throw IoError("'" + path.string() + "' holds no frame");
   const auto read = [&](const char* name) {
     const auto row = hdf5::read_row(hdf5::open_dataset(file.id(), name).id(), frames - 1);
     return Vector(Eigen::Map<const Vector>(row.data(), static_cast<Index>(row.size())));
   };
-  return {read("positions"), read("velocities")};
+  LastFrame last{read("positions"), read("velocities"), {}};
+  for (const std::string& name : hdf5::names_in(file.id(), "rods")) {
+    const std::string rod = "rods/" + name;
+    last.rods.push_back(
+        {name, hdf5::read_vector<Index>(hdf5::open_dataset(file.id(), rod + "/nodes").id()),
+         hdf5::read_vector<double>(hdf5::open_dataset(file.id(), rod + "/arc_length").id())});
+  }
+  return last;
 }
 
 }  // namespace der

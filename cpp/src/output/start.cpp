@@ -1,13 +1,94 @@
 #include "der/output/start.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <string>
+#include <system_error>
+#include <vector>
 
 #include "der/output/io_error.hpp"
 #include "der/output/run_file.hpp"
 #include "der/output/run_folder.hpp"
+#include "der/supports/supports.hpp"
 
 namespace der {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Rest lengths closer than this share of a rod's length are the same: texts have that many digits.
+constexpr double kSameLength = 1e-6;
+
+std::string names_of(const std::vector<SavedRod>& rods) {
+  std::string names;
+  for (const SavedRod& rod : rods) names += (names.empty() ? "'" : ", '") + rod.name + "'";
+  return names;
+}
+
+/// What is different about a rod in words; empty if nothing is.
+std::string difference(const SavedRod& there, const RodLayout& here) {
+  if (there.nodes.size() != here.nodes.size()) {
+    return fmt::format("rod '{}' has {} nodes there and {} here", here.name, there.nodes.size(),
+                       here.nodes.size());
+  }
+  if (there.nodes != here.nodes) {
+    return fmt::format(
+        "the nodes of rod '{}' begin with number {} there and {} here: list the "
+        "rods in the same order",
+        here.name, there.nodes.front(), here.nodes.front());
+  }
+  const double length = here.rest_length();
+  const double before = there.arc_length.back();
+  const double allowed = kSameLength * length;
+  if (std::abs(before - length) > allowed) {
+    return fmt::format("rod '{}' is {:.6g} m long there and {:.6g} m here", here.name, before,
+                       length);
+  }
+  for (std::size_t i = 0; i < here.arc_length.size(); ++i) {
+    if (std::abs(there.arc_length[i] - here.arc_length[i]) > allowed) {
+      return fmt::format("node {} of rod '{}' is at {:.6g} m along it there and at {:.6g} m here",
+                         i, here.name, there.arc_length[i], here.arc_length[i]);
+    }
+  }
+  return {};
+}
+
+std::string difference(const std::vector<SavedRod>& there, const std::vector<RodLayout>& here) {
+  for (const RodLayout& rod : here) {
+    const auto same = std::find_if(there.begin(), there.end(),
+                                   [&](const SavedRod& saved) { return saved.name == rod.name; });
+    if (same == there.end()) {
+      return fmt::format("it has no rod '{}' but {}", rod.name, names_of(there));
+    }
+    std::string found = difference(*same, rod);
+    if (!found.empty()) return found;
+  }
+  if (there.size() == here.size()) return {};
+  return fmt::format("it has {} rods, {}, and this scene {}", there.size(), names_of(there),
+                     here.size());
+}
+
+LastFrame read_start(const std::string& from) {
+  const RunFolder folder{fs::path(from)};
+  std::error_code error;
+  if (!fs::exists(folder.results(), error)) {
+    throw IoError(fmt::format(
+        "start_from: there is no run in '{}': no file '{}'. The path counts from the folder in "
+        "which the program runs, '{}'. Name the folder that a run was written to, or 'equilibrium'",
+        from, folder.results().string(), fs::current_path(error).string()));
+  }
+  try {
+    return read_last_frame(folder.results());
+  } catch (const IoError& failure) {
+    throw IoError(std::string("start_from: ") + failure.what());
+  }
+}
+
+}  // namespace
 
 void apply_start(Simulation& simulation) {
   const std::string& from = simulation.scenario().scene().start_from;
@@ -16,16 +97,22 @@ void apply_start(Simulation& simulation) {
     simulation.equilibrium();
     return;
   }
-  const RunFolder folder{std::filesystem::path(from)};
-  const LastFrame last = read_last_frame(folder.results());
-  State& state = simulation.state();
-  if (last.positions.size() != state.positions.size()) {
-    throw IoError("the run in '" + from + "' has " + std::to_string(last.positions.size()) +
-                  " degrees of freedom and this scene " + std::to_string(state.positions.size()) +
-                  ": start_from needs a run of the same rods");
+  const LastFrame last = read_start(from);
+  const Model& model = simulation.model();
+  const std::string found = difference(last.rods, model.rods);
+  if (!found.empty()) {
+    throw IoError(fmt::format(
+        "start_from: the run in '{}' is not one of the same rods: {}. Give the scene the rods of "
+        "that run ('{}'), or run that scene with these rods first",
+        from, found, RunFolder(from).scene().string()));
   }
+  State& state = simulation.state();
   state.positions = last.positions;
   state.velocities = last.velocities;
+  Vector controls;
+  model.controls.evaluate(state.time, controls);
+  place_held(model, controls, state.positions);  // supports are where this scene has them
+  start_ledger(model, state);
 }
 
 }  // namespace der

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -16,8 +17,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;  // keys stay in the order in which a person wants to read them
 
-/// Of the largest kinetic energy: what a method makes of its own beyond this is worth a warning.
+/// Of the energy that a run exchanges: what a method makes of its own beyond this is worth a
+/// warning.
 constexpr double kMuchEnergy = 0.05;
+/// Of the energy that it holds: what is less is rounding.
+constexpr double kRounding = 1e-10;
 /// Rotation [rad] or strain up to which a structure is much like its shape without loads. (Pinned
 /// arches under a point load: linear buckling is 67 % high where it is 0.06, 9 % where it is
 /// 0.035.)
@@ -96,14 +100,18 @@ void add_analysis(const RunOutcome& outcome, const Recorder& recorder, Json& sum
 std::optional<std::string> made_energy_warning(const Simulation& simulation,
                                                const Recorder& recorder) {
   if (!recorder.energies() || recorder.largest_kinetic_energy() == 0.0) return std::nullopt;
-  const double made = -numerical_loss(simulation.state().work, *recorder.energies());
-  const double scale = recorder.largest_kinetic_energy();
-  if (made < kMuchEnergy * scale) return std::nullopt;
+  const Work& work = simulation.state().work;
+  const Energies& now = *recorder.energies();
+  const double made = -numerical_loss(work, now);
+  const double exchanged = std::max({recorder.largest_kinetic_energy(), std::abs(work.loads),
+                                     std::abs(work.supports), std::abs(work.drag)});
+  const double held = std::abs(work.start) + now.kinetic + now.elastic() + std::abs(now.gravity);
+  if (made < std::max(kMuchEnergy * exchanged, kRounding * held)) return std::nullopt;
   const bool is_default = simulation.integrator().name == "tr_bdf2";
   return fmt::format(
-      "the time stepping itself has made {:.2g} J of energy, against at most {:.2g} J of motion: "
-      "take smaller steps{}",
-      made, scale, is_default ? "" : ", or tr_bdf2");
+      "the time stepping itself has made {:.2g} J of energy, against {:.2g} J that the run "
+      "exchanges: take smaller steps{}",
+      made, exchanged, is_default ? "" : ", or tr_bdf2");
 }
 
 std::vector<std::string> buckling_warnings(const LinearBuckling& buckling) {

@@ -57,6 +57,9 @@ constexpr std::array<const char*, 5> kEnergyNames{"kinetic", "stretch", "bend", 
 std::array<double, kEnergyNames.size()> by_name(const Energies& energies);
 Energies energies(const Model& model, const State& state);
 
+/// Starts a new ledger: nothing has gone in or out yet.
+void start_ledger(const Model& model, State& state);
+
 /// Energy [J] that the time stepping itself has taken since the start: what is missing of the work
 /// that went in. Negative where the scheme made energy.
 double numerical_loss(const Work& work, const Energies& now);

@@ -52,10 +52,18 @@ struct RunFileHead {
 };
 RunFileHead read_head(const std::filesystem::path& path);
 
-/// The last whole frame of a run file.
+/// A rod of a run file.
+struct SavedRod {
+  std::string name;
+  std::vector<Index> nodes;
+  std::vector<double> arc_length;  ///< rest arc length of each node [m]
+};
+
+/// The last whole frame of a run file, and whose it is.
 struct LastFrame {
   Vector positions;   ///< [m]
   Vector velocities;  ///< [m/s]
+  std::vector<SavedRod> rods;
 };
 LastFrame read_last_frame(const std::filesystem::path& path);
 

@@ -5,9 +5,10 @@
 namespace der {
 
 /// Puts a new simulation where the scene's `start_from` says: into the equilibrium under the loads
-/// at time 0, or into the last saved frame of a run folder (positions and velocities; the time
-/// stays 0). Does nothing without that key. Throws NotConvergedError; IoError where the run cannot
-/// be read or is one of other rods.
+/// at time 0, or into the last saved frame of a run folder: positions, but for those that supports
+/// hold, and velocities. The time stays 0, and the energy ledger starts there. Does nothing without
+/// that key. Throws NotConvergedError; IoError, which names the key, where the run cannot be read
+/// or is one of rods with other names, nodes or rest lengths.
 void apply_start(Simulation& simulation);
 
 }  // namespace der

@@ -2,6 +2,7 @@
 
 import copy
 import csv
+import dataclasses
 import math
 
 import der
@@ -244,6 +245,17 @@ def test_runs_that_would_take_too_long_are_skipped_by_name(sagging):
     assert any("tr_bdf2: skipped" in note for note in found.notes)
     assert found.advice() == ["sag: no configuration of this study comes near: refine more"]
     found.plot()  # with nothing to draw
+
+
+def test_every_stepper_has_a_colour_and_a_marker_of_its_own(found):
+    names = [info.name for info in der.steppers()]
+    rows = rows_of(found, stepper="tr_bdf2")
+    pretended = [dataclasses.replace(row, stepper=name) for name in names for row in rows]
+    figure = dataclasses.replace(found, rows=tuple(pretended)).plot()
+    lines = {line.get_label(): line for line in figure.axes[0].get_lines()}
+    assert set(names) <= set(lines)
+    assert len({lines[name].get_color() for name in names}) == len(names)
+    assert len({lines[name].get_marker() for name in names}) == len(names)
 
 
 @pytest.mark.parametrize(

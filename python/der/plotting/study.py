@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 _WIDTH = 10.0  # of the figure [inch]
 _HEIGHT = 3.4  # of the panels of one probe [inch]
 _MARGIN = 0.08  # of logarithmic axes [decades]
-_MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+_COLOURS = (*PALETTE, "black", "#8c6d31")  # as many as there are steppers
+_MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<")
 
 
 def plot_study(study: Study) -> Figure:
@@ -115,11 +116,10 @@ def _draw_space(axes: Axes, rows: Sequence[StudyRow]) -> None:
 
 
 def _looks(rows: Sequence[StudyRow]) -> list[tuple[str, str, str]]:
-    """Return each stepper with a colour and a marker; the seventh has black, beyond the palette."""
+    """Return each stepper with a colour and a marker of its own."""
     names = list(dict.fromkeys(row.stepper for row in rows))
-    colours = (*PALETTE, "black")
     return [
-        (name, colours[i % len(colours)], _MARKERS[i % len(_MARKERS)])
+        (name, _COLOURS[i % len(_COLOURS)], _MARKERS[i % len(_MARKERS)])
         for i, name in enumerate(names)
     ]
 

@@ -16,15 +16,14 @@ constexpr double kLargestTurn = 0.7;
 /// A step below this share of the size may well be the last: look before building a new matrix.
 constexpr double kNearSolution = 1e-3;
 
-/// A few rounding errors of the largest coordinate [m]; times a stiffness, the noise of a force.
-double rounding(const Vector& positions) {
-  return 8.0 * std::numeric_limits<double>::epsilon() * positions.lpNorm<Eigen::Infinity>();
-}
+/// A few rounding errors of numbers up to this.
+double rounding(double largest) { return 8.0 * std::numeric_limits<double>::epsilon() * largest; }
 
 }  // namespace
 
 Stage::Stage(const Model& model)
     : mass(model.mass),
+      origin(Vector::Zero(model.num_dofs())),
       inertia_target(Vector::Zero(model.num_dofs())),
       velocity_reference(Vector::Zero(model.num_dofs())),
       controls(Vector::Zero(model.controls.size())),
@@ -41,6 +40,7 @@ Newton::Newton(const Model& model, const Assembler& assembler, LinearSolver& sol
       values_(Vector::Zero(assembler.num_values())),
       direction_(Vector::Zero(model.num_free())),
       guess_(Vector::Zero(model.num_dofs())),
+      displacement_(Vector::Zero(model.num_dofs())),
       line_start_(Vector::Zero(model.num_dofs())),
       tension_(model, assembler) {}
 
@@ -68,8 +68,9 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
                                             : options_.max_iterations;
   NewtonReport report;
   external_ = stage.force.lpNorm<Eigen::Infinity>();
+  displacement_ = positions - stage.origin;
   evaluate_system(stage, positions);
-  noise_ = values_.lpNorm<Eigen::Infinity>() * rounding(positions);
+  const double noise_of_forces = noise(stage, positions);
   measure(report);
   while (report.iterations < limit) {
     const double residual_before = report.residual;
@@ -82,7 +83,7 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
     double step = direction_.lpNorm<Eigen::Infinity>();
     bool have_system = false;
     if (mode == Mode::FullSteps) {
-      move(positions, 1.0, positions);
+      move(stage, displacement_, 1.0, positions);
       have_system = step > kNearSolution * model_.size;
       if (have_system) {
         evaluate_system(stage, positions);
@@ -100,10 +101,11 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
     // rotation of the edges, which a Newton step leaves out, makes of this step.
     const double fall = residual_before > 0.0 ? report.residual / residual_before : 0.0;
     const double next_step = step * std::min(1.0, std::max(fall, turn));
-    const double allowed = std::max(options_.residual_tolerance * report.force_scale, noise_);
+    const double allowed =
+        std::max(options_.residual_tolerance * report.force_scale, noise_of_forces);
     // Far from the origin positions themselves are only known to their rounding.
-    const double allowed_step =
-        std::max(options_.step_tolerance * model_.size, rounding(positions));
+    const double allowed_step = std::max(options_.step_tolerance * model_.size,
+                                         rounding(positions.lpNorm<Eigen::Infinity>()));
     if (report.residual <= allowed && next_step <= allowed_step) {
       report.converged = true;
       return report;
@@ -118,25 +120,35 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
 
 void Newton::evaluate_residual(const Stage& stage, const Vector& positions) {
   assembler_.gradient(positions, stage.controls, residual_);
-  add_stage_forces(stage, positions);
+  add_stage_forces(stage);
 }
 
 void Newton::evaluate_system(const Stage& stage, const Vector& positions) {
   assembler_.gradient_and_hessian(positions, stage.controls, residual_, values_);
-  add_stage_forces(stage, positions);
+  stiffest_ = values_.lpNorm<Eigen::Infinity>();
+  add_stage_forces(stage);
   if (stage.inertia != 0.0) assembler_.add_mass(stage.mass, stage.inertia, values_);
   if (stage.velocity_factor != 0.0 && model_.damped) {
     assembler_.add_diagonal(model_.damping, stage.velocity_factor, values_);
   }
 }
 
-void Newton::add_stage_forces(const Stage& stage, const Vector& positions) {
+/// Rounding error [N] of the forces: positions are known to theirs, displacements to their own.
+double Newton::noise(const Stage& stage, const Vector& positions) const {
+  constexpr int largest = Eigen::Infinity;
+  return rounding(stiffest_ * positions.lpNorm<largest>() +
+                  stage.inertia * stage.mass.lumped.cwiseProduct(displacement_).lpNorm<largest>() +
+                  stage.velocity_factor *
+                      model_.damping.cwiseProduct(displacement_).lpNorm<largest>());
+}
+
+void Newton::add_stage_forces(const Stage& stage) {
   constexpr int largest = Eigen::Infinity;
   acting_ = std::max(residual_.lpNorm<largest>(), external_);
   residual_ -= stage.force;
   if (stage.inertia != 0.0) {
     // Minus the acceleration.
-    term_ = stage.inertia * (positions - stage.inertia_target);
+    term_ = stage.inertia * (displacement_ - stage.inertia_target);
     acting_ = std::max(acting_, stage.mass.lumped.cwiseProduct(term_).lpNorm<largest>());
     residual_ += stage.mass.lumped.cwiseProduct(term_);
     for (const auto& [a, b, mass] : stage.mass.coupling) {
@@ -146,8 +158,8 @@ void Newton::add_stage_forces(const Stage& stage, const Vector& positions) {
     }
   }
   if (stage.velocity_factor != 0.0 && model_.damped) {
-    term_ =
-        stage.velocity_factor * model_.damping.cwiseProduct(positions - stage.velocity_reference);
+    term_ = stage.velocity_factor *
+            model_.damping.cwiseProduct(displacement_ - stage.velocity_reference);
     acting_ = std::max(acting_, term_.lpNorm<largest>());
     residual_ += term_;
   }
@@ -178,10 +190,11 @@ bool Newton::find_direction(NewtonReport& report) {
   return direction_.allFinite();
 }
 
-void Newton::move(const Vector& start, double factor, Vector& positions) const {
+void Newton::move(const Stage& stage, const Vector& start, double factor, Vector& positions) {
   for (std::size_t i = 0; i < model_.free_dofs.size(); ++i) {
     const Index dof = model_.free_dofs[i];
-    positions[dof] = start[dof] + factor * direction_[static_cast<Index>(i)];
+    displacement_[dof] = start[dof] + factor * direction_[static_cast<Index>(i)];
+    positions[dof] = stage.origin[dof] + displacement_[dof];
   }
 }
 
@@ -190,11 +203,11 @@ void Newton::move(const Vector& start, double factor, Vector& positions) const {
 /// where a potential is not, and to more digits near the solution.
 double Newton::line_search(const Stage& stage, Vector& positions) {
   constexpr int kTrials = 40;
-  line_start_ = positions;
+  line_start_ = displacement_;
   const double start_slope = slope();
   double factor = 1.0;
   for (int trial = 0; trial < kTrials; ++trial) {
-    move(line_start_, factor, positions);
+    move(stage, line_start_, factor, positions);
     evaluate_residual(stage, positions);
     const double here = slope();
     if (!std::isfinite(here)) {

@@ -16,37 +16,38 @@ class Bdf2 final : public Stepper {
        const StepperOptions& options)
       : stage_(model, assembler, solver, options.newton),
         force_(model, assembler),
-        past_positions_(model.num_dofs()),
+        past_displacement_(model.num_dofs()),
         past_velocities_(model.num_dofs()),
         velocities_(model.num_dofs()) {}
 
   StepReport step(State& state, double dt) override {
     const bool has_past = state.history.size() == 2;
     const double w = has_past ? dt / state.last_step : 0.0;
-    const double here = (1.0 + w) * (1.0 + w) / (1.0 + 2.0 * w);
     const double before = w * w / (1.0 + 2.0 * w);
     const double h = dt * (1.0 + w) / (1.0 + 2.0 * w);
-    past_positions_ = here * state.positions;
-    past_velocities_ = here * state.velocities;
+    // The factors of y and y_previous above differ by 1.
+    past_velocities_ = state.velocities;
     if (has_past) {
-      past_positions_ -= before * state.history[0];
-      past_velocities_ -= before * state.history[1];
+      past_displacement_ = before * state.history[0];
+      past_velocities_ += before * (state.velocities - state.history[1]);
+    } else {
+      past_displacement_.setZero();
     }
 
     Stage& equation = stage_.equation;
     equation.inertia = 1.0 / (h * h);
-    equation.inertia_target = past_positions_ + h * past_velocities_;
+    equation.inertia_target = past_displacement_ + h * past_velocities_;
     equation.velocity_factor = 1.0 / h;
-    equation.velocity_reference = past_positions_;
+    equation.velocity_reference = past_displacement_;
     stage_.positions = state.positions + dt * (state.velocities + 0.5 * dt * state.accelerations);
     stage_.place_held_at(state, state.time + dt, stage_.positions);
     const StepReport report = stage_.solve(state, state.time + dt);
     if (report.outcome != StepOutcome::Done) return report;
 
-    velocities_ = (stage_.positions - past_positions_) / h;
+    velocities_ = (stage_.displacement() - past_displacement_) / h;
     state.accelerations = (velocities_ - past_velocities_) / h;
     state.history.resize(2);
-    state.history[0] = state.positions;
+    state.history[0] = stage_.displacement();
     state.history[1] = state.velocities;
     stage_.book_and_finish(stage_.positions, velocities_, dt, 1.0, force_, state);
     return report;
@@ -55,7 +56,7 @@ class Bdf2 final : public Stepper {
  private:
   ImplicitStage stage_;
   ExplicitForce force_;
-  Vector past_positions_;
+  Vector past_displacement_;
   Vector past_velocities_;
   Vector velocities_;
 };

@@ -5,8 +5,8 @@
 namespace der {
 namespace {
 
-/// q' = q + dt (v + dt M^-1 F(q, v, t)), v' = (q' - q)/dt: all forces at the old state, the new
-/// velocity from the new position. First order; stable only below a step that the stiffest spring
+/// v' = v + dt M^-1 F(q, v, t), q' = q + dt v': all forces at the old state, the new position from
+/// the new velocity. First order; stable only below a step that the stiffest spring
 /// or the strongest drag sets.
 class ExplicitEuler final : public Stepper {
  public:
@@ -20,14 +20,14 @@ class ExplicitEuler final : public Stepper {
 
   StepReport step(State& state, double dt) override {
     force_.acceleration(state, state.positions, state.velocities, state.time, 0.0, acceleration_);
-    positions_ = state.positions + dt * (state.velocities + dt * acceleration_);
+    velocities_ = state.velocities + dt * acceleration_;
+    positions_ = state.positions + dt * velocities_;
     force_.place_held_at(state, state.time + dt, positions_);
     const StepReport report = force_.check(positions_);
     if (report.outcome != StepOutcome::Done) return report;
 
     displacement_ = positions_ - state.positions;
     force_.book(state.velocities, displacement_, state.work);
-    velocities_ = displacement_ / dt;
     finisher_.finish(positions_, velocities_, dt, state);
     return report;
   }

@@ -37,10 +37,10 @@ class GeneralizedAlpha final : public Stepper {
     // Inertia: M ((1 - am) a' + am a) is zero at the target.
     equation.inertia = (1.0 - alpha_m_) / (beta_ * dt * dt * kept);
     equation.inertia_target =
-        q + kept * dt * (v + dt * (0.5 - beta_ - alpha_m_ * beta_ / (1.0 - alpha_m_)) * a);
+        kept * dt * (v + dt * (0.5 - beta_ - alpha_m_ * beta_ / (1.0 - alpha_m_)) * a);
     // Velocity: (1 - af) v' + af v is zero at the reference, where a' is such that v' is.
     equation.velocity_factor = gamma_ / (beta_ * dt);
-    equation.velocity_reference = q + kept * dt * (v + dt * (0.5 - beta_) * a) -
+    equation.velocity_reference = kept * dt * (v + dt * (0.5 - beta_) * a) -
                                   (beta_ / gamma_) * dt * (v + kept * dt * (1.0 - gamma_) * a);
 
     positions_ = q + dt * (v + 0.5 * dt * a);
@@ -49,9 +49,10 @@ class GeneralizedAlpha final : public Stepper {
     const StepReport report = stage_.solve(state, state.time + kept * dt);
     if (report.outcome != StepOutcome::Done) return report;
 
-    positions_ = (stage_.positions - alpha_f_ * q) / kept;
+    positions_ = q + stage_.displacement() / kept;
     stage_.place_held_at(state, state.time + dt, positions_);
-    accelerations_ = (positions_ - q - dt * v) / (beta_ * dt * dt) - ((0.5 - beta_) / beta_) * a;
+    accelerations_ =
+        (stage_.displacement() / kept - dt * v) / (beta_ * dt * dt) - ((0.5 - beta_) / beta_) * a;
     velocities_ = v + dt * ((1.0 - gamma_) * a + gamma_ * accelerations_);
     state.accelerations = accelerations_;
     stage_.book_and_finish(positions_, velocities_, dt, kept, force_, state);

@@ -14,15 +14,14 @@ class ImplicitEuler final : public Stepper {
   StepReport step(State& state, double dt) override {
     Stage& equation = stage_.equation;
     equation.inertia = 1.0 / (dt * dt);
-    equation.inertia_target = state.positions + dt * state.velocities;
+    equation.inertia_target = dt * state.velocities;
     equation.velocity_factor = 1.0 / dt;
-    equation.velocity_reference = state.positions;
-    stage_.positions = equation.inertia_target + dt * dt * state.accelerations;
+    stage_.positions = state.positions + dt * (state.velocities + dt * state.accelerations);
     stage_.place_held_at(state, state.time + dt, stage_.positions);
     const StepReport report = stage_.solve(state, state.time + dt);
     if (report.outcome != StepOutcome::Done) return report;
 
-    velocities_ = (stage_.positions - state.positions) / dt;
+    velocities_ = stage_.displacement() / dt;
     state.accelerations = (velocities_ - state.velocities) / dt;
     stage_.book_and_finish(stage_.positions, velocities_, dt, state);
     return report;

@@ -19,9 +19,8 @@ class ImplicitMidpoint final : public Stepper {
     const double half = 0.5 * dt;
     Stage& equation = stage_.equation;
     equation.inertia = 1.0 / (half * half);
-    equation.inertia_target = state.positions + half * state.velocities;
+    equation.inertia_target = half * state.velocities;
     equation.velocity_factor = 1.0 / half;
-    equation.velocity_reference = state.positions;
 
     // Held degrees of freedom end the step where their table says, so their midpoint is the mean.
     positions_ = state.positions + dt * (state.velocities + half * state.accelerations);
@@ -30,8 +29,8 @@ class ImplicitMidpoint final : public Stepper {
     const StepReport report = stage_.solve(state, state.time + half);
     if (report.outcome != StepOutcome::Done) return report;
 
-    positions_ = 2.0 * stage_.positions - state.positions;
-    velocities_ = (2.0 / half) * (stage_.positions - state.positions) - state.velocities;
+    positions_ = state.positions + 2.0 * stage_.displacement();
+    velocities_ = (2.0 / half) * stage_.displacement() - state.velocities;
     stage_.place_held_at(state, state.time + dt, positions_);
     state.accelerations = (velocities_ - state.velocities) / dt;
     stage_.book_and_finish(positions_, velocities_, dt, state);

@@ -24,6 +24,7 @@ void ImplicitStage::place_held_at(const State& state, double time, Vector& where
 StepReport ImplicitStage::solve(const State& state, double time) {
   model_.controls.evaluate(time, state.ramps, equation.controls);
   external_force(model_, equation.controls, state.extra_force, equation.force);
+  equation.origin = state.positions;
   const NewtonReport newton = newton_.solve(equation, positions);
   StepReport report;
   report.newton_iterations = newton.iterations;
@@ -41,19 +42,19 @@ void ImplicitStage::book(const Vector& displacement, Work& work) const {
 }
 
 void ImplicitStage::book_forces(const Vector& displacement, Work& work) const {
+  const Vector& moved = newton_.displacement();
   work.loads += displacement.dot(equation.force - model_.gravity_force) +
                 moment_work(model_, positions, equation.controls, displacement);
   if (model_.damped) {
-    work.drag +=
-        equation.velocity_factor *
-        displacement.dot(model_.damping.cwiseProduct(positions - equation.velocity_reference));
+    work.drag += equation.velocity_factor *
+                 displacement.dot(model_.damping.cwiseProduct(moved - equation.velocity_reference));
   }
   for (const HeldDof& held : model_.held) {
     // Without the inertia and the drag that the scheme gives the held node; `finish` has them.
     const double inertial = equation.inertia * equation.mass.lumped[held.dof] *
-                            (positions[held.dof] - equation.inertia_target[held.dof]);
+                            (moved[held.dof] - equation.inertia_target[held.dof]);
     const double drag = equation.velocity_factor * model_.damping[held.dof] *
-                        (positions[held.dof] - equation.velocity_reference[held.dof]);
+                        (moved[held.dof] - equation.velocity_reference[held.dof]);
     work.drag -= displacement[held.dof] * drag;
     work.supports += displacement[held.dof] * (newton_.residual()[held.dof] - inertial - drag);
   }

@@ -11,15 +11,15 @@ namespace {
 /// The diagonally implicit Runge-Kutta method of order 4 with five stages of Hairer and Wanner
 /// (Solving Ordinary Differential Equations II, table IV.6.5): L-stable, one-step, its last stage
 /// is the result. A stage solves, with g = dt/4,
-///   q_i = Q_i + g v_i,  v_i = V_i + g a_i,  M a_i = F(q_i, v_i, t + c_i dt),
-/// Q_i and V_i being q and v plus what the stages before contribute.
+///   q_i = q + D_i + g v_i,  v_i = V_i + g a_i,  M a_i = F(q_i, v_i, t + c_i dt),
+/// D_i being what the stages before contribute, and V_i that and v.
 class Sdirk4 final : public Stepper {
  public:
   Sdirk4(const Model& model, const Assembler& assembler, LinearSolver& solver,
          const StepperOptions& options)
       : model_(model),
         stage_(model, assembler, solver, options.newton),
-        past_positions_(model.num_dofs()),
+        past_displacement_(model.num_dofs()),
         past_velocities_(model.num_dofs()),
         end_held_(model.num_dofs()),
         displacement_(model.num_dofs()),
@@ -44,7 +44,7 @@ class Sdirk4 final : public Stepper {
         report.failure = solved.failure;
         return report;
       }
-      velocities_.col(i) = (stage_.positions - past_positions_) * (1.0 / g);
+      velocities_.col(i) = (stage_.displacement() - past_displacement_) * (1.0 / g);
       accelerations_.col(i) = (velocities_.col(i) - past_velocities_) * (1.0 / g);
       // The stages' works count with their weights in the result, the last row.
       const double weight = i + 1 < kStages ? kWeights.back()[at(i)] : kDiagonal;
@@ -76,11 +76,10 @@ class Sdirk4 final : public Stepper {
     const double g = kDiagonal * dt;
     const double time = state.time + kTimes[at(i)] * dt;
     const Eigen::Map<const Eigen::Vector4d> weights(kWeights[at(i)].data());
-    past_positions_ = state.positions;
     past_velocities_ = state.velocities;
-    past_positions_.noalias() += velocities_.leftCols(i) * (dt * weights.head(i));
+    past_displacement_.noalias() = velocities_.leftCols(i) * (dt * weights.head(i));
     past_velocities_.noalias() += accelerations_.leftCols(i) * (dt * weights.head(i));
-    stage_.positions = past_positions_ + g * past_velocities_;
+    stage_.positions = state.positions + past_displacement_ + g * past_velocities_;
     // The acceleration is guessed to be that of the stage before.
     if (i == 0) {
       stage_.positions += g * g * state.accelerations;
@@ -90,17 +89,17 @@ class Sdirk4 final : public Stepper {
     stage_.place_held_at(state, time, stage_.positions);
     for (const HeldDof& held : model_.held) {
       // So that the stage's velocity is that of the motion over the step.
-      past_positions_[held.dof] = stage_.positions[held.dof] -
-                                  kDiagonal * (end_held_[held.dof] - state.positions[held.dof]);
+      past_displacement_[held.dof] = stage_.positions[held.dof] - state.positions[held.dof] -
+                                     kDiagonal * (end_held_[held.dof] - state.positions[held.dof]);
     }
-    stage_.equation.inertia_target = past_positions_ + g * past_velocities_;
-    stage_.equation.velocity_reference = past_positions_;
+    stage_.equation.inertia_target = past_displacement_ + g * past_velocities_;
+    stage_.equation.velocity_reference = past_displacement_;
     return stage_.solve(state, time);
   }
 
   const Model& model_;
   ImplicitStage stage_;
-  Vector past_positions_;
+  Vector past_displacement_;
   Vector past_velocities_;
   Vector end_held_;  // held degrees of freedom at the end of the step
   Vector displacement_;

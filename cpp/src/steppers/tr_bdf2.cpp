@@ -17,9 +17,9 @@ class TrBdf2 final : public Stepper {
         stage_(model, assembler, solver, options.newton),
         force_(model, assembler),
         start_acceleration_(model.num_dofs()),
-        middle_positions_(model.num_dofs()),
+        middle_displacement_(model.num_dofs()),
         middle_velocities_(model.num_dofs()),
-        past_positions_(model.num_dofs()),
+        past_displacement_(model.num_dofs()),
         past_velocities_(model.num_dofs()),
         velocities_(model.num_dofs()),
         end_positions_(model.num_dofs()),
@@ -51,7 +51,7 @@ class TrBdf2 final : public Stepper {
     report.failure = second.failure;
     if (report.outcome != StepOutcome::Done) return report;
 
-    velocities_ = (stage_.positions - past_positions_) / h;
+    velocities_ = (stage_.displacement() - past_displacement_) / h;
     stage_displacement(model_, state.positions, end_positions_, late, dt, velocities_,
                        displacement_);
     stage_.book(displacement_, work_);
@@ -69,27 +69,26 @@ class TrBdf2 final : public Stepper {
     force_.acceleration(state, state.positions, state.velocities, state.time, 0.0,
                         start_acceleration_);
     Stage& equation = stage_.equation;
-    equation.inertia_target =
-        state.positions + h * (2.0 * state.velocities + h * start_acceleration_);
-    equation.velocity_reference = state.positions + h * state.velocities;
+    equation.inertia_target = h * (2.0 * state.velocities + h * start_acceleration_);
+    equation.velocity_reference = h * state.velocities;
     stage_.positions = state.positions + 2.0 * h * (state.velocities + h * start_acceleration_);
     stage_.place_held_at(state, time, stage_.positions);
     const StepReport report = stage_.solve(state, time);
-    middle_positions_ = stage_.positions;
-    middle_velocities_ = (middle_positions_ - state.positions) / h - state.velocities;
+    middle_displacement_ = stage_.displacement();
+    middle_velocities_ = middle_displacement_ / h - state.velocities;
     return report;
   }
 
   StepReport bdf2_stage(const State& state, double h, double dt) {
     constexpr double middle = 1.0 / (kGamma * (2.0 - kGamma));
     constexpr double start = (1.0 - kGamma) * (1.0 - kGamma) / (kGamma * (2.0 - kGamma));
-    past_positions_ = middle * middle_positions_ - start * state.positions;
+    past_displacement_ = middle * middle_displacement_;
     past_velocities_ = middle * middle_velocities_ - start * state.velocities;
-    stage_.equation.inertia_target = past_positions_ + h * past_velocities_;
-    stage_.equation.velocity_reference = past_positions_;
+    stage_.equation.inertia_target = past_displacement_ + h * past_velocities_;
+    stage_.equation.velocity_reference = past_displacement_;
     const double rest = (1.0 - kGamma) * dt;
     stage_.positions =
-        middle_positions_ + rest * middle_velocities_ +
+        state.positions + middle_displacement_ + rest * middle_velocities_ +
         0.5 * rest * (rest / (kGamma * dt)) * (middle_velocities_ - state.velocities);
     stage_.place_held_at(state, state.time + dt, stage_.positions);
     return stage_.solve(state, state.time + dt);
@@ -99,9 +98,9 @@ class TrBdf2 final : public Stepper {
   ImplicitStage stage_;
   ExplicitForce force_;
   Vector start_acceleration_;
-  Vector middle_positions_;
+  Vector middle_displacement_;
   Vector middle_velocities_;
-  Vector past_positions_;
+  Vector past_displacement_;
   Vector past_velocities_;
   Vector velocities_;
   Vector end_positions_;  // of held degrees of freedom

@@ -11,18 +11,20 @@
 namespace der {
 
 /// The nonlinear system that one stage of an implicit stepper, or a static analysis, has to solve
-/// for the positions y:
-///   inertia M (y - inertia_target) + velocity_factor C (y - velocity_reference)
-///     + grad E(y, controls) - force = 0
+/// for the displacement d from the positions `origin`:
+///   inertia M (d - inertia_target) + velocity_factor C (d - velocity_reference)
+///     + grad E(origin + d, controls) - force = 0
 /// over the free degrees of freedom; M is `mass`, C the model's diagonal damping. All vectors have
-/// one entry a degree of freedom.
+/// one entry a degree of freedom. The velocity that a stepper makes of a displacement has the
+/// rounding error of the displacement; that of a difference of positions grows as steps get short.
 struct Stage {
   explicit Stage(const Model& model);
-  double inertia = 0.0;  ///< [1/s^2]; 0: statics
-  Mass mass;             ///< [kg]; the model's, unless a static analysis brings its own
-  Vector inertia_target;
+  double inertia = 0.0;          ///< [1/s^2]; 0: statics
+  Mass mass;                     ///< [kg]; the model's, unless a static analysis brings its own
+  Vector origin;                 ///< [m]; zero unless set
+  Vector inertia_target;         ///< [m] from the origin
   double velocity_factor = 0.0;  ///< [1/s]
-  Vector velocity_reference;     ///< [m]
+  Vector velocity_reference;     ///< [m] from the origin
   Vector controls;               ///< values of the model's tables at the stage's time
   Vector force;                  ///< [N] external forces at the stage's time
 };
@@ -61,6 +63,8 @@ class Newton {
   /// As above with the line search only: slower, but it does not jump to another valley.
   NewtonReport solve_downhill(const Stage& stage, Vector& positions);
 
+  /// From the stage's origin to the last iterate [m], known to its own rounding.
+  [[nodiscard]] const Vector& displacement() const { return displacement_; }
   /// Left side of the stage's equation at the last iterate, over all degrees of freedom [N]; on
   /// held ones it is the force that the support has to provide.
   [[nodiscard]] const Vector& residual() const { return residual_; }
@@ -71,10 +75,11 @@ class Newton {
   NewtonReport iterate(const Stage& stage, Mode mode, Vector& positions);
   void evaluate_residual(const Stage& stage, const Vector& positions);
   void evaluate_system(const Stage& stage, const Vector& positions);
-  void add_stage_forces(const Stage& stage, const Vector& positions);
+  void add_stage_forces(const Stage& stage);
+  [[nodiscard]] double noise(const Stage& stage, const Vector& positions) const;
   bool find_direction(NewtonReport& report);
   double limit_turn();
-  void move(const Vector& start, double factor, Vector& positions) const;
+  void move(const Stage& stage, const Vector& start, double factor, Vector& positions);
   double line_search(const Stage& stage, Vector& positions);
   [[nodiscard]] double slope() const;
   void measure(NewtonReport& report) const;
@@ -88,10 +93,11 @@ class Newton {
   Vector values_;          // of the matrix, shifted where need be
   Vector direction_;       // over the free degrees of freedom
   Vector guess_;           // positions that the solve started from
-  Vector line_start_;      // positions that the line search starts from
+  Vector displacement_;    // from the stage's origin
+  Vector line_start_;      // displacement that the line search starts from
   double external_ = 0.0;  // largest external force of the stage [N]
   double acting_ = 0.0;    // largest acting force at the last iterate [N]
-  double noise_ = 0.0;     // rounding error of a force [N]
+  double stiffest_ = 0.0;  // largest entry of the elements' matrix [N/m]
   double last_shift_ = 0.0;
   PredictedTension tension_;
 };

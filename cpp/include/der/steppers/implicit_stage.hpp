@@ -17,7 +17,8 @@ class ImplicitStage {
   ImplicitStage(const Model& model, const Assembler& assembler, LinearSolver& solver,
                 const NewtonOptions& options);
 
-  /// Inertia and velocity terms, to be set by the stepper before `solve`.
+  /// Inertia and velocity terms, to be set by the stepper before `solve`; displacements are those
+  /// from the start of the step.
   Stage equation;
   /// On entry to `solve` the guess, held degrees of freedom included; on exit the solution.
   Vector positions;
@@ -26,6 +27,8 @@ class ImplicitStage {
   void place_held_at(const State& state, double time, Vector& where);
   /// Solves with tables and external forces at `time`.
   StepReport solve(const State& state, double time);
+  /// Of the stage solved last, from the start of the step [m].
+  [[nodiscard]] const Vector& displacement() const { return newton_.displacement(); }
   /// Books what the forces of the stage solved last do along `displacement` [m].
   void book(const Vector& displacement, Work& work) const;
   /// Completes a done step: positions, velocities and the works that do not depend on the stepper.

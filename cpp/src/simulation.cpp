@@ -96,7 +96,7 @@ Simulation::Simulation(Scenario scenario)
   const scenario::Time& time = scenario_.scene().time;
   if (time.stepping == scenario::Stepping::Adaptive) {
     adaptive_.emplace(
-        model_, assembler_, *stepper_, stepper_info_.order,
+        model_, assembler_, *stepper_, stepper_info_,
         AdaptiveOptions{time.tolerance, time.duration, time.minimum_step, plan_.largest_step});
   }
 }
@@ -131,6 +131,9 @@ void Simulation::advance_adaptively() {
       adaptive_->advance(state_, state_.time < horizon_ ? horizon_ : endless);
   counters_.newton_iterations += report.newton_iterations;
   counters_.rejected_steps += report.rejected;
+  if (report.last.outcome == StepOutcome::TooInaccurate) {
+    throw NotConvergedError(describe_inaccuracy(report));
+  }
   if (report.last.outcome != StepOutcome::Done) fail(report.last, report.tried);
 }
 
@@ -317,9 +320,25 @@ std::string Simulation::describe_failure(const StepReport& report, double dt) co
   return fmt::format(
       "a step from t = {:.6g} s failed even with a length of {:.3g} s: {}; the worst residual is "
       "at {}. A load that rises too fast, a shape that snaps, or too tight a "
-      "solver.residual_tolerance are the usual causes; a smaller time.step or smoother load tables "
+      "solver.residual_tolerance are the usual causes; a smaller time.{} or smoother load tables "
       "help.",
-      state_.time, dt, report.failure, describe_dof(model_, report.worst_dof));
+      state_.time, dt, report.failure, describe_dof(model_, report.worst_dof),
+      adaptive_ ? "minimum_step" : "step");
+}
+
+std::string Simulation::describe_inaccuracy(const AdaptiveReport& report) const {
+  const scenario::Time& time = scenario_.scene().time;
+  const std::string what = fmt::format(
+      "the error in time stays above the tolerance: a step of {:.3g} s from t = {:.6g} s may add "
+      "its share of time.tolerance {:g}, but the error estimated at {} is {:.2g} times that",
+      report.tried, state_.time, time.tolerance, describe_dof(model_, report.last.worst_dof),
+      report.error);
+  return what + (report.at_rounding
+                     ? ". That is the rounding of positions, which no step makes smaller: raise "
+                       "time.tolerance."
+                     : fmt::format(". Shorter steps are below time.minimum_step of {:.3g} s: lower "
+                                   "that, or raise time.tolerance.",
+                                   time.minimum_step));
 }
 
 std::string Simulation::describe_divergence(const StepReport& report, double dt) const {

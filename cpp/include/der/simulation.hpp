@@ -124,6 +124,7 @@ class Simulation {
   };
   [[nodiscard]] Forces forces() const;
   [[nodiscard]] std::string describe_failure(const StepReport& report, double dt) const;
+  [[nodiscard]] std::string describe_inaccuracy(const AdaptiveReport& report) const;
   [[nodiscard]] std::string describe_divergence(const StepReport& report, double dt) const;
 
   Scenario scenario_;

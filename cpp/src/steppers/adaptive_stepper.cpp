@@ -14,6 +14,9 @@ constexpr double kLeastFactor = 0.2;
 constexpr double kGreatestFactor = 2.0;
 /// After a step that did not converge.
 constexpr double kRetryFactor = 0.25;
+/// Differences below this share of the positions say nothing: what Newton's method leaves of them,
+/// and their rounding.
+constexpr double kRounding = 1e-14;
 /// Two times closer than this share of a step are one.
 constexpr double kSameTime = 1e-9;
 
@@ -31,10 +34,11 @@ std::vector<double> table_entries(const Model& model) {
 }  // namespace
 
 AdaptiveStepper::AdaptiveStepper(const Model& model, const Assembler& assembler, Stepper& stepper,
-                                 int order, const AdaptiveOptions& options)
+                                 const StepperInfo& info, const AdaptiveOptions& options)
     : model_(model),
       stepper_(stepper),
-      order_(order),
+      order_(info.order),
+      error_factor_(info.error_factor),
       options_(options),
       breakpoints_(table_entries(model)),
       start_(initial_state(model)),
@@ -59,7 +63,8 @@ AdaptiveReport AdaptiveStepper::advance(State& state, double horizon) {
 
     double factor = kRetryFactor;
     if (report.last.outcome == StepOutcome::Done) {
-      const double error = relative_error(state, length, report.last.worst_dof);
+      measure(state, report);
+      const double error = report.error;
       factor = error > 0.0 ? kSafety * std::pow(error, -1.0 / order_) : kGreatestFactor;
       if (error <= 1.0) {
         if (error > 0.0 && start_.last_error > 0.0) {
@@ -75,17 +80,12 @@ AdaptiveReport AdaptiveStepper::advance(State& state, double horizon) {
         state.next_step = base * std::clamp(factor, kLeastFactor, most);
         return report;
       }
+      report.last.outcome = StepOutcome::TooInaccurate;
     }
     ++report.rejected;
     state = start_;
     wanted = length * std::clamp(factor, kLeastFactor, 0.5 + 0.5 * kSafety);
-    if (wanted < options_.minimum_step) {
-      if (report.last.outcome == StepOutcome::Done) {
-        report.last = {StepOutcome::NotConverged, 0, report.last.worst_dof,
-                       "the error in time stays above the tolerance"};
-      }
-      return report;
-    }
+    if (wanted < options_.minimum_step) return report;
   }
 }
 
@@ -105,10 +105,13 @@ StepReport AdaptiveStepper::attempt(State& state, double length) {
   return report;
 }
 
-double AdaptiveStepper::relative_error(const State& state, double length, Index& worst_dof) const {
-  const double difference = (whole_.positions - state.positions).cwiseAbs().maxCoeff(&worst_dof);
-  const double estimate = difference / (std::pow(2.0, order_) - 1.0);
-  return estimate / (options_.tolerance * model_.size * length / options_.duration);
+/// Compares the two halves that led to `state` with the whole step.
+void AdaptiveStepper::measure(const State& state, AdaptiveReport& report) const {
+  const double difference =
+      (whole_.positions - state.positions).cwiseAbs().maxCoeff(&report.last.worst_dof);
+  const double share = report.tried / options_.duration;
+  report.error = error_factor_ * difference / (options_.tolerance * model_.size * share);
+  report.at_rounding = difference <= kRounding * state.positions.lpNorm<Eigen::Infinity>();
 }
 
 /// What the motion takes to cover the tolerated error; from rest a little of the duration. A step

@@ -5,21 +5,25 @@
 
 namespace der {
 
+// Error factors: 3/(2^p - 1), but for two of them. Of bdf2 the first half goes on from a half step,
+// as the whole one does, which makes the whole one better than it would be among its like: 1.8, and
+// more while steps grow. Of sdirk4 stiff motion converges at order 2, not 4: 0.7 instead of 0.2.
 const std::vector<StepperInfo>& stepper_registry() {
   static const std::vector<StepperInfo> registry = {
-      {"implicit_euler", 1, true, false, false, "L-stable: any step", "strong, all motion",
+      {"implicit_euler", 1, true, false, false, 3.0, "L-stable: any step", "strong, all motion",
        make_implicit_euler},
-      {"implicit_midpoint", 2, true, true, false, "A-stable: any step", "none",
+      {"implicit_midpoint", 2, true, true, false, 1.0, "A-stable: any step", "none",
        make_implicit_midpoint},
-      {"generalized_alpha", 2, true, false, false, "A-stable: any step",
+      {"generalized_alpha", 2, true, false, false, 1.0, "A-stable: any step",
        "fast motion only, as chosen", make_generalized_alpha},
-      {"bdf2", 2, true, false, false, "L-stable: any step", "fast motion, some of the slow",
+      {"bdf2", 2, true, false, false, 2.5, "L-stable: any step", "fast motion, some of the slow",
        make_bdf2},
-      {"tr_bdf2", 2, true, false, false, "L-stable: any step", "fast motion", make_tr_bdf2},
-      {"sdirk4", 4, true, false, false, "L-stable: any step", "fast motion", make_sdirk4},
-      {"verlet", 2, false, true, false, "below the stretch and bend limit", "none", make_verlet},
-      {"explicit_euler", 1, false, true, true, "below the stretch, bend and drag limit", "none",
-       make_explicit_euler},
+      {"tr_bdf2", 2, true, false, false, 1.0, "L-stable: any step", "fast motion", make_tr_bdf2},
+      {"sdirk4", 4, true, false, false, 0.7, "L-stable: any step", "fast motion", make_sdirk4},
+      {"verlet", 2, false, true, false, 1.0, "below the stretch and bend limit", "none",
+       make_verlet},
+      {"explicit_euler", 1, false, true, true, 3.0, "below the stretch, bend and drag limit",
+       "none", make_explicit_euler},
   };
   return registry;
 }

@@ -23,21 +23,24 @@ struct AdaptiveReport {
   double tried = 0.0;         ///< [s] length of the last attempt
   int newton_iterations = 0;  ///< of all attempts
   int rejected = 0;           ///< attempts whose error was too large, or that did not converge
+  double error = 0.0;         ///< of the last attempt, over what it was allowed; 0: not known
+  bool at_rounding = false;   ///< whether that error is no more than the rounding of positions
 };
 
 /// Steps of a length that keeps the error in time where it is wanted.
 ///
-/// Each step is done once as a whole and once in two halves; the difference over 2^p - 1, p the
-/// stepper's order, estimates the error of the halves, which are kept (Hairer, Norsett and Wanner,
-/// Solving Ordinary Differential Equations I, section II.4). A step may add `tolerance * size`
-/// times its share of the duration, so that the sum of all estimates stays below `tolerance * size`
-/// and the error follows the tolerance in proportion. The next length comes from a
+/// Each step is done once as a whole and once in two halves, which are kept. The difference over
+/// 2^p - 1, p the stepper's order, is the error of the halves (Hairer, Norsett and Wanner, Solving
+/// Ordinary Differential Equations I, section II.4); `StepperInfo::error_factor` takes about three
+/// times as much, since errors grow on in the motion. A step may add `tolerance * size` times its
+/// share of the duration, so that the sum of all estimates stays below `tolerance * size` and the
+/// error follows the tolerance in proportion. The next length comes from a
 /// proportional-integral controller (Gustafsson, ACM Trans. Math. Softw. 17, 1991). Entries of
 /// tables over time, where forces have kinks, are hit exactly.
 class AdaptiveStepper {
  public:
-  AdaptiveStepper(const Model& model, const Assembler& assembler, Stepper& stepper, int order,
-                  const AdaptiveOptions& options);
+  AdaptiveStepper(const Model& model, const Assembler& assembler, Stepper& stepper,
+                  const StepperInfo& info, const AdaptiveOptions& options);
 
   /// Advances `state` by one step that ends at `horizon` [s] or before it. The state is untouched
   /// if the report says that it was not done.
@@ -51,11 +54,12 @@ class AdaptiveStepper {
   [[nodiscard]] double first_step(const State& state) const;
   [[nodiscard]] double next_stop(double time, double horizon) const;
   StepReport attempt(State& state, double length);
-  [[nodiscard]] double relative_error(const State& state, double length, Index& worst_dof) const;
+  void measure(const State& state, AdaptiveReport& report) const;
 
   const Model& model_;
   Stepper& stepper_;
-  int order_;
+  double order_;
+  double error_factor_;
   AdaptiveOptions options_;
   std::vector<double> breakpoints_;  // [s] ascending
   State start_;                      // of the last step

@@ -12,7 +12,12 @@
 
 namespace der {
 
-enum class StepOutcome { Done, NotConverged, Diverged };
+enum class StepOutcome {
+  Done,
+  NotConverged,
+  Diverged,
+  TooInaccurate,  ///< of adaptive steps: solved, but with too large an error in time
+};
 
 /// What one attempted step did. If not done, the state is untouched and `failure` says why.
 struct StepReport {
@@ -45,7 +50,10 @@ struct StepperInfo {
   int order;
   bool implicit;
   bool keeps_angular_momentum;
-  bool drag_limits_step;       ///< of the explicit ones: whether drag bounds the stable step
+  bool drag_limits_step;  ///< of the explicit ones: whether drag bounds the stable step
+  /// Of adaptive steps: what the difference between a step done as a whole and in two halves counts
+  /// times, as the error of the halves.
+  double error_factor;
   std::string_view stability;  ///< in words
   std::string_view damping;    ///< numerical damping, in words
   std::unique_ptr<Stepper> (*make)(const Model&, const Assembler&, LinearSolver&,

@@ -66,9 +66,11 @@ void bind_reports(py::module_& module) {
       .def_readonly("steps", &Counters::steps, "Time steps done.")
       .def_readonly("newton_iterations", &Counters::newton_iterations, "Newton iterations done.")
       .def_readonly("retried_steps", &Counters::retried_steps,
-                    "Steps that had to be done in smaller pieces.")
+                    "Equal steps that had to be done in smaller pieces.")
       .def_readonly("rejected_steps", &Counters::rejected_steps,
                     "Adaptive steps that were too long for the tolerance.")
+      .def_readonly("most_pieces", &Counters::most_pieces,
+                    "The most pieces that ``step: auto`` has done a step in.")
       .def("__repr__", [](const Counters& c) {
         return py::str("Counters(steps={}, newton_iterations={}, retried_steps={})")
             .format(c.steps, c.newton_iterations, c.retried_steps);

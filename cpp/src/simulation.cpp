@@ -10,7 +10,6 @@
 #include "der/core/error.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/builder.hpp"
-#include "der/steppers/stable_step.hpp"
 
 namespace der {
 namespace {
@@ -89,11 +88,18 @@ Simulation::Simulation(Scenario scenario)
       stepper_info_(find_stepper(scenario_.scene().time.integrator)),
       stepper_(stepper_info_.make(model_, assembler_, *solver_.solver,
                                   stepper_options(scenario_.scene()))),
-      plan_(plan_steps(scenario_.scene(), model_, stepper_info_)),
       horizon_(scenario_.scene().time.duration),
       state_(initial_state(model_)) {
   start_ledger(model_, state_);
-  const scenario::Time& time = scenario_.scene().time;
+  const scenario::Scene& scene = scenario_.scene();
+  const scenario::Time& time = scene.time;
+  double stable_step = std::numeric_limits<double>::infinity();
+  if (scene.is_dynamic() && !stepper_info_.implicit) {
+    stability_.emplace(model_, stepper_info_, time);
+    stable_step = stability_->stable_step(state_);
+    if (scene.start_from.empty()) check_first_step();
+  }
+  plan_ = plan_steps(scene, stable_step);
   if (time.stepping == scenario::Stepping::Adaptive) {
     adaptive_.emplace(
         model_, assembler_, *stepper_, stepper_info_,
@@ -106,6 +112,10 @@ bool Simulation::finished() const {
                    : state_.step >= plan_.total_steps;
 }
 
+void Simulation::check_first_step() {
+  if (stability_) stability_->check_start(state_);
+}
+
 void Simulation::step() {
   if (!scenario_.scene().is_dynamic()) {
     throw Error("model_error", "a static scene has no time steps: use equilibrium()");
@@ -113,6 +123,7 @@ void Simulation::step() {
   if (adaptive_) {
     advance_adaptively();
   } else {
+    if (stability_) stability_->look(state_, plan_.step);
     advance_to(next_time());
   }
   ++state_.step;
@@ -140,6 +151,13 @@ void Simulation::advance_adaptively() {
 void Simulation::advance_to(double target) {
   const double whole = target - state_.time;
   double dt = whole;
+  if (state_.next_step > 0.0) {
+    const double pieces = std::max(1.0, std::ceil(whole / state_.next_step * (1.0 - 1e-9)));
+    dt = whole / pieces;
+    counters_.retried_steps += pieces > 1.0 ? 1 : 0;
+    counters_.most_pieces =
+        std::max(counters_.most_pieces, static_cast<std::int64_t>(std::llround(pieces)));
+  }
   while (true) {
     const double left = target - state_.time;
     const bool last = dt >= left * (1.0 - 1e-9);
@@ -158,7 +176,7 @@ void Simulation::advance_to(double target) {
   }
 }
 
-void Simulation::fail(const StepReport& report, double dt) const {
+void Simulation::fail(const StepReport& report, double dt) {
   if (report.outcome == StepOutcome::Diverged) throw DivergedError(describe_divergence(report, dt));
   throw NotConvergedError(describe_failure(report, dt));
 }
@@ -219,6 +237,7 @@ EquilibriumReport Simulation::equilibrium(bool leave_saddles) {
   }
   state_.positions = positions;
   state_.velocities.setZero();
+  state_.next_step = 0.0;
   start_ledger(model_, state_);
   return report;
 }
@@ -341,22 +360,10 @@ std::string Simulation::describe_inaccuracy(const AdaptiveReport& report) const 
                                    time.minimum_step));
 }
 
-std::string Simulation::describe_divergence(const StepReport& report, double dt) const {
-  const std::string what = fmt::format("the motion diverged at t = {:.6g} s: {} at {}", state_.time,
-                                       report.failure, describe_dof(model_, report.worst_dof));
-  const StableStep stable =
-      stable_step(model_, model_.initial_positions, stepper_info_.drag_limits_step);
-  if (dt <= stable.step) {
-    return fmt::format(
-        "{}. The step of {:.3g} s is below the stable step at the start, {:.3g} s: the motion "
-        "itself stiffens the rod. Try half the step, or an implicit integrator.",
-        what, dt, stable.step);
-  }
-  return fmt::format(
-      "{}. The step of {:.3g} s is above the stable step of {:.3g} s, which {} at {} sets. Use "
-      "time.step <= {:.2g}, or an implicit integrator.",
-      what, dt, stable.step, stable.limited_by, describe_dof(model_, stable.worst_dof),
-      0.95 * stable.step);
+std::string Simulation::describe_divergence(const StepReport& report, double dt) {
+  return fmt::format("the motion diverged at t = {:.6g} s: {} at {}. {}", state_.time,
+                     report.failure, describe_dof(model_, report.worst_dof),
+                     stability_->explain_blow_up(initial_state(model_), dt));
 }
 
 }  // namespace der

@@ -19,6 +19,7 @@
 #include "der/statics/load_path.hpp"
 #include "der/statics/modes.hpp"
 #include "der/steppers/adaptive_stepper.hpp"
+#include "der/steppers/stability_watch.hpp"
 #include "der/steppers/step_plan.hpp"
 #include "der/steppers/stepper.hpp"
 
@@ -28,8 +29,9 @@ namespace der {
 struct Counters {
   std::int64_t steps = 0;
   std::int64_t newton_iterations = 0;
-  std::int64_t retried_steps = 0;   ///< steps that had to be done in smaller pieces
+  std::int64_t retried_steps = 0;   ///< equal steps that had to be done in smaller pieces
   std::int64_t rejected_steps = 0;  ///< adaptive steps that were too long for the tolerance
+  std::int64_t most_pieces = 1;     ///< that `step: auto` has done a step in
 };
 
 /// The lower triangle of a symmetric matrix over the free degrees of freedom, in compressed
@@ -43,7 +45,8 @@ struct SymmetricMatrix {
 /// engine that der_run and Python both drive.
 class Simulation {
  public:
-  /// Throws SceneError or Error where the scene cannot be simulated.
+  /// Throws SceneError or Error where the scene cannot be simulated. A scene with `start_from` is
+  /// still at its drawn shape (`apply_start`).
   explicit Simulation(Scenario scenario);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
@@ -52,6 +55,9 @@ class Simulation {
   /// error allows. A step that fails is retried in smaller pieces. Throws NotConvergedError or
   /// DivergedError; the state is then that of the last good step.
   void step();
+  /// Throws Error ("unstable_step") if the scene's step is too long for an explicit integrator at
+  /// the present state, the start of a run.
+  void check_first_step();
   /// Sets the time [s] that adaptive steps do not go beyond; at first the scene's duration.
   void set_horizon(double time) { horizon_ = time; }
   /// Sets `result` to the state at a time within the last adaptive step.
@@ -111,7 +117,7 @@ class Simulation {
   [[nodiscard]] double next_time() const;
   void advance_to(double target);
   void advance_adaptively();
-  [[noreturn]] void fail(const StepReport& report, double dt) const;
+  [[noreturn]] void fail(const StepReport& report, double dt);
   /// Throws Error if a position or an extra force is not a finite number.
   void check_finite_state() const;
   /// What acts at the present state.
@@ -125,7 +131,7 @@ class Simulation {
   [[nodiscard]] Forces forces() const;
   [[nodiscard]] std::string describe_failure(const StepReport& report, double dt) const;
   [[nodiscard]] std::string describe_inaccuracy(const AdaptiveReport& report) const;
-  [[nodiscard]] std::string describe_divergence(const StepReport& report, double dt) const;
+  [[nodiscard]] std::string describe_divergence(const StepReport& report, double dt);
 
   Scenario scenario_;
   Model model_;
@@ -134,6 +140,7 @@ class Simulation {
   Assembler assembler_;
   const StepperInfo& stepper_info_;
   std::unique_ptr<Stepper> stepper_;
+  std::optional<StabilityWatch> stability_;  // of explicit steppers
   StepPlan plan_;
   std::optional<AdaptiveStepper> adaptive_;
   double horizon_ = 0.0;

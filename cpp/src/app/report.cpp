@@ -185,7 +185,7 @@ std::string cost_line(const Simulation& simulation, const RunOutcome& outcome, c
   if (c.rejected_steps > 0) text += ", " + format_count(c.rejected_steps, "rejected step");
   if (c.newton_iterations > 0) text += ", " + format_count(c.newton_iterations, "Newton iteration");
   if (c.retried_steps > 0) {
-    text += ", " + format_count(c.retried_steps, "step") + " done again in smaller pieces";
+    text += ", " + format_count(c.retried_steps, "step") + " done in smaller pieces";
   }
   return line("cost", text, style);
 }

@@ -12,7 +12,7 @@ using hdf5::Handle;
 constexpr hsize_t kHistoryChunk = 4096;
 constexpr hsize_t kSummaryValues = 5;  // of a ProbeSummary
 constexpr std::size_t kRampValues = 5;
-constexpr hsize_t kCounters = 4;    // of Counters
+constexpr hsize_t kCounters = 5;    // of Counters
 constexpr hsize_t kWorkValues = 5;  // of Work
 
 Handle with_unit(Handle dataset, const std::string& unit) {
@@ -160,9 +160,10 @@ void CheckpointStore::write(const Checkpoint& checkpoint) {
   hdf5::write_all(slot.work.id(), works.data());
   const auto extremes = flatten(checkpoint.extremes);
   if (!extremes.empty()) hdf5::write_all(slot.extremes.id(), extremes.data());
-  const auto& [steps, newton_iterations, retried_steps, rejected_steps] = checkpoint.counters;
+  const auto& [steps, newton_iterations, retried_steps, rejected_steps, most_pieces] =
+      checkpoint.counters;
   const std::array<std::int64_t, kCounters> counters{steps, newton_iterations, retried_steps,
-                                                     rejected_steps};
+                                                     rejected_steps, most_pieces};
   hdf5::write_all(slot.counters.id(), counters.data());
   hdf5::write_all(slot.wall_seconds.id(), &checkpoint.wall_seconds);
   hdf5::write_all(slot.largest_kinetic_energy.id(), &checkpoint.largest_kinetic_energy);
@@ -208,7 +209,8 @@ std::optional<Checkpoint> CheckpointStore::read() const {
     checkpoint.extremes = unflatten(hdf5::read_vector<double>(slot.extremes.id()));
   }
   const auto counters = hdf5::read_vector<std::int64_t>(slot.counters.id());
-  checkpoint.counters = {counters.at(0), counters.at(1), counters.at(2), counters.at(3)};
+  checkpoint.counters = {counters.at(0), counters.at(1), counters.at(2), counters.at(3),
+                         counters.at(4)};
   checkpoint.wall_seconds = read_one<double>(slot.wall_seconds.id());
   checkpoint.largest_kinetic_energy = read_one<double>(slot.largest_kinetic_energy.id());
 

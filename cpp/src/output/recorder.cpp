@@ -132,6 +132,7 @@ Counters Recorder::counters(const Simulation& simulation) const {
   total.newton_iterations += counters_before_.newton_iterations;
   total.retried_steps += counters_before_.retried_steps;
   total.rejected_steps += counters_before_.rejected_steps;
+  total.most_pieces = std::max(total.most_pieces, counters_before_.most_pieces);
   return total;
 }
 

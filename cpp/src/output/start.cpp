@@ -95,6 +95,7 @@ void apply_start(Simulation& simulation) {
   if (from.empty()) return;
   if (from == "equilibrium") {
     simulation.equilibrium();
+    simulation.check_first_step();
     return;
   }
   const LastFrame last = read_start(from);
@@ -113,6 +114,7 @@ void apply_start(Simulation& simulation) {
   model.controls.evaluate(state.time, controls);
   place_held(model, controls, state.positions);  // supports are where this scene has them
   start_ledger(model, state);
+  simulation.check_first_step();
 }
 
 }  // namespace der

@@ -174,6 +174,10 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
   summary["model_reason"] = model.reason;
   summary["integrator"] = is_static ? "none" : simulation.integrator().name;
   if (!is_static && !simulation.adaptive()) summary["step"] = simulation.plan().step;
+  if (scene.time.stepping == scenario::Stepping::Automatic) {
+    summary["shortest_step"] =
+        simulation.plan().step / static_cast<double>(outcome.counters.most_pieces);
+  }
   if (simulation.adaptive()) summary["tolerance"] = scene.time.tolerance;
   const UsedSolver solver = used_solver(simulation);
   summary["linear_solver"] = solver.name;

@@ -1,10 +1,12 @@
 #include "der/steppers/stable_step.hpp"
 
-#include <Eigen/SparseCore>
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
+#include <map>
+#include <utility>
 
 #include "der/assembly/element_energy.hpp"
 #include "der/core/index.hpp"
@@ -12,88 +14,159 @@
 namespace der {
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double>;
+/// Largest singular value of the matrix [a b; c d].
+double spectral_norm(double a, double b, double c, double d) {
+  const double squares = a * a + b * b + c * c + d * d;
+  const double determinant = a * d - b * c;
+  const double split = squares * squares - 4.0 * determinant * determinant;
+  return std::sqrt(0.5 * (squares + std::sqrt(std::max(0.0, split))));
+}
 
-/// D^-1/2 K D^-1/2 over the free degrees of freedom, from the elements booked under `term`; D is a
-/// diagonal that the mass is nowhere below.
-Matrix scaled_stiffness(const Model& model, const Vector& positions, const Vector& controls,
-                        EnergyTerm term) {
-  const Vector mass = model.mass.lower_bound();
-  std::vector<Eigen::Triplet<double>> entries;
-  for_each_list(model.elements, [&](const auto& list) {
+}  // namespace
+
+StableStepBound::StableStepBound(const Model& model, bool drag_limits_step)
+    : model_(model),
+      pattern_(build_pattern(model)),
+      layout_(MatrixLayout::compressed(pattern_)),
+      assembler_(model, layout_),
+      inverse_root_mass_(model.mass.lower_bound().cwiseSqrt().cwiseInverse()),
+      gradient_(model.num_dofs()),
+      values_(assembler_.num_values()),
+      sums_(model.num_nodes) {
+  find_blocks();
+  if (!drag_limits_step) return;
+  for (const Index dof : model.free_dofs) {
+    const double rate = model.damping[dof] * inverse_root_mass_[dof] * inverse_root_mass_[dof];
+    if (rate <= damping_rate_) continue;
+    damping_rate_ = rate;
+    most_damped_ = dof;
+  }
+}
+
+void StableStepBound::find_blocks() {
+  std::map<std::pair<Index, Index>, Block> blocks;
+  const auto add = [&](Index row_dof, Index column_dof, Index slot) {
+    const Index row = row_dof / model_.dimension;
+    const Index column = column_dof / model_.dimension;
+    const auto [found, is_new] = blocks.try_emplace({row, column});
+    Block& block = found->second;
+    if (is_new) {
+      block.row = row;
+      block.column = column;
+      block.slots.fill(layout_.num_values());  // the spare one, for entries that are not there
+    }
+    const Index place = 2 * (row_dof % model_.dimension) + column_dof % model_.dimension;
+    block.slots[at(place)] = slot;
+    block.scale[at(place)] = inverse_root_mass_[row_dof] * inverse_root_mass_[column_dof];
+  };
+  for (Index column = 0; column < pattern_.size; ++column) {
+    for (Index k = pattern_.outer[at(column)]; k < pattern_.outer[at(column + 1)]; ++k) {
+      const Index row_dof = model_.free_dofs[at(pattern_.inner[at(k)])];
+      const Index column_dof = model_.free_dofs[at(column)];
+      add(row_dof, column_dof, k);
+      // Of a block on the diagonal the pattern has the lower half.
+      if (row_dof / model_.dimension == column_dof / model_.dimension) add(column_dof, row_dof, k);
+    }
+  }
+  for (const auto& [nodes, block] : blocks) blocks_.push_back(block);
+}
+
+double StableStepBound::evaluate(const Vector& positions, const Vector& controls) {
+  assembler_.gradient_and_hessian(positions, controls, gradient_, values_);
+  values_[layout_.num_values()] = 0.0;
+  sums_.setZero();
+  for (const Block& block : blocks_) {
+    const auto entry = [&](std::size_t i) { return block.scale[i] * values_[block.slots[i]]; };
+    const double norm = spectral_norm(entry(0), entry(1), entry(2), entry(3));
+    sums_[block.row] += norm;
+    if (block.row != block.column) sums_[block.column] += norm;
+  }
+  const double w2 = sums_.size() > 0 ? sums_.maxCoeff<Eigen::PropagateNaN>() : 0.0;
+  const double g = damping_rate_;
+  // Positive root of dt^2 w2 + 2 dt g = 4, in the form that is stable for small w2 and small g.
+  const double step = 4.0 / (g + std::sqrt(g * g + 4.0 * w2));
+  return std::isnan(step) ? 0.0 : step;
+}
+
+StableStep StableStepBound::explain(const Vector& positions, const Vector& controls) {
+  StableStep result;
+  result.step = evaluate(positions, controls);
+  result.limited_by = "nothing";
+  if (std::isinf(result.step)) return result;
+
+  Index node = 0;
+  const double w2 = sums_.maxCoeff<Eigen::PropagateNaN>(&node);
+  if (damping_rate_ * damping_rate_ >= w2) {
+    result.limited_by = "drag";
+    result.worst_dof = most_damped_;
+    return result;
+  }
+  double largest = 0.0;
+  for (const auto& [term, name] :
+       {std::pair{EnergyTerm::Stretch, "stretch"}, std::pair{EnergyTerm::Bend, "bend"},
+        std::pair{EnergyTerm::Spring, "spring"}}) {
+    const double bound = term_bound(term, node, positions, controls);
+    if (bound <= largest) continue;
+    largest = bound;
+    result.limited_by = name;
+  }
+  double stiffest = -1.0;
+  for (Index i = 0; i < pattern_.size; ++i) {
+    const Index dof = model_.free_dofs[at(i)];
+    if (dof / model_.dimension != node) continue;
+    const double stiffness = std::abs(values_[layout_.slot(i, i)]);
+    if (stiffness <= stiffest) continue;
+    stiffest = stiffness;
+    result.worst_dof = dof;
+  }
+  return result;
+}
+
+/// The sum over a node's blocks from the elements booked under one term [1/s^2].
+double StableStepBound::term_bound(EnergyTerm term, Index node, const Vector& positions,
+                                   const Vector& controls) const {
+  std::map<Index, Mat2> blocks;  // by the other node
+  const auto is_free = [&](Index dof) { return model_.free_index[at(dof)] >= 0; };
+  for_each_list(model_.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if (Kernel::kTerm != term) return;
     LocalTerm<Kernel::kDofs> local;
     for (std::size_t e = 0; e < list.size(); ++e) {
       const auto& dofs = list.dofs[e];
+      const auto here = [&](Index dof) { return dof / model_.dimension == node && is_free(dof); };
+      if (std::none_of(dofs.begin(), dofs.end(), here)) continue;
       Kernel::template evaluate<Derivatives::Hessian>(list.constants[e], controls,
                                                       gather(dofs, positions), local);
       for (int i = 0; i < Kernel::kDofs; ++i) {
         for (int j = 0; j < Kernel::kDofs; ++j) {
-          const Index a = model.free_index[at(dofs[at(i)])];
-          const Index b = model.free_index[at(dofs[at(j)])];
-          if (a < 0 || b < 0) continue;
-          const double entry = i >= j ? local.hessian(i, j) : local.hessian(j, i);
-          entries.emplace_back(a, b, entry / std::sqrt(mass[dofs[at(i)]] * mass[dofs[at(j)]]));
+          const Index row = dofs[at(i)];
+          const Index column = dofs[at(j)];
+          if (!here(row) || !is_free(column)) continue;
+          Mat2& block = blocks.try_emplace(column / model_.dimension, Mat2::Zero()).first->second;
+          block(row % model_.dimension, column % model_.dimension) +=
+              local.hessian(std::max(i, j), std::min(i, j)) * inverse_root_mass_[row] *
+              inverse_root_mass_[column];
         }
       }
     }
   });
-  Matrix matrix(model.num_free(), model.num_free());
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
-}
-
-/// Gershgorin: no eigenvalue is larger than the largest of these.
-Vector row_sums(const Matrix& matrix) {
-  Vector sums = Vector::Zero(matrix.rows());
-  for (Index column = 0; column < matrix.outerSize(); ++column) {
-    for (Matrix::InnerIterator it(matrix, column); it; ++it) sums[it.row()] += std::abs(it.value());
+  double sum = 0.0;
+  for (const auto& [other, block] : blocks) {
+    sum += spectral_norm(block(0, 0), block(0, 1), block(1, 0), block(1, 1));
   }
-  return sums;
+  return sum;
 }
-
-/// Damping rate [1/s] of each free degree of freedom.
-Vector damping_rates(const Model& model) {
-  const Vector rates = model.damping.cwiseQuotient(model.mass.lower_bound());
-  Vector free(model.num_free());
-  for (Index i = 0; i < free.size(); ++i) free[i] = rates[model.free_dofs[at(i)]];
-  return free;
-}
-
-}  // namespace
 
 StableStep stable_step(const Model& model, const Vector& positions, bool drag_limits_step) {
   Vector controls;
   model.controls.evaluate(0.0, controls);
-  const Matrix stretch = scaled_stiffness(model, positions, controls, EnergyTerm::Stretch);
-  const Matrix bend = scaled_stiffness(model, positions, controls, EnergyTerm::Bend);
-  const Matrix spring = scaled_stiffness(model, positions, controls, EnergyTerm::Spring);
-  const Vector rates = drag_limits_step ? damping_rates(model) : Vector::Zero(model.num_free());
+  return StableStepBound(model, drag_limits_step).explain(positions, controls);
+}
 
-  Index fastest = 0;
-  Index most_damped = 0;
-  const double w2 = row_sums(stretch + bend + spring).maxCoeff(&fastest);
-  const double g = rates.maxCoeff(&most_damped);
-  StableStep result;
-  if (w2 == 0.0 && g == 0.0) {
-    result.step = std::numeric_limits<double>::infinity();
-    result.limited_by = "nothing";
-    return result;
-  }
-  // Positive root of dt^2 w2 + 2 dt g = 4, in the form that is stable for small w2 and small g.
-  result.step = 4.0 / (g + std::sqrt(g * g + 4.0 * w2));
-  if (g * g >= w2) {
-    result.limited_by = "drag";
-    result.worst_dof = model.free_dofs[at(most_damped)];
-  } else {
-    const double of_stretch = row_sums(stretch)[fastest];
-    const double of_bend = row_sums(bend)[fastest];
-    result.limited_by = of_stretch >= of_bend ? "stretch" : "bend";
-    if (row_sums(spring)[fastest] > std::max(of_stretch, of_bend)) result.limited_by = "spring";
-    result.worst_dof = model.free_dofs[at(fastest)];
-  }
-  return result;
+std::string describe_stable_step(const StableStep& stable, const std::string& integrator,
+                                 const Model& model) {
+  return fmt::format("the stable step of {}, {:.3g} s, which {} at {} sets", integrator,
+                     stable.step, stable.limited_by, describe_dof(model, stable.worst_dof));
 }
 
 }  // namespace der

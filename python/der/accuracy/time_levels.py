@@ -101,11 +101,12 @@ def time_levels(result: Result) -> TimeLevels:
 
 
 def fixed_step(result: Result) -> float:
-    """Return the time step of a run [s], also of one whose scene says ``step: auto``."""
+    """Return the time step of a run [s]; of one whose scene says ``step: auto`` the shortest."""
     given: Any = result.scenario.to_dict()["time"].get("step")
     if isinstance(given, (int, float)):
         return float(given)
-    return float(result.summary.get("step", result.scenario.duration / result.summary["steps"]))
+    mean = result.scenario.duration / result.summary["steps"]
+    return float(result.summary.get("shortest_step", mean))
 
 
 def stepper_of(result: Result) -> StepperInfo:

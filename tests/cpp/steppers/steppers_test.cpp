@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <map>
 #include <string>
@@ -78,6 +79,23 @@ rods:
     initial_velocity: [[0, 1], [0.4, 0], [0.1, -0.7], [0.3, 0.2], [0, 1.1]]
 time: {duration: 1, step: 0.001, integrator: implicit_euler}
 )";
+
+/// Of M^-1 K at the state of a simulation [1/s^2].
+double largest_eigenvalue(const Simulation& simulation) {
+  const auto dense = [](const SymmetricMatrix& sparse) {
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(sparse.pattern.size, sparse.pattern.size);
+    for (Index column = 0; column < sparse.pattern.size; ++column) {
+      const auto first = static_cast<std::size_t>(column);
+      for (Index k = sparse.pattern.outer[first]; k < sparse.pattern.outer[first + 1]; ++k) {
+        matrix(sparse.pattern.inner[static_cast<std::size_t>(k)], column) = sparse.values[k];
+      }
+    }
+    return matrix;  // the lower triangle, which is all that the solver reads
+  };
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+      dense(simulation.hessian()), dense(simulation.mass()), Eigen::EigenvaluesOnly);
+  return solver.eigenvalues().cwiseAbs().maxCoeff();
+}
 
 struct Momenta {
   Vec2 linear = Vec2::Zero();
@@ -194,6 +212,47 @@ TEST_CASE("an explicit stepper picks a step that is stable and fits the frames")
     CHECK(plan.step * static_cast<double>(plan.steps_per_frame) == doctest::Approx(0.3));
     while (!simulation.finished()) simulation.step();
     CHECK(simulation.state().time == 1.0);
+  }
+}
+
+TEST_CASE("the stable step is near that of the fastest mode, however the rod is bent and turned") {
+  // The reference solves the whole eigenvalue problem.
+  for (const double r : {0.01, 0.1, 0.4}) {  // bending stiffer than stretching in the last two
+    CAPTURE(r);
+    for (const double turn : {0.0, 0.39, 0.79, 2.0}) {
+      CAPTURE(turn);
+      for (const double bend : {0.0, 0.3, 2.0}) {
+        CAPTURE(bend);
+        for (const double squeeze : {1.0, 0.7, 1.3}) {
+          CAPTURE(squeeze);
+          Simulation simulation(Scenario::parse(fmt::format(R"(
+title: Even chain
+rods:
+  - name: rod
+    nodes: 16
+    from: [0, 0]
+    to: [1, 0]
+    cross_section: {{circle: {{radius: {}}}}}
+    material: {{youngs_modulus: 1e6, density: 1000}}
+time: {{duration: 1, step: auto, integrator: verlet}}
+)",
+                                                            r),
+                                                "chain"));
+          State& state = simulation.state();
+          const auto edges = static_cast<double>(simulation.model().num_nodes - 1);
+          Vec2 place = Vec2::Zero();
+          for (Index node = 0; node < simulation.model().num_nodes; ++node) {
+            state.positions.segment<2>(2 * node) = place;
+            const double angle = turn + bend * node / edges;
+            place += squeeze / edges * Vec2{std::cos(angle), std::sin(angle)};
+          }
+          const double reference = 2.0 / std::sqrt(largest_eigenvalue(simulation));
+          const double step = stable_step(simulation.model(), state.positions, false).step;
+          CHECK(step <= reference * (1.0 + 1e-9));
+          CHECK(step >= 0.85 * reference);
+        }
+      }
+    }
   }
 }
 

@@ -32,8 +32,10 @@ struct State {
   Vector accelerations;
   double last_step = 0.0;  ///< [s] length of the last step; 0: no step yet, `accelerations` not set
   std::vector<Vector> history;  ///< what a multi-step stepper remembers besides
-  double next_step = 0.0;       ///< [s] that adaptive steps want to go on with; 0: not known
-  double last_error = 0.0;      ///< of the last adaptive step, over what it was allowed
+  /// [s] that adaptive steps want to go on with, or what explicit ones are stable with; 0: not
+  /// known.
+  double next_step = 0.0;
+  double last_error = 0.0;  ///< of the last adaptive step, over what it was allowed
   Work work;
   std::vector<Ramp> ramps;  ///< controls that a program has set, in place of their tables
 };

@@ -3,13 +3,11 @@
 #include <cstdint>
 #include <utility>
 
-#include "der/model/model.hpp"
 #include "der/scenario/scenario.hpp"
-#include "der/steppers/stepper.hpp"
 
 namespace der {
 
-/// The time steps of a run, worked out from what the scene says and what the model bears.
+/// The time steps of a run, worked out from what the scene says and what the model bears at first.
 struct StepPlan {
   double step = 0.0;                 ///< [s]; 0: adaptive, or a static scene
   double every = 0.0;                ///< [s] between saved frames
@@ -23,8 +21,7 @@ struct StepPlan {
   [[nodiscard]] std::pair<std::int64_t, std::int64_t> frames_between(double from, double to) const;
 };
 
-/// Throws Error ("unstable_step") for a fixed step of an explicit integrator that is larger than
-/// the model bears, unless the scene allows it.
-StepPlan plan_steps(const scenario::Scene& scene, const Model& model, const StepperInfo& stepper);
+/// `stable_step` [s] is that of the drawn shape, infinite for implicit steppers.
+StepPlan plan_steps(const scenario::Scene& scene, double stable_step);
 
 }  // namespace der

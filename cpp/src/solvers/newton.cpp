@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "der/core/index.hpp"
+#include "stage_kernels.hpp"
 
 namespace der {
 namespace {
@@ -18,6 +19,20 @@ constexpr double kNearSolution = 1e-3;
 
 /// A few rounding errors of numbers up to this.
 double rounding(double largest) { return 8.0 * std::numeric_limits<double>::epsilon() * largest; }
+
+CountMask free_dofs_count(const Model& model) {
+  CountMask counts = CountMask::Zero(model.num_dofs());
+  for (const Index dof : model.free_dofs) counts[dof] = kCounts;
+  return counts;
+}
+
+Vector inverse_squared_lengths(const Model& model) {
+  Vector result(static_cast<Index>(model.edges.size()));
+  for (Index i = 0; i < result.size(); ++i) {
+    result[i] = 1.0 / (model.edges[at(i)].rest_length * model.edges[at(i)].rest_length);
+  }
+  return result;
+}
 
 }  // namespace
 
@@ -35,10 +50,13 @@ Newton::Newton(const Model& model, const Assembler& assembler, LinearSolver& sol
       assembler_(assembler),
       solver_(solver),
       options_(options),
+      free_(free_dofs_count(model)),
+      per_squared_length_(inverse_squared_lengths(model)),
       residual_(Vector::Zero(model.num_dofs())),
       term_(Vector::Zero(model.num_dofs())),
       values_(Vector::Zero(assembler.num_values())),
       direction_(Vector::Zero(model.num_free())),
+      step_(Vector::Zero(model.num_dofs())),
       guess_(Vector::Zero(model.num_dofs())),
       displacement_(Vector::Zero(model.num_dofs())),
       line_start_(Vector::Zero(model.num_dofs())),
@@ -67,20 +85,20 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
   const int limit = mode == Mode::FullSteps ? std::min(kFullStepIterations, options_.max_iterations)
                                             : options_.max_iterations;
   NewtonReport report;
-  external_ = stage.force.lpNorm<Eigen::Infinity>();
+  external_ = largest_magnitude(stage.force);
   displacement_ = positions - stage.origin;
   evaluate_system(stage, positions);
-  const double noise_of_forces = noise(stage, positions);
   measure(report);
   while (report.iterations < limit) {
     const double residual_before = report.residual;
     if (!std::isfinite(residual_before) || !find_direction(report)) {
+      report.worst_dof = worst_dof();
       report.failure = "the forces or the stiffness stopped being numbers";
       return report;
     }
     ++report.iterations;
     const double turn = limit_turn();
-    double step = direction_.lpNorm<Eigen::Infinity>();
+    double step = largest_magnitude(step_);
     bool have_system = false;
     if (mode == Mode::FullSteps) {
       move(stage, displacement_, 1.0, positions);
@@ -101,19 +119,22 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
     // rotation of the edges, which a Newton step leaves out, makes of this step.
     const double fall = residual_before > 0.0 ? report.residual / residual_before : 0.0;
     const double next_step = step * std::min(1.0, std::max(fall, turn));
-    const double allowed =
-        std::max(options_.residual_tolerance * report.force_scale, noise_of_forces);
     // Far from the origin positions themselves are only known to their rounding.
-    const double allowed_step = std::max(options_.step_tolerance * model_.size,
-                                         rounding(positions.lpNorm<Eigen::Infinity>()));
-    if (report.residual <= allowed && next_step <= allowed_step) {
-      report.converged = true;
-      return report;
+    const double allowed_step =
+        std::max(options_.step_tolerance * model_.size, rounding(largest_magnitude(positions)));
+    if (next_step <= allowed_step) {
+      report.converged = report.residual <= options_.residual_tolerance * report.force_scale;
+      if (!report.converged) {
+        report.converged = report.residual <= noise(stage, positions);
+        have_system = false;
+      }
+      if (report.converged) return report;
     }
     if (have_system) continue;
     evaluate_system(stage, positions);
     if (mode == Mode::FullSteps) tension_.use(positions, direction_, values_);
   }
+  report.worst_dof = worst_dof();
   report.failure = "no convergence in " + std::to_string(options_.max_iterations) + " iterations";
   return report;
 }
@@ -125,7 +146,6 @@ void Newton::evaluate_residual(const Stage& stage, const Vector& positions) {
 
 void Newton::evaluate_system(const Stage& stage, const Vector& positions) {
   assembler_.gradient_and_hessian(positions, stage.controls, residual_, values_);
-  stiffest_ = values_.lpNorm<Eigen::Infinity>();
   add_stage_forces(stage);
   if (stage.inertia != 0.0) assembler_.add_mass(stage.mass, stage.inertia, values_);
   if (stage.velocity_factor != 0.0 && model_.damped) {
@@ -134,34 +154,34 @@ void Newton::evaluate_system(const Stage& stage, const Vector& positions) {
 }
 
 /// Rounding error [N] of the forces: positions are known to theirs, displacements to their own.
-double Newton::noise(const Stage& stage, const Vector& positions) const {
-  constexpr int largest = Eigen::Infinity;
-  return rounding(stiffest_ * positions.lpNorm<largest>() +
-                  stage.inertia * stage.mass.lumped.cwiseProduct(displacement_).lpNorm<largest>() +
-                  stage.velocity_factor *
-                      model_.damping.cwiseProduct(displacement_).lpNorm<largest>());
+/// Leaves the elements' matrix alone in `values_`.
+double Newton::noise(const Stage& stage, const Vector& positions) {
+  assembler_.gradient_and_hessian(positions, stage.controls, term_, values_);
+  const auto largest_term = [&](const Vector& diagonal) {
+    term_ = diagonal.cwiseProduct(displacement_);
+    return largest_magnitude(term_);
+  };
+  return rounding(largest_magnitude(values_) * largest_magnitude(positions) +
+                  stage.inertia * largest_term(stage.mass.lumped) +
+                  stage.velocity_factor * largest_term(model_.damping));
 }
 
 void Newton::add_stage_forces(const Stage& stage) {
-  constexpr int largest = Eigen::Infinity;
-  acting_ = std::max(residual_.lpNorm<largest>(), external_);
-  residual_ -= stage.force;
+  acting_ = std::max(subtract_force(stage.force, residual_), external_);
   if (stage.inertia != 0.0) {
-    // Minus the acceleration.
-    term_ = stage.inertia * (displacement_ - stage.inertia_target);
-    acting_ = std::max(acting_, stage.mass.lumped.cwiseProduct(term_).lpNorm<largest>());
-    residual_ += stage.mass.lumped.cwiseProduct(term_);
+    Vector& acceleration = term_;  // minus it
+    acting_ = std::max(acting_, add_lumped_inertia(stage.inertia, stage.mass.lumped, displacement_,
+                                                   stage.inertia_target, acceleration, residual_));
     for (const auto& [a, b, mass] : stage.mass.coupling) {
-      const double inertial = mass * (term_[a] - term_[b]);
+      const double inertial = mass * (acceleration[a] - acceleration[b]);
       residual_[a] -= inertial;
       residual_[b] += inertial;
     }
   }
   if (stage.velocity_factor != 0.0 && model_.damped) {
-    term_ = stage.velocity_factor *
-            model_.damping.cwiseProduct(displacement_ - stage.velocity_reference);
-    acting_ = std::max(acting_, term_.lpNorm<largest>());
-    residual_ += term_;
+    acting_ =
+        std::max(acting_, add_lumped_inertia(stage.velocity_factor, model_.damping, displacement_,
+                                             stage.velocity_reference, term_, residual_));
   }
 }
 
@@ -187,15 +207,15 @@ bool Newton::find_direction(NewtonReport& report) {
     direction_[static_cast<Index>(i)] = -residual_[model_.free_dofs[i]];
   }
   solver_.solve(direction_);
-  return direction_.allFinite();
+  for (std::size_t i = 0; i < model_.free_dofs.size(); ++i) {
+    step_[model_.free_dofs[i]] = direction_[static_cast<Index>(i)];
+  }
+  return std::isfinite(largest_magnitude(step_));
 }
 
 void Newton::move(const Stage& stage, const Vector& start, double factor, Vector& positions) {
-  for (std::size_t i = 0; i < model_.free_dofs.size(); ++i) {
-    const Index dof = model_.free_dofs[i];
-    displacement_[dof] = start[dof] + factor * direction_[static_cast<Index>(i)];
-    positions[dof] = stage.origin[dof] + displacement_[dof];
-  }
+  displacement_ = start + factor * step_;
+  for (const Index dof : model_.free_dofs) positions[dof] = stage.origin[dof] + displacement_[dof];
 }
 
 /// Moves along the direction until the potential no longer falls, or not much steeper than it fell
@@ -221,43 +241,42 @@ double Newton::line_search(const Stage& stage, Vector& positions) {
   return factor;
 }
 
-double Newton::slope() const {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < model_.free_dofs.size(); ++i) {
-    sum += residual_[model_.free_dofs[i]] * direction_[static_cast<Index>(i)];
-  }
-  return sum;
-}
+double Newton::slope() const { return residual_.dot(step_); }
 
-/// Shortens the direction so that no edge changes by more than kLargestTurn of its rest length: an
-/// angle for motion across the edge. Rigid translation does not count. Returns the change left.
+/// Shortens the step so that no edge changes by more than kLargestTurn of its rest length: an angle
+/// for motion across the edge. Rigid translation does not count. Returns the change left.
 double Newton::limit_turn() {
-  const auto component = [&](Index dof) {
-    const Index free = model_.free_index[at(dof)];
-    return free < 0 ? 0.0 : direction_[free];
-  };
   double largest = 0.0;  // squared
-  for (const Edge& edge : model_.edges) {
-    const double dx = component(edge.dofs[2]) - component(edge.dofs[0]);
-    const double dy = component(edge.dofs[3]) - component(edge.dofs[1]);
-    largest = std::max(largest, (dx * dx + dy * dy) / (edge.rest_length * edge.rest_length));
+  for (std::size_t i = 0; i < model_.edges.size(); ++i) {
+    const auto& [x0, y0, x1, y1] = model_.edges[i].dofs;
+    const double dx = step_[x1] - step_[x0];
+    const double dy = step_[y1] - step_[y0];
+    largest = std::max(largest, (dx * dx + dy * dy) * per_squared_length_[static_cast<Index>(i)]);
   }
   const double turn = std::sqrt(largest);
   if (turn <= kLargestTurn) return turn;
   direction_ *= kLargestTurn / turn;
+  step_ *= kLargestTurn / turn;
   return kLargestTurn;
 }
 
 void Newton::measure(NewtonReport& report) const {
-  report.residual = 0.0;
-  for (const Index dof : model_.free_dofs) {
-    const double r = std::abs(residual_[dof]);
-    if (r <= report.residual) continue;
-    report.residual = r;  // or it is not a number
-    report.worst_dof = dof;
-    if (!std::isfinite(r)) return;
-  }
+  report.residual = largest_magnitude(residual_, free_);
   report.force_scale = acting_;
+}
+
+/// The free degree of freedom with the largest residual, or the first whose residual is no number.
+Index Newton::worst_dof() const {
+  Index worst = -1;
+  double largest = -1.0;
+  for (const Index dof : model_.free_dofs) {
+    const double here = std::abs(residual_[dof]);
+    if (here <= largest) continue;
+    worst = dof;
+    if (!std::isfinite(here)) break;
+    largest = here;
+  }
+  return worst;
 }
 
 }  // namespace der

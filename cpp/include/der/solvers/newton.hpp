@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "der/assembly/assembler.hpp"
@@ -40,7 +41,7 @@ struct NewtonReport {
   int iterations = 0;
   double residual = 0.0;      ///< largest component over the free degrees of freedom [N]
   double force_scale = 0.0;   ///< largest acting force [N]
-  Index worst_dof = -1;       ///< full number of the degree of freedom with the largest residual
+  Index worst_dof = -1;       ///< if not converged: full number of that with the largest residual
   Index negative_pivots = 0;  ///< of the last matrix, before any shift
   std::string failure;        ///< in words, if not converged
 };
@@ -76,28 +77,31 @@ class Newton {
   void evaluate_residual(const Stage& stage, const Vector& positions);
   void evaluate_system(const Stage& stage, const Vector& positions);
   void add_stage_forces(const Stage& stage);
-  [[nodiscard]] double noise(const Stage& stage, const Vector& positions) const;
+  double noise(const Stage& stage, const Vector& positions);
   bool find_direction(NewtonReport& report);
   double limit_turn();
   void move(const Stage& stage, const Vector& start, double factor, Vector& positions);
   double line_search(const Stage& stage, Vector& positions);
   [[nodiscard]] double slope() const;
   void measure(NewtonReport& report) const;
+  [[nodiscard]] Index worst_dof() const;
 
   const Model& model_;
   const Assembler& assembler_;
   LinearSolver& solver_;
   NewtonOptions options_;
-  Vector residual_;        // all degrees of freedom
-  Vector term_;            // likewise: one term of it
-  Vector values_;          // of the matrix, shifted where need be
-  Vector direction_;       // over the free degrees of freedom
+  Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1> free_;  // the mask of the free degrees of freedom
+  Vector per_squared_length_;                            // of each edge [1/m^2]
+  Vector residual_;                                      // all degrees of freedom
+  Vector term_;                                          // likewise: one term of it
+  Vector values_;                                        // of the matrix, shifted where need be
+  Vector direction_;                                     // over the free degrees of freedom
+  Vector step_;            // the direction over all of them, zero on held ones
   Vector guess_;           // positions that the solve started from
   Vector displacement_;    // from the stage's origin
   Vector line_start_;      // displacement that the line search starts from
   double external_ = 0.0;  // largest external force of the stage [N]
   double acting_ = 0.0;    // largest acting force at the last iterate [N]
-  double stiffest_ = 0.0;  // largest entry of the elements' matrix [N/m]
   double last_shift_ = 0.0;
   PredictedTension tension_;
 };

@@ -137,7 +137,7 @@ def tolerance() -> Figure:
     exact = tips(step=5e-5, integrator="sdirk4")  # half the step moves it by 2e-10 m
     figure, axes = new_axes()
     axes.loglog(asked, asked, color="0.6", linestyle="--", label="what was asked for")
-    for name, marker in zip(names, ("o", "s", "^", "D", "v", "P"), strict=True):
+    for name, marker in zip(names, ("o", "s", "^", "D", "v", "P", "X"), strict=True):
         errors = {}
         # Of order 1, six digits would take a million steps.
         for value in asked[:3] if name == "implicit_euler" else asked:

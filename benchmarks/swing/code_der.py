@@ -45,11 +45,12 @@ def grid(quick: bool) -> list[Config]:
         for integrator in ("implicit_midpoint", "tr_bdf2")
         if n < 500 or integrator != "tr_bdf2"
     ]
-    # Five stages a step, of order 4: fewer steps.
+    # Five stages a step, of order 5: fewer steps.
     implicit += [
-        _implicit(n, m, "sdirk4")
+        _implicit(n, m, "sdirk5")
         for n, m in product(
-            (50, 60, 70, 75, 80, 90, 110, 140, 180, 240, 320), (1, 2, 3, 4, 5, 6, 8)
+            (28, 40, 50, 60, 70, 80, 85, 90, 110, 140, 180, 240, 250, 260, 280, 320),
+            (1, 2, 3, 4, 5, 6),
         )
     ]
     explicit: list[Config] = [

@@ -1,5 +1,7 @@
 #include "der/steppers/implicit_stage.hpp"
 
+#include <algorithm>
+
 #include "der/loads/loads.hpp"
 #include "der/steppers/work.hpp"
 #include "der/supports/supports.hpp"
@@ -14,15 +16,24 @@ ImplicitStage::ImplicitStage(const Model& model, const Assembler& assembler, Lin
       newton_(model, assembler, solver, options),
       finisher_(model),
       held_controls_(Vector::Zero(model.controls.size())),
+      start_controls_(Vector::Zero(model.controls.size())),
       displacement_(Vector::Zero(model.num_dofs())) {}
 
 void ImplicitStage::place_held_at(const State& state, double time, Vector& where) {
-  model_.controls.evaluate(time, state.ramps, held_controls_);
+  evaluate_controls(state, time, held_controls_);
   place_held(model_, held_controls_, where);
 }
 
+void ImplicitStage::evaluate_controls(const State& state, double time, Vector& controls) {
+  model_.controls.evaluate(std::min(time, step_end_), state.ramps, controls);
+  if (time <= step_end_) return;
+  model_.controls.evaluate(state.time, state.ramps, start_controls_);
+  const double beyond = (time - step_end_) / (step_end_ - state.time);
+  controls += beyond * (controls - start_controls_);
+}
+
 StepReport ImplicitStage::solve(const State& state, double time) {
-  model_.controls.evaluate(time, state.ramps, equation.controls);
+  evaluate_controls(state, time, equation.controls);
   external_force(model_, equation.controls, state.extra_force, equation.force);
   equation.origin = state.positions;
   const NewtonReport newton = newton_.solve(equation, positions);

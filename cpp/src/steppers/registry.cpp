@@ -20,6 +20,7 @@ const std::vector<StepperInfo>& stepper_registry() {
        make_bdf2},
       {"tr_bdf2", 2, true, false, false, 1.0, "L-stable: any step", "fast motion", make_tr_bdf2},
       {"sdirk4", 4, true, false, false, 0.7, "L-stable: any step", "fast motion", make_sdirk4},
+      {"sdirk5", 5, true, false, false, 0.7, "L-stable: any step", "fast motion", make_sdirk5},
       {"verlet", 2, false, true, false, 1.0, "below the stretch and bend limit", "none",
        make_verlet},
       {"explicit_euler", 1, false, true, true, 3.0, "below the stretch, bend and drag limit",

@@ -19,6 +19,8 @@ std::unique_ptr<Stepper> make_tr_bdf2(const Model&, const Assembler&, LinearSolv
                                       const StepperOptions&);
 std::unique_ptr<Stepper> make_sdirk4(const Model&, const Assembler&, LinearSolver&,
                                      const StepperOptions&);
+std::unique_ptr<Stepper> make_sdirk5(const Model&, const Assembler&, LinearSolver&,
+                                     const StepperOptions&);
 std::unique_ptr<Stepper> make_verlet(const Model&, const Assembler&, LinearSolver&,
                                      const StepperOptions&);
 std::unique_ptr<Stepper> make_explicit_euler(const Model&, const Assembler&, LinearSolver&,

@@ -51,7 +51,13 @@ _EXPLICIT_STEPS = 2
 #: The finest meshes, which the reference is extrapolated from.
 _REFERENCE_MESHES = 3
 #: Cost of a step, against one of another implicit stepper.
-_COST_OF_STEP = {"tr_bdf2": 2.0, "sdirk4": 5.0, "verlet": 0.05, "explicit_euler": 0.05}
+_COST_OF_STEP = {
+    "tr_bdf2": 2.0,
+    "sdirk4": 5.0,
+    "sdirk5": 5.0,
+    "verlet": 0.05,
+    "explicit_euler": 0.05,
+}
 
 UNSTABLE = "unstable"
 SKIPPED = "skipped"

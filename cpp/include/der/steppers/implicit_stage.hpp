@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
@@ -23,6 +25,9 @@ class ImplicitStage {
   /// On entry to `solve` the guess, held degrees of freedom included; on exit the solution.
   Vector positions;
 
+  /// Tells where the step at hand ends [s]: tables that have a kink there go on without it in stages
+  /// beyond.
+  void end_step_at(double time) { step_end_ = time; }
   /// Puts the held degrees of freedom of `where` to where the tables have them at `time`.
   void place_held_at(const State& state, double time, Vector& where);
   /// Solves with tables and external forces at `time`.
@@ -45,6 +50,7 @@ class ImplicitStage {
                        double dt, double place, ExplicitForce& at_start, State& state);
 
  private:
+  void evaluate_controls(const State& state, double time, Vector& controls);
   void book_forces(const Vector& displacement, Work& work) const;
   void book_solver(const Vector& displacement, Work& work) const;
 
@@ -52,7 +58,9 @@ class ImplicitStage {
   Newton newton_;
   StepFinisher finisher_;
   Vector held_controls_;  // those of `equation` are the solved stage's until it is booked
+  Vector start_controls_;
   Vector displacement_;
+  double step_end_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace der

@@ -17,6 +17,8 @@ namespace {
 /// Newton's error must not show in the estimated error of a step, which is a small part of the
 /// tolerance.
 constexpr double kNewtonShare = 1e-5;
+/// Pieces of a step that differ by no more than this share are of one length.
+constexpr double kSameLength = 1e-9;
 
 StepperOptions stepper_options(const scenario::Scene& scene) {
   StepperOptions options;
@@ -123,7 +125,6 @@ void Simulation::step() {
   if (adaptive_) {
     advance_adaptively();
   } else {
-    if (stability_) stability_->look(state_, plan_.step);
     advance_to(next_time());
   }
   ++state_.step;
@@ -151,16 +152,10 @@ void Simulation::advance_adaptively() {
 void Simulation::advance_to(double target) {
   const double whole = target - state_.time;
   double dt = whole;
-  if (state_.next_step > 0.0) {
-    const double pieces = std::max(1.0, std::ceil(whole / state_.next_step * (1.0 - 1e-9)));
-    dt = whole / pieces;
-    counters_.retried_steps += pieces > 1.0 ? 1 : 0;
-    counters_.most_pieces =
-        std::max(counters_.most_pieces, static_cast<std::int64_t>(std::llround(pieces)));
-  }
   while (true) {
     const double left = target - state_.time;
-    const bool last = dt >= left * (1.0 - 1e-9);
+    if (stability_) dt = stable_piece(left, whole, dt);
+    const bool last = dt >= left * (1.0 - kSameLength);
     const double tried = last ? left : dt;
     const StepReport report = stepper_->step(state_, tried);
     counters_.newton_iterations += report.newton_iterations;
@@ -174,6 +169,19 @@ void Simulation::advance_to(double target) {
     dt = 0.5 * tried;
     if (dt < scenario_.scene().time.minimum_step) fail(report, tried);
   }
+}
+
+/// The piece of a step `whole` [s] that an explicit stepper does next, of what is left of it, where
+/// the last one was `dt`. Within a step pieces only get shorter.
+double Simulation::stable_piece(double left, double whole, double dt) {
+  stability_->look(state_, plan_.step);
+  const double wanted = state_.next_step;
+  if (wanted == 0.0 || dt <= wanted * (1.0 + kSameLength)) return dt;
+  counters_.retried_steps += dt == whole ? 1 : 0;
+  const double piece = left / std::ceil(left / wanted * (1.0 - kSameLength));
+  const auto pieces = static_cast<std::int64_t>(std::ceil(whole / piece * (1.0 - kSameLength)));
+  counters_.most_pieces = std::max(counters_.most_pieces, pieces);
+  return piece;
 }
 
 void Simulation::fail(const StepReport& report, double dt) {
@@ -363,7 +371,7 @@ std::string Simulation::describe_inaccuracy(const AdaptiveReport& report) const 
 std::string Simulation::describe_divergence(const StepReport& report, double dt) {
   return fmt::format("the motion diverged at t = {:.6g} s: {} at {}. {}", state_.time,
                      report.failure, describe_dof(model_, report.worst_dof),
-                     stability_->explain_blow_up(initial_state(model_), dt));
+                     stability_->explain_blow_up(initial_state(model_), state_, dt));
 }
 
 }  // namespace der

@@ -39,12 +39,12 @@ def energy_made(result):
     return np.abs(result.work["numerical"]).max() / np.ptp(result.energies["gravity"])
 
 
+SOFT_ARMS = [(21, 1e4, 0.05), (41, 1e4, 0.05), (41, 2e4, 0.025), (81, 5e4, 0.05)]
+
+
 @pytest.mark.parametrize("curvature", ["angle", "tangent"])
 @pytest.mark.parametrize("integrator", EXPLICIT)
-@pytest.mark.parametrize(
-    ("nodes", "modulus", "radius"),
-    [(21, 1e4, 0.05), (41, 1e4, 0.05), (41, 2e4, 0.025), (81, 5e4, 0.05)],
-)
+@pytest.mark.parametrize(("nodes", "modulus", "radius"), SOFT_ARMS)
 def test_automatic_steps_follow_the_stable_step(nodes, modulus, radius, integrator, curvature):
     """With the limit of the start alone, these make up to a thousand times the energy at hand."""
     scene = soft_arm(nodes, modulus, radius, curvature, integrator=integrator)
@@ -53,6 +53,58 @@ def test_automatic_steps_follow_the_stable_step(nodes, modulus, radius, integrat
     assert result.summary["retried_steps"] > 0
     assert result.times == pytest.approx(np.arange(101) * 0.02, abs=1e-12)
     assert result.summary["shortest_step"] < result.summary["step"]
+
+
+@pytest.mark.parametrize(("nodes", "modulus", "radius"), SOFT_ARMS[:3])
+def test_automatic_steps_stay_stable_for_long(nodes, modulus, radius):
+    """Edges are crushed again and again; looks at fixed intervals miss some, and made up to a
+    thousand times the energy."""
+    result = der.run(soft_arm(nodes, modulus, radius, duration=12.0))
+    assert energy_made(result) < 0.005
+
+
+def test_a_push_within_one_frame_does_not_outrun_the_looks():
+    """The push presses the rod to three fifths. Frames set the whole steps: they make a difference of
+    the order of the larger one's error, not that of a run that blows up."""
+    scene = soft_arm(21, 1e5, curvature="tangent", duration=1.0)
+    force = {"times": [0, 0.5, 1], "values": [[0, 0], [-300, 5], [0, 0]]}
+    scene["loads"] = [{"point_force": {"rod": "arm", "at": "end", "force": force}}]
+    pushed = []
+    for every in (0.02, 0.0002):
+        scene["output"]["every"] = every
+        result = der.run(scene)
+        assert np.abs(result.work["numerical"]).max() < 0.002 * np.abs(result.work["loads"]).max()
+        pushed.append(result.probes["tip"][-1])
+    assert pushed[0] == pytest.approx(pushed[1], abs=5e-3)
+
+
+def test_a_shape_that_a_program_writes_is_looked_at():
+    simulation = der.Simulation(soft_arm(21, 1e5, duration=0.6))
+    simulation.step(20)
+    positions = np.array(simulation.positions)
+    positions[:, 0] *= 0.8
+    positions[:, 1] += 0.003 * np.linspace(0, 1, 21) ** 2
+
+    def energy():
+        now = simulation.energies
+        return now.kinetic + now.stretch + now.bend + now.gravity
+
+    simulation.positions[...] = positions
+    before = energy()
+    while not simulation.finished:
+        simulation.step()
+    assert energy() == pytest.approx(before, rel=0.01)
+
+
+def test_a_smallest_step_that_is_not_stable_is_a_mistake_of_the_scene():
+    with pytest.raises(der.DerError, match=r"time.minimum_step of 1 s leaves no stable step"):
+        der.Simulation(soft_arm(21, 1e5, minimum_step=1.0))
+
+
+def test_the_stable_step_of_a_stiff_rod_needs_no_smallest_step_in_a_long_run():
+    simulation = der.Simulation(soft_arm(21, 2e11, duration=1e6))
+    simulation.step(100)
+    assert simulation.time > 0
 
 
 def test_automatic_steps_are_accurate_where_the_rod_gets_stiffer():

@@ -31,7 +31,7 @@ struct Counters {
   std::int64_t newton_iterations = 0;
   std::int64_t retried_steps = 0;   ///< equal steps that had to be done in smaller pieces
   std::int64_t rejected_steps = 0;  ///< adaptive steps that were too long for the tolerance
-  std::int64_t most_pieces = 1;     ///< that `step: auto` has done a step in
+  std::int64_t most_pieces = 1;     ///< that `step: auto` would have done a step in
 };
 
 /// The lower triangle of a symmetric matrix over the free degrees of freedom, in compressed
@@ -116,6 +116,7 @@ class Simulation {
   /// Time [s] at the end of the next step of equal ones.
   [[nodiscard]] double next_time() const;
   void advance_to(double target);
+  double stable_piece(double left, double whole, double dt);
   void advance_adaptively();
   [[noreturn]] void fail(const StepReport& report, double dt);
   /// Throws Error if a position or an extra force is not a finite number.

@@ -97,6 +97,20 @@ void add_analysis(const RunOutcome& outcome, const Recorder& recorder, Json& sum
   if (!outcome.path.empty()) summary["path"] = path_json(outcome, recorder);
 }
 
+/// What to try where the time stepping is not good enough.
+std::string advice_on_steps(const Simulation& simulation) {
+  const bool is_default = simulation.integrator().name == "tr_bdf2";
+  switch (simulation.scenario().scene().time.stepping) {
+    case scenario::Stepping::Fixed:
+      return is_default ? "take smaller steps" : "take smaller steps, or tr_bdf2";
+    case scenario::Stepping::Adaptive:
+      return is_default ? "take a smaller tolerance" : "take a smaller tolerance, or tr_bdf2";
+    case scenario::Stepping::Automatic:
+      break;
+  }
+  return "give a step that is smaller than that of 'auto', or take tr_bdf2";
+}
+
 std::optional<std::string> made_energy_warning(const Simulation& simulation,
                                                const Recorder& recorder) {
   if (!recorder.energies() || recorder.largest_kinetic_energy() == 0.0) return std::nullopt;
@@ -107,11 +121,10 @@ std::optional<std::string> made_energy_warning(const Simulation& simulation,
                                      std::abs(work.supports), std::abs(work.drag)});
   const double held = std::abs(work.start) + now.kinetic + now.elastic() + std::abs(now.gravity);
   if (made < std::max(kMuchEnergy * exchanged, kRounding * held)) return std::nullopt;
-  const bool is_default = simulation.integrator().name == "tr_bdf2";
   return fmt::format(
       "the time stepping itself has made {:.2g} J of energy, against {:.2g} J that the run "
-      "exchanges: take smaller steps{}",
-      made, exchanged, is_default ? "" : ", or tr_bdf2");
+      "exchanges: {}",
+      made, exchanged, advice_on_steps(simulation));
 }
 
 std::vector<std::string> buckling_warnings(const LinearBuckling& buckling) {

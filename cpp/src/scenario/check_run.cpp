@@ -10,8 +10,8 @@ namespace {
 
 /// Ten halvings of a step that fails.
 constexpr double kMinimumStepShare = 1.0 / 1024.0;
-/// Of the duration: with that, 1e-9 of it for adaptive steps.
-constexpr double kAdaptiveShare = 1e-6;
+/// Of the duration: with that, 1e-12 of it for adaptive steps, a thousand times its rounding.
+constexpr double kAdaptiveShare = 1e-9;
 /// More steps than anyone can wait for.
 constexpr double kMaxSteps = 1e12;
 /// Frames of a run where the scene does not say how often to save.
@@ -204,6 +204,7 @@ void check_time(CheckContext& context) {
     longest = time.step;
   } else {
     time.stepping = Stepping::Automatic;
+    longest = 0.0;  // the step is not known yet
   }
   check_integrator(given, time, complaints);
   time.minimum_step = given.given_minimum_step.value_or(longest * kMinimumStepShare);

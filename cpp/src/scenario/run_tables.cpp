@@ -125,7 +125,8 @@ Format<TimeText> time_format() {
                     "Whether an explicit integrator may run with a step that is too large for it.")
           .optional("minimum_step", &TimeText::given_minimum_step, number("s", positive()),
                     "A step that fails is retried in smaller ones, down to this.",
-                    "step / 1024; with `tolerance`, about 1e-9 of the duration"));
+                    "step / 1024; with `step: auto` 1e-5 of the step; with `tolerance` about 1e-12 "
+                    "of the duration"));
 }
 
 Format<Solver> solver_format() {

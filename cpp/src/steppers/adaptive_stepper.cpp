@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace der {
 namespace {
@@ -17,8 +18,8 @@ constexpr double kRetryFactor = 0.25;
 /// Differences below this share of the positions say nothing: what Newton's method leaves of them,
 /// and their rounding.
 constexpr double kRounding = 1e-14;
-/// Two times closer than this share of a step are one.
-constexpr double kSameTime = 1e-9;
+/// A step that leaves less than this share of itself takes it along.
+constexpr double kSliver = 1e-9;
 
 std::vector<double> table_entries(const Model& model) {
   std::vector<double> times;
@@ -55,7 +56,7 @@ AdaptiveReport AdaptiveStepper::advance(State& state, double horizon) {
     wanted = std::min(std::max(wanted, options_.minimum_step), options_.largest_step);
     const double left = stop - start_.time;
     // No sliver is left for the next step.
-    const bool last = wanted >= left * (1.0 - kSameTime);
+    const bool last = wanted >= left * (1.0 - kSliver);
     const double length = last ? left : std::min(wanted, 0.5 * left);
     report.tried = length;
     report.last = attempt(state, length);
@@ -124,7 +125,8 @@ double AdaptiveStepper::first_step(const State& state) const {
 }
 
 double AdaptiveStepper::next_stop(double time, double horizon) const {
-  const double later = time + kSameTime * std::max(options_.duration, std::abs(time));
+  const double rounding = 4.0 * std::numeric_limits<double>::epsilon();
+  const double later = time + rounding * std::max(options_.duration, std::abs(time));
   const auto next = std::upper_bound(breakpoints_.begin(), breakpoints_.end(), later);
   return next == breakpoints_.end() ? horizon : std::min(horizon, *next);
 }

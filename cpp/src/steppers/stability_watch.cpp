@@ -13,13 +13,19 @@
 namespace der {
 namespace {
 
-/// Steps between two looks, each of which costs about as much as a step, and steps, or pieces of
-/// them, between two of a rod whose shape changes fast.
-constexpr std::int64_t kStepsBetweenLooks = 32;
-constexpr std::int64_t kPiecesBetweenLooks = 4;
-/// Change of an edge's length, or of an angle [rad], that makes another shape, with a stable step
-/// of its own: fast is as much until the next look, and no step of `step: auto` changes more.
-constexpr double kOtherShape = 0.1;
+/// Change of an edge, of its own length or as an angle [rad], that makes another shape, with a
+/// stable step of its own.
+constexpr double kOtherShape = 0.03;
+/// No step of `step: auto` changes an edge's length, or an angle [rad], by more than this.
+constexpr double kLargestChange = 0.03;
+/// The share of the stable step that pieces of a step take. What makes them necessary is motion as
+/// fast as the fastest that the rod has, and steps near the stable one do not resolve that: its
+/// energy is off by as much as there is.
+constexpr double kPieceMargin = 0.45;
+/// Pieces get shorter when this share is exceeded: less than the margin of a whole step.
+constexpr double kLeastMargin = 0.6;
+/// Of a step, the piece below which it is given up, unless the scene says another.
+constexpr double kLeastPiece = 1e-5;
 /// A step longer than the stable one by no more than this share is the stable one.
 constexpr double kRounding = 1e-9;
 
@@ -46,6 +52,18 @@ double rate_of_change(const Model& model, const State& state) {
   return largest;
 }
 
+/// Whether an edge is another one than it was at the positions `before`; where the whole rod is
+/// does not count.
+bool has_other_shape(const Model& model, const Vector& positions, const Vector& before) {
+  for (const Edge& edge : model.edges) {
+    const auto& [x0, y0, x1, y1] = edge.dofs;
+    const Vec2 then{before[x1] - before[x0], before[y1] - before[y0]};
+    const Vec2 now{positions[x1] - positions[x0], positions[y1] - positions[y0]};
+    if ((now - then).squaredNorm() > kOtherShape * kOtherShape * then.squaredNorm()) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 StabilityWatch::StabilityWatch(const Model& model, const StepperInfo& stepper,
@@ -67,8 +85,17 @@ StableStep StabilityWatch::explain(const State& state) {
 }
 
 void StabilityWatch::check_start(const State& state) {
-  if (time_.stepping != scenario::Stepping::Fixed || time_.allow_unstable) return;
-  if (time_.step <= stable_step(state) * (1.0 + kRounding)) return;
+  if (time_.stepping == scenario::Stepping::Adaptive || time_.allow_unstable) return;
+  const bool automatic = time_.stepping == scenario::Stepping::Automatic;
+  const double limit = stable_step(state);
+  if (automatic && kStepMargin * limit < time_.minimum_step) {
+    throw Error("unstable_step",
+                fmt::format("time.minimum_step of {:g} s leaves no stable step: {}. Lower it, or "
+                            "take an implicit integrator",
+                            time_.minimum_step,
+                            describe_stable_step(explain(state), time_.integrator, model_)));
+  }
+  if (automatic || time_.step <= limit * (1.0 + kRounding)) return;
   const StableStep stable = explain(state);
   throw Error("unstable_step", fmt::format("time.step of {:g} s is above {}. ", time_.step,
                                            describe_stable_step(stable, time_.integrator, model_)) +
@@ -77,15 +104,12 @@ void StabilityWatch::check_start(const State& state) {
 
 void StabilityWatch::look(State& state, double step) {
   if (time_.allow_unstable) return;
-  const bool looked = state.next_step > 0.0;
-  const std::int64_t pieces = looked ? std::llround(step / state.next_step) : 1;
-  if (looked && state.step % std::max<std::int64_t>(1, kPiecesBetweenLooks / pieces) != 0) return;
-  const double rate = rate_of_change(model_, state);
-  const bool fast =
-      pieces > 1 || rate * step * static_cast<double>(kStepsBetweenLooks) > kOtherShape;
-  if (looked && !fast && state.step % kStepsBetweenLooks != 0) return;
+  const bool looked = state.history.size() == 1;
+  if (looked && !has_other_shape(model_, state.positions, state.history[0])) return;
   // What a program may have written there; the stepper says where.
   if (!state.positions.allFinite()) return;
+  state.history.resize(1);
+  state.history[0] = state.positions;
 
   const double stable = stable_step(state);
   if (time_.stepping == scenario::Stepping::Fixed) {
@@ -93,13 +117,18 @@ void StabilityWatch::look(State& state, double step) {
     state.next_step = step;
     return;
   }
-  if (!(kStepMargin * stable >= time_.minimum_step)) throw DivergedError(explain_end(state));
-  const double longest = std::min(stable, kOtherShape / rate);
+  const double least = time_.minimum_step > 0.0 ? time_.minimum_step : kLeastPiece * step;
+  if (!(kPieceMargin * stable >= least)) throw DivergedError(explain_end(state, least));
+  const double longest = std::min(stable, kLargestChange / rate_of_change(model_, state));
+  const auto bears = [&](double length, double margin) {
+    return length <= margin * longest * (1.0 + kRounding);
+  };
+  const double fewest = bears(step, kStepMargin) ? 1.0 : std::ceil(step / (kPieceMargin * longest));
+  const double pieces = looked ? std::round(step / state.next_step) : 1.0;
+  const bool is_stable = pieces == 1.0 ? fewest == 1.0 : bears(state.next_step, kLeastMargin);
   // A longer piece may do later on; a shorter one is taken only when it must be, since steps that
   // change all the time cost Verlet's scheme its grip on the energy.
-  const double fewest =
-      std::max(1.0, std::ceil(step / (kStepMargin * longest) * (1.0 - kRounding)));
-  if (looked && state.next_step <= longest && fewest >= static_cast<double>(pieces)) return;
+  if (looked && is_stable && fewest >= pieces) return;
   state.next_step = step / fewest;
 }
 
@@ -112,23 +141,22 @@ std::string StabilityWatch::explain_overrun(const State& state) {
          fmt::format(kAdvice, kStepMargin * stable.step);
 }
 
-std::string StabilityWatch::explain_end(const State& state) {
+std::string StabilityWatch::explain_end(const State& state, double least) {
   return fmt::format(
       "the motion cannot go on from t = {:.6g} s: {} now, too close to time.minimum_step of {:.3g} "
       "s. Edges that are crushed or folded flat do that: take an implicit integrator, or fewer "
       "nodes",
-      state.time, describe_stable_step(explain(state), time_.integrator, model_),
-      time_.minimum_step);
+      state.time, describe_stable_step(explain(state), time_.integrator, model_), least);
 }
 
-std::string StabilityWatch::explain_blow_up(const State& start, double step) {
-  const StableStep stable = explain(start);
+std::string StabilityWatch::explain_blow_up(const State& start, const State& last, double step) {
+  const StableStep stable = explain(time_.allow_unstable ? start : last);
   const std::string limit = describe_stable_step(stable, time_.integrator, model_);
   if (step <= stable.step) {
     return fmt::format(
-        "The step of {:.3g} s is below {} at the start: the motion itself stiffens the rod. Try "
-        "'step: auto', or an implicit integrator.",
-        step, limit);
+        "The step of {:.3g} s is below {}{}: the motion itself is faster than that. Take an "
+        "implicit integrator, or fewer nodes.",
+        step, limit, time_.allow_unstable ? " at the start" : " there");
   }
   return fmt::format(
       "The step of {:.3g} s is above {}. Use time.step <= {:.2g}, or an implicit "

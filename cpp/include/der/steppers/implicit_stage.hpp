@@ -25,8 +25,8 @@ class ImplicitStage {
   /// On entry to `solve` the guess, held degrees of freedom included; on exit the solution.
   Vector positions;
 
-  /// Tells where the step at hand ends [s]: tables that have a kink there go on without it in stages
-  /// beyond.
+  /// Tells where the step at hand ends [s]: tables that have a kink there go on without it in
+  /// stages beyond.
   void end_step_at(double time) { step_end_ = time; }
   /// Puts the held degrees of freedom of `where` to where the tables have them at `time`.
   void place_held_at(const State& state, double time, Vector& where);

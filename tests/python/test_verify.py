@@ -317,10 +317,35 @@ def test_two_levels(arm):
     assert verification.meshes == ("21 nodes", "41 nodes")
     assert verification["tip"].verdict == "two levels in space"
     assert not verification.flagged
+    assert verification.order_not_measured == list(verification.values)
+    assert "The order of all 1 values was not measured (" in str(verification)
+    assert "converge at" not in str(verification)
+    assert verification.to_dict()["converged"] is False
     with pytest.raises(ValueError, match="levels"):
         der.verify(arm, levels=4)
     with pytest.raises(ValueError, match="jobs"):
         der.verify(arm, jobs=0)
+
+
+def test_two_levels_do_not_hide_what_is_flagged(tube):
+    verification = der.verify(tube, levels=2)
+    assert verification["deflection"].verdict == "damped in time"
+    assert f"{len(verification.flagged)} of 6 values do not converge" in str(verification)
+
+
+def test_nothing_refined_is_nothing_measured(arm):
+    arm["loads"][0]["point_force"]["at"] = "all"
+    verification = der.verify(arm)
+    assert not verification.flagged
+    assert "The order of all 1 values was not measured (" in str(verification)
+
+
+def test_summary_tells_how_many_rows_the_table_leaves_out(sagging):
+    text = str(der.verify(sagging))
+    rows = [line for line in text.splitlines() if line.startswith("sag")]
+    assert len(rows) < 3
+    assert "All 3 values converge at the expected order" in text
+    assert f"(rows not shown: {3 - len(rows)}; " in text
 
 
 def test_scene_without_probes_gets_some(arm, swing):

@@ -78,6 +78,11 @@ class VerifiedValue:
         return any(part.flagged for _, part in self._parts_that_count)
 
     @property
+    def has_two_levels(self) -> bool:
+        """Whether a part that counts was refined only once, so that its order is not known."""
+        return any(part.verdict == "two levels" for _, part in self._parts_that_count)
+
+    @property
     def verdict(self) -> str:
         """``converged``, or what is wrong and where, such as ``slow in time``."""
         found = [
@@ -147,6 +152,16 @@ class Verification:
         """The values that do not converge at the expected order."""
         return [value for value in self.values if value.flagged]
 
+    @property
+    def order_not_measured(self) -> list[VerifiedValue]:
+        """The values of which nothing tells whether they converge at the expected order.
+
+        Those with two levels only; all, where neither mesh nor step could be refined.
+        """
+        if len(self.meshes) < 2 and len(self.steps) < 2:
+            return list(self.values)
+        return [value for value in self.values if value.has_two_levels]
+
     def __getitem__(self, name: str | tuple[str, str]) -> VerifiedValue:
         """Return a value by probe, or by probe and `VerifiedValue.what` (if not ``final``)."""
         probe, what = (name, "final") if isinstance(name, str) else name
@@ -160,7 +175,9 @@ class Verification:
         return {
             "title": self.scenario.title,
             "scene": self.scenario.source,
-            "converged": not self.flagged,
+            "converged": not self.flagged and not self.order_not_measured,
+            "flagged": len(self.flagged),
+            "order_not_measured": len(self.order_not_measured),
             "meshes": list(self.meshes),
             "steps": list(self.steps),
             "values": [value.to_dict() for value in self.values],

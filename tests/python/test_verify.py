@@ -464,6 +464,32 @@ def test_command_prints_a_table_and_writes_json(scene_file, tmp_path, capsys):
     assert found["values"][0]["space_error"]["order"] == pytest.approx(2.0, abs=0.1)
 
 
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("nodir/x.json", "there is no folder nodir; make it first"),
+        (".", "it is a folder; name a file in it"),
+    ],
+)
+def test_json_that_cannot_be_written_is_refused_before_the_work(
+    scene_file, monkeypatch, tmp_path, capsys, name, words
+):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as caught:
+        main(["verify", str(scene_file), "--json", name])
+    assert caught.value.code == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert f"argument --json: cannot write {name}: {words}" in printed.err
+
+
+def test_json_where_one_may_not_write_is_refused(scene_file, monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr("os.access", lambda path, mode: False)
+    with pytest.raises(SystemExit):
+        main(["verify", str(scene_file), "--json", str(tmp_path / "x.json")])
+    assert "not permitted" in capsys.readouterr().err
+
+
 def test_exit_codes(tube, unstable, tmp_path, capsys):
     flagged, failing, wrong = (tmp_path / f"{i}.yaml" for i in range(3))
     flagged.write_text(der.Scenario.from_dict(tube).to_yaml())

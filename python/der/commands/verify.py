@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import argparse
 import json
-from pathlib import Path
 
 from der.accuracy import verify
+from der.output_paths import output_file
 from der.progress import progress_on_terminal
 
 _FLAGGED = 5
@@ -22,7 +22,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument("scene", metavar="SCENE", help="scene file (YAML)")
     parser.add_argument(
-        "--json", type=Path, metavar="FILE", help="also write everything that was found to FILE"
+        "--json",
+        type=output_file,
+        metavar="FILE",
+        help="also write everything that was found to FILE",
     )
     parser.add_argument(
         "--levels",

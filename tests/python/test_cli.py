@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -88,7 +89,16 @@ def test_schema(capsys):
 def test_steppers_lists_every_integrator(capsys):
     assert main(["steppers"]) == 0
     header, *rows = capsys.readouterr().out.splitlines()
-    assert header.split() == ["name", "order", "kind", "stable", "damping"]
+    assert re.split(r"  +", header) == [
+        "name",
+        "order",
+        "kind",
+        "stable",
+        "keeps angular momentum",
+        "damping",
+    ]
+    keeps = [row[header.index("keeps") :].split()[0] for row in rows]
+    assert keeps == ["yes" if info.keeps_angular_momentum else "no" for info in der.steppers()]
     assert [row.split()[:2] for row in rows] == [
         [info.name, str(info.order)] for info in der.steppers()
     ]

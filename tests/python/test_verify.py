@@ -407,6 +407,12 @@ def test_failed_finer_run_is_flagged_with_a_note(arm, monkeypatch):
     json.dumps(verification.to_dict(), allow_nan=False)
 
 
+@pytest.mark.parametrize("scene", [None, 3, ["arm.yaml"]])
+def test_what_is_no_scene_is_a_clear_error(scene):
+    with pytest.raises(TypeError, match="path of a scene file, or a dict with its keys, got"):
+        der.verify(scene)
+
+
 def test_scene_that_fails_is_a_clear_error(unstable):
     with pytest.raises(der.DerError, match="drag"):
         der.verify(unstable)

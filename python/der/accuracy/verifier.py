@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from operator import index
 
 from der._core import Scenario
 from der.accuracy.cross_check import hidden_motion
@@ -63,12 +64,15 @@ def verify(
         If the scene itself does not run to its end. A finer run that fails is noted and flagged.
     ValueError
         For any other number of levels or less than one job.
+    TypeError
+        For what is no scene, or no whole number of levels or jobs.
 
     Examples
     --------
     >>> verification = der.verify("configs/cantilever.yaml")
     >>> verification["tip_y"].value, verification["tip_y"].bar
     """
+    levels, jobs = _whole_number("levels", levels), _whole_number("jobs", jobs)
     if levels not in (None, 2, 3):
         raise ValueError(f"levels must be 2 or 3, got {levels}")
     given = as_scenario(scenario)
@@ -86,6 +90,13 @@ def verify(
         notes=(*runs.notes, *_notes_on_angles(runs, scene), *notes),
         cpu_seconds=runs.cpu_seconds,
     )
+
+
+def _whole_number(name: str, value: int | None) -> int | None:
+    try:
+        return None if value is None else index(value)
+    except TypeError:
+        raise TypeError(f"{name} must be a whole number, got {value!r}") from None
 
 
 def _evaluate(runs: VerificationRuns, scene: Scenario) -> tuple[list[VerifiedValue], list[str]]:

@@ -8,12 +8,12 @@ from fractions import Fraction
 import der
 import numpy as np
 import pytest
-from der.accuracy.error_bars import estimate_error
+from der.accuracy.error_bars import ErrorEstimate, estimate_error
 from der.accuracy.probe_extremes import parabola_top
 from der.accuracy.refinement import rods_that_cannot_be_refined, with_elements, with_time
 from der.accuracy.resampling import find_corners, resample_line, resample_list
 from der.accuracy.static_verifier import StaticVerifier
-from der.accuracy.verification import Verification
+from der.accuracy.verification import Verification, VerifiedValue
 from der.accuracy.verification_runs import VerificationRuns
 from der.accuracy.verification_table import with_digits_of
 from der.cli import main
@@ -364,6 +364,38 @@ def test_summary_tells_how_many_rows_the_table_leaves_out(sagging):
     assert len(rows) < 3
     assert "All 3 values converge at the expected order" in text
     assert f"(rows not shown: {3 - len(rows)}; " in text
+
+
+def estimate(verdict, bar):
+    return ErrorEstimate(0.0, bar, None, 2.0, verdict)
+
+
+@pytest.mark.parametrize(
+    ("bar", "verdict"),
+    [(0.9e-7, "converged"), (1.1e-7, "diverging in time"), (math.inf, "diverging in time")],
+)
+def test_negligible_parts_are_not_flagged_but_stay_in_the_bar(bar, verdict):
+    space = estimate("exact", 1e-10)
+    time = estimate("diverging", bar)
+    value = VerifiedValue("tip", "max", "m", 1.0, 0.0, space, time, 0.0, negligible=1e-7)
+    assert (value.verdict, value.flagged) == (verdict, verdict != "converged")
+    assert value.bar == 1e-10 + bar
+
+
+def test_what_is_negligible_goes_by_the_way_of_the_probe(swing):
+    """Not by its value: far from the origin, a small motion is all that there is."""
+    far = json.loads(json.dumps(swing))
+    for end in ("from", "to"):
+        far["rods"][0][end] = [far["rods"][0][end][0] + 1000.0, far["rods"][0][end][1]]
+    limits = []
+    for scene in (swing, far):
+        scene["output"]["probes"] = {"tip": {"rod": "arm", "at": "end", "quantity": "x"}}
+        found = der.verify(scene, levels=2)
+        way = found["tip", "max"].value - found["tip", "min"].value
+        limits.append(found["tip"].negligible)
+        assert limits[-1] == pytest.approx(1e-7 * way)
+    assert limits[0] == pytest.approx(limits[1], rel=1e-3)
+    assert limits[0] > 0.0
 
 
 def test_scene_without_probes_gets_some(arm, swing):

@@ -37,6 +37,8 @@ class VerifiedValue:
         rounding.
     solver_correction
         What the tighter tolerance changed.
+    negligible
+        Parts of the error up to this may converge as they like.
     """
 
     probe: str
@@ -48,6 +50,7 @@ class VerifiedValue:
     time: ErrorEstimate | None
     solver: float
     solver_correction: float = 0.0
+    negligible: float = 0.0
 
     @property
     def label(self) -> str:
@@ -78,7 +81,8 @@ class VerifiedValue:
     def flagged(self) -> bool:
         """Whether what makes up its error does not converge at the expected order.
 
-        A part of the error that is less than a tenth of the whole bar does not count.
+        A part of the error that is less than a tenth of the whole bar, or negligible, does not
+        count.
         """
         return any(part.flagged for _, part in self._parts_that_count)
 
@@ -100,7 +104,11 @@ class VerifiedValue:
     @property
     def _parts_that_count(self) -> list[tuple[str, ErrorEstimate]]:
         named = (("space", self.space), ("time", self.time))
-        return [(w, p) for w, p in named if p is not None and not p.bar < _COUNTS * self.bar]
+        return [(w, p) for w, p in named if p is not None and self._counts(p)]
+
+    def _counts(self, part: ErrorEstimate) -> bool:
+        # Written so that an unknown bar, which is infinite, counts beside another one.
+        return part.bar > self.negligible and not part.bar < _COUNTS * self.bar
 
     @property
     def _parts(self) -> list[ErrorEstimate]:

@@ -23,6 +23,9 @@ from der.simulation import SceneLike, as_scenario
 
 #: Where the witness contradicts, the error is at most this times the difference to it.
 _WITNESS_FACTOR = 1.25
+#: Errors smaller than this share of what the probe goes through in the run may converge as they
+#: like: seven digits are more than anyone looks at.
+_NEGLIGIBLE = 1e-7
 #: A contradiction by less than this times the noise is none.
 _LITTLE_NOISE = 10.0
 
@@ -192,6 +195,7 @@ class _Evaluation:
             time=time,
             solver=solver + SOLVER_FACTOR * abs(shift),
             solver_correction=shift,
+            negligible=_NEGLIGIBLE * (summary["max"] - summary["min"]),
         )
 
     def _space_error(self, what: str) -> ErrorEstimate | None:

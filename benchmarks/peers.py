@@ -17,7 +17,6 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 THREAD_LIMITS = (
     "OMP_NUM_THREADS",
@@ -62,14 +61,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def parse(arguments: Sequence[str] | None, keys: Sequence[str]) -> argparse.Namespace:
     """Read the command line."""
+    from der.output_paths import output_file, output_picture  # not before: see main
+
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--peers", nargs="+", choices=keys, default=list(keys), metavar="CODE")
     parser.add_argument("--quick", action="store_true", help="few configurations, two runs each")
     parser.add_argument("--repeats", type=int, default=3, help="runs of those that are worth it")
-    parser.add_argument("--csv", type=Path, metavar="FILE", help="write every run")
-    parser.add_argument("--plot", type=Path, metavar="FILE", help="draw cost against error")
+    parser.add_argument("--csv", type=output_file, metavar="FILE", help="write every run")
+    parser.add_argument(
+        "--plot", type=output_picture, metavar="FILE", help="draw cost against error"
+    )
     return parser.parse_args(arguments)
 
 

@@ -67,7 +67,7 @@ def measure(
     """Run all configurations of all codes.
 
     A first round runs all; the others repeat, code by code in turns, those that can still be the
-    cheapest of their accuracy.
+    cheapest of their accuracy. A point whose repeat fails keeps the time that it has.
 
     Parameters
     ----------
@@ -104,8 +104,7 @@ def measure(
             share = (repeat - 1 + i / len(points)) / (repeats - 1)
             _report(progress, 0.5 + 0.5 * share)
             if id(point) in chosen:
-                seconds, _ = runs[point.code](point.config)
-                points[i] = replace(point, seconds=min(point.seconds, seconds))
+                points[i] = _again(point, runs[point.code])
     apart = {
         title: problem.distance(limit, reference)
         for title, limit in limits.items()
@@ -137,6 +136,14 @@ def _first(title: str, config: Config, run: Run, reference: Path2D, limit: Path2
         return Point(title, config, math.inf, math.inf, failure=str(error))
     own_error = None if limit is None else problem.distance(path, limit)
     return Point(title, config, seconds, problem.distance(path, reference), own_error)
+
+
+def _again(point: Point, run: Run) -> Point:
+    try:
+        seconds, _ = run(point.config)
+    except RunFailedError:
+        return point
+    return replace(point, seconds=min(point.seconds, seconds))
 
 
 def _in_turns(grids: list[list[tuple[str, Config]]]) -> Iterator[tuple[str, Config]]:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import os
 import pkgutil
+import signal
 import sys
 from collections.abc import Sequence
 
@@ -16,16 +18,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a subcommand and return its exit code, as der_run has them.
 
     0, or with a message on stderr 3 if a run failed and 1 for anything else; a command may have
-    others of its own.
+    others of its own. Without a message 141 if nobody reads what it prints any more, as the shell
+    calls the end of a program by SIGPIPE, and 130 after Ctrl-C.
 
     Parameters
     ----------
     arguments
         In place of those of the process.
     """
-    chosen = _make_parser().parse_args(arguments)
     try:
-        return int(chosen.execute(chosen))
+        try:
+            chosen = _make_parser().parse_args(arguments)
+            return int(chosen.execute(chosen))
+        finally:
+            # Here and not when Python ends, where nobody catches errors. There may be no stdout.
+            print(end="", flush=True)
+    except BrokenPipeError:
+        _discard_output()
+        return 128 + signal.SIGPIPE
     except (NotConvergedError, DivergedError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 3
@@ -34,6 +44,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 1
     except KeyboardInterrupt:
         return 130
+
+
+def _discard_output() -> None:
+    """Send to nowhere what is still to be printed; Python does that once more when it ends."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
 
 
 def _make_parser() -> argparse.ArgumentParser:

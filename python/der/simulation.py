@@ -323,12 +323,25 @@ def _at_time_0(part: Any) -> Any:
 
 
 def as_scenario(scenario: SceneLike) -> Scenario:
-    """Return a scenario as it is; load a path; validate a dict."""
+    """Return a scenario as it is; load a path; validate a dict.
+
+    Raises
+    ------
+    SceneError
+        If the scene is not valid.
+    TypeError
+        For anything else.
+    """
     if isinstance(scenario, Scenario):
         return scenario
     if isinstance(scenario, Mapping):
         return Scenario.from_dict(scenario)
-    return Scenario.load(scenario)
+    if isinstance(scenario, (str, os.PathLike)):
+        return Scenario.load(scenario)
+    raise TypeError(
+        "expected a Scenario, the path of a scene file, or a dict with its keys, got "
+        f"{scenario!r} ({type(scenario).__name__})"
+    )
 
 
 def _to_result(scenario: Scenario, recording: Recording) -> Result:

@@ -1,6 +1,9 @@
 """The command der."""
 
 import json
+import os
+import re
+import signal
 import subprocess
 import sys
 
@@ -86,7 +89,16 @@ def test_schema(capsys):
 def test_steppers_lists_every_integrator(capsys):
     assert main(["steppers"]) == 0
     header, *rows = capsys.readouterr().out.splitlines()
-    assert header.split() == ["name", "order", "kind", "stable", "damping"]
+    assert re.split(r"  +", header) == [
+        "name",
+        "order",
+        "kind",
+        "stable",
+        "keeps angular momentum",
+        "damping",
+    ]
+    keeps = [row[header.index("keeps") :].split()[0] for row in rows]
+    assert keeps == ["yes" if info.keeps_angular_momentum else "no" for info in der.steppers()]
     assert [row.split()[:2] for row in rows] == [
         [info.name, str(info.order)] for info in der.steppers()
     ]
@@ -124,6 +136,37 @@ def test_errors_are_one_line_on_stderr(tube, tmp_path, capsys, arguments, words)
     assert error.startswith("error: ")
     assert words in error
     assert error.count("\n") == 1
+
+
+def without_reader(*arguments):
+    """Run the command as `der ... | true` does; return exit code and stderr."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    line = [sys.executable, "-m", "der", *arguments]
+    done = subprocess.run(line, stdout=writing, stderr=subprocess.PIPE, check=False)
+    os.close(writing)
+    return done.returncode, done.stderr
+
+
+@pytest.mark.parametrize("name", ["steppers", "schema"])
+def test_a_reader_that_leaves_is_no_error(name):
+    assert without_reader(name) == (141, b"")
+
+
+def test_a_reader_that_leaves_the_help_is_no_error():
+    code, error = without_reader("--help")
+    assert code in (0, 141)  # argparse hides some errors of its own output
+    assert error == b""
+
+
+def test_run_is_ended_by_sigpipe_as_the_program():
+    assert without_reader("run", "--help") == (-signal.SIGPIPE, b"")
+
+
+def test_no_stdout_is_no_error():
+    line = f"{sys.executable} -m der steppers >&-"
+    done = subprocess.run(line, shell=True, stderr=subprocess.PIPE, check=False)
+    assert (done.returncode, done.stderr) == (0, b"")
 
 
 def test_matplotlib_is_loaded_only_to_draw():

@@ -227,6 +227,43 @@ def test_the_program_fails_without_anything_to_measure(tmp_path):
     assert "nothing to measure" in done.stderr
 
 
+@pytest.mark.parametrize(
+    ("option", "name", "words"),
+    [
+        ("--csv", "nodir/out.csv", "there is no folder nodir"),
+        ("--plot", ".", "it is a folder"),
+        ("--plot", "out.jpg", "a picture ends with .png, .svg or .pdf"),
+    ],
+)
+def test_what_cannot_be_written_is_refused_before_the_work(option, name, words, tmp_path):
+    done = peers("--quick", "--peers", "der", option, name, cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert words in done.stderr
+
+
+def test_a_repeat_that_fails_leaves_the_first_time(monkeypatch):
+    """An unstable run may get through once and not again."""
+    times = iter([0.25, None, 0.125])
+
+    class Adapter:
+        @staticmethod
+        def grid(quick):
+            return [{"elements": 10, "steps": 2}]
+
+        @staticmethod
+        def run(config):
+            seconds = next(times)
+            if seconds is None:
+                raise RunFailedError("unstable")
+            return seconds, problem.reference()
+
+    code = Code("ours", "Ours", "der", "", "")
+    monkeypatch.setattr(Code, "adapter", lambda self: Adapter)
+    (point,), _ = measure.measure([code], quick=True, repeats=3)
+    assert (point.seconds, point.error, point.failure) == (0.125, 0.0, "")
+    assert next(times, "none left") == "none left"
+
+
 def test_an_unknown_peer_is_refused(tmp_path):
     done = peers("--peers", "elastica3000", cwd=tmp_path)
     assert done.returncode == 2

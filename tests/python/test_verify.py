@@ -2,17 +2,18 @@
 
 import json
 import math
+import re
 from fractions import Fraction
 
 import der
 import numpy as np
 import pytest
-from der.accuracy.error_bars import estimate_error
+from der.accuracy.error_bars import ErrorEstimate, estimate_error
 from der.accuracy.probe_extremes import parabola_top
 from der.accuracy.refinement import rods_that_cannot_be_refined, with_elements, with_time
 from der.accuracy.resampling import find_corners, resample_line, resample_list
 from der.accuracy.static_verifier import StaticVerifier
-from der.accuracy.verification import Verification
+from der.accuracy.verification import Verification, VerifiedValue
 from der.accuracy.verification_runs import VerificationRuns
 from der.accuracy.verification_table import with_digits_of
 from der.cli import main
@@ -269,6 +270,23 @@ def test_space_is_not_refined_where_spheres_are_on_every_node(spheres):
     assert any("spheres at every node" in note for note in verification.notes)
 
 
+def test_space_is_not_refined_where_a_run_gives_the_start(sagging, tmp_path):
+    """Its last frame has as many nodes as it has; time is refined all the same."""
+    der.run(sagging, out=tmp_path / "first")
+    verification = der.verify(sagging | {"start_from": str(tmp_path / "first")})
+    sag = verification["sag"]
+    assert (sag.space, verification.meshes) == (None, ())
+    assert sag.time.verdict != "failed"
+    assert math.isfinite(sag.bar)
+    (note,) = verification.notes
+    assert note.startswith("space not refined: it starts from ")
+
+
+def test_space_is_refined_where_the_equilibrium_is_the_start(sagging):
+    sagging["start_from"] = "equilibrium"
+    assert rods_that_cannot_be_refined(der.Scenario.from_dict(sagging)) == {}
+
+
 def test_numerical_damping_is_found_out(tube):
     """At the end a load put on at once still swings; implicit Euler has damped it away, the same on
     every level."""
@@ -317,10 +335,67 @@ def test_two_levels(arm):
     assert verification.meshes == ("21 nodes", "41 nodes")
     assert verification["tip"].verdict == "two levels in space"
     assert not verification.flagged
+    assert verification.order_not_measured == list(verification.values)
+    assert "The order of all 1 values was not measured (" in str(verification)
+    assert "converge at" not in str(verification)
+    assert verification.to_dict()["converged"] is False
     with pytest.raises(ValueError, match="levels"):
         der.verify(arm, levels=4)
     with pytest.raises(ValueError, match="jobs"):
         der.verify(arm, jobs=0)
+
+
+def test_two_levels_do_not_hide_what_is_flagged(tube):
+    verification = der.verify(tube, levels=2)
+    assert verification["deflection"].verdict == "damped in time"
+    assert f"{len(verification.flagged)} of 6 values do not converge" in str(verification)
+
+
+def test_nothing_refined_is_nothing_measured(arm):
+    arm["loads"][0]["point_force"]["at"] = "all"
+    verification = der.verify(arm)
+    assert not verification.flagged
+    assert "The order of all 1 values was not measured (" in str(verification)
+
+
+def test_summary_tells_how_many_rows_the_table_leaves_out(sagging):
+    text = str(der.verify(sagging))
+    rows = [line for line in text.splitlines() if line.startswith("sag")]
+    assert len(rows) < 3
+    assert "All 3 values converge at the expected order" in text
+    assert f"(rows not shown: {3 - len(rows)}; " in text
+
+
+def estimate(verdict, bar):
+    return ErrorEstimate(0.0, bar, None, 2.0, verdict)
+
+
+@pytest.mark.parametrize(
+    ("bar", "verdict"),
+    [(0.9e-7, "converged"), (1.1e-7, "diverging in time"), (math.inf, "diverging in time")],
+)
+def test_negligible_parts_are_not_flagged_but_stay_in_the_bar(bar, verdict):
+    space = estimate("exact", 1e-10)
+    time = estimate("diverging", bar)
+    value = VerifiedValue("tip", "max", "m", 1.0, 0.0, space, time, 0.0, negligible=1e-7)
+    assert (value.verdict, value.flagged) == (verdict, verdict != "converged")
+    assert value.bar == 1e-10 + bar
+
+
+def test_what_is_negligible_goes_by_the_way_of_the_probe(swing):
+    """Not by its value: far from the origin, a small motion is all that there is."""
+    far = json.loads(json.dumps(swing))
+    for end in ("from", "to"):
+        far["rods"][0][end] = [far["rods"][0][end][0] + 1000.0, far["rods"][0][end][1]]
+    limits = []
+    for scene in (swing, far):
+        scene["output"]["probes"] = {"tip": {"rod": "arm", "at": "end", "quantity": "x"}}
+        found = der.verify(scene, levels=2)
+        way = found["tip", "max"].value - found["tip", "min"].value
+        limits.append(found["tip"].negligible)
+        assert limits[-1] == pytest.approx(1e-7 * way)
+    assert limits[0] == pytest.approx(limits[1], rel=1e-3)
+    assert limits[0] > 0.0
 
 
 def test_scene_without_probes_gets_some(arm, swing):
@@ -357,8 +432,24 @@ def test_failed_finer_run_is_flagged_with_a_note(arm, monkeypatch):
     verification = der.verify(arm)
     assert verification["tip"].verdict == "failed in space"
     assert math.isinf(verification["tip"].bar)
+    assert math.isnan(verification["tip"].extrapolated)
+    (row,) = [line for line in str(verification).splitlines() if line.startswith("tip ")]
+    assert re.fullmatch(r"tip +\S+ m +± unknown +unknown +- +- +-, - +failed in space", row)
     assert any("41 nodes failed: no convergence" in note for note in verification.notes)
     json.dumps(verification.to_dict(), allow_nan=False)
+
+
+@pytest.mark.parametrize("scene", [None, 3, ["arm.yaml"]])
+def test_what_is_no_scene_is_a_clear_error(scene):
+    with pytest.raises(TypeError, match="path of a scene file, or a dict with its keys, got"):
+        der.verify(scene)
+
+
+@pytest.mark.parametrize("given", [{"jobs": 1.5}, {"jobs": "2"}, {"levels": 2.0}])
+def test_numbers_of_levels_and_jobs_are_whole(arm, given):
+    ((name, value),) = given.items()
+    with pytest.raises(TypeError, match=f"{name} must be a whole number, got {value!r}"):
+        der.verify(arm, **given)
 
 
 def test_scene_that_fails_is_a_clear_error(unstable):
@@ -416,6 +507,32 @@ def test_command_prints_a_table_and_writes_json(scene_file, tmp_path, capsys):
     found = json.loads(out.read_text())
     assert found["converged"] is True
     assert found["values"][0]["space_error"]["order"] == pytest.approx(2.0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("nodir/x.json", "there is no folder nodir; make it first"),
+        (".", "it is a folder; name a file in it"),
+    ],
+)
+def test_json_that_cannot_be_written_is_refused_before_the_work(
+    scene_file, monkeypatch, tmp_path, capsys, name, words
+):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as caught:
+        main(["verify", str(scene_file), "--json", name])
+    assert caught.value.code == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert f"argument --json: cannot write {name}: {words}" in printed.err
+
+
+def test_json_where_one_may_not_write_is_refused(scene_file, monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr("os.access", lambda path, mode: False)
+    with pytest.raises(SystemExit):
+        main(["verify", str(scene_file), "--json", str(tmp_path / "x.json")])
+    assert "not permitted" in capsys.readouterr().err
 
 
 def test_exit_codes(tube, unstable, tmp_path, capsys):

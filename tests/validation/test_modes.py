@@ -1,5 +1,8 @@
 """Natural frequencies, free and under load, against `references/frequencies.py`."""
 
+import re
+from pathlib import Path
+
 import der
 import numpy as np
 import pytest
@@ -201,3 +204,17 @@ def test_rigid_motions_have_no_frequency_whatever_the_number_of_modes(edges, dir
     for found in found_frequencies(steel_bar(edges, direction)):
         assert (found[:3] == 0.0).all()
         assert (found[3:] > 100.0).all()
+
+
+def test_comment_of_the_scene_says_what_comes_out(scene):
+    """Numbers of Euler and Bernoulli to as many digits as it gives, and the last of `der`."""
+    path = Path(__file__).resolve().parents[2] / "configs/beam_modes.yaml"
+    comment = " ".join(path.read_text(encoding="utf-8").split("title:")[0].split())
+    *stated, last = map(float, re.findall(r"\d+\.\d+", comment))
+    rod = der.Model(scene("beam_modes")).rods[0]
+    roots = np.array([1.8751040687, 4.6940911330, 7.8547574382, 10.9955407349])
+    mass = 2700.0 * rod.EA / 70e9
+    exact = roots**2 / (2 * np.pi) * np.sqrt(rod.EI / mass)
+    assert stated == pytest.approx(exact, abs=6e-4)
+    assert last == pytest.approx(der.run(scene("beam_modes")).modes.frequencies[-1], abs=6e-6)
+    assert 1 - last / exact[-1] == pytest.approx(3e-7, abs=0.5e-7)

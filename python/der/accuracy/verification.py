@@ -37,6 +37,8 @@ class VerifiedValue:
         rounding.
     solver_correction
         What the tighter tolerance changed.
+    negligible
+        Parts of the error up to this may converge as they like.
     """
 
     probe: str
@@ -48,6 +50,7 @@ class VerifiedValue:
     time: ErrorEstimate | None
     solver: float
     solver_correction: float = 0.0
+    negligible: float = 0.0
 
     @property
     def label(self) -> str:
@@ -65,7 +68,12 @@ class VerifiedValue:
 
     @property
     def extrapolated(self) -> float:
-        """Best guess of the truth: Richardson's extrapolation in space and time."""
+        """Best guess of the truth: Richardson's extrapolation in space and time.
+
+        NaN where a part of the error is unknown.
+        """
+        if math.isinf(self.bar):
+            return math.nan
         corrections = sum(part.correction for part in self._parts)
         return self.value + self.solver_correction + corrections
 
@@ -73,9 +81,15 @@ class VerifiedValue:
     def flagged(self) -> bool:
         """Whether what makes up its error does not converge at the expected order.
 
-        A part of the error that is less than a tenth of the whole bar does not count.
+        A part of the error that is less than a tenth of the whole bar, or negligible, does not
+        count.
         """
         return any(part.flagged for _, part in self._parts_that_count)
+
+    @property
+    def has_two_levels(self) -> bool:
+        """Whether a part that counts was refined only once, so that its order is not known."""
+        return any(part.verdict == "two levels" for _, part in self._parts_that_count)
 
     @property
     def verdict(self) -> str:
@@ -90,7 +104,11 @@ class VerifiedValue:
     @property
     def _parts_that_count(self) -> list[tuple[str, ErrorEstimate]]:
         named = (("space", self.space), ("time", self.time))
-        return [(w, p) for w, p in named if p is not None and not p.bar < _COUNTS * self.bar]
+        return [(w, p) for w, p in named if p is not None and self._counts(p)]
+
+    def _counts(self, part: ErrorEstimate) -> bool:
+        # Written so that an unknown bar, which is infinite, counts beside another one.
+        return part.bar > self.negligible and not part.bar < _COUNTS * self.bar
 
     @property
     def _parts(self) -> list[ErrorEstimate]:
@@ -147,6 +165,16 @@ class Verification:
         """The values that do not converge at the expected order."""
         return [value for value in self.values if value.flagged]
 
+    @property
+    def order_not_measured(self) -> list[VerifiedValue]:
+        """The values of which nothing tells whether they converge at the expected order.
+
+        Those with two levels only; all, where neither mesh nor step could be refined.
+        """
+        if len(self.meshes) < 2 and len(self.steps) < 2:
+            return list(self.values)
+        return [value for value in self.values if value.has_two_levels]
+
     def __getitem__(self, name: str | tuple[str, str]) -> VerifiedValue:
         """Return a value by probe, or by probe and `VerifiedValue.what` (if not ``final``)."""
         probe, what = (name, "final") if isinstance(name, str) else name
@@ -160,7 +188,9 @@ class Verification:
         return {
             "title": self.scenario.title,
             "scene": self.scenario.source,
-            "converged": not self.flagged,
+            "converged": not self.flagged and not self.order_not_measured,
+            "flagged": len(self.flagged),
+            "order_not_measured": len(self.order_not_measured),
             "meshes": list(self.meshes),
             "steps": list(self.steps),
             "values": [value.to_dict() for value in self.values],

@@ -25,7 +25,7 @@ def verification_table(verification: Verification) -> str:
         lines.append("  ".join(cells).rstrip())
     lines += ["", *_what_was_run(verification)]
     lines += [f"Note: {note.rstrip('.')}." for note in verification.notes]
-    lines.append(_summary(verification))
+    lines.append(_summary(verification, hidden=len(verification.values) - len(shown)))
     return "\n".join(lines)
 
 
@@ -86,9 +86,17 @@ def _what_was_run(verification: Verification) -> list[str]:
     return lines
 
 
-def _summary(verification: Verification) -> str:
+def _summary(verification: Verification, hidden: int) -> str:
+    """Return what holds for all values, also for those whose rows the table leaves out."""
     total, bad = len(verification.values), len(verification.flagged)
-    cost = f"{verification.cpu_seconds:.2g} s of CPU time"
-    if not bad:
-        return f"All {total} values converge at the expected order ({cost})."
-    return f"{bad} of {total} values do not converge at the expected order ({cost})."
+    unmeasured = len(verification.order_not_measured)
+    found = []
+    if bad:
+        found.append(f"{bad} of {total} values do not converge at the expected order")
+    elif not unmeasured:
+        found.append(f"All {total} values converge at the expected order")
+    if unmeasured:
+        which = f"{unmeasured} of {total}" if unmeasured < total else f"all {total}"
+        found.append(f"The order of {which} values was not measured")
+    left_out = f"rows not shown: {hidden}; " if hidden else ""
+    return f"{'. '.join(found)} ({left_out}{verification.cpu_seconds:.2g} s of CPU time)."

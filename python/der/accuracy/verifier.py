@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from operator import index
 
 from der._core import Scenario
 from der.accuracy.cross_check import hidden_motion
@@ -22,6 +23,9 @@ from der.simulation import SceneLike, as_scenario
 
 #: Where the witness contradicts, the error is at most this times the difference to it.
 _WITNESS_FACTOR = 1.25
+#: Errors smaller than this share of what the probe goes through in the run may converge as they
+#: like: seven digits are more than anyone looks at.
+_NEGLIGIBLE = 1e-7
 #: A contradiction by less than this times the noise is none.
 _LITTLE_NOISE = 10.0
 
@@ -63,12 +67,15 @@ def verify(
         If the scene itself does not run to its end. A finer run that fails is noted and flagged.
     ValueError
         For any other number of levels or less than one job.
+    TypeError
+        For what is no scene, or no whole number of levels or jobs.
 
     Examples
     --------
     >>> verification = der.verify("configs/cantilever.yaml")
     >>> verification["tip_y"].value, verification["tip_y"].bar
     """
+    levels, jobs = _whole_number("levels", levels), _whole_number("jobs", jobs)
     if levels not in (None, 2, 3):
         raise ValueError(f"levels must be 2 or 3, got {levels}")
     given = as_scenario(scenario)
@@ -86,6 +93,13 @@ def verify(
         notes=(*runs.notes, *_notes_on_angles(runs, scene), *notes),
         cpu_seconds=runs.cpu_seconds,
     )
+
+
+def _whole_number(name: str, value: int | None) -> int | None:
+    try:
+        return None if value is None else index(value)
+    except TypeError:
+        raise TypeError(f"{name} must be a whole number, got {value!r}") from None
 
 
 def _evaluate(runs: VerificationRuns, scene: Scenario) -> tuple[list[VerifiedValue], list[str]]:
@@ -181,6 +195,7 @@ class _Evaluation:
             time=time,
             solver=solver + SOLVER_FACTOR * abs(shift),
             solver_correction=shift,
+            negligible=_NEGLIGIBLE * (summary["max"] - summary["min"]),
         )
 
     def _space_error(self, what: str) -> ErrorEstimate | None:

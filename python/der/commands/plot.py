@@ -6,8 +6,7 @@ import argparse
 from pathlib import Path
 
 from der import open_run
-
-_ENDINGS = (".png", ".svg", ".pdf")
+from der.output_paths import PICTURE_ENDINGS
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -33,7 +32,7 @@ def execute(arguments: argparse.Namespace) -> int:
     import matplotlib as mpl
 
     out = arguments.out or arguments.run / "plot.png"
-    if out.suffix.lower() not in _ENDINGS:
+    if out.suffix.lower() not in PICTURE_ENDINGS:
         raise ValueError(f"cannot write {out.name}: a picture ends with .png, .svg or .pdf")
     mpl.use("agg")  # a file is written and no window opened, on a screen or without
     result = open_run(arguments.run)

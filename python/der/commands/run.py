@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import shutil
+import signal
 import sys
 import sysconfig
 from pathlib import Path
@@ -23,6 +24,8 @@ def execute(arguments: argparse.Namespace) -> int:
     """Turn this process into der_run."""
     program = _find_program()
     sys.stdout.flush()
+    # Python ignores it, and so would der_run, which is ended by it otherwise: `der run ... | head`.
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     os.execv(program, [str(program), *arguments.arguments])
 
 

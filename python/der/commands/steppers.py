@@ -1,4 +1,4 @@
-"""List the time integrators: order, stability and damping of each."""
+"""List the time integrators: order, stability, damping and what each keeps."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(arguments: argparse.Namespace) -> int:
     """Print one line for each stepper, in aligned columns."""
-    rows = [("name", "order", "kind", "stable", "damping")]
+    rows = [("name", "order", "kind", "stable", "keeps angular momentum", "damping")]
     for info in steppers():
         kind = "implicit" if info.implicit else "explicit"
-        rows.append((info.name, str(info.order), kind, info.stability, info.damping))
+        keeps = "yes" if info.keeps_angular_momentum else "no"
+        rows.append((info.name, str(info.order), kind, info.stability, keeps, info.damping))
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     for row in rows:
         cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))

@@ -1,0 +1,39 @@
+"""Output files of a command line: looked at before the work, not when its results are written."""
+
+from __future__ import annotations
+
+import os
+from argparse import ArgumentTypeError
+from pathlib import Path
+
+#: Endings of the pictures that can be written.
+PICTURE_ENDINGS = (".png", ".svg", ".pdf")
+
+
+def output_file(text: str) -> Path:
+    """Return the path of a file to write: the `type` of an argument of `argparse`.
+
+    Raises
+    ------
+    argparse.ArgumentTypeError
+        If no file can be written there; it says what to do.
+    """
+    path = Path(text)
+    if path.is_dir():
+        raise ArgumentTypeError(f"cannot write {text}: it is a folder; name a file in it")
+    if not path.parent.is_dir():
+        raise ArgumentTypeError(
+            f"cannot write {text}: there is no folder {path.parent}; make it first, or name a file "
+            "elsewhere"
+        )
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise ArgumentTypeError(f"cannot write {text}: not permitted; name a file elsewhere")
+    return path
+
+
+def output_picture(text: str) -> Path:
+    """Return the path of a picture to write, as `output_file`."""
+    path = output_file(text)
+    if path.suffix.lower() not in PICTURE_ENDINGS:
+        raise ArgumentTypeError(f"cannot write {text}: a picture ends with .png, .svg or .pdf")
+    return path

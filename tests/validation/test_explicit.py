@@ -64,8 +64,8 @@ def test_automatic_steps_stay_stable_for_long(nodes, modulus, radius):
 
 
 def test_a_push_within_one_frame_does_not_outrun_the_looks():
-    """The push presses the rod to three fifths. Frames set the whole steps: they make a difference of
-    the order of the larger one's error, not that of a run that blows up."""
+    """The push presses the rod to three fifths. Frames set the whole steps: they make a difference
+    of the order of the larger one's error, not that of a run that blows up."""
     scene = soft_arm(21, 1e5, curvature="tangent", duration=1.0)
     force = {"times": [0, 0.5, 1], "values": [[0, 0], [-300, 5], [0, 0]]}
     scene["loads"] = [{"point_force": {"rod": "arm", "at": "end", "force": force}}]

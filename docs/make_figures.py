@@ -137,13 +137,14 @@ def tolerance() -> Figure:
     exact = tips(step=5e-5, integrator="sdirk4")  # half the step moves it by 2e-10 m
     figure, axes = new_axes()
     axes.loglog(asked, asked, color="0.6", linestyle="--", label="what was asked for")
-    for name, marker in zip(names, ("o", "s", "^", "D", "v", "P", "X"), strict=True):
+    looks = zip(names, ("o", "s", "^", "D", "v", "P", "X"), (*PALETTE, "black"), strict=True)
+    for name, marker, colour in looks:
         errors = {}
         # Of order 1, six digits would take a million steps.
         for value in asked[:3] if name == "implicit_euler" else asked:
             off = tips(tolerance=value, integrator=name) - exact
             errors[value] = np.linalg.norm(off, axis=1).max()
-        axes.loglog(errors.keys(), errors.values(), marker=marker, label=name)
+        axes.loglog(errors.keys(), errors.values(), marker=marker, color=colour, label=name)
     axes.set(xlabel="tolerance [-]", ylabel="largest error of the tip in time [m]")
     axes.invert_xaxis()
     axes.legend()

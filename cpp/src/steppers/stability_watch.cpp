@@ -69,7 +69,6 @@ bool has_other_shape(const Model& model, const Vector& positions, const Vector& 
 StabilityWatch::StabilityWatch(const Model& model, const StepperInfo& stepper,
                                const scenario::Time& time)
     : model_(model),
-      stepper_(stepper),
       time_(time),
       bound_(model, stepper.drag_limits_step),
       controls_(Vector::Zero(model.controls.size())) {}

@@ -39,7 +39,6 @@ class StabilityWatch {
   std::string explain_end(const State& state, double least);
 
   const Model& model_;
-  const StepperInfo& stepper_;
   const scenario::Time& time_;
   StableStepBound bound_;
   Vector controls_;

@@ -127,6 +127,17 @@ def test_explicit_steppers_find_their_stable_step(sagging):
         assert rows[-1].step == pytest.approx(rows[-2].step / 2)
 
 
+@pytest.mark.parametrize("step", [1e-5, "auto"])
+def test_implicit_steps_of_an_explicit_scene_are_not_bound_by_its_stability(sagging, step):
+    sagging["time"] |= {"step": step, "integrator": "verlet"}
+    found = der.study(sagging, nodes=[11], steppers=["tr_bdf2", "verlet"])
+    steps = [row.step for row in rows_of(found, stepper="tr_bdf2")]
+    assert max(steps) == pytest.approx(0.3 / 50, rel=0.5)
+    assert min(steps) < 0.3 / 500
+    assert len(rows_of(found, stepper="verlet", status="completed")) == 2
+    assert found.cheapest("sag", 1e-2).stepper == "tr_bdf2"
+
+
 def test_static_scene_varies_the_mesh(sagging):
     sagging["analysis"] = "static"
     del sagging["time"], sagging["output"]["every"]

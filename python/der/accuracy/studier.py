@@ -84,8 +84,9 @@ def study(
         Of the first rod whose mesh can be varied; those of other rods follow in proportion. Without
         it, about half, once, twice and four times the scene's elements.
     steps
-        Time steps [s]. Without them, four times to an eighth of the scene's step; for an explicit
-        stepper, the longest stable step among its halvings and the next.
+        Time steps [s]. Without them, four times to an eighth of the scene's step, or if its step is
+        explicit, ``auto`` or set by a tolerance, a fiftieth to a 1600th of the duration; for an
+        explicit stepper, the longest stable step among the halvings of the longest and the next.
     steppers
         Names of time integrators; without them, all.
     max_seconds

@@ -14,13 +14,14 @@ from der.accuracy.refinement import (
     with_elements,
     with_time,
 )
-from der.accuracy.time_levels import find_stepper, fixed_step
+from der.accuracy.time_levels import find_stepper, fixed_step, stepper_of
 from der.result import Result
 
 _DEFAULT_MESHES = (Fraction(1, 2), Fraction(1), Fraction(2), Fraction(4))
 _DEFAULT_STEPS = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125)
-#: Steps in the run for the longest step of a scene with a tolerance; each next step is half of it.
-_STEPS_OF_ADAPTIVE = 50
+#: Steps in the run for the longest step of a scene whose own step says nothing about accuracy: with
+#: a tolerance it has none, and stability sets that of an explicit stepper.
+_FEWEST_STEPS_OF_RUN = 50
 _FEWEST_STEPS = 8
 _FEWEST_ELEMENTS = 4
 #: The times at which runs are compared are at most this many of the largest steps apart.
@@ -118,7 +119,10 @@ def choose_steppers(names: Sequence[str] | None) -> list[str]:
 
 
 def choose_steps(base: Result, steps: Sequence[float] | None) -> list[float]:
-    """Return the steps to try [s], longest first: those given, or some around the scene's own.
+    """Return the steps to try [s], longest first: those given, or some that suit the scene.
+
+    These are around the scene's own step; where that comes from a tolerance or from the stability
+    of an explicit stepper, they are shares of the duration.
 
     Raises
     ------
@@ -127,15 +131,18 @@ def choose_steps(base: Result, steps: Sequence[float] | None) -> list[float]:
     """
     duration = base.scenario.duration
     if steps is None:
-        own = fixed_step(base)
-        if "tolerance" in base.scenario.to_dict()["time"]:
-            own = duration / _STEPS_OF_ADAPTIVE / _DEFAULT_STEPS[0]
-        around = [factor * own for factor in _DEFAULT_STEPS]
+        around = [factor * _middle_step(base) for factor in _DEFAULT_STEPS]
         return [step for step in around if duration >= _FEWEST_STEPS * step] or around[-1:]
     for step in steps:
         if not 0.0 < step <= duration:
             raise ValueError(f"a step must lie between 0 and the duration, {duration:g} s: {step}")
     return sorted(set(steps), reverse=True)
+
+
+def _middle_step(base: Result) -> float:
+    if "tolerance" in base.scenario.to_dict()["time"] or not stepper_of(base).implicit:
+        return base.scenario.duration / _FEWEST_STEPS_OF_RUN / _DEFAULT_STEPS[0]
+    return fixed_step(base)
 
 
 def common_interval(base: Result, steps: Sequence[float]) -> float:

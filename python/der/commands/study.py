@@ -29,8 +29,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         type=float,
         metavar="DT",
-        help="time steps [s] (default: four times to an eighth of the scene's; for explicit "
-        "steppers the longest stable ones)",
+        help="time steps [s] (default: four times to an eighth of the scene's, or if that is "
+        "explicit or adaptive, 1/50 to 1/1600 of the duration; for explicit steppers the longest "
+        "stable ones)",
     )
     parser.add_argument(
         "--steppers", nargs="+", metavar="NAME", help="time integrators (default: all)"

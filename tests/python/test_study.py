@@ -335,6 +335,37 @@ def test_advice(made):
     assert made.advice([1e-7]) == ["sag: for 1e-07 m (2e-05 %): no configuration of this study"]
 
 
+def test_errors_of_a_probe_that_hardly_moves_are_set_against_its_magnitude(sagging):
+    """From its equilibrium the sag moves by rounding; meshes still tell it differently."""
+    sagging["start_from"] = "equilibrium"
+    found = der.study(sagging, nodes=[11, 21], steps=[0.01, 0.005], steppers=["tr_bdf2"])
+    sag = der.run(sagging).probes["sag"].summary["final"]
+    assert found.sizes["sag"] == pytest.approx(abs(sag), rel=0.05)
+    lines = found.advice()
+    assert lines[0].startswith("sag: for ")
+    assert "%): 11 nodes" in lines[0]
+    assert not any("no configuration" in line for line in lines)
+    share = float(found.advice([0.01])[0].split("(")[1].split(" %")[0])
+    assert share == pytest.approx(100 * 0.01 / found.sizes["sag"], rel=0.1)
+
+
+def test_a_probe_that_is_off_by_rounding_counts_as_exact(spheres):
+    """Equal spheres fall alike: the rod stays straight, its turning angle zero but for rounding."""
+    for sphere in spheres["rods"][0]["spheres"]:
+        sphere["at"] = "all"
+    spheres["time"]["duration"] = 0.5
+    found = der.study(spheres, steppers=["tr_bdf2"], steps=[0.05, 0.025])
+    rows = found.of("angle")
+    assert 0.0 < max(row.claimed_error for row in rows) < 1e-13
+    assert "angle: exact in every configuration" in found.advice()
+    assert "%" not in found.advice([0.01])[found.probes.index("angle")]
+
+
+def test_no_advice_below_rounding(made):
+    noisy = dataclasses.replace(made, noise={"sag": 1e-4})
+    assert [line.split()[2] for line in noisy.advice()] == ["0.1", "0.01", "0.001"]
+
+
 def test_seconds_text():
     assert [seconds_text(s) for s in (1.5, 0.012, 4e-6)] == ["1.5 s", "12 ms", "4 µs"]
 

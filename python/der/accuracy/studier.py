@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from der._core import Scenario
 from der.accuracy.default_probes import with_default_probes
+from der.accuracy.noise import noise_floor
 from der.accuracy.refinement import belongs_to_its_mesh, count_elements
 from der.accuracy.static_comparison import StaticComparison
 from der.accuracy.static_readings import static_readings
@@ -129,6 +130,11 @@ def study(
 
 def _largest_difference(a: NDArray[np.float64] | None, b: NDArray[np.float64] | None) -> float:
     return math.nan if a is None or b is None else float(np.max(np.abs(a - b)))
+
+
+def _size(values: NDArray[np.float64]) -> float:
+    """Return what errors are set against: a probe that hardly moves still has a magnitude."""
+    return float(max(np.ptp(values), np.max(np.abs(values))))
 
 
 def _repeats(seconds: float) -> int:
@@ -357,17 +363,20 @@ class _Study:
         """Return what was found."""
         self._note_what_is_missing()
         exact = self._reference.probes
-        ranges = {
-            name: float(np.ptp(exact[name]) if len(exact[name]) > 1 else np.abs(exact[name][0]))
-            for name in self._units
-        }
+        sizes = {name: _size(exact[name]) for name in self._units}
         values = [self._values(trial) for trial in self._trials]
         rows = [
             self._row(name, trial, found.get(name))
             for name in self._units
             for trial, found in zip(self._trials, values, strict=True)
         ]
-        return Study(self._scenario, tuple(rows), ranges, tuple(self._notes))
+        noise = {name: self._noise(name, exact[name]) for name in self._units}
+        return Study(self._scenario, tuple(rows), sizes, tuple(self._notes), noise)
+
+    def _noise(self, name: str, exact: NDArray[np.float64]) -> float:
+        step = min((trial.step for trial in self._trials if trial.step > 0.0), default=math.inf)
+        largest = float(np.max(np.abs(exact)))
+        return noise_floor(self._base.model, self._units[name], step, largest)
 
     def _values(self, trial: _Trial) -> dict[str, NDArray[np.float64]]:
         """Return what can be compared of a trial, by name."""

@@ -8,7 +8,13 @@ import math
 import der
 import numpy as np
 import pytest
-from der.accuracy.study_plan import choose_meshes, common_interval
+from der.accuracy.study_plan import (
+    choose_meshes,
+    choose_steps,
+    common_interval,
+    reference_interval,
+    reference_step,
+)
 from der.accuracy.study_reference import Reference, converge_in_space
 from der.accuracy.study_result import Study, StudyRow, seconds_text
 from der.cli import main
@@ -72,7 +78,7 @@ def test_every_configuration_has_a_row(found):
 def test_errors_against_an_independent_run(found, sagging):
     """A run on a far finer mesh with far smaller steps of another stepper."""
     exact = der.Scenario.from_dict(sagging).with_(
-        **{"rods.arm.nodes": 321, "time.step": 2.5e-4, "output.every": 0.01}
+        **{"rods.arm.nodes": 321, "time.step": 2.5e-4, "output.every": 0.005}
     )
     exact = np.asarray(der.run(exact).probes["sag"])
     for row in rows_of(found, status="completed"):
@@ -81,10 +87,11 @@ def test_errors_against_an_independent_run(found, sagging):
                 "rods.arm.nodes": row.nodes,
                 "time.step": row.step,
                 "time.integrator": row.stepper,
-                "output.every": 0.01,
+                "output.every": row.interval,
             }
         )
-        error = np.max(np.abs(np.asarray(der.run(scenario).probes["sag"]) - exact))
+        at_frames = exact[:: round(row.interval / 0.005)]
+        error = np.max(np.abs(np.asarray(der.run(scenario).probes["sag"]) - at_frames))
         assert row.error == pytest.approx(error, rel=0.1, abs=2e-5)
 
 
@@ -284,11 +291,59 @@ def test_wrong_arguments(sagging, options, words):
         der.study(sagging, **options)
 
 
-def test_common_interval_is_a_multiple_of_every_step(sagging):
-    base = der.run(sagging)
-    assert common_interval(base, [0.01, 0.005, 0.002]) == pytest.approx(0.01)
-    assert common_interval(base, [0.003, 0.002]) == pytest.approx(0.006)
-    assert common_interval(base, [0.001]) == pytest.approx(0.005)  # not below the scene's
+def test_intervals_at_which_runs_are_compared(sagging):
+    base = der.run(sagging)  # frames every 5 ms
+    assert common_interval(0.002, 0.005) == pytest.approx(0.01)
+    assert common_interval(0.001, 0.005) == pytest.approx(0.005)
+    assert common_interval(0.02, 0.005) == pytest.approx(0.02)
+    assert reference_interval(base, [0.01, 0.005, 0.002]) == pytest.approx(0.005)
+    assert reference_interval(base, [0.02, 0.01]) == pytest.approx(0.01)
+    assert reference_step(0.02, 0.01) == pytest.approx(0.01)
+    assert reference_step(0.003, 0.005) == pytest.approx(0.0025)
+    assert reference_step(0.001, 0.005) == pytest.approx(0.001)
+
+
+def test_default_steps_reach_the_frames_of_the_scene(sagging):
+    """Frames every 20 ms and a step of 4 ms: four times that reaches every fourth of them only."""
+    sagging["time"]["step"] = 0.004
+    sagging["output"]["every"] = 0.02
+    assert choose_steps(der.run(sagging), None) == pytest.approx(
+        [0.02, 0.01, 0.004, 0.002, 0.001, 0.0005]
+    )
+    sagging["output"]["every"] = 0.004
+    assert choose_steps(der.run(sagging), None) == pytest.approx(
+        [0.016, 0.008, 0.004, 0.002, 0.001, 0.0005]
+    )
+
+
+def test_errors_are_those_at_the_frames_of_an_advised_run(sagging):
+    """What is claimed holds at every frame that a run of the configuration can save."""
+    sagging["time"] |= {"duration": 0.31, "step": 0.004}  # 0.31 s is not a multiple of 20 ms
+    sagging["output"]["every"] = 0.02
+    steps = [0.02, 0.015, 0.01, 0.005]
+    found = der.study(sagging, nodes=[11, 21], steps=steps, steppers=["tr_bdf2"])
+    exact = der.Scenario.from_dict(sagging).with_(
+        **{"rods.arm.nodes": 321, "time.step": 2.5e-4, "output.every": 0.02}
+    )
+    exact = der.run(exact)
+    for row in found.rows:
+        assert row.interval == pytest.approx(0.06 if row.step == 0.015 else 0.02)
+        changed = der.Scenario.from_dict(sagging).with_(
+            **{
+                "rods.arm.nodes": row.nodes,
+                "time.step": row.step,
+                "time.integrator": row.stepper,
+                "output.every": row.interval,
+            }
+        )
+        run = der.run(changed)
+        right = np.interp(run.times, exact.times, np.asarray(exact.probes["sag"]))
+        worst = np.max(np.abs(np.asarray(run.probes["sag"]) - right))
+        assert row.error == pytest.approx(worst, rel=0.1, abs=2e-5)
+    assert found.notes[0] == (
+        "errors are measured every 20 ms, as the scene saves frames, or where a step does not "
+        "reach all of these: with 15 ms every 60 ms"
+    )
 
 
 def test_default_meshes_leave_out_what_the_scene_cannot_take(tube):

@@ -23,6 +23,10 @@ from der.accuracy.study_plan import (
     common_interval,
     find_leading_rod,
     finer,
+    frame_interval,
+    longest_of_halvings,
+    reference_interval,
+    reference_step,
     with_step,
 )
 from der.accuracy.study_reference import (
@@ -71,11 +75,11 @@ def study(
 ) -> Study:
     """Measure cost against error over meshes, steppers and steps.
 
-    The error of a probe is its largest difference to a reference over the saved times. The
-    reference is extrapolated from finer meshes and smaller steps, and states its own error. Of
-    modes the frequencies are compared as well, of buckling the load factors; of a path of
-    equilibria the factor and the probes at its folds and bifurcations, and the probes where it
-    ends.
+    The error of a probe is its largest difference to a reference over the frames that the scene
+    saves, as far as the step of a configuration reaches them. The reference is extrapolated from
+    finer meshes and smaller steps, and states its own error. Of modes the frequencies are compared
+    as well, of buckling the load factors; of a path of equilibria the factor and the probes at its
+    folds and bifurcations, and the probes where it ends.
 
     Parameters
     ----------
@@ -86,8 +90,9 @@ def study(
         it, about half, once, twice and four times the scene's elements.
     steps
         Time steps [s]. Without them, four times to an eighth of the scene's step, or if its step is
-        explicit, ``auto`` or set by a tolerance, a fiftieth to a 1600th of the duration; for an
-        explicit stepper, the longest stable step among the halvings of the longest and the next.
+        explicit, ``auto`` or set by a tolerance, a fiftieth to a 1600th of the duration, rounded to
+        parts and multiples of ``output.every``; for an explicit stepper, the longest stable step
+        among the halvings of the longest and the next.
     steppers
         Names of time integrators; without them, all.
     max_seconds
@@ -226,10 +231,12 @@ class _Study:
         chosen = choose_steps(self._base, steps)
         if steps is None:
             self._leave_out_costly_steps(chosen)
-        self._every = common_interval(self._base, chosen)
-        seconds_per_node = self._seconds_per_step * self._scenario.duration / chosen[-1]
+        self._every = reference_interval(self._base, chosen)
+        self._note_interval(chosen)
+        finest = reference_step(chosen[-1], self._every)
+        seconds_per_node = self._seconds_per_step * self._scenario.duration / finest
         references = reference_tasks(
-            self._reference_meshes(), REFERENCE_STEPPER, chosen[-1], self._every, seconds_per_node
+            self._reference_meshes(), REFERENCE_STEPPER, finest, self._every, seconds_per_node
         )
         plan = [
             (mesh, name, step)
@@ -245,8 +252,26 @@ class _Study:
             for mesh in range(len(self._meshes)):
                 for name in steppers:
                     if not find_stepper(name).implicit:
-                        self._measure_explicit(mesh, name, chosen[0])
+                        longest = longest_of_halvings(chosen[0], self._every)
+                        self._measure_explicit(mesh, name, longest)
         self._converge(self._workers.run(references))
+
+    def _note_interval(self, steps: Sequence[float]) -> None:
+        note = f"errors are measured every {seconds_text(self._every)}"
+        if math.isclose(self._every, frame_interval(self._base)):
+            note += ", as the scene saves frames"
+        rarer = [
+            f"with {seconds_text(step)} every {seconds_text(self._interval(step))}"
+            for step in steps
+            if not math.isclose(self._interval(step), self._every)
+        ]
+        if rarer:
+            note += ", or where a step does not reach all of these: " + ", ".join(rarer)
+        self._notes.append(note)
+
+    def _interval(self, step: float) -> float:
+        """Return the interval [s] at which a run with this step is compared; 0 without time."""
+        return common_interval(step, self._every) if step > 0.0 else 0.0
 
     def _leave_out_costly_steps(self, steps: list[float]) -> None:
         """Drop the shortest steps until the reference, four times finer, is affordable."""
@@ -264,7 +289,7 @@ class _Study:
             self._trials.append(trial)
             return trial
         repeats = _repeats(expected)
-        scenario = with_step(self._meshes[mesh].scenario, stepper, step, self._every)
+        scenario = with_step(self._meshes[mesh].scenario, stepper, step, self._interval(step))
         task = Task([scenario], weight, repeats, keep_motion=False, max_seconds=self._max_seconds)
         return self._add_trial(mesh, stepper, step, self._workers.run({0: task}, jobs=1)[0])
 
@@ -398,11 +423,27 @@ class _Study:
             step=trial.step,
             status=UNMATCHED if missing else trial.status,
             cpu_seconds=trial.cpu_seconds,
-            error=_largest_difference(values, exact),
+            error=_largest_difference(values, self._at_frames_of(trial, exact)),
             space_error=_largest_difference(on_mesh, exact),
-            time_error=_largest_difference(values, on_mesh) if trial.stepper else math.nan,
+            time_error=(
+                _largest_difference(values, self._at_frames_of(trial, on_mesh))
+                if trial.stepper
+                else math.nan
+            ),
             reference_error=self._reference.errors[probe],
+            interval=self._interval(trial.step),
         )
+
+    def _at_frames_of(
+        self, trial: _Trial, series: NDArray[np.float64] | None
+    ) -> NDArray[np.float64] | None:
+        """Return what a reference has at the times that the run of a trial was saved at."""
+        if trial.result is None or series is None or not trial.stepper:
+            return series
+        frames = np.rint(trial.result.times / self._every).astype(int)
+        frames[-1] = len(series) - 1  # the end of the run, be it a multiple or not
+        at_frames: NDArray[np.float64] = series[frames]
+        return at_frames
 
     def _note_what_is_missing(self) -> None:
         for i, mesh in enumerate(self._meshes):

@@ -39,13 +39,16 @@ class StudyRow:
         CPU time of building the simulation and running it [s], the best of some runs; NaN if it did
         not run to its end, as are the errors.
     error
-        Largest difference to the reference over the saved times, in the unit of the probe.
+        Largest difference to the reference over the times of `interval`, in the unit of the probe.
     space_error
-        The same of this mesh with time converged.
+        The same of this mesh with time converged, over all times that the reference has.
     time_error
         Largest difference to this mesh with time converged.
     reference_error
         Estimated error of the reference: an `error` below it says only that much.
+    interval
+        Between the times at which the run is compared [s]: that between the frames of the scene, or
+        the shortest multiple that the step reaches; 0 for a static scene.
     """
 
     probe: str
@@ -59,6 +62,7 @@ class StudyRow:
     space_error: float
     time_error: float
     reference_error: float
+    interval: float = 0.0
 
     @property
     def completed(self) -> bool:

@@ -478,6 +478,55 @@ def test_an_interrupt_stops_the_other_runs(sagging, monkeypatch):
         Workers(2).run({0: Task([der.Scenario.from_dict(SAGGING)], weight=1), 1: Task([endless])})
 
 
+def test_progress_counts_what_is_guessed_to_come(sagging):
+    seen = []
+    workers = Workers(1, seen.append)
+    task = Task([der.Scenario.from_dict(sagging)], weight=1.0, repeats=2)
+    workers.expect(1.0, later=3.0)
+    workers.run({0: task})
+    assert 0.0 < seen[0] < 0.125 < seen[-1] == pytest.approx(0.25)  # two equal halves
+    workers.expect(1.0)
+    workers.run({0: task})
+    assert seen[-1] == pytest.approx(1.0)
+
+
+def study_of_few(scene, progress):
+    der.study(scene, nodes=[11, 21], steppers=["tr_bdf2", "verlet"], progress=progress)
+
+
+def verify_implicit(scene, progress):
+    der.verify(scene, jobs=1, progress=progress)
+
+
+def verify_explicit(scene, progress):
+    scene["time"] |= {"integrator": "verlet", "step": 2.5e-4}
+    der.verify(scene, jobs=1, progress=progress)
+
+
+def study_of_static(scene, progress):
+    del scene["time"], scene["output"]["every"]
+    der.study(scene | {"analysis": "static"}, nodes=[11, 21], progress=progress)
+
+
+@pytest.mark.parametrize(
+    "measure", [study_of_few, verify_implicit, verify_explicit, study_of_static]
+)
+def test_progress_is_told_from_the_start_and_full_only_at_the_end(sagging, monkeypatch, measure):
+    seen, after = [], []
+    original = Workers.run
+
+    def run(self, *arguments, **options):
+        outcomes = original(self, *arguments, **options)
+        after.append(seen[-1] if seen else None)
+        return outcomes
+
+    monkeypatch.setattr(Workers, "run", run)
+    measure(sagging, seen.append)
+    assert 0.0 < after[0] < 0.2  # the scene as written, of which all other runs are multiples
+    assert max(after[:-1]) < 0.95
+    assert after[-1] == pytest.approx(1.0)
+
+
 # The command.
 
 

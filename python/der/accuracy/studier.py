@@ -39,10 +39,11 @@ from der.accuracy.study_reference import (
 )
 from der.accuracy.study_result import Study, StudyRow, seconds_text
 from der.accuracy.time_levels import find_stepper
+from der.errors import DerError
 from der.parallel import TOO_LONG, Outcome, Task, Workers, total_weight
 from der.progress import ProgressFunction
 from der.result import Result
-from der.simulation import SceneLike, as_scenario
+from der.simulation import SceneLike, Simulation, as_scenario
 
 #: Runs are repeated while all of them together take less than this [s].
 _MEASURING_TIME = 0.3
@@ -55,6 +56,9 @@ _MOST_HALVINGS = 30
 _EXPLICIT_STEPS = 2
 #: The finest meshes, which the reference is extrapolated from.
 _REFERENCE_MESHES = 3
+#: All runs cost about this many times what the scene itself does, where that takes long enough for
+#: its progress to be seen: before it has run, no one knows.
+_COST_OF_STUDY = 20.0
 #: Cost of a step, against one of another implicit stepper.
 _COST_OF_STEP = {"tr_bdf2": 2.0, "sdirk4": 5.0, "verlet": 0.05, "explicit_euler": 0.05}
 
@@ -124,6 +128,7 @@ def study(
         raise ValueError("a static scene has neither steps nor steppers: only nodes can be varied")
     meshes = choose_meshes(scene, nodes)
     workers = Workers(jobs, progress)
+    workers.expect(1.0, later=_COST_OF_STUDY)
     base = workers.run({0: Task([scene])})[0]
     study_ = _Study(scene, meshes, base, max_seconds, workers, notes)
     if scene.is_static:
@@ -184,6 +189,7 @@ class _Study:
         self._trials: list[_Trial] = []
         self._every = 0.0
         work = self._base.model.num_nodes * max(1, int(self._base.summary.get("steps", 1)))
+        self._base_seconds = base.cpu_seconds  # the unit of weights: the base itself weighs 1
         self._seconds_per_step = base.cpu_seconds / work / self._cost_of_step(self._base_stepper)
         self._on_mesh: list[Reference] = []
         self._reference = Reference({}, {})
@@ -211,20 +217,18 @@ class _Study:
 
     def run_static(self) -> None:
         """Run every mesh, and the reference."""
-        tasks = {
-            i: Task(
-                [mesh.scenario],
-                mesh.nodes,
-                _repeats(self._seconds_per_step * self._total_nodes(mesh)),
-                keep_motion=False,
-            )
-            for i, mesh in enumerate(self._meshes)
-        }
-        references = reference_tasks(self._reference_meshes(), None, 0.0, 0.0, 1.0)
+        per_node = 1.0 / self._base.model.num_nodes
+        tasks = {i: self._static_task(mesh, per_node) for i, mesh in enumerate(self._meshes)}
+        references = reference_tasks(self._reference_meshes(), None, 0.0, 0.0, per_node)
         self._workers.expect(total_weight([*tasks.values(), *references.values()]))
         for i, outcome in self._workers.run(tasks, jobs=1).items():
             self._add_trial(i, "", 0.0, outcome)
         self._converge_static(self._workers.run(references))
+
+    def _static_task(self, mesh: Mesh, cost_per_node: float) -> Task:
+        nodes = self._total_nodes(mesh)
+        repeats = _repeats(self._seconds_per_step * nodes)
+        return Task([mesh.scenario], cost_per_node * nodes * repeats, repeats, keep_motion=False)
 
     def run_dynamic(self, steppers: Sequence[str], steps: Sequence[float] | None) -> None:
         """Run every configuration, and the reference."""
@@ -234,27 +238,67 @@ class _Study:
         self._every = reference_interval(self._base, chosen)
         self._note_interval(chosen)
         finest = reference_step(chosen[-1], self._every)
-        seconds_per_node = self._seconds_per_step * self._scenario.duration / finest
+        cost_per_node = self._cost(self._seconds_per_node(REFERENCE_STEPPER, finest))
         references = reference_tasks(
-            self._reference_meshes(), REFERENCE_STEPPER, finest, self._every, seconds_per_node
+            self._reference_meshes(), REFERENCE_STEPPER, finest, self._every, cost_per_node
         )
-        plan = [
+        plan = self._plan(steppers, chosen, explicit=steps is not None)
+        halvings = {} if steps is not None else self._plan_halvings(steppers, chosen[0])
+        self._workers.expect(
+            total_weight(references.values())
+            + sum(self._measuring_cost(*configuration) for configuration in plan)
+            + sum(self._measuring_cost(*key, step) for key in halvings for step in halvings[key])
+        )
+        for configuration in plan:
+            self._measure(*configuration, self._measuring_cost(*configuration))
+        for (mesh, name), announced in halvings.items():
+            self._measure_explicit(mesh, name, chosen[0], announced)
+        self._converge(self._workers.run(references))
+
+    def _plan(
+        self, steppers: Sequence[str], steps: Sequence[float], explicit: bool
+    ) -> list[tuple[int, str, float]]:
+        """Return mesh, stepper and step of what is measured, explicit steppers only if wanted."""
+        names = [name for name in steppers if explicit or find_stepper(name).implicit]
+        return [
             (mesh, name, step)
             for mesh in range(len(self._meshes))
-            for name in steppers
-            for step in (chosen if steps is not None or find_stepper(name).implicit else [])
+            for name in names
+            for step in steps
         ]
-        weights = [self._measuring_time(*configuration) for configuration in plan]
-        self._workers.expect(total_weight(references.values()) + sum(weights))
-        for (mesh, name, step), weight in zip(plan, weights, strict=True):
-            self._measure(mesh, name, step, weight)
-        if steps is None:
-            for mesh in range(len(self._meshes)):
-                for name in steppers:
-                    if not find_stepper(name).implicit:
-                        longest = longest_of_halvings(chosen[0], self._every)
-                        self._measure_explicit(mesh, name, longest)
-        self._converge(self._workers.run(references))
+
+    def _plan_halvings(
+        self, steppers: Sequence[str], longest: float
+    ) -> dict[tuple[int, str], list[float]]:
+        """Return the steps that are likely stable and so measured, by mesh and explicit stepper."""
+        return {
+            (mesh, name): self._stable_steps(mesh, name, longest)
+            for mesh in range(len(self._meshes))
+            for name in steppers
+            if not find_stepper(name).implicit
+        }
+
+    def _stable_steps(self, mesh: int, stepper: str, longest: float) -> list[float]:
+        """Return the first halvings that are stable at the start of the run."""
+        steps = self._halvings(longest)
+        refused = 0
+        while refused < len(steps) and self._is_refused(mesh, stepper, steps[refused]):
+            refused += 1
+        return steps[refused : refused + _EXPLICIT_STEPS]
+
+    def _is_refused(self, mesh: int, stepper: str, step: float) -> bool:
+        try:
+            Simulation(self._with_step(mesh, stepper, step))
+        except DerError:
+            return True
+        return False
+
+    def _halvings(self, longest: float) -> list[float]:
+        first = longest_of_halvings(longest, self._every)
+        return [first / 2**count for count in range(_MOST_HALVINGS)]
+
+    def _with_step(self, mesh: int, stepper: str, step: float) -> Scenario:
+        return with_step(self._meshes[mesh].scenario, stepper, step, self._interval(step))
 
     def _note_interval(self, steps: Sequence[float]) -> None:
         note = f"errors are measured every {seconds_text(self._every)}"
@@ -282,35 +326,49 @@ class _Study:
             left_out = steps.pop()
             self._notes.append(f"steps of {seconds_text(left_out)} are left out, for their cost")
 
-    def _measure(self, mesh: int, stepper: str, step: float, weight: float = 0.0) -> _Trial:
+    def _measure(self, mesh: int, stepper: str, step: float, weight: float) -> _Trial:
         expected = self._expected_seconds(mesh, stepper, step)
         if expected > self._max_seconds:
             trial = _Trial(mesh, stepper, step, SKIPPED, None, math.nan)
             self._trials.append(trial)
             return trial
-        repeats = _repeats(expected)
-        scenario = with_step(self._meshes[mesh].scenario, stepper, step, self._interval(step))
-        task = Task([scenario], weight, repeats, keep_motion=False, max_seconds=self._max_seconds)
+        scenario = self._with_step(mesh, stepper, step)
+        task = Task(
+            [scenario],
+            weight,
+            _repeats(expected),
+            keep_motion=False,
+            max_seconds=self._max_seconds,
+        )
         return self._add_trial(mesh, stepper, step, self._workers.run({0: task}, jobs=1)[0])
 
-    def _measure_explicit(self, mesh: int, stepper: str, longest: float) -> None:
+    def _measure_explicit(
+        self, mesh: int, stepper: str, longest: float, announced: Sequence[float]
+    ) -> None:
         """Halve the step until it is stable; measure that and the next ones."""
         stable = 0
-        for halvings in range(_MOST_HALVINGS):
-            trial = self._measure(mesh, stepper, longest / 2**halvings)
+        for step in self._halvings(longest):
+            cost = self._measuring_cost(mesh, stepper, step) if step in announced else 0.0
+            trial = self._measure(mesh, stepper, step, cost)
             stable += trial.result is not None
             if stable == _EXPLICIT_STEPS or trial.status == SKIPPED:
                 return
 
-    def _measuring_time(self, mesh: int, stepper: str, step: float) -> float:
-        """Return the expected CPU time of all repeats [s]; 0 of what will be skipped."""
+    def _measuring_cost(self, mesh: int, stepper: str, step: float) -> float:
+        """Return the expected cost of all repeats; 0 of what will be skipped."""
         expected = self._expected_seconds(mesh, stepper, step)
-        return 0.0 if expected > self._max_seconds else expected * _repeats(expected)
+        return 0.0 if expected > self._max_seconds else self._cost(expected * _repeats(expected))
+
+    def _cost(self, seconds: float) -> float:
+        """Return CPU time in the unit of weights."""
+        return seconds / self._base_seconds
 
     def _expected_seconds(self, mesh: int, stepper: str, step: float) -> float:
-        nodes = self._total_nodes(self._meshes[mesh])
+        return self._seconds_per_node(stepper, step) * self._total_nodes(self._meshes[mesh])
+
+    def _seconds_per_node(self, stepper: str, step: float) -> float:
         steps = self._scenario.duration / step
-        return self._seconds_per_step * self._cost_of_step(stepper) * nodes * steps
+        return self._seconds_per_step * self._cost_of_step(stepper) * steps
 
     def _total_nodes(self, mesh: Mesh) -> float:
         """Return the nodes of all rods, if all are refined as the one is that names the mesh."""

@@ -90,12 +90,12 @@ class Workers:
     Raises
     ------
     ValueError
-        If `jobs` is less than 1.
+        If `jobs` is not a whole number of at least 1.
     """
 
     def __init__(self, jobs: int | None = None, progress: ProgressFunction | None = None) -> None:
-        if jobs is not None and jobs < 1:
-            raise ValueError(f"jobs must be at least 1, got {jobs}")
+        if jobs is not None and (not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1):
+            raise ValueError(f"jobs must be a whole number of at least 1, got {jobs!r}")
         self._jobs = jobs or os.cpu_count() or 1
         self._progress = progress
         self._lock = threading.Lock()

@@ -284,6 +284,17 @@ def test_every_stepper_has_a_colour_and_a_marker_of_its_own(found):
         ({"steps": [1.0]}, "duration"),
         ({"steps": [0.01, 0.00912345]}, "common multiple"),
         ({"nodes": [1]}, "2 nodes"),
+        ({"nodes": []}, "nodes must be a list with at least one entry"),
+        ({"nodes": 11}, "nodes must be a list"),
+        ({"nodes": [11.5]}, "whole numbers, such as 21, got 11.5"),
+        ({"steps": []}, "steps must be a list with at least one entry"),
+        ({"steps": [math.nan]}, "steps must be finite numbers greater than 0"),
+        ({"steppers": []}, "steppers must be a list with at least one entry"),
+        ({"steppers": "tr_bdf2"}, r"such as \['tr_bdf2'\], got 'tr_bdf2'"),
+        ({"max_seconds": 0}, "max_seconds must be a number greater than 0, such as 2, got 0"),
+        ({"max_seconds": -1.0}, "max_seconds"),
+        ({"max_seconds": math.nan}, "max_seconds"),
+        ({"jobs": 1.5}, "jobs must be a whole number of at least 1, got 1.5"),
     ],
 )
 def test_wrong_arguments(sagging, options, words):
@@ -553,3 +564,27 @@ def test_command_with_a_wrong_argument(sagging, tmp_path, capsys):
     path.write_text(der.Scenario.from_dict(sagging).to_yaml())
     assert main(["study", str(path), "--steppers", "rk4"]) == 1
     assert "rk4" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("errors", [[], [-1.0], [0.0], [math.nan], [math.inf], 0.1])
+def test_errors_without_meaning_are_refused(made, errors):
+    with pytest.raises(ValueError, match="errors must be"):
+        made.advice(errors)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--errors", "nan"], "errors must be finite numbers greater than 0"),
+        (["--max-seconds", "0"], "max_seconds must be a number greater than 0"),
+        (["--out", "taken"], "'taken' is a file, and results go to a folder"),
+        (["--out", "taken/study"], "'taken' is a file"),
+    ],
+)
+def test_command_refuses_before_any_run(sagging, tmp_path, capsys, monkeypatch, options, words):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(Workers, "run", lambda *_, **__: pytest.fail("it ran"))
+    (tmp_path / "taken").write_text("")
+    (tmp_path / "arm.yaml").write_text(der.Scenario.from_dict(sagging).to_yaml())
+    assert main(["study", "arm.yaml", *options]) == 1
+    assert words in capsys.readouterr().err

@@ -15,6 +15,7 @@ from der.accuracy.noise import noise_floor
 from der.accuracy.refinement import belongs_to_its_mesh, count_elements
 from der.accuracy.static_comparison import StaticComparison
 from der.accuracy.static_readings import static_readings
+from der.accuracy.study_arguments import check_arguments
 from der.accuracy.study_plan import (
     Mesh,
     choose_meshes,
@@ -117,8 +118,9 @@ def study(
     SceneError, NotConvergedError, DivergedError
         If the scene itself, or a run that the reference needs, does not run to its end.
     ValueError
-        For nodes, steps or steppers that the scene cannot take.
+        For nodes, steps or steppers that the scene cannot take, and for empty lists.
     """
+    check_arguments(nodes, steps, steppers, max_seconds)
     given = as_scenario(scenario)
     scene = with_default_probes(given)
     notes = []
@@ -127,6 +129,7 @@ def study(
     if scene.is_static and (steps is not None or steppers is not None):
         raise ValueError("a static scene has neither steps nor steppers: only nodes can be varied")
     meshes = choose_meshes(scene, nodes)
+    names = choose_steppers(steppers)
     workers = Workers(jobs, progress)
     workers.expect(1.0, later=_COST_OF_STUDY)
     base = workers.run({0: Task([scene])})[0]
@@ -134,7 +137,7 @@ def study(
     if scene.is_static:
         study_.run_static()
     else:
-        study_.run_dynamic(choose_steppers(steppers), steps)
+        study_.run_dynamic(names, steps)
     return study_.finish()
 
 

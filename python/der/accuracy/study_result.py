@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from der._core import Scenario
+from der.accuracy.study_arguments import check_errors
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -140,7 +141,14 @@ class Study:
         ----------
         errors
             In the units of the probes; without it, powers of ten that the configurations reach.
+
+        Raises
+        ------
+        ValueError
+            For an empty list, and for errors that are not greater than 0 and finite.
         """
+        if errors is not None:
+            check_errors(errors)
         lines = []
         for probe in self.probes:
             wanted = self._decades(probe) if errors is None else errors

@@ -67,7 +67,12 @@ def execute(arguments: argparse.Namespace) -> int:
     import matplotlib as mpl
 
     from der.accuracy.studier import study
+    from der.accuracy.study_arguments import check_errors
 
+    if arguments.errors is not None:
+        check_errors(arguments.errors)
+    out = arguments.out or Path(f"{arguments.scene.stem}_study")
+    _check_out(out)
     mpl.use("agg")  # a file is written and no window opened, on a screen or without
     with progress_on_terminal() as progress:
         found = study(
@@ -79,7 +84,6 @@ def execute(arguments: argparse.Namespace) -> int:
             jobs=arguments.jobs,
             progress=progress,
         )
-    out = arguments.out or Path(f"{arguments.scene.stem}_study")
     out.mkdir(parents=True, exist_ok=True)
     found.write_csv(out / "study.csv")
     found.plot().savefig(out / "study.png")
@@ -90,3 +94,15 @@ def execute(arguments: argparse.Namespace) -> int:
     print(out / "study.csv")
     print(out / "study.png")
     return 0
+
+
+def _check_out(out: Path) -> None:
+    """Check, before the work, that a folder can be made or is there."""
+    for path in (out, *out.parents):
+        if path.is_dir():
+            return
+        if path.exists():
+            raise ValueError(
+                f"--out: '{path}' is a file, and results go to a folder: choose another name, or "
+                "move the file away"
+            )

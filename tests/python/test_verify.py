@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from fractions import Fraction
 
 import der
@@ -269,6 +270,23 @@ def test_space_is_not_refined_where_spheres_are_on_every_node(spheres):
     assert any("spheres at every node" in note for note in verification.notes)
 
 
+def test_space_is_not_refined_where_a_run_gives_the_start(sagging, tmp_path):
+    """Its last frame has as many nodes as it has; time is refined all the same."""
+    der.run(sagging, out=tmp_path / "first")
+    verification = der.verify(sagging | {"start_from": str(tmp_path / "first")})
+    sag = verification["sag"]
+    assert (sag.space, verification.meshes) == (None, ())
+    assert sag.time.verdict != "failed"
+    assert math.isfinite(sag.bar)
+    (note,) = verification.notes
+    assert note.startswith("space not refined: it starts from ")
+
+
+def test_space_is_refined_where_the_equilibrium_is_the_start(sagging):
+    sagging["start_from"] = "equilibrium"
+    assert rods_that_cannot_be_refined(der.Scenario.from_dict(sagging)) == {}
+
+
 def test_numerical_damping_is_found_out(tube):
     """At the end a load put on at once still swings; implicit Euler has damped it away, the same on
     every level."""
@@ -357,6 +375,9 @@ def test_failed_finer_run_is_flagged_with_a_note(arm, monkeypatch):
     verification = der.verify(arm)
     assert verification["tip"].verdict == "failed in space"
     assert math.isinf(verification["tip"].bar)
+    assert math.isnan(verification["tip"].extrapolated)
+    (row,) = [line for line in str(verification).splitlines() if line.startswith("tip ")]
+    assert re.fullmatch(r"tip +\S+ m +± unknown +unknown +- +- +-, - +failed in space", row)
     assert any("41 nodes failed: no convergence" in note for note in verification.notes)
     json.dumps(verification.to_dict(), allow_nan=False)
 

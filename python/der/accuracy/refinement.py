@@ -21,10 +21,14 @@ _SAME_PLACE = 1e-9
 def rods_that_cannot_be_refined(scenario: Scenario) -> dict[str, str]:
     """Return the rods whose number of nodes is part of the model, with the reason for each.
 
-    Spheres or point forces on every node are: more nodes would mean more of them.
+    Spheres or point forces on every node are: more nodes would mean more of them. So are all rods
+    of a scene that starts from the last frame of a run, whose nodes they take over.
     """
     scene = scenario.to_dict()
     reasons = {}
+    if scene.get("start_from", "equilibrium") != "equilibrium":
+        reason = f"it starts from '{scene['start_from']}', a run with as many nodes"
+        reasons = {rod["name"]: reason for rod in scene["rods"]}
     for rod in scene["rods"]:
         name = rod["name"]
         if any(sphere["at"] == "all" for sphere in rod.get("spheres") or []):

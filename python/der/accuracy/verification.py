@@ -65,7 +65,12 @@ class VerifiedValue:
 
     @property
     def extrapolated(self) -> float:
-        """Best guess of the truth: Richardson's extrapolation in space and time."""
+        """Best guess of the truth: Richardson's extrapolation in space and time.
+
+        NaN where a part of the error is unknown.
+        """
+        if math.isinf(self.bar):
+            return math.nan
         corrections = sum(part.correction for part in self._parts)
         return self.value + self.solver_correction + corrections
 

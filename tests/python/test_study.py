@@ -243,6 +243,16 @@ def test_mesh_that_is_part_of_the_model(spheres):
         der.study(spheres, nodes=[5])
 
 
+def test_a_scene_that_starts_from_a_run_keeps_its_mesh(sagging, tmp_path):
+    der.run(sagging, out=tmp_path / "first")
+    sagging["start_from"] = str(tmp_path / "first")
+    found = der.study(sagging, nodes=[11], steppers=["tr_bdf2"], steps=[0.01, 0.005])
+    assert [(row.nodes, row.status) for row in found.rows] == [(11, "completed")] * 2
+    assert found.notes[0].startswith("nodes are not varied: it starts from ")
+    with pytest.raises(ValueError, match=r"than its own, 11: it starts from .*first.*leave nodes"):
+        der.study(sagging, nodes=[21])
+
+
 def test_turning_angles_are_left_out_of_several_meshes(sagging):
     sagging["output"]["probes"]["angle"] = {
         "rod": "arm",

@@ -28,6 +28,7 @@ from der.accuracy.study_plan import (
     longest_of_halvings,
     reference_interval,
     reference_step,
+    why_one_mesh,
     with_step,
 )
 from der.accuracy.study_reference import (
@@ -205,7 +206,7 @@ class _Study:
         """Return the probes that cannot be compared: a turning angle belongs to its mesh."""
         probes = list(self._base.probes)
         if find_leading_rod(self._scenario) is None:
-            self._notes.append("every rod has as many nodes as its model asks for: one mesh")
+            self._notes.append(f"nodes are not varied: {why_one_mesh(self._scenario)}")
             return []
         angles = [name for name in probes if belongs_to_its_mesh(self._scenario, name)]
         for name in angles:

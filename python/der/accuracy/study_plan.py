@@ -50,6 +50,11 @@ def find_leading_rod(scenario: Scenario) -> str | None:
     return next((name for name in count_elements(scenario) if name not in fixed), None)
 
 
+def why_one_mesh(scenario: Scenario) -> str:
+    """Return why no rod's mesh can be varied."""
+    return ", ".join(dict.fromkeys(rods_that_cannot_be_refined(scenario).values()))
+
+
 def choose_meshes(scenario: Scenario, nodes: Sequence[int] | None) -> list[Mesh]:
     """Return the meshes to try, coarsest first.
 
@@ -68,9 +73,13 @@ def choose_meshes(scenario: Scenario, nodes: Sequence[int] | None) -> list[Mesh]
     """
     rod = find_leading_rod(scenario)
     if rod is None:
-        if nodes is not None:
-            raise ValueError("this scene allows no other number of nodes than its own")
-        return [Mesh(next(iter(count_elements(scenario).values())) + 1, scenario)]
+        own = next(iter(count_elements(scenario).values())) + 1
+        if nodes is not None and set(nodes) != {own}:
+            raise ValueError(
+                f"this scene allows no other number of nodes than its own, {own}: "
+                f"{why_one_mesh(scenario)}; leave nodes out"
+            )
+        return [Mesh(own, scenario)]
     if nodes is None:
         return _default_meshes(scenario, rod)
     return [_mesh(scenario, rod, count) for count in sorted(set(nodes))]

@@ -90,22 +90,32 @@ class Workers:
     Raises
     ------
     ValueError
-        If `jobs` is less than 1.
+        If `jobs` is not a whole number of at least 1.
     """
 
     def __init__(self, jobs: int | None = None, progress: ProgressFunction | None = None) -> None:
-        if jobs is not None and jobs < 1:
-            raise ValueError(f"jobs must be at least 1, got {jobs}")
+        if jobs is not None and (not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1):
+            raise ValueError(f"jobs must be a whole number of at least 1, got {jobs!r}")
         self._jobs = jobs or os.cpu_count() or 1
         self._progress = progress
         self._lock = threading.Lock()
         self._expected = 0.0
+        self._later = 0.0
         self._done = 0.0
         self._stop = threading.Event()
 
-    def expect(self, weight: float) -> None:
-        """Announce work, in the unit of `Task.weight`, so that progress counts it from now on."""
+    def expect(self, weight: float, later: float = 0.0) -> None:
+        """Announce work, in the unit of `Task.weight`, so that progress counts it from now on.
+
+        Parameters
+        ----------
+        weight
+            Of the tasks that are run next.
+        later
+            A guess of what will be announced after them; it holds until the next call.
+        """
         self._expected += weight
+        self._later = later
 
     def run(self, tasks: Mapping[Key, Task], *, jobs: int | None = None) -> dict[Key, Outcome]:
         """Run all tasks and return their outcomes by key; a failed run is an outcome as well.
@@ -113,7 +123,8 @@ class Workers:
         Parameters
         ----------
         tasks
-            What to run. Work that was not announced counts for nothing in the progress.
+            What to run. All of it is to be announced with `expect` first, or the progress is ahead
+            of the work; a task of weight 0 needs no announcement.
         jobs
             In place of that of the constructor: 1 to measure costs undisturbed.
         """
@@ -131,7 +142,10 @@ class Workers:
         shown = _Share(self, task.weight)
         for scenario in task.scenarios:
             outcome = min(
-                (self._run_once(scenario, shown, task.max_seconds) for _ in range(task.repeats)),
+                (
+                    self._run_once(scenario, shown.part(repeat, task.repeats), task.max_seconds)
+                    for repeat in range(task.repeats)
+                ),
                 key=lambda outcome: outcome.cpu_seconds,
             )
             if not task.keep_motion:
@@ -141,7 +155,7 @@ class Workers:
         shown(1.0)
         return outcome
 
-    def _run_once(self, scenario: Scenario, shown: _Share, max_seconds: float) -> Outcome:
+    def _run_once(self, scenario: Scenario, shown: ProgressFunction, max_seconds: float) -> Outcome:
         start = time.thread_time()
 
         def tick(share: float) -> None:
@@ -162,11 +176,11 @@ class Workers:
         with self._lock:
             self._done += weight
             if self._progress is not None and self._expected > 0.0:
-                self._progress(min(1.0, self._done / self._expected))
+                self._progress(min(1.0, self._done / (self._expected + self._later)))
 
 
 class _Share:
-    """Adds up what of one task is done; a repeat, or a second try, starts again."""
+    """Adds up what of one task is done; a second try starts again."""
 
     def __init__(self, workers: Workers, weight: float) -> None:
         self._workers = workers
@@ -177,6 +191,10 @@ class _Share:
         if share > self._counted:
             self._workers.add_done(self._weight * (share - self._counted))
             self._counted = share
+
+    def part(self, index: int, count: int) -> ProgressFunction:
+        """Return what is told the progress of one of several equal parts of the task."""
+        return lambda share: self((index + share) / count)
 
 
 def _without_motion(outcome: Outcome) -> Outcome:

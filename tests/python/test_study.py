@@ -8,7 +8,13 @@ import math
 import der
 import numpy as np
 import pytest
-from der.accuracy.study_plan import choose_meshes, common_interval
+from der.accuracy.study_plan import (
+    choose_meshes,
+    choose_steps,
+    common_interval,
+    reference_interval,
+    reference_step,
+)
 from der.accuracy.study_reference import Reference, converge_in_space
 from der.accuracy.study_result import Study, StudyRow, seconds_text
 from der.cli import main
@@ -72,7 +78,7 @@ def test_every_configuration_has_a_row(found):
 def test_errors_against_an_independent_run(found, sagging):
     """A run on a far finer mesh with far smaller steps of another stepper."""
     exact = der.Scenario.from_dict(sagging).with_(
-        **{"rods.arm.nodes": 321, "time.step": 2.5e-4, "output.every": 0.01}
+        **{"rods.arm.nodes": 321, "time.step": 2.5e-4, "output.every": 0.005}
     )
     exact = np.asarray(der.run(exact).probes["sag"])
     for row in rows_of(found, status="completed"):
@@ -81,10 +87,11 @@ def test_errors_against_an_independent_run(found, sagging):
                 "rods.arm.nodes": row.nodes,
                 "time.step": row.step,
                 "time.integrator": row.stepper,
-                "output.every": 0.01,
+                "output.every": row.interval,
             }
         )
-        error = np.max(np.abs(np.asarray(der.run(scenario).probes["sag"]) - exact))
+        at_frames = exact[:: round(row.interval / 0.005)]
+        error = np.max(np.abs(np.asarray(der.run(scenario).probes["sag"]) - at_frames))
         assert row.error == pytest.approx(error, rel=0.1, abs=2e-5)
 
 
@@ -125,6 +132,17 @@ def test_explicit_steppers_find_their_stable_step(sagging):
         assert [row.status for row in rows][-2:] == ["completed", "completed"]
         assert rows[0].status == "unstable"
         assert rows[-1].step == pytest.approx(rows[-2].step / 2)
+
+
+@pytest.mark.parametrize("step", [1e-5, "auto"])
+def test_implicit_steps_of_an_explicit_scene_are_not_bound_by_its_stability(sagging, step):
+    sagging["time"] |= {"step": step, "integrator": "verlet"}
+    found = der.study(sagging, nodes=[11], steppers=["tr_bdf2", "verlet"])
+    steps = [row.step for row in rows_of(found, stepper="tr_bdf2")]
+    assert max(steps) == pytest.approx(0.3 / 50, rel=0.5)
+    assert min(steps) < 0.3 / 500
+    assert len(rows_of(found, stepper="verlet", status="completed")) == 2
+    assert found.cheapest("sag", 1e-2).stepper == "tr_bdf2"
 
 
 def test_static_scene_varies_the_mesh(sagging):
@@ -225,6 +243,16 @@ def test_mesh_that_is_part_of_the_model(spheres):
         der.study(spheres, nodes=[5])
 
 
+def test_a_scene_that_starts_from_a_run_keeps_its_mesh(sagging, tmp_path):
+    der.run(sagging, out=tmp_path / "first")
+    sagging["start_from"] = str(tmp_path / "first")
+    found = der.study(sagging, nodes=[11], steppers=["tr_bdf2"], steps=[0.01, 0.005])
+    assert [(row.nodes, row.status) for row in found.rows] == [(11, "completed")] * 2
+    assert found.notes[0].startswith("nodes are not varied: it starts from ")
+    with pytest.raises(ValueError, match=r"than its own, 11: it starts from .*first.*leave nodes"):
+        der.study(sagging, nodes=[21])
+
+
 def test_turning_angles_are_left_out_of_several_meshes(sagging):
     sagging["output"]["probes"]["angle"] = {
         "rod": "arm",
@@ -266,6 +294,17 @@ def test_every_stepper_has_a_colour_and_a_marker_of_its_own(found):
         ({"steps": [1.0]}, "duration"),
         ({"steps": [0.01, 0.00912345]}, "common multiple"),
         ({"nodes": [1]}, "2 nodes"),
+        ({"nodes": []}, "nodes must be a list with at least one entry"),
+        ({"nodes": 11}, "nodes must be a list"),
+        ({"nodes": [11.5]}, "whole numbers, such as 21, got 11.5"),
+        ({"steps": []}, "steps must be a list with at least one entry"),
+        ({"steps": [math.nan]}, "steps must be finite numbers greater than 0"),
+        ({"steppers": []}, "steppers must be a list with at least one entry"),
+        ({"steppers": "tr_bdf2"}, r"such as \['tr_bdf2'\], got 'tr_bdf2'"),
+        ({"max_seconds": 0}, "max_seconds must be a number greater than 0, such as 2, got 0"),
+        ({"max_seconds": -1.0}, "max_seconds"),
+        ({"max_seconds": math.nan}, "max_seconds"),
+        ({"jobs": 1.5}, "jobs must be a whole number of at least 1, got 1.5"),
     ],
 )
 def test_wrong_arguments(sagging, options, words):
@@ -273,11 +312,59 @@ def test_wrong_arguments(sagging, options, words):
         der.study(sagging, **options)
 
 
-def test_common_interval_is_a_multiple_of_every_step(sagging):
-    base = der.run(sagging)
-    assert common_interval(base, [0.01, 0.005, 0.002]) == pytest.approx(0.01)
-    assert common_interval(base, [0.003, 0.002]) == pytest.approx(0.006)
-    assert common_interval(base, [0.001]) == pytest.approx(0.005)  # not below the scene's
+def test_intervals_at_which_runs_are_compared(sagging):
+    base = der.run(sagging)  # frames every 5 ms
+    assert common_interval(0.002, 0.005) == pytest.approx(0.01)
+    assert common_interval(0.001, 0.005) == pytest.approx(0.005)
+    assert common_interval(0.02, 0.005) == pytest.approx(0.02)
+    assert reference_interval(base, [0.01, 0.005, 0.002]) == pytest.approx(0.005)
+    assert reference_interval(base, [0.02, 0.01]) == pytest.approx(0.01)
+    assert reference_step(0.02, 0.01) == pytest.approx(0.01)
+    assert reference_step(0.003, 0.005) == pytest.approx(0.0025)
+    assert reference_step(0.001, 0.005) == pytest.approx(0.001)
+
+
+def test_default_steps_reach_the_frames_of_the_scene(sagging):
+    """Frames every 20 ms and a step of 4 ms: four times that reaches every fourth of them only."""
+    sagging["time"]["step"] = 0.004
+    sagging["output"]["every"] = 0.02
+    assert choose_steps(der.run(sagging), None) == pytest.approx(
+        [0.02, 0.01, 0.004, 0.002, 0.001, 0.0005]
+    )
+    sagging["output"]["every"] = 0.004
+    assert choose_steps(der.run(sagging), None) == pytest.approx(
+        [0.016, 0.008, 0.004, 0.002, 0.001, 0.0005]
+    )
+
+
+def test_errors_are_those_at_the_frames_of_an_advised_run(sagging):
+    """What is claimed holds at every frame that a run of the configuration can save."""
+    sagging["time"] |= {"duration": 0.31, "step": 0.004}  # 0.31 s is not a multiple of 20 ms
+    sagging["output"]["every"] = 0.02
+    steps = [0.02, 0.015, 0.01, 0.005]
+    found = der.study(sagging, nodes=[11, 21], steps=steps, steppers=["tr_bdf2"])
+    exact = der.Scenario.from_dict(sagging).with_(
+        **{"rods.arm.nodes": 321, "time.step": 2.5e-4, "output.every": 0.02}
+    )
+    exact = der.run(exact)
+    for row in found.rows:
+        assert row.interval == pytest.approx(0.06 if row.step == 0.015 else 0.02)
+        changed = der.Scenario.from_dict(sagging).with_(
+            **{
+                "rods.arm.nodes": row.nodes,
+                "time.step": row.step,
+                "time.integrator": row.stepper,
+                "output.every": row.interval,
+            }
+        )
+        run = der.run(changed)
+        right = np.interp(run.times, exact.times, np.asarray(exact.probes["sag"]))
+        worst = np.max(np.abs(np.asarray(run.probes["sag"]) - right))
+        assert row.error == pytest.approx(worst, rel=0.1, abs=2e-5)
+    assert found.notes[0] == (
+        "errors are measured every 20 ms, as the scene saves frames, or where a step does not "
+        "reach all of these: with 15 ms every 60 ms"
+    )
 
 
 def test_default_meshes_leave_out_what_the_scene_cannot_take(tube):
@@ -322,6 +409,37 @@ def test_advice(made):
     assert "sag: for 0.001 m (0.2 %): 41 nodes, tr_bdf2, 4 ms: 12 ms" in lines
     assert [line.split()[2] for line in lines] == ["0.1", "0.01", "0.001", "0.0001", "1e-05"]
     assert made.advice([1e-7]) == ["sag: for 1e-07 m (2e-05 %): no configuration of this study"]
+
+
+def test_errors_of_a_probe_that_hardly_moves_are_set_against_its_magnitude(sagging):
+    """From its equilibrium the sag moves by rounding; meshes still tell it differently."""
+    sagging["start_from"] = "equilibrium"
+    found = der.study(sagging, nodes=[11, 21], steps=[0.01, 0.005], steppers=["tr_bdf2"])
+    sag = der.run(sagging).probes["sag"].summary["final"]
+    assert found.sizes["sag"] == pytest.approx(abs(sag), rel=0.05)
+    lines = found.advice()
+    assert lines[0].startswith("sag: for ")
+    assert "%): 11 nodes" in lines[0]
+    assert not any("no configuration" in line for line in lines)
+    share = float(found.advice([0.01])[0].split("(")[1].split(" %")[0])
+    assert share == pytest.approx(100 * 0.01 / found.sizes["sag"], rel=0.1)
+
+
+def test_a_probe_that_is_off_by_rounding_counts_as_exact(spheres):
+    """Equal spheres fall alike: the rod stays straight, its turning angle zero but for rounding."""
+    for sphere in spheres["rods"][0]["spheres"]:
+        sphere["at"] = "all"
+    spheres["time"]["duration"] = 0.5
+    found = der.study(spheres, steppers=["tr_bdf2"], steps=[0.05, 0.025])
+    rows = found.of("angle")
+    assert 0.0 < max(row.claimed_error for row in rows) < 1e-13
+    assert "angle: exact in every configuration" in found.advice()
+    assert "%" not in found.advice([0.01])[found.probes.index("angle")]
+
+
+def test_no_advice_below_rounding(made):
+    noisy = dataclasses.replace(made, noise={"sag": 1e-4})
+    assert [line.split()[2] for line in noisy.advice()] == ["0.1", "0.01", "0.001"]
 
 
 def test_seconds_text():
@@ -381,6 +499,55 @@ def test_an_interrupt_stops_the_other_runs(sagging, monkeypatch):
         Workers(2).run({0: Task([der.Scenario.from_dict(SAGGING)], weight=1), 1: Task([endless])})
 
 
+def test_progress_counts_what_is_guessed_to_come(sagging):
+    seen = []
+    workers = Workers(1, seen.append)
+    task = Task([der.Scenario.from_dict(sagging)], weight=1.0, repeats=2)
+    workers.expect(1.0, later=3.0)
+    workers.run({0: task})
+    assert 0.0 < seen[0] < 0.125 < seen[-1] == pytest.approx(0.25)  # two equal halves
+    workers.expect(1.0)
+    workers.run({0: task})
+    assert seen[-1] == pytest.approx(1.0)
+
+
+def study_of_few(scene, progress):
+    der.study(scene, nodes=[11, 21], steppers=["tr_bdf2", "verlet"], progress=progress)
+
+
+def verify_implicit(scene, progress):
+    der.verify(scene, jobs=1, progress=progress)
+
+
+def verify_explicit(scene, progress):
+    scene["time"] |= {"integrator": "verlet", "step": 2.5e-4}
+    der.verify(scene, jobs=1, progress=progress)
+
+
+def study_of_static(scene, progress):
+    del scene["time"], scene["output"]["every"]
+    der.study(scene | {"analysis": "static"}, nodes=[11, 21], progress=progress)
+
+
+@pytest.mark.parametrize(
+    "measure", [study_of_few, verify_implicit, verify_explicit, study_of_static]
+)
+def test_progress_is_told_from_the_start_and_full_only_at_the_end(sagging, monkeypatch, measure):
+    seen, after = [], []
+    original = Workers.run
+
+    def run(self, *arguments, **options):
+        outcomes = original(self, *arguments, **options)
+        after.append(seen[-1] if seen else None)
+        return outcomes
+
+    monkeypatch.setattr(Workers, "run", run)
+    measure(sagging, seen.append)
+    assert 0.0 < after[0] < 0.2  # the scene as written, of which all other runs are multiples
+    assert max(after[:-1]) < 0.95
+    assert after[-1] == pytest.approx(1.0)
+
+
 # The command.
 
 
@@ -407,3 +574,27 @@ def test_command_with_a_wrong_argument(sagging, tmp_path, capsys):
     path.write_text(der.Scenario.from_dict(sagging).to_yaml())
     assert main(["study", str(path), "--steppers", "rk4"]) == 1
     assert "rk4" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("errors", [[], [-1.0], [0.0], [math.nan], [math.inf], 0.1])
+def test_errors_without_meaning_are_refused(made, errors):
+    with pytest.raises(ValueError, match="errors must be"):
+        made.advice(errors)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--errors", "nan"], "errors must be finite numbers greater than 0"),
+        (["--max-seconds", "0"], "max_seconds must be a number greater than 0"),
+        (["--out", "taken"], "'taken' is a file, and results go to a folder"),
+        (["--out", "taken/study"], "'taken' is a file"),
+    ],
+)
+def test_command_refuses_before_any_run(sagging, tmp_path, capsys, monkeypatch, options, words):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(Workers, "run", lambda *_, **__: pytest.fail("it ran"))
+    (tmp_path / "taken").write_text("")
+    (tmp_path / "arm.yaml").write_text(der.Scenario.from_dict(sagging).to_yaml())
+    assert main(["study", "arm.yaml", *options]) == 1
+    assert words in capsys.readouterr().err

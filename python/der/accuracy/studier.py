@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 from der._core import Scenario
 from der.accuracy.default_probes import with_default_probes
+from der.accuracy.noise import noise_floor
 from der.accuracy.refinement import belongs_to_its_mesh, count_elements
 from der.accuracy.static_comparison import StaticComparison
 from der.accuracy.static_readings import static_readings
+from der.accuracy.study_arguments import check_arguments
 from der.accuracy.study_plan import (
     Mesh,
     choose_meshes,
@@ -22,6 +24,11 @@ from der.accuracy.study_plan import (
     common_interval,
     find_leading_rod,
     finer,
+    frame_interval,
+    longest_of_halvings,
+    reference_interval,
+    reference_step,
+    why_one_mesh,
     with_step,
 )
 from der.accuracy.study_reference import (
@@ -34,10 +41,11 @@ from der.accuracy.study_reference import (
 )
 from der.accuracy.study_result import Study, StudyRow, seconds_text
 from der.accuracy.time_levels import find_stepper
+from der.errors import DerError
 from der.parallel import TOO_LONG, Outcome, Task, Workers, total_weight
 from der.progress import ProgressFunction
 from der.result import Result
-from der.simulation import SceneLike, as_scenario
+from der.simulation import SceneLike, Simulation, as_scenario
 
 #: Runs are repeated while all of them together take less than this [s].
 _MEASURING_TIME = 0.3
@@ -50,6 +58,9 @@ _MOST_HALVINGS = 30
 _EXPLICIT_STEPS = 2
 #: The finest meshes, which the reference is extrapolated from.
 _REFERENCE_MESHES = 3
+#: All runs cost about this many times what the scene itself does, where that takes long enough for
+#: its progress to be seen: before it has run, no one knows.
+_COST_OF_STUDY = 20.0
 #: Cost of a step, against one of another implicit stepper.
 _COST_OF_STEP = {
     "tr_bdf2": 2.0,
@@ -76,11 +87,11 @@ def study(
 ) -> Study:
     """Measure cost against error over meshes, steppers and steps.
 
-    The error of a probe is its largest difference to a reference over the saved times. The
-    reference is extrapolated from finer meshes and smaller steps, and states its own error. Of
-    modes the frequencies are compared as well, of buckling the load factors; of a path of
-    equilibria the factor and the probes at its folds and bifurcations, and the probes where it
-    ends.
+    The error of a probe is its largest difference to a reference over the frames that the scene
+    saves, as far as the step of a configuration reaches them. The reference is extrapolated from
+    finer meshes and smaller steps, and states its own error. Of modes the frequencies are compared
+    as well, of buckling the load factors; of a path of equilibria the factor and the probes at its
+    folds and bifurcations, and the probes where it ends.
 
     Parameters
     ----------
@@ -90,8 +101,10 @@ def study(
         Of the first rod whose mesh can be varied; those of other rods follow in proportion. Without
         it, about half, once, twice and four times the scene's elements.
     steps
-        Time steps [s]. Without them, four times to an eighth of the scene's step; for an explicit
-        stepper, the longest stable step among its halvings and the next.
+        Time steps [s]. Without them, four times to an eighth of the scene's step, or if its step is
+        explicit, ``auto`` or set by a tolerance, a fiftieth to a 1600th of the duration, rounded to
+        parts and multiples of ``output.every``; for an explicit stepper, the longest stable step
+        among the halvings of the longest and the next.
     steppers
         Names of time integrators; without them, all.
     max_seconds
@@ -112,8 +125,9 @@ def study(
     SceneError, NotConvergedError, DivergedError
         If the scene itself, or a run that the reference needs, does not run to its end.
     ValueError
-        For nodes, steps or steppers that the scene cannot take.
+        For nodes, steps or steppers that the scene cannot take, and for empty lists.
     """
+    check_arguments(nodes, steps, steppers, max_seconds)
     given = as_scenario(scenario)
     scene = with_default_probes(given)
     notes = []
@@ -122,18 +136,25 @@ def study(
     if scene.is_static and (steps is not None or steppers is not None):
         raise ValueError("a static scene has neither steps nor steppers: only nodes can be varied")
     meshes = choose_meshes(scene, nodes)
+    names = choose_steppers(steppers)
     workers = Workers(jobs, progress)
+    workers.expect(1.0, later=_COST_OF_STUDY)
     base = workers.run({0: Task([scene])})[0]
     study_ = _Study(scene, meshes, base, max_seconds, workers, notes)
     if scene.is_static:
         study_.run_static()
     else:
-        study_.run_dynamic(choose_steppers(steppers), steps)
+        study_.run_dynamic(names, steps)
     return study_.finish()
 
 
 def _largest_difference(a: NDArray[np.float64] | None, b: NDArray[np.float64] | None) -> float:
     return math.nan if a is None or b is None else float(np.max(np.abs(a - b)))
+
+
+def _size(values: NDArray[np.float64]) -> float:
+    """Return what errors are set against: a probe that hardly moves still has a magnitude."""
+    return float(max(np.ptp(values), np.max(np.abs(values))))
 
 
 def _repeats(seconds: float) -> int:
@@ -178,6 +199,7 @@ class _Study:
         self._trials: list[_Trial] = []
         self._every = 0.0
         work = self._base.model.num_nodes * max(1, int(self._base.summary.get("steps", 1)))
+        self._base_seconds = base.cpu_seconds  # the unit of weights: the base itself weighs 1
         self._seconds_per_step = base.cpu_seconds / work / self._cost_of_step(self._base_stepper)
         self._on_mesh: list[Reference] = []
         self._reference = Reference({}, {})
@@ -190,7 +212,7 @@ class _Study:
         """Return the probes that cannot be compared: a turning angle belongs to its mesh."""
         probes = list(self._base.probes)
         if find_leading_rod(self._scenario) is None:
-            self._notes.append("every rod has as many nodes as its model asks for: one mesh")
+            self._notes.append(f"nodes are not varied: {why_one_mesh(self._scenario)}")
             return []
         angles = [name for name in probes if belongs_to_its_mesh(self._scenario, name)]
         for name in angles:
@@ -205,47 +227,105 @@ class _Study:
 
     def run_static(self) -> None:
         """Run every mesh, and the reference."""
-        tasks = {
-            i: Task(
-                [mesh.scenario],
-                mesh.nodes,
-                _repeats(self._seconds_per_step * self._total_nodes(mesh)),
-                keep_motion=False,
-            )
-            for i, mesh in enumerate(self._meshes)
-        }
-        references = reference_tasks(self._reference_meshes(), None, 0.0, 0.0, 1.0)
+        per_node = 1.0 / self._base.model.num_nodes
+        tasks = {i: self._static_task(mesh, per_node) for i, mesh in enumerate(self._meshes)}
+        references = reference_tasks(self._reference_meshes(), None, 0.0, 0.0, per_node)
         self._workers.expect(total_weight([*tasks.values(), *references.values()]))
         for i, outcome in self._workers.run(tasks, jobs=1).items():
             self._add_trial(i, "", 0.0, outcome)
         self._converge_static(self._workers.run(references))
+
+    def _static_task(self, mesh: Mesh, cost_per_node: float) -> Task:
+        nodes = self._total_nodes(mesh)
+        repeats = _repeats(self._seconds_per_step * nodes)
+        return Task([mesh.scenario], cost_per_node * nodes * repeats, repeats, keep_motion=False)
 
     def run_dynamic(self, steppers: Sequence[str], steps: Sequence[float] | None) -> None:
         """Run every configuration, and the reference."""
         chosen = choose_steps(self._base, steps)
         if steps is None:
             self._leave_out_costly_steps(chosen)
-        self._every = common_interval(self._base, chosen)
-        seconds_per_node = self._seconds_per_step * self._scenario.duration / chosen[-1]
+        self._every = reference_interval(self._base, chosen)
+        self._note_interval(chosen)
+        finest = reference_step(chosen[-1], self._every)
+        cost_per_node = self._cost(self._seconds_per_node(REFERENCE_STEPPER, finest))
         references = reference_tasks(
-            self._reference_meshes(), REFERENCE_STEPPER, chosen[-1], self._every, seconds_per_node
+            self._reference_meshes(), REFERENCE_STEPPER, finest, self._every, cost_per_node
         )
-        plan = [
+        plan = self._plan(steppers, chosen, explicit=steps is not None)
+        halvings = {} if steps is not None else self._plan_halvings(steppers, chosen[0])
+        self._workers.expect(
+            total_weight(references.values())
+            + sum(self._measuring_cost(*configuration) for configuration in plan)
+            + sum(self._measuring_cost(*key, step) for key in halvings for step in halvings[key])
+        )
+        for configuration in plan:
+            self._measure(*configuration, self._measuring_cost(*configuration))
+        for (mesh, name), announced in halvings.items():
+            self._measure_explicit(mesh, name, chosen[0], announced)
+        self._converge(self._workers.run(references))
+
+    def _plan(
+        self, steppers: Sequence[str], steps: Sequence[float], explicit: bool
+    ) -> list[tuple[int, str, float]]:
+        """Return mesh, stepper and step of what is measured, explicit steppers only if wanted."""
+        names = [name for name in steppers if explicit or find_stepper(name).implicit]
+        return [
             (mesh, name, step)
             for mesh in range(len(self._meshes))
-            for name in steppers
-            for step in (chosen if steps is not None or find_stepper(name).implicit else [])
+            for name in names
+            for step in steps
         ]
-        weights = [self._measuring_time(*configuration) for configuration in plan]
-        self._workers.expect(total_weight(references.values()) + sum(weights))
-        for (mesh, name, step), weight in zip(plan, weights, strict=True):
-            self._measure(mesh, name, step, weight)
-        if steps is None:
-            for mesh in range(len(self._meshes)):
-                for name in steppers:
-                    if not find_stepper(name).implicit:
-                        self._measure_explicit(mesh, name, chosen[0])
-        self._converge(self._workers.run(references))
+
+    def _plan_halvings(
+        self, steppers: Sequence[str], longest: float
+    ) -> dict[tuple[int, str], list[float]]:
+        """Return the steps that are likely stable and so measured, by mesh and explicit stepper."""
+        return {
+            (mesh, name): self._stable_steps(mesh, name, longest)
+            for mesh in range(len(self._meshes))
+            for name in steppers
+            if not find_stepper(name).implicit
+        }
+
+    def _stable_steps(self, mesh: int, stepper: str, longest: float) -> list[float]:
+        """Return the first halvings that are stable at the start of the run."""
+        steps = self._halvings(longest)
+        refused = 0
+        while refused < len(steps) and self._is_refused(mesh, stepper, steps[refused]):
+            refused += 1
+        return steps[refused : refused + _EXPLICIT_STEPS]
+
+    def _is_refused(self, mesh: int, stepper: str, step: float) -> bool:
+        try:
+            Simulation(self._with_step(mesh, stepper, step))
+        except DerError:
+            return True
+        return False
+
+    def _halvings(self, longest: float) -> list[float]:
+        first = longest_of_halvings(longest, self._every)
+        return [first / 2**count for count in range(_MOST_HALVINGS)]
+
+    def _with_step(self, mesh: int, stepper: str, step: float) -> Scenario:
+        return with_step(self._meshes[mesh].scenario, stepper, step, self._interval(step))
+
+    def _note_interval(self, steps: Sequence[float]) -> None:
+        note = f"errors are measured every {seconds_text(self._every)}"
+        if math.isclose(self._every, frame_interval(self._base)):
+            note += ", as the scene saves frames"
+        rarer = [
+            f"with {seconds_text(step)} every {seconds_text(self._interval(step))}"
+            for step in steps
+            if not math.isclose(self._interval(step), self._every)
+        ]
+        if rarer:
+            note += ", or where a step does not reach all of these: " + ", ".join(rarer)
+        self._notes.append(note)
+
+    def _interval(self, step: float) -> float:
+        """Return the interval [s] at which a run with this step is compared; 0 without time."""
+        return common_interval(step, self._every) if step > 0.0 else 0.0
 
     def _leave_out_costly_steps(self, steps: list[float]) -> None:
         """Drop the shortest steps until the reference, four times finer, is affordable."""
@@ -256,35 +336,49 @@ class _Study:
             left_out = steps.pop()
             self._notes.append(f"steps of {seconds_text(left_out)} are left out, for their cost")
 
-    def _measure(self, mesh: int, stepper: str, step: float, weight: float = 0.0) -> _Trial:
+    def _measure(self, mesh: int, stepper: str, step: float, weight: float) -> _Trial:
         expected = self._expected_seconds(mesh, stepper, step)
         if expected > self._max_seconds:
             trial = _Trial(mesh, stepper, step, SKIPPED, None, math.nan)
             self._trials.append(trial)
             return trial
-        repeats = _repeats(expected)
-        scenario = with_step(self._meshes[mesh].scenario, stepper, step, self._every)
-        task = Task([scenario], weight, repeats, keep_motion=False, max_seconds=self._max_seconds)
+        scenario = self._with_step(mesh, stepper, step)
+        task = Task(
+            [scenario],
+            weight,
+            _repeats(expected),
+            keep_motion=False,
+            max_seconds=self._max_seconds,
+        )
         return self._add_trial(mesh, stepper, step, self._workers.run({0: task}, jobs=1)[0])
 
-    def _measure_explicit(self, mesh: int, stepper: str, longest: float) -> None:
+    def _measure_explicit(
+        self, mesh: int, stepper: str, longest: float, announced: Sequence[float]
+    ) -> None:
         """Halve the step until it is stable; measure that and the next ones."""
         stable = 0
-        for halvings in range(_MOST_HALVINGS):
-            trial = self._measure(mesh, stepper, longest / 2**halvings)
+        for step in self._halvings(longest):
+            cost = self._measuring_cost(mesh, stepper, step) if step in announced else 0.0
+            trial = self._measure(mesh, stepper, step, cost)
             stable += trial.result is not None
             if stable == _EXPLICIT_STEPS or trial.status == SKIPPED:
                 return
 
-    def _measuring_time(self, mesh: int, stepper: str, step: float) -> float:
-        """Return the expected CPU time of all repeats [s]; 0 of what will be skipped."""
+    def _measuring_cost(self, mesh: int, stepper: str, step: float) -> float:
+        """Return the expected cost of all repeats; 0 of what will be skipped."""
         expected = self._expected_seconds(mesh, stepper, step)
-        return 0.0 if expected > self._max_seconds else expected * _repeats(expected)
+        return 0.0 if expected > self._max_seconds else self._cost(expected * _repeats(expected))
+
+    def _cost(self, seconds: float) -> float:
+        """Return CPU time in the unit of weights."""
+        return seconds / self._base_seconds
 
     def _expected_seconds(self, mesh: int, stepper: str, step: float) -> float:
-        nodes = self._total_nodes(self._meshes[mesh])
+        return self._seconds_per_node(stepper, step) * self._total_nodes(self._meshes[mesh])
+
+    def _seconds_per_node(self, stepper: str, step: float) -> float:
         steps = self._scenario.duration / step
-        return self._seconds_per_step * self._cost_of_step(stepper) * nodes * steps
+        return self._seconds_per_step * self._cost_of_step(stepper) * steps
 
     def _total_nodes(self, mesh: Mesh) -> float:
         """Return the nodes of all rods, if all are refined as the one is that names the mesh."""
@@ -362,17 +456,20 @@ class _Study:
         """Return what was found."""
         self._note_what_is_missing()
         exact = self._reference.probes
-        ranges = {
-            name: float(np.ptp(exact[name]) if len(exact[name]) > 1 else np.abs(exact[name][0]))
-            for name in self._units
-        }
+        sizes = {name: _size(exact[name]) for name in self._units}
         values = [self._values(trial) for trial in self._trials]
         rows = [
             self._row(name, trial, found.get(name))
             for name in self._units
             for trial, found in zip(self._trials, values, strict=True)
         ]
-        return Study(self._scenario, tuple(rows), ranges, tuple(self._notes))
+        noise = {name: self._noise(name, exact[name]) for name in self._units}
+        return Study(self._scenario, tuple(rows), sizes, tuple(self._notes), noise)
+
+    def _noise(self, name: str, exact: NDArray[np.float64]) -> float:
+        step = min((trial.step for trial in self._trials if trial.step > 0.0), default=math.inf)
+        largest = float(np.max(np.abs(exact)))
+        return noise_floor(self._base.model, self._units[name], step, largest)
 
     def _values(self, trial: _Trial) -> dict[str, NDArray[np.float64]]:
         """Return what can be compared of a trial, by name."""
@@ -394,11 +491,27 @@ class _Study:
             step=trial.step,
             status=UNMATCHED if missing else trial.status,
             cpu_seconds=trial.cpu_seconds,
-            error=_largest_difference(values, exact),
+            error=_largest_difference(values, self._at_frames_of(trial, exact)),
             space_error=_largest_difference(on_mesh, exact),
-            time_error=_largest_difference(values, on_mesh) if trial.stepper else math.nan,
+            time_error=(
+                _largest_difference(values, self._at_frames_of(trial, on_mesh))
+                if trial.stepper
+                else math.nan
+            ),
             reference_error=self._reference.errors[probe],
+            interval=self._interval(trial.step),
         )
+
+    def _at_frames_of(
+        self, trial: _Trial, series: NDArray[np.float64] | None
+    ) -> NDArray[np.float64] | None:
+        """Return what a reference has at the times that the run of a trial was saved at."""
+        if trial.result is None or series is None or not trial.stepper:
+            return series
+        frames = np.rint(trial.result.times / self._every).astype(int)
+        frames[-1] = len(series) - 1  # the end of the run, be it a multiple or not
+        at_frames: NDArray[np.float64] = series[frames]
+        return at_frames
 
     def _note_what_is_missing(self) -> None:
         for i, mesh in enumerate(self._meshes):

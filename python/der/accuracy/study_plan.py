@@ -14,17 +14,18 @@ from der.accuracy.refinement import (
     with_elements,
     with_time,
 )
-from der.accuracy.time_levels import find_stepper, fixed_step
+from der.accuracy.time_levels import find_stepper, fixed_step, stepper_of
 from der.result import Result
 
 _DEFAULT_MESHES = (Fraction(1, 2), Fraction(1), Fraction(2), Fraction(4))
 _DEFAULT_STEPS = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125)
-#: Steps in the run for the longest step of a scene with a tolerance; each next step is half of it.
-_STEPS_OF_ADAPTIVE = 50
+#: Steps in the run for the longest step of a scene whose own step says nothing about accuracy: with
+#: a tolerance it has none, and stability sets that of an explicit stepper.
+_FEWEST_STEPS_OF_RUN = 50
 _FEWEST_STEPS = 8
 _FEWEST_ELEMENTS = 4
-#: The times at which runs are compared are at most this many of the largest steps apart.
-_MOST_STEPS_APART = 1000
+#: A step has to reach one of this many frames of the scene to be compared at all.
+_MOST_FRAMES_APART = 1000
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,11 @@ def find_leading_rod(scenario: Scenario) -> str | None:
     return next((name for name in count_elements(scenario) if name not in fixed), None)
 
 
+def why_one_mesh(scenario: Scenario) -> str:
+    """Return why no rod's mesh can be varied."""
+    return ", ".join(dict.fromkeys(rods_that_cannot_be_refined(scenario).values()))
+
+
 def choose_meshes(scenario: Scenario, nodes: Sequence[int] | None) -> list[Mesh]:
     """Return the meshes to try, coarsest first.
 
@@ -67,9 +73,13 @@ def choose_meshes(scenario: Scenario, nodes: Sequence[int] | None) -> list[Mesh]
     """
     rod = find_leading_rod(scenario)
     if rod is None:
-        if nodes is not None:
-            raise ValueError("this scene allows no other number of nodes than its own")
-        return [Mesh(next(iter(count_elements(scenario).values())) + 1, scenario)]
+        own = next(iter(count_elements(scenario).values())) + 1
+        if nodes is not None and set(nodes) != {own}:
+            raise ValueError(
+                f"this scene allows no other number of nodes than its own, {own}: "
+                f"{why_one_mesh(scenario)}; leave nodes out"
+            )
+        return [Mesh(own, scenario)]
     if nodes is None:
         return _default_meshes(scenario, rod)
     return [_mesh(scenario, rod, count) for count in sorted(set(nodes))]
@@ -118,7 +128,11 @@ def choose_steppers(names: Sequence[str] | None) -> list[str]:
 
 
 def choose_steps(base: Result, steps: Sequence[float] | None) -> list[float]:
-    """Return the steps to try [s], longest first: those given, or some around the scene's own.
+    """Return the steps to try [s], longest first: those given, or some that suit the scene.
+
+    These are around the scene's own step; where that comes from a tolerance or from the stability
+    of an explicit stepper, they are shares of the duration. They are whole parts or multiples of
+    the interval between frames, so that runs have values at the frames that the scene saves.
 
     Raises
     ------
@@ -127,10 +141,9 @@ def choose_steps(base: Result, steps: Sequence[float] | None) -> list[float]:
     """
     duration = base.scenario.duration
     if steps is None:
-        own = fixed_step(base)
-        if "tolerance" in base.scenario.to_dict()["time"]:
-            own = duration / _STEPS_OF_ADAPTIVE / _DEFAULT_STEPS[0]
-        around = [factor * own for factor in _DEFAULT_STEPS]
+        middle, frames = _middle_step(base), frame_interval(base)
+        fitted = (_fitting_step(factor * middle, frames) for factor in _DEFAULT_STEPS)
+        around = list(dict.fromkeys(fitted))
         return [step for step in around if duration >= _FEWEST_STEPS * step] or around[-1:]
     for step in steps:
         if not 0.0 < step <= duration:
@@ -138,36 +151,75 @@ def choose_steps(base: Result, steps: Sequence[float] | None) -> list[float]:
     return sorted(set(steps), reverse=True)
 
 
-def common_interval(base: Result, steps: Sequence[float]) -> float:
-    """Return the shortest interval [s] that is a multiple of every step, and not below the scene's.
+def _middle_step(base: Result) -> float:
+    if "tolerance" in base.scenario.to_dict()["time"] or not stepper_of(base).implicit:
+        return base.scenario.duration / _FEWEST_STEPS_OF_RUN / _DEFAULT_STEPS[0]
+    return fixed_step(base)
+
+
+def _fitting_step(step: float, frames: float) -> float:
+    """Return the step nearest to `step` that is a whole part or a multiple of `frames` [s]."""
+    if step >= frames:
+        return frames * round(step / frames)
+    return frames / round(frames / step)
+
+
+def longest_of_halvings(step: float, frames: float) -> float:
+    """Return the longest step up to `step` whose halvings all fit the interval `frames` [s]."""
+    return float(frames * 2.0 ** math.floor(math.log2(step / frames) + 1e-9))
+
+
+def frame_interval(base: Result) -> float:
+    """Return the interval between the frames that a scene saves [s]."""
+    return float(base.times[1] - base.times[0])
+
+
+def reference_interval(base: Result, steps: Sequence[float]) -> float:
+    """Return the interval [s] that contains the times at which any of these steps is compared.
 
     Parameters
     ----------
     base
-        The scene as written; the interval between its frames is the least.
+        The scene as written; the interval is a whole multiple of that between its frames.
     steps
-        All steps [s], longest first.
+        All steps [s].
 
     Raises
     ------
     ValueError
-        If the steps have no common multiple up to a thousand times the longest.
+        If a step misses all frames of the scene.
     """
-    wanted = float(base.times[1] - base.times[0]) * (1.0 - 1e-9)
-    first = max(1, math.ceil(wanted / steps[0]))
-    for count in range(first, first + _MOST_STEPS_APART):
-        interval = count * steps[0]
-        if all(_divides(step, interval) for step in steps):
-            return interval
+    frames = frame_interval(base)
+    return frames * math.gcd(*(_frames_apart(step, frames) for step in steps))
+
+
+def common_interval(step: float, frames: float) -> float:
+    """Return the shortest interval [s] that is a multiple of `step` and of `frames` [s].
+
+    Raises
+    ------
+    ValueError
+        If there is none up to a thousand frames.
+    """
+    return frames * _frames_apart(step, frames)
+
+
+def _frames_apart(step: float, frames: float) -> int:
+    """Return how many frames it is from one that the step reaches to the next."""
+    for count in range(1, _MOST_FRAMES_APART + 1):
+        steps = count * frames / step
+        if steps > 0.5 and abs(steps - round(steps)) <= 1e-6:
+            return count
     raise ValueError(
-        "the steps have no common multiple, and runs are compared at times that all of them reach: "
-        "choose steps that are whole parts of the longest one"
+        f"a step of {step:g} s and the interval between frames, {frames:g} s, have no common "
+        "multiple, and runs are compared at frames that they reach: choose a whole part or a "
+        "multiple of that interval"
     )
 
 
-def _divides(step: float, interval: float) -> bool:
-    count = interval / step
-    return abs(count - round(count)) <= 1e-6
+def reference_step(shortest: float, interval: float) -> float:
+    """Return the longest step up to `shortest` that reaches every multiple of `interval` [s]."""
+    return interval / math.ceil(interval / shortest * (1.0 - 1e-9))
 
 
 def with_step(scenario: Scenario, stepper: str, step: float, every: float) -> Scenario:

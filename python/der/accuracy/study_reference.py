@@ -44,7 +44,7 @@ def reference_tasks(
     stepper: str | None,
     step: float,
     every: float,
-    seconds_per_node: float,
+    cost_per_node: float,
 ) -> dict[tuple[int, int], Task]:
     """Return the runs that references on these meshes are made of, by mesh and level.
 
@@ -58,8 +58,8 @@ def reference_tasks(
         Of the coarsest level [s]; two more halve it.
     every
         Between frames [s].
-    seconds_per_node
-        Expected CPU time of the coarsest level, over the number of nodes.
+    cost_per_node
+        Of the coarsest level, over the number of nodes, in the unit of `Task.weight`.
     """
     tasks = {}
     for mesh, scenario in meshes.items():
@@ -68,7 +68,7 @@ def reference_tasks(
             varied = scenario
             if stepper:
                 varied = with_step(scenario, stepper, step / 2**level, every)
-            weight = seconds_per_node * size * 2.0**level
+            weight = cost_per_node * size * 2.0**level
             scenarios = [varied.with_(**_TIGHT), varied]
             tasks[mesh, level] = Task(scenarios, weight, keep_motion=False)
     return tasks

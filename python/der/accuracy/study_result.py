@@ -6,16 +6,17 @@ import csv
 import math
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from der._core import Scenario
+from der.accuracy.study_arguments import check_errors
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: No advice is given for errors of more than this share of what a probe goes through.
+#: No advice is given for errors of more than this share of a probe's size.
 _USEFUL = 0.2
 
 
@@ -39,13 +40,16 @@ class StudyRow:
         CPU time of building the simulation and running it [s], the best of some runs; NaN if it did
         not run to its end, as are the errors.
     error
-        Largest difference to the reference over the saved times, in the unit of the probe.
+        Largest difference to the reference over the times of `interval`, in the unit of the probe.
     space_error
-        The same of this mesh with time converged.
+        The same of this mesh with time converged, over all times that the reference has.
     time_error
         Largest difference to this mesh with time converged.
     reference_error
         Estimated error of the reference: an `error` below it says only that much.
+    interval
+        Between the times at which the run is compared [s]: that between the frames of the scene, or
+        the shortest multiple that the step reaches; 0 for a static scene.
     """
 
     probe: str
@@ -59,6 +63,7 @@ class StudyRow:
     space_error: float
     time_error: float
     reference_error: float
+    interval: float = 0.0
 
     @property
     def completed(self) -> bool:
@@ -92,22 +97,25 @@ class Study:
         The scene that was varied.
     rows
         One for each probe and configuration.
-    ranges
-        By probe, what it goes through in the reference, largest less smallest value; of a static
-        scene its size.
+    sizes
+        By probe, what errors are set against: what it goes through in the reference, largest less
+        smallest value, or its largest magnitude if that is more.
     notes
         What the reader should know: what could not be varied, what was skipped.
+    noise
+        By probe, what rounding leaves: an error of this or less is none.
     """
 
     scenario: Scenario
     rows: tuple[StudyRow, ...]
-    ranges: dict[str, float]
+    sizes: dict[str, float]
     notes: tuple[str, ...]
+    noise: dict[str, float] = field(default_factory=dict)
 
     @property
     def probes(self) -> list[str]:
         """The names of the probes."""
-        return list(self.ranges)
+        return list(self.sizes)
 
     def of(self, probe: str) -> list[StudyRow]:
         """Return the rows of a probe.
@@ -117,7 +125,7 @@ class Study:
         KeyError
             If the study has no such probe.
         """
-        if probe not in self.ranges:
+        if probe not in self.sizes:
             raise KeyError(probe)
         return [row for row in self.rows if row.probe == probe]
 
@@ -133,7 +141,14 @@ class Study:
         ----------
         errors
             In the units of the probes; without it, powers of ten that the configurations reach.
+
+        Raises
+        ------
+        ValueError
+            For an empty list, and for errors that are not greater than 0 and finite.
         """
+        if errors is not None:
+            check_errors(errors)
         lines = []
         for probe in self.probes:
             wanted = self._decades(probe) if errors is None else errors
@@ -145,14 +160,17 @@ class Study:
         return lines
 
     def is_exact(self, probe: str) -> bool:
-        """Whether no configuration that came to its end has an error in this probe."""
+        """Whether no configuration that came to its end has an error that is more than rounding."""
         errors = [row.claimed_error for row in self.of(probe) if row.completed]
-        return bool(errors) and max(errors) == 0.0
+        return bool(errors) and max(errors) <= self._noise(probe)
+
+    def _noise(self, probe: str) -> float:
+        return self.noise.get(probe, 0.0)
 
     def _advice_line(self, probe: str, error: float) -> str:
         rows = self.of(probe)
-        size = self.ranges[probe]
-        share = f" ({100.0 * error / size:.2g} %)" if size > 0.0 else ""
+        size = self.sizes[probe]
+        share = f" ({100.0 * error / size:.2g} %)" if size > self._noise(probe) else ""
         best = self.cheapest(probe, error)
         what = "no configuration of this study"
         if best is not None:
@@ -162,12 +180,12 @@ class Study:
 
     def _decades(self, probe: str) -> list[float]:
         found = [row.claimed_error for row in self.of(probe) if row.completed]
-        found = [error for error in found if error > 0.0]
+        found = [error for error in found if error > self._noise(probe)]
         if not found:
             return []
         lowest, highest = (math.ceil(math.log10(e) - 1e-9) for e in (min(found), max(found)))
-        if self.ranges[probe] > 0.0:
-            highest = min(highest, math.floor(math.log10(_USEFUL * self.ranges[probe])))
+        if self.sizes[probe] > self._noise(probe):
+            highest = min(highest, math.floor(math.log10(_USEFUL * self.sizes[probe])))
         return [10.0**power for power in range(highest, lowest - 1, -1)]
 
     def write_csv(self, path: str | os.PathLike[str]) -> None:

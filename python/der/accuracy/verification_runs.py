@@ -85,7 +85,7 @@ def run_levels(scenario: Scenario, levels: int | None, workers: Workers) -> Veri
     SceneError, NotConvergedError, DivergedError
         If the scene as written does not run to its end.
     """
-    runs = _run_base(scenario, workers)
+    runs = _run_base(scenario, workers, _guess_rest(scenario, levels))
     refined = _can_refine_space(runs)
     runs.levels = levels or _affordable_levels(runs, refined)
     if refined:
@@ -94,7 +94,17 @@ def run_levels(scenario: Scenario, levels: int | None, workers: Workers) -> Veri
     return runs
 
 
-def _run_base(scenario: Scenario, workers: Workers) -> VerificationRuns:
+def _guess_rest(scenario: Scenario, levels: int | None) -> float:
+    """Return about how many times the cost of the scene as written all other runs have."""
+    finest = (levels or 3) - 1
+    doubled = 2.0 ** (finest + 1) - 1.0  # 1 + 2 + ... over all levels
+    if scenario.is_static:
+        return doubled
+    return doubled + (doubled - 1.0) + 2.0**finest  # in time, in space, and the witness
+
+
+def _run_base(scenario: Scenario, workers: Workers, rest: float) -> VerificationRuns:
+    workers.expect(1.0, later=rest)
     outcome = workers.run({0: Task([scenario])})[0]
     failure = outcome.error
     if failure is not None and not isinstance(failure, SceneError):
@@ -160,7 +170,8 @@ class Runner:
         tasks = self._time_tasks()
         if not explicit:
             tasks |= {("space", n): self._task(n, 0) for n in self._space_levels() if n > 0}
-        self._run(tasks)
+        spaces = self._space_of_explicit(self._finest) if explicit else {}
+        self._run(tasks, later=total_weight(spaces.values()))
         if explicit:
             self._run_space_of_explicit()
         elif self._runs.space_is_refined and 0 in self._runs.time:
@@ -201,16 +212,23 @@ class Runner:
         if not self._runs.space_is_refined:
             return
         for time in (self._finest, 2 * self._finest):
-            key: Key = ("space", self._finest)
-            if self._run({key: self._task(self._finest, time)}, report=time > self._finest):
+            tasks = self._space_of_explicit(time)
+            finest: Key = ("space", self._finest)
+            task = {finest: tasks.pop(finest)}
+            rest = total_weight(tasks.values())
+            if self._run(task, report=time > self._finest, later=rest):
+                self._run(tasks)
                 break
-        else:
-            return
-        self._run({("space", n): self._task(n, time) for n in self._space_levels()[:-1]})
 
-    def _run(self, tasks: Mapping[Key, Task], report: bool = True) -> bool:
-        """Run tasks and keep the results of those that succeed; tell whether all did."""
-        self._workers.expect(total_weight(tasks.values()))
+    def _space_of_explicit(self, time: int) -> dict[Key, Task]:
+        return {("space", n): self._task(n, time) for n in self._space_levels()}
+
+    def _run(self, tasks: Mapping[Key, Task], report: bool = True, later: float = 0.0) -> bool:
+        """Run tasks and keep the results of those that succeed; tell whether all did.
+
+        What will be run `later` counts in the progress already.
+        """
+        self._workers.expect(total_weight(tasks.values()), later)
         outcomes = self._workers.run(tasks)
         self._runs.cpu_seconds += sum(outcome.cpu_seconds for outcome in outcomes.values())
         for (axis, level), outcome in outcomes.items():

@@ -1,9 +1,10 @@
 """Measure what accuracy costs: vary nodes, step and stepper of a scene.
 
 Writes study.csv and study.png, and prints what to take for some errors. The error of a probe is its
-largest difference to a reference over the saved times, in the unit of the probe; the reference is
-extrapolated from finer meshes and smaller steps. The cost is CPU time, the best of up to five runs.
-Exit codes: 0, 1 for a mistake in the scene or the arguments, 3 if the scene itself fails.
+largest difference to a reference over the frames that the scene saves, in the unit of the probe;
+the reference is extrapolated from finer meshes and smaller steps. The cost is CPU time, the
+best of up to five runs. Exit codes: 0, 1 for a mistake in the scene or the arguments, 3 if the
+scene itself fails.
 """
 
 from __future__ import annotations
@@ -29,8 +30,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         type=float,
         metavar="DT",
-        help="time steps [s] (default: four times to an eighth of the scene's; for explicit "
-        "steppers the longest stable ones)",
+        help="time steps [s] (default: four times to an eighth of the scene's, or if that is "
+        "explicit or adaptive, 1/50 to 1/1600 of the duration; for explicit steppers the longest "
+        "stable ones)",
     )
     parser.add_argument(
         "--steppers", nargs="+", metavar="NAME", help="time integrators (default: all)"
@@ -65,7 +67,12 @@ def execute(arguments: argparse.Namespace) -> int:
     import matplotlib as mpl
 
     from der.accuracy.studier import study
+    from der.accuracy.study_arguments import check_errors
 
+    if arguments.errors is not None:
+        check_errors(arguments.errors)
+    out = arguments.out or Path(f"{arguments.scene.stem}_study")
+    _check_out(out)
     mpl.use("agg")  # a file is written and no window opened, on a screen or without
     with progress_on_terminal() as progress:
         found = study(
@@ -77,7 +84,6 @@ def execute(arguments: argparse.Namespace) -> int:
             jobs=arguments.jobs,
             progress=progress,
         )
-    out = arguments.out or Path(f"{arguments.scene.stem}_study")
     out.mkdir(parents=True, exist_ok=True)
     found.write_csv(out / "study.csv")
     found.plot().savefig(out / "study.png")
@@ -88,3 +94,15 @@ def execute(arguments: argparse.Namespace) -> int:
     print(out / "study.csv")
     print(out / "study.png")
     return 0
+
+
+def _check_out(out: Path) -> None:
+    """Check, before the work, that a folder can be made or is there."""
+    for path in (out, *out.parents):
+        if path.is_dir():
+            return
+        if path.exists():
+            raise ValueError(
+                f"--out: '{path}' is a file, and results go to a folder: choose another name, or "
+                "move the file away"
+            )

@@ -7,7 +7,8 @@ namespace der {
 
 // Error factors: 3/(2^p - 1), but for two of them. Of bdf2 the first half goes on from a half step,
 // as the whole one does, which makes the whole one better than it would be among its like: 1.8, and
-// more while steps grow. Of sdirk4 and sdirk5 stiff motion converges at order 2: 0.7 instead of 0.2 and 0.1.
+// more while steps grow. Of sdirk4 and sdirk5 stiff motion converges at order 2: 0.7 instead of 0.2
+// and 0.1.
 const std::vector<StepperInfo>& stepper_registry() {
   static const std::vector<StepperInfo> registry = {
       {"implicit_euler", 1, true, false, false, 3.0, "L-stable: any step", "strong, all motion",

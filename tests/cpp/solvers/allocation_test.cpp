@@ -17,7 +17,8 @@ std::atomic<long> allocations{0};
 }
 
 extern "C" {
-void* __libc_malloc(std::size_t size);  // NOLINT(bugprone-reserved-identifier): glibc's own name
+// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming): glibc's own name
+void* __libc_malloc(std::size_t size);
 void* malloc(std::size_t size) {
   ++allocations;
   return __libc_malloc(size);

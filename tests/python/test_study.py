@@ -419,7 +419,7 @@ def test_errors_of_a_probe_that_hardly_moves_are_set_against_its_magnitude(saggi
     assert found.sizes["sag"] == pytest.approx(abs(sag), rel=0.05)
     lines = found.advice()
     assert lines[0].startswith("sag: for ")
-    assert "%): 11 nodes" in lines[0]
+    assert " nodes, tr_bdf2, " in lines[0]  # of which mesh depends on times
     assert not any("no configuration" in line for line in lines)
     share = float(found.advice([0.01])[0].split("(")[1].split(" %")[0])
     assert share == pytest.approx(100 * 0.01 / found.sizes["sag"], rel=0.1)

@@ -142,7 +142,10 @@ def test_implicit_steps_of_an_explicit_scene_are_not_bound_by_its_stability(sagg
     assert max(steps) == pytest.approx(0.3 / 50, rel=0.5)
     assert min(steps) < 0.3 / 500
     assert len(rows_of(found, stepper="verlet", status="completed")) == 2
-    assert found.cheapest("sag", 1e-2).stepper == "tr_bdf2"
+    good = [row for row in rows_of(found, stepper="tr_bdf2") if row.claimed_error <= 1e-2]
+    assert max(row.step for row in good) > 10 * max(
+        row.step for row in rows_of(found, stepper="verlet", status="completed")
+    )
 
 
 def test_static_scene_varies_the_mesh(sagging):

@@ -184,3 +184,28 @@ def test_rounding_that_no_step_makes_smaller_is_named():
     assert str(failure.value).endswith("raise time.tolerance.")
     assert "load" not in str(failure.value)
     assert "residual" not in str(failure.value)
+
+
+def test_entries_of_tables_that_are_close_together_in_a_long_run_are_hit():
+    jump = [500.0, 500.0 + 1e-7]
+    force = {"times": [0, *jump, 1000], "values": [[0, 0], [0, 0], [0, 0.01], [0, 0.01]]}
+    scene = scenes.swing(11)
+    scene["loads"] = [
+        {"point_force": {"rod": "arm", "at": "end", "force": force}},
+        {"damping": {"coefficient": 1}},
+    ]
+    scene["time"] = {"duration": 1000, "tolerance": 1e-2}
+    simulation = der.Simulation(scene)
+    reached = []
+    while simulation.time < 501:
+        simulation.step()
+        reached.append(simulation.time)
+    assert set(jump) <= set(reached)
+
+
+def test_a_run_of_a_day_needs_no_smaller_minimum_step():
+    scene = scenes.swing(11)
+    scene["loads"].append({"damping": {"coefficient": 1}})
+    scene["time"] = {"duration": 1e5, "tolerance": 1e-2}
+    scene["output"] = {"every": 1e4}
+    assert der.run(scene).summary["status"] == "completed"

@@ -245,7 +245,7 @@ EquilibriumReport Simulation::equilibrium(bool leave_saddles) {
   }
   state_.positions = positions;
   state_.velocities.setZero();
-  state_.next_step = 0.0;
+  forget_steps(state_);
   start_ledger(model_, state_);
   return report;
 }

@@ -37,6 +37,24 @@ def test_views_follow_the_engine(simulation):
     assert np.all(velocities == 0.0)
 
 
+@pytest.mark.parametrize("integrator", [info.name for info in der.steppers()])
+def test_after_an_equilibrium_no_stepper_remembers_the_steps_before(swing, integrator):
+    swing["time"] |= {"integrator": integrator}
+    if integrator in ("verlet", "explicit_euler"):
+        swing["time"]["step"] = "auto"
+    used, fresh = der.Simulation(swing), der.Simulation(swing)
+    used.step(10)
+    for simulation in (used, fresh):
+        simulation.equilibrium()
+    fresh.positions[...] = used.positions
+    for simulation in (used, fresh):
+        simulation.velocities[1:] = [0.0, 1.0]
+        simulation.step(10)
+    # The equilibria agree to the solver's tolerance; the times, which no load depends on, do not.
+    assert np.abs(used.positions - fresh.positions).max() < 1e-13
+    assert np.abs(used.velocities - fresh.velocities).max() < 1e-9
+
+
 def test_the_engine_sees_what_is_written(simulation):
     untouched = der.Simulation(simulation.scenario)
     untouched.step()

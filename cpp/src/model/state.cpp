@@ -40,6 +40,14 @@ std::array<double, kEnergyNames.size()> by_name(const Energies& energies) {
   return {energies.kinetic, energies.stretch, energies.bend, energies.spring, energies.gravity};
 }
 
+void forget_steps(State& state) {
+  state.accelerations.setZero();
+  state.last_step = 0.0;
+  state.history.clear();
+  state.next_step = 0.0;
+  state.last_error = 0.0;
+}
+
 void start_ledger(const Model& model, State& state) {
   state.work = {};
   state.work.start = energies(model, state).total();

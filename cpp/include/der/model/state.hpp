@@ -59,6 +59,9 @@ constexpr std::array<const char*, 5> kEnergyNames{"kinetic", "stretch", "bend", 
 std::array<double, kEnergyNames.size()> by_name(const Energies& energies);
 Energies energies(const Model& model, const State& state);
 
+/// Forgets what steppers remember of the steps so far, for a motion that begins anew.
+void forget_steps(State& state);
+
 /// Starts a new ledger: nothing has gone in or out yet.
 void start_ledger(const Model& model, State& state);
 

@@ -91,14 +91,14 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
   measure(report);
   while (report.iterations < limit) {
     const double residual_before = report.residual;
-    if (!std::isfinite(residual_before) || !find_direction(report)) {
+    double step = std::isfinite(residual_before) ? find_direction(report) : residual_before;
+    if (!std::isfinite(step)) {
       report.worst_dof = worst_dof();
       report.failure = "the forces or the stiffness stopped being numbers";
       return report;
     }
     ++report.iterations;
-    const double turn = limit_turn();
-    double step = largest_magnitude(step_);
+    const double turn = limit_turn(step);
     bool have_system = false;
     if (mode == Mode::FullSteps) {
       move(stage, displacement_, 1.0, positions);
@@ -120,9 +120,9 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
     const double fall = residual_before > 0.0 ? report.residual / residual_before : 0.0;
     const double next_step = step * std::min(1.0, std::max(fall, turn));
     // Far from the origin positions themselves are only known to their rounding.
-    const double allowed_step =
-        std::max(options_.step_tolerance * model_.size, rounding(largest_magnitude(positions)));
-    if (next_step <= allowed_step) {
+    const bool is_short = next_step <= options_.step_tolerance * model_.size ||
+                          next_step <= rounding(largest_magnitude(positions));
+    if (is_short) {
       report.converged = report.residual <= options_.residual_tolerance * report.force_scale;
       if (!report.converged) {
         report.converged = report.residual <= noise(stage, positions);
@@ -185,13 +185,15 @@ void Newton::add_stage_forces(const Stage& stage) {
   }
 }
 
-bool Newton::find_direction(NewtonReport& report) {
+/// Sets the step, and returns its largest component [m]; not a number if there is none.
+double Newton::find_direction(NewtonReport& report) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
   Inertia inertia = solver_.factorize(values_);
   report.negative_pivots = inertia.negative_pivots;
   if (!inertia.factorised || inertia.negative_pivots > 0) {
     // Shift by ever more until positive definite, starting a little below the last shift needed.
     const double largest = values_.lpNorm<Eigen::Infinity>();
-    if (!std::isfinite(largest)) return false;
+    if (!std::isfinite(largest)) return none;
     double shift = std::max(1e-12 * largest, 0.1 * last_shift_);
     double applied = 0.0;
     do {
@@ -201,7 +203,7 @@ bool Newton::find_direction(NewtonReport& report) {
       inertia = solver_.factorize(values_);
     } while ((!inertia.factorised || inertia.negative_pivots > 0) && applied < 1e3 * largest);
     last_shift_ = applied;
-    if (!inertia.factorised) return false;
+    if (!inertia.factorised) return none;
   }
   for (std::size_t i = 0; i < model_.free_dofs.size(); ++i) {
     direction_[static_cast<Index>(i)] = -residual_[model_.free_dofs[i]];
@@ -210,7 +212,7 @@ bool Newton::find_direction(NewtonReport& report) {
   for (std::size_t i = 0; i < model_.free_dofs.size(); ++i) {
     step_[model_.free_dofs[i]] = direction_[static_cast<Index>(i)];
   }
-  return std::isfinite(largest_magnitude(step_));
+  return largest_magnitude(step_);
 }
 
 void Newton::move(const Stage& stage, const Vector& start, double factor, Vector& positions) {
@@ -244,8 +246,9 @@ double Newton::line_search(const Stage& stage, Vector& positions) {
 double Newton::slope() const { return residual_.dot(step_); }
 
 /// Shortens the step so that no edge changes by more than kLargestTurn of its rest length: an angle
-/// for motion across the edge. Rigid translation does not count. Returns the change left.
-double Newton::limit_turn() {
+/// for motion across the edge. Rigid translation does not count. Returns the change left; `step` is
+/// the largest component.
+double Newton::limit_turn(double& step) {
   double largest = 0.0;  // squared
   for (std::size_t i = 0; i < model_.edges.size(); ++i) {
     const auto& [x0, y0, x1, y1] = model_.edges[i].dofs;
@@ -255,8 +258,10 @@ double Newton::limit_turn() {
   }
   const double turn = std::sqrt(largest);
   if (turn <= kLargestTurn) return turn;
-  direction_ *= kLargestTurn / turn;
-  step_ *= kLargestTurn / turn;
+  const double share = kLargestTurn / turn;
+  direction_ *= share;
+  step_ *= share;
+  step *= share;
   return kLargestTurn;
 }
 

@@ -78,8 +78,8 @@ class Newton {
   void evaluate_system(const Stage& stage, const Vector& positions);
   void add_stage_forces(const Stage& stage);
   double noise(const Stage& stage, const Vector& positions);
-  bool find_direction(NewtonReport& report);
-  double limit_turn();
+  double find_direction(NewtonReport& report);
+  double limit_turn(double& step);
   void move(const Stage& stage, const Vector& start, double factor, Vector& positions);
   double line_search(const Stage& stage, Vector& positions);
   [[nodiscard]] double slope() const;

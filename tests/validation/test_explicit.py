@@ -101,6 +101,13 @@ def test_a_smallest_step_that_is_not_stable_is_a_mistake_of_the_scene():
         der.Simulation(soft_arm(21, 1e5, minimum_step=1.0))
 
 
+def test_a_smallest_step_just_below_the_automatic_one_is_no_obstacle():
+    plan = der.Simulation(soft_arm(21, 1e7)).time_step
+    simulation = der.Simulation(soft_arm(21, 1e7, minimum_step=0.9 * plan))
+    simulation.step(20)
+    assert simulation.counters.most_pieces == 1
+
+
 def test_the_stable_step_of_a_stiff_rod_needs_no_smallest_step_in_a_long_run():
     simulation = der.Simulation(soft_arm(21, 2e11, duration=1e6))
     simulation.step(100)

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <string>
 
 #include "der/core/error.hpp"
@@ -116,15 +115,16 @@ void StabilityWatch::look(State& state, double step) {
     state.next_step = step;
     return;
   }
-  const double least = time_.minimum_step > 0.0 ? time_.minimum_step : kLeastPiece * step;
-  if (!(kPieceMargin * stable >= least)) throw DivergedError(explain_end(state, least));
   const double longest = std::min(stable, kLargestChange / rate_of_change(model_, state));
   const auto bears = [&](double length, double margin) {
     return length <= margin * longest * (1.0 + kRounding);
   };
-  const double fewest = bears(step, kStepMargin) ? 1.0 : std::ceil(step / (kPieceMargin * longest));
+  const bool whole = bears(step, kStepMargin);
+  const double least = time_.minimum_step > 0.0 ? time_.minimum_step : kLeastPiece * step;
+  if (!whole && !(kPieceMargin * stable >= least)) throw DivergedError(explain_end(state, least));
+  const double fewest = whole ? 1.0 : std::ceil(step / (kPieceMargin * longest));
   const double pieces = looked ? std::round(step / state.next_step) : 1.0;
-  const bool is_stable = pieces == 1.0 ? fewest == 1.0 : bears(state.next_step, kLeastMargin);
+  const bool is_stable = pieces == 1.0 ? whole : bears(state.next_step, kLeastMargin);
   // A longer piece may do later on; a shorter one is taken only when it must be, since steps that
   // change all the time cost Verlet's scheme its grip on the energy.
   if (looked && is_stable && fewest >= pieces) return;

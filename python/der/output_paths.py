@@ -1,4 +1,4 @@
-"""Output files of a command line: looked at before the work, not when its results are written."""
+"""Output files and folders of a command line: looked at before the work, not after it."""
 
 from __future__ import annotations
 
@@ -37,3 +37,21 @@ def output_picture(text: str) -> Path:
     if path.suffix.lower() not in PICTURE_ENDINGS:
         raise ArgumentTypeError(f"cannot write {text}: a picture ends with .png, .svg or .pdf")
     return path
+
+
+def check_output_folder(out: Path) -> None:
+    """Check that the folder that `--out` names is there or can be made.
+
+    Raises
+    ------
+    ValueError
+        If a file is in the way.
+    """
+    for path in (out, *out.parents):
+        if path.is_dir():
+            return
+        if path.exists():
+            raise ValueError(
+                f"--out: '{path}' is a file, and results go to a folder: choose another name, or "
+                "move the file away"
+            )

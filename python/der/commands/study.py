@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from der.output_paths import check_output_folder
 from der.progress import progress_on_terminal
 
 
@@ -72,7 +73,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.errors is not None:
         check_errors(arguments.errors)
     out = arguments.out or Path(f"{arguments.scene.stem}_study")
-    _check_out(out)
+    check_output_folder(out)
     mpl.use("agg")  # a file is written and no window opened, on a screen or without
     with progress_on_terminal() as progress:
         found = study(
@@ -94,15 +95,3 @@ def execute(arguments: argparse.Namespace) -> int:
     print(out / "study.csv")
     print(out / "study.png")
     return 0
-
-
-def _check_out(out: Path) -> None:
-    """Check, before the work, that a folder can be made or is there."""
-    for path in (out, *out.parents):
-        if path.is_dir():
-            return
-        if path.exists():
-            raise ValueError(
-                f"--out: '{path}' is a file, and results go to a folder: choose another name, or "
-                "move the file away"
-            )

@@ -91,6 +91,83 @@ def test_values_that_do_not_belong_there(tube, value, path, words):
     assert words in caught.value.diagnostics[0].message
 
 
+class _Itself:
+    def tolist(self):
+        return self
+
+
+class _Deeper:
+    def tolist(self):
+        return [_Deeper()]
+
+
+def _nested(depth):
+    value = 1.0
+    for _ in range(depth):
+        value = [value]
+    return value
+
+
+def _doubled(times):
+    value = [1.0]
+    for _ in range(times):
+        value = [value, value]
+    return value
+
+
+@pytest.mark.parametrize("value", [_Itself(), _Deeper(), _nested(100_000), _doubled(200)])
+def test_values_without_an_end_are_refused(tube, value):
+    tube["rods"][0]["nodes"] = value
+    with pytest.raises(der.SceneError, match="nested in more than 100 levels"):
+        der.Scenario.from_dict(tube)
+
+
+def test_a_dict_that_holds_itself_is_refused(tube):
+    tube["rods"][0]["material"] = tube
+    tube["rods"][0]["cross_section"] = tube
+    with pytest.raises(der.SceneError, match="does a dict or a list hold itself"):
+        der.Scenario.from_dict(tube)
+
+
+def test_half_of_a_surrogate_pair_is_no_text(tube):
+    with pytest.raises(
+        der.SceneError, match=r"title: the text 'a\\ud800' holds half of a surrogate"
+    ):
+        der.Scenario.from_dict({**tube, "title": "a\ud800"})
+    with pytest.raises(der.SceneError, match="surrogate"):
+        der.Scenario.from_dict({**tube, "a\udfff": 1})
+    tube["rods"][0]["name"] = "\ud800"
+    with pytest.raises(der.SceneError, match=r"rods\.0\.name: .*surrogate"):
+        der.Scenario.from_dict(tube)
+    with pytest.raises(der.SceneError, match="surrogate"):
+        der.Scenario.parse("title: \ud800")
+    scenario = der.Scenario.from_dict({**tube, "rods": [{**tube["rods"][0], "name": "beam"}]})
+    with pytest.raises(der.SceneError, match="surrogate"):
+        scenario.with_(**{"\ud800": 1})
+
+
+def test_a_dict_may_change_while_it_is_read(tube):
+    class Meddler:
+        def tolist(self):
+            tube["rods"][0].clear()
+            tube["rods"].clear()
+            tube.clear()
+            return 21
+
+    tube["rods"][0] = {
+        "nodes": Meddler(),
+        **{k: v for k, v in tube["rods"][0].items() if k != "nodes"},
+    }
+    assert der.Simulation(der.Scenario.from_dict(tube)).positions.shape == (21, 2)
+
+
+def test_quotes_of_a_dict_are_printable(tube):
+    with pytest.raises(der.SceneError, match=r"no key 'a\\x1b\[31m'"):
+        der.Scenario.from_dict({**tube, "a\x1b[31m": 1})
+    with pytest.raises(der.SceneError, match="control character 0x07"):
+        der.Scenario.from_dict({**tube, "title": "bell\a"})
+
+
 def test_errors_of_a_text_have_lines_and_columns():
     text = "title: x\nrods:\n  - {name: a, nodes: 5}\ntime: {duration: 1, step: 0.1}\ntimes: 3\n"
     with pytest.raises(der.SceneError) as caught:

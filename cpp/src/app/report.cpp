@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "der/app/format.hpp"
+#include "der/core/printable.hpp"
 #include "der/output/datasets.hpp"
 #include "der/output/summary.hpp"
 
@@ -72,7 +73,7 @@ std::string line(std::string_view label, const std::string& text, const Style& s
 
 std::string heading(const Simulation& simulation, const Style& style) {
   const std::string& title = simulation.scenario().scene().title;
-  return style.bold(title.empty() ? simulation.scenario().source() : title) + "\n";
+  return style.bold(printable(title.empty() ? simulation.scenario().source() : title)) + "\n";
 }
 
 std::string model_lines(const Simulation& simulation, const Style& style) {
@@ -248,7 +249,7 @@ std::string run_report(const Simulation& simulation, const Recorder& recorder,
   for (const std::string& warning : warnings(simulation, recorder, outcome)) {
     text += line("warning", style.warning(warning), style);
   }
-  text += line("results", (folder.path() / "").string(), style);
+  text += line("results", printable((folder.path() / "").string()), style);
   if (!outcome.path.empty()) return text + "\n" + path_tables(recorder, outcome, style);
   if (!recorder.probes().empty() && recorder.has_data()) {
     text += "\n" + probe_table(simulation, recorder, style);

@@ -86,6 +86,14 @@ void bind_facts(ScenarioClass& cls) {
       .def_property_readonly(
           "duration", [](const Scenario& s) { return s.scene().time.duration; },
           "Duration of the motion [s]; 0 for a static scene.")
+      .def_property_readonly(
+          "warnings",
+          [](const Scenario& s) {
+            py::list warnings;
+            for (const std::string& warning : s.scene().warnings) warnings.append(warning);
+            return py::tuple(warnings);
+          },
+          "What can be run as it is, but is most likely not what was meant: sentences.")
       .def("to_yaml", &Scenario::to_yaml,
            "Return the scene as YAML text that reads back to the same scene.")
       .def(

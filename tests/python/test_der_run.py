@@ -153,6 +153,27 @@ def test_a_table_finer_than_the_steps_is_warned_of(scene: Path, tmp_path: Path) 
     assert "1 and 1.001 s" in warning
 
 
+def test_rods_that_touch_are_warned_of(scene: Path, tmp_path: Path) -> None:
+    ring = "points=[[0, 0], [0.1, 0], [0, 0.1], [0, 0]]"
+    text = SPHERES.replace("    nodes: 3\n    from: [0, 0]\n    to: [0.1, 0]\n", "    points: []\n")
+    scene.write_text(text.replace("at: middle", "at: {node: 1}"))
+    out = tmp_path / "out"
+    set_ring = (
+        "--set",
+        f"rods.rod.{ring}",
+        "--set",
+        "time.duration=0.02",
+        "--set",
+        "output.probes=",
+    )
+    checked = der_run(scene, *set_ring, "--check")
+    done = der_run(scene, *set_ring, "--set", "output.every=0.01", "--out", out)
+    [warning] = summary_of(out)["warnings"]
+    assert warning.startswith("the last point of rod 'rod' is its first")
+    assert warning in checked.stdout
+    assert warning in done.stdout
+
+
 def test_the_default_folder_is_named_after_the_scene(scene: Path, tmp_path: Path) -> None:
     assert der_run(scene.name, cwd=tmp_path).returncode == 0
     assert (tmp_path / "runs" / "spheres" / "summary.json").exists()

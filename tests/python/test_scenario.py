@@ -260,3 +260,76 @@ def test_static_scene(tube):
     scenario = der.Scenario.from_dict({**tube, "analysis": "static"})
     assert scenario.is_static
     assert scenario.duration == 0.0
+
+
+def _rods(*points, **more):
+    section = {"stiffness": {"EA": 1e4, "EI": 1.0, "mass_per_length": 1.0}}
+    rods = [
+        {"name": name, "cross_section": section, "points": list(map(list, line))}
+        for name, line in zip("abcdefgh", points, strict=False)
+    ]
+    return {"rods": rods, "time": {"duration": 0.02, "step": 0.01}, **more}
+
+
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        # A frame of two legs; 0.1 + 0.2 is not 0.3.
+        (
+            [[(0, 0), (0, 0.3)], [(0, 0.1 + 0.2), (1, 0.3)]],
+            "the end of rod 'a' and the start of rod 'b'",
+        ),
+        ([[(1, 1), (0, 0)], [(1, 1), (2, 0)]], "the start of rod 'a' and the start of rod 'b'"),
+        ([[(0, 0), (1, 0), (2, 0)], [(1, 1), (1, 0)]], "a node of rod 'a' and the end of rod 'b'"),
+        ([[(0, 0), (1, 0), (0, 1), (0, 0)]], "the last point of rod 'a' is its first, (0, 0) m"),
+        ([[(0, 0), (1, 0), (2, 0), (2, 1), (1, 0)]], "a node of rod 'a' and the end of rod 'a'"),
+    ],
+)
+def test_rods_that_touch_are_warned_of(lines, words):
+    scenario = der.Scenario.from_dict(_rods(*lines))
+    [warning] = scenario.warnings
+    assert warning.startswith(words)
+    assert "This version has no joints" in warning
+    with pytest.warns(der.DerWarning) as caught:
+        result = der.run(scenario)
+    assert [str(w.message) for w in caught] == [warning]
+    assert caught[0].filename == __file__
+    assert result.summary["warnings"] == [warning]
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        [[(0, 0), (1, 0)], [(1.0001, 0), (2, 0)]],
+        [[(0, 0), (1, 0), (2, 0)], [(1, 1), (1, 0), (1, -1)]],  # they cross
+        [[(0, 0), (1, 0), (0, 1), (0, 1e-3)]],
+    ],
+)
+def test_rods_that_do_not_end_on_another_are_not_warned_of(lines):
+    assert der.Scenario.from_dict(_rods(*lines)).warnings == ()
+
+
+def test_rods_that_supports_hold_at_the_same_place_are_not_warned_of():
+    scene = _rods([(0, 0), (1, 0)], [(0, 0), (0, 1)])
+    scene["supports"] = [{"rod": "a", "at": "start", "clamp": True}]
+    assert len(der.Scenario.from_dict(scene).warnings) == 1
+    scene["supports"] += [{"rod": "b", "at": "start", "fix": ["x", "y"]}]
+    assert der.Scenario.from_dict(scene).warnings == ()
+
+
+def test_a_star_of_rods_is_warned_of_a_few_times():
+    star = _rods(*([(0, 0), (math.cos(k), math.sin(k))] for k in range(8)))
+    warnings = der.Scenario.from_dict(star).warnings
+    assert len(warnings) == 6
+    assert warnings[-1] == "there are more places where rods touch and nothing joins them"
+
+
+def test_a_force_of_which_a_support_takes_a_part_is_warned_of(tube):
+    tube["loads"] = [{"point_force": {"rod": "beam", "at": "end", "force": [1.0, 2.0]}}]
+    [warning] = der.Scenario.from_dict(tube).warnings
+    assert warning == (
+        "the y component of loads.0.point_force acts on a node of rod 'beam' whose y a support "
+        "holds: the support takes it up without any effect on the rod"
+    )
+    tube["loads"][0]["point_force"]["force"] = [1.0, 0.0]
+    assert der.Scenario.from_dict(tube).warnings == ()

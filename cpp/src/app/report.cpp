@@ -237,6 +237,14 @@ std::string path_tables(const Recorder& recorder, const RunOutcome& outcome, con
   return aligned(rows, style);
 }
 
+std::string warning_lines(const std::vector<std::string>& warnings, const Style& style) {
+  std::string text;
+  for (const std::string& warning : warnings) {
+    text += line("warning", style.warning(warning), style);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string run_report(const Simulation& simulation, const Recorder& recorder,
@@ -246,9 +254,7 @@ std::string run_report(const Simulation& simulation, const Recorder& recorder,
   text += line("ran", what_ran(simulation), style);
   text += model_lines(simulation, style);
   text += cost_line(simulation, outcome, style);
-  for (const std::string& warning : warnings(simulation, recorder, outcome)) {
-    text += line("warning", style.warning(warning), style);
-  }
+  text += warning_lines(warnings(simulation, recorder, outcome), style);
   text += line("results", printable((folder.path() / "").string()), style);
   if (!outcome.path.empty()) return text + "\n" + path_tables(recorder, outcome, style);
   if (!recorder.probes().empty() && recorder.has_data()) {
@@ -264,7 +270,8 @@ std::string run_report(const Simulation& simulation, const Recorder& recorder,
 
 std::string check_report(const Simulation& simulation, const Style& style) {
   return heading(simulation, style) + line("status", style.good("scene is valid"), style) +
-         line("runs", what_ran(simulation), style) + model_lines(simulation, style);
+         line("runs", what_ran(simulation), style) + model_lines(simulation, style) +
+         warning_lines(simulation.scenario().scene().warnings, style);
 }
 
 }  // namespace der::app

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "scenario/checks.hpp"
@@ -32,9 +33,10 @@ class LoadCheck {
   void operator()(PointForce& load) {
     const Path here = path("point_force");
     check_constant(load.force.constant(), here / "force");
-    if (const auto rod = context_.find_rod(load.rod, here / "rod")) {
-      context_.nodes_at(*rod, load.at, here / "at", false);
-    }
+    const auto rod = context_.find_rod(load.rod, here / "rod");
+    if (!rod) return;
+    const auto nodes = context_.nodes_at(*rod, load.at, here / "at", false);
+    if (nodes && !nodes->empty()) check_acts(load, *rod, *nodes);
   }
 
   void operator()(Moment& load) {
@@ -72,6 +74,34 @@ class LoadCheck {
   [[nodiscard]] Path path(const char* kind) const { return {"loads", number_, kind}; }
   void complain(const Path& where, const std::string& message) {
     context_.complaints.add(where, message);
+  }
+
+  /// A force on what supports hold goes into them: a slip where nothing of it is left.
+  void check_acts(const PointForce& load, int rod, const std::vector<int>& nodes) {
+    static constexpr std::array<const char*, 2> names{"x", "y"};
+    std::string lost;
+    bool acts = false;
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      const auto is_zero = [c](const Components& force) { return force[c] == 0.0; };
+      if (std::all_of(load.force.values.begin(), load.force.values.end(), is_zero)) continue;
+      const bool held = std::all_of(nodes.begin(), nodes.end(), [&](int node) {
+        const HeldNode* holding = context_.held_at(rod, node);
+        return holding && holding->by[c] >= 0;
+      });
+      acts = acts || !held;
+      if (held) lost = names[c];
+    }
+    if (lost.empty()) return;
+    if (!acts) {
+      complain(path("point_force") / "at",
+               "the force acts on what a support holds, which takes it up without any effect on "
+               "the rod: move one of them");
+    } else {
+      context_.scene.warnings.push_back(fmt::format(
+          "the {0} component of loads.{1}.point_force acts on a node of rod '{2}' whose "
+          "{0} a support holds: the support takes it up without any effect on the rod",
+          lost, number_, load.rod));
+    }
   }
 
   void check_constant(bool constant, const Path& where) {

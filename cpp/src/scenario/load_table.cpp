@@ -36,12 +36,15 @@ Format<Damping> damping_format() {
 }
 
 Format<PointForce> point_force_format() {
-  return mapping(Table<PointForce>("point force", "A force that keeps its direction.")
-                     .required("rod", &PointForce::rod, name(), "Name of the rod.")
-                     .required("at", &PointForce::at, location(),
-                               "Where; any arc length. With `all` it acts on each node.")
-                     .required("force", &PointForce::force, vector_series("N"),
-                               "A constant, or a table over time."));
+  return mapping(
+      Table<PointForce>("point force", "A force that keeps its direction.")
+          .required("rod", &PointForce::rod, name(), "Name of the rod.")
+          .required(
+              "at", &PointForce::at, location(),
+              "Where; any arc length. With `all` it acts on each node. What supports hold there "
+              "takes no force: a warning, or an error where none of it is left.")
+          .required("force", &PointForce::force, vector_series("N"),
+                    "A constant, or a table over time."));
 }
 
 Format<Moment> moment_format() {

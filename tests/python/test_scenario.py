@@ -324,12 +324,33 @@ def test_a_star_of_rods_is_warned_of_a_few_times():
     assert warnings[-1] == "there are more places where rods touch and nothing joins them"
 
 
-def test_a_force_of_which_a_support_takes_a_part_is_warned_of(tube):
-    tube["loads"] = [{"point_force": {"rod": "beam", "at": "end", "force": [1.0, 2.0]}}]
-    [warning] = der.Scenario.from_dict(tube).warnings
-    assert warning == (
-        "the y component of loads.0.point_force acts on a node of rod 'beam' whose y a support "
-        "holds: the support takes it up without any effect on the rod"
+_TAKEN = "a support holds: the support takes it up without any effect on the rod"
+
+
+def test_loads_that_a_support_takes_up_are_warned_of(tube):
+    def warnings_of(kind, **load):
+        tube["loads"] = [{kind: {"rod": "beam", **load}}]
+        return der.Scenario.from_dict(tube).warnings
+
+    taken = "component of loads.0.point_force acts on a node of rod 'beam' whose"
+    at_start = warnings_of("point_force", at=0.0, force=[1, 2])
+    assert at_start == (f"the x {taken} x {_TAKEN}", f"the y {taken} y {_TAKEN}")
+    assert warnings_of("point_force", at="end", force=[1, 2]) == (f"the y {taken} y {_TAKEN}",)
+    assert warnings_of("point_force", at="end", force=[1, 0]) == ()
+    assert warnings_of("point_force", at="all", force=[1, 2]) == ()
+    assert warnings_of("moment", at="start", moment=1.0) == ()
+    tube["supports"][0] = {"rod": "beam", "at": "start", "clamp": True}
+    assert warnings_of("moment", at="start", moment=1.0) == (
+        f"loads.0.moment acts on a node of rod 'beam' whose angle {_TAKEN}",
     )
-    tube["loads"][0]["point_force"]["force"] = [1.0, 0.0]
-    assert der.Scenario.from_dict(tube).warnings == ()
+
+
+def test_a_moment_on_a_clamp_bends_nothing(tube):
+    tube["supports"] = [{"rod": "beam", "at": place, "clamp": True} for place in (0.0, 0.5)]
+    tube["loads"] = [
+        {"moment": {"rod": "beam", "at": place, "moment": 100.0}} for place in ("start", "middle")
+    ]
+    del tube["time"], tube["output"]
+    with pytest.warns(der.DerWarning):
+        result = der.run({**tube, "analysis": "static"})
+    assert np.array_equal(result.positions[0, :, 1], np.zeros(21))

@@ -46,11 +46,8 @@ class LoadCheck {
     if (!rod) return;
     const auto nodes = context_.nodes_at(*rod, load.at, here / "at", false);
     if (!nodes || nodes->empty()) return;
-    if (context_.is_clamped(*rod, nodes->front())) {
-      complain(here / "at",
-               "the moment acts on a clamp, which takes it up without any effect on "
-               "the rod: move one of them");
-    }
+    if (context_.is_clamped(*rod, nodes->front()))
+      warn_of_taken(path_text("moment"), load.rod, "angle");
   }
 
   void operator()(DistributedForce& load) {
@@ -72,15 +69,16 @@ class LoadCheck {
 
  private:
   [[nodiscard]] Path path(const char* kind) const { return {"loads", number_, kind}; }
+  [[nodiscard]] std::string path_text(const char* kind) const {
+    return fmt::format("loads.{}.{}", number_, kind);
+  }
   void complain(const Path& where, const std::string& message) {
     context_.complaints.add(where, message);
   }
 
-  /// A force on what supports hold goes into them: a slip where nothing of it is left.
+  /// A force on what supports hold goes into them.
   void check_acts(const PointForce& load, int rod, const std::vector<int>& nodes) {
     static constexpr std::array<const char*, 2> names{"x", "y"};
-    std::string lost;
-    bool acts = false;
     for (std::size_t c = 0; c < names.size(); ++c) {
       const auto is_zero = [c](const Components& force) { return force[c] == 0.0; };
       if (std::all_of(load.force.values.begin(), load.force.values.end(), is_zero)) continue;
@@ -88,20 +86,18 @@ class LoadCheck {
         const HeldNode* holding = context_.held_at(rod, node);
         return holding && holding->by[c] >= 0;
       });
-      acts = acts || !held;
-      if (held) lost = names[c];
+      if (held) {
+        warn_of_taken(fmt::format("the {} component of {}", names[c], path_text("point_force")),
+                      load.rod, names[c]);
+      }
     }
-    if (lost.empty()) return;
-    if (!acts) {
-      complain(path("point_force") / "at",
-               "the force acts on what a support holds, which takes it up without any effect on "
-               "the rod: move one of them");
-    } else {
-      context_.scene.warnings.push_back(fmt::format(
-          "the {0} component of loads.{1}.point_force acts on a node of rod '{2}' whose "
-          "{0} a support holds: the support takes it up without any effect on the rod",
-          lost, number_, load.rod));
-    }
+  }
+
+  void warn_of_taken(const std::string& what, const std::string& rod, const char* held) {
+    context_.scene.warnings.push_back(
+        fmt::format("{} acts on a node of rod '{}' whose {} a support holds: the support takes it "
+                    "up without any effect on the rod",
+                    what, rod, held));
   }
 
   void check_constant(bool constant, const Path& where) {

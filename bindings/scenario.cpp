@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "bindings.hpp"
@@ -13,10 +14,15 @@
 namespace der::python {
 namespace {
 
+/// Throws SceneError for a str that UTF-8 has no form for.
+std::string text_of(const py::handle& text) {
+  return std::get<std::string>(to_document_value(text, "").content);
+}
+
 std::vector<Override> to_overrides(const py::kwargs& values) {
   std::vector<Override> overrides;
   for (const auto& [key, value] : values) {
-    const auto path = key.cast<std::string>();
+    const std::string path = text_of(key);
     overrides.emplace_back(path, scenario::to_flow_yaml(to_document_value(value, path)));
   }
   return overrides;
@@ -46,8 +52,8 @@ void bind_readers(ScenarioClass& cls) {
          "Keyword arguments replace values, as in `with_`. Raises SceneError with every complaint.")
       .def_static(
           "parse",
-          [](const std::string& text, const std::string& source, const py::kwargs& overrides) {
-            return Scenario::parse(text, source, to_overrides(overrides));
+          [](const py::str& text, const std::string& source, const py::kwargs& overrides) {
+            return Scenario::parse(text_of(text), source, to_overrides(overrides));
           },
           py::arg("text"), py::arg("source") = "scene", py::pos_only(),
           "Read and validate a scene given as YAML text; `source` names it in messages.\n\n"
@@ -80,6 +86,14 @@ void bind_facts(ScenarioClass& cls) {
       .def_property_readonly(
           "duration", [](const Scenario& s) { return s.scene().time.duration; },
           "Duration of the motion [s]; 0 for a static scene.")
+      .def_property_readonly(
+          "warnings",
+          [](const Scenario& s) {
+            py::list warnings;
+            for (const std::string& warning : s.scene().warnings) warnings.append(warning);
+            return py::tuple(warnings);
+          },
+          "What can be run as it is, but is most likely not what was meant: sentences.")
       .def("to_yaml", &Scenario::to_yaml,
            "Return the scene as YAML text that reads back to the same scene.")
       .def(

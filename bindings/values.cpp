@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -11,14 +12,37 @@
 namespace der::python {
 namespace {
 
+/// Far beyond a rod of a million nodes that is drawn as a polyline; a dict that holds few lists
+/// many times over could fill any memory.
+constexpr std::size_t kMaxValues = 20'000'000;
+/// More complaints than these help nobody.
+constexpr std::size_t kMaxRefused = 100;
+
+/// The text of a str; none where it holds half of a surrogate pair, which UTF-8 has no form for.
+std::optional<std::string> utf8_of(const py::handle& text) {
+  Py_ssize_t size = 0;
+  const char* bytes = PyUnicode_AsUTF8AndSize(text.ptr(), &size);
+  if (bytes) return std::string(bytes, static_cast<std::size_t>(size));
+  PyErr_Clear();
+  return std::nullopt;
+}
+
 class Converter {
  public:
   scenario::Value convert(const py::handle& object, const std::string& path) {
+    if (++values_ > kMaxValues) {
+      give_up(path, "the scene has more than " + std::to_string(kMaxValues) + " values");
+    }
+    const Level level(*this);
+    if (level_ > scenario::kMaxDepth) {
+      give_up(path, "values nested in more than " + std::to_string(scenario::kMaxDepth) +
+                        " levels: no scene needs that (does a dict or a list hold itself?)");
+    }
     if (object.is_none()) return scenario::make_null();
     if (py::isinstance<py::bool_>(object)) return scenario::make_scalar(object.cast<bool>());
     if (py::isinstance<py::int_>(object)) return whole(object, path);
     if (py::isinstance<py::float_>(object)) return scenario::make_scalar(object.cast<double>());
-    if (py::isinstance<py::str>(object)) return scenario::make_scalar(object.cast<std::string>());
+    if (py::isinstance<py::str>(object)) return text(object, path);
     if (py::isinstance<py::dict>(object)) {
       return mapping(py::reinterpret_borrow<py::dict>(object), path);
     }
@@ -35,6 +59,18 @@ class Converter {
   }
 
  private:
+  /// One value inside another, for as long as it is converted.
+  class Level {
+   public:
+    explicit Level(Converter& converter) : level_(converter.level_) { ++level_; }
+    ~Level() { --level_; }
+    Level(const Level&) = delete;
+    Level& operator=(const Level&) = delete;
+
+   private:
+    std::size_t& level_;
+  };
+
   static std::string type_name(const py::handle& object) {
     return py::type::of(object).attr("__name__").cast<std::string>();
   }
@@ -45,7 +81,21 @@ class Converter {
 
   scenario::Value refuse(const std::string& path, const std::string& message) {
     diagnostics_.push_back({0, 0, path, message});
+    if (diagnostics_.size() == kMaxRefused) throw_if_refused();
     return scenario::make_null();
+  }
+
+  /// Refuses without a look at the rest, which may have no end.
+  void give_up(const std::string& path, const std::string& message) {
+    diagnostics_.push_back({0, 0, path, message});
+    throw_if_refused();
+  }
+
+  scenario::Value text(const py::handle& object, const std::string& path) {
+    std::optional<std::string> written = utf8_of(object);
+    if (written) return scenario::make_scalar(std::move(*written));
+    return refuse(path, "the text " + py::repr(object).cast<std::string>() +
+                            " holds half of a surrogate pair, which is no character");
   }
 
   scenario::Value whole(const py::handle& object, const std::string& path) {
@@ -57,14 +107,20 @@ class Converter {
 
   scenario::Value mapping(const py::dict& dict, const std::string& path) {
     scenario::Mapping entries;
-    for (const auto& [key, value] : dict) {
+    // A copy: what is called for a value (`tolist`) may change the dict.
+    const auto copy = py::reinterpret_steal<py::dict>(PyDict_Copy(dict.ptr()));
+    for (const auto& [key, value] : copy) {
       if (!py::isinstance<py::str>(key)) {
         refuse(path, "the key " + py::repr(key).cast<std::string>() + " is of type " +
                          type_name(key) + "; keys are texts");
         continue;
       }
-      const auto name = key.cast<std::string>();
-      entries.push_back({name, convert(value, join(path, name)), {}});
+      const std::optional<std::string> name = utf8_of(key);
+      if (!name) {
+        text(key, path);
+        continue;
+      }
+      entries.push_back({*name, convert(value, join(path, *name)), {}});
     }
     return scenario::make_mapping(std::move(entries));
   }
@@ -83,12 +139,16 @@ class Converter {
   static std::string item_name(const py::object& item, std::size_t number) {
     if (py::isinstance<py::dict>(item)) {
       const py::object name = item.attr("get")("name");
-      if (py::isinstance<py::str>(name)) return name.cast<std::string>();
+      if (py::isinstance<py::str>(name)) {
+        if (const std::optional<std::string> written = utf8_of(name)) return *written;
+      }
     }
     return std::to_string(number);
   }
 
   std::vector<Diagnostic> diagnostics_;
+  std::size_t values_ = 0;
+  std::size_t level_ = 0;
 };
 
 template <class Number>

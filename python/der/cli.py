@@ -8,6 +8,7 @@ import os
 import pkgutil
 import signal
 import sys
+import warnings
 from collections.abc import Sequence
 
 from der import __version__, commands
@@ -26,6 +27,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments
         In place of those of the process.
     """
+    warnings.showwarning = _print_warning
     try:
         try:
             chosen = _make_parser().parse_args(arguments)
@@ -44,6 +46,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 1
     except KeyboardInterrupt:
         return 130
+
+
+def _print_warning(message: Warning | str, *_: object, **__: object) -> None:
+    """Print a warning as der_run does: without the line of a program that no user has written."""
+    print(f"warning: {message}", file=sys.stderr)
 
 
 def _discard_output() -> None:

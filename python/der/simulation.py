@@ -13,7 +13,7 @@ import numpy as np
 from der import _core
 from der._core import Recording, Scenario
 from der.analyses import Modes
-from der.errors import error_for
+from der.errors import error_for, warn
 from der.probe_series import make_probes
 from der.progress import ProgressFunction, ProgressLine
 from der.result import Result
@@ -45,10 +45,16 @@ class Simulation(_core.Simulation):
     ------
     SceneError, DerError
         Where the scene cannot be simulated.
+
+    Warns
+    -----
+    DerWarning
+        For each of the scenario's `warnings`.
     """
 
     def __init__(self, scenario: SceneLike) -> None:
         super().__init__(as_scenario(scenario))
+        warn(self.scenario.warnings)
 
     def run(
         self,

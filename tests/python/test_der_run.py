@@ -153,6 +153,27 @@ def test_a_table_finer_than_the_steps_is_warned_of(scene: Path, tmp_path: Path) 
     assert "1 and 1.001 s" in warning
 
 
+def test_rods_that_touch_are_warned_of(scene: Path, tmp_path: Path) -> None:
+    ring = "points=[[0, 0], [0.1, 0], [0, 0.1], [0, 0]]"
+    text = SPHERES.replace("    nodes: 3\n    from: [0, 0]\n    to: [0.1, 0]\n", "    points: []\n")
+    scene.write_text(text.replace("at: middle", "at: {node: 1}"))
+    out = tmp_path / "out"
+    set_ring = (
+        "--set",
+        f"rods.rod.{ring}",
+        "--set",
+        "time.duration=0.02",
+        "--set",
+        "output.probes=",
+    )
+    checked = der_run(scene, *set_ring, "--check")
+    done = der_run(scene, *set_ring, "--set", "output.every=0.01", "--out", out)
+    [warning] = summary_of(out)["warnings"]
+    assert warning.startswith("the last point of rod 'rod' is its first")
+    assert warning in checked.stdout
+    assert warning in done.stdout
+
+
 def test_the_default_folder_is_named_after_the_scene(scene: Path, tmp_path: Path) -> None:
     assert der_run(scene.name, cwd=tmp_path).returncode == 0
     assert (tmp_path / "runs" / "spheres" / "summary.json").exists()
@@ -265,6 +286,44 @@ def test_files_that_cannot_be_read_or_written(scene: Path, tmp_path: Path) -> No
     assert done.returncode == 4
     assert str(folder) in done.stderr
     assert [path.name for path in folder.iterdir()] == ["chapter.tex"]
+
+
+def test_a_pipe_is_read_once(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    program = start(pipe, "--check")
+    pipe.write_text("a: 1\n")
+    _, errors = program.communicate(timeout=20)
+    assert program.returncode == 1
+    assert "a scene has no key 'a'" in errors
+
+
+def test_nested_anchors_take_no_memory(tmp_path: Path) -> None:
+    # 400 kB of text, in which 90 anchors stand for the same 100,000 values.
+    opening = "".join(f"&a{i} [" for i in range(90))
+    scene = tmp_path / "nested.yaml"
+    scene.write_text("x: " + opening + "1, " * 100_000 + "]" * 90 + "\n")
+
+    def limit_memory() -> None:
+        resource.setrlimit(resource.RLIMIT_AS, (1 << 28, 1 << 28))
+
+    done = der_run(scene, "--check", preexec_fn=limit_memory)
+    assert done.returncode == 1
+    assert "a scene has no key 'x'" in done.stderr
+
+
+def test_control_characters_do_not_reach_the_terminal(scene: Path, tmp_path: Path) -> None:
+    done = der_run(scene, "--set", 'title="\\e]0;mine\\a"', "--out", tmp_path / "o")
+    assert done.returncode == 1
+    assert "control character 0x1b" in done.stderr
+    folder = tmp_path / "a\x1b[31mb"
+    done = der_run(scene, "--set", 'title="two\\nlines"', "--out", folder)
+    assert done.stdout.startswith("two\\nlines\n")
+    assert folder.is_dir()
+    assert "\x1b" not in done.stdout
+    assert "a\\x1b[31mb" in done.stdout
+    done = der_run(folder / "scene.yaml", "--set", "no\x1b=1")
+    assert "\x1b" not in done.stderr
 
 
 def test_a_static_analysis_is_one_frame(tmp_path: Path) -> None:

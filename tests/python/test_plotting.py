@@ -11,6 +11,7 @@ from der.plotting.style import quantity_text, wrapped
 from der.scene_loads import acting_loads
 from matplotlib.collections import PatchCollection, PolyCollection
 from matplotlib.colors import to_hex
+from matplotlib.textpath import text_to_path
 
 
 @pytest.fixture(autouse=True)
@@ -104,6 +105,21 @@ def test_ticks_say_all_that_there_is_to_say(swing, start, length):
     for tick, label in zip(axes.get_xticks(), axes.get_xticklabels(), strict=True):
         shown = float(label.get_text().replace("\N{MINUS SIGN}", "-"))
         assert start + metres * shown == pytest.approx(tick, abs=1e-6 * length)
+
+
+def test_a_title_without_end_costs_no_more_than_its_lines(monkeypatch):
+    measured = []
+    measure = text_to_path.get_text_width_height_descent
+
+    def count(text, *arguments, **options):
+        measured.append(len(text))
+        return measure(text, *arguments, **options)
+
+    monkeypatch.setattr(text_to_path, "get_text_width_height_descent", count)
+    lines = wrapped("two words " * 200, 12.0, 5.0)
+    assert len(lines) == 4
+    assert lines[-1].endswith("…")
+    assert sum(measured) < 20_000  # at most 120 letters on a line, and each such length tried once
 
 
 def test_titles_are_wrapped_to_their_width():

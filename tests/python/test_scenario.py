@@ -91,6 +91,83 @@ def test_values_that_do_not_belong_there(tube, value, path, words):
     assert words in caught.value.diagnostics[0].message
 
 
+class _Itself:
+    def tolist(self):
+        return self
+
+
+class _Deeper:
+    def tolist(self):
+        return [_Deeper()]
+
+
+def _nested(depth):
+    value = 1.0
+    for _ in range(depth):
+        value = [value]
+    return value
+
+
+def _doubled(times):
+    value = [1.0]
+    for _ in range(times):
+        value = [value, value]
+    return value
+
+
+@pytest.mark.parametrize("value", [_Itself(), _Deeper(), _nested(100_000), _doubled(200)])
+def test_values_without_an_end_are_refused(tube, value):
+    tube["rods"][0]["nodes"] = value
+    with pytest.raises(der.SceneError, match="nested in more than 100 levels"):
+        der.Scenario.from_dict(tube)
+
+
+def test_a_dict_that_holds_itself_is_refused(tube):
+    tube["rods"][0]["material"] = tube
+    tube["rods"][0]["cross_section"] = tube
+    with pytest.raises(der.SceneError, match="does a dict or a list hold itself"):
+        der.Scenario.from_dict(tube)
+
+
+def test_half_of_a_surrogate_pair_is_no_text(tube):
+    with pytest.raises(
+        der.SceneError, match=r"title: the text 'a\\ud800' holds half of a surrogate"
+    ):
+        der.Scenario.from_dict({**tube, "title": "a\ud800"})
+    with pytest.raises(der.SceneError, match="surrogate"):
+        der.Scenario.from_dict({**tube, "a\udfff": 1})
+    tube["rods"][0]["name"] = "\ud800"
+    with pytest.raises(der.SceneError, match=r"rods\.0\.name: .*surrogate"):
+        der.Scenario.from_dict(tube)
+    with pytest.raises(der.SceneError, match="surrogate"):
+        der.Scenario.parse("title: \ud800")
+    scenario = der.Scenario.from_dict({**tube, "rods": [{**tube["rods"][0], "name": "beam"}]})
+    with pytest.raises(der.SceneError, match="surrogate"):
+        scenario.with_(**{"\ud800": 1})
+
+
+def test_a_dict_may_change_while_it_is_read(tube):
+    class Meddler:
+        def tolist(self):
+            tube["rods"][0].clear()
+            tube["rods"].clear()
+            tube.clear()
+            return 21
+
+    tube["rods"][0] = {
+        "nodes": Meddler(),
+        **{k: v for k, v in tube["rods"][0].items() if k != "nodes"},
+    }
+    assert der.Simulation(der.Scenario.from_dict(tube)).positions.shape == (21, 2)
+
+
+def test_quotes_of_a_dict_are_printable(tube):
+    with pytest.raises(der.SceneError, match=r"no key 'a\\x1b\[31m'"):
+        der.Scenario.from_dict({**tube, "a\x1b[31m": 1})
+    with pytest.raises(der.SceneError, match="control character 0x07"):
+        der.Scenario.from_dict({**tube, "title": "bell\a"})
+
+
 def test_errors_of_a_text_have_lines_and_columns():
     text = "title: x\nrods:\n  - {name: a, nodes: 5}\ntime: {duration: 1, step: 0.1}\ntimes: 3\n"
     with pytest.raises(der.SceneError) as caught:
@@ -183,3 +260,97 @@ def test_static_scene(tube):
     scenario = der.Scenario.from_dict({**tube, "analysis": "static"})
     assert scenario.is_static
     assert scenario.duration == 0.0
+
+
+def _rods(*points, **more):
+    section = {"stiffness": {"EA": 1e4, "EI": 1.0, "mass_per_length": 1.0}}
+    rods = [
+        {"name": name, "cross_section": section, "points": list(map(list, line))}
+        for name, line in zip("abcdefgh", points, strict=False)
+    ]
+    return {"rods": rods, "time": {"duration": 0.02, "step": 0.01}, **more}
+
+
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        # A frame of two legs; 0.1 + 0.2 is not 0.3.
+        (
+            [[(0, 0), (0, 0.3)], [(0, 0.1 + 0.2), (1, 0.3)]],
+            "the end of rod 'a' and the start of rod 'b'",
+        ),
+        ([[(1, 1), (0, 0)], [(1, 1), (2, 0)]], "the start of rod 'a' and the start of rod 'b'"),
+        ([[(0, 0), (1, 0), (2, 0)], [(1, 1), (1, 0)]], "a node of rod 'a' and the end of rod 'b'"),
+        ([[(0, 0), (1, 0), (0, 1), (0, 0)]], "the last point of rod 'a' is its first, (0, 0) m"),
+        ([[(0, 0), (1, 0), (2, 0), (2, 1), (1, 0)]], "a node of rod 'a' and the end of rod 'a'"),
+    ],
+)
+def test_rods_that_touch_are_warned_of(lines, words):
+    scenario = der.Scenario.from_dict(_rods(*lines))
+    [warning] = scenario.warnings
+    assert warning.startswith(words)
+    assert "This version has no joints" in warning
+    with pytest.warns(der.DerWarning) as caught:
+        result = der.run(scenario)
+    assert [str(w.message) for w in caught] == [warning]
+    assert caught[0].filename == __file__
+    assert result.summary["warnings"] == [warning]
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        [[(0, 0), (1, 0)], [(1.0001, 0), (2, 0)]],
+        [[(0, 0), (1, 0), (2, 0)], [(1, 1), (1, 0), (1, -1)]],  # they cross
+        [[(0, 0), (1, 0), (0, 1), (0, 1e-3)]],
+    ],
+)
+def test_rods_that_do_not_end_on_another_are_not_warned_of(lines):
+    assert der.Scenario.from_dict(_rods(*lines)).warnings == ()
+
+
+def test_rods_that_supports_hold_at_the_same_place_are_not_warned_of():
+    scene = _rods([(0, 0), (1, 0)], [(0, 0), (0, 1)])
+    scene["supports"] = [{"rod": "a", "at": "start", "clamp": True}]
+    assert len(der.Scenario.from_dict(scene).warnings) == 1
+    scene["supports"] += [{"rod": "b", "at": "start", "fix": ["x", "y"]}]
+    assert der.Scenario.from_dict(scene).warnings == ()
+
+
+def test_a_star_of_rods_is_warned_of_a_few_times():
+    star = _rods(*([(0, 0), (math.cos(k), math.sin(k))] for k in range(8)))
+    warnings = der.Scenario.from_dict(star).warnings
+    assert len(warnings) == 6
+    assert warnings[-1] == "there are more places where rods touch and nothing joins them"
+
+
+_TAKEN = "a support holds: the support takes it up without any effect on the rod"
+
+
+def test_loads_that_a_support_takes_up_are_warned_of(tube):
+    def warnings_of(kind, **load):
+        tube["loads"] = [{kind: {"rod": "beam", **load}}]
+        return der.Scenario.from_dict(tube).warnings
+
+    taken = "component of loads.0.point_force acts on a node of rod 'beam' whose"
+    at_start = warnings_of("point_force", at=0.0, force=[1, 2])
+    assert at_start == (f"the x {taken} x {_TAKEN}", f"the y {taken} y {_TAKEN}")
+    assert warnings_of("point_force", at="end", force=[1, 2]) == (f"the y {taken} y {_TAKEN}",)
+    assert warnings_of("point_force", at="end", force=[1, 0]) == ()
+    assert warnings_of("point_force", at="all", force=[1, 2]) == ()
+    assert warnings_of("moment", at="start", moment=1.0) == ()
+    tube["supports"][0] = {"rod": "beam", "at": "start", "clamp": True}
+    assert warnings_of("moment", at="start", moment=1.0) == (
+        f"loads.0.moment acts on a node of rod 'beam' whose angle {_TAKEN}",
+    )
+
+
+def test_a_moment_on_a_clamp_bends_nothing(tube):
+    tube["supports"] = [{"rod": "beam", "at": place, "clamp": True} for place in (0.0, 0.5)]
+    tube["loads"] = [
+        {"moment": {"rod": "beam", "at": place, "moment": 100.0}} for place in ("start", "middle")
+    ]
+    del tube["time"], tube["output"]
+    with pytest.warns(der.DerWarning):
+        result = der.run({**tube, "analysis": "static"})
+    assert np.array_equal(result.positions[0, :, 1], np.zeros(21))

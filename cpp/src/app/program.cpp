@@ -4,7 +4,6 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
-#include <fstream>
 #include <string>
 
 #include "der/app/exit_code.hpp"
@@ -14,6 +13,7 @@
 #include "der/app/report.hpp"
 #include "der/app/terminal.hpp"
 #include "der/core/error.hpp"
+#include "der/core/printable.hpp"
 #include "der/output/io_error.hpp"
 #include "der/output/recorder.hpp"
 #include "der/output/run_folder.hpp"
@@ -27,15 +27,14 @@ namespace {
 void print(const std::string& text) { std::fputs(text.c_str(), stdout); }
 
 ExitCode fail(ExitCode code, const std::string& message) {
-  std::fputs((Style::of(stderr).bad("error: ") + message + "\n").c_str(), stderr);
+  std::fputs((Style::of(stderr).bad("error: ") + printable(message) + "\n").c_str(), stderr);
   return code;
 }
 
 /// Every complaint on a line of its own, as compilers write them, so that editors can jump there.
-ExitCode fail(const Options& options, const SceneError& error) {
+ExitCode fail(ExitCode code, const SceneError& error) {
   std::fputs((std::string(error.what()) + "\n").c_str(), stderr);
-  const bool readable = std::ifstream(options.scene).good();
-  return readable ? ExitCode::SceneError : ExitCode::IoFailure;
+  return code;
 }
 
 ExitCode exit_code(const RunOutcome& outcome) {
@@ -77,8 +76,8 @@ bool is_finished(const Options& options, const Scenario& scenario) {
   const RunFileHead head = check_resumable(RunFolder(options.out), scenario);
   if (head.status != "completed" && head.status != "static_converged") return false;
   if (!options.quiet) {
-    print("the run in '" + options.out.string() + "' is finished already (" + head.status +
-          "): nothing to resume\n");
+    print("the run in '" + printable(options.out.string()) + "' is finished already (" +
+          head.status + "): nothing to resume\n");
   }
   return true;
 }
@@ -102,8 +101,10 @@ ExitCode execute(const Options& options) {
 ExitCode guarded(const Options& options) {
   try {
     return execute(options);
+  } catch (const UnreadableSceneError& error) {
+    return fail(ExitCode::IoFailure, error);
   } catch (const SceneError& error) {
-    return fail(options, error);
+    return fail(ExitCode::SceneError, error);
   } catch (const IoError& error) {
     return fail(ExitCode::IoFailure, error.what());
   } catch (const NotConvergedError& error) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "der/app/format.hpp"
+#include "der/core/printable.hpp"
 #include "der/output/datasets.hpp"
 #include "der/output/summary.hpp"
 
@@ -72,7 +73,7 @@ std::string line(std::string_view label, const std::string& text, const Style& s
 
 std::string heading(const Simulation& simulation, const Style& style) {
   const std::string& title = simulation.scenario().scene().title;
-  return style.bold(title.empty() ? simulation.scenario().source() : title) + "\n";
+  return style.bold(printable(title.empty() ? simulation.scenario().source() : title)) + "\n";
 }
 
 std::string model_lines(const Simulation& simulation, const Style& style) {
@@ -236,6 +237,14 @@ std::string path_tables(const Recorder& recorder, const RunOutcome& outcome, con
   return aligned(rows, style);
 }
 
+std::string warning_lines(const std::vector<std::string>& warnings, const Style& style) {
+  std::string text;
+  for (const std::string& warning : warnings) {
+    text += line("warning", style.warning(warning), style);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string run_report(const Simulation& simulation, const Recorder& recorder,
@@ -245,10 +254,8 @@ std::string run_report(const Simulation& simulation, const Recorder& recorder,
   text += line("ran", what_ran(simulation), style);
   text += model_lines(simulation, style);
   text += cost_line(simulation, outcome, style);
-  for (const std::string& warning : warnings(simulation, recorder, outcome)) {
-    text += line("warning", style.warning(warning), style);
-  }
-  text += line("results", (folder.path() / "").string(), style);
+  text += warning_lines(warnings(simulation, recorder, outcome), style);
+  text += line("results", printable((folder.path() / "").string()), style);
   if (!outcome.path.empty()) return text + "\n" + path_tables(recorder, outcome, style);
   if (!recorder.probes().empty() && recorder.has_data()) {
     text += "\n" + probe_table(simulation, recorder, style);
@@ -263,7 +270,8 @@ std::string run_report(const Simulation& simulation, const Recorder& recorder,
 
 std::string check_report(const Simulation& simulation, const Style& style) {
   return heading(simulation, style) + line("status", style.good("scene is valid"), style) +
-         line("runs", what_ran(simulation), style) + model_lines(simulation, style);
+         line("runs", what_ran(simulation), style) + model_lines(simulation, style) +
+         warning_lines(simulation.scenario().scene().warnings, style);
 }
 
 }  // namespace der::app

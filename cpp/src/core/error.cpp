@@ -1,5 +1,7 @@
 #include "der/core/error.hpp"
 
+#include "der/core/printable.hpp"
+
 namespace der {
 namespace {
 
@@ -18,14 +20,24 @@ std::string text_of(const std::string& source, const std::vector<Diagnostic>& co
   std::string text;
   for (const Diagnostic& complaint : complaints) {
     if (!text.empty()) text += '\n';
-    text += line_of(source, complaint);
+    text += printable(line_of(source, complaint));
   }
   return text;
+}
+
+/// Messages quote what stands in a scene, which may be anything.
+std::vector<Diagnostic> made_printable(std::vector<Diagnostic> diagnostics) {
+  for (Diagnostic& diagnostic : diagnostics) {
+    diagnostic.path = printable(diagnostic.path);
+    diagnostic.message = printable(diagnostic.message);
+  }
+  return diagnostics;
 }
 
 }  // namespace
 
 SceneError::SceneError(const std::string& source, std::vector<Diagnostic> diagnostics)
-    : Error("invalid_scene", text_of(source, diagnostics)), diagnostics_(std::move(diagnostics)) {}
+    : Error("invalid_scene", text_of(source, diagnostics)),
+      diagnostics_(made_printable(std::move(diagnostics))) {}
 
 }  // namespace der

@@ -119,6 +119,8 @@ class RunFile::Writer {
                                         Recorder& recorder);
 
   void add(const Frame& frame);
+  /// Whether the frames that have gathered are too many to keep in memory.
+  [[nodiscard]] bool full() const { return gathered_ * bytes_per_frame_ >= kLargestBatch; }
   [[nodiscard]] bool due();
   void commit(const Simulation& simulation, const Recorder& recorder);
   /// To be called after an error of any of the others: leaves the file as it was flushed last.
@@ -151,7 +153,8 @@ class RunFile::Writer {
   std::vector<BufferedColumn<double>> energies_, work_, probes_;
   CheckpointStore checkpoints_;
   bool abandoned_ = false;
-  hsize_t gathered_ = 0;  // frames not written yet
+  hsize_t gathered_ = 0;              // frames not written yet
+  bool ahead_of_checkpoint_ = false;  // frames, written or not, that are later than it
   std::size_t bytes_per_frame_ = 0;
   Pacer pacer_{kFlushInterval};
   std::chrono::steady_clock::time_point last_checkpoint_;
@@ -287,14 +290,14 @@ void RunFile::Writer::add(const Frame& frame) {
   for (std::size_t i = 0; i < probes_.size(); ++i)
     probes_[i].push(frame.probes[static_cast<Index>(i)]);
   ++gathered_;
+  ahead_of_checkpoint_ = true;
   bytes_per_frame_ = sizeof(double) * (2 * static_cast<std::size_t>(frame.positions.size()) +
                                        probes_.size() + energies_.size() + work_.size() + 2);
 }
 
 bool RunFile::Writer::due() {
-  if (gathered_ * bytes_per_frame_ >= kLargestBatch) return true;
   if (!pacer_.due()) return false;
-  return gathered_ > 0 ||
+  return ahead_of_checkpoint_ ||
          std::chrono::steady_clock::now() - last_checkpoint_ >= kCheckpointInterval;
 }
 
@@ -303,6 +306,7 @@ void RunFile::Writer::commit(const Simulation& simulation, const Recorder& recor
   checkpoints_.write(recorder.checkpoint(simulation));
   commit_frames();
   checkpoints_.publish();
+  ahead_of_checkpoint_ = false;
   flush();
   last_checkpoint_ = std::chrono::steady_clock::now();
   const Seconds cost = last_checkpoint_ - start;
@@ -371,7 +375,11 @@ RunFile::~RunFile() {
   writer_.reset();
 }
 
-void RunFile::write(const Frame& frame) { writer_->add(frame); }
+void RunFile::write(const Frame& frame) {
+  writer_->add(frame);
+  // Without a checkpoint: an adaptive step hands over its frames when it is at its end already.
+  if (writer_->full()) guarded([&] { writer_->commit_frames(); });
+}
 
 void RunFile::stepped(const Simulation& simulation, const Recorder& recorder) {
   if (writer_->due()) guarded([&] { writer_->commit(simulation, recorder); });

@@ -158,14 +158,16 @@ UsedSolver used_solver(const Simulation& simulation) {
 
 std::vector<std::string> warnings(const Simulation& simulation, const Recorder& recorder,
                                   const RunOutcome& outcome) {
-  const auto& analysis = simulation.scenario().scene().analysis;
-  if (std::holds_alternative<scenario::BucklingAnalysis>(analysis) && outcome.ok()) {
-    return buckling_warnings(outcome.buckling);
+  const scenario::Scene& scene = simulation.scenario().scene();
+  std::vector<std::string> found = scene.warnings;
+  const auto add = [&](const std::vector<std::string>& more) {
+    found.insert(found.end(), more.begin(), more.end());
+  };
+  if (std::holds_alternative<scenario::BucklingAnalysis>(scene.analysis) && outcome.ok()) {
+    add(buckling_warnings(outcome.buckling));
+    return found;
   }
-  std::vector<std::string> found;
-  if (simulation.plan().step > 0.0) {
-    found = fine_table_warnings(simulation.scenario().scene(), simulation.plan().step);
-  }
+  if (simulation.plan().step > 0.0) add(fine_table_warnings(scene, simulation.plan().step));
   if (auto made = made_energy_warning(simulation, recorder)) found.push_back(std::move(*made));
   return found;
 }

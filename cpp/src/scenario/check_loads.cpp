@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "scenario/checks.hpp"
@@ -32,9 +33,10 @@ class LoadCheck {
   void operator()(PointForce& load) {
     const Path here = path("point_force");
     check_constant(load.force.constant(), here / "force");
-    if (const auto rod = context_.find_rod(load.rod, here / "rod")) {
-      context_.nodes_at(*rod, load.at, here / "at", false);
-    }
+    const auto rod = context_.find_rod(load.rod, here / "rod");
+    if (!rod) return;
+    const auto nodes = context_.nodes_at(*rod, load.at, here / "at", false);
+    if (nodes && !nodes->empty()) check_acts(load, *rod, *nodes);
   }
 
   void operator()(Moment& load) {
@@ -44,11 +46,8 @@ class LoadCheck {
     if (!rod) return;
     const auto nodes = context_.nodes_at(*rod, load.at, here / "at", false);
     if (!nodes || nodes->empty()) return;
-    if (context_.is_clamped(*rod, nodes->front())) {
-      complain(here / "at",
-               "the moment acts on a clamp, which takes it up without any effect on "
-               "the rod: move one of them");
-    }
+    if (context_.is_clamped(*rod, nodes->front()))
+      warn_of_taken(path_text("moment"), load.rod, "angle");
   }
 
   void operator()(DistributedForce& load) {
@@ -70,8 +69,35 @@ class LoadCheck {
 
  private:
   [[nodiscard]] Path path(const char* kind) const { return {"loads", number_, kind}; }
+  [[nodiscard]] std::string path_text(const char* kind) const {
+    return fmt::format("loads.{}.{}", number_, kind);
+  }
   void complain(const Path& where, const std::string& message) {
     context_.complaints.add(where, message);
+  }
+
+  /// A force on what supports hold goes into them.
+  void check_acts(const PointForce& load, int rod, const std::vector<int>& nodes) {
+    static constexpr std::array<const char*, 2> names{"x", "y"};
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      const auto is_zero = [c](const Components& force) { return force[c] == 0.0; };
+      if (std::all_of(load.force.values.begin(), load.force.values.end(), is_zero)) continue;
+      const bool held = std::all_of(nodes.begin(), nodes.end(), [&](int node) {
+        const HeldNode* holding = context_.held_at(rod, node);
+        return holding && holding->by[c] >= 0;
+      });
+      if (held) {
+        warn_of_taken(fmt::format("the {} component of {}", names[c], path_text("point_force")),
+                      load.rod, names[c]);
+      }
+    }
+  }
+
+  void warn_of_taken(const std::string& what, const std::string& rod, const char* held) {
+    context_.scene.warnings.push_back(
+        fmt::format("{} acts on a node of rod '{}' whose {} a support holds: the support takes it "
+                    "up without any effect on the rod",
+                    what, rod, held));
   }
 
   void check_constant(bool constant, const Path& where) {

@@ -14,6 +14,8 @@ constexpr double kMinimumStepShare = 1.0 / 1024.0;
 constexpr double kAdaptiveShare = 1e-9;
 /// More steps than anyone can wait for.
 constexpr double kMaxSteps = 1e12;
+/// The smallest frame takes 200 bytes: these fill any disk.
+constexpr double kMaxFrames = 1e9;
 /// Frames of a run where the scene does not say how often to save.
 constexpr double kDefaultFrames = 1000.0;
 
@@ -23,6 +25,11 @@ void check_every(SceneText& scene, Complaints& complaints) {
   const double frame_time = time.duration / kDefaultFrames;
   const auto& given = scene.given_output.given_every;
   scene.output.every = given.value_or(frame_time);
+  if (time.duration / scene.output.every > kMaxFrames) {
+    complaints.add(path, fmt::format("makes more than {:g} frames out of the duration, {} s",
+                                     kMaxFrames, time.duration));
+    return;
+  }
   if (time.stepping != Stepping::Fixed) return;
   if (!given) {
     scene.output.every = time.step * std::max(1.0, std::round(frame_time / time.step));

@@ -103,6 +103,7 @@ void check_scene(SceneText& scene, Complaints& complaints) {
   check_loads(context);
   check_time(context);
   check_probes(context);
+  if (complaints.size() == 0) warn_of_touching_rods(context);
 }
 
 }  // namespace der::scenario

@@ -50,5 +50,7 @@ void check_free_nodes(CheckContext& context);
 void check_loads(CheckContext& context);
 void check_time(CheckContext& context);
 void check_probes(CheckContext& context);
+/// Warns of ends of rods that lie on a node: nothing joins them, unless supports hold both.
+void warn_of_touching_rods(CheckContext& context);
 
 }  // namespace der::scenario

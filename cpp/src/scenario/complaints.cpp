@@ -4,6 +4,8 @@
 #include <tuple>
 #include <utility>
 
+#include "der/core/printable.hpp"
+
 namespace der::scenario {
 namespace {
 
@@ -79,16 +81,24 @@ bool Complaints::at(const Path& path) const {
 }
 
 void Complaints::throw_if_any() const {
-  if (found_.empty()) return;
+  if (!found_.empty()) throw SceneError(document_.source(), diagnostics());
+}
+
+std::vector<Diagnostic> Complaints::diagnostics() const {
   std::vector<Diagnostic> diagnostics;
   for (const Complaint& complaint : found_) diagnostics.push_back(complaint.diagnostic);
   std::stable_sort(diagnostics.begin(), diagnostics.end(), [](const auto& a, const auto& b) {
     return std::tie(a.line, a.column) < std::tie(b.line, b.column);
   });
-  throw SceneError(document_.source(), std::move(diagnostics));
+  return diagnostics;
 }
 
 void Complaints::record(Path path, const Mark& mark, std::string message) {
+  if (found_.size() == kMaxComplaints) {
+    std::vector<Diagnostic> first = diagnostics();
+    first.push_back({0, 0, "", "there is more wrong than that; mend these first"});
+    throw SceneError(document_.source(), std::move(first));
+  }
   std::string text = written(path);
   found_.push_back(
       {std::move(path), {mark.line, mark.column, std::move(text), std::move(message)}});
@@ -101,7 +111,7 @@ std::string Complaints::written(const Path& path) const {
     if (!text.empty()) text += '.';
     const Value* next = value ? child(*value, segment) : nullptr;
     if (segment.index < 0) {
-      text += segment.key;
+      text += shortened(segment.key);
     } else {
       text += next ? item_text(*value->sequence(), segment.index) : std::to_string(segment.index);
     }

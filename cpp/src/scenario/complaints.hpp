@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,7 +35,11 @@ struct Segment {
 using Path = std::vector<Segment>;
 Path operator/(Path path, Segment next);
 
-/// Collects everything that is wrong with a document.
+/// More complaints than these help nobody, and a text with a million mistakes is read no further.
+inline constexpr std::size_t kMaxComplaints = 100;
+
+/// Collects everything that is wrong with a document. The complaint after the last that is kept
+/// throws SceneError with those before it.
 class Complaints {
  public:
   explicit Complaints(const Document& document) : document_(document) {}
@@ -60,6 +65,8 @@ class Complaints {
     Diagnostic diagnostic;
   };
   void record(Path path, const Mark& mark, std::string message);
+  /// What was found, sorted by line.
+  [[nodiscard]] std::vector<Diagnostic> diagnostics() const;
   [[nodiscard]] std::string written(const Path& path) const;
 
   const Document& document_;

@@ -4,16 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "der/core/printable.hpp"
 #include "scenario/number.hpp"
 #include "scenario/suggestion.hpp"
 
 namespace der::scenario {
 namespace {
-
-std::string shortened(const std::string& text) {
-  constexpr std::size_t limit = 60;
-  return text.size() <= limit ? text : text.substr(0, limit) + "...";
-}
 
 struct Describe {
   std::string operator()(std::monostate) const { return "nothing"; }
@@ -119,6 +115,11 @@ bool read_text(const Shape& shape, const Place& place, Complaints& complaints, s
     complain_expected(expected(shape), place, complaints, written ? "put it in quotes" : "");
     return false;
   }
+  if (const std::optional<unsigned> code = control_character(*written)) {
+    complaints.add(place,
+                   fmt::format("the text holds the control character 0x{:02x}: remove it", *code));
+    return false;
+  }
   out = *written;
   return true;
 }
@@ -141,8 +142,9 @@ bool read_vector(const Shape& shape, const Place& place, Complaints& complaints,
   if (!items) {
     const std::string* written = text_of(*place.value);
     const bool unbracketed = written && written->find(',') != std::string::npos;
-    complain_expected(expected(shape), place, complaints,
-                      unbracketed ? fmt::format("write it in brackets: [{}]", *written) : "");
+    complain_expected(
+        expected(shape), place, complaints,
+        unbracketed ? fmt::format("write it in brackets: [{}]", shortened(*written)) : "");
     return false;
   }
   if (items->size() == 3) {

@@ -1,3 +1,7 @@
+#include <string_view>
+#include <unordered_set>
+
+#include "der/core/printable.hpp"
 #include "der/output/quantities.hpp"
 #include "der/solvers/names.hpp"
 #include "der/steppers/names.hpp"
@@ -62,11 +66,11 @@ Format<std::vector<Probe>> probes_format() {
               return false;
             }
             const std::size_t before = complaints.size();
+            std::unordered_set<std::string_view> names;
             for (const Entry& entry : *entries) {
-              const Entry& first = *find_entry(*entries, entry.key);
-              if (&first != &entry) {
+              if (!names.insert(entry.key).second) {
                 complaints.add_key(place, entry.key, entry.mark,
-                                   fmt::format("duplicate probe '{}'", entry.key));
+                                   fmt::format("duplicate probe '{}'", shortened(entry.key)));
               } else if (!is_name(entry.key)) {
                 complaints.add_key(place, entry.key, entry.mark,
                                    "names are made of letters, digits, '_' and '-' and do not "

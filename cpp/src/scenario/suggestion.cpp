@@ -1,5 +1,7 @@
 #include "scenario/suggestion.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cctype>
 
@@ -56,6 +58,7 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
   const std::string* best = nullptr;
   std::size_t best_distance = allowed_distance(given.size()) + 1;
   for (const std::string& candidate : known) {
+    if (given.size() >= candidate.size() + best_distance) continue;  // as many insertions, or more
     const std::size_t distance = edit_distance(given, normalised(candidate));
     if (distance < best_distance) {
       best = &candidate;
@@ -74,12 +77,13 @@ std::string with_article(std::string_view noun) {
 }
 
 std::string listed(const std::vector<std::string>& words, std::string_view last_joint) {
+  constexpr std::size_t shown = 20;
   std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i) {
+  for (std::size_t i = 0; i < std::min(shown, words.size()); ++i) {
     if (i > 0) text += i + 1 == words.size() ? std::string(last_joint) : std::string(", ");
     text += "'" + words[i] + "'";
   }
-  return text;
+  return words.size() <= shown ? text : text + fmt::format(", ... ({} in all)", words.size());
 }
 
 }  // namespace der::scenario

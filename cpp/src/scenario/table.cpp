@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "der/core/printable.hpp"
 #include "scenario/number.hpp"
 #include "scenario/suggestion.hpp"
 
@@ -27,7 +28,8 @@ class KeyReader {
       }
       const Entry*& first = seen_[static_cast<std::size_t>(field)];
       if (first) {
-        complain(entry, fmt::format("duplicate key '{}'{}", entry.key, line_of_first(*first)));
+        complain(entry,
+                 fmt::format("duplicate key '{}'{}", shortened(entry.key), line_of_first(*first)));
         continue;
       }
       first = &entry;
@@ -77,7 +79,7 @@ class KeyReader {
   }
 
   [[nodiscard]] std::string unknown_key(const std::string& key) const {
-    const std::string message = fmt::format("{} has no key '{}'", noun_, key);
+    const std::string message = fmt::format("{} has no key '{}'", noun_, shortened(key));
     if (const std::size_t colon = key.find(':'); colon != std::string::npos && colon > 0) {
       return fmt::format("{}; is a space missing after the colon?", message);
     }

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <iterator>
+#include <istream>
 #include <optional>
 #include <sstream>
 #include <unordered_map>
@@ -23,6 +23,10 @@ namespace {
 
 /// Aliases are copied out; this many values stop a text that nests them to fill the memory.
 constexpr std::size_t kMaxAliasedValues = 1'000'000;
+/// A text of this many characters takes as much memory as a value.
+constexpr std::size_t kTextOfAValue = 64;
+/// Far beyond a rod of a million nodes drawn as a polyline, and less than any memory.
+constexpr std::size_t kMaxFileSize = std::size_t{256} << 20;  // [bytes]
 
 Mark mark_of(const YAML::Mark& mark) { return {mark.line + 1, mark.column + 1}; }
 
@@ -32,17 +36,9 @@ struct SyntaxError {
   std::string message;
 };
 
-std::size_t count_values(const Value& value) {
-  std::size_t count = 1;
-  if (const Sequence* items = value.sequence()) {
-    for (const Value& item : *items) count += count_values(item);
-  } else if (const Mapping* entries = value.mapping()) {
-    for (const Entry& entry : *entries) count += count_values(entry.value);
-  }
-  return count;
-}
-
-/// Builds the tree from the parser's events.
+/// Builds the tree from the parser's events. Until the text has ended, values stand in one list and
+/// hold the numbers of their parts: so an anchor and its aliases are the same number, and no text
+/// takes more memory than its length, however it nests them.
 class TreeBuilder : public YAML::EventHandler {
  public:
   void OnDocumentStart(const YAML::Mark& mark) override {
@@ -56,7 +52,7 @@ class TreeBuilder : public YAML::EventHandler {
   void OnDocumentEnd() override {}
 
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
-    add({std::monostate{}, mark_of(mark)}, anchor);
+    add_scalar({std::monostate{}, mark_of(mark)}, 1, anchor);
   }
 
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -64,7 +60,8 @@ class TreeBuilder : public YAML::EventHandler {
     const bool quoted = tag == "!";
     if (!quoted) refuse_tag(mark, tag);
     if (quoted) last_quoted_ = mark_of(mark);
-    add(quoted ? Value{text, mark_of(mark)} : Value{Plain{text}, mark_of(mark)}, anchor);
+    add_scalar(quoted ? Value{text, mark_of(mark)} : Value{Plain{text}, mark_of(mark)},
+               1 + text.size() / kTextOfAValue, anchor);
   }
 
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
@@ -72,7 +69,9 @@ class TreeBuilder : public YAML::EventHandler {
     if (known == anchors_.end()) {
       throw SyntaxError{mark_of(mark), "an alias inside the value that it stands for"};
     }
-    aliased_values_ += count_values(known->second);
+    const Node& node = nodes_[known->second];
+    refuse_depth(mark, stack_.size() + node.depth);
+    aliased_values_ += node.size;
     if (aliased_values_ > kMaxAliasedValues) {
       throw SyntaxError{mark_of(mark), fmt::format("the aliases of this scene stand for more than "
                                                    "{} values",
@@ -95,20 +94,32 @@ class TreeBuilder : public YAML::EventHandler {
   }
   void OnMapEnd() override { close(); }
 
-  [[nodiscard]] Value take_root() {
-    if (documents_ == 0) root_.mark = {1, 1};
-    return std::move(root_);
+  [[nodiscard]] Value root() const {
+    return documents_ == 0 ? Value{std::monostate{}, {1, 1}} : copied_out(root_);
   }
   [[nodiscard]] const std::optional<Mark>& last_quoted() const { return last_quoted_; }
   /// Where the innermost bracket that is still open stands.
   [[nodiscard]] std::optional<Mark> open_bracket() const {
     if (stack_.empty() || !stack_.back().in_brackets) return std::nullopt;
-    return stack_.back().value.mark;
+    return nodes_[stack_.back().node].value.mark;
   }
 
  private:
+  /// An item of a list, or the value of a key.
+  struct Part {
+    std::size_t node;
+    std::string key;
+    Mark key_mark;
+  };
+  struct Node {
+    Value value;  // without its parts
+    std::vector<Part> parts;
+    std::size_t size;   // values in it, aliases copied out
+    std::size_t depth;  // levels in it, itself included
+  };
+  /// A list or mapping whose end has not come yet.
   struct Frame {
-    Value value;
+    std::size_t node;
     YAML::anchor_t anchor;
     bool in_brackets;
     std::optional<std::string> key;  // read, its value not yet
@@ -122,61 +133,92 @@ class TreeBuilder : public YAML::EventHandler {
     }
   }
 
+  static void refuse_depth(const YAML::Mark& mark, std::size_t depth) {
+    if (depth > kMaxDepth) {
+      throw SyntaxError{mark_of(mark),
+                        fmt::format("values nested in more than {} levels: no scene needs that (is "
+                                    "a closing bracket missing?)",
+                                    kMaxDepth)};
+    }
+  }
+
+  void add_scalar(Value value, std::size_t size, YAML::anchor_t anchor) {
+    nodes_.push_back({std::move(value), {}, size, 1});
+    add(nodes_.size() - 1, anchor);
+  }
+
   template <class Content>
   void open(const YAML::Mark& mark, Content content, YAML::anchor_t anchor,
             YAML::EmitterStyle::value style) {
-    stack_.push_back({{std::move(content), mark_of(mark)},
-                      anchor,
-                      style == YAML::EmitterStyle::Flow,
-                      std::nullopt,
-                      {}});
+    refuse_depth(mark, stack_.size() + 1);
+    nodes_.push_back({{std::move(content), mark_of(mark)}, {}, 1, 1});
+    stack_.push_back(
+        {nodes_.size() - 1, anchor, style == YAML::EmitterStyle::Flow, std::nullopt, {}});
   }
 
   void close() {
-    Frame frame = std::move(stack_.back());
+    const Frame frame = std::move(stack_.back());
     stack_.pop_back();
-    add(std::move(frame.value), frame.anchor);
+    add(frame.node, frame.anchor);
   }
 
-  void add(Value value, YAML::anchor_t anchor) {
-    if (anchor != YAML::NullAnchor) anchors_[anchor] = value;
+  void add(std::size_t node, YAML::anchor_t anchor) {
+    if (anchor != YAML::NullAnchor) anchors_[anchor] = node;
     if (stack_.empty()) {
-      root_ = std::move(value);
+      root_ = node;
       return;
     }
     Frame& frame = stack_.back();
-    if (auto* items = std::get_if<Sequence>(&frame.value.content)) {
-      items->push_back(std::move(value));
-    } else if (!frame.key) {
-      take_key(frame, value);
-    } else {
-      // The parser marks a missing value where the next thing stands, maybe lines below.
-      if (value.is_null()) value.mark = frame.key_mark;
-      std::get<Mapping>(frame.value.content)
-          .push_back({std::move(*frame.key), std::move(value), frame.key_mark});
-      frame.key.reset();
+    const bool is_list = nodes_[frame.node].value.sequence() != nullptr;
+    if (!is_list && !frame.key) {
+      take_key(frame, nodes_[node].value);
+      return;
     }
+    Node& parent = nodes_[frame.node];
+    parent.parts.push_back({node, std::move(frame.key).value_or(std::string()), frame.key_mark});
+    parent.size += nodes_[node].size;
+    parent.depth = std::max(parent.depth, 1 + nodes_[node].depth);
+    frame.key.reset();
   }
 
-  static void take_key(Frame& frame, Value& value) {
+  static void take_key(Frame& frame, const Value& value) {
     frame.key_mark = value.mark;
-    if (auto* plain = std::get_if<Plain>(&value.content)) {
+    if (const auto* plain = std::get_if<Plain>(&value.content)) {
       if (plain->text == "<<") {
         throw SyntaxError{value.mark,
                           "merge keys ('<<') are not read: repeat the keys, or give the whole "
                           "value an anchor (&name) and write *name where it is needed again"};
       }
-      frame.key = std::move(plain->text);
-    } else if (auto* text = std::get_if<std::string>(&value.content)) {
-      frame.key = std::move(*text);
+      frame.key = plain->text;
+    } else if (const auto* text = std::get_if<std::string>(&value.content)) {
+      frame.key = *text;
     } else {
       throw SyntaxError{value.mark, "a key has to be a plain word"};
     }
   }
 
-  Value root_;
+  /// A value with all its parts.
+  [[nodiscard]] Value copied_out(std::size_t number) const {
+    const Node& node = nodes_[number];
+    Value value = node.value;
+    if (auto* items = std::get_if<Sequence>(&value.content)) {
+      items->reserve(node.parts.size());
+      for (const Part& part : node.parts) items->push_back(copied_out(part.node));
+    } else if (auto* entries = std::get_if<Mapping>(&value.content)) {
+      entries->reserve(node.parts.size());
+      for (const Part& part : node.parts) {
+        Entry& entry = entries->emplace_back(Entry{part.key, copied_out(part.node), part.key_mark});
+        // The parser marks a missing value where the next thing stands, maybe lines below.
+        if (entry.value.is_null()) entry.value.mark = part.key_mark;
+      }
+    }
+    return value;
+  }
+
+  std::vector<Node> nodes_;
+  std::size_t root_ = 0;
   std::vector<Frame> stack_;
-  std::unordered_map<YAML::anchor_t, Value> anchors_;
+  std::unordered_map<YAML::anchor_t, std::size_t> anchors_;
   std::size_t aliased_values_ = 0;
   int documents_ = 0;
   std::optional<Mark> last_quoted_;
@@ -298,11 +340,29 @@ Value parse_tree(std::string_view text) {
     throw explain(error, builder, text);
   }
   refuse_open_quote();
-  return builder.take_root();
+  return builder.root();
 }
 
 [[noreturn]] void refuse_file(const std::string& file, const std::string& reason) {
-  throw SceneError(file, {{0, 0, "", "cannot read the scene file: " + reason}});
+  throw UnreadableSceneError(file, "cannot read the scene file: " + reason);
+}
+
+/// All of a stream; a device that never ends, such as /dev/zero, is none.
+std::string text_of(std::istream& stream, const std::string& file) {
+  constexpr std::size_t piece = std::size_t{1} << 16;
+  std::string text;
+  std::size_t read = 0;
+  do {
+    text.resize(read + piece);
+    stream.read(text.data() + read, piece);
+    read += static_cast<std::size_t>(stream.gcount());
+    if (read > kMaxFileSize) {
+      refuse_file(file,
+                  fmt::format("it is longer than {} MiB, which no scene is", kMaxFileSize >> 20));
+    }
+  } while (stream);
+  text.resize(read);
+  return text;
 }
 
 }  // namespace
@@ -321,8 +381,9 @@ Document Document::load(const std::filesystem::path& file) {
   if (!std::filesystem::exists(status)) refuse_file(file.string(), "there is no such file");
   if (std::filesystem::is_directory(status)) refuse_file(file.string(), "it is a folder");
   std::ifstream stream(file, std::ios::binary);
-  const std::string text((std::istreambuf_iterator<char>(stream)), {});
   if (!stream) refuse_file(file.string(), "it could not be opened (is reading it allowed?)");
+  const std::string text = text_of(stream, file.string());
+  if (stream.bad()) refuse_file(file.string(), "reading it failed");
   return parse(text, file.string());
 }
 

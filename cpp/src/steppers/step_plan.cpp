@@ -11,6 +11,10 @@ namespace {
 /// Two times closer than this share of the time between frames are one.
 constexpr double kSameFrame = 1e-9;
 
+/// Frames that an adaptive step may hold: a run can be interrupted, and its frames are counted,
+/// between steps alone.
+constexpr double kFramesOfAStep = 10'000.0;
+
 std::int64_t count_steps(double duration, double step) {
   // A duration that is a whole number of steps but for rounding has no short last step.
   return static_cast<std::int64_t>(std::ceil(duration / step * (1.0 - 1e-12)));
@@ -36,6 +40,10 @@ StepPlan plan_steps(const scenario::Scene& scene, double stable_step) {
   plan.largest_step = kStepMargin * stable_step;
   if (!scene.is_dynamic()) return plan;
 
+  if (time.stepping == scenario::Stepping::Adaptive) {
+    const double longest = std::max(kFramesOfAStep * plan.every, time.minimum_step);
+    plan.largest_step = std::min(plan.largest_step, longest);
+  }
   plan.step = time.step;
   if (time.stepping == scenario::Stepping::Automatic) {
     plan.step = plan.every / std::max(1.0, std::ceil(plan.every / plan.largest_step));

@@ -74,7 +74,10 @@ def wrapped(text: str, points: float, width: float) -> list[str]:
         across, _, _ = text_to_path.get_text_width_height_descent(line, font, ismath=False)
         return bool(across <= 72.0 * width)
 
-    for letters in range(max(len(text), 2), 1, -1):
+    # No letter of text is narrower than a quarter of its size, so no line holds more than these.
+    most = int(4.0 * 72.0 * width / points)
+    text = text[: (_TITLE_LINES + 1) * most]
+    for letters in range(max(min(len(text), most), 2), 1, -1):
         lines = textwrap.wrap(text, letters, max_lines=_TITLE_LINES, placeholder="…")
         if all(fits(line) for line in lines):
             break

@@ -107,6 +107,27 @@ TEST_CASE("a static analysis records its equilibrium and nothing else") {
   CHECK(run.recorder.summaries().at(0).final < -0.29);
 }
 
+TEST_CASE("an adaptive step holds no more frames than a run may wait for") {
+  struct Counter : FrameSink {
+    void write(const Frame& /*frame*/) override { ++since_step; }
+    void stepped(const Simulation& /*simulation*/, const Recorder& /*recorder*/) override {
+      most = std::max(most, since_step);
+      since_step = 0;
+    }
+    int since_step = 0;
+    int most = 0;
+  };
+  Simulation simulation(Scenario::parse(
+      kSpheres, "spheres",
+      {{"time", "{duration: 1, tolerance: 0.1, integrator: tr_bdf2}"}, {"output.every", "5e-6"}}));
+  Recorder recorder(simulation);
+  Counter counter;
+  recorder.add(counter);
+  CHECK(run(simulation, recorder, {}).ok());
+  CHECK(counter.most <= 10'001);
+  CHECK(counter.most > 5'000);  // the scene does ask for more: without the limit 37,000
+}
+
 TEST_CASE("an equilibrium that does not exist leaves no numbers that could be taken for one") {
   // Held nowhere, the rod falls for ever.
   const Recorded run(cantilever("tip: {rod: arm, at: end, quantity: y}", {{"supports", "[]"}}));

@@ -306,4 +306,19 @@ TEST_CASE("files that are no run files, and folders that do not exist, are clear
                   IoError);
 }
 
+TEST_CASE("frames that come without a step in between are not kept in memory") {
+  Simulation simulation(Scenario::parse(kSpheres, "spheres", {{"rods.rod.nodes", "10001"}}));
+  Recorder recorder(simulation);
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "results.h5";
+  const auto file = RunFile::create(path, simulation, recorder);
+  const auto empty = fs::file_size(path);
+  Vector values = Vector::Zero(static_cast<Index>(recorder.probes().size()));
+  const State& state = simulation.state();
+  for (int i = 0; i < 100; ++i) {  // of 320 kB each
+    file->write({1e-9 * i, 0, state.positions, state.velocities, {}, state.work, values});
+  }
+  CHECK(fs::file_size(path) > empty + 20'000'000);
+}
+
 }  // namespace der::test

@@ -117,10 +117,49 @@ TEST_CASE("documents: aliases cannot fill the memory") {
   CHECK(contains(said[0].message, "the aliases of this scene stand for more than"));
 }
 
+TEST_CASE("documents: a long text behind many aliases counts for its length") {
+  std::string text = "a: &a " + std::string(100'000, 'x') + "\nb: [";
+  for (int i = 0; i < 1000; ++i) text += "*a, ";
+  const auto said = complaints(text + "]\n");
+  REQUIRE(said.size() == 1);
+  CHECK(contains(said[0].message, "the aliases of this scene stand for more than"));
+}
+
 TEST_CASE("documents: deep nesting ends in an error, not in a crash") {
   const auto said = complaints("a: " + std::string(100'000, '['));
   REQUIRE(said.size() == 1);
-  CHECK(contains(said[0].message, "not valid YAML"));
+  CHECK(contains(said[0].message, "values nested in more than 100 levels"));
+  // By aliases, each of which is one level deeper than the one before.
+  std::string text = "a0: &a0 [x]\n";
+  for (int i = 1; i <= 100; ++i) {
+    const std::string number = std::to_string(i);
+    text += "a" + number + ": &a" + number + " [*a" + std::to_string(i - 1) + "]\n";
+  }
+  const auto aliased = complaints(text);
+  REQUIRE(aliased.size() == 1);
+  CHECK(aliased[0].line == 99);  // a98: the scene, 99 lists and x
+  CHECK(contains(aliased[0].message, "values nested in more than 100 levels"));
+}
+
+TEST_CASE("documents: anchors inside anchors stand for what they hold") {
+  const Scenario scene =
+      Scenario::parse(test::kRod + "loads: &loads [&one {gravity: &g [0, -1]}]\n" +
+                      "title: &t nested\n" + test::kTime);
+  CHECK(scene.scene().title == "nested");
+  const Document document =
+      Document::parse("a: &a [&b [1, &c {k: 2}], *b]\nd: [*a, *c]\n&e e: *e\n", "text");
+  CHECK(document.to_yaml() ==
+        "a: [[1, {k: 2}], [1, {k: 2}]]\nd: [[[1, {k: 2}], [1, {k: 2}]], {k: 2}]\ne: e\n");
+}
+
+TEST_CASE("documents: what is quoted from a scene is one line without control characters") {
+  const auto said = complaints("\"k\\e[31m\\n\\x9b\": 1\n" + test::kRod + test::kTime);
+  REQUIRE(said.size() == 1);
+  CHECK(contains(said[0].message, "has no key 'k\\x1b[31m\\n\\x9b'"));
+  CHECK(said[0].path == "k\\x1b[31m\\n\\x9b");
+  CHECK(contains(complaints({{"title", "\"\\e]0;x\""}}),
+                 "the text holds the control character 0x1b"));
+  CHECK(complaints({{"title", "\"two\\nlines\\tTr\u00e4ger\""}}).empty());
 }
 
 TEST_CASE("documents: quotes that are closed, and quotes that are not") {

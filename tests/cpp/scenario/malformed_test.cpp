@@ -93,11 +93,29 @@ TEST_CASE("malformed scenes: complaints come in the order of the text, with file
   }
 }
 
+TEST_CASE("malformed scenes: a text with endless mistakes is read as far as the first hundred") {
+  std::string text;
+  for (int i = 0; i < 1000; ++i) text += "key" + std::to_string(i) + ": 1\n";
+  try {
+    Scenario::parse(text);
+    FAIL("a malformed scene was accepted");
+  } catch (const SceneError& error) {
+    const auto& found = error.diagnostics();
+    REQUIRE(found.size() == 101);
+    CHECK(found[99].path == "key99");
+    CHECK(found[100].message == "there is more wrong than that; mend these first");
+  }
+}
+
 TEST_CASE("a file that cannot be read is named") {
   CHECK_THROWS_WITH_AS(Scenario::load("no/such/scene.yaml"),
                        "no/such/scene.yaml: cannot read the scene file: there is no such file",
                        SceneError);
-  CHECK_THROWS_AS(Scenario::load(DER_SOURCE_DIR), SceneError);
+  CHECK_THROWS_AS(Scenario::load(DER_SOURCE_DIR), UnreadableSceneError);
+  CHECK_THROWS_WITH_AS(Scenario::load("/dev/zero"),
+                       "/dev/zero: cannot read the scene file: it is longer than 256 MiB, which no "
+                       "scene is",
+                       UnreadableSceneError);
 }
 
 }  // namespace

@@ -29,7 +29,8 @@ struct Diagnostic {
   std::string message;
 };
 
-/// A scene that cannot be run as written. Holds every complaint found, in the order of the text.
+/// A scene that cannot be run as written. Holds every complaint found, in the order of the text, as
+/// `printable` texts.
 class SceneError : public Error {
  public:
   /// `source` is the file name, or empty for a dictionary.
@@ -38,6 +39,13 @@ class SceneError : public Error {
 
  private:
   std::vector<Diagnostic> diagnostics_;
+};
+
+/// A scene file that cannot be read at all.
+class UnreadableSceneError : public SceneError {
+ public:
+  UnreadableSceneError(const std::string& file, const std::string& reason)
+      : SceneError(file, {{0, 0, "", reason}}) {}
 };
 
 /// Newton's method found no solution, even with the smallest allowed time step; or there is no

@@ -16,9 +16,9 @@ struct UsedSolver {
 };
 UsedSolver used_solver(const Simulation& simulation);
 
-/// What makes a completed run doubtful, in sentences: the time stepping has made energy worth
-/// mentioning, its equal steps are longer than a table is fine, or linear buckling was asked about
-/// a structure that bends before it buckles.
+/// What makes a completed run doubtful, in sentences: the scene's own warnings, or that the time
+/// stepping has made energy worth mentioning, its equal steps are longer than a table is fine, or
+/// linear buckling was asked about a structure that bends before it buckles.
 std::vector<std::string> warnings(const Simulation& simulation, const Recorder& recorder,
                                   const RunOutcome& outcome);
 

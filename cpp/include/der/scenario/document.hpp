@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -22,6 +23,10 @@ struct Plain {
 using Sequence = std::vector<Value>;
 /// Keys in the order of the text. Duplicate keys are kept here and reported by the reader.
 using Mapping = std::vector<Entry>;
+
+/// Levels that values may be nested in: a scene has fewer than ten, and those who walk through a
+/// document call themselves level by level.
+inline constexpr std::size_t kMaxDepth = 100;
 
 /// A marked value: nothing, an unquoted scalar, a text (quoted, or a Python str), a value that
 /// already has a type (from Python), a sequence or a mapping.
@@ -67,7 +72,7 @@ class Document {
   /// Reads YAML. Anchors and aliases are resolved; tags, merge keys and further documents are
   /// errors. Throws SceneError.
   static Document parse(std::string_view text, const std::string& source);
-  /// As above, from a file.
+  /// As above, from a file. Throws UnreadableSceneError where there is none to read.
   static Document load(const std::filesystem::path& file);
 
   [[nodiscard]] const Value& root() const noexcept { return root_; }

@@ -249,6 +249,8 @@ struct Scene {
   std::string start_from;
   Solver solver;
   Output output;
+  /// What can be run as it is, but is most likely not what was meant: sentences.
+  std::vector<std::string> warnings;
 
   [[nodiscard]] bool is_dynamic() const {
     return std::holds_alternative<DynamicAnalysis>(analysis);

@@ -14,7 +14,7 @@ struct AdaptiveOptions {
   double tolerance = 1e-3;  ///< error of positions over the model's size, gathered over `duration`
   double duration = 1.0;    ///< [s]
   double minimum_step = 0.0;  ///< [s]
-  double largest_step = 0.0;  ///< [s] that the stepper is stable with; infinite: any
+  double largest_step = 0.0;  ///< [s] that is tried; infinite: any
 };
 
 /// What the attempts at one adaptive step cost.

@@ -13,7 +13,8 @@ struct StepPlan {
   double every = 0.0;                ///< [s] between saved frames
   std::int64_t steps_per_frame = 1;  ///< with equal steps
   std::int64_t total_steps = 0;      ///< from time 0 to the duration; 0: not known
-  double largest_step = 0.0;         ///< [s] for adaptive steps; infinite: any
+  double largest_step = 0.0;         ///< [s] for adaptive steps: stable, with a bounded number of
+                                     ///< frames; infinite: any
 
   /// Whether a regular frame is due at that instant.
   [[nodiscard]] bool is_frame(std::int64_t steps_done, double time) const;

@@ -494,5 +494,5 @@ def frames(folder):
     """How many frames an unfinished run has saved by now."""
     try:
         return len(der.open_run(folder).times)
-    except (OSError, KeyError):
-        return 0  # caught while the file was being created
+    except (FileNotFoundError, ValueError):
+        return 0  # not there yet, or read in the middle of a write

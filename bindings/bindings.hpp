@@ -14,6 +14,7 @@ void bind_model(py::module_& module);
 void bind_replay(py::module_& module);
 void bind_state(py::module_& module);
 void bind_recording(py::module_& module);
+void bind_saved_run(py::module_& module);
 void bind_simulation(py::module_& module);
 void bind_steppers(py::module_& module);
 

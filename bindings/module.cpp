@@ -11,6 +11,7 @@ PYBIND11_MODULE(_core, module) {
   bindings::bind_replay(module);
   bindings::bind_state(module);
   bindings::bind_recording(module);
+  bindings::bind_saved_run(module);
   bindings::bind_simulation(module);
   bindings::bind_steppers(module);
 }

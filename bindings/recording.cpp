@@ -7,6 +7,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "der/output/memory_sink.hpp"
 #include "der/output/summary.hpp"
 #include "py_simulation.hpp"
 
@@ -29,7 +30,7 @@ py::array_t<double> table_view(const std::vector<double>& data, std::vector<py::
   return py::array_t<double>(std::move(shape), data.data(), self);
 }
 
-template <std::vector<double> MemorySink::* member>
+template <std::vector<double> FrameData::* member>
 py::array_t<double> vectors(const py::object& self) {
   const auto& recording = self.cast<const Recording&>();
   const std::vector<double>& data = recording.frames.*member;
@@ -91,38 +92,32 @@ py::dict probe_units(const Recording& recording) {
 
 }  // namespace
 
-std::unique_ptr<Recording> record(const py::object& self,
-                                  const std::optional<py::function>& callback, double until,
-                                  const std::optional<py::function>& tick,
-                                  const std::optional<std::filesystem::path>& out) {
+std::unique_ptr<RunRecording> record(const py::object& self,
+                                     const std::optional<py::function>& callback, double until,
+                                     const std::optional<py::function>& tick,
+                                     const std::optional<std::filesystem::path>& out) {
   auto& simulation = self.cast<PySimulation&>();
-  auto recording = std::make_unique<Recording>();
+  auto recording = std::make_unique<RunRecording>();
   recording->dimension = simulation.engine().model().dimension;
   Recorder recorder(simulation.engine());
-  recorder.add(recording->frames);
+  MemorySink memory;
+  recorder.add(memory);
   for (const Probe& probe : recorder.probes()) {
     recording->probe_names.push_back(probe.name());
     recording->probe_units.push_back(probe.unit());
   }
   recording->outcome =
       simulation.run(recorder, until, to_callback(callback), to_tick(tick), out, self);
+  recording->frames = std::move(static_cast<FrameData&>(memory));
   recording->data = datasets(simulation.engine(), recording->outcome);
   recording->summary_json = summary_json(simulation.engine(), recorder, recording->outcome);
   return recording;
 }
 
 void bind_recording(py::module_& module) {
-  py::class_<Recording>(
-      module, "Recording",
-      "What a run recorded, as the engine hands it over; der.Result is made of it.")
-      .def_property_readonly(
-          "status", [](const Recording& r) { return r.outcome.status; }, "How the run ended.")
-      .def_property_readonly(
-          "message", [](const Recording& r) { return r.outcome.message; },
-          "Why it failed; empty if it did not.")
-      .def_property_readonly(
-          "failed", [](const Recording& r) { return r.outcome.failed(); }, "Whether it failed.")
-      .def_readonly("summary_json", &Recording::summary_json, "Text of summary.json.")
+  py::class_<Recording>(module, "Recording",
+                        "What a run recorded, as the engine hands it over; der.Result is made of "
+                        "it.")
       .def_property_readonly(
           "times",
           [](const py::object& self) {
@@ -137,9 +132,9 @@ void bind_recording(py::module_& module) {
                                              self);
           },
           "Time steps done at the saved frames, shape (frames,).")
-      .def_property_readonly("positions", &vectors<&MemorySink::positions>,
+      .def_property_readonly("positions", &vectors<&FrameData::positions>,
                              "Node positions [m], shape (frames, nodes, dim).")
-      .def_property_readonly("velocities", &vectors<&MemorySink::velocities>,
+      .def_property_readonly("velocities", &vectors<&FrameData::velocities>,
                              "Node velocities [m/s], shape (frames, nodes, dim).")
       .def_property_readonly("energies", &energy_columns, "Energies [J] by name, shape (frames,).")
       .def_property_readonly("work", &work_columns,
@@ -149,6 +144,16 @@ void bind_recording(py::module_& module) {
       .def_property_readonly("data", &analysis_data,
                              "What an analysis found besides: (array, unit) by name.")
       .def_property_readonly("probe_units", &probe_units, "SI units of the probes by name.");
+  py::class_<RunRecording, Recording>(module, "RunRecording",
+                                      "What a run that has just been done recorded.")
+      .def_property_readonly(
+          "status", [](const RunRecording& r) { return r.outcome.status; }, "How the run ended.")
+      .def_property_readonly(
+          "message", [](const RunRecording& r) { return r.outcome.message; },
+          "Why it failed; empty if it did not.")
+      .def_property_readonly(
+          "failed", [](const RunRecording& r) { return r.outcome.failed(); }, "Whether it failed.")
+      .def_readonly("summary_json", &RunRecording::summary_json, "Text of summary.json.");
 }
 
 }  // namespace der::python

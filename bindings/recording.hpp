@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "der/output/datasets.hpp"
-#include "der/output/memory_sink.hpp"
+#include "der/output/frame_data.hpp"
 #include "der/output/run.hpp"
 
 namespace der::python {
@@ -18,21 +18,31 @@ namespace py = pybind11;
 
 /// Everything that a run recorded, in memory; der/simulation.py makes a Result of it.
 struct Recording {
-  RunOutcome outcome;
-  std::string summary_json;
-  MemorySink frames;
+  FrameData frames;
   std::vector<Dataset> data;
   std::vector<std::string> probe_names;
   std::vector<std::string> probe_units;
   Index dimension = 0;
 };
 
+/// What a run that has just been done recorded, and how it ended.
+struct RunRecording : Recording {
+  RunOutcome outcome;
+  std::string summary_json;
+};
+
+/// What the file of a run holds.
+struct FileRecording : Recording {
+  std::string status;
+  std::string scene;
+};
+
 /// Runs the simulation `self` from its present state to the end of the scene, to time `until` [s],
 /// or until `callback()` returns false after a step, and records it; `tick()` is called now and
 /// then. With `out`, the run is also written to that folder while it goes on.
-std::unique_ptr<Recording> record(const py::object& self,
-                                  const std::optional<py::function>& callback, double until,
-                                  const std::optional<py::function>& tick,
-                                  const std::optional<std::filesystem::path>& out);
+std::unique_ptr<RunRecording> record(const py::object& self,
+                                     const std::optional<py::function>& callback, double until,
+                                     const std::optional<py::function>& tick,
+                                     const std::optional<std::filesystem::path>& out);
 
 }  // namespace der::python

@@ -197,7 +197,14 @@ class Result:
         """Write a run folder that `der.open_run` reads, and return its path.
 
         It has ``results.h5``, ``summary.json`` and ``scene.yaml``, as der_run writes them, but no
-        checkpoint: it cannot be resumed.
+        checkpoint: it cannot be resumed. Like der_run, it replaces an earlier run and nothing else.
+
+        Raises
+        ------
+        DerError
+            If the folder holds other things than a run, or another run is writing there.
+        ValueError
+            If the arrays are not of the shapes that the model and the times ask for.
         """
         from der.run_folder import save_run
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from der import _core
-from der._core import Recording, Scenario
+from der._core import RunRecording, Scenario
 from der.analyses import Modes
 from der.errors import error_for, warn
 from der.probe_series import make_probes
@@ -350,7 +350,7 @@ def as_scenario(scenario: SceneLike) -> Scenario:
     )
 
 
-def _to_result(scenario: Scenario, recording: Recording) -> Result:
+def _to_result(scenario: Scenario, recording: RunRecording) -> Result:
     summary = json.loads(recording.summary_json)
     return Result(
         scenario=scenario,

@@ -188,11 +188,11 @@ def test_results_are_laid_out_as_documented(scene: Path, tmp_path: Path) -> None
         assert np.allclose(file["time"][:], 0.01 * np.arange(1001), rtol=1e-13, atol=0)
         assert np.array_equal(file["step"][:], np.arange(1001))
         assert np.array_equal(file["probes/y_mid"][:], file["positions"][:, 1, 1])
-        assert file["probes/v_mid"].attrs["unit"] == "m/s"
+        assert file["probes/v_mid"].attrs["unit"] == b"m/s"
         assert file["rods/rod"].attrs["EI"] == pytest.approx(1e9 * np.pi * 0.001**4 / 4)
         assert file["rods/rod"].attrs["radius"] == 0.001
         assert list(file["rods/rod/sphere_radius"][:]) == [0.005, 0.025, 0.005]
-        assert file.attrs["status"] == "completed"
+        assert file.attrs["status"] == b"completed"
         assert file.attrs["dimension"] == 2
         assert file["scene"].asstr()[()] == (out / "scene.yaml").read_text()
         without_unit: list[str] = []
@@ -214,6 +214,118 @@ def test_the_scene_is_saved_with_its_overrides(scene: Path, tmp_path: Path) -> N
     assert der_run(first / "scene.yaml", "--quiet", "--out", second).returncode == 0
     assert summary_of(second)["nodes"] == 5
     assert_same_results(first, second)
+
+
+def test_every_frame_has_the_checksum_of_the_results_page(scene: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    der_run(scene, "--quiet", "--out", out)
+    with h5py.File(out / "results.h5") as file:
+        columns = [file[name] for name in ("time", "step", "positions", "velocities")]
+        for group in ("energies", "work", "probes"):
+            columns += [file[group][name] for name in sorted(file[group])]
+        words = np.hstack([column[:].view(np.uint64).reshape(1001, -1) for column in columns])
+        factors = np.cumprod(np.full(words.shape[1], 0x9E3779B97F4A7C15, np.uint64))
+        sums = ((words ^ (words >> np.uint64(32))) * factors).sum(axis=1, dtype=np.uint64)
+        assert np.array_equal(file["checksum"][:], sums)
+        arc = file["rods/rod/arc_length"]
+        words = arc[:].view(np.uint64)
+        sums = ((words ^ (words >> np.uint64(32))) * factors[:3]).sum(dtype=np.uint64)
+        assert arc.attrs["checksum"] == sums
+
+
+@pytest.mark.parametrize("locking", ["TRUE", "FALSE"])
+def test_of_two_runs_at_once_one_wins_and_the_other_says_so(
+    scene: Path, tmp_path: Path, locking: str
+) -> None:
+    environment = {**os.environ, "HDF5_USE_FILE_LOCKING": locking}
+    for round_ in range(4):
+        out = tmp_path / str(round_)
+        runs = [
+            subprocess.Popen(
+                [DER_RUN, scene, "--quiet", *LONG, "--set", f"title={title}", "--out", out],
+                stderr=subprocess.PIPE,
+                text=True,
+                env=environment,
+            )
+            for title in ("first", "second")
+        ]
+        while all(run.poll() is None for run in runs):
+            time.sleep(0.002)
+        [loser] = [run for run in runs if run.poll() is not None]
+        [winner] = [run for run in runs if run is not loser]
+        assert loser.returncode == 4
+        assert "another run is writing" in loser.communicate()[1]
+        wait_for_frames(out / "results.h5", 2)
+        winner.send_signal(signal.SIGINT)
+        assert winner.communicate(timeout=60)[1] == ""
+        assert winner.returncode == 130
+        assert summary_of(out)["title"] == ("first", "second")[runs.index(winner)]
+        with h5py.File(out / "results.h5") as file:
+            assert file.attrs["title"].decode() == summary_of(out)["title"]
+        assert sorted(path.name for path in out.iterdir()) == [
+            "results.h5",
+            "scene.yaml",
+            "summary.json",
+        ]
+
+
+def test_a_kill_at_the_start_leaves_nothing_or_a_readable_file(scene: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    for milliseconds in range(0, 24, 2):
+        run = start(scene, *LONG, "--out", out)
+        time.sleep(0.005 + 1e-3 * milliseconds)
+        run.kill()
+        run.communicate()
+        if (out / "results.h5").exists():
+            with h5py.File(out / "results.h5") as file:
+                assert file.attrs["status"] == b"running"
+    done = der_run(scene, "--out", out)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("arguments", [["SCENE"], ["SCENE", "--check"], ["--help"], ["--schema"]])
+def test_a_full_standard_output_is_an_error(
+    scene: Path, tmp_path: Path, arguments: list[str]
+) -> None:
+    words = [str(scene) if word == "SCENE" else word for word in arguments]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [DER_RUN, *words], stdout=full, stderr=subprocess.PIPE, text=True, cwd=tmp_path
+        )
+    assert done.returncode == 4
+    assert "standard output" in done.stderr
+    assert "No space left" in done.stderr
+
+
+def test_a_title_that_is_not_utf_8_is_refused(scene: Path, tmp_path: Path) -> None:
+    scene.write_bytes(SPHERES.encode().replace(b"Three spheres", b"Drei K\xfcgelchen"))
+    done = der_run(scene, cwd=tmp_path)
+    assert done.returncode == 1
+    assert done.stderr.startswith(f"{scene}:1:14: the byte 0xfc is not UTF-8")
+    assert not (tmp_path / "runs").exists()
+
+
+def test_an_edited_scene_in_the_run_folder_is_not_replaced(scene: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert der_run(scene, "--out", out).returncode == 0
+    edited = "# my notes\n" + (out / "scene.yaml").read_text()
+    (out / "scene.yaml").write_text(edited)
+    done = der_run("scene.yaml", "--out", ".", cwd=out)
+    assert done.returncode == 4
+    assert "edited" in done.stderr
+    assert (out / "scene.yaml").read_text() == edited
+    assert summary_of(out)["status"] == "completed"
+
+
+def test_check_says_how_large_the_results_will_be(scene: Path, tmp_path: Path) -> None:
+    assert "1,001 frames, about 247 kB" in der_run(scene, "--check").stdout
+    endless = ["--set", "time.duration=1e9", "--set", "output.every=0.01"]
+    assert "100,000,000,001 frames, about 21.6 TB" in der_run(scene, "--check", *endless).stdout
+    out = tmp_path / "out"
+    done = der_run(scene, *endless, "--out", out)
+    assert done.returncode == 4
+    assert "raise output.every" in done.stderr
+    assert not (out / "results.h5").exists()
 
 
 def test_quiet_prints_nothing_but_errors(scene: Path, tmp_path: Path) -> None:
@@ -368,7 +480,7 @@ def test_failures_are_named_and_leave_no_old_summary(scene: Path, tmp_path: Path
     # json.loads would take NaN and Infinity, which are no JSON.
     assert not any(word in (out / "summary.json").read_text() for word in ("NaN", "Inf"))
     with h5py.File(out / "results.h5") as file:
-        assert file.attrs["status"] == "diverged"
+        assert file.attrs["status"] == b"diverged"
         for name in COLUMNS:
             assert np.all(np.isfinite(file[name][:])), name
     done = der_run(scene, "--out", out, *unstable, "--resume")
@@ -400,7 +512,7 @@ def test_a_killed_run_leaves_every_saved_step_and_can_be_resumed(
             h5py.File(out / "results.h5") as file,
             h5py.File(reference / "results.h5") as whole,
         ):
-            assert file.attrs["status"] == "running"
+            assert file.attrs["status"] == b"running"
             n = len(file["time"])
             assert n >= frames
             assert np.array_equal(file["step"][:n], 10 * np.arange(n))
@@ -470,7 +582,7 @@ def test_resuming_with_another_scene_or_without_a_run_is_refused(
     assert (out / "results.h5").read_bytes() == before
 
 
-@pytest.mark.parametrize("limit", [1_000, 5_000_000, 6_500_000, 8_000_000])
+@pytest.mark.parametrize("limit", [1_000, 5_400_000, 6_500_000, 8_000_000])
 def test_a_full_disk_is_an_error_and_leaves_what_was_written(
     scene: Path, tmp_path: Path, limit: int
 ) -> None:
@@ -549,17 +661,18 @@ def test_short_runs_take_well_under_a_tenth_of_a_second(scene: Path, tmp_path: P
     assert min(seconds) < 0.05
 
 
-def test_the_snippet_of_the_results_page(
+def test_the_snippets_of_the_results_page(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     root = Path(__file__).parents[2]
     monkeypatch.chdir(tmp_path)
     assert der_run(root / "configs" / "cantilever.yaml", "--quiet").returncode == 0
-    (snippet,) = re.findall(
+    snippet, checksums = re.findall(
         r"^```python\n(.*?)^```$",
         (root / "docs" / "results.md").read_text(),
         re.DOTALL | re.MULTILINE,
     )
+    exec(checksums, {})
     exec(snippet, {})
     printed = dict(line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines())
     assert float(printed["tip_y"].split()[0]) == pytest.approx(-0.301721, abs=1e-4)

@@ -1,5 +1,6 @@
 """Whole runs: what is recorded, how they stop and fail, and the run folder."""
 
+import dataclasses
 import json
 import os
 import pickle
@@ -346,12 +347,42 @@ def test_open_run_says_what_is_missing(tmp_path):
         der.open_run(tmp_path)
 
 
-def test_a_newer_format_is_refused(tube, tmp_path):
+@pytest.mark.parametrize(
+    ("version", "advice"), [(99, "install a newer der"), (3, "run its scene again")]
+)
+def test_another_format_is_refused(tube, tmp_path, version, advice):
     der.run(tube, out=tmp_path / "run")
     with h5py.File(tmp_path / "run" / "results.h5", "r+") as file:
-        file.attrs["format_version"] = 99
-    with pytest.raises(ValueError, match="format 99"):
+        file.attrs["format_version"] = np.int64(version)
+    with pytest.raises(ValueError, match=f"format {version}.*{advice}"):
         der.open_run(tmp_path / "run")
+
+
+def test_a_changed_number_is_seen(tube, tmp_path):
+    der.run(tube, out=tmp_path / "run")
+    with h5py.File(tmp_path / "run" / "results.h5", "r+") as file:
+        file["positions"][7, 3, 1] += 1e-12
+    with pytest.raises(ValueError, match=r"results\.h5' .* frame 7 is damaged"):
+        der.open_run(tmp_path / "run")
+
+
+def test_saving_replaces_runs_and_nothing_else(tube, tmp_path):
+    result = der.run(tube)
+    result.save(tmp_path / "run")
+    result.save(tmp_path / "run")
+    (tmp_path / "run" / "results.h5").write_text("mine")
+    with pytest.raises(der.DerError, match="would be replaced"):
+        result.save(tmp_path / "run")
+    assert (tmp_path / "run" / "results.h5").read_text() == "mine"
+
+
+def test_arrays_that_do_not_fit_the_model_are_not_saved(tube, tmp_path):
+    result = der.run(tube)
+    for name in ("positions", "velocities", "steps"):
+        wrong = dataclasses.replace(result, **{name: getattr(result, name)[1:]})
+        with pytest.raises(ValueError, match=name):
+            wrong.save(tmp_path / "run")
+    assert not (tmp_path / "run").exists()
 
 
 def test_a_folder_with_other_things_is_left_alone(tube, tmp_path):
@@ -463,5 +494,5 @@ def frames(folder):
     """How many frames an unfinished run has saved by now."""
     try:
         return len(der.open_run(folder).times)
-    except (OSError, KeyError):
-        return 0  # caught while the file was being created
+    except (FileNotFoundError, ValueError):
+        return 0  # not there yet, or read in the middle of a write

@@ -1,9 +1,13 @@
 #include "der/app/program.hpp"
 
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <fstream>
+#include <iostream>
 #include <string>
 
 #include "der/app/exit_code.hpp"
@@ -116,12 +120,25 @@ ExitCode guarded(const Options& options) {
   }
 }
 
+/// Output that did not get where it should (a full disk) must not pass for done.
+ExitCode with_output_written(ExitCode code) {
+  const bool written =
+      std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (written || code != ExitCode::Completed) return code;
+  return fail(ExitCode::IoFailure,
+              std::string("cannot write to the standard output: ") + std::strerror(errno));
+}
+
+ExitCode run(int argc, const char* const* argv) {
+  const auto options = parse_options(argc, argv);
+  if (const auto* code = std::get_if<ExitCode>(&options)) return *code;
+  return guarded(std::get<Options>(options));
+}
+
 }  // namespace
 
 int run_program(int argc, const char* const* argv) {
-  const auto options = parse_options(argc, argv);
-  if (const auto* code = std::get_if<ExitCode>(&options)) return static_cast<int>(*code);
-  return static_cast<int>(guarded(std::get<Options>(options)));
+  return static_cast<int>(with_output_written(run(argc, argv)));
 }
 
 }  // namespace der::app

@@ -11,6 +11,7 @@
 #include "der/app/format.hpp"
 #include "der/core/printable.hpp"
 #include "der/output/datasets.hpp"
+#include "der/output/result_size.hpp"
 #include "der/output/summary.hpp"
 
 namespace der::app {
@@ -245,6 +246,20 @@ std::string warning_lines(const std::vector<std::string>& warnings, const Style&
   return text;
 }
 
+std::string size_text(const Simulation& simulation) {
+  const auto& analysis = simulation.scenario().scene().analysis;
+  if (std::holds_alternative<scenario::ContinuationAnalysis>(analysis)) {
+    return fmt::format("about {}, and {} for each point of the path",
+                       format_bytes(expected_bytes(simulation)),
+                       format_bytes(bytes_per_frame(simulation)));
+  }
+  const double frames = expected_frames(simulation);
+  return fmt::format("{}, about {}",
+                     frames < 1e15 ? format_count(std::llround(frames), "frame")
+                                   : fmt::format("{:.3g} frames", frames),
+                     format_bytes(expected_bytes(simulation)));
+}
+
 }  // namespace
 
 std::string run_report(const Simulation& simulation, const Recorder& recorder,
@@ -271,6 +286,7 @@ std::string run_report(const Simulation& simulation, const Recorder& recorder,
 std::string check_report(const Simulation& simulation, const Style& style) {
   return heading(simulation, style) + line("status", style.good("scene is valid"), style) +
          line("runs", what_ran(simulation), style) + model_lines(simulation, style) +
+         line("results", size_text(simulation), style) +
          warning_lines(simulation.scenario().scene().warnings, style);
 }
 

@@ -1,12 +1,16 @@
 #include "output/checkpoint_store.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
+
+#include "der/output/io_error.hpp"
+#include "output/checksum.hpp"
 
 namespace der {
 namespace {
 
-using hdf5::Column;
 using hdf5::Handle;
 
 constexpr hsize_t kHistoryChunk = 4096;
@@ -20,33 +24,37 @@ Handle with_unit(Handle dataset, const std::string& unit) {
   return dataset;
 }
 
-Handle create_doubles(hid_t group, const std::string& name, const std::vector<hsize_t>& dimensions,
-                      const std::string& unit) {
-  return with_unit(hdf5::create_fixed(group, name, H5T_NATIVE_DOUBLE, dimensions), unit);
+template <class T>
+Handle create_values(hid_t group, const std::string& name, const std::vector<hsize_t>& dimensions,
+                     const std::string& unit) {
+  return with_unit(hdf5::create_fixed(group, name, hdf5::native_type<T>(), dimensions), unit);
 }
 
-Column create_list(hid_t group, const std::string& name, hid_t type) {
-  Column column = Column::create(group, name, type, {}, kHistoryChunk);
-  hdf5::write_attribute(column.id(), "unit", std::string());
-  return column;
-}
-
-Handle open_group(hid_t parent, const std::string& name) {
-  return {H5Gopen2(parent, name.c_str(), H5P_DEFAULT), H5Gclose, "open group '" + name + "'"};
+template <class T>
+Handle open_values(hid_t group, const std::string& name, const std::vector<hsize_t>& dimensions) {
+  return hdf5::open_dataset(group, name, hdf5::native_type<T>(), dimensions);
 }
 
 std::string slot_name(std::size_t slot) { return std::to_string(slot); }
 
-void read_into(Vector& vector, hid_t dataset) {
-  const auto data = hdf5::read_vector<double>(dataset);
-  vector = Eigen::Map<const Vector>(data.data(), static_cast<Index>(data.size()));
+template <class T>
+T read_one(const Handle& dataset) {
+  T value{};
+  hdf5::read_all(dataset.id(), &value);
+  return value;
 }
 
 template <class T>
-T read_one(hid_t dataset) {
-  T value{};
-  hdf5::read_all(dataset, &value);
-  return value;
+std::vector<T> read_values(const Handle& dataset, hsize_t count) {
+  std::vector<T> data(count);
+  hdf5::read_all(dataset.id(), data.data());
+  return data;
+}
+
+Vector read_dofs(const Handle& dataset, hsize_t count) {
+  Vector vector(static_cast<Index>(count));
+  hdf5::read_all(dataset.id(), vector.data());
+  return vector;
 }
 
 std::vector<double> flatten(const std::vector<ProbeSummary>& extremes) {
@@ -65,123 +73,215 @@ std::vector<ProbeSummary> unflatten(const std::vector<double>& flat) {
   return extremes;
 }
 
+std::array<double, kWorkValues> flatten(const Work& work) {
+  const auto& [start, loads, supports, drag, solver] = work;
+  return {start, loads, supports, drag, solver};
+}
+
+std::array<std::int64_t, kCounters> flatten(const Counters& all) {
+  const auto& [steps, newton_iterations, retried_steps, rejected_steps, most_pieces] = all;
+  return {steps, newton_iterations, retried_steps, rejected_steps, most_pieces};
+}
+
+std::vector<double> flatten(const std::vector<Ramp>& ramps) {
+  std::vector<double> flat;
+  for (const auto& [control, from_time, to_time, from, to] : ramps) {
+    flat.insert(flat.end(), {static_cast<double>(control), from_time, to_time, from, to});
+  }
+  return flat;
+}
+
+std::vector<Ramp> to_ramps(const std::vector<double>& flat) {
+  if (flat.size() % kRampValues != 0) throw IoError("a ramp of the checkpoint is not whole");
+  std::vector<Ramp> ramps;
+  for (std::size_t i = 0; i < flat.size(); i += kRampValues) {
+    const double control = flat[i];
+    if (!(control >= 0.0 && control <= std::numeric_limits<Index>::max()) ||
+        control != std::floor(control)) {
+      throw IoError("a ramp of the checkpoint is of no control");
+    }
+    ramps.push_back(
+        {static_cast<Index>(control), flat[i + 1], flat[i + 2], flat[i + 3], flat[i + 4]});
+  }
+  return ramps;
+}
+
+std::vector<Vector> to_history(const std::vector<double>& flat,
+                               const std::vector<std::int64_t>& lengths) {
+  std::vector<Vector> history;
+  std::size_t next = 0;
+  for (const std::int64_t length : lengths) {
+    if (length < 0 || static_cast<std::uint64_t>(length) > flat.size() - next) {
+      throw IoError("the history of the checkpoint is not whole");
+    }
+    history.emplace_back(Eigen::Map<const Vector>(flat.data() + next, length));
+    next += static_cast<std::size_t>(length);
+  }
+  if (next != flat.size()) throw IoError("the history of the checkpoint is longer than it says");
+  return history;
+}
+
+/// Taken apart so that a new member of State does not compile until it is saved, read and summed.
+std::uint64_t checksum_of(const Checkpoint& checkpoint) {
+  Checksum sum;
+  const auto add = [&](const auto& numbers) {
+    sum.add(numbers.data(), static_cast<std::size_t>(numbers.size()));
+  };
+  const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
+               next_step, last_error, work, ramps] = checkpoint.state;
+  sum.add(time);
+  sum.add(step);
+  for (const Vector* vector : {&positions, &velocities, &extra_force, &accelerations}) {
+    add(*vector);
+  }
+  sum.add(last_step);
+  sum.add(next_step);
+  sum.add(last_error);
+  add(flatten(work));
+  add(flatten(checkpoint.extremes));
+  add(flatten(checkpoint.counters));
+  sum.add(checkpoint.wall_seconds);
+  sum.add(checkpoint.largest_kinetic_energy);
+  for (const Vector& vector : history) {
+    sum.add(std::int64_t{vector.size()});
+    add(vector);
+  }
+  add(flatten(ramps));
+  return sum.value();
+}
+
+/// Throws IoError for a state that no run comes to.
+void check_state(const State& state) {
+  const bool numbers = std::isfinite(state.time) && state.positions.allFinite() &&
+                       state.velocities.allFinite() && state.accelerations.allFinite();
+  if (!numbers) throw IoError("the checkpoint holds what is not a finite number");
+  if (state.step < 0 || state.time < 0.0) {
+    throw IoError("the checkpoint is of a negative time or number of steps");
+  }
+}
+
 }  // namespace
 
-CheckpointStore::Slot CheckpointStore::create_slot(hid_t group, const Model& model,
-                                                   std::size_t num_probes) {
-  const std::vector<hsize_t> dofs{static_cast<hsize_t>(model.num_dofs())};
+CheckpointStore::Slot CheckpointStore::create_slot(hid_t group, hsize_t num_dofs,
+                                                   hsize_t num_probes) {
+  const std::vector<hsize_t> dofs{num_dofs};
   Slot slot;
-  slot.time = create_doubles(group, "time", {}, "s");
-  slot.step = with_unit(hdf5::create_fixed(group, "step", H5T_NATIVE_INT64, {}), "");
-  slot.positions = create_doubles(group, "positions", dofs, "m");
-  slot.velocities = create_doubles(group, "velocities", dofs, "m/s");
-  slot.extra_force = create_doubles(group, "extra_force", dofs, "N");
-  slot.accelerations = create_doubles(group, "accelerations", dofs, "m/s^2");
-  slot.last_step = create_doubles(group, "last_step", {}, "s");
-  slot.next_step = create_doubles(group, "next_step", {}, "s");
-  slot.last_error = create_doubles(group, "last_error", {}, "");
-  slot.work = create_doubles(group, "work", {kWorkValues}, "J");
+  slot.time = create_values<double>(group, "time", {}, "s");
+  slot.step = create_values<std::int64_t>(group, "step", {}, "");
+  slot.positions = create_values<double>(group, "positions", dofs, "m");
+  slot.velocities = create_values<double>(group, "velocities", dofs, "m/s");
+  slot.extra_force = create_values<double>(group, "extra_force", dofs, "N");
+  slot.accelerations = create_values<double>(group, "accelerations", dofs, "m/s^2");
+  slot.last_step = create_values<double>(group, "last_step", {}, "s");
+  slot.next_step = create_values<double>(group, "next_step", {}, "s");
+  slot.last_error = create_values<double>(group, "last_error", {}, "");
+  slot.work = create_values<double>(group, "work", {kWorkValues}, "J");
   if (num_probes > 0) {
-    slot.extremes = create_doubles(group, "extremes", {num_probes, kSummaryValues}, "");
+    slot.extremes = create_values<double>(group, "extremes", {num_probes, kSummaryValues}, "");
   }
-  slot.counters =
-      with_unit(hdf5::create_fixed(group, "counters", H5T_NATIVE_INT64, {kCounters}), "");
-  slot.wall_seconds = create_doubles(group, "wall_seconds", {}, "s");
-  slot.largest_kinetic_energy = create_doubles(group, "largest_kinetic_energy", {}, "J");
-  slot.history = create_list(group, "history", H5T_NATIVE_DOUBLE);
-  slot.history_lengths = create_list(group, "history_lengths", H5T_NATIVE_INT64);
-  slot.ramps = create_list(group, "ramps", H5T_NATIVE_DOUBLE);
+  slot.counters = create_values<std::int64_t>(group, "counters", {kCounters}, "");
+  slot.wall_seconds = create_values<double>(group, "wall_seconds", {}, "s");
+  slot.largest_kinetic_energy = create_values<double>(group, "largest_kinetic_energy", {}, "J");
+  slot.history = Column<double>::create(group, "history", {}, "", kHistoryChunk);
+  slot.history_lengths =
+      Column<std::int64_t>::create(group, "history_lengths", {}, "", kHistoryChunk);
+  slot.ramps = Column<double>::create(group, "ramps", {}, "", kHistoryChunk);
+  slot.checksum = create_values<std::uint64_t>(group, "checksum", {}, "");
   return slot;
 }
 
-CheckpointStore::Slot CheckpointStore::open_slot(hid_t group) {
+CheckpointStore::Slot CheckpointStore::open_slot(hid_t group, hsize_t num_dofs,
+                                                 hsize_t num_probes) {
+  const std::vector<hsize_t> dofs{num_dofs};
   Slot slot;
-  slot.time = hdf5::open_dataset(group, "time");
-  slot.step = hdf5::open_dataset(group, "step");
-  slot.positions = hdf5::open_dataset(group, "positions");
-  slot.velocities = hdf5::open_dataset(group, "velocities");
-  slot.extra_force = hdf5::open_dataset(group, "extra_force");
-  slot.accelerations = hdf5::open_dataset(group, "accelerations");
-  slot.last_step = hdf5::open_dataset(group, "last_step");
-  slot.next_step = hdf5::open_dataset(group, "next_step");
-  slot.last_error = hdf5::open_dataset(group, "last_error");
-  slot.work = hdf5::open_dataset(group, "work");
-  if (hdf5::exists(group, "extremes")) slot.extremes = hdf5::open_dataset(group, "extremes");
-  slot.counters = hdf5::open_dataset(group, "counters");
-  slot.wall_seconds = hdf5::open_dataset(group, "wall_seconds");
-  slot.largest_kinetic_energy = hdf5::open_dataset(group, "largest_kinetic_energy");
-  slot.history = Column::open(group, "history");
-  slot.history_lengths = Column::open(group, "history_lengths");
-  slot.ramps = Column::open(group, "ramps");
+  slot.time = open_values<double>(group, "time", {});
+  slot.step = open_values<std::int64_t>(group, "step", {});
+  slot.positions = open_values<double>(group, "positions", dofs);
+  slot.velocities = open_values<double>(group, "velocities", dofs);
+  slot.extra_force = open_values<double>(group, "extra_force", dofs);
+  slot.accelerations = open_values<double>(group, "accelerations", dofs);
+  slot.last_step = open_values<double>(group, "last_step", {});
+  slot.next_step = open_values<double>(group, "next_step", {});
+  slot.last_error = open_values<double>(group, "last_error", {});
+  slot.work = open_values<double>(group, "work", {kWorkValues});
+  if (num_probes > 0) {
+    slot.extremes = open_values<double>(group, "extremes", {num_probes, kSummaryValues});
+  }
+  slot.counters = open_values<std::int64_t>(group, "counters", {kCounters});
+  slot.wall_seconds = open_values<double>(group, "wall_seconds", {});
+  slot.largest_kinetic_energy = open_values<double>(group, "largest_kinetic_energy", {});
+  slot.history = Column<double>::open(group, "history", {});
+  slot.history_lengths = Column<std::int64_t>::open(group, "history_lengths", {});
+  slot.ramps = Column<double>::open(group, "ramps", {});
+  slot.checksum = open_values<std::uint64_t>(group, "checksum", {});
   return slot;
 }
 
-CheckpointStore CheckpointStore::create(hid_t file, const Model& model, std::size_t num_probes) {
+CheckpointStore CheckpointStore::create(hid_t file, hsize_t num_dofs, hsize_t num_probes) {
   CheckpointStore store;
+  store.num_dofs_ = num_dofs;
+  store.num_probes_ = num_probes;
   const Handle group = hdf5::create_group(file, "checkpoint");
   for (std::size_t i = 0; i < store.slots_.size(); ++i) {
     const Handle slot = hdf5::create_group(group.id(), slot_name(i));
-    store.slots_[i] = create_slot(slot.id(), model, num_probes);
+    store.slots_[i] = create_slot(slot.id(), num_dofs, num_probes);
   }
-  store.current_ = with_unit(hdf5::create_fixed(group.id(), "current", H5T_NATIVE_INT64, {}), "");
+  store.current_ = create_values<std::int64_t>(group.id(), "current", {}, "");
   hdf5::write_all(store.current_.id(), &store.published_);
   return store;
 }
 
-CheckpointStore CheckpointStore::open(hid_t file) {
+bool CheckpointStore::is_in(hid_t file) { return hdf5::exists(file, "checkpoint"); }
+
+CheckpointStore CheckpointStore::open(hid_t file, hsize_t num_dofs, hsize_t num_probes) {
   CheckpointStore store;
-  const Handle group = open_group(file, "checkpoint");
+  store.num_dofs_ = num_dofs;
+  store.num_probes_ = num_probes;
+  const Handle group = hdf5::open_group(file, "checkpoint");
   for (std::size_t i = 0; i < store.slots_.size(); ++i) {
-    store.slots_[i] = open_slot(open_group(group.id(), slot_name(i)).id());
+    const Handle slot = hdf5::open_group(group.id(), slot_name(i));
+    store.slots_[i] = open_slot(slot.id(), num_dofs, num_probes);
   }
-  store.current_ = hdf5::open_dataset(group.id(), "current");
-  store.published_ = read_one<std::int64_t>(store.current_.id());
+  store.current_ = open_values<std::int64_t>(group.id(), "current", {});
+  store.published_ = read_one<std::int64_t>(store.current_);
+  if (store.published_ < -1 || store.published_ > 1) {
+    throw IoError("'checkpoint/current' is " + std::to_string(store.published_) +
+                  " and should be -1, 0 or 1");
+  }
   return store;
 }
 
 void CheckpointStore::write(const Checkpoint& checkpoint) {
   written_ = published_ == 0 ? 1 : 0;
   Slot& slot = slots_[static_cast<std::size_t>(written_)];
-  // Taken apart so that a new member of State does not compile until it is saved here and read
-  // below.
-  const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
-               next_step, last_error, work, ramps] = checkpoint.state;
-  hdf5::write_all(slot.time.id(), &time);
-  hdf5::write_all(slot.step.id(), &step);
-  hdf5::write_all(slot.positions.id(), positions.data());
-  hdf5::write_all(slot.velocities.id(), velocities.data());
-  hdf5::write_all(slot.extra_force.id(), extra_force.data());
-  hdf5::write_all(slot.accelerations.id(), accelerations.data());
-  hdf5::write_all(slot.last_step.id(), &last_step);
-  hdf5::write_all(slot.next_step.id(), &next_step);
-  hdf5::write_all(slot.last_error.id(), &last_error);
-  const auto& [start, loads, supports, drag, solver] = work;
-  const std::array<double, kWorkValues> works{start, loads, supports, drag, solver};
-  hdf5::write_all(slot.work.id(), works.data());
+  const State& state = checkpoint.state;
+  hdf5::write_all(slot.time.id(), &state.time);
+  hdf5::write_all(slot.step.id(), &state.step);
+  hdf5::write_all(slot.positions.id(), state.positions.data());
+  hdf5::write_all(slot.velocities.id(), state.velocities.data());
+  hdf5::write_all(slot.extra_force.id(), state.extra_force.data());
+  hdf5::write_all(slot.accelerations.id(), state.accelerations.data());
+  hdf5::write_all(slot.last_step.id(), &state.last_step);
+  hdf5::write_all(slot.next_step.id(), &state.next_step);
+  hdf5::write_all(slot.last_error.id(), &state.last_error);
+  hdf5::write_all(slot.work.id(), flatten(state.work).data());
   const auto extremes = flatten(checkpoint.extremes);
   if (!extremes.empty()) hdf5::write_all(slot.extremes.id(), extremes.data());
-  const auto& [steps, newton_iterations, retried_steps, rejected_steps, most_pieces] =
-      checkpoint.counters;
-  const std::array<std::int64_t, kCounters> counters{steps, newton_iterations, retried_steps,
-                                                     rejected_steps, most_pieces};
-  hdf5::write_all(slot.counters.id(), counters.data());
+  hdf5::write_all(slot.counters.id(), flatten(checkpoint.counters).data());
   hdf5::write_all(slot.wall_seconds.id(), &checkpoint.wall_seconds);
   hdf5::write_all(slot.largest_kinetic_energy.id(), &checkpoint.largest_kinetic_energy);
 
   std::vector<double> flat;
   std::vector<std::int64_t> lengths;
-  for (const Vector& vector : history) {
+  for (const Vector& vector : state.history) {
     flat.insert(flat.end(), vector.data(), vector.data() + vector.size());
     lengths.push_back(vector.size());
   }
   slot.history.assign(flat);
   slot.history_lengths.assign(lengths);
-
-  std::vector<double> moved;
-  for (const auto& [control, from_time, to_time, from, to] : ramps) {
-    moved.insert(moved.end(), {static_cast<double>(control), from_time, to_time, from, to});
-  }
-  slot.ramps.assign(moved);
+  slot.ramps.assign(flatten(state.ramps));
+  const std::uint64_t checksum = checksum_of(checkpoint);
+  hdf5::write_all(slot.checksum.id(), &checksum);
 }
 
 void CheckpointStore::publish() {
@@ -194,38 +294,32 @@ std::optional<Checkpoint> CheckpointStore::read() const {
   const Slot& slot = slots_[static_cast<std::size_t>(published_)];
   Checkpoint checkpoint;
   State& state = checkpoint.state;
-  state.time = read_one<double>(slot.time.id());
-  state.step = read_one<std::int64_t>(slot.step.id());
-  read_into(state.positions, slot.positions.id());
-  read_into(state.velocities, slot.velocities.id());
-  read_into(state.extra_force, slot.extra_force.id());
-  read_into(state.accelerations, slot.accelerations.id());
-  state.last_step = read_one<double>(slot.last_step.id());
-  state.next_step = read_one<double>(slot.next_step.id());
-  state.last_error = read_one<double>(slot.last_error.id());
-  const auto works = hdf5::read_vector<double>(slot.work.id());
-  state.work = {works.at(0), works.at(1), works.at(2), works.at(3), works.at(4)};
-  if (slot.extremes.id() >= 0) {
-    checkpoint.extremes = unflatten(hdf5::read_vector<double>(slot.extremes.id()));
+  state.time = read_one<double>(slot.time);
+  state.step = read_one<std::int64_t>(slot.step);
+  state.positions = read_dofs(slot.positions, num_dofs_);
+  state.velocities = read_dofs(slot.velocities, num_dofs_);
+  state.extra_force = read_dofs(slot.extra_force, num_dofs_);
+  state.accelerations = read_dofs(slot.accelerations, num_dofs_);
+  state.last_step = read_one<double>(slot.last_step);
+  state.next_step = read_one<double>(slot.next_step);
+  state.last_error = read_one<double>(slot.last_error);
+  const auto works = read_values<double>(slot.work, kWorkValues);
+  state.work = {works[0], works[1], works[2], works[3], works[4]};
+  if (num_probes_ > 0) {
+    checkpoint.extremes =
+        unflatten(read_values<double>(slot.extremes, num_probes_ * kSummaryValues));
   }
-  const auto counters = hdf5::read_vector<std::int64_t>(slot.counters.id());
-  checkpoint.counters = {counters.at(0), counters.at(1), counters.at(2), counters.at(3),
-                         counters.at(4)};
-  checkpoint.wall_seconds = read_one<double>(slot.wall_seconds.id());
-  checkpoint.largest_kinetic_energy = read_one<double>(slot.largest_kinetic_energy.id());
-
-  const auto history = hdf5::read_vector<double>(slot.history.id());
-  const double* next = history.data();
-  for (const auto length : hdf5::read_vector<std::int64_t>(slot.history_lengths.id())) {
-    state.history.emplace_back(Eigen::Map<const Vector>(next, static_cast<Index>(length)));
-    next += length;
+  const auto counters = read_values<std::int64_t>(slot.counters, kCounters);
+  checkpoint.counters = {counters[0], counters[1], counters[2], counters[3], counters[4]};
+  checkpoint.wall_seconds = read_one<double>(slot.wall_seconds);
+  checkpoint.largest_kinetic_energy = read_one<double>(slot.largest_kinetic_energy);
+  state.history = to_history(slot.history.read(0, slot.history.rows()),
+                             slot.history_lengths.read(0, slot.history_lengths.rows()));
+  state.ramps = to_ramps(slot.ramps.read(0, slot.ramps.rows()));
+  if (checksum_of(checkpoint) != read_one<std::uint64_t>(slot.checksum)) {
+    throw IoError("the checkpoint is damaged: its checksum is another one");
   }
-
-  const auto ramps = hdf5::read_vector<double>(slot.ramps.id());
-  for (std::size_t i = 0; i + kRampValues <= ramps.size(); i += kRampValues) {
-    state.ramps.push_back(
-        {static_cast<Index>(ramps[i]), ramps[i + 1], ramps[i + 2], ramps[i + 3], ramps[i + 4]});
-  }
+  check_state(state);
   return checkpoint;
 }
 

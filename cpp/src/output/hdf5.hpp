@@ -2,6 +2,7 @@
 
 #include <hdf5.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
@@ -53,6 +54,7 @@ class Handle {
 /// Throws IoError ("cannot <action>: <what HDF5 says>") if an HDF5 call has failed.
 void check(herr_t result, const std::string& action);
 
+/// The type of which numbers are stored, and no other is read.
 template <class T>
 hid_t native_type();
 template <>
@@ -67,99 +69,99 @@ template <>
 inline hid_t native_type<std::int64_t>() {
   return H5T_NATIVE_INT64;
 }
+template <>
+inline hid_t native_type<std::uint64_t>() {
+  return H5T_NATIVE_UINT64;
+}
 
-/// A new file in the oldest format that serves, which every reader knows and which carries no
-/// "still open" mark that would lock a killed run's file.
+/// A new file; there must be none of that name, nor a link. In the format of HDF5 1.8, which every
+/// reader knows, which has checksums over all that describes the data, and which carries no "still
+/// open" mark that would lock a killed run's file.
 Handle create_file(const std::filesystem::path& path);
-Handle open_file(const std::filesystem::path& path, unsigned flags);
-Handle create_group(hid_t parent, const std::string& name);
+Handle open_to_read(const std::filesystem::path& path);
+Handle open_to_write(const std::filesystem::path& path);
+/// True if `path` still names the file that is open.
+bool is_named(hid_t file, const std::filesystem::path& path);
 /// Writes all out and lets the file on disk be as long as its own directory says, in an order in
 /// which a process killed on the way leaves a file that opens.
-void flush(hid_t file, const std::filesystem::path& path);
+void flush(hid_t file);
 
 /// Keeps what HDF5 still wants to write, when it closes the file or before, from the file on disk.
 /// After a write that failed (a full disk) that would be half of a change, which makes the file
 /// unreadable; without it the file stays as it was flushed last.
 void abandon(hid_t file) noexcept;
 
-bool exists(hid_t parent, const std::string& name);
-/// Names of what a group holds, in alphabetical order.
-std::vector<std::string> names_in(hid_t parent, const std::string& group);
-bool has_attribute(hid_t object, const std::string& name);
+/// Texts of `size` bytes in UTF-8, filled up with zeros.
+Handle text_type(std::size_t size);
 
-/// Attributes. Writing replaces one that is there.
+bool exists(hid_t parent, const std::string& name);
+Handle create_group(hid_t parent, const std::string& name);
+Handle open_group(hid_t parent, const std::string& name);
+/// Names of what a group holds, in alphabetical order.
+std::vector<std::string> names_in(hid_t group);
+
+/// Attributes hold one number, or one text of fixed length: those of variable length lie elsewhere
+/// in a file, where no checksum covers them. Reading throws IoError where the attribute is of
+/// another type or extent.
+bool has_attribute(hid_t object, const std::string& name);
 void write_attribute(hid_t object, const std::string& name, const std::string& value);
 void write_attribute(hid_t object, const std::string& name, double value);
 void write_attribute(hid_t object, const std::string& name, std::int64_t value);
-std::string read_string_attribute(hid_t object, const std::string& name);
+void write_attribute(hid_t object, const std::string& name, std::uint64_t value);
+std::string read_text_attribute(hid_t object, const std::string& name);
 std::int64_t read_integer_attribute(hid_t object, const std::string& name);
+std::uint64_t read_unsigned_attribute(hid_t object, const std::string& name);
 
-/// A dataset that holds one text.
-void write_text(hid_t parent, const std::string& name, const std::string& text);
-std::string read_text(hid_t parent, const std::string& name);
+/// A text attribute that can be written again in place, with a text of at most `length` bytes.
+void write_attribute_of_length(hid_t object, const std::string& name, const std::string& value,
+                               std::size_t length);
 
 /// A dataset of fixed size whose place in the file is set at once, so that writing it again changes
 /// nothing but its values. No dimensions: a scalar.
 Handle create_fixed(hid_t parent, const std::string& name, hid_t type,
                     const std::vector<hsize_t>& dimensions);
+/// A dataset that grows along its first dimension, from no rows. `row`: the dimensions of one row,
+/// none for scalars. `chunk_rows`: rows that are laid out together.
+Handle create_growing(hid_t parent, const std::string& name, hid_t type,
+                      const std::vector<hsize_t>& row, hsize_t chunk_rows);
 
+/// Opens a dataset that lies in this file and nowhere else. Throws IoError for one that is stored
+/// otherwise than der does, in other files or behind filters.
 Handle open_dataset(hid_t parent, const std::string& name);
+/// As above, and throws IoError where it is of another type.
+Handle open_dataset(hid_t parent, const std::string& name, hid_t type);
+/// As above, and throws IoError where it has other dimensions.
+Handle open_dataset(hid_t parent, const std::string& name, hid_t type,
+                    const std::vector<hsize_t>& dimensions);
 std::vector<hsize_t> dimensions_of(hid_t dataset);
-hsize_t length_of(hid_t dataset);
+/// Throws IoError where `rows` of `row_length` values each are more than the dataset's file can
+/// hold: memory for them must not be asked for.
+void check_stored(hid_t dataset, hsize_t rows, hsize_t row_length);
+/// Product of the dimensions. Throws as `check_stored` does.
+hsize_t stored_length(hid_t dataset);
 
 template <class T>
 void write_all(hid_t dataset, const T* data) {
   check(H5Dwrite(dataset, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "write data");
 }
 
+/// `dataset` must have been opened with the type of T and the dimensions of `data`.
 template <class T>
 void read_all(hid_t dataset, T* data) {
   check(H5Dread(dataset, native_type<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "read data");
 }
 
+/// All numbers of a dataset, flat. Throws IoError where it is of another type.
 template <class T>
-std::vector<T> read_vector(hid_t dataset) {
-  std::vector<T> data(length_of(dataset));
-  if (!data.empty()) read_all(dataset, data.data());
+std::vector<T> read_vector(hid_t parent, const std::string& name) {
+  const Handle dataset = open_dataset(parent, name, native_type<T>());
+  std::vector<T> data(stored_length(dataset.id()));
+  if (!data.empty()) read_all(dataset.id(), data.data());
   return data;
 }
 
-/// Row number `row` of a dataset of doubles, flat.
-std::vector<double> read_row(hid_t dataset, hsize_t row);
-
-/// A dataset that grows by rows along its first dimension. Nothing is cached on our side of the
-/// operating system, so an appended row is one write at its place in the file.
-class Column {
- public:
-  Column() = default;
-  /// `row`: the dimensions of one row, none for scalars. `chunk_rows`: rows that are laid out
-  /// together.
-  static Column create(hid_t parent, const std::string& name, hid_t type,
-                       const std::vector<hsize_t>& row, hsize_t chunk_rows);
-  static Column open(hid_t parent, const std::string& name);
-
-  [[nodiscard]] hsize_t rows() const { return dimensions_.front(); }
-  [[nodiscard]] hid_t id() const { return dataset_.id(); }
-  /// Drops rows from `count` on (or adds rows of no defined value).
-  void resize(hsize_t count);
-
-  template <class T>
-  void append(const T* data, hsize_t count) {
-    append_raw(native_type<T>(), data, count);
-  }
-  template <class T>
-  void assign(const std::vector<T>& data) {
-    resize(data.size());
-    if (!data.empty()) write_all(dataset_.id(), data.data());
-  }
-
- private:
-  Column(Handle dataset, std::vector<hsize_t> dimensions)
-      : dataset_(std::move(dataset)), dimensions_(std::move(dimensions)) {}
-  void append_raw(hid_t type, const void* data, hsize_t count);
-
-  Handle dataset_;
-  std::vector<hsize_t> dimensions_;
-};
+/// Rows [first, first + count) of a dataset, as T. Throws IoError where the file cannot hold them.
+void read_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, void* data);
+void write_rows(hid_t dataset, hid_t type, hsize_t first, hsize_t count, const void* data);
 
 }  // namespace der::hdf5

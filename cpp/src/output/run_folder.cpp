@@ -1,49 +1,23 @@
 #include "der/output/run_folder.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <fstream>
+#include <iterator>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <system_error>
 
 #include "der/output/io_error.hpp"
+#include "der/output/result_size.hpp"
 #include "der/output/summary.hpp"
 #include "der/version.hpp"
+#include "output/run_lock.hpp"
+#include "output/whole_file.hpp"
 
 namespace der {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// HDF5 locks a file that it writes.
-bool is_being_written(const fs::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return false;
-  const bool locked = ::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  ::close(descriptor);
-  return locked;
-}
-
-/// Other programs see the old file or the whole new one, never a part of it.
-void write_file(const fs::path& file, const std::string& text) {
-  fs::path temporary = file;
-  temporary += ".tmp";
-  std::ofstream out(temporary, std::ios::binary);
-  out << text;
-  out.close();
-  std::error_code error;
-  if (out) fs::rename(temporary, file, error);
-  if (!out || error) throw IoError("cannot write '" + file.string() + "'");
-}
-
-void remove_file(const fs::path& file) {
-  std::error_code error;
-  fs::remove(file, error);
-  if (error) throw IoError("cannot remove '" + file.string() + "': " + error.message());
-}
 
 bool is_finished(const std::string& status) {
   return status == "completed" || status == "static_converged";
@@ -70,43 +44,103 @@ RunOutcome run_into_file(RunFile& file, const RunFolder& folder, Simulation& sim
   recorder.add(file);
   const RunOutcome outcome = run(simulation, recorder, after_step);
   file.add(datasets(simulation, outcome));
-  if (!outcome.path.empty()) write_file(folder.path_table(), path_csv(simulation, outcome));
+  if (!outcome.path.empty()) write_whole(folder.path_table(), path_csv(simulation, outcome));
   file.finish(outcome.status, simulation, recorder);
-  write_file(folder.summary(), summary_json(simulation, recorder, outcome));
+  write_whole(folder.summary(), summary_json(simulation, recorder, outcome));
   return outcome;
 }
 
-}  // namespace
-
-void RunFolder::prepare() const {
-  std::error_code error;
-  const bool is_run = fs::exists(summary(), error) || fs::exists(results(), error);
-  if (fs::exists(path_, error) && !fs::is_directory(path_, error)) {
-    throw IoError("'" + path_.string() + "' is a file, not a folder for results");
-  }
-  if (fs::exists(path_, error) && !is_run && !fs::is_empty(path_, error)) {
-    throw IoError("'" + path_.string() +
-                  "' holds other things than the results of a run, which will not be touched; name "
-                  "another folder");
-  }
-  if (is_being_written(results())) {
-    throw IoError("another run is writing its results to '" + path_.string() +
-                  "'; wait for it or name another folder");
-  }
-  fs::create_directories(path_, error);
-  if (error) throw IoError("cannot create '" + path_.string() + "': " + error.message());
-  // The summary first: what is left must never look like the end of the run that begins now.
-  for (const fs::path& file : {summary(), results(), scene(), path_table()}) remove_file(file);
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-RunFileHead check_resumable(const RunFolder& folder, const Scenario& scenario) {
-  if (!fs::exists(folder.results())) {
-    throw IoError("there is no run in '" + folder.path().string() +
-                  "' to resume; run without --resume first");
+/// True for a JSON text with what every version of der has written into a summary.
+bool is_summary(const fs::path& file) {
+  const auto json = nlohmann::json::parse(text_of(file), nullptr, false);
+  return json.is_object() && json.contains("der_version") && json.contains("status");
+}
+
+bool is_path_table(const fs::path& file) {
+  return text_of(file).rfind("branch,factor,arc,", 0) == 0;
+}
+
+bool is_there(const fs::path& file) {
+  std::error_code error;
+  return fs::exists(fs::symlink_status(file, error));
+}
+
+/// What a run that was killed while it began may have left.
+bool is_left_over(const RunFolder& folder, const fs::path& file) {
+  return file == RunLock::file_in(folder.path()) || file == temporary_name(folder.results());
+}
+
+[[noreturn]] void throw_in_use(const RunFolder& folder) {
+  throw IoError("another run is writing its results to '" + folder.path().string() +
+                "'; wait for it or name another folder");
+}
+
+/// Throws IoError if there is anything but leftovers in a folder.
+void check_empty(const RunFolder& folder) {
+  for (const auto& entry : fs::directory_iterator(folder.path())) {
+    if (is_left_over(folder, entry.path())) continue;
+    throw IoError(
+        "'" + folder.path().string() + "' holds other things than the results of a run ('" +
+        entry.path().filename().string() + "'), which will not be touched; name another folder");
   }
-  if (is_being_written(folder.results())) {
-    throw IoError("the run in '" + folder.path().string() + "' is still going on");
+}
+
+/// Throws IoError if a file of that name is there and is not what `is_ours` takes for der's.
+template <class F>
+void check_ours(const fs::path& file, F&& is_ours, const std::string& reason) {
+  std::error_code error;
+  if (!is_there(file) || (fs::is_regular_file(file, error) && is_ours(file))) return;
+  throw IoError("'" + file.string() + "' " + reason +
+                ", and would be replaced: move it away, or name another folder for the results");
+}
+
+/// Throws IoError where a run must not write into a folder: it holds other things than a run, or
+/// a file of one that is not as der left it. `scene`: the text of scene.yaml to be.
+void check_replaceable(const RunFolder& folder, const std::string& scene) {
+  std::error_code error;
+  if (!fs::exists(folder.path(), error)) return;
+  if (!fs::is_directory(folder.path(), error)) {
+    throw IoError("'" + folder.path().string() + "' is a file, not a folder for results");
   }
+  if (!is_there(folder.results()) && !is_there(folder.summary())) return check_empty(folder);
+  check_ours(folder.results(), is_run_file, "is not a run file that der can read");
+  check_ours(folder.summary(), is_summary, "is not a summary by der");
+  check_ours(folder.path_table(), is_path_table, "is not a table of a path by der");
+  const auto is_copy = [&](const fs::path& file) {
+    const std::string text = text_of(file);
+    return text == scene || text == read_scene(folder.results());
+  };
+  check_ours(folder.scene(), is_copy, "was edited since the run that it belongs to");
+}
+
+/// Makes a folder ready for new results and locks it: creates it, or removes the files of the run
+/// that it holds but the result file, whose place the new one takes when it is there. Throws
+/// IoError, with nothing touched, where that must not be.
+std::unique_ptr<RunLock> prepare(const RunFolder& folder, const std::string& scene,
+                                 double expected_bytes) {
+  if (RunLock::is_held(folder.path())) throw_in_use(folder);
+  check_replaceable(folder, scene);
+  std::error_code error;
+  fs::create_directories(folder.path(), error);
+  if (error) {
+    throw IoError("cannot create '" + folder.path().string() + "': " + error.message());
+  }
+  auto lock = std::make_unique<RunLock>(folder.path());
+  check_room(expected_bytes, folder.results());
+  // The summary first: what is left must never look like the end of the run that begins now.
+  for (const fs::path& file : {folder.summary(), folder.scene(), folder.path_table()}) {
+    remove_file(file);
+  }
+  return lock;
+}
+
+/// As `check_resumable`, of a run that is not going on.
+RunFileHead resumable_head(const RunFolder& folder, const Scenario& scenario) {
   RunFileHead head = read_head(folder.results());
   const std::string scene = scenario.to_yaml();
   if (head.scene != scene) {
@@ -125,27 +159,53 @@ RunFileHead check_resumable(const RunFolder& folder, const Scenario& scenario) {
                       " s and would do so again; change the scene and "
                       "run it without --resume");
   }
-  if (head.step < 0) {
+  if (!head.has_checkpoint) {
     throw ResumeError("the run in '" + folder.path().string() +
                       "' ended before it saved anything; run it again without --resume");
   }
   return head;
 }
 
+}  // namespace
+
+RunFileHead check_resumable(const RunFolder& folder, const Scenario& scenario) {
+  if (!fs::exists(folder.results())) {
+    throw IoError("there is no run in '" + folder.path().string() +
+                  "' to resume; run without --resume first");
+  }
+  if (RunLock::is_held(folder.path())) throw_in_use(folder);
+  return resumable_head(folder, scenario);
+}
+
 RunOutcome run_in_folder(const RunFolder& folder, Simulation& simulation, Recorder& recorder,
                          const StepCallback& after_step) {
-  folder.prepare();
+  const std::string scene = simulation.scenario().to_yaml();
+  const auto lock = prepare(folder, scene, expected_bytes(simulation));
   // The result file first: it marks the folder as one of a run, should the process end right here.
   const auto file = RunFile::create(folder.results(), simulation, recorder);
-  write_file(folder.scene(), simulation.scenario().to_yaml());
+  write_whole(folder.scene(), scene);
   return run_into_file(*file, folder, simulation, recorder, after_step);
 }
 
 RunOutcome resume_in_folder(const RunFolder& folder, Simulation& simulation, Recorder& recorder,
                             const StepCallback& after_step) {
+  const RunLock lock(folder.path());
+  // Another program may have gone on with it since it was looked at.
+  if (is_finished(resumable_head(folder, simulation.scenario()).status)) {
+    throw ResumeError("the run in '" + folder.path().string() + "' is finished already");
+  }
   const auto file = RunFile::resume(folder.results(), simulation, recorder);
   remove_file(folder.summary());
   return run_into_file(*file, folder, simulation, recorder, after_step);
+}
+
+void save_in_folder(const RunFolder& folder, const Scenario& scenario, const Model& model,
+                    const SavedRun& run, const std::string& summary_json) {
+  const std::string scene = scenario.to_yaml();
+  const auto lock = prepare(folder, scene, 0.0);
+  write_run(folder.results(), scenario, model, run);
+  write_whole(folder.scene(), scene);
+  write_whole(folder.summary(), summary_json);
 }
 
 }  // namespace der

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "der/output/io_error.hpp"
-#include "der/output/run_file.hpp"
 #include "der/output/run_folder.hpp"
+#include "der/output/saved_run.hpp"
 #include "der/supports/supports.hpp"
 
 namespace der {

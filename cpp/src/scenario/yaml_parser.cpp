@@ -17,6 +17,7 @@
 
 #include "der/core/error.hpp"
 #include "der/scenario/document.hpp"
+#include "scenario/utf8.hpp"
 
 namespace der::scenario {
 namespace {
@@ -318,12 +319,24 @@ void refuse_control_characters(std::string_view text) {
   }
 }
 
+void refuse_other_encodings(std::string_view text) {
+  const std::size_t place = first_not_utf8(text);
+  if (place == text.size()) return;
+  const std::string_view before = text.substr(0, place);
+  const auto lines = std::count(before.begin(), before.end(), '\n');
+  const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 is 0
+  throw SyntaxError{{static_cast<int>(lines) + 1, static_cast<int>(place - line_start) + 1},
+                    fmt::format("the byte 0x{:02x} is not UTF-8: save the file in UTF-8",
+                                static_cast<unsigned char>(text[place]))};
+}
+
 Value parse_tree(std::string_view text) {
   constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
   if (text.substr(0, byte_order_mark.size()) == byte_order_mark) {
     text.remove_prefix(byte_order_mark.size());
   }
   refuse_control_characters(text);
+  refuse_other_encodings(text);
   TreeBuilder builder;
   const auto refuse_open_quote = [&] {
     if (builder.last_quoted() && !is_closed(text, *builder.last_quoted())) {

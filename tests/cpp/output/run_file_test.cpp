@@ -12,6 +12,7 @@
 #include "der/output/memory_sink.hpp"
 #include "der/output/recorder.hpp"
 #include "der/output/run.hpp"
+#include "der/output/saved_run.hpp"
 #include "der/steppers/stepper.hpp"
 #include "output/output_scenes.hpp"
 

@@ -3,11 +3,15 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "der/output/io_error.hpp"
+#include "der/output/result_size.hpp"
 #include "output/output_scenes.hpp"
 
 namespace der::test {
@@ -17,6 +21,18 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+std::vector<std::string> files_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  return names;
+}
 
 Json summary_of(const RunFolder& folder) { return Json::parse(std::ifstream(folder.summary())); }
 
@@ -79,6 +95,103 @@ TEST_CASE("a folder that holds no run is not touched") {
   CHECK_FALSE(fs::exists(folder.results()));
   const RunFolder file(folder.path() / "thesis.tex");
   CHECK_THROWS_AS(run_scene(file, Scenario::parse(kSpheres)), IoError);
+}
+
+TEST_CASE("a file of a run's name that der did not write is not replaced") {
+  const TemporaryFolder temporary;
+  const RunFolder folder(temporary.path() / "run");
+  const Scenario scenario = Scenario::parse(kSpheres);
+  const auto refused = [&](const fs::path& file, const std::string& text) {
+    CAPTURE(file);
+    write(file, text);
+    try {
+      run_scene(folder, scenario);
+      FAIL("it was replaced");
+    } catch (const IoError& error) {
+      CHECK(std::string(error.what()).find("'" + file.string() + "'") != std::string::npos);
+    }
+    CHECK(text_of(file) == text);
+    fs::remove(file);
+  };
+  fs::create_directories(folder.path());
+  refused(folder.results(), "results of somebody else");
+  refused(folder.summary(), R"({"status": "of somebody else"})");
+  run_scene(folder, scenario);
+  refused(folder.summary(), "[]");
+  refused(folder.path_table(), "a,b\n1,2\n");
+  refused(folder.scene(), "# with my comments\n" + kSpheres);
+  run_scene(folder, scenario);
+  CHECK(summary_of(folder)["status"] == "completed");
+}
+
+TEST_CASE("a link at the place of a temporary file is not written through") {
+  const TemporaryFolder temporary;
+  const RunFolder folder(temporary.path() / "run");
+  run_scene(folder, Scenario::parse(kSpheres));
+  const fs::path precious = temporary.path() / "precious";
+  write(precious, "mine");
+  for (const fs::path& file : {folder.results(), folder.summary(), folder.scene()}) {
+    fs::create_symlink(precious, fs::path(file) += ".tmp");
+  }
+  run_scene(folder, Scenario::parse(kSpheres));
+  CHECK(text_of(precious) == "mine");
+  CHECK(summary_of(folder)["status"] == "completed");
+  const RunFolder fresh(temporary.path() / "fresh");
+  fs::create_directories(fresh.path());
+  fs::create_symlink(precious, fs::path(fresh.results()) += ".tmp");
+  fs::create_symlink(precious, fresh.path() / "results.lock");
+  CHECK_THROWS_AS(run_scene(fresh, Scenario::parse(kSpheres)), IoError);
+  CHECK(text_of(precious) == "mine");
+}
+
+TEST_CASE("a folder that a killed program has left is used again") {
+  const TemporaryFolder temporary;
+  const RunFolder folder(temporary.path());
+  write(folder.path() / "results.lock", "");
+  write(folder.path() / "results.h5.tmp", "the beginning of a file");
+  run_scene(folder, Scenario::parse(kSpheres));
+  CHECK(files_in(folder.path()) ==
+        std::vector<std::string>{"results.h5", "scene.yaml", "summary.json"});
+}
+
+TEST_CASE("a run whose file is replaced meanwhile says that its results are lost") {
+  const TemporaryFolder temporary;
+  const RunFolder folder(temporary.path() / "run");
+  CHECK_THROWS_WITH_AS(run_scene(folder, Scenario::parse(kSpheres), false,
+                                 [&](const Simulation&) {
+                                   fs::remove(folder.results());
+                                   write(folder.results(), "another's");
+                                   return true;
+                                 }),
+                       doctest::Contains("its results are lost"), IoError);
+  CHECK(text_of(folder.results()) == "another's");
+}
+
+TEST_CASE("a run that would fill the disk is refused before anything is touched") {
+  const TemporaryFolder temporary;
+  const RunFolder folder(temporary.path());
+  run_scene(folder, Scenario::parse(kSpheres));
+  const Scenario endless =
+      Scenario::parse(kSpheres, "spheres",
+                      {{"time.duration", "1e8"}, {"time.step", "1e-3"}, {"output.every", "1e-3"}});
+  CHECK_THROWS_WITH_AS(run_scene(folder, endless), doctest::Contains("raise output.every"),
+                       IoError);
+  CHECK(summary_of(folder)["status"] == "completed");
+}
+
+TEST_CASE("the announced size of the results is about what they take") {
+  const TemporaryFolder temporary;
+  const RunFolder folder(temporary.path());
+  for (const char* every : {"0.01", "0.0002"}) {
+    const Scenario scenario =
+        Scenario::parse(kSpheres, "spheres",
+                        {{"time.duration", "2"}, {"time.step", "0.0002"}, {"output.every", every}});
+    run_scene(folder, scenario);
+    const Simulation simulation(scenario);
+    const auto size = static_cast<double>(fs::file_size(folder.results()));
+    CHECK(expected_bytes(simulation) > 0.5 * size);
+    CHECK(expected_bytes(simulation) < 1.5 * size);
+  }
 }
 
 TEST_CASE("a folder whose run goes on is not touched") {

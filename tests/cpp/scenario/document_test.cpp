@@ -190,6 +190,28 @@ TEST_CASE("documents: control characters are refused, a byte order mark is not")
   CHECK(contains(said[0].message, "control character 0x04"));
 }
 
+TEST_CASE("documents: text that is not UTF-8 is refused where it stands") {
+  const auto said_of = [](const std::string& title) {
+    return complaints(test::kRod + test::kTime + "title: x" + title + "\n");
+  };
+  // The ends of each row of table 3-7 of the Unicode standard, and what lies just outside.
+  for (const char* good : {"\xc2\x80", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf", "\xee\x80\x80",
+                           "\xef\xbf\xbd", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbd"}) {
+    CAPTURE(good);
+    for (const auto& complaint : said_of(good)) CHECK_FALSE(contains(complaint.message, "UTF-8"));
+  }
+  for (const char* bad :
+       {"\x80", "\xc1\xbf", "\xc2", "\xc2x", "\xe0\x9f\xbf", "\xe2\x82", "\xed\xa0\x80",
+        "\xf0\x8f\xbf\xbf", "\xf4\x90\x80\x80", "\xf5\x80\x80\x80", "\xff"}) {
+    CAPTURE(bad);
+    const auto said = said_of(bad);
+    REQUIRE(said.size() == 1);
+    CHECK(contains(said[0].message, "UTF-8"));
+    CHECK(said[0].line == 9);
+    CHECK(said[0].column == 9);
+  }
+}
+
 TEST_CASE("documents: lines end as on any system") {
   std::string text;
   for (const char c : test::kRod + test::kTime)

@@ -17,7 +17,7 @@ namespace der {
 /// /time, then the mark that names the valid checkpoint. Throws IoError.
 class RunFile : public FrameSink {
  public:
-  /// Starts a new file, replacing one that is there.
+  /// Starts a new file, which takes the place of one that is there when its head is whole.
   static std::unique_ptr<RunFile> create(const std::filesystem::path& path,
                                          const Simulation& simulation, const Recorder& recorder);
   /// Opens the file of an interrupted run of the same scene to go on with it: frames behind the
@@ -31,7 +31,8 @@ class RunFile : public FrameSink {
   void stepped(const Simulation& simulation, const Recorder& recorder) override;
   /// Writes what an analysis found besides frames.
   void add(const std::vector<Dataset>& datasets);
-  /// To be called at the end of the run: writes all out, with the final status.
+  /// To be called at the end of the run: writes all out, with the final status. Throws IoError too
+  /// where the path does not name this file any more, so that what was written is lost.
   void finish(const std::string& status, const Simulation& simulation, const Recorder& recorder);
 
  private:
@@ -41,30 +42,5 @@ class RunFile : public FrameSink {
   void guarded(F&& operation);
   std::unique_ptr<Writer> writer_;
 };
-
-/// What the head of a run file says.
-struct RunFileHead {
-  std::string der_version;
-  std::string status;     ///< "running" while it is written, and after a kill
-  std::string scene;      ///< YAML text of the scene as run
-  std::int64_t step = 0;  ///< of the checkpoint; -1: there is none
-  double time = 0.0;      ///< [s] of the checkpoint
-};
-RunFileHead read_head(const std::filesystem::path& path);
-
-/// A rod of a run file.
-struct SavedRod {
-  std::string name;
-  std::vector<Index> nodes;
-  std::vector<double> arc_length;  ///< rest arc length of each node [m]
-};
-
-/// The last whole frame of a run file, and whose it is.
-struct LastFrame {
-  Vector positions;   ///< [m]
-  Vector velocities;  ///< [m/s]
-  std::vector<SavedRod> rods;
-};
-LastFrame read_last_frame(const std::filesystem::path& path);
 
 }  // namespace der

@@ -8,6 +8,7 @@
 #include "der/output/recorder.hpp"
 #include "der/output/run.hpp"
 #include "der/output/run_file.hpp"
+#include "der/output/saved_run.hpp"
 #include "der/simulation.hpp"
 
 namespace der {
@@ -22,11 +23,6 @@ class RunFolder {
   [[nodiscard]] std::filesystem::path results() const { return path_ / "results.h5"; }
   [[nodiscard]] std::filesystem::path scene() const { return path_ / "scene.yaml"; }
   [[nodiscard]] std::filesystem::path path_table() const { return path_ / "path.csv"; }
-
-  /// Makes the folder ready for a new run: creates it, or removes the files of the run that it
-  /// holds. Throws IoError, with nothing touched, if it is in use by another run or holds other
-  /// things than a run.
-  void prepare() const;
 
  private:
   std::filesystem::path path_;
@@ -43,12 +39,19 @@ class ResumeError : public Error {
 /// has failed or has not saved anything yet; IoError if there is no run.
 RunFileHead check_resumable(const RunFolder& folder, const Scenario& scenario);
 
-/// Runs a simulation, as `run` does, with its results in a folder that is made ready for it.
+/// Runs a simulation, as `run` does, with its results in a folder that is made ready for it: the
+/// files of a run that it holds are replaced. Throws IoError, with nothing touched, if it is in use
+/// by another run, holds other things than a run, or a scene.yaml that was edited since, or if the
+/// disk has too little room.
 RunOutcome run_in_folder(const RunFolder& folder, Simulation& simulation, Recorder& recorder,
                          const StepCallback& after_step = {});
 /// Goes on with an interrupted run; what comes out is the same, bit for bit, as if it had never
-/// been interrupted. Call `check_resumable` first.
+/// been interrupted. Throws as `check_resumable` does.
 RunOutcome resume_in_folder(const RunFolder& folder, Simulation& simulation, Recorder& recorder,
                             const StepCallback& after_step = {});
+/// Writes a run that is over, without checkpoints, into a folder that is made ready for it as
+/// above.
+void save_in_folder(const RunFolder& folder, const Scenario& scenario, const Model& model,
+                    const SavedRun& run, const std::string& summary_json);
 
 }  // namespace der

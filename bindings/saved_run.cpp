@@ -1,0 +1,117 @@
+#include "der/output/saved_run.hpp"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bindings.hpp"
+#include "der/output/run_folder.hpp"
+#include "recording.hpp"
+
+namespace der::python {
+namespace {
+
+using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Columns = std::vector<std::pair<std::string, Numbers>>;
+
+std::unique_ptr<FileRecording> read(const std::filesystem::path& file) {
+  auto recording = std::make_unique<FileRecording>();
+  const py::gil_scoped_release unlocked;
+  SavedRun run = read_run(file);
+  recording->status = std::move(run.status);
+  recording->scene = std::move(run.scene);
+  recording->dimension = run.dimension;
+  recording->probe_names = std::move(run.probe_names);
+  recording->probe_units = std::move(run.probe_units);
+  recording->frames = std::move(run.frames);
+  recording->data = std::move(run.data);
+  return recording;
+}
+
+std::vector<double> numbers(const Numbers& array, const std::vector<py::ssize_t>& shape,
+                            const std::string& name) {
+  if (!std::equal(shape.begin(), shape.end(), array.shape(), array.shape() + array.ndim())) {
+    throw py::value_error("the shape of " + name + " does not fit the model and the times");
+  }
+  return {array.data(), array.data() + array.size()};
+}
+
+/// The columns side by side, one row a frame, in the order of `names`.
+template <class Names>
+std::vector<double> table(const py::dict& columns, const Names& names, std::size_t frames) {
+  const std::size_t width = std::size(names);
+  std::vector<double> rows(width * frames);
+  for (std::size_t i = 0; i < width; ++i) {
+    const std::string name = names[i];
+    if (!columns.contains(name)) throw py::value_error("there is no column " + name);
+    const auto column =
+        numbers(columns[py::str(name)].cast<Numbers>(), {static_cast<py::ssize_t>(frames)}, name);
+    for (std::size_t frame = 0; frame < frames; ++frame) rows[frame * width + i] = column[frame];
+  }
+  return rows;
+}
+
+/// Name: (array, unit).
+std::vector<Dataset> to_datasets(const py::dict& data) {
+  std::vector<Dataset> result;
+  for (const auto& [name, value] : data) {
+    const auto pair = value.cast<std::pair<Numbers, std::string>>();
+    const Numbers& array = pair.first;
+    result.push_back({name.cast<std::string>(),
+                      pair.second,
+                      {array.shape(), array.shape() + array.ndim()},
+                      {array.data(), array.data() + array.size()}});
+  }
+  return result;
+}
+
+void save(const std::filesystem::path& folder, const Scenario& scenario, const Model& model,
+          const py::object& result, const py::dict& probe_units, const py::dict& data,
+          const std::string& summary_json) {
+  SavedRun run;
+  run.status = result.attr("status").cast<std::string>();
+  for (const auto& [name, unit] : probe_units) {
+    run.probe_names.push_back(name.cast<std::string>());
+    run.probe_units.push_back(unit.cast<std::string>());
+  }
+  const auto times = result.attr("times").cast<Numbers>();
+  const auto frames = static_cast<std::size_t>(times.size());
+  const std::vector<py::ssize_t> column{times.size()};
+  const std::vector<py::ssize_t> vectors{times.size(), model.num_nodes, model.dimension};
+  const auto steps = result.attr("steps").cast<py::array_t<std::int64_t>>();
+  if (steps.size() != times.size()) throw py::value_error("there must be as many steps as times");
+  run.frames.times = numbers(times, column, "times");
+  run.frames.steps = steps.cast<std::vector<std::int64_t>>();
+  run.frames.positions = numbers(result.attr("positions").cast<Numbers>(), vectors, "positions");
+  run.frames.velocities = numbers(result.attr("velocities").cast<Numbers>(), vectors, "velocities");
+  run.frames.energies = table(result.attr("energies"), kEnergyNames, frames);
+  run.frames.work = table(result.attr("work"), kLedgerNames, frames);
+  run.frames.probes = table(result.attr("probes"), run.probe_names, frames);
+  run.data = to_datasets(data);
+  const py::gil_scoped_release unlocked;
+  save_in_folder(RunFolder(folder), scenario, model, run, summary_json);
+}
+
+}  // namespace
+
+void bind_saved_run(py::module_& module) {
+  py::class_<FileRecording, Recording>(module, "FileRecording", "What the file of a run holds.")
+      .def_readonly("status", &FileRecording::status,
+                    "How the run ended; `running` while it goes on and after a kill.")
+      .def_readonly("scene", &FileRecording::scene, "YAML text of the scene as run.");
+  module.def("read_run", &read, py::arg("file"),
+             "Read a results.h5. Raises DerError where it is damaged or of another version.");
+  module.def("save_run", &save, py::arg("folder"), py::arg("scenario"), py::arg("model"),
+             py::arg("result"), py::arg("probe_units"), py::arg("data"), py::arg("summary_json"),
+             "Write the folder of a Result. Raises ValueError where its arrays do not fit the "
+             "model, DerError where the folder must not be written to.");
+}
+
+}  // namespace der::python

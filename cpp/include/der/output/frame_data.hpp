@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace der {
+
+/// Saved instants of a run, every quantity contiguous with one row a frame.
+struct FrameData {
+  [[nodiscard]] std::size_t num_frames() const { return times.size(); }
+
+  std::vector<double> times;  ///< [s]
+  std::vector<std::int64_t> steps;
+  std::vector<double> positions;   ///< frames x (nodes * dimension) [m]
+  std::vector<double> velocities;  ///< frames x (nodes * dimension) [m/s]
+  std::vector<double> energies;    ///< frames x kEnergyNames [J]
+  std::vector<double> work;        ///< frames x kLedgerNames [J]
+  std::vector<double> probes;      ///< frames x probes
+};
+
+}  // namespace der

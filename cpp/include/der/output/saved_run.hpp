@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+#include "der/output/datasets.hpp"
+#include "der/output/frame_data.hpp"
+#include "der/scenario/reader.hpp"
+
+namespace der {
+
+/// Run files that are there (layout: docs/results.md). All of these look at type, extent and
+/// checksum of what they read, and throw IoError, which names the file and what is wrong with it.
+
+/// What the head of a run file says.
+struct RunFileHead {
+  std::string der_version;
+  std::string status;     ///< "running" while it is written, and after a kill
+  std::string scene;      ///< YAML text of the scene as run
+  std::int64_t step = 0;  ///< of the checkpoint; 0 without one
+  double time = 0.0;      ///< [s] of the checkpoint
+  bool has_checkpoint = false;
+};
+RunFileHead read_head(const std::filesystem::path& path);
+
+/// A rod of a run file.
+struct SavedRod {
+  std::string name;
+  std::vector<Index> nodes;
+  std::vector<double> arc_length;  ///< rest arc length of each node [m]
+};
+
+/// The last whole frame of a run file, and whose it is.
+struct LastFrame {
+  Vector positions;   ///< [m]
+  Vector velocities;  ///< [m/s]
+  std::vector<SavedRod> rods;
+};
+LastFrame read_last_frame(const std::filesystem::path& path);
+
+/// All that a run has recorded.
+struct SavedRun {
+  std::string status;
+  std::string scene;  ///< YAML text of the scene as run
+  Index dimension = 0;
+  std::vector<std::string> probe_names;
+  std::vector<std::string> probe_units;
+  FrameData frames;
+  std::vector<Dataset> data;  ///< of an analysis
+};
+/// Reads every whole frame; the run may still go on. The probes are in alphabetical order.
+SavedRun read_run(const std::filesystem::path& path);
+/// Writes a run file without checkpoints, which cannot be resumed. `run.scene` is not looked at.
+void write_run(const std::filesystem::path& path, const Scenario& scenario, const Model& model,
+               const SavedRun& run);
+
+/// True if the file is the run file of any version of der.
+bool is_run_file(const std::filesystem::path& path);
+/// The scene of a run file of any version; empty if there is none to be read.
+std::string read_scene(const std::filesystem::path& path);
+
+}  // namespace der

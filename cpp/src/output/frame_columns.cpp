@@ -1,0 +1,235 @@
+#include "output/frame_columns.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "der/output/io_error.hpp"
+#include "output/checksum.hpp"
+
+namespace der {
+namespace {
+
+constexpr hsize_t kSmallestChunk = hsize_t{256} << 10;  // [bytes]
+constexpr hsize_t kLargestChunk = hsize_t{1} << 30;     // [bytes]
+/// A dataset with no more chunks than this has its chunk index in one node, which HDF5 writes at
+/// once; a larger index is split over nodes that a killed process could leave half changed.
+constexpr hsize_t kChunks = 60;
+constexpr hsize_t kLargestTimeChunk = hsize_t{1} << 21;  // [rows]
+
+/// Rows that are laid out together.
+hsize_t chunk_rows(hsize_t row_bytes, hsize_t total_rows) {
+  const hsize_t wanted = std::max(kSmallestChunk / row_bytes, (total_rows + kChunks - 1) / kChunks);
+  const hsize_t largest = std::min(total_rows, kLargestChunk / row_bytes);
+  return std::max<hsize_t>(1, std::min(wanted, largest));
+}
+
+template <std::size_t N>
+std::vector<std::string> texts(const std::array<const char*, N>& names) {
+  return {names.begin(), names.end()};
+}
+
+std::vector<std::size_t> alphabetical(const std::vector<std::string>& names) {
+  std::vector<std::size_t> order(names.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return names[a] < names[b]; });
+  return order;
+}
+
+/// Columns side by side as one table with a row a frame.
+std::vector<double> table(const std::vector<Column<double>>& columns, hsize_t first,
+                          hsize_t count) {
+  std::vector<double> rows(columns.size() * count);
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::vector<double> column = columns[i].read(first, count);
+    for (std::size_t frame = 0; frame < count; ++frame) {
+      rows[frame * columns.size() + i] = column[frame];
+    }
+  }
+  return rows;
+}
+
+/// The layout of a file, with the probes in alphabetical order.
+FrameLayout layout_in(hid_t file) {
+  const hdf5::Handle positions = hdf5::open_dataset(file, "positions", hdf5::native_type<double>());
+  const std::vector<hsize_t> dimensions = hdf5::dimensions_of(positions.id());
+  if (dimensions.size() != 3 || dimensions[1] == 0 || dimensions[2] != 2) {
+    throw IoError("'positions' should be frames x nodes x 2");
+  }
+  hdf5::check_stored(positions.id(), 1, dimensions[1]);
+  const hdf5::Handle probes = hdf5::open_group(file, "probes");
+  std::vector<std::string> names = hdf5::names_in(probes.id());
+  std::sort(names.begin(), names.end());
+  return {dimensions[1], dimensions[2], std::move(names), {}};
+}
+
+void check_times(const std::vector<double>& times) {
+  const bool finite =
+      std::all_of(times.begin(), times.end(), [](double time) { return std::isfinite(time); });
+  if (!finite) throw IoError("a time is not a finite number");
+  if (!std::is_sorted(times.begin(), times.end())) throw IoError("the times do not ascend");
+}
+
+}  // namespace
+
+FrameRow row_of(const FrameData& data, std::size_t frame, std::size_t dofs, std::size_t probes) {
+  return {data.times[frame],
+          data.steps[frame],
+          data.positions.data() + frame * dofs,
+          data.velocities.data() + frame * dofs,
+          data.energies.data() + frame * kEnergyNames.size(),
+          data.work.data() + frame * kLedgerNames.size(),
+          data.probes.data() + frame * probes};
+}
+
+FrameColumns::Group FrameColumns::create_group(hid_t file, const std::string& name,
+                                               const std::vector<std::string>& names,
+                                               const std::vector<std::string>& units,
+                                               hsize_t chunk_rows) {
+  const hdf5::Handle handle = hdf5::create_group(file, name);
+  Group group{{}, alphabetical(names)};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    group.columns.push_back(
+        Column<double>::create(handle.id(), names[i], {}, units[i], chunk_rows));
+  }
+  return group;
+}
+
+FrameColumns::Group FrameColumns::open_group(hid_t file, const std::string& name,
+                                             const std::vector<std::string>& names) {
+  const hdf5::Handle handle = hdf5::open_group(file, name);
+  Group group{{}, alphabetical(names)};
+  for (const std::string& column : names) {
+    group.columns.push_back(Column<double>::open(handle.id(), column, {}));
+  }
+  return group;
+}
+
+FrameColumns FrameColumns::create(hid_t file, const FrameLayout& layout, hsize_t frames) {
+  FrameColumns columns;
+  columns.layout_ = layout;
+  const std::vector<hsize_t> row{layout.nodes, layout.dimension};
+  const hsize_t scalar_chunk = chunk_rows(sizeof(double), frames);
+  const hsize_t vector_chunk = chunk_rows(sizeof(double) * row[0] * row[1], frames);
+  // One chunk for all times: its place in the index is written with the first frame and never
+  // again.
+  columns.time_ =
+      Column<double>::create(file, "time", {}, "s", std::min(frames, kLargestTimeChunk));
+  columns.step_ = Column<std::int64_t>::create(file, "step", {}, "", scalar_chunk);
+  columns.positions_ = Column<double>::create(file, "positions", row, "m", vector_chunk);
+  columns.velocities_ = Column<double>::create(file, "velocities", row, "m/s", vector_chunk);
+  const auto in_joule = [](std::size_t count) { return std::vector<std::string>(count, "J"); };
+  columns.energies_ = create_group(file, "energies", texts(kEnergyNames),
+                                   in_joule(kEnergyNames.size()), scalar_chunk);
+  columns.work_ =
+      create_group(file, "work", texts(kLedgerNames), in_joule(kLedgerNames.size()), scalar_chunk);
+  columns.probes_ =
+      create_group(file, "probes", layout.probe_names, layout.probe_units, scalar_chunk);
+  columns.checksum_ = Column<std::uint64_t>::create(file, "checksum", {}, "", scalar_chunk);
+  return columns;
+}
+
+FrameColumns FrameColumns::open(hid_t file) { return open(file, layout_in(file)); }
+
+FrameColumns FrameColumns::open(hid_t file, const FrameLayout& layout) {
+  const FrameLayout there = layout_in(file);
+  std::vector<std::string> names = layout.probe_names;
+  std::sort(names.begin(), names.end());
+  if (layout.nodes != there.nodes || layout.dimension != there.dimension ||
+      names != there.probe_names) {
+    throw IoError("its nodes or probes are not those of the scene");
+  }
+  FrameColumns columns;
+  columns.layout_ = layout;
+  const std::vector<hsize_t> row{layout.nodes, layout.dimension};
+  columns.time_ = Column<double>::open(file, "time", {});
+  columns.step_ = Column<std::int64_t>::open(file, "step", {});
+  columns.positions_ = Column<double>::open(file, "positions", row);
+  columns.velocities_ = Column<double>::open(file, "velocities", row);
+  columns.energies_ = open_group(file, "energies", texts(kEnergyNames));
+  columns.work_ = open_group(file, "work", texts(kLedgerNames));
+  columns.probes_ = open_group(file, "probes", layout.probe_names);
+  columns.checksum_ = Column<std::uint64_t>::open(file, "checksum", {});
+  return columns;
+}
+
+std::size_t FrameColumns::bytes_per_frame() const {
+  const std::size_t numbers = 2 * num_dofs() + energies_.columns.size() + work_.columns.size() +
+                              probes_.columns.size() + 3;  // time, step, checksum
+  return sizeof(double) * numbers;
+}
+
+template <class F>
+void FrameColumns::for_each_data_column(F&& f) {
+  f(step_);
+  f(positions_);
+  f(velocities_);
+  for (Group* group : {&energies_, &work_, &probes_}) {
+    for (auto& column : group->columns) f(column);
+  }
+  f(checksum_);
+}
+
+std::uint64_t FrameColumns::checksum(const FrameRow& row) const {
+  Checksum sum;
+  sum.add(row.time);
+  sum.add(row.step);
+  sum.add(row.positions, num_dofs());
+  sum.add(row.velocities, num_dofs());
+  for (const std::size_t i : energies_.order) sum.add(row.energies[i]);
+  for (const std::size_t i : work_.order) sum.add(row.work[i]);
+  for (const std::size_t i : probes_.order) sum.add(row.probes[i]);
+  return sum.value();
+}
+
+void FrameColumns::push(const FrameRow& row) {
+  time_.push(row.time);
+  step_.push(row.step);
+  positions_.push(row.positions);
+  velocities_.push(row.velocities);
+  const auto push_all = [](Group& group, const double* values) {
+    for (std::size_t i = 0; i < group.columns.size(); ++i) group.columns[i].push(values[i]);
+  };
+  push_all(energies_, row.energies);
+  push_all(work_, row.work);
+  push_all(probes_, row.probes);
+  checksum_.push(checksum(row));
+  ++waiting_;
+}
+
+void FrameColumns::write_data() {
+  for_each_data_column([](auto& column) { column.write(); });
+}
+
+void FrameColumns::write_times() {
+  time_.write();
+  waiting_ = 0;
+}
+
+void FrameColumns::resize_data(hsize_t count) {
+  for_each_data_column([&](auto& column) { column.resize(count); });
+}
+
+FrameData FrameColumns::read(hsize_t first, hsize_t count) const {
+  FrameData data;
+  data.times = time_.read(first, count);
+  data.steps = step_.read(first, count);
+  data.positions = positions_.read(first, count);
+  data.velocities = velocities_.read(first, count);
+  data.energies = table(energies_.columns, first, count);
+  data.work = table(work_.columns, first, count);
+  data.probes = table(probes_.columns, first, count);
+  const std::vector<std::uint64_t> expected = checksum_.read(first, count);
+  for (std::size_t frame = 0; frame < count; ++frame) {
+    if (checksum(row_of(data, frame, num_dofs(), probes_.columns.size())) != expected[frame]) {
+      throw IoError("frame " + std::to_string(first + frame) +
+                    " is damaged: its checksum is another one");
+    }
+  }
+  check_times(data.times);
+  return data;
+}
+
+}  // namespace der

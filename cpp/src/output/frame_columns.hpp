@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "der/core/types.hpp"
+#include "der/model/state.hpp"
+#include "der/output/frame_data.hpp"
+#include "output/column.hpp"
+
+namespace der {
+
+/// What a frame is made of.
+struct FrameLayout {
+  hsize_t nodes = 0;
+  hsize_t dimension = 0;
+  std::vector<std::string> probe_names;
+  std::vector<std::string> probe_units;  ///< one a probe, to create the columns
+};
+
+/// One frame as it is saved: pointers to a row of each quantity.
+struct FrameRow {
+  double time = 0.0;
+  std::int64_t step = 0;
+  const double* positions = nullptr;
+  const double* velocities = nullptr;
+  const double* energies = nullptr;
+  const double* work = nullptr;
+  const double* probes = nullptr;
+};
+/// Row number `frame` of frames that have so many degrees of freedom and probes.
+FrameRow row_of(const FrameData& data, std::size_t frame, std::size_t dofs, std::size_t probes);
+
+/// The columns of a run file that have one row a frame: times, steps, positions, velocities,
+/// energies, works, probes, and the checksum of each row.
+class FrameColumns {
+ public:
+  /// `frames`: how many there will be, as far as one can tell.
+  static FrameColumns create(hid_t file, const FrameLayout& layout, hsize_t frames);
+  /// Opens those of a file, whatever their size, with the probes in alphabetical order. Throws
+  /// IoError where they do not fit together.
+  static FrameColumns open(hid_t file);
+  /// As above, with the probes in the order of a layout. Throws IoError where it is of other nodes
+  /// or probes.
+  static FrameColumns open(hid_t file, const FrameLayout& layout);
+
+  [[nodiscard]] const FrameLayout& layout() const { return layout_; }
+  [[nodiscard]] std::size_t num_dofs() const {
+    return static_cast<std::size_t>(layout_.nodes * layout_.dimension);
+  }
+  /// Frames that are whole.
+  [[nodiscard]] hsize_t size() const { return time_.rows(); }
+  /// Bytes that a frame takes.
+  [[nodiscard]] std::size_t bytes_per_frame() const;
+  /// Frames that wait to be written.
+  [[nodiscard]] hsize_t waiting() const { return waiting_; }
+
+  void push(const FrameRow& row);
+  /// All but the times, which count the frames that are whole.
+  void write_data();
+  void write_times();
+  /// Drops frames from `count` on.
+  void resize_times(hsize_t count) { time_.resize(count); }
+  void resize_data(hsize_t count);
+
+  [[nodiscard]] std::vector<double> times() const { return time_.read(0, size()); }
+  [[nodiscard]] std::vector<std::int64_t> steps() const { return step_.read(0, size()); }
+  /// Frames [first, first + count). Throws IoError where a checksum differs or a time is not a
+  /// finite number or comes after a later one.
+  [[nodiscard]] FrameData read(hsize_t first, hsize_t count) const;
+
+ private:
+  /// Columns of one group, and their numbers in the alphabetical order of their names, in which
+  /// checksums take them.
+  struct Group {
+    std::vector<Column<double>> columns;
+    std::vector<std::size_t> order;
+  };
+  static Group create_group(hid_t file, const std::string& name,
+                            const std::vector<std::string>& names,
+                            const std::vector<std::string>& units, hsize_t chunk_rows);
+  static Group open_group(hid_t file, const std::string& name,
+                          const std::vector<std::string>& names);
+  [[nodiscard]] std::uint64_t checksum(const FrameRow& row) const;
+  template <class F>
+  void for_each_data_column(F&& f);
+
+  FrameLayout layout_;
+  Column<double> time_, positions_, velocities_;
+  Column<std::int64_t> step_;
+  Group energies_, work_, probes_;
+  Column<std::uint64_t> checksum_;
+  hsize_t waiting_ = 0;
+};
+
+}  // namespace der

@@ -67,8 +67,7 @@ Json path_json(const RunOutcome& outcome, const Recorder& recorder) {
                                 {"ending", branch.ending}});
     for (const PathPoint& point : branch.points) {
       const std::vector<double>& values = outcome.path_probes[row++];
-      const bool begins = &point == &branch.points.front();  // told by its parent already
-      if (point.event == PathEvent::None || begins) continue;
+      if (point.event == PathEvent::None) continue;
       Json probes = Json::object();
       for (std::size_t i = 0; i < values.size(); ++i) {
         probes[recorder.probes()[i].name()] = values[i];

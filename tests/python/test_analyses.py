@@ -126,6 +126,31 @@ def test_a_path_is_drawn_against_each_probe_with_its_events_and_its_stability(pa
     assert {-1.0, 1.0} <= ends, "it buckles to both sides"
 
 
+def test_unstable_paths_look_unstable_where_shapes_are_mirror_images():
+    """Dashes upon dashes would make a solid line."""
+    arch = Path(__file__).resolve().parents[2] / "configs/snap_through_arch.yaml"
+    for axes in der.run(arch).plot().axes:
+        dashed = [
+            line for line in axes.lines if line.get_linestyle() == "--" and line.get_xydata().size
+        ]
+        solid = [
+            line for line in axes.lines if line.get_linestyle() == "-" and line.get_xydata().size
+        ]
+        assert max(line.get_linewidth() for line in dashed) < 0.6 * solid[0].get_linewidth()
+        size = np.array([np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())])
+        for line in dashed:
+            points = line.get_xydata() / size
+            point = points[len(points) // 3]
+            for other in dashed:
+                if other is line:
+                    continue
+                ends = other.get_xydata() / size
+                share = np.linspace(0, 1, 20)[:, np.newaxis, np.newaxis]
+                between = ends[:-1] + share * np.diff(ends, axis=0)
+                assert np.linalg.norm(between - point, axis=2).min() > 3e-3
+    assert len(dashed) > 2, "against the quarter point the skew branches are apart"
+
+
 def test_a_path_without_probes_says_what_to_add(path):
     scene = {**COLUMN, "analysis": ANALYSES["continuation"]}
     del scene["output"]

@@ -156,3 +156,29 @@ def test_a_path_without_probes_says_what_to_add(path):
     del scene["output"]
     with pytest.raises(ValueError, match=r"add some under output\.probes"):
         der.run(scene).plot()
+
+
+@pytest.mark.parametrize("vary", ["loads", "loads.0", "loads.1"])
+def test_energy_probes_along_a_continuation_weigh_with_its_factor(vary):
+    """-sum of m g . x with the gravity of each point, by the shapes and the masses of nodes."""
+    gravity = np.array([3.0, -4.0])
+    loads = [{"gravity": gravity.tolist()}, *COLUMN["loads"]]
+    probes = {
+        f"{quantity}_{where}": {"quantity": f"{quantity}_energy"} | at
+        for quantity in ("gravity", "elastic", "total")
+        for where, at in (("all", {}), ("rod", {"rod": "rod"}))
+    }
+    scene = der.Scenario.from_dict(
+        {**COLUMN, "loads": loads, "output": {"probes": probes}, "analysis": "static"}
+    )
+    result = der.continuation(scene, vary=vary, to=2.0)
+    acting = np.ones_like(result.path.factor) if vary == "loads.1" else result.path.factor
+    lifted = result.positions @ -gravity  # of each node, for each mass
+    exact = acting * (lifted @ der.Simulation(scene).node_masses)
+    assert np.ptp(exact) > 1e-3
+    for where in ("all", "rod"):
+        weight = np.asarray(result.probes[f"gravity_{where}"])
+        total = np.asarray(result.probes[f"total_{where}"])
+        assert weight == pytest.approx(exact, abs=1e-12)
+        assert total == pytest.approx(exact + result.probes[f"elastic_{where}"], abs=1e-12)
+    assert result.energies["gravity"] == pytest.approx(exact, abs=1e-12)

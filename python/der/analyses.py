@@ -73,7 +73,8 @@ class Path:
     unstable_directions
         Independent directions in which the equilibrium is unstable, shape (points,).
     events
-        ``fold``, ``bifurcation`` or nothing, shape (points,).
+        ``fold``, ``bifurcation`` or nothing, shape (points,); each event is at the branch that
+        meets it first.
     """
 
     branch: NDArray[np.int64]
@@ -89,8 +90,7 @@ class Path:
 
     def rows(self, event: str, branch: int = 0) -> NDArray[np.int64]:
         """Return the rows of the events of one kind on a branch, in the order of the path."""
-        found = np.flatnonzero((self.events == event) & (self.branch == branch))
-        return found[self.arc[found] > 0.0]  # a branch begins with a point of its parent
+        return np.flatnonzero((self.events == event) & (self.branch == branch))
 
 
 def make_modes(data: Mapping[str, Array]) -> Modes | None:

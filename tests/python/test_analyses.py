@@ -126,8 +126,59 @@ def test_a_path_is_drawn_against_each_probe_with_its_events_and_its_stability(pa
     assert {-1.0, 1.0} <= ends, "it buckles to both sides"
 
 
+def test_unstable_paths_look_unstable_where_shapes_are_mirror_images():
+    """Dashes upon dashes would make a solid line."""
+    arch = Path(__file__).resolve().parents[2] / "configs/snap_through_arch.yaml"
+    for axes in der.run(arch).plot().axes:
+        dashed = [
+            line for line in axes.lines if line.get_linestyle() == "--" and line.get_xydata().size
+        ]
+        solid = [
+            line for line in axes.lines if line.get_linestyle() == "-" and line.get_xydata().size
+        ]
+        assert max(line.get_linewidth() for line in dashed) < 0.6 * solid[0].get_linewidth()
+        size = np.array([np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())])
+        for line in dashed:
+            points = line.get_xydata() / size
+            point = points[len(points) // 3]
+            for other in dashed:
+                if other is line:
+                    continue
+                ends = other.get_xydata() / size
+                share = np.linspace(0, 1, 20)[:, np.newaxis, np.newaxis]
+                between = ends[:-1] + share * np.diff(ends, axis=0)
+                assert np.linalg.norm(between - point, axis=2).min() > 3e-3
+    assert len(dashed) > 2, "against the quarter point the skew branches are apart"
+
+
 def test_a_path_without_probes_says_what_to_add(path):
     scene = {**COLUMN, "analysis": ANALYSES["continuation"]}
     del scene["output"]
     with pytest.raises(ValueError, match=r"add some under output\.probes"):
         der.run(scene).plot()
+
+
+@pytest.mark.parametrize("vary", ["loads", "loads.0", "loads.1"])
+def test_energy_probes_along_a_continuation_weigh_with_its_factor(vary):
+    """-sum of m g . x with the gravity of each point, by the shapes and the masses of nodes."""
+    gravity = np.array([3.0, -4.0])
+    loads = [{"gravity": gravity.tolist()}, *COLUMN["loads"]]
+    probes = {
+        f"{quantity}_{where}": {"quantity": f"{quantity}_energy"} | at
+        for quantity in ("gravity", "elastic", "total")
+        for where, at in (("all", {}), ("rod", {"rod": "rod"}))
+    }
+    scene = der.Scenario.from_dict(
+        {**COLUMN, "loads": loads, "output": {"probes": probes}, "analysis": "static"}
+    )
+    result = der.continuation(scene, vary=vary, to=2.0)
+    acting = np.ones_like(result.path.factor) if vary == "loads.1" else result.path.factor
+    lifted = result.positions @ -gravity  # of each node, for each mass
+    exact = acting * (lifted @ der.Simulation(scene).node_masses)
+    assert np.ptp(exact) > 1e-3
+    for where in ("all", "rod"):
+        weight = np.asarray(result.probes[f"gravity_{where}"])
+        total = np.asarray(result.probes[f"total_{where}"])
+        assert weight == pytest.approx(exact, abs=1e-12)
+        assert total == pytest.approx(exact + result.probes[f"elastic_{where}"], abs=1e-12)
+    assert result.energies["gravity"] == pytest.approx(exact, abs=1e-12)

@@ -203,9 +203,19 @@ def test_longest_stable_step_is_near_that_of_drag_alone():
 @pytest.mark.parametrize("load", [20, 2000, 20000])
 def test_deflections(load):
     exact = reference("extensible_beam", f"tube.{load}.deflection")
-    assert elastica_deflections(Tube(), [load])[0] == pytest.approx(exact, rel=1e-10)
+    assert elastica_deflections(Tube(), [load])[0].largest == pytest.approx(exact, rel=1e-10)
     linear = reference("extensible_beam", f"euler_bernoulli.{load}.deflection")
     assert euler_bernoulli_deflection(Tube(), load) == pytest.approx(linear, rel=1e-12)
+
+
+def test_deflection_of_the_middle_under_a_small_load():
+    """P b (3 L^2 - 4 b^2) / (48 EI), b being the distance of the load from the nearer support."""
+    tube, load = Tube(), 1.0
+    near = tube.length - tube.load_at
+    linear = load * near * (3.0 * tube.length**2 - 4.0 * near**2) / (48 * tube.bending_stiffness)
+    assert elastica_deflections(tube, [load])[0].middle == pytest.approx(linear, rel=1e-7)
+    other_end = Tube(load_at=near)
+    assert elastica_deflections(other_end, [load])[0].middle == pytest.approx(linear, rel=1e-7)
 
 
 def test_nodes_beside_the_load():

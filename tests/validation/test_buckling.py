@@ -24,11 +24,27 @@ def test_linear_buckling_loads_at_second_order(reference, fitted_order, ends):
         assert fitted_order([1 / n for n in SIZES], of_mode) > 1.9
 
 
-def test_loads_that_pull_do_not_buckle():
+def test_loads_that_pull_do_not_buckle_and_the_run_says_so():
+    """Reversed they would: a sign that was not meant must not look like a safe structure."""
     scene = straight(20, "pinned-pinned", loads=tip_force(1, 0), analysis="buckling")
     result = der.run(der.Scenario.from_dict(scene))
     assert result.status == "completed"
     assert result.buckling is None
+    assert result.summary["load_factors"] == []
+    (warning,) = result.summary["warnings"]
+    assert "reversed, they make it buckle" in warning
+
+
+@pytest.mark.parametrize("force", [(0.0, 0.0), (0.0, -1.0)])
+def test_no_factor_either_way_is_said_too(force):
+    """A beam without loads, and one bent across, which has no tension to first order."""
+    load = {"point_force": {"rod": "rod", "at": "middle", "force": list(force)}}
+    scene = straight(20, "pinned-pinned", loads=[load], analysis="buckling")
+    result = der.run(der.Scenario.from_dict(scene))
+    assert result.summary["load_factors"] == []
+    (warning,) = result.summary["warnings"]
+    assert "reversed" not in warning
+    assert ("bend the structure" if any(force) else "no part") in warning
 
 
 @pytest.mark.parametrize("ends", ENDS)

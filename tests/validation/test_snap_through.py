@@ -1,6 +1,7 @@
 """Snap-through of arches and buckled beams: limit points, bifurcations and whole curves.
 
-References: `references/arch.py`, continuation of the continuum by collocation.
+References: `references/arch.py`, continuation of the continuum by collocation; for counts
+`chain.py`, the same chain of bars and hinges followed by other means.
 """
 
 from pathlib import Path
@@ -8,6 +9,7 @@ from pathlib import Path
 import der
 import numpy as np
 import pytest
+from chain import pinned_chain
 from scenes import arch, buckled
 
 COLUMN = Path(__file__).resolve().parents[2] / "configs/euler_buckling.yaml"
@@ -63,6 +65,87 @@ def test_arch_of_rise_0_05_has_skew_branches_between_its_bifurcations():
         assert skew[on_branch].max() > 0.01
         assert path.factor[on_branch].max() == pytest.approx(first, abs=1e-3)
         assert path.factor[on_branch].min() == pytest.approx(last, abs=1e-2)
+
+
+def crossings(path, load):
+    """Rows of a path just before it passes a load."""
+    step = np.sign(path.factor - load)
+    return np.flatnonzero((step[1:] != step[:-1]) & (path.branch[1:] == path.branch[:-1]))
+
+
+@pytest.mark.parametrize("node", [10, 9])
+def test_each_event_and_each_equilibrium_of_an_arch_is_found_once(node):
+    """Pressed at the middle, and beside it, where the imperfect arch has no bifurcation.
+
+    Both counts are those of `chain.py`: the events along its path, and the different equilibria
+    under one load between the limits that Newton finds from 200 shapes.
+    """
+    load = 3.0
+    scene = arch(20, 0.05)
+    scene["loads"][0]["point_force"]["at"] = {"node": node}
+    path = der.continuation(scene, to=8.0, branches=1).path
+    chain = pinned_chain(np.array(scene["rods"][0]["points"]), 1e4, 1.0, {node: (0.0, -1.0)})
+
+    exact = chain.follow(8.0, step=0.008, scale=20.0).events()
+    rows = np.flatnonzero(path.events)
+    assert list(path.events[rows]) == [kind for kind, _ in exact]
+    # Its points are up to 0.15 apart in the load.
+    assert path.factor[rows] == pytest.approx([at for _, at in exact], abs=0.16)
+
+    x = chain.points[1:-1, 0]
+    starts = []
+    for weights in np.random.default_rng(1).uniform(-1.0, 1.0, (200, 3)):
+        shape = chain.points.copy()
+        for wave, height in enumerate(weights * [0.1, 0.075, 0.025], 1):
+            shape[1:-1, 1] += height * np.sin(wave * np.pi * x)
+        starts.append(shape.ravel()[chain.free])
+    equilibria = chain.equilibria(load, starts)
+    assert len(equilibria) == 5
+    assert len(crossings(path, load)) == 5
+
+
+@pytest.mark.parametrize(
+    ("scene", "to", "branches"),
+    [
+        (arch(40, 0.05), 8.0, {0: -1, 1: 0, 2: 0}),
+        # The skew branch meets the symmetric shapes of the arch turned over, and closes.
+        (arch(80, 0.1), 30.0, {0: -1, 1: 0, 2: 1, 3: 1}),
+        (arch(320, 0.1), 30.0, {0: -1, 1: 0, 2: 1, 3: 1}),
+        (arch(40, 0.17), 255.0, {0: -1, **dict.fromkeys(range(1, 9), 0)}),
+        (buckled(80, "pinned"), 40.0, {0: -1, **dict.fromkeys(range(1, 5), 0)}),
+        (buckled(80, "clamped"), 40.0, {0: -1, 1: 0, 2: 0}),
+    ],
+)
+def test_no_path_is_followed_twice(scene, to, branches):
+    """Nor do two events lie at one place, however fine the mesh: where a branch passes through a
+    bifurcation, rounding makes the place at which its stiffness is singular a stretch.
+    """
+    result = der.continuation(scene, to=to, branches=2, points=2000)
+    path = result.path
+    found = [branch["parent"] for branch in result.summary["path"]["branches"]]
+    assert dict(enumerate(found)) == branches
+    assert len(result.summary["path"]["events"]) == np.count_nonzero(path.events)
+    shapes = result.positions.reshape(len(path.factor), -1)
+    met = np.flatnonzero(path.events)
+    for i, row in enumerate(met):
+        for other in met[:i]:
+            apart = np.abs(shapes[row] - shapes[other]).max()
+            assert apart > 1e-4, (path.factor[row], path.events[[row, other]])
+    # A point of each branch, away from its ends, lies on no other.
+    for branch in branches:
+        rows = np.flatnonzero(path.branch == branch)
+        point = shapes[rows[len(rows) // 3]]
+        for other in set(branches) - {branch}:
+            line = shapes[path.branch == other]
+            assert distance_to_line(point, line) > 1e-4
+
+
+def distance_to_line(point, line):
+    """From a polyline, its rows being points."""
+    step = np.diff(line, axis=0)
+    gap = point - line[:-1]
+    along = np.clip(np.sum(gap * step, axis=1) / np.maximum(np.sum(step**2, axis=1), 1e-300), 0, 1)
+    return np.linalg.norm(gap - along[:, np.newaxis] * step, axis=1).min()
 
 
 # Between the limits of the clamped beam are the folds of the next test.

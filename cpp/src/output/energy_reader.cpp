@@ -1,8 +1,10 @@
 #include "output/energy_reader.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "der/assembly/element_energy.hpp"
 #include "der/core/error.hpp"
@@ -36,11 +38,18 @@ Terms terms_of(const std::string& quantity) {
   throw Error("model_error", "'" + quantity + "' is not an energy");
 }
 
-/// What an energy is read from: the whole model, or a part of it.
+/// What an energy is read from: the whole model, or a part of it. Its weight is not kept, as along
+/// a continuation the factor of the loads changes it.
 struct Part {
   Mass mass;
-  Vector gravity_force;
+  std::vector<Index> dofs;
   ElementLists elements;
+
+  [[nodiscard]] double gravity_energy(const Model& model, const Vector& positions) const {
+    double energy = 0.0;
+    for (const Index dof : dofs) energy -= model.gravity_force[dof] * positions[dof];
+    return energy;
+  }
 };
 
 class EnergyReader : public ProbeReader {
@@ -50,7 +59,7 @@ class EnergyReader : public ProbeReader {
   double value(const Model& model, const State& state) override {
     double energy = 0.0;
     if (terms_.kinetic) energy += part_.mass.kinetic_energy(state.velocities);
-    if (terms_.gravity) energy -= part_.gravity_force.dot(state.positions);
+    if (terms_.gravity) energy += part_.gravity_energy(model, state.positions);
     if (terms_.elastic()) energy += elastic(model, state);
     return energy;
   }
@@ -85,11 +94,8 @@ Part part_of(const RodLayout& rod, const Model& model) {
   std::sort(dofs.begin(), dofs.end());
   const auto is_here = [&](Index dof) { return std::binary_search(dofs.begin(), dofs.end(), dof); };
 
-  Part part{{Vector::Zero(model.num_dofs()), {}}, Vector::Zero(model.num_dofs()), {}};
-  for (const Index dof : dofs) {
-    part.mass.lumped[dof] = model.mass.lumped[dof];
-    part.gravity_force[dof] = model.gravity_force[dof];
-  }
+  Part part{{Vector::Zero(model.num_dofs()), {}}, dofs, {}};
+  for (const Index dof : dofs) part.mass.lumped[dof] = model.mass.lumped[dof];
   for (const MassCoupling& coupling : model.mass.coupling) {
     if (is_here(coupling.a) && is_here(coupling.b)) part.mass.coupling.push_back(coupling);
   }
@@ -104,14 +110,19 @@ Part part_of(const RodLayout& rod, const Model& model) {
   return part;
 }
 
+Part whole(const Model& model) {
+  std::vector<Index> dofs(static_cast<std::size_t>(model.num_dofs()));
+  std::iota(dofs.begin(), dofs.end(), Index{0});
+  return {model.mass, std::move(dofs), model.elements};
+}
+
 }  // namespace
 
 std::unique_ptr<ProbeReader> make_energy_reader(const std::string& quantity,
                                                 const std::optional<std::string>& rod,
                                                 const Model& model) {
-  return std::make_unique<EnergyReader>(
-      terms_of(quantity), rod ? part_of(model.rod(*rod), model)
-                              : Part{model.mass, model.gravity_force, model.elements});
+  return std::make_unique<EnergyReader>(terms_of(quantity),
+                                        rod ? part_of(model.rod(*rod), model) : whole(model));
 }
 
 }  // namespace der

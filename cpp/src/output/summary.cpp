@@ -67,8 +67,7 @@ Json path_json(const RunOutcome& outcome, const Recorder& recorder) {
                                 {"ending", branch.ending}});
     for (const PathPoint& point : branch.points) {
       const std::vector<double>& values = outcome.path_probes[row++];
-      const bool begins = &point == &branch.points.front();  // told by its parent already
-      if (point.event == PathEvent::None || begins) continue;
+      if (point.event == PathEvent::None) continue;
       Json probes = Json::object();
       for (std::size_t i = 0; i < values.size(); ++i) {
         probes[recorder.probes()[i].name()] = values[i];
@@ -83,17 +82,29 @@ Json path_json(const RunOutcome& outcome, const Recorder& recorder) {
   return path;
 }
 
-void add_analysis(const RunOutcome& outcome, const Recorder& recorder, Json& summary) {
-  for (const Mode& mode : outcome.modes) {
-    summary["frequencies_hz"].push_back(mode.frequency);
-    summary["growth_rates"].push_back(mode.growth_rate);
+/// A list without an entry tells that there is no factor.
+void add_buckling(const LinearBuckling& buckling, Json& summary) {
+  for (const char* name : {"load_factors", "prebuckling_rotations", "prebuckling_strains"}) {
+    summary[name] = Json::array();
   }
-  const LinearBuckling& buckling = outcome.buckling;
   for (const BucklingMode& mode : buckling.modes) {
     summary["load_factors"].push_back(mode.load_factor);
     summary["prebuckling_rotations"].push_back(mode.load_factor * buckling.rotation);
     summary["prebuckling_strains"].push_back(mode.load_factor * buckling.strain);
   }
+}
+
+bool sought_buckling(const Simulation& simulation) {
+  return std::holds_alternative<scenario::BucklingAnalysis>(simulation.scenario().scene().analysis);
+}
+
+void add_analysis(const Simulation& simulation, const RunOutcome& outcome, const Recorder& recorder,
+                  Json& summary) {
+  for (const Mode& mode : outcome.modes) {
+    summary["frequencies_hz"].push_back(mode.frequency);
+    summary["growth_rates"].push_back(mode.growth_rate);
+  }
+  if (sought_buckling(simulation) && outcome.ok()) add_buckling(outcome.buckling, summary);
   if (!outcome.path.empty()) summary["path"] = path_json(outcome, recorder);
 }
 
@@ -128,8 +139,17 @@ std::optional<std::string> made_energy_warning(const Simulation& simulation,
 }
 
 std::vector<std::string> buckling_warnings(const LinearBuckling& buckling) {
+  if (buckling.modes.empty() && buckling.reversed) {
+    return {
+        "no positive load factor is critical, as the loads pull where they would have to press; "
+        "reversed, they make it buckle. If they are meant to press, turn their signs round"};
+  }
+  if (buckling.modes.empty() && buckling.rotation <= buckling.strain) {
+    return {
+        "no load factor is critical: the loads press no part of the structure, nor would they with "
+        "their signs turned round. Linear buckling needs a load along a rod"};
+  }
   if (buckling.modes.empty()) {
-    if (buckling.rotation <= buckling.strain) return {};
     return {
         "the loads bend the structure, and press no part of it until it buckles: linear buckling "
         "sees nothing else. Whether the bent structure snaps, analysis: continuation tells"};
@@ -163,7 +183,7 @@ std::vector<std::string> warnings(const Simulation& simulation, const Recorder& 
   const auto add = [&](const std::vector<std::string>& more) {
     found.insert(found.end(), more.begin(), more.end());
   };
-  if (std::holds_alternative<scenario::BucklingAnalysis>(scene.analysis) && outcome.ok()) {
+  if (sought_buckling(simulation) && outcome.ok()) {
     add(buckling_warnings(outcome.buckling));
     return found;
   }
@@ -215,7 +235,7 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
     summary["saddles_left"] = outcome.equilibrium->saddles_left;
     summary["sharpest_turn"] = outcome.equilibrium->sharpest_turn;
   }
-  add_analysis(outcome, recorder, summary);
+  add_analysis(simulation, outcome, recorder, summary);
   if (recorder.energies()) summary["energies"] = energies_json(*recorder.energies());
   if (recorder.energies() && !is_static) {
     summary["work"] = work_json(simulation.state().work, *recorder.energies());

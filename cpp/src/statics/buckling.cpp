@@ -122,6 +122,52 @@ class Pencil {
   Vector k1_;
 };
 
+/// The `count` modes of lowest factor of the tensions of `edges`; fewer if there are not so many.
+std::vector<BucklingMode> buckling_modes(const Model& model, LinearSolver& solver, const Vector& k0,
+                                         const std::vector<LoadedEdge>& edges,
+                                         const Vector& controls, const Vector& positions,
+                                         int count) {
+  const Vector k1 = initial_stress_stiffness(model, solver.layout(), edges);
+  // Factors are sought in units in which both matrices are of a size, so that no load is too large
+  // or too small. As K0 is positive definite beyond rounding, none is less than that.
+  const auto entries = [&](const Vector& values) {
+    return values.head(solver.layout().num_values()).lpNorm<Eigen::Infinity>();
+  };
+  const double unit = entries(k0) / entries(k1);
+  constexpr double kLeast = 1e-18;
+  constexpr double kMost = 1e8;
+  Pencil pencil(solver, k0, unit * k1);
+  const Index available = std::min<Index>(count, pencil.critical_below(kMost));
+  std::vector<BucklingMode> modes;
+  std::vector<Vector> same;  // shapes of the factor at hand
+  double low = kLeast;
+  double before = 0.0;
+  for (Index i = 0; i < available; ++i) {
+    const double factor = pencil.bisect(i, low, kMost);
+    if (factor > before * (1.0 + 1e-9)) same.clear();
+    same.push_back(pencil.shape(factor, same, model.num_free()));
+    Vector shape = Vector::Zero(model.num_dofs());
+    shape(model.free_dofs) = same.back();
+    // Taken element by element, the quotient keeps the digits of slender rods.
+    double released = 0.0;
+    for (const LoadedEdge& edge : edges) {
+      const double turned = edge.turned_by(shape);
+      released -= edge.tension * edge.length * turned * turned;
+    }
+    const double exact = second_variation(model, controls, positions, shape) / released;
+    // Where K1 is much the larger of the two, its rounding makes critical factors that are none.
+    if (!(std::abs(exact / (unit * factor) - 1.0) < 0.5)) break;
+    Eigen::Index main = 0;
+    shape.cwiseAbs().maxCoeff(&main);
+    modes.push_back({exact, shape / shape[main]});
+    before = factor;
+    low = factor * (1.0 - 1e-12);
+  }
+  std::sort(modes.begin(), modes.end(),
+            [](const auto& a, const auto& b) { return a.load_factor < b.load_factor; });
+  return modes;
+}
+
 }  // namespace
 
 LinearBuckling linear_buckling(Model& model, const LoadPath& loads, const Assembler& assembler,
@@ -151,7 +197,7 @@ LinearBuckling linear_buckling(Model& model, const LoadPath& loads, const Assemb
   stiffness.solve(step);
   Vector displacement = Vector::Zero(model.num_dofs());
   displacement(model.free_dofs) = step;
-  const auto edges = loaded_edges(model, controls, positions, displacement);
+  auto edges = loaded_edges(model, controls, positions, displacement);
 
   LinearBuckling result;
   result.rotation = largest(edges, &LoadedEdge::rotation);
@@ -159,44 +205,14 @@ LinearBuckling linear_buckling(Model& model, const LoadPath& loads, const Assemb
   const double noise = stiffness.rounding() * step.lpNorm<Eigen::Infinity>();
   if (largest(edges, &LoadedEdge::tension) <= noise) return result;
 
-  const Vector& k0 = stiffness.values();
-  Vector k1 = initial_stress_stiffness(model, solver.layout(), edges);
-  // Factors are sought in units in which both matrices are of a size, so that no load is too large
-  // or too small. As K0 is positive definite beyond rounding, none is less than that.
-  const auto entries = [&](const Vector& values) {
-    return values.head(solver.layout().num_values()).lpNorm<Eigen::Infinity>();
+  const auto modes_of = [&](const std::vector<LoadedEdge>& of, int most) {
+    return buckling_modes(model, solver, stiffness.values(), of, controls, positions, most);
   };
-  const double unit = entries(k0) / entries(k1);
-  constexpr double kLeast = 1e-18;
-  constexpr double kMost = 1e8;
-  Pencil pencil(solver, k0, unit * k1);
-  const Index available = std::min<Index>(count, pencil.critical_below(kMost));
-  std::vector<Vector> same;  // shapes of the factor at hand
-  double low = kLeast;
-  double before = 0.0;
-  for (Index i = 0; i < available; ++i) {
-    const double factor = pencil.bisect(i, low, kMost);
-    if (factor > before * (1.0 + 1e-9)) same.clear();
-    same.push_back(pencil.shape(factor, same, model.num_free()));
-    Vector shape = Vector::Zero(model.num_dofs());
-    shape(model.free_dofs) = same.back();
-    // Taken element by element, the quotient keeps the digits of slender rods.
-    double released = 0.0;
-    for (const LoadedEdge& edge : edges) {
-      const double turned = edge.turned_by(shape);
-      released -= edge.tension * edge.length * turned * turned;
-    }
-    const double exact = second_variation(model, controls, positions, shape) / released;
-    // Where K1 is much the larger of the two, its rounding makes critical factors that are none.
-    if (!(std::abs(exact / (unit * factor) - 1.0) < 0.5)) break;
-    Eigen::Index main = 0;
-    shape.cwiseAbs().maxCoeff(&main);
-    result.modes.push_back({exact, shape / shape[main]});
-    before = factor;
-    low = factor * (1.0 - 1e-12);
+  result.modes = modes_of(edges, count);
+  if (result.modes.empty()) {
+    for (LoadedEdge& edge : edges) edge.tension = -edge.tension;
+    result.reversed = !modes_of(edges, 1).empty();
   }
-  std::sort(result.modes.begin(), result.modes.end(),
-            [](const auto& a, const auto& b) { return a.load_factor < b.load_factor; });
   return result;
 }
 

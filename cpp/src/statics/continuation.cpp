@@ -1,5 +1,7 @@
 #include "der/statics/continuation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -32,9 +34,22 @@ constexpr double kShortestStep = 1e-7;
 constexpr double kEventPlace = 1e-11;
 /// ... and no two of them are told apart that are nearer than this.
 constexpr double kSameEvent = 1e-6;
-/// Events that are nearer than this, against the largest step, are one: where a stiffness vanishes
-/// with the square of the way, rounding hides its sign on the square root of rounding.
+/// Least stretch of a path, against the largest step, on which events are one.
 constexpr double kOnePlace = 1e-4;
+/// Longest stretch over which a singular stiffness is looked for.
+constexpr double kFarthestReach = 0.1;
+/// Two bifurcations nearer than this, against the largest step, are one, met on two paths: where
+/// the equations are singular what Newton leaves of the residual moves a point by its square root
+/// ...
+constexpr double kSamePlace = 1e-2;
+/// ... and any other point that is nearer than this to a path lies on it.
+constexpr double kSamePath = 1e-5;
+/// A path comes back to a place after no less than this many of the largest steps.
+constexpr double kShortestLoop = 3.0;
+/// A path stays nearer than this to the line between two neighbours, against its length.
+constexpr double kBulge = 0.25;
+/// The first step of a branch, against the largest.
+constexpr double kFirstStep = 0.2;
 /// Points to either side of a located event that are farther apart than this, against the largest
 /// step, lie on different paths.
 constexpr double kJump = 1e-3;
@@ -71,7 +86,10 @@ class Follower {
     Node first = node_at({start(model_.free_dofs), options_.from});
     set_metric(first);
     orient_to_the_end(first);
-    follow(first, nullptr, 0, -1, 0);
+    follow(first, std::nullopt, 0);
+    for (std::size_t i = 0; i < crossings_.size(); ++i) {
+      if (crossings_[i].depth < options_.branching) follow_from(i);
+    }
     return std::move(branches_);
   }
 
@@ -227,7 +245,8 @@ class Follower {
     double step = 0.0;  // from the node before
     Node node;
     bool turns = false;
-    int lost_directions = 0;
+    Index lost_directions = 0;
+    double reach = 0.0;  // to either side, within which the place is not known
     /// At a limit point the factor turns and a direction loses its stability. Where only one of the
     /// two happens another path crosses: on a branch that passes through a symmetric bifurcation
     /// again the factor turns, but both of its sides are alike.
@@ -263,23 +282,45 @@ class Follower {
     if (norm(combine(after.at, -1.0, before.at)) > kJump * options_.largest_step) {
       return false;
     }
-    events.push_back({high, after, before.rising() != after.rising(),
-                      after.stability.unstable_directions - before.stability.unstable_directions});
+    const Index lost = after.stability.unstable_directions - before.stability.unstable_directions;
+    events.push_back({high, after, before.rising() != after.rising(), lost, 0.0});
     return true;
   }
 
-  /// Makes one of events at one place. Where the stiffness is singular, inertia and sense of the
-  /// tangent are made of rounding: they may change several times.
-  void merge(std::vector<Located>& events, const Node& start) const {
+  /// Whether an eigenvalue of the stiffness `step` ahead of `start` is zero to rounding.
+  bool is_singular(const Node& start, double step) {
+    int iterations = 0;
+    if (!next(start, step, iterations)) return true;
+    const double rounding = stiffness_.rounding();
+    return stiffness_.factorize(rounding).negative_pivots !=
+           stiffness_.factorize(-rounding).negative_pivots;
+  }
+
+  /// How far from an event its place is uncertain. Where a path crosses another one at which its
+  /// factor turns, an eigenvalue vanishes with the square of the way, so that the inertia and the
+  /// sense of the tangent are made of rounding for the square root of rounding to either side.
+  double reach_of(const Located& located, const Node& start) {
+    double reach = kOnePlace * options_.largest_step;
+    while (reach < kFarthestReach * options_.largest_step &&
+           (is_singular(start, located.step - reach) || is_singular(start, located.step + reach))) {
+      reach *= 2.0;
+    }
+    return reach;
+  }
+
+  /// Makes one of events at one place.
+  void merge(std::vector<Located>& events, const Node& start) {
     std::vector<Located> merged;
     for (Located& located : events) {
-      if (merged.empty() || located.step - merged.back().step > kOnePlace * options_.largest_step) {
+      located.reach = reach_of(located, start);
+      if (merged.empty() || located.step - merged.back().step > located.reach) {
         merged.push_back(std::move(located));
         continue;
       }
       Located& place = merged.back();
       place.turns = place.turns != located.turns;
       place.lost_directions += located.lost_directions;
+      place.reach = std::max(place.reach, located.reach);
       place.node = std::move(located.node);
     }
     for (Located& located : merged) {
@@ -344,20 +385,133 @@ class Follower {
     return "";
   }
 
-  /// Follows a branch from `node` on, whose tangent shows the way, and then those that leave it.
-  /// `root` is the bifurcation at which it begins, if any.
-  void follow(Node node, const Node* root, int depth, int parent, int side) {
-    const auto number = branches_.size();
-    branches_.emplace_back();
+  // Branches.
+
+  /// A bifurcation, and the branch on which it was met first.
+  struct Crossing {
+    Node node;
+    int branch = 0;
+    double arc = 0.0;          // on that branch
+    int depth = 0;             // bifurcations between that branch and the first one
+    bool followed = false;     // whether its branches have been
+    std::vector<Node> beyond;  // points behind it, of branches that end here
+  };
+
+  /// Number of the bifurcation at a place `arc` along a branch, if it is known.
+  [[nodiscard]] std::optional<std::size_t> crossing_at(const Located& place, int branch,
+                                                       double arc) const {
+    const double same = kSamePlace * options_.largest_step + 2.0 * place.reach;
+    for (std::size_t i = 0; i < crossings_.size(); ++i) {
+      const Crossing& known = crossings_[i];
+      const bool came_back =
+          known.branch != branch || arc - known.arc > kShortestLoop * options_.largest_step;
+      if (came_back && norm(combine(known.node.at, -1.0, place.node.at)) < same) return i;
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] Extended extended(const PathPoint& point) const {
+    return {point.positions(model_.free_dofs), point.factor};
+  }
+
+  /// Whether a point lies on a branch that is over: whether Newton leads to it from the line that
+  /// joins two neighbours, on the plane across that line. Neither of them need be near.
+  bool is_traced(const Extended& point) {
+    for (const PathBranch& branch : branches_) {
+      for (std::size_t i = 0; i + 1 < branch.points.size(); ++i) {
+        if (lies_between(extended(branch.points[i]), extended(branch.points[i + 1]), point)) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  bool lies_between(const Extended& from, const Extended& to, const Extended& point) {
+    const Extended line = combine(to, -1.0, from);
+    const double length = norm(line);
+    const double same = kSamePath * options_.largest_step;
+    if (length < same) return false;
+    const Extended direction = unit(line);
+    const double along = dot(combine(point, -1.0, from), direction);
+    if (along < -same || along > length + same) return false;
+    const Extended foot = combine(from, along, direction);
+    if (norm(combine(point, -1.0, foot)) > kBulge * length) return false;
+    int iterations = 0;
+    const auto found = solve_on_plane(from, direction, along, foot, iterations);
+    return found && norm(combine(point, -1.0, *found)) < same;
+  }
+
+  /// A branch while it is followed.
+  struct Trace {
     PathBranch branch;
-    branch.parent = parent;
-    branch.side = side;
-    const Extended origin = root ? root->at : node.at;
-    double arc = norm(combine(node.at, -1.0, origin));
-    double step = 0.2 * options_.largest_step;
-    std::vector<Node> bifurcations;
-    if (root) add_point(branch, *root, 0.0, PathEvent::Bifurcation);
-    add_point(branch, node, arc, PathEvent::None);
+    int number = 0;
+    std::optional<std::size_t> root;  // the bifurcation at which it begins
+    int depth = 0;                    // bifurcations between it and the first branch
+    Extended origin;
+    double arc = 0.0;
+  };
+
+  /// A branch whose first point besides its root, if it has one, is `first`.
+  Trace begin_trace(const Node& first, std::optional<std::size_t> root, int side) {
+    Trace trace;
+    trace.number = static_cast<int>(branches_.size());
+    trace.root = root;
+    trace.branch.side = side;
+    trace.origin = first.at;
+    if (root) {
+      const Crossing& start = crossings_[*root];
+      trace.branch.parent = start.branch;
+      trace.origin = start.node.at;
+      trace.depth = start.depth + 1;
+      add_point(trace.branch, start.node, 0.0, PathEvent::None);
+    }
+    trace.arc = norm(combine(first.at, -1.0, trace.origin));
+    add_point(trace.branch, first, trace.arc, PathEvent::None);
+    return trace;
+  }
+
+  /// Whether a branch that meets a known bifurcation on its way to `found` ends there: what lies
+  /// beyond has been traced, or will be from there.
+  bool ends_at(Crossing& crossing, const Trace& trace, const Node& found) {
+    if (crossing.branch == trace.number) return false;
+    int iterations = 0;
+    const auto beyond = next(found, kFirstStep * options_.largest_step, iterations);
+    if (!beyond) return false;
+    if (crossing.depth < options_.branching && !crossing.followed) {
+      crossing.beyond.push_back(*beyond);
+      return true;
+    }
+    return is_traced(beyond->at);
+  }
+
+  /// Puts the events on the way to `found` into a branch, each the first time that it is met. Ends
+  /// the branch where it goes over into what has been traced.
+  void add_events(const std::vector<Located>& events, const Node& found, Trace& trace) {
+    for (const Located& located : events) {
+      const double arc = trace.arc + located.step;
+      const bool bifurcates = located.event() == PathEvent::Bifurcation;
+      const auto known = bifurcates ? crossing_at(located, trace.number, arc) : std::nullopt;
+      if (!known) {
+        add_point(trace.branch, located.node, arc, located.event());
+        if (bifurcates) {
+          crossings_.push_back({located.node, trace.number, arc, trace.depth, false, {}});
+        }
+      } else if (Crossing& crossing = crossings_[*known]; ends_at(crossing, trace, found)) {
+        add_point(trace.branch, crossing.node, arc, PathEvent::None);
+        trace.branch.ending =
+            known == trace.root ? "closed loop" : fmt::format("meets branch {}", crossing.branch);
+        return;
+      }
+    }
+  }
+
+  /// Follows a branch from `node` on, whose tangent shows the way. `root` is the number of the
+  /// bifurcation at which it begins, if any.
+  void follow(Node node, std::optional<std::size_t> root, int side) {
+    Trace trace = begin_trace(node, root, side);
+    PathBranch& branch = trace.branch;
+    double step = kFirstStep * options_.largest_step;
     while (branch.ending.empty()) {
       if (static_cast<int>(branch.points.size()) >= options_.max_points) {
         branch.ending = "largest number of points";
@@ -375,15 +529,13 @@ class Follower {
         if (step < kShortestStep * options_.largest_step) branch.ending = "no further point found";
         continue;
       }
-      branch.ending = ending;
       merge(events, node);
-      for (const Located& located : events) {
-        add_point(branch, located.node, arc + located.step, located.event());
-        if (located.event() == PathEvent::Bifurcation) bifurcations.push_back(located.node);
-      }
-      arc += reached;
-      add_point(branch, *found, arc, PathEvent::None);
-      if (arc > 3.0 * options_.largest_step && passes(origin, node, *found)) {
+      add_events(events, *found, trace);
+      if (!branch.ending.empty()) break;
+      branch.ending = ending;
+      trace.arc += reached;
+      add_point(branch, *found, trace.arc, PathEvent::None);
+      if (trace.arc > kShortestLoop * options_.largest_step && passes(trace.origin, node, *found)) {
         branch.ending = "closed loop";
       }
       node = *found;
@@ -391,15 +543,26 @@ class Follower {
       if (iterations >= kHardIterations) step *= 0.7;
       step = std::min(step, options_.largest_step);
     }
-    branches_[number] = std::move(branch);
-    if (depth >= options_.branching) return;
-    for (const Node& bifurcation : bifurcations) {
-      for (const int to_side : {1, -1}) switch_branch(bifurcation, depth, number, to_side);
-    }
+    branches_.push_back(std::move(branch));
   }
 
-  /// Starts the branch that leaves `bifurcation` to one side of the path it lies on.
-  void switch_branch(const Node& bifurcation, int depth, std::size_t parent, int side) {
+  /// Follows all branches that leave a bifurcation and have not been traced: to both sides of the
+  /// path it lies on, and on from those that end there.
+  void follow_from(std::size_t number) {
+    const auto follow_new = [&](const Node& node, int side) {
+      if (!is_traced(node.at)) follow(node, number, side);
+    };
+    for (const int side : {1, -1}) {
+      if (const auto node = first_point(crossings_[number].node, side)) follow_new(*node, side);
+    }
+    for (std::size_t i = 0; i < crossings_[number].beyond.size(); ++i) {
+      follow_new(Node(crossings_[number].beyond[i]), 0);
+    }
+    crossings_[number].followed = true;
+  }
+
+  /// The first point of the branch that leaves `bifurcation` to one side of the path it lies on.
+  std::optional<Node> first_point(const Node& bifurcation, int side) {
     evaluate(bifurcation.at);
     Extended across{stiffness_.nearest_to_zero().direction, 0.0};
     across = combine(across, -dot(across, bifurcation.tangent), bifurcation.tangent);
@@ -414,9 +577,9 @@ class Follower {
       Node node = node_at(*found);
       const Extended way = combine(node.at, -1.0, bifurcation.at);
       if (dot(node.tangent, way) < 0.0) reverse(node.tangent);
-      follow(node, &bifurcation, depth + 1, static_cast<int>(parent), side);
-      return;
+      return node;
     }
+    return std::nullopt;
   }
 
   Model& model_;
@@ -433,6 +596,7 @@ class Follower {
   Vector residual_;
   double force_scale_ = 0.0;
   std::vector<PathBranch> branches_;
+  std::vector<Crossing> crossings_;
 };
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -17,11 +17,13 @@ from der.plotting.style import MUTED, PALETTE, axis_label
 from der.plotting.supports import draw_springs, draw_supports
 
 if TYPE_CHECKING:
+    from der.analyses import Path
     from der.result import Result
 
 Array = NDArray[np.float64]
 
 _SIZE = 0.12  # largest displacement drawn, against the structure's size
+_SAME = 2e-3  # lines nearer than this, against the extent of the picture, are one
 _ROW = 1.6  # height of a panel [inch]
 _WIDTH = 7.2  # of the figure [inch]
 
@@ -71,7 +73,11 @@ def _draw_mode(axes: Axes, result: Result, rest: Array, shape: Array, label: str
 
 
 def plot_path(result: Result, names: list[str]) -> Figure:
-    """Draw the load factor against each probe: stable solid, unstable dashed, events marked."""
+    """Draw the load factor against each probe: stable solid, unstable thin and dashed.
+
+    Branches that look the same there, such as shapes that are mirror images, are drawn once: dashes
+    upon dashes would make a solid line.
+    """
     path = result.path
     if path is None or not names:
         raise ValueError("a path is drawn against probes: add some under output.probes")
@@ -81,38 +87,83 @@ def plot_path(result: Result, names: list[str]) -> Figure:
     for axes, name in zip(panels[0], names, strict=True):
         probe = result.probes[name]
         values = np.asarray(probe)
-        for branch in np.unique(path.branch):
-            _draw_branch(axes, path.branch == branch, values, result)
+        _draw_branches(axes, np.column_stack([values, path.factor]), path)
         for event, marker, colour in (("fold", "o", PALETTE[1]), ("bifurcation", "D", PALETTE[2])):
             at = path.events == event
             if at.any():
                 axes.plot(values[at], path.factor[at], marker, color=colour, label=event, zorder=5)
         axes.set_xlabel(axis_label(name, probe.unit))
     panels[0, 0].set_ylabel("load factor")
-    panels[0, 0].plot([], [], color=PALETTE[0], label="stable")
-    panels[0, 0].plot([], [], color=MUTED, linestyle="--", label="unstable")
+    panels[0, 0].plot([], [], label="stable", **_line(stable=True))
+    panels[0, 0].plot([], [], label="unstable", **_line(stable=False))
     panels[0, 0].legend()
     return figure
 
 
-def _draw_branch(axes: Axes, chosen: NDArray[np.bool_], values: Array, result: Result) -> None:
-    path = result.path
-    assert path is not None
-    rows = np.flatnonzero(chosen)
-    # An event is a point just behind the change, so that a piece between two points is as stable as
-    # its earlier end; but a branch starts at the bifurcation itself, where nothing is.
-    stable = path.stable[rows][:-1].copy()
-    if len(rows) > 1 and path.branch[rows[0]] > 0:
+def _line(*, stable: bool) -> dict[str, Any]:
+    if stable:
+        return {"color": PALETTE[0], "linestyle": "-", "linewidth": 2.2, "zorder": 3}
+    return {"color": MUTED, "linestyle": (0, (4, 3)), "linewidth": 1.1, "zorder": 2.5}
+
+
+def _draw_branches(axes: Axes, points: Array, path: Path) -> None:
+    """Draw a path, `points` being its places in the picture, shape (points, 2)."""
+    extent = np.ptp(points, axis=0)
+    extent[extent == 0.0] = 1.0
+    drawn: dict[bool, list[Array]] = {True: [], False: []}
+    for branch in np.unique(path.branch):
+        rows = np.flatnonzero(path.branch == branch)
+        scaled = points[rows] / extent
+        stable = _stable_steps(path, rows)
+        for start, end in _runs(2 * _turns(scaled) + stable):
+            piece = scaled[start : end + 1]
+            seen = _covered(piece, drawn[stable[start]])
+            for first, last in _runs(seen):
+                if not seen[first]:
+                    line = points[rows[start + first : start + last + 1]]
+                    axes.plot(*line.T, **_line(stable=stable[start]))
+            drawn[stable[start]].append(piece)
+
+
+def _stable_steps(path: Path, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Return whether the path is stable from each point of a branch to the next.
+
+    An event is a point just behind the change, so that a step is as stable as its earlier end; but
+    a branch starts at the bifurcation itself, where nothing is.
+    """
+    stable: NDArray[np.bool_] = path.stable[rows][:-1].copy()
+    if len(stable) and path.branch[rows[0]] > 0:
         stable[0] = path.stable[rows[1]]
-    starts = [0, *(np.flatnonzero(np.diff(stable)) + 1).tolist()]
-    ends = [*starts[1:], len(rows) - 1]
-    for start, end in zip(starts, ends, strict=True):
-        piece = rows[start : end + 1]
-        is_stable = bool(stable[start]) if len(stable) else bool(path.stable[rows[0]])
-        axes.plot(
-            values[piece],
-            path.factor[piece],
-            color=PALETTE[0] if is_stable else MUTED,
-            linestyle="-" if is_stable else "--",
-            zorder=3,
-        )
+    return stable
+
+
+def _turns(line: Array) -> NDArray[np.int64]:
+    """Return how often a line has turned back before each of its steps.
+
+    Where a path goes on as the mirror image of how it came, its picture goes back on itself.
+    """
+    steps = np.diff(line, axis=0)
+    back = np.sum(steps[1:] * steps[:-1], axis=1) < 0.0
+    return np.concatenate([np.zeros(min(1, len(steps)), dtype=np.int64), np.cumsum(back)])
+
+
+def _runs(labels: NDArray[Any]) -> list[tuple[int, int]]:
+    """Return first step, and step behind the last one, of each run of equal labels."""
+    if len(labels) == 0:
+        return []
+    starts = [0, *(np.flatnonzero(labels[1:] != labels[:-1]) + 1).tolist()]
+    return list(zip(starts, [*starts[1:], len(labels)], strict=True))
+
+
+def _covered(line: Array, drawn: list[Array]) -> NDArray[np.bool_]:
+    """Return which steps of a line lie on lines that are drawn already."""
+    middles = 0.5 * (line[1:] + line[:-1])
+    covered = np.zeros(len(middles), dtype=bool)
+    for other in drawn:
+        start, step = other[:-1], np.diff(other, axis=0)
+        square = np.maximum(np.sum(step**2, axis=1), np.finfo(float).tiny)
+        gap = middles[:, np.newaxis] - start
+        along = np.clip(np.sum(gap * step, axis=2) / square, 0.0, 1.0)
+        nearest = np.linalg.norm(gap - along[..., np.newaxis] * step, axis=2).min(axis=1)
+        covered |= nearest < _SAME
+    return covered

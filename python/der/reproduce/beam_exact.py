@@ -58,8 +58,16 @@ def euler_bernoulli_deflection(tube: Tube, load: float) -> float:
     return float(load * near * span / stiffness)
 
 
-def elastica_deflections(tube: Tube, loads: Sequence[float]) -> list[float]:
-    """Return the largest deflection [m] of the extensible elastica under each load [N].
+@dataclass(frozen=True)
+class Deflection:
+    """Of the continuum [m], downward: the largest one, and that at half the rest length."""
+
+    largest: float
+    middle: float
+
+
+def elastica_deflections(tube: Tube, loads: Sequence[float]) -> list[Deflection]:
+    """Return deflections of the extensible elastica under each load [N].
 
     Parameters
     ----------
@@ -81,7 +89,12 @@ def elastica_deflections(tube: Tube, loads: Sequence[float]) -> list[float]:
         steps = int(np.ceil((load - done) / unit / _LARGEST_LOAD_STEP))
         for level in np.linspace(done, load, steps + 1)[1:]:
             shooting.solve(level / unit)
-        deflections.append(shooting.largest_deflection() * tube.length)
+        deflections.append(
+            Deflection(
+                shooting.largest_deflection() * tube.length,
+                shooting.middle_deflection() * tube.length,
+            )
+        )
         done = load
     return deflections
 
@@ -126,6 +139,12 @@ class _Shooting:
         ]
         return max(depths)
 
+    def middle_deflection(self) -> float:
+        """Return the depth at half the rest length."""
+        before, behind = self._pieces(self._unknowns, self._load)
+        piece = before if self._at >= 0.5 else behind
+        return -float(piece.sol(0.5)[1])
+
     def _misses(self, unknowns: Array, load: float) -> Array:
         end = self._pieces(unknowns, load)[1].y[:, -1]
         return np.array([end[1] * load, end[3]])
@@ -145,6 +164,7 @@ class _Shooting:
                 method="DOP853",
                 args=(force,),
                 events=_angle,
+                dense_output=True,
                 rtol=_TOLERANCE,
                 atol=_TOLERANCE,
             )

@@ -14,7 +14,8 @@ from der._core import Scenario
 from der.accuracy import Verification, verify
 from der.errors import DerError, DivergedError
 from der.parallel import Outcome, Task, Workers, total_weight
-from der.reproduce.beam_exact import Tube, elastica_deflections
+from der.reproduce import beam_exact
+from der.reproduce.beam_exact import Tube
 from der.reproduce.falling_exact import Fall, FallingChain, fall
 from der.reproduce.stages import Stages
 from der.result import Result
@@ -96,7 +97,7 @@ _VERIFIED = (
 
 @dataclass(frozen=True)
 class Deflection:
-    """The largest deflection of the tube at the end of a run, with its error bar [m].
+    """A deflection of the tube at the end of a run, downward, with its error bar [m].
 
     The bar is that of the equilibrium by `der.verify`, plus what the run is off from it.
     """
@@ -126,8 +127,8 @@ class Measurements:
     speeds_by_nodes, speeds_by_step
         Speed of the middle sphere after 50 s [m/s], downward, by number of nodes or step [s], and
         density of the fluid [kg/m^3].
-    deflections
-        Largest deflection by load [N].
+    deflections, middles
+        Largest deflection, and that of the centre node, by load [N].
     explicit_seconds, implicit_seconds
         Least wall time of the two schemes of the first problem [s].
     stable_step
@@ -136,8 +137,8 @@ class Measurements:
         Exact solutions by the name of the run.
     exact_start
         The exact first milliseconds of the unstable run.
-    exact_deflections
-        Exact largest deflection [m] by place of the load [m] and load [N].
+    exact_deflections, exact_middles
+        The same of the continuum [m] by place of the load [m] and load [N].
     """
 
     runs: dict[str, Result]
@@ -145,12 +146,14 @@ class Measurements:
     speeds_by_nodes: dict[tuple[int, float], float]
     speeds_by_step: dict[tuple[float, float], float]
     deflections: dict[float, Deflection]
+    middles: dict[float, Deflection]
     explicit_seconds: float
     implicit_seconds: float
     stable_step: float
     exact_falls: dict[str, Fall]
     exact_start: Fall
     exact_deflections: dict[float, dict[float, float]]
+    exact_middles: dict[float, dict[float, float]]
 
 
 def measure(jobs: int | None, stages: Stages) -> Measurements:
@@ -178,7 +181,9 @@ def measure(jobs: int | None, stages: Stages) -> Measurements:
     for i, name in enumerate(_VERIFIED):
         bars[name] = verify(_scene(*_RUNS[name]), jobs=jobs)
         tell((i + 1) / len(_VERIFIED))
+    deflections, middles = _deflections(outcomes, jobs, stages)
     exact_falls, exact_start = _solve_falls(runs, stages)
+    exact_beams = _solve_beams(stages)
     return Measurements(
         runs=runs,
         bars=bars,
@@ -192,13 +197,21 @@ def measure(jobs: int | None, stages: Stages) -> Measurements:
             for step in STEPS
             for density in DENSITIES
         },
-        deflections=_deflections(outcomes, jobs, stages),
+        deflections=deflections,
+        middles=middles,
         explicit_seconds=float(explicit.summary["wall_seconds"]),
         implicit_seconds=float(implicit.summary["wall_seconds"]),
         stable_step=_largest_accepted_step(),
         exact_falls=exact_falls,
         exact_start=exact_start,
-        exact_deflections=_solve_beams(stages),
+        exact_deflections={
+            place: {load: sag.largest for load, sag in sags.items()}
+            for place, sags in exact_beams.items()
+        },
+        exact_middles={
+            place: {load: sag.middle for load, sag in sags.items()}
+            for place, sags in exact_beams.items()
+        },
     )
 
 
@@ -272,16 +285,19 @@ def _weight(scene: Scenario) -> float:
 
 def _deflections(
     outcomes: Mapping[Key, Outcome], jobs: int | None, stages: Stages
-) -> dict[float, Deflection]:
+) -> tuple[dict[float, Deflection], dict[float, Deflection]]:
+    """Return the largest deflection, and that of the centre node, by load."""
     tell = stages.of("error bars", 1, 2)
-    deflections = {}
+    by_probe: dict[str, dict[float, Deflection]] = {"deflection": {}, "middle": {}}
     for i, load in enumerate(LOADS):
         run = outcomes["load", load].value()
-        value = -float(run.summary["probes"]["deflection"]["final"])
-        rest = verify(as_static(run.scenario), jobs=jobs)["deflection"]
-        deflections[load] = Deflection(value, rest.bar + abs(value + rest.value))
+        verified = verify(as_static(run.scenario), jobs=jobs)
+        for probe, found in by_probe.items():
+            value = -float(run.summary["probes"][probe]["final"])
+            rest = verified[probe]
+            found[load] = Deflection(value, rest.bar + abs(value + rest.value))
         tell((i + 1) / len(LOADS))
-    return deflections
+    return by_probe["deflection"], by_probe["middle"]
 
 
 def _largest_accepted_step() -> float:
@@ -314,11 +330,13 @@ def _solve_falls(runs: Mapping[str, Result], stages: Stages) -> tuple[dict[str, 
     return falls, fall(chains["three"], np.linspace(0.0, runs[_FAILS].times[-1], 200))
 
 
-def _solve_beams(stages: Stages) -> dict[float, dict[float, float]]:
+def _solve_beams(stages: Stages) -> dict[float, dict[float, beam_exact.Deflection]]:
     """Solve for the load at its place, and at the nodes of the mesh to both sides of it."""
     places = (Tube().load_at, *nodes_beside_the_load())
     found = {
-        place: dict(zip(LOADS, elastica_deflections(Tube(load_at=place), LOADS), strict=True))
+        place: dict(
+            zip(LOADS, beam_exact.elastica_deflections(Tube(load_at=place), LOADS), strict=True)
+        )
         for place in places
     }
     stages.of("exact solutions")(1.0)

@@ -425,7 +425,20 @@ def _tube(m: Measurements) -> list[Quantity]:
         exact = m.exact_deflections[Tube().load_at][load]
         linear = euler_bernoulli_deflection(Tube(), load)
         kilonewtons = number(1e-3 * load, 1 if load < 1e4 else 2)
+        middle = m.middles[load]
         rows += [
+            Quantity(
+                f"middle_{kilonewtons}kN",
+                f"Tube under {kilonewtons} kN: deflection of the centre node",
+                "m",
+                claim,
+                middle.value,
+                middle.bar,
+                m.exact_middles[Tube().load_at][load],
+                _what_is_drawn(middle.value, claim),
+                command_of(run),
+                "middle",
+            ),
             Quantity(
                 f"deflection_{kilonewtons}kN",
                 f"Tube under {kilonewtons} kN: largest deflection",
@@ -453,12 +466,25 @@ def _tube(m: Measurements) -> list[Quantity]:
     return rows
 
 
+def _what_is_drawn(middle: float, claim: Claim) -> str:
+    """Say whether the report's number is that of the centre node, of which it draws the history."""
+    if not claim.is_met_by(middle):
+        return f"It rounds to {claim.rounded(middle)} m, which is not the report's number."
+    return (
+        "The report's number. Its Figure 18 follows the centre node, so this is what could be read "
+        "there; its text calls it the largest deflection, which is the next row."
+    )
+
+
 def _where_the_load_is(m: Measurements, load: float, claim: Claim) -> str:
-    """Say whether the report's number is that of its load, and where the load would have to be."""
+    """Say whether the report's number is the largest deflection, and what else would explain it."""
     exact = m.exact_deflections[Tube().load_at][load]
     if claim.is_met_by(exact):
         return "The report's number is the exact one, rounded."
     text = f"The exact value rounds to {claim.rounded(exact)} m."
+    middle = m.exact_middles[Tube().load_at][load]
+    if claim.is_met_by(middle):
+        text += " The report's is that of the centre node: see the row above."
     fitting = [
         f"a load at {number(place, 2)} m ({number(m.exact_deflections[place][load], 4)} m), a node "
         f"of the report's mesh, for {number(Tube().load_at, 2)} m lies between two"
@@ -467,7 +493,9 @@ def _where_the_load_is(m: Measurements, load: float, claim: Claim) -> str:
     ]
     if claim.is_met_by(exact - claim.half_digit):
         fitting.append("digits that were cut off, not rounded")
-    return f"{text} What would explain the report's: {', or '.join(fitting)}." if fitting else text
+    if fitting:
+        text += f" Less likely, as Figure 18 names that node: {', or '.join(fitting)}."
+    return text
 
 
 def _deflections(m: Measurements) -> list[tuple[float, Deflection, float, float]]:

@@ -30,7 +30,7 @@ struct PathPoint {
 /// A path of equilibria.
 struct PathBranch {
   int parent = -1;     ///< branch that it leaves; -1 for the first
-  int side = 0;        ///< +1 or -1: to which side of its parent
+  int side = 0;        ///< +1 or -1: to which side of its parent; 0: on from one that ends there
   std::string ending;  ///< why it ends where it does
   std::vector<PathPoint> points;
 };
@@ -55,10 +55,14 @@ struct ContinuationOptions {
 /// a fold where the factor turns, else a bifurcation. From there other branches start along the
 /// null vector of the stiffness, to both sides.
 ///
+/// No path is traced twice: a branch ends at a bifurcation of another one behind which all is
+/// traced or will be, and none starts where its first point lies on one that is over. An event
+/// belongs to the branch that meets it first.
+///
 /// A branch ends at the factor `to`, when it has gone as far to the other side of `from`, at its
-/// largest number of points, where it closes on itself, or where no further point is found. `start`
-/// is an equilibrium at the factor `from`. Leaves the model at the factor of the last point
-/// computed.
+/// largest number of points, where it closes on itself or meets another one, or where no further
+/// point is found. `start` is an equilibrium at the factor `from`. Leaves the model at the factor
+/// of the last point computed.
 std::vector<PathBranch> follow_path(Model& model, const LoadPath& loads, const Assembler& assembler,
                                     LinearSolver& solver, const ContinuationOptions& options,
                                     const Vector& start);

@@ -42,6 +42,9 @@ struct LinearBuckling {
   /// is for each unit of the load factor.
   double rotation = 0.0;
   double strain = 0.0;
+  /// Whether the loads make it buckle if their signs are turned round; sought where there are no
+  /// modes.
+  bool reversed = false;
 };
 
 /// Linear buckling: the lowest positive factors a of all loads at which (K0 + a K1) v = 0 has a

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "der/assembly/element_energy.hpp"
 #include "der/core/error.hpp"
+#include "der/model/moment_place.hpp"
 
 namespace der {
 namespace {
@@ -41,6 +43,7 @@ struct Part {
   Mass mass;
   Vector gravity_force;
   ElementLists elements;
+  std::vector<RodLayout> rods;
 };
 
 class EnergyReader : public ProbeReader {
@@ -63,6 +66,11 @@ class EnergyReader : public ProbeReader {
       constexpr EnergyTerm term = std::decay_t<decltype(list)>::KernelType::kTerm;
       if (terms_.has(term)) energy += element_energy(list, controls_, state.positions);
     });
+    for (const RodLayout& rod : part_.rods) {
+      const CellEnergies cells = cell_energies(rod, model, controls_, state.positions);
+      if (terms_.bend) energy += cells.bend;
+      if (terms_.spring) energy += cells.spring;
+    }
     return energy;
   }
 
@@ -85,7 +93,7 @@ Part part_of(const RodLayout& rod, const Model& model) {
   std::sort(dofs.begin(), dofs.end());
   const auto is_here = [&](Index dof) { return std::binary_search(dofs.begin(), dofs.end(), dof); };
 
-  Part part{{Vector::Zero(model.num_dofs()), {}}, Vector::Zero(model.num_dofs()), {}};
+  Part part{{Vector::Zero(model.num_dofs()), {}}, Vector::Zero(model.num_dofs()), {}, {rod}};
   for (const Index dof : dofs) {
     part.mass.lumped[dof] = model.mass.lumped[dof];
     part.gravity_force[dof] = model.gravity_force[dof];
@@ -111,7 +119,7 @@ std::unique_ptr<ProbeReader> make_energy_reader(const std::string& quantity,
                                                 const Model& model) {
   return std::make_unique<EnergyReader>(
       terms_of(quantity), rod ? part_of(model.rod(*rod), model)
-                              : Part{model.mass, model.gravity_force, model.elements});
+                              : Part{model.mass, model.gravity_force, model.elements, model.rods});
 }
 
 }  // namespace der

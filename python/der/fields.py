@@ -34,9 +34,10 @@ class RodFields:
     positions, velocities
         Of its nodes [m], [m/s], shape (frames, nodes of the rod, dim).
     curvature
-        Turning angle per length [1/m], shape (frames, nodes of the rod). Known where the rod bends
-        (inner nodes and clamped ends), and carried on linearly to free ends; 0 on a rod that bends
-        nowhere. Signed in the plane, positive counter-clockwise.
+        Of the rod [1/m], shape (frames, nodes of the rod), as its probes have it; where it jumps at a
+        node, the value after it. Without bending stiffness it is known at inner nodes and carried
+        on linearly to the ends; 0 on such a rod of two nodes. Signed in the plane, positive
+        counter-clockwise.
     tension
         Axial force [N], shape (frames, nodes of the rod): between the middles of the edges linear,
         and carried on linearly to the ends.

@@ -124,8 +124,11 @@ class Result:
         Returns
         -------
         arc_lengths
-            Of the places [m], shape (places,): the nodes, those that bend, or the middles of the
-            edges.
+            Of the places [m], shape (places,), ascending: the nodes, of a turning angle those that
+            bend, of strain and tension the middles of the edges. Curvature and moment also have the
+            places between nodes at which a load makes a kink, and where they jump the place stands
+            twice, with the values before and after it: between any two places in a row they are
+            linear.
         values
             In the SI unit of the quantity, shape (frames, places).
 

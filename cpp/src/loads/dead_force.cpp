@@ -28,4 +28,9 @@ void DeadForce::act_on(Index node, double weight, Model& model) const {
   }
 }
 
+std::array<Index, 2> DeadForce::as_controls(Model& model) const {
+  if (!controls_.empty()) return {controls_[0], controls_[1]};
+  return {model.controls.add({{0.0}, {constant_[0]}}), model.controls.add({{0.0}, {constant_[1]}})};
+}
+
 }  // namespace der

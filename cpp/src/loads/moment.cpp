@@ -3,34 +3,32 @@
 
 #include "der/loads/loads.hpp"
 #include "der/model/location.hpp"
-#include "der/supports/spring.hpp"
+#include "der/model/moment_place.hpp"
 
 namespace der {
 namespace {
 
 /// Whether a support holds the tangent at arc length `s` [m].
-bool is_clamped(const scenario::Scene& scene, const RodLayout& rod, double s) {
-  const double same_place = 1e-9 * rod.rest_length();
-  return std::any_of(scene.supports.begin(), scene.supports.end(),
-                     [&](const scenario::Support& support) {
-                       if (!support.clamp || support.rod != rod.name) return false;
-                       return support.at.kind == scenario::Location::Kind::All ||
-                              std::abs(arc_length_of(support.at, rod) - s) <= same_place;
-                     });
+bool is_clamped(const RodLayout& rod, double s) {
+  return std::any_of(rod.clamps.begin(), rod.clamps.end(), [&](const Clamp& clamp) {
+    return std::abs(rod.arc_length[static_cast<std::size_t>(clamp.place)] - s) <= rod.same_place();
+  });
 }
 
 }  // namespace
 
-void add_load(const scenario::Moment& load, const scenario::Scene& scene, Model& model) {
-  const RodLayout& rod = model.rod(load.rod);
+void add_load(const scenario::Moment& load, const scenario::Scene& /*scene*/, Model& model) {
+  RodLayout& rod = model.rod(load.rod);
   const Index control = model.controls.add(load.moment);
-  auto& moments = std::get<ElementList<PlanarMoment>>(model.elements);
   const double s = arc_length_of(load.at, rod);
   // The clamp takes it up; on the edges beside it, it would bend the rod by an error of order 1.
-  if (is_clamped(scene, rod, s)) return;
-  const double share = moment_share(rod, s);
-  for (const auto& [edge, weight] : edge_weights(rod, s)) {
-    moments.add(rod.edge_dofs(edge, model), {share * weight, control});
+  if (is_clamped(rod, s)) return;
+  MomentPlace& place = place_of_moments(s, rod);
+  place.moments.push_back(control);
+  auto& moments = std::get<ElementList<PlanarMoment>>(model.elements);
+  for (std::size_t i = 0; i < place.weights.size(); ++i) {
+    moments.add(rod.edge_dofs(place.first_edge + static_cast<Index>(i), model),
+                {place.series_share(rod.EI) * place.weights[i], control});
   }
 }
 

@@ -4,15 +4,21 @@
 namespace der {
 
 void add_load(const scenario::PointForce& load, const scenario::Scene& /*scene*/, Model& model) {
-  const RodLayout& rod = model.rod(load.rod);
+  RodLayout& rod = model.rod(load.rod);
   const DeadForce force(load.force, model);
   if (load.at.kind == scenario::Location::Kind::All) {
     for (const Index node : rod.nodes) force.act_on(node, 1.0, model);
     return;
   }
-  for (const auto& [place, weight] : node_weights(rod, arc_length_of(load.at, rod))) {
+  const double s = arc_length_of(load.at, rod);
+  const std::vector<Weighted> nodes = node_weights(rod, s);
+  for (const auto& [place, weight] : nodes) {
     force.act_on(rod.nodes[static_cast<std::size_t>(place)], weight, model);
   }
+  ForcePlace place;
+  place.arc_length = s;
+  if (nodes.size() > 1) place.force = force.as_controls(model);
+  rod.force_places.push_back(place);
 }
 
 }  // namespace der

@@ -30,9 +30,9 @@ const Clamp* RodLayout::clamp_at(Index place) const {
   return nullptr;
 }
 
-const TangentSpring* RodLayout::tangent_spring_at(double s) const {
-  for (const TangentSpring& spring : tangent_springs) {
-    if (std::abs(spring.arc_length - s) <= same_place()) return &spring;
+const MomentPlace* RodLayout::moment_place_at(double s) const {
+  for (const MomentPlace& place : moment_places) {
+    if (std::abs(place.arc_length - s) <= same_place()) return &place;
   }
   return nullptr;
 }

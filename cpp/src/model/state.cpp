@@ -4,6 +4,7 @@
 
 #include "der/assembly/element_energy.hpp"
 #include "der/model/model.hpp"
+#include "der/model/moment_place.hpp"
 #include "der/supports/supports.hpp"
 
 namespace der {
@@ -33,6 +34,11 @@ Energies energies(const Model& model, const State& state) {
     if constexpr (Kernel::kTerm == EnergyTerm::Bend) result.bend += energy;
     if constexpr (Kernel::kTerm == EnergyTerm::Spring) result.spring += energy;
   });
+  for (const RodLayout& rod : model.rods) {
+    const CellEnergies cells = cell_energies(rod, model, controls, state.positions);
+    result.bend += cells.bend;
+    result.spring += cells.spring;
+  }
   return result;
 }
 

@@ -8,6 +8,7 @@
 
 #include "der/assembly/element_energy.hpp"
 #include "der/core/error.hpp"
+#include "der/model/moment_place.hpp"
 
 namespace der {
 namespace {
@@ -44,6 +45,7 @@ struct Part {
   Mass mass;
   std::vector<Index> dofs;
   ElementLists elements;
+  std::vector<RodLayout> rods;
 
   [[nodiscard]] double gravity_energy(const Model& model, const Vector& positions) const {
     double energy = 0.0;
@@ -72,6 +74,11 @@ class EnergyReader : public ProbeReader {
       constexpr EnergyTerm term = std::decay_t<decltype(list)>::KernelType::kTerm;
       if (terms_.has(term)) energy += element_energy(list, controls_, state.positions);
     });
+    for (const RodLayout& rod : part_.rods) {
+      const CellEnergies cells = cell_energies(rod, model, controls_, state.positions);
+      if (terms_.bend) energy += cells.bend;
+      if (terms_.spring) energy += cells.spring;
+    }
     return energy;
   }
 
@@ -94,7 +101,7 @@ Part part_of(const RodLayout& rod, const Model& model) {
   std::sort(dofs.begin(), dofs.end());
   const auto is_here = [&](Index dof) { return std::binary_search(dofs.begin(), dofs.end(), dof); };
 
-  Part part{{Vector::Zero(model.num_dofs()), {}}, dofs, {}};
+  Part part{{Vector::Zero(model.num_dofs()), {}}, dofs, {}, {rod}};
   for (const Index dof : dofs) part.mass.lumped[dof] = model.mass.lumped[dof];
   for (const MassCoupling& coupling : model.mass.coupling) {
     if (is_here(coupling.a) && is_here(coupling.b)) part.mass.coupling.push_back(coupling);
@@ -113,7 +120,7 @@ Part part_of(const RodLayout& rod, const Model& model) {
 Part whole(const Model& model) {
   std::vector<Index> dofs(static_cast<std::size_t>(model.num_dofs()));
   std::iota(dofs.begin(), dofs.end(), Index{0});
-  return {model.mass, std::move(dofs), model.elements};
+  return {model.mass, std::move(dofs), model.elements, model.rods};
 }
 
 }  // namespace

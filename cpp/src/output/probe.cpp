@@ -30,6 +30,24 @@ Weights linear_weights(const std::vector<double>& arc, double s) {
   return {{right - 1, 1.0 - share}, {right, share}};
 }
 
+/// Linear between the samples on one side of `s`, which may be a place where the field jumps.
+Weights one_sided_weights(const std::vector<double>& arc, double s, scenario::Side side,
+                          double same_place) {
+  if (arc.size() == 1) return {{0, 1.0}};
+  if (side == scenario::Side::Before) {
+    const auto here = std::lower_bound(arc.begin(), arc.end(), s - same_place);
+    if (here != arc.end() && *here <= s + same_place) {
+      return {{static_cast<std::size_t>(here - arc.begin()), 1.0}};
+    }
+  } else {
+    const auto beyond = std::upper_bound(arc.begin(), arc.end(), s + same_place);
+    if (beyond != arc.begin() && *(beyond - 1) >= s - same_place) {
+      return {{static_cast<std::size_t>(beyond - arc.begin()) - 1, 1.0}};
+    }
+  }
+  return linear_weights(arc, s);
+}
+
 double weighted_sum(const Weights& weights, const RodField& field, const Model& model,
                     const State& state) {
   double sum = 0.0;
@@ -102,7 +120,7 @@ class ExtremeReader : public ProbeReader {
     const auto best = static_cast<std::size_t>(std::max_element(values_.begin(), values_.end()) -
                                                values_.begin());
     const bool inside = best > 0 && best + 1 < values_.size();
-    if (!inside || !field_->continuous()) return sign_ * values_[best];
+    if (!inside || !smooth_at(best)) return sign_ * values_[best];
     return sign_ * parabola_extreme(&arc_length_[best - 1], &values_[best - 1]);
   }
 
@@ -119,6 +137,11 @@ class ExtremeReader : public ProbeReader {
       end_ = linear_weights(field_->arc_length(), rod.rest_length());
       arc_length_.push_back(rod.rest_length());
     }
+  }
+
+  /// Whether a parabola may be laid through a value and its neighbours.
+  [[nodiscard]] bool smooth_at(std::size_t i) const {
+    return field_->continuous() && field_->smooth_at(start_.empty() ? i : i - 1);
   }
 
   void evaluate(const Model& model, const State& state) {
@@ -156,14 +179,29 @@ std::unique_ptr<RodField> make_probed_field(const scenario::Probe& probe, const 
   return field;
 }
 
+Weights point_weights(const scenario::Probe& probe, QuantityKind kind, const RodField& field,
+                      const RodLayout& rod, double s) {
+  switch (kind) {
+    case QuantityKind::Position:
+    case QuantityKind::Velocity:
+      return sample_weights(node_weights(rod, s));
+    case QuantityKind::Bend:
+      return one_sided_weights(field.arc_length(), s, probe.side.value_or(scenario::Side::After),
+                               rod.same_place());
+    case QuantityKind::Turn:
+    case QuantityKind::Edge:
+    case QuantityKind::Energy:
+      break;
+  }
+  return linear_weights(field.arc_length(), s);
+}
+
 std::unique_ptr<ProbeReader> make_point_reader(const scenario::Probe& probe, QuantityKind kind,
                                                const RodLayout& rod, const Model& model) {
   const double s = arc_length_of(*probe.at, rod);
   if (probe.quantity == "speed") return std::make_unique<SpeedReader>(node_weights(rod, s), rod);
   auto field = make_probed_field(probe, rod, model);
-  const bool at_nodes = kind == QuantityKind::Position || kind == QuantityKind::Velocity;
-  Weights weights =
-      at_nodes ? sample_weights(node_weights(rod, s)) : linear_weights(field->arc_length(), s);
+  Weights weights = point_weights(probe, kind, *field, rod, s);
   return std::make_unique<PointReader>(std::move(field), std::move(weights));
 }
 

@@ -12,7 +12,7 @@ const std::vector<Quantity>& quantities() {
       {"vx", "m/s", Kind::Velocity, "horizontal velocity"},
       {"vy", "m/s", Kind::Velocity, "vertical velocity"},
       {"speed", "m/s", Kind::Velocity, "magnitude of the velocity"},
-      {"turning_angle", "rad", Kind::Bend,
+      {"turning_angle", "rad", Kind::Turn,
        "angle from the edge before a node to the edge after it, positive counter-clockwise"},
       {"curvature", "1/m", Kind::Bend, "turning angle per length"},
       {"moment", "N m", Kind::Bend, "bending moment, positive where it bends counter-clockwise"},

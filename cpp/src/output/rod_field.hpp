@@ -10,8 +10,8 @@
 
 namespace der {
 
-/// A quantity along a rod, sampled where the discrete rod has it: at nodes or at the middles of
-/// edges.
+/// A quantity along a rod, sampled where the discrete rod has it: at nodes, at the middles of
+/// edges, or, of bending, where it has a kink as well.
 class RodField {
  public:
   explicit RodField(std::vector<double> arc_length) : arc_length_(std::move(arc_length)) {}
@@ -19,13 +19,16 @@ class RodField {
   RodField& operator=(const RodField&) = delete;
   virtual ~RodField() = default;
 
-  /// Rest arc length of each sample [m], ascending; none if the rod has the quantity nowhere.
+  /// Rest arc length of each sample [m], ascending; none if the rod has the quantity nowhere. Where
+  /// the quantity jumps the place stands twice, with the value before it and the one after it.
   [[nodiscard]] const std::vector<double>& arc_length() const { return arc_length_; }
   /// The value of sample number `i`.
   [[nodiscard]] virtual double sample(std::size_t i, const Model& model,
                                       const State& state) const = 0;
   /// False if values between the samples have no meaning.
   [[nodiscard]] virtual bool continuous() const { return true; }
+  /// False if the quantity may have a kink or jump at sample number `i`.
+  [[nodiscard]] virtual bool smooth_at(std::size_t /*i*/) const { return true; }
 
  private:
   std::vector<double> arc_length_;

@@ -106,7 +106,7 @@ class ProbeCheck {
                                   "'reduce: min' or 'max'",
                                   probe_.quantity));
     } else if (const auto rod = context_.find_rod(*probe_.rod, path_ / "rod")) {
-      check_along(*rod, kind == QuantityKind::Bend);
+      check_along(*rod, kind);
     }
   }
 
@@ -124,21 +124,47 @@ class ProbeCheck {
     if (probe_.rod) context_.find_rod(*probe_.rod, path_ / "rod");
   }
 
-  void check_along(int rod, bool bend) {
+  void check_along(int rod, QuantityKind kind) {
+    if (probe_.side && kind != QuantityKind::Bend) {
+      complain(path_ / "side",
+               fmt::format("'{}' has no sides: only curvature and moment jump", probe_.quantity));
+    } else if (probe_.side && !probe_.at) {
+      complain(path_ / "side", "a side is that of a place: it goes with 'at'");
+    }
+    if (kind == QuantityKind::Turn) {
+      check_turn(rod);
+      return;
+    }
+    if (kind == QuantityKind::Bend) check_bend(rod);
+    if (probe_.at) context_.nodes_at(rod, *probe_.at, path_ / "at", false);
+  }
+
+  /// A rod without bending stiffness has a curvature at its inner nodes alone.
+  void check_bend(int rod) {
+    const int nodes = context_.lines[static_cast<std::size_t>(rod)]->num_nodes();
+    if (nodes > 2 || !does_not_bend(context_.scene.given_rods[static_cast<std::size_t>(rod)])) {
+      return;
+    }
+    complain(path_ / "quantity", fmt::format("a rod of 2 nodes without a stiffness against "
+                                             "bending, EI, has no '{}'",
+                                             probe_.quantity));
+  }
+
+  void check_turn(int rod) {
     const int last = context_.lines[static_cast<std::size_t>(rod)]->num_nodes() - 1;
     const auto bends = [&](int node) {
       return (node > 0 && node < last) || !supports_known_ || context_.is_clamped(rod, node);
     };
     if (!probe_.at) {
-      if (bend && last < 2 && !bends(0) && !bends(last)) {
+      if (last < 2 && !bends(0) && !bends(last)) {
         complain(path_ / "quantity", fmt::format("a rod of 2 nodes without a clamp does not bend: "
                                                  "it has no '{}'",
                                                  probe_.quantity));
       }
       return;
     }
-    const auto nodes = context_.nodes_at(rod, *probe_.at, path_ / "at", bend);
-    if (bend && nodes && !bends(nodes->front())) {
+    const auto nodes = context_.nodes_at(rod, *probe_.at, path_ / "at", true);
+    if (nodes && !bends(nodes->front())) {
       complain(path_ / "at", fmt::format("'{}' needs a node that bends: an inner node, or an end "
                                          "that is clamped",
                                          probe_.quantity));

@@ -58,11 +58,6 @@ void check_support(CheckContext& context, int number) {
   if (nodes && support.holds()) hold(context, number, *rod, *nodes);
 }
 
-bool does_not_bend(const RodText& rod) {
-  const auto* direct = std::get_if<Stiffness>(&rod.cross_section);
-  return direct != nullptr && direct->EI == 0.0;
-}
-
 /// A spring on what is held anyway, or on what takes no moment, is a slip.
 void check_spring(CheckContext& context, int number) {
   const Path path{"supports", number};

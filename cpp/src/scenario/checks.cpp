@@ -95,6 +95,11 @@ std::optional<std::vector<int>> CheckContext::nodes_at(int rod, Location& at, co
   return std::nullopt;
 }
 
+bool does_not_bend(const RodText& rod) {
+  const auto* direct = std::get_if<Stiffness>(&rod.cross_section);
+  return direct != nullptr && direct->EI == 0.0;
+}
+
 void check_scene(SceneText& scene, Complaints& complaints) {
   CheckContext context{scene, complaints};
   check_rods(context);

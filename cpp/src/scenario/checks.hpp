@@ -43,6 +43,9 @@ struct CheckContext {
                                            bool needs_node);
 };
 
+/// Whether a rod has no stiffness against bending, EI.
+bool does_not_bend(const RodText& rod);
+
 void check_rods(CheckContext& context);
 void check_supports(CheckContext& context);
 /// Masses and bending, which depend on the supports.

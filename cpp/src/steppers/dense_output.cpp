@@ -1,5 +1,6 @@
 #include "der/steppers/dense_output.hpp"
 
+#include "der/model/moment_place.hpp"
 #include "der/steppers/work.hpp"
 #include "der/supports/supports.hpp"
 
@@ -61,7 +62,7 @@ void DenseOutput::evaluate(double time, const State& start, const State& end, St
 Work DenseOutput::powers(const State& where, const State& start, const State& end) {
   Work power;
   power.solver = (end.work.solver - start.work.solver) / (end.time - start.time);
-  power.supports = rotation_power(where, start, end);
+  add_table_powers(where, start, end, power);
   velocities_ = where.velocities;
   for (const HeldDof& held : model_.held) {
     const double velocity = end.velocities[held.dof];
@@ -76,16 +77,19 @@ Work DenseOutput::powers(const State& where, const State& start, const State& en
 }
 
 /// By a central difference over the length of the step.
-double DenseOutput::rotation_power(const State& where, const State& start, const State& end) {
+void DenseOutput::add_table_powers(const State& where, const State& start, const State& end,
+                                   Work& power) {
   model_.controls.evaluate(start.time, end.ramps, controls_before_);
   model_.controls.evaluate(end.time, end.ramps, controls_after_);
   controls_ = 0.5 * (controls_after_ - controls_before_);
   model_.controls.evaluate(where.time, end.ramps, controls_before_);
   controls_after_ = controls_before_ + controls_;
   controls_before_ -= controls_;
-  return rotation_work(model_,
-                       {where.positions, where.positions, controls_before_, controls_after_}) /
-         (end.time - start.time);
+  const double dt = end.time - start.time;
+  power.supports +=
+      rotation_work(model_, {where.positions, where.positions, controls_before_, controls_after_}) /
+      dt;
+  power.loads += cell_work(model_, controls_before_, controls_after_) / dt;
 }
 
 }  // namespace der

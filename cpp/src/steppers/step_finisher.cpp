@@ -1,5 +1,6 @@
 #include "der/steppers/step_finisher.hpp"
 
+#include "der/model/moment_place.hpp"
 #include "der/steppers/work.hpp"
 
 namespace der {
@@ -15,6 +16,7 @@ void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector
   model_.controls.evaluate(state.time + dt, state.ramps, controls_end_);
   state.work.supports +=
       rotation_work(model_, {state.positions, positions, controls_start_, controls_end_});
+  state.work.loads += cell_work(model_, controls_start_, controls_end_);
   for (const HeldDof& held : model_.held) {
     const double before = state.velocities[held.dof];
     const double after = (positions[held.dof] - state.positions[held.dof]) / dt;

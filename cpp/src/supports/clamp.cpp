@@ -39,20 +39,6 @@ Pivot pivot_at(const RodLayout& rod, Index place, Index edge) {
           clamp->rotation};
 }
 
-/// Natural turning angle [rad] of the cell between a clamp and an edge next to it.
-double rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, const Model& model) {
-  const double side = side_of(clamp, edge);
-  if (rod.natural_curvature.empty()) {
-    const Vec2 tangent{std::cos(clamp.direction), std::sin(clamp.direction)};
-    const Vec2 link = link_of(rod, edge, model).vector(model.initial_positions, 0.0, 0.0);
-    return side * angle_between(tangent, link);
-  }
-  const Index next = clamp.place + (side > 0.0 ? 1 : -1);
-  const double at_pivot = (1.0 - kPivotShare) * rod.natural_curvature[at(clamp.place)] +
-                          kPivotShare * rod.natural_curvature[at(next)];
-  return at_pivot * clamp_cell_length(rod, edge);
-}
-
 }  // namespace
 
 double initial_tangent_angle(const RodLayout& rod, Index place, const Model& model) {
@@ -83,6 +69,19 @@ Link link_of(const RodLayout& rod, Index edge, const Model& model) {
   return {rod.edge_dofs(edge, model), pivot_at(rod, edge, edge), pivot_at(rod, edge + 1, edge)};
 }
 
+Vec2 link_end(const Link& link, bool last, const Model& model, const State& state) {
+  const Pivot& pivot = last ? link.last : link.first;
+  const double turn =
+      pivot.rotation >= 0 ? model.controls.value(pivot.rotation, state.time, state.ramps) : 0.0;
+  const std::size_t x = last ? 2 : 0;
+  return Vec2(state.positions[link.dofs[x]], state.positions[link.dofs[x + 1]]) +
+         pivot.offset(turn);
+}
+
+Vec2 link_vector(const Link& link, const Model& model, const State& state) {
+  return link_end(link, true, model, state) - link_end(link, false, model, state);
+}
+
 double bend_length(const RodLayout& rod, Index place) {
   double length = rod.voronoi_length(place);
   if (rod.clamp_at(place - 1) != nullptr) length -= kNextCellLoss * rod.edge_length[at(place - 1)];
@@ -94,13 +93,26 @@ double clamp_cell_length(const RodLayout& rod, Index edge) {
   return kCellShare * rod.edge_length[at(edge)];
 }
 
+double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, const Model& model) {
+  const double side = side_of(clamp, edge);
+  if (rod.natural_curvature.empty()) {
+    const Vec2 tangent{std::cos(clamp.direction), std::sin(clamp.direction)};
+    const Vec2 link = link_of(rod, edge, model).vector(model.initial_positions, 0.0, 0.0);
+    return side * angle_between(tangent, link);
+  }
+  const Index next = clamp.place + (side > 0.0 ? 1 : -1);
+  const double at_pivot = (1.0 - kPivotShare) * rod.natural_curvature[at(clamp.place)] +
+                          kPivotShare * rod.natural_curvature[at(next)];
+  return at_pivot * clamp_cell_length(rod, edge);
+}
+
 double clamp_pivot_share() { return kPivotShare; }
 
 void add_clamp_cells(const Clamp& clamp, RodLayout& rod, Model& model) {
   for (const Index edge : {clamp.place - 1, clamp.place}) {
     if (edge < 0 || edge >= rod.num_edges()) continue;
     const Link link = link_of(rod, edge, model);
-    const double rest = rest_angle(rod, clamp, edge, model);
+    const double rest = clamp_rest_angle(rod, clamp, edge, model);
     rod.rest_turning_angle[at(clamp.place)] += rest;
     const auto add = [&](auto measure) {
       using Measure = decltype(measure);

@@ -52,10 +52,10 @@ TEST_CASE("springs against turning at one place are one element") {
       "  - {rod: rod, at: end, spring: {rotational_stiffness: 2}}\n"
       "  - {rod: rod, at: {node: -1}, spring: {rotational_stiffness: 3}}\n"
       "  - {rod: rod, at: 0.5, spring: {rotational_stiffness: 3}}\n");
-  CHECK(model.rods.front().tangent_springs.size() == 2);
+  CHECK(model.rods.front().moment_places.size() == 2);
   CHECK(count<RotationalSpring<2>>(model) == 2);
-  CHECK(model.rods.front().tangent_spring_at(1.0)->stiffness == doctest::Approx(5.0));
-  CHECK(model.rods.front().tangent_spring_at(0.4) == nullptr);
+  CHECK(model.rods.front().moment_place_at(1.0)->stiffness == doctest::Approx(5.0));
+  CHECK(model.rods.front().moment_place_at(0.4) == nullptr);
 }
 
 TEST_CASE("a spring holds the part that it pulls, along its own axes only") {

@@ -28,10 +28,32 @@ struct Clamp {
   Index rotation = -1;     ///< control that turns it [rad]; -1: none
 };
 
-/// A spring against turning of a rod's tangent.
-struct TangentSpring {
+/// A place at which moments act on a rod's tangent: those of loads, those of springs against
+/// turning, or both (model/moment_place.hpp).
+struct MomentPlace {
   double arc_length = 0.0;  ///< [m]
-  double stiffness = 0.0;   ///< [N m/rad]
+  /// The edges whose directions the moments turn, from this one on: one, or two neighbours.
+  Index first_edge = 0;
+  std::vector<double> weights;  ///< of these directions, adding up to 1
+  double cell_length = 0.0;     ///< c [m]: they turn against the tangent by c/EI times the moment
+  std::vector<Index> moments;   ///< controls of the loads [N m]
+  double stiffness = 0.0;       ///< of the springs together [N m/rad]
+  Index spring = -1;            ///< number of their element in its list; -1: no spring
+
+  /// Stiffness of springs and cell in series against that of the springs, 1/(1 + k c/EI); the part
+  /// of the loads' moments that turns the edges.
+  [[nodiscard]] double series_share(double EI) const {
+    return stiffness == 0.0 ? 1.0 : 1.0 / (1.0 + stiffness * cell_length / EI);
+  }
+};
+
+/// A place at which a point force acts on a rod, of a load or of a spring to an anchor.
+struct ForcePlace {
+  double arc_length = 0.0;  ///< [m]
+  /// Controls of the load [N]; -1: there is none, or it is constant and at a node.
+  std::array<Index, 2> force{-1, -1};
+  Vec2 stiffness = Vec2::Zero();  ///< of the spring [N/m]
+  Vec2 anchor = Vec2::Zero();     ///< [m]
 };
 
 /// Where the nodes and edges of one rod are in the model, and what is known of it for probes and
@@ -50,10 +72,11 @@ struct RodLayout {
   /// Natural turning angle at each node that bends [rad], at clamped ones of the clamp's cells; 0
   /// at free ends.
   std::vector<double> rest_turning_angle;
-  std::vector<Clamp> clamps;                   ///< none on a rod that does not bend
-  std::vector<TangentSpring> tangent_springs;  ///< no two at the same place
-  double draw_radius = 0.0;           ///< half the height of the section [m]; 0 if not known
-  std::vector<double> sphere_radius;  ///< per node [m]; 0: no sphere
+  std::vector<Clamp> clamps;               ///< none on a rod that does not bend
+  std::vector<MomentPlace> moment_places;  ///< no two at the same place
+  std::vector<ForcePlace> force_places;    ///< of forces at single places
+  double draw_radius = 0.0;                ///< half the height of the section [m]; 0 if not known
+  std::vector<double> sphere_radius;       ///< per node [m]; 0: no sphere
 
   [[nodiscard]] double rest_length() const { return arc_length.back(); }
   /// Two arc lengths [m] closer than this are the same place.
@@ -65,8 +88,8 @@ struct RodLayout {
   [[nodiscard]] std::array<Index, 4> edge_dofs(Index edge, const Model& model) const;
   /// Null if the tangent at that node is free.
   [[nodiscard]] const Clamp* clamp_at(Index place) const;
-  /// Null if no spring turns against the tangent at that arc length [m].
-  [[nodiscard]] const TangentSpring* tangent_spring_at(double s) const;
+  /// Null if no moment acts at that arc length [m].
+  [[nodiscard]] const MomentPlace* moment_place_at(double s) const;
 };
 
 /// A degree of freedom that the solver does not find: it keeps its initial value, plus a control.

@@ -29,11 +29,12 @@ class ProbeReader {
 /// - strain and tension, which belong to the middles of the edges, linearly between those and
 /// beyond
 ///   the outermost ones;
-/// - turning angle, curvature and moment at the nodes; at a clamped end curvature and moment are
-///   carried on from its cell to the node, so that the moment is the clamp's reaction;
+/// - turning angles at the nodes that bend;
+/// - curvature and moment linearly between nodes, with the kinks and jumps that loads make there
+///   (output/moment_recovery.hpp); at a clamp they are carried on from its cells to the node, so
+///   that the moment is the clamp's reaction;
 /// - an extreme over a rod is that of the parabola through the three samples around the extreme
-/// one,
-///   except for the turning angle, a sum over a cell, which is not interpolated;
+///   one, where there is no kink; not for the turning angle, a sum over a cell;
 /// - the energies of a rod count a node that rods share in each of them.
 class Probe {
  public:

@@ -10,7 +10,8 @@ namespace der {
 enum class QuantityKind {
   Position,  ///< of the rod's points: any arc length
   Velocity,  ///< of the rod's points: any arc length
-  Bend,      ///< of the nodes that bend: inner nodes, and ends that are clamped
+  Turn,      ///< of the nodes that bend: inner nodes, and ends that are clamped
+  Bend,      ///< of the rod's bending: any arc length, with two values where moments jump
   Edge,      ///< of the edges: any arc length
   Energy,    ///< of a rod or of the whole model: no place
 };

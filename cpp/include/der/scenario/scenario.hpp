@@ -221,12 +221,15 @@ struct Solver {
 };
 
 enum class Reduce { None, Min, Max };
+/// Which of the two values of a quantity that jumps: toward smaller arc lengths, or larger ones.
+enum class Side { Before, After };
 struct Probe {
   std::string name;
   std::string quantity;            ///< a name of the probe registry (x, vy, turning_angle, ...)
   std::optional<std::string> rod;  ///< absent: the whole model (energies only)
   std::optional<Location> at;
   Reduce over = Reduce::None;  ///< with `over: rod`: the extreme along the rod
+  std::optional<Side> side;    ///< absent: after; curvature and moment only
   Mark mark;
 };
 

@@ -26,8 +26,8 @@ class DenseOutput {
  private:
   /// Powers [W] at `where`, the start or the end of the step.
   Work powers(const State& where, const State& start, const State& end);
-  /// Power [W] of clamps that turn.
-  double rotation_power(const State& where, const State& start, const State& end);
+  /// Adds the powers [W] of what turns with the tables: clamps, and cells under moments.
+  void add_table_powers(const State& where, const State& start, const State& end, Work& power);
 
   const Model& model_;
   ExplicitForce force_;

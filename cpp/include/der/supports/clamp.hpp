@@ -39,12 +39,18 @@ struct Link {
   [[nodiscard]] Vec2 vector(const Vector& positions, double first_turn, double last_turn) const;
 };
 Link link_of(const RodLayout& rod, Index edge, const Model& model);
+/// The link's vector [m] in a state, with the clamps as they are turned there.
+Vec2 link_vector(const Link& link, const Model& model, const State& state);
+/// The point [m] about which the link turns at its first or last end: a clamp's pivot, or the node.
+Vec2 link_end(const Link& link, bool last, const Model& model, const State& state);
 
 /// Length [m] over which the turning angle at a node without a clamp acts: its Voronoi length, less
 /// 1/48 of an edge that a clamp ends.
 double bend_length(const RodLayout& rod, Index place);
 /// Length [m] over which an edge turns against the clamped tangent at its end: 25/48 of the edge.
 double clamp_cell_length(const RodLayout& rod, Index edge);
+/// Natural turning angle [rad] of that cell, from the start to the end of the rod.
+double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, const Model& model);
 /// Where the moment of that cell acts, as a share of the edge from the clamp on: 1/5.
 double clamp_pivot_share();
 

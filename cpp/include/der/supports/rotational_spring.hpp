@@ -25,21 +25,31 @@ struct RotationalSpring {
     std::array<double, Edges> weights{};  ///< [-]
   };
 
+  /// sum w_i theta_i - rest [rad].
+  static double turn(const Constants& c, const Eigen::Matrix<double, kDofs, 1>& x) {
+    const Vec2 drawn{std::cos(c.direction), std::sin(c.direction)};
+    const Vec2 first = x.template segment<2>(2) - x.template segment<2>(0);
+    double turn = angle_between(drawn, first) - c.rest;
+    if constexpr (Edges == 2) {
+      const Vec2 second = x.template segment<2>(4) - x.template segment<2>(2);
+      turn += c.weights[1] * angle_between(first, second);
+    }
+    return turn;
+  }
+
   template <Derivatives D>
   static void evaluate(const Constants& c, const Vector& /*controls*/,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     using Coordinates = Eigen::Matrix<double, kDofs, 1>;
+    const double turned = turn(c, x);
+    const double moment = c.stiffness * turned;
+    out.energy = 0.5 * moment * turned;
+    if constexpr (D == Derivatives::Energy) return;
+
     std::array<Vec2, Edges> edge;
     for (int i = 0; i < Edges; ++i) {
       edge[std::size_t(i)] = x.template segment<2>(2 * i + 2) - x.template segment<2>(2 * i);
     }
-    const Vec2 drawn{std::cos(c.direction), std::sin(c.direction)};
-    double turn = angle_between(drawn, edge.front()) - c.rest;
-    if constexpr (Edges == 2) turn += c.weights[1] * angle_between(edge[0], edge[1]);
-    const double moment = c.stiffness * turn;
-    out.energy = 0.5 * moment * turn;
-    if constexpr (D == Derivatives::Energy) return;
-
     Coordinates slope = Coordinates::Zero();  // of the turn
     std::array<double, Edges> inverse;
     std::array<Vec2, Edges> d;

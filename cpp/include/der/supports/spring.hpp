@@ -14,13 +14,10 @@ namespace der {
 // spring becomes a clamp. docs/mechanics.md derives c.
 
 /// Adds the springs of a support: the one to the anchor as an element, the one against turning to
-/// the layout of its rod, where it joins what is at the same place.
+/// the moment places of its rod, where it joins what is at the same place.
 void add_spring(const scenario::Support& support, Model& model);
 
-/// Adds the elements of a rod's springs against turning.
-void add_rotational_springs(const RodLayout& rod, Model& model);
-
-/// What of a moment at arc length `s` [m] turns the weighted edges: 1 without a spring there.
-double moment_share(const RodLayout& rod, double s);
+/// Adds the elements of a rod's springs against turning, before there are moments of loads.
+void add_rotational_springs(RodLayout& rod, Model& model);
 
 }  // namespace der

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+
+namespace der {
+
+// The chain knows the directions of its edges, not the rod's tangent. Moments at a place act on a
+// weighted sum w of two directions (model/location.hpp), and under the moment m that they leave to
+// the rod its tangent t there turns further, since the rod bends between the two:
+//   t = w + c m/EI,   m = M - k t = (M - k w) / (1 + k c/EI),
+// M the moment of the loads, k the stiffness of springs against turning, all turns counted from
+// where the springs are slack. The elements carry what depends on positions, with the same forces;
+// here is the rest: what the cell stores, c m^2/(2 EI), and the difference between the energy of
+// the springs, 1/2 k t^2, and that of their element. Without it the energies are of order 1.
+// docs/mechanics.md derives c.
+
+/// The place of moments at arc length `s` [m] of a rod, made if it is not there.
+MomentPlace& place_of_moments(double s, RodLayout& rod);
+
+/// Turn [rad] of the weighted directions from where the springs are slack; 0 without springs.
+double spring_turn(const MomentPlace& place, const Model& model, const Vector& positions);
+
+/// Moment [N m] that acts on the rod where loads apply `applied`: less what the springs take.
+double carried_moment(const MomentPlace& place, const RodLayout& rod, const Model& model,
+                      const Vector& positions, double applied);
+
+/// Energies [J] of the cells under the moments of a rod.
+struct CellEnergies {
+  double bend = 0.0;
+  double spring = 0.0;  ///< besides that of the elements
+};
+CellEnergies cell_energies(const RodLayout& rod, const Model& model, const Vector& controls,
+                           const Vector& positions);
+
+/// Work [J] that the loads' moments do on the cells while the tables go from one set of values to
+/// another: with t = share (w + c M/EI) the edges turn by share w, and the rest of the tangent's
+/// turn depends on M alone.
+double cell_work(const Model& model, const Vector& controls_start, const Vector& controls_end);
+
+}  // namespace der

@@ -1,0 +1,106 @@
+#include "der/model/moment_place.hpp"
+
+#include <algorithm>
+
+#include "der/assembly/element_energy.hpp"
+#include "der/core/index.hpp"
+#include "der/model/location.hpp"
+
+namespace der {
+namespace {
+
+double middle(const RodLayout& rod, Index edge) {
+  return 0.5 * (rod.arc_length[at(edge)] + rod.arc_length[at(edge + 1)]);
+}
+
+/// Distance [m] from the middle of the outermost edge to a place beyond it; 0 for places inside.
+double beyond_middle(const RodLayout& rod, double s) {
+  return std::max({0.0, middle(rod, 0) - s, s - middle(rod, rod.num_edges() - 1)});
+}
+
+double cell_length(const RodLayout& rod, const MomentPlace& place) {
+  const double beyond = beyond_middle(rod, place.arc_length);
+  if (place.weights.size() == 1) return 2.0 / 3.0 * beyond;
+  const double spacing = middle(rod, place.first_edge + 1) - middle(rod, place.first_edge);
+  if (beyond == 0.0) return place.weights[0] * place.weights[1] * spacing;
+  const double share = -std::min(place.weights[0], place.weights[1]);
+  return beyond - share * (2.0 + share) * spacing;
+}
+
+double applied_moment(const MomentPlace& place, const Vector& controls) {
+  double sum = 0.0;
+  for (const Index moment : place.moments) sum += controls[moment];
+  return sum;
+}
+
+template <int Edges>
+double turn_of(Index element, const Model& model, const Vector& positions) {
+  using Kernel = RotationalSpring<Edges>;
+  const auto& springs = std::get<ElementList<Kernel>>(model.elements);
+  return Kernel::turn(springs.constants[at(element)], gather(springs.dofs[at(element)], positions));
+}
+
+/// What the cells hold with the edges as they were where the springs are slack [J].
+double stored_by_loads(const Model& model, const Vector& controls) {
+  double energy = 0.0;
+  for (const RodLayout& rod : model.rods) {
+    if (rod.EI == 0.0) continue;
+    for (const MomentPlace& place : rod.moment_places) {
+      const double applied = applied_moment(place, controls);
+      energy += 0.5 * place.cell_length * place.series_share(rod.EI) * applied * applied / rod.EI;
+    }
+  }
+  return energy;
+}
+
+}  // namespace
+
+MomentPlace& place_of_moments(double s, RodLayout& rod) {
+  if (const MomentPlace* known = rod.moment_place_at(s)) {
+    return rod.moment_places[static_cast<std::size_t>(known - rod.moment_places.data())];
+  }
+  std::vector<Weighted> edges = edge_weights(rod, s);
+  std::sort(edges.begin(), edges.end(),
+            [](const Weighted& a, const Weighted& b) { return a.place < b.place; });
+  MomentPlace place;
+  place.arc_length = s;
+  place.first_edge = edges.front().place;
+  for (const Weighted& edge : edges) place.weights.push_back(edge.weight);
+  place.cell_length = cell_length(rod, place);
+  return rod.moment_places.emplace_back(std::move(place));
+}
+
+double spring_turn(const MomentPlace& place, const Model& model, const Vector& positions) {
+  if (place.spring < 0) return 0.0;
+  return place.weights.size() == 1 ? turn_of<1>(place.spring, model, positions)
+                                   : turn_of<2>(place.spring, model, positions);
+}
+
+double carried_moment(const MomentPlace& place, const RodLayout& rod, const Model& model,
+                      const Vector& positions, double applied) {
+  return place.series_share(rod.EI) *
+         (applied - place.stiffness * spring_turn(place, model, positions));
+}
+
+CellEnergies cell_energies(const RodLayout& rod, const Model& model, const Vector& controls,
+                           const Vector& positions) {
+  CellEnergies energies;
+  if (rod.EI == 0.0) return energies;
+  for (const MomentPlace& place : rod.moment_places) {
+    const double moment =
+        carried_moment(place, rod, model, positions, applied_moment(place, controls));
+    const double cell_turn = place.cell_length * moment / rod.EI;
+    energies.bend += 0.5 * cell_turn * moment;
+    const double turn = spring_turn(place, model, positions);
+    const double tangent = turn + cell_turn;
+    energies.spring +=
+        0.5 * place.stiffness * (tangent * tangent - place.series_share(rod.EI) * turn * turn);
+  }
+  return energies;
+}
+
+double cell_work(const Model& model, const Vector& controls_start, const Vector& controls_end) {
+  return stored_by_loads(model, controls_end) - stored_by_loads(model, controls_start);
+}
+
+}  // namespace der

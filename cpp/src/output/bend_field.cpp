@@ -1,0 +1,252 @@
+#include "output/bend_field.hpp"
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "der/core/index.hpp"
+#include "der/energies/planar_bend.hpp"
+#include "der/kinematics/planar_edge.hpp"
+#include "der/supports/clamp.hpp"
+#include "output/moment_recovery.hpp"
+#include "output/natural_curvature.hpp"
+
+namespace der {
+namespace {
+
+/// The turn from one direction to the next.
+struct BendCell {
+  Link before;
+  Link after;
+  std::optional<Clamp> start;  // its tangent stands in place of the link before
+  std::optional<Clamp> end;    // its tangent stands in place of the link after
+};
+
+Vec2 tangent(const Clamp& clamp, const Model& model, const State& state) {
+  const double angle = tangent_angle(clamp, model, state);
+  return {std::cos(angle), std::sin(angle)};
+}
+
+double turning_angle(const BendCell& cell, const Model& model, const State& state) {
+  const Vec2 before =
+      cell.start ? tangent(*cell.start, model, state) : link_vector(cell.before, model, state);
+  const Vec2 after =
+      cell.end ? tangent(*cell.end, model, state) : link_vector(cell.after, model, state);
+  return angle_between(before, after);
+}
+
+/// From edge to edge at an inner node, from or to the held tangent at a clamped end.
+BendCell cell_at(const RodLayout& rod, Index node, const Model& model) {
+  BendCell cell;
+  if (node > 0) {
+    cell.before = link_of(rod, node - 1, model);
+  } else {
+    cell.start = *rod.clamp_at(node);
+  }
+  if (node < rod.num_edges()) {
+    cell.after = link_of(rod, node, model);
+  } else {
+    cell.end = *rod.clamp_at(node);
+  }
+  return cell;
+}
+
+/// Turning angles, times a factor: 1, or what makes a curvature or a moment of them.
+class TurnField : public RodField {
+ public:
+  /// `nodes`: positions in the rod of the nodes that bend, with the factor of each.
+  TurnField(const RodLayout& rod, const std::vector<Weighted>& nodes, bool continuous,
+            const Model& model)
+      : RodField(arc_lengths(rod, nodes)), continuous_(continuous) {
+    for (const auto& [node, factor] : nodes) cells_.push_back({cell_at(rod, node, model), factor});
+  }
+  [[nodiscard]] double sample(std::size_t i, const Model& model,
+                              const State& state) const override {
+    return cells_[i].second * turning_angle(cells_[i].first, model, state);
+  }
+  [[nodiscard]] bool continuous() const override { return continuous_; }
+
+ private:
+  static std::vector<double> arc_lengths(const RodLayout& rod, const std::vector<Weighted>& nodes) {
+    std::vector<double> result;
+    for (const auto& [node, factor] : nodes) result.push_back(rod.arc_length[at(node)]);
+    return result;
+  }
+
+  std::vector<std::pair<BendCell, double>> cells_;
+  bool continuous_;
+};
+
+/// Inner nodes, and ends that are clamped.
+std::unique_ptr<RodField> turning_angles(const RodLayout& rod, const Model& model) {
+  std::vector<Weighted> nodes;
+  for (Index i = 0; i <= rod.num_edges(); ++i) {
+    const bool inner = i > 0 && i < rod.num_edges();
+    if (inner || rod.clamp_at(i) != nullptr) nodes.push_back({i, 1.0});
+  }
+  return std::make_unique<TurnField>(rod, nodes, false, model);
+}
+
+/// Curvature or moment of a rod without bending stiffness.
+std::unique_ptr<RodField> limp_field(bool moment, const RodLayout& rod, const Model& model) {
+  std::vector<Weighted> nodes;
+  for (Index i = 1; i < rod.num_edges(); ++i) {
+    nodes.push_back({i, moment ? 0.0 : 1.0 / rod.voronoi_length(i)});
+  }
+  return std::make_unique<TurnField>(rod, nodes, true, model);
+}
+
+/// Curvature or moment of a rod with bending stiffness: along each edge that of its two ends,
+/// linear but for the loads inside the edge.
+template <class Measure>
+class BendField : public RodField {
+ public:
+  static std::unique_ptr<RodField> make(bool moment, const RodLayout& rod, const Model& model) {
+    const MomentRecovery recovery(rod, model);
+    return std::unique_ptr<RodField>(
+        new BendField(moment, rod, model, samples_of(rod, recovery), recovery));
+  }
+
+  [[nodiscard]] double sample(std::size_t i, const Model& model,
+                              const State& state) const override {
+    const auto& [edge, place, smooth] = samples_[i];
+    const auto& [first, last] = edges_[at(edge)];
+    const double share =
+        (place.arc_length - first.arc_length) / (last.arc_length - first.arc_length);
+    double value = recovery_.inside(edge, place, model, state) / per_moment_;
+    if (share != 1.0) value += (1.0 - share) * line(edge, first, model, state);
+    if (share != 0.0) value += share * line(edge, last, model, state);
+    return value;
+  }
+  [[nodiscard]] bool smooth_at(std::size_t i) const override { return samples_[i].smooth; }
+
+ private:
+  struct Sample {
+    Index edge = 0;
+    MomentRecovery::Place place;
+    bool smooth = true;
+  };
+  /// Where the chain has a moment: at a node, at the pivot of a clamp, and, as it must be, at an
+  /// end that is not clamped.
+  struct Known {
+    bool last = false;               // at the last end of its edge
+    double arc_length = 0.0;         // [m]
+    double natural_curvature = 0.0;  // [1/m]
+    std::optional<BendCell> cell;    // none at an end
+    double length = 0.0;             // over which the cell turns [m]
+    double rest_angle = 0.0;         // of the cell [rad]
+    Link link;                       // of the edge
+  };
+
+  BendField(bool moment, const RodLayout& rod, const Model& model, std::vector<Sample> samples,
+            MomentRecovery recovery)
+      : RodField(arc_lengths(samples)),
+        moment_(moment),
+        EI_(rod.EI),
+        per_moment_(moment ? 1.0 : rod.EI),
+        recovery_(std::move(recovery)),
+        samples_(std::move(samples)) {
+    const NaturalCurvature natural(rod, model);
+    for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+      edges_.emplace_back(known(rod, edge, false, natural, model),
+                          known(rod, edge, true, natural, model));
+    }
+  }
+
+  static std::vector<Sample> samples_of(const RodLayout& rod, const MomentRecovery& recovery) {
+    std::vector<Sample> samples;
+    for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+      const auto add = [&](double s, bool before, bool smooth) {
+        samples.push_back({edge, {s, before}, smooth});
+      };
+      const bool smooth = !recovery.has_kink_at(edge) && !recovery.jumps_at(edge);
+      add(rod.arc_length[at(edge)], false, smooth);
+      for (const auto& [s, jumps] : recovery.breaks(edge)) {
+        add(s, true, false);
+        if (jumps) add(s, false, false);
+      }
+      const bool end = edge + 1 == rod.num_edges();
+      if (end || recovery.jumps_at(edge + 1)) add(rod.arc_length[at(edge + 1)], true, false);
+    }
+    return samples;
+  }
+
+  static std::vector<double> arc_lengths(const std::vector<Sample>& samples) {
+    std::vector<double> result;
+    for (const Sample& sample : samples) result.push_back(sample.place.arc_length);
+    return result;
+  }
+
+  static Known known(const RodLayout& rod, Index edge, bool last, const NaturalCurvature& natural,
+                     const Model& model) {
+    const Index node = last ? edge + 1 : edge;
+    Known result;
+    result.last = last;
+    result.link = link_of(rod, edge, model);
+    result.arc_length = rod.arc_length[at(node)];
+    if (const Clamp* clamp = rod.clamp_at(node)) {
+      const double pivot = clamp_pivot_share() * rod.edge_length[at(edge)];
+      result.arc_length += last ? -pivot : pivot;
+      result.cell.emplace();
+      if (last) {
+        result.cell->before = result.link;
+        result.cell->end = *clamp;
+      } else {
+        result.cell->start = *clamp;
+        result.cell->after = result.link;
+      }
+      result.length = clamp_cell_length(rod, edge);
+      result.rest_angle = clamp_rest_angle(rod, *clamp, edge, model);
+    } else if (node > 0 && node < rod.num_edges()) {
+      result.cell = cell_at(rod, node, model);
+      result.length = bend_length(rod, node);
+      result.rest_angle = rod.rest_turning_angle[at(node)];
+    }
+    result.natural_curvature = natural.at(result.arc_length);
+    return result;
+  }
+
+  /// The straight line along an edge at one of the places that define it.
+  [[nodiscard]] double line(Index edge, const Known& known, const Model& model,
+                            const State& state) const {
+    if (!known.cell) {
+      const MomentRecovery::Place end{known.arc_length, known.last};
+      const double moment =
+          recovery_.at_end(known.last, model, state) - recovery_.inside(edge, end, model, state);
+      return moment / per_moment_ + (moment_ ? 0.0 : known.natural_curvature);
+    }
+    const double angle = turning_angle(*known.cell, model, state);
+    const Vec2 point = link_end(known.link, known.last, model, state);
+    return chain(known, angle) +
+           recovery_.smooth(edge, known.last, point, model, state) / per_moment_;
+  }
+
+  /// What the chain has.
+  [[nodiscard]] double chain(const Known& known, double angle) const {
+    if (!moment_) return (angle - known.rest_angle) / known.length + known.natural_curvature;
+    const double rest_kappa = Measure::of(known.rest_angle).kappa;
+    return bend_response<Measure>(EI_ / known.length, rest_kappa, angle).moment;
+  }
+
+  bool moment_;
+  double EI_;
+  double per_moment_;  // 1, or EI to make curvatures of moments
+  MomentRecovery recovery_;
+  std::vector<Sample> samples_;
+  std::vector<std::pair<Known, Known>> edges_;  // first and last of each
+};
+
+}  // namespace
+
+std::unique_ptr<RodField> make_bend_field(const std::string& quantity, const RodLayout& rod,
+                                          const Model& model) {
+  if (quantity == "turning_angle") return turning_angles(rod, model);
+  const bool moment = quantity == "moment";
+  if (rod.EI == 0.0) return limp_field(moment, rod, model);
+  if (rod.curvature == scenario::CurvatureMeasure::Angle) {
+    return BendField<AngleCurvature>::make(moment, rod, model);
+  }
+  return BendField<TangentCurvature>::make(moment, rod, model);
+}
+
+}  // namespace der

@@ -1,0 +1,245 @@
+#include "output/moment_recovery.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "der/core/index.hpp"
+#include "der/kinematics/planar_edge.hpp"
+#include "der/model/moment_place.hpp"
+
+namespace der {
+namespace {
+
+constexpr Index kNone = -1;
+
+/// The clamped node nearest to an edge on one side, or kNone.
+Index clamp_before(const RodLayout& rod, Index edge) {
+  for (Index node = edge; node >= 0; --node) {
+    if (rod.clamp_at(node) != nullptr) return node;
+  }
+  return kNone;
+}
+Index clamp_beyond(const RodLayout& rod, Index edge) {
+  for (Index node = edge + 1; node <= rod.num_edges(); ++node) {
+    if (rod.clamp_at(node) != nullptr) return node;
+  }
+  return kNone;
+}
+
+}  // namespace
+
+MomentRecovery::MomentRecovery(const RodLayout& rod, const Model& model)
+    : rod_(rod), edges_(at(rod.num_edges())) {
+  for (const Index node : rod.nodes) first_dofs_.push_back(model.dof(node, 0));
+  for (const ForcePlace& place : rod.force_places) {
+    std::vector<Weighted> nodes = node_weights(rod, place.arc_length);
+    if (nodes.size() > 1) forces_.push_back({place, std::move(nodes)});
+  }
+  for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+    const Index start = clamp_before(rod, edge);
+    const Index end = clamp_beyond(rod, edge);
+    add_moments(edge, start, end);
+    add_forces(edge, start, end);
+  }
+  find_kinks(model);
+}
+
+MomentRecovery::Where MomentRecovery::where_is(double s, Index edge) const {
+  if (s <= rod_.arc_length[at(edge)] + rod_.same_place()) return Where::Before;
+  if (s >= rod_.arc_length[at(edge + 1)] - rod_.same_place()) return Where::Beyond;
+  return Where::Inside;
+}
+
+// The moment at a place is that of all that stands beyond it, or the opposite of all that stands
+// before it. A clamp at `start` or `end` takes what acts on its other side: the sums go to the side
+// on which a load is not spread across a clamp.
+
+void MomentRecovery::add_moments(Index edge, Index start, Index end) {
+  for (std::size_t p = 0; p < rod_.moment_places.size(); ++p) {
+    const MomentPlace& place = rod_.moment_places[p];
+    const auto count = static_cast<Index>(place.weights.size());
+    const bool from_before = end != kNone && place.first_edge + count > end;
+    const Where where = where_is(place.arc_length, edge);
+    MomentTerm term{p, place.arc_length, where == Where::Inside};
+    for (Index i = 0; i < count; ++i) {
+      const Index other = place.first_edge + i;
+      const double weight = place.weights[at(i)];
+      if (other == edge) term.own = weight;
+      if (from_before && other < std::max<Index>(start, 0)) continue;
+      if (!from_before && end != kNone && other >= end) continue;
+      if (from_before) {
+        if (other < edge) term.first += weight;
+        if (other <= edge) term.last += weight;
+      } else {
+        if (other >= edge) term.first -= weight;
+        if (other > edge) term.last -= weight;
+      }
+    }
+    const bool in_span = (start == kNone || place.arc_length >= rod_.arc_length[at(start)]) &&
+                         (end == kNone || place.arc_length <= rod_.arc_length[at(end)]);
+    const double beyond = from_before ? 0.0 : 1.0;
+    if (in_span && where != Where::Inside) {
+      const double factor = where == Where::Beyond ? beyond : beyond - 1.0;
+      term.first += factor;
+      term.last += factor;
+    }
+    if (term.inside) {
+      term.before = beyond;
+      term.after = beyond - 1.0;
+    }
+    constexpr double kRounding = 1e-12;
+    if (term.inside || term.own != 0.0 || std::abs(term.first) > kRounding ||
+        std::abs(term.last) > kRounding) {
+      edges_[at(edge)].moments.push_back(term);
+    }
+  }
+}
+
+void MomentRecovery::add_forces(Index edge, Index start, Index end) {
+  for (std::size_t f = 0; f < forces_.size(); ++f) {
+    const Force& force = forces_[f];
+    if (force.nodes.front().place > edge || force.nodes.back().place <= edge) continue;
+    const bool from_before = end != kNone && force.nodes.back().place > end;
+    ForceTerm term{f, where_is(force.place.arc_length, edge), from_before ? -1.0 : 1.0, {}};
+    for (const Weighted& node : force.nodes) {
+      const bool before = node.place <= edge;
+      const bool in_span =
+          (start == kNone || node.place >= start) && (end == kNone || node.place <= end);
+      if (before == from_before && in_span) term.nodes.push_back(node);
+    }
+    edges_[at(edge)].forces.push_back(std::move(term));
+  }
+}
+
+void MomentRecovery::find_kinks(const Model& model) {
+  kinks_.assign(rod_.nodes.size(), false);
+  for (std::size_t i = 0; i < rod_.nodes.size(); ++i) {
+    kinks_[i] = rod_.sphere_radius[i] > 0.0 || model.free_index[at(first_dofs_[i])] < 0 ||
+                model.free_index[at(first_dofs_[i] + 1)] < 0;
+    for (const ForcePlace& place : rod_.force_places) {
+      if (std::abs(place.arc_length - rod_.arc_length[i]) <= rod_.same_place()) kinks_[i] = true;
+    }
+  }
+}
+
+double MomentRecovery::carried(std::size_t number, const Model& model, const State& state) const {
+  const MomentPlace& place = rod_.moment_places[number];
+  double applied = 0.0;
+  for (const Index moment : place.moments) {
+    applied += model.controls.value(moment, state.time, state.ramps);
+  }
+  return carried_moment(place, rod_, model, state.positions, applied);
+}
+
+Vec2 MomentRecovery::node_point(Index node, const State& state) const {
+  return state.positions.segment<2>(first_dofs_[at(node)]);
+}
+
+Vec2 MomentRecovery::point_of(const Force& force, const State& state) const {
+  Vec2 point = Vec2::Zero();
+  for (const auto& [node, weight] : force.nodes) point += weight * node_point(node, state);
+  return point;
+}
+
+Vec2 MomentRecovery::value_of(const Force& force, const Vec2& point, const Model& model,
+                              const State& state) {
+  const ForcePlace& place = force.place;
+  Vec2 value = -place.stiffness.cwiseProduct(point - place.anchor);
+  for (int c = 0; c < 2; ++c) {
+    const Index control = place.force[at(c)];
+    if (control >= 0) value[c] += model.controls.value(control, state.time, state.ramps);
+  }
+  return value;
+}
+
+double MomentRecovery::smooth(Index edge, bool last, const Vec2& point, const Model& model,
+                              const State& state) const {
+  const EdgeTerms& terms = edges_[at(edge)];
+  double moment = 0.0;
+  // A moment is a couple at the nodes of its edge: a pivot between them sees the nearer one's force
+  // taken by the clamp.
+  const Vec2 along = node_point(edge + 1, state) - node_point(edge, state);
+  const double pivot =
+      (point - node_point(last ? edge + 1 : edge, state)).dot(along) / along.squaredNorm();
+  for (const MomentTerm& term : terms.moments) {
+    const double factor = (last ? term.last : term.first) + term.own * pivot;
+    if (factor != 0.0) moment += factor * carried(term.place, model, state);
+  }
+  for (const ForceTerm& term : terms.forces) {
+    const Force& force = forces_[term.place];
+    const Vec2 stands = point_of(force, state);
+    Vec2 arm = Vec2::Zero();  // of the true force, less those of the spread one
+    if (term.where == (term.sign > 0.0 ? Where::Beyond : Where::Before)) arm = stands - point;
+    for (const auto& [node, weight] : term.nodes) arm -= weight * (node_point(node, state) - point);
+    moment += term.sign * cross(arm, value_of(force, stands, model, state));
+  }
+  return moment;
+}
+
+double MomentRecovery::inside(Index edge, const Place& place, const Model& model,
+                              const State& state) const {
+  const EdgeTerms& terms = edges_[at(edge)];
+  const double s = place.arc_length;
+  double moment = 0.0;
+  for (const MomentTerm& term : terms.moments) {
+    if (!term.inside) continue;
+    const bool beyond = std::abs(term.arc_length - s) <= rod_.same_place()
+                            ? place.loads_here_are_beyond
+                            : term.arc_length > s;
+    const double factor = beyond ? term.before : term.after;
+    if (factor != 0.0) moment += factor * carried(term.place, model, state);
+  }
+  for (const ForceTerm& term : terms.forces) {
+    if (term.where != Where::Inside) continue;
+    const Force& force = forces_[term.place];
+    const double there = force.place.arc_length;
+    const bool counts = term.sign > 0.0 ? there > s : there < s;
+    if (!counts) continue;
+    const Index end = term.sign > 0.0 ? edge : edge + 1;
+    const double share = (there - s) / (there - rod_.arc_length[at(end)]);
+    const Vec2 stands = point_of(force, state);
+    const Vec2 arm = share * (stands - node_point(end, state));
+    moment += term.sign * cross(arm, value_of(force, stands, model, state));
+  }
+  return moment;
+}
+
+double MomentRecovery::at_end(bool last, const Model& model, const State& state) const {
+  const MomentPlace* place = rod_.moment_place_at(last ? rod_.rest_length() : 0.0);
+  if (place == nullptr) return 0.0;
+  const auto number = static_cast<std::size_t>(place - rod_.moment_places.data());
+  return last ? carried(number, model, state) : -carried(number, model, state);
+}
+
+std::vector<MomentRecovery::Break> MomentRecovery::breaks(Index edge) const {
+  std::vector<Break> found;
+  for (const MomentTerm& term : edges_[at(edge)].moments) {
+    if (term.inside) found.push_back({term.arc_length, true});
+  }
+  for (const ForceTerm& term : edges_[at(edge)].forces) {
+    if (term.where == Where::Inside) {
+      found.push_back({forces_[term.place].place.arc_length, false});
+    }
+  }
+  // One of each place: the one with a jump, where there is one.
+  std::sort(found.begin(), found.end(), [&](const Break& a, const Break& b) {
+    if (std::abs(a.arc_length - b.arc_length) > rod_.same_place()) {
+      return a.arc_length < b.arc_length;
+    }
+    return a.jumps && !b.jumps;
+  });
+  found.erase(std::unique(found.begin(), found.end(),
+                          [&](const Break& a, const Break& b) {
+                            return std::abs(a.arc_length - b.arc_length) <= rod_.same_place();
+                          }),
+              found.end());
+  return found;
+}
+
+bool MomentRecovery::jumps_at(Index node) const {
+  if (node == 0 || node == rod_.num_edges()) return false;
+  return rod_.clamp_at(node) != nullptr ||
+         rod_.moment_place_at(rod_.arc_length[at(node)]) != nullptr;
+}
+
+}  // namespace der

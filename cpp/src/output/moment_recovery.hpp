@@ -1,0 +1,101 @@
+#pragma once
+
+#include <vector>
+
+#include "der/core/types.hpp"
+#include "der/model/location.hpp"
+#include "der/model/model.hpp"
+#include "der/model/state.hpp"
+
+namespace der {
+
+/// Makes the bending moment of a rod out of that of its chain.
+///
+/// The chain's moment at a node is that of the loads beyond it as they are spread over nodes and
+/// edges: a moment over two edges, a point force between nodes over four nodes (docs/mechanics.md).
+/// Spread and true load have the same resultants, so that the two moments differ next to the load
+/// alone: by what the true loads beyond a place give more than the spread ones, in the deformed
+/// shape. That is of order 0 for moments and of order 1 for forces; without it curvature and moment
+/// would be wrong next to each load.
+///
+/// Along an edge the moment is a straight line, `smooth` at both its ends, and what the loads that
+/// stand inside the edge make of it, `inside`.
+class MomentRecovery {
+ public:
+  MomentRecovery(const RodLayout& rod, const Model& model);
+
+  /// Where along an edge a value is: a load at that very place is before it or beyond it.
+  struct Place {
+    double arc_length = 0.0;  ///< [m]
+    bool loads_here_are_beyond = false;
+  };
+  /// A place inside an edge at which the moment has a kink, or jumps.
+  struct Break {
+    double arc_length = 0.0;  ///< [m]
+    bool jumps = false;
+  };
+
+  /// What is added to the chain's moment [N m] at a point of an edge, at its first end (`last`
+  /// false) or its last one, to have the straight line.
+  [[nodiscard]] double smooth(Index edge, bool last, const Vec2& point, const Model& model,
+                              const State& state) const;
+  /// What is added to the straight line at a place of an edge [N m].
+  [[nodiscard]] double inside(Index edge, const Place& place, const Model& model,
+                              const State& state) const;
+  /// Moment [N m] in the rod at its start or its end, which are not clamped.
+  [[nodiscard]] double at_end(bool last, const Model& model, const State& state) const;
+
+  /// Inside an edge, in the order of the arc length.
+  [[nodiscard]] std::vector<Break> breaks(Index edge) const;
+  [[nodiscard]] bool jumps_at(Index node) const;
+  /// Whether a force at a node, of a load or a support, may give the moment a kink there.
+  [[nodiscard]] bool has_kink_at(Index node) const {
+    return kinks_[static_cast<std::size_t>(node)];
+  }
+
+ private:
+  enum class Where { Before, Inside, Beyond };  // of a load, as seen from an edge
+
+  /// How the moment at a place enters an edge: times these factors.
+  struct MomentTerm {
+    std::size_t place = 0;  // in RodLayout::moment_places
+    double arc_length = 0.0;
+    bool inside = false;
+    double first = 0.0, last = 0.0;    // of `smooth`
+    double own = 0.0;                  // weight of this edge
+    double before = 0.0, after = 0.0;  // of `inside`, on either side of the place
+  };
+  /// How a force between nodes enters an edge whose ends part its nodes.
+  struct ForceTerm {
+    std::size_t place = 0;  // in `forces_`
+    Where where = Where::Inside;
+    double sign = 1.0;            // -1: counted by what stands before the edge
+    std::vector<Weighted> nodes;  // on that side
+  };
+  struct Force {
+    ForcePlace place;
+    std::vector<Weighted> nodes;
+  };
+  struct EdgeTerms {
+    std::vector<MomentTerm> moments;
+    std::vector<ForceTerm> forces;
+  };
+
+  [[nodiscard]] Where where_is(double s, Index edge) const;
+  void add_moments(Index edge, Index start, Index end);
+  void add_forces(Index edge, Index start, Index end);
+  void find_kinks(const Model& model);
+  [[nodiscard]] double carried(std::size_t place, const Model& model, const State& state) const;
+  [[nodiscard]] Vec2 node_point(Index node, const State& state) const;
+  [[nodiscard]] Vec2 point_of(const Force& force, const State& state) const;
+  [[nodiscard]] static Vec2 value_of(const Force& force, const Vec2& point, const Model& model,
+                                     const State& state);
+
+  RodLayout rod_;
+  std::vector<Index> first_dofs_;  // of each node
+  std::vector<Force> forces_;      // between nodes
+  std::vector<EdgeTerms> edges_;
+  std::vector<bool> kinks_;
+};
+
+}  // namespace der

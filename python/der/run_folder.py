@@ -10,7 +10,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from der._core import FileRecording, Scenario, read_run
+from der._core import FileRecording, Scenario, __version__, read_run
 from der._core import save_run as _save_run
 from der.errors import DerError
 from der.probe_series import make_probes
@@ -92,7 +92,12 @@ def _read_summary(folder: Path, status: str) -> dict[str, Any]:
 def save_run(result: Result, folder: str | os.PathLike[str]) -> Path:
     """Write a result as a run folder; see `Result.save`."""
     folder = Path(folder)
-    summary = json.dumps(result.summary, indent=2, ensure_ascii=False)
+    # That of a killed run is bare, and the version is what marks the file as one of der's.
+    summary = json.dumps(
+        {**result.summary, "der_version": result.summary.get("der_version", __version__)},
+        indent=2,
+        ensure_ascii=False,
+    )
     _save_run(
         folder,
         result.scenario,

@@ -369,6 +369,10 @@ def test_a_changed_number_is_seen(tube, tmp_path):
 def test_saving_replaces_runs_and_nothing_else(tube, tmp_path):
     result = der.run(tube)
     result.save(tmp_path / "run")
+    killed = dataclasses.replace(result, summary={"status": "running"})
+    for _ in range(2):
+        killed.save(tmp_path / "run")
+    assert der.open_run(tmp_path / "run").summary == killed.summary
     result.save(tmp_path / "run")
     (tmp_path / "run" / "results.h5").write_text("mine")
     with pytest.raises(der.DerError, match="would be replaced"):

@@ -34,9 +34,9 @@ class RodFields:
     positions, velocities
         Of its nodes [m], [m/s], shape (frames, nodes of the rod, dim).
     curvature
-        Of the rod [1/m], shape (frames, nodes of the rod), as its probes have it; where it jumps at a
-        node, the value after it. Without bending stiffness it is known at inner nodes and carried
-        on linearly to the ends; 0 on such a rod of two nodes. Signed in the plane, positive
+        Of the rod [1/m], shape (frames, nodes of the rod), as its probes have it; where it jumps
+        at a node, the value after it. Without bending stiffness it is known at inner nodes and
+        carried on linearly to the ends; 0 on such a rod of two nodes. Signed in the plane, positive
         counter-clockwise.
     tension
         Axial force [N], shape (frames, nodes of the rod): between the middles of the edges linear,

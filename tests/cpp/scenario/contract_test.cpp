@@ -282,11 +282,15 @@ TEST_CASE("masses: spheres and supports make up for a rod without density") {
   CHECK(with({{"time", ""}, {"analysis", "static"}}).empty());
 }
 
-TEST_CASE("probes: bending quantities stand where the rod bends") {
-  const std::string at_start = "{a: {rod: beam, at: start, quantity: moment}}";
+TEST_CASE("probes: turning angles stand where the rod bends, curvature and moment anywhere") {
+  const std::string at_start = "{a: {rod: beam, at: start, quantity: turning_angle}}";
   CHECK(contains(complaints({{"output.probes", at_start}}), "an end that is clamped"));
   CHECK(complaints(
             {{"output.probes", at_start}, {"supports", "[{rod: beam, at: start, clamp: true}]"}})
+            .empty());
+  CHECK(complaints({{"output.probes",
+                     "{a: {rod: beam, at: start, quantity: moment}, b: {rod: beam, at: 0.123, "
+                     "quantity: curvature, side: before}}"}})
             .empty());
   CHECK(complaints({{"output.probes",
                      "{a: {rod: beam, at: 0.123, quantity: tension}, b: {rod: "

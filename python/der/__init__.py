@@ -50,7 +50,14 @@ from der.accuracy import (
     verify,
 )
 from der.analyses import BucklingModes, Modes, Path
-from der.errors import DerError, Diagnostic, DivergedError, NotConvergedError, SceneError
+from der.errors import (
+    DerError,
+    DerWarning,
+    Diagnostic,
+    DivergedError,
+    NotConvergedError,
+    SceneError,
+)
 from der.exporting import export
 from der.probe_series import ProbeSeries
 from der.result import Result
@@ -68,6 +75,7 @@ __all__ = [
     "BucklingModes",
     "Counters",
     "DerError",
+    "DerWarning",
     "Diagnostic",
     "DivergedError",
     "Energies",

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import inspect
+import warnings
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -45,6 +47,22 @@ class DerError(RuntimeError):
         super().__init__(message)
         self.status = status
         self.result: Result | None = None
+
+
+class DerWarning(UserWarning):
+    """What can be run as it is, but is most likely not what was meant."""
+
+
+def warn(messages: Iterable[str]) -> None:
+    """Issue a `DerWarning` for each message, at the line that called into der."""
+    level = 2
+    frame = inspect.currentframe()
+    while (
+        frame and (frame := frame.f_back) and frame.f_globals.get("__name__", "").startswith("der.")
+    ):
+        level += 1
+    for message in messages:
+        warnings.warn(message, DerWarning, stacklevel=level)
 
 
 class SceneError(DerError, ValueError):

@@ -173,7 +173,7 @@ class Workers:
             simulation = Simulation(scenario)
             if task.start is not None:
                 simulation.positions[:] = task.start
-            result = simulation.run(progress=tick)
+            result = simulation.run(progress=tick, warns=False)
         except DerError as error:
             return Outcome(error.result, error, time.thread_time() - start)
         return Outcome(result, None, time.thread_time() - start)

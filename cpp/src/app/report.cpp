@@ -10,6 +10,7 @@
 
 #include "der/app/format.hpp"
 #include "der/output/datasets.hpp"
+#include "der/output/hints.hpp"
 #include "der/output/summary.hpp"
 
 namespace der::app {
@@ -248,6 +249,7 @@ std::string run_report(const Simulation& simulation, const Recorder& recorder,
   for (const std::string& warning : warnings(simulation, recorder, outcome)) {
     text += line("warning", style.warning(warning), style);
   }
+  for (const std::string& hint : hints(simulation)) text += line("hint", hint, style);
   text += line("results", (folder.path() / "").string(), style);
   if (!outcome.path.empty()) return text + "\n" + path_tables(recorder, outcome, style);
   if (!recorder.probes().empty() && recorder.has_data()) {

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from der._core import Scenario
 from der.errors import DerError
@@ -42,6 +43,8 @@ class Task:
         those of the result are empty.
     max_seconds
         CPU time after which a run is broken off and counts as failed, with the status ``too_long``.
+    start
+        Positions of the nodes to start from [m], shape (nodes, dim); None: as the scene says.
     """
 
     scenarios: Sequence[Scenario]
@@ -49,6 +52,7 @@ class Task:
     repeats: int = 1
     keep_motion: bool = True
     max_seconds: float = math.inf
+    start: NDArray[np.float64] | None = None
 
 
 @dataclass(frozen=True)
@@ -143,7 +147,7 @@ class Workers:
         for scenario in task.scenarios:
             outcome = min(
                 (
-                    self._run_once(scenario, shown.part(repeat, task.repeats), task.max_seconds)
+                    self._run_once(task, scenario, shown.part(repeat, task.repeats))
                     for repeat in range(task.repeats)
                 ),
                 key=lambda outcome: outcome.cpu_seconds,
@@ -155,18 +159,21 @@ class Workers:
         shown(1.0)
         return outcome
 
-    def _run_once(self, scenario: Scenario, shown: ProgressFunction, max_seconds: float) -> Outcome:
+    def _run_once(self, task: Task, scenario: Scenario, shown: ProgressFunction) -> Outcome:
         start = time.thread_time()
 
         def tick(share: float) -> None:
             if self._stop.is_set():
                 raise KeyboardInterrupt
-            if time.thread_time() - start > max_seconds:
-                raise DerError(f"it took more than {max_seconds:g} s of CPU time", TOO_LONG)
+            if time.thread_time() - start > task.max_seconds:
+                raise DerError(f"it took more than {task.max_seconds:g} s of CPU time", TOO_LONG)
             shown(share)
 
         try:
-            result = Simulation(scenario).run(progress=tick)
+            simulation = Simulation(scenario)
+            if task.start is not None:
+                simulation.positions[:] = task.start
+            result = simulation.run(progress=tick, warns=False)
         except DerError as error:
             return Outcome(error.result, error, time.thread_time() - start)
         return Outcome(result, None, time.thread_time() - start)

@@ -64,6 +64,7 @@ class Simulation(_core.Simulation):
         out: str | os.PathLike[str] | None = None,
         progress: bool | ProgressFunction = False,
         check: bool = True,
+        warns: bool = True,
     ) -> Result:
         """Run from the present state to the end of the scene and record it.
 
@@ -85,6 +86,8 @@ class Simulation(_core.Simulation):
             done, from 0 to 1.
         check
             Whether a run that fails raises; otherwise `Result.status` tells.
+        warns
+            Whether the hints of the summary are issued as warnings.
 
         Returns
         -------
@@ -97,6 +100,11 @@ class Simulation(_core.Simulation):
             If the run fails; their ``result`` holds everything up to the last good step.
         ValueError
             If `until` lies before the present time or beyond the scene's end.
+
+        Warns
+        -----
+        DerWarning
+            If a run with a tolerance takes very many steps: why, and what takes fewer.
         """
         end = self._end_time(until)
         line = ProgressLine() if progress is True else None
@@ -116,6 +124,8 @@ class Simulation(_core.Simulation):
             error = error_for(recording.status, recording.message)
             error.result = result
             raise error
+        if warns:
+            warn(result.summary["hints"])
         return result
 
     def modes(self, k: int = 6) -> Modes:

@@ -68,6 +68,31 @@ def test_equal_steps_over_close_entries_of_a_table_are_warned_of_by_name(swing):
     assert der.run(swing).summary["warnings"] == []
 
 
+def test_a_tolerance_that_takes_very_many_steps_says_why(swing):
+    """The swing turns chaotic after 1.5 s and needs steps a hundred times shorter."""
+    swing["time"] = {"duration": 3, "tolerance": 1e-3}
+    swing["output"]["every"] = 0.5
+    with pytest.warns(der.DerWarning, match="motion has grown rough") as caught:
+        result = der.run(swing)
+    assert caught[0].filename == __file__
+    [hint] = result.summary["hints"]
+    assert hint == str(caught[0].message)
+    assert f"took {result.summary['steps']} steps" in hint
+    assert "larger tolerance" in hint
+    swing["time"]["duration"] = 0.5
+    assert der.run(swing).summary["hints"] == []
+
+
+def test_a_tolerance_that_is_small_throughout_says_so(swing):
+    """Steps of order 1 fall in proportion to the tolerance, and all are alike."""
+    swing["rods"][0]["nodes"] = 3
+    swing["time"] = {"duration": 0.1, "tolerance": 3e-6, "integrator": "implicit_euler"}
+    with pytest.warns(
+        der.DerWarning, match=r"the whole duration of 0\.1 s .* 'integrator: sdirk5'"
+    ):
+        der.run(swing)
+
+
 def test_probes_know_their_unit_and_summary(spheres):
     result = der.run(spheres)
     speed = result.probes["v_mid"]

@@ -105,6 +105,8 @@ class Simulation {
   void restore(const State& saved);
   [[nodiscard]] const Counters& counters() const { return counters_; }
   [[nodiscard]] bool adaptive() const { return adaptive_.has_value(); }
+  /// The longest adaptive step that this simulation has done [s]; 0 for equal ones.
+  [[nodiscard]] double longest_step() const { return adaptive_ ? adaptive_->longest_step() : 0.0; }
   [[nodiscard]] const StepPlan& plan() const { return plan_; }
   /// Whether the scene's duration is reached; a static scene always is there.
   [[nodiscard]] bool finished() const;

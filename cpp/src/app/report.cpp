@@ -11,6 +11,7 @@
 #include "der/app/format.hpp"
 #include "der/core/printable.hpp"
 #include "der/output/datasets.hpp"
+#include "der/output/hints.hpp"
 #include "der/output/result_size.hpp"
 #include "der/output/summary.hpp"
 
@@ -270,6 +271,7 @@ std::string run_report(const Simulation& simulation, const Recorder& recorder,
   text += model_lines(simulation, style);
   text += cost_line(simulation, outcome, style);
   text += warning_lines(warnings(simulation, recorder, outcome), style);
+  for (const std::string& hint : hints(simulation)) text += line("hint", hint, style);
   text += line("results", printable((folder.path() / "").string()), style);
   if (!outcome.path.empty()) return text + "\n" + path_tables(recorder, outcome, style);
   if (!recorder.probes().empty() && recorder.has_data()) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "der/output/datasets.hpp"
+#include "der/output/hints.hpp"
 #include "der/steppers/fine_tables.hpp"
 #include "der/version.hpp"
 
@@ -241,6 +242,7 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
     summary["work"] = work_json(simulation.state().work, *recorder.energies());
   }
   summary["warnings"] = warnings(simulation, recorder, outcome);
+  summary["hints"] = hints(simulation);
   summary["probes"] = probes_json(recorder);
   summary["scene"] = simulation.scenario().source();
   summary["der_version"] = version;

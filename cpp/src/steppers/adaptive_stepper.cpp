@@ -76,6 +76,7 @@ AdaptiveReport AdaptiveStepper::advance(State& state, double horizon) {
         const double most = report.rejected > 0 ? 1.0 : kGreatestFactor;
         state.time = last ? stop : start_.time + length;
         state.last_error = error;
+        longest_step_ = std::max(longest_step_, length);
         // A step cut short by a stop says little about the next one.
         const double base = last && length < wanted ? wanted : length;
         state.next_step = base * std::clamp(factor, kLeastFactor, most);

@@ -7,6 +7,10 @@ Fluids Eng. 116, 1994, 405-413). Factor and order follow the rule of W. L. Oberk
 where the observed order is within 10 % of it, otherwise 3 and the observed order, held between 1/2
 and the formal one. Where the values go to and fro, the bar is three times their range (L. Eca and
 M. Hoekstra, J. Comput. Phys. 262, 2014, 104-130).
+
+A value may converge and yet show no order on three levels: two errors of opposite sign are enough.
+Its changes still shrink, and three times their range holds the truth. Such a value is called
+settled and not flagged.
 """
 
 from __future__ import annotations
@@ -14,6 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Literal
 
 #: What was found out about a sequence:
@@ -21,33 +26,43 @@ from typing import Literal
 #: - ``converged``: at the expected order or faster;
 #: - ``exact``: refining changes nothing beyond rounding;
 #: - ``two levels``: the order could not be measured, since only one refinement was done;
-#: - ``slow``: converges at less than three quarters of the expected order;
+#: - ``settled``: the changes shrink by as much as order 1 would have it, but not as expected;
+#: - ``slow``: the changes shrink by less, at less than three quarters of the expected order;
 #: - ``diverging``: the changes grow;
-#: - ``oscillating``: the value goes to and fro;
+#: - ``oscillating``: the value goes to and fro, and the changes hardly shrink;
 #: - ``damped``: the stepper's own damping hides a motion;
 #: - ``contradicted``: another stepper with much smaller steps comes to another value;
 #: - ``failed``: a finer run failed;
-#: - ``unmatched``: finer meshes find another number of its kind, such as folds of a path.
+#: - ``other branch``: a finer run ends in the mirror image of the shape, another solution;
+#: - ``unmatched``: not all meshes find it, such as a fold of a path.
 Verdict = Literal[
     "converged",
     "exact",
     "two levels",
+    "settled",
     "slow",
     "diverging",
     "oscillating",
     "damped",
     "contradicted",
     "failed",
+    "other branch",
     "unmatched",
 ]
 
-_FLAGGED = ("slow", "diverging", "oscillating", "damped", "contradicted", "failed", "unmatched")
+#: No order is seen, and the changes do not shrink: another level may tell more.
+_UNSETTLED = ("slow", "diverging", "oscillating")
+_FLAGGED = (*_UNSETTLED, "damped", "contradicted", "failed", "other branch", "unmatched")
 
 _FACTOR_AT_ORDER = 1.25
 _FACTOR_OFF_ORDER = 3.0
 _NEAR_ORDER = 0.1  # of the expected order
 _SLOW = 0.75  # of the expected order
 _LEAST_ORDER = 0.5
+#: The last change is at most this share of the largest one: a half, as of order 1, and a little.
+_SETTLED = 0.55
+#: A value whose bar is less than this share of it does not tell on which side the structure is.
+_SAME_ON_BOTH_SIDES = 0.1
 
 
 @dataclass(frozen=True)
@@ -79,6 +94,11 @@ class ErrorEstimate:
         """Whether the sequence does not converge as it should."""
         return self.verdict in _FLAGGED
 
+    @property
+    def unsettled(self) -> bool:
+        """Whether a finer level may still show that the sequence converges."""
+        return self.verdict in _UNSETTLED
+
     def widened(self, bar: float, correction: float = 0.0) -> ErrorEstimate:
         """Return an estimate with a correction and a bar added."""
         return replace(self, bar=self.bar + bar, correction=self.correction + correction)
@@ -92,7 +112,7 @@ def estimate_error(
     Parameters
     ----------
     values
-        Two or three values, coarsest first.
+        Two or more values, coarsest first. The last three tell the order.
     order
         Expected order of convergence.
     noise
@@ -103,27 +123,26 @@ def estimate_error(
     Raises
     ------
     ValueError
-        For fewer than two or more than three values.
+        For fewer than two values.
     """
-    if not 2 <= len(values) <= 3:
-        raise ValueError(f"expected two or three values, got {len(values)}")
-    first = values[1] - values[0]
-    second = values[-1] - values[1]
-    if max(abs(first), abs(second)) <= noise:
-        return ErrorEstimate(first + second, noise, None, order, "exact")
+    if len(values) < 2:
+        raise ValueError(f"expected two or more values, got {len(values)}")
+    changes = [abs(fine - coarse) for coarse, fine in pairwise(values)]
+    if max(changes) <= noise:
+        return ErrorEstimate(values[-1] - values[0], noise, None, order, "exact")
     if len(values) == 2:
-        correction = first + first / (ratio**order - 1.0)
+        correction = (values[1] - values[0]) * (1.0 + 1.0 / (ratio**order - 1.0))
         return ErrorEstimate(
             correction, _FACTOR_OFF_ORDER * abs(correction) + noise, None, order, "two levels"
         )
-    if abs(second) <= noise:  # the first refinement has removed the error
-        return ErrorEstimate(
-            first + second, _FACTOR_OFF_ORDER * abs(first) + noise, None, order, "converged"
-        )
-    if first * second <= 0.0:
-        bar = _FACTOR_OFF_ORDER * max(abs(first), abs(second)) + noise
-        return ErrorEstimate(first + second, bar, None, order, "oscillating")
-    return _monotone(first, second, order, noise, ratio)
+    trend = _trend(values, order, noise, ratio)
+    verdict = trend.verdict
+    if verdict in _UNSETTLED and changes[-1] <= _SETTLED * max(changes[:-1]):
+        verdict = "settled"
+    factor = _FACTOR_AT_ORDER if trend.at_order and len(values) == 3 else _FACTOR_OFF_ORDER
+    reached = (*values, trend.limit)
+    bar = factor * (max(reached) - min(reached)) + noise
+    return ErrorEstimate(trend.limit - values[0], bar, trend.order, order, verdict)
 
 
 def estimate_from_levels(
@@ -141,22 +160,50 @@ def estimate_from_levels(
     return estimate_error(values, order, noise, ratio)
 
 
+def on_one_branch(estimate: ErrorEstimate, mirrored: bool, largest: float) -> ErrorEstimate:
+    """Say that the error is not known where levels end on different sides and the value shows it.
+
+    Parameters
+    ----------
+    estimate
+        From all levels.
+    mirrored
+        Whether a level ends in the mirror image of the shape of another.
+    largest
+        Largest absolute value in the run.
+    """
+    if not mirrored or not _SAME_ON_BOTH_SIDES * largest < estimate.bar < math.inf:
+        return estimate
+    return unknown_error("other branch", estimate.expected_order)
+
+
 def unknown_error(verdict: Verdict, order: float) -> ErrorEstimate:
     """Return an estimate that says nothing but why it does not."""
     return ErrorEstimate(0.0, math.inf, None, order, verdict)
 
 
-def _monotone(
-    first: float, second: float, order: float, noise: float, ratio: float
-) -> ErrorEstimate:
+@dataclass(frozen=True)
+class _Trend:
+    """Where the last three values of a sequence lead to."""
+
+    limit: float
+    order: float | None
+    at_order: bool  # the expected one, within 10 %
+    verdict: Verdict
+
+
+def _trend(values: Sequence[float], order: float, noise: float, ratio: float) -> _Trend:
+    first, second = values[-2] - values[-3], values[-1] - values[-2]
+    if abs(second) <= noise:  # the refinements before have removed the error
+        return _Trend(values[-1], None, False, "converged")
+    if first * second <= 0.0:
+        return _Trend(values[-1], None, False, "oscillating")
     observed = math.log(first / second) / math.log(ratio)
-    near = abs(observed - order) <= _NEAR_ORDER * order
-    used = order if near else min(max(observed, _LEAST_ORDER), order)
-    factor = _FACTOR_AT_ORDER if near else _FACTOR_OFF_ORDER
-    correction = first + second + second / (ratio**used - 1.0)
+    at_order = abs(observed - order) <= _NEAR_ORDER * order
+    used = order if at_order else min(max(observed, _LEAST_ORDER), order)
     verdict: Verdict = "converged"
     if observed <= 0.0:
         verdict = "diverging"
     elif observed < _SLOW * order:
         verdict = "slow"
-    return ErrorEstimate(correction, factor * abs(correction) + noise, observed, order, verdict)
+    return _Trend(values[-1] + second / (ratio**used - 1.0), observed, at_order, verdict)

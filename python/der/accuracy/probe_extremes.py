@@ -10,27 +10,45 @@ from der.result import Result
 Array = NDArray[np.float64]
 
 
+#: A step closer to a frame than this share of the distance of frames is that frame.
+_SAME_TIME = 1e-6
+
+
 def probe_values(result: Result, name: str) -> dict[str, float]:
     """Return ``final``, ``min`` and ``max`` of a probe over time.
 
-    Extremes inside the run are those of the parabola through the three saved frames around them, so
-    that they converge with the step instead of jumping with the samples. That needs a run that has
-    saved every step; where a step between the frames is farther out, that step counts.
+    Extremes inside the run are those of the parabola through the extreme step or frame and the
+    saved frames beside it, so that they converge with the step instead of jumping with the samples.
     """
     probe = result.probes[name]
     series = np.asarray(probe)
+    summary = probe.summary
+    t_min, t_max = summary.get("t_min", 0.0), summary.get("t_max", 0.0)
     return {
-        "final": probe.summary["final"],
-        "min": -_largest(result.times, -series, -probe.summary["min"]),
-        "max": _largest(result.times, series, probe.summary["max"]),
+        "final": summary["final"],
+        "min": -_largest(result.times, -series, t_min, -summary["min"]),
+        "max": _largest(result.times, series, t_max, summary["max"]),
     }
 
 
-def _largest(times: Array, saved: Array, of_all_steps: float) -> float:
+def _largest(times: Array, saved: Array, time: float, value: float) -> float:
+    """Return the largest value over time; among the steps it is `value`, at `time`."""
     best = int(np.argmax(saved))
-    if not 0 < best < len(saved) - 1 or saved[best] < of_all_steps:
-        return of_all_steps
-    return parabola_top(times[best - 1 : best + 2], saved[best - 1 : best + 2])
+    if saved[best] > value:  # a frame between two steps
+        time, value = times[best], float(saved[best])
+    if not times[0] < time < times[-1]:
+        return value
+    after = int(np.searchsorted(times, time, side="right"))
+    before = after - 1
+    near = _SAME_TIME * (times[after] - times[before])
+    before -= time - times[before] <= near
+    after += times[after] - time <= near
+    if before < 0 or after == len(times):
+        return value
+    return parabola_top(
+        np.array([times[before], time, times[after]]),
+        np.array([saved[before], value, saved[after]]),
+    )
 
 
 def parabola_top(times: Array, values: Array) -> float:

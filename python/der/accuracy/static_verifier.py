@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import math
 
-from der.accuracy.error_bars import ErrorEstimate, estimate_from_levels, unknown_error
+from der.accuracy.error_bars import (
+    ErrorEstimate,
+    estimate_from_levels,
+    on_one_branch,
+    unknown_error,
+)
+from der.accuracy.event_matching import numbered_as
 from der.accuracy.noise import noise_floor
 from der.accuracy.refinement import SPACE_ORDER, belongs_to_its_mesh
-from der.accuracy.static_readings import (
-    Readings,
-    describe_difference,
-    differing_kinds,
-    static_readings,
-)
+from der.accuracy.static_readings import Reading, Readings, describe_counts, static_readings
 from der.accuracy.verification import SOLVER_FACTOR, VerifiedValue
 from der.accuracy.verification_runs import VerificationRuns
+from der.result import Result
 
 
 class StaticVerifier:
@@ -30,31 +32,41 @@ class StaticVerifier:
         self._runs = runs
         self._base = static_readings(runs.base)
         tight = runs.time.get(0)
-        self._tight = self._base if tight is None else static_readings(tight)
-        self._space = {level: static_readings(run) for level, run in runs.space.items()}
-        self._unmatched = differing_kinds([self._base, self._tight, *self._space.values()])
+        self._tight = self._base if tight is None else self._read(tight)
+        self._mirrored = runs.is_mirrored("space")
+        self._space = {level: self._read(run) for level, run in runs.space.items()}
+        self._levels = [self._base, self._tight, *self._space.values()]
+
+    def _read(self, run: Result) -> Readings:
+        return numbered_as(self._base, static_readings(run), self._runs.base.model)
 
     def values(self) -> list[VerifiedValue]:
         """Return every number with its error bar, also those that only finer meshes find."""
-        values = [self._value(label) for label in self._base]
-        for found in self._space.values():
-            known = {value.label for value in values}
-            values += [self._unmatched_value(found, label) for label in found if label not in known]
-        return values
+        labels = dict.fromkeys(label for found in self._levels for label in found)
+        return [
+            self._value(label)
+            if all(label in found for found in self._levels)
+            else self._unmatched_value(label)
+            for label in labels
+        ]
 
     def notes(self) -> list[str]:
         """Return what differs between the runs."""
         runs = {"the scene as written": self._base, "a tight tolerance": self._tight}
         runs |= {self._runs.meshes[n]: self._space[n] for n in sorted(self._space) if n > 0}
-        return [describe_difference(kind, runs) for kind in self._unmatched]
+        kinds = dict.fromkeys(
+            reading.kind
+            for found in self._levels
+            for label, reading in found.items()
+            if not all(label in other for other in self._levels)
+        )
+        return [f"{kind}: {describe_counts(kind, runs)}; not all are the same" for kind in kinds]
 
     def _value(self, label: str) -> VerifiedValue:
         reading = self._base[label]
-        if reading.kind in self._unmatched:
-            return self._unmatched_value(self._base, label)
         # The scene as written against the same with a tighter tolerance: Newton's doing.
         shift = self._tight[label].value - reading.value
-        noise = self._noise(self._base, label)
+        noise = self._noise(reading)
         return VerifiedValue(
             probe=reading.probe,
             what=reading.what,
@@ -67,8 +79,8 @@ class StaticVerifier:
             solver_correction=shift,
         )
 
-    def _unmatched_value(self, found: Readings, label: str) -> VerifiedValue:
-        reading = found[label]
+    def _unmatched_value(self, label: str) -> VerifiedValue:
+        reading = next(found[label] for found in self._levels if label in found)
         return VerifiedValue(
             probe=reading.probe,
             what=reading.what,
@@ -77,7 +89,7 @@ class StaticVerifier:
             time_of_value=0.0,
             space=unknown_error("unmatched", SPACE_ORDER),
             time=None,
-            solver=self._noise(found, label),
+            solver=self._noise(reading),
         )
 
     def _space_error(self, label: str, noise: float) -> ErrorEstimate | None:
@@ -87,8 +99,8 @@ class StaticVerifier:
         ):
             return None
         by_level = {level: found[label].value for level, found in self._space.items()}
-        return estimate_from_levels(by_level, SPACE_ORDER, noise)
+        estimate = estimate_from_levels(by_level, SPACE_ORDER, noise)
+        return on_one_branch(estimate, self._mirrored, self._base[label].largest)
 
-    def _noise(self, found: Readings, label: str) -> float:
-        reading = found[label]
+    def _noise(self, reading: Reading) -> float:
         return noise_floor(self._runs.base.model, reading.unit, math.inf, reading.largest)

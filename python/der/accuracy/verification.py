@@ -87,17 +87,27 @@ class VerifiedValue:
         return any(part.flagged for _, part in self._parts_that_count)
 
     @property
+    def unsettled(self) -> set[str]:
+        """In which of ``space`` and ``time`` a finer level may still show that it converges."""
+        return {where for where, part in self._parts_that_count if part.unsettled}
+
+    @property
+    def settled(self) -> bool:
+        """Whether a part that counts converges without the expected order."""
+        return any(part.verdict == "settled" for _, part in self._parts_that_count)
+
+    @property
     def has_two_levels(self) -> bool:
         """Whether a part that counts was refined only once, so that its order is not known."""
         return any(part.verdict == "two levels" for _, part in self._parts_that_count)
 
     @property
     def verdict(self) -> str:
-        """``converged``, or what is wrong and where, such as ``slow in time``."""
+        """``converged``, or what is to be known of it and where, such as ``slow in time``."""
         found = [
             f"{part.verdict} in {where}"
             for where, part in self._parts_that_count
-            if part.flagged or part.verdict == "two levels"
+            if part.flagged or part.verdict in ("two levels", "settled")
         ]
         return ", ".join(found) or "converged"
 

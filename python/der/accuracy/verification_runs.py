@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from der._core import Scenario
+from der.accuracy.branches import are_far_apart, are_mirrored, distance, shape_on
 from der.accuracy.cross_check import WITNESS, witness_halvings, witness_scenario
 from der.accuracy.refinement import (
     count_elements,
@@ -18,13 +19,18 @@ from der.errors import SceneError, error_for
 from der.parallel import Task, Workers, total_weight
 from der.result import Result
 
-#: CPU time [s] up to which a third level is added, which measures the order, unless asked for.
+#: CPU time [s] up to which a third level is added, which measures the order, unless asked for, and
+#: further ones where it shows no order.
 _BUDGET = 60.0
+#: No level is finer than this many times doubled.
+_FINEST = 4
 #: Newton's tolerances are tightened by this, down to the least that rounding allows.
 _TIGHTER = 1e-3
 _LEAST_TOLERANCE = 1e-13
 
 Axis = Literal["space", "time", "witness"]
+#: Analyses of an equilibrium, which is one near the shape that they start from.
+_AT_REST = ("static", "modes")
 Key = tuple[Axis, int]
 
 
@@ -46,7 +52,7 @@ class VerificationRuns:
     witness
         The run with another stepper and much smaller steps (`der.accuracy.cross_check`); None for
         static scenes and explicit steppers, whose steps are small already.
-    meshes, notes
+    meshes, steps, notes
         As in `Verification`.
     cpu_seconds
         Of all runs [s].
@@ -59,6 +65,7 @@ class VerificationRuns:
     space: dict[int, Result] = field(default_factory=dict)
     witness: Result | None = None
     meshes: list[str] = field(default_factory=list)
+    steps: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     cpu_seconds: float = 0.0
 
@@ -67,8 +74,17 @@ class VerificationRuns:
         """Whether there is a finer mesh."""
         return len(self.meshes) > 1
 
+    def is_mirrored(self, axis: str) -> bool:
+        """Whether a level, in ``space`` or ``time``, ends in the mirror image of the scene's."""
+        if self.base.path is not None or self.base.buckling is not None:
+            return False  # what they find does not depend on the side
+        results: list[Result] = list(getattr(self, axis).values())
+        if axis == "time" and self.witness is not None:
+            results.append(self.witness)
+        return any(are_mirrored(self.base, found) for found in results)
 
-def run_levels(scenario: Scenario, levels: int | None, workers: Workers) -> VerificationRuns:
+
+def run_levels(scenario: Scenario, levels: int | None, workers: Workers) -> Runner:
     """Run a scene as written, and then on all levels in space and in time.
 
     Parameters
@@ -80,6 +96,11 @@ def run_levels(scenario: Scenario, levels: int | None, workers: Workers) -> Veri
     workers
         Who runs them.
 
+    Returns
+    -------
+    Runner
+        With what was run, and for more levels (`Runner.refine`).
+
     Raises
     ------
     SceneError, NotConvergedError, DivergedError
@@ -90,8 +111,11 @@ def run_levels(scenario: Scenario, levels: int | None, workers: Workers) -> Veri
     runs.levels = levels or _affordable_levels(runs, refined)
     if refined:
         runs.meshes = [_mesh_label(scenario, 2**level) for level in range(runs.levels)]
-    Runner(runs, workers).run()
-    return runs
+    if runs.time_levels is not None:
+        runs.steps = [runs.time_levels.label(level) for level in range(runs.levels)]
+    runner = Runner(runs, workers)
+    runner.run()
+    return runner
 
 
 def _guess_rest(scenario: Scenario, levels: int | None) -> float:
@@ -156,42 +180,88 @@ class Runner:
         With the base; the rest is filled in.
     workers
         Who runs them.
+
+    Attributes
+    ----------
+    runs
+        What was run.
     """
 
     def __init__(self, runs: VerificationRuns, workers: Workers) -> None:
-        self._runs = runs
+        self.runs = runs
         self._scenario = runs.base.scenario
         self._workers = workers
         self._finest = runs.levels - 1
+        self._explicit = runs.time_levels is not None and not stepper_of(runs.base).implicit
+        self._base_seconds = runs.cpu_seconds
 
     def run(self) -> None:
         """Run all levels."""
-        explicit = self._runs.time_levels is not None and not stepper_of(self._runs.base).implicit
         tasks = self._time_tasks()
-        if not explicit:
+        if not self._explicit:
             tasks |= {("space", n): self._task(n, 0) for n in self._space_levels() if n > 0}
-        spaces = self._space_of_explicit(self._finest) if explicit else {}
+        spaces = self._space_of_explicit(self._finest, self._finest) if self._explicit else {}
         self._run(tasks, later=total_weight(spaces.values()))
-        if explicit:
-            self._run_space_of_explicit()
-        elif self._runs.space_is_refined and 0 in self._runs.time:
-            self._runs.space[0] = self._runs.time[0]
+        if self._explicit:
+            if self.runs.space_is_refined:
+                self._run_space_of_explicit(self._finest)
+        elif self.runs.space_is_refined and 0 in self.runs.time:
+            self.runs.space[0] = self.runs.time[0]
+        self._follow_the_branch(self._space_levels())
+
+    def refine(self, axes: Collection[str]) -> bool:
+        """Run one more level in space, in time or both; tell whether there is one more now.
+
+        There is none where it costs more than what is left of the budget, where the one before has
+        failed, or where it fails itself.
+        """
+        return any([self._refine_time("time" in axes), self._refine_space("space" in axes)])
+
+    def _refine_time(self, wanted: bool) -> bool:
+        level = len(self.runs.steps)
+        levels = self.runs.time_levels
+        if not wanted or levels is None or level - 1 not in self.runs.time:
+            return False
+        tasks: dict[Key, Task] = {("time", level): self._task(0, level)}
+        if not self._is_affordable(tasks, level) or not self._run(tasks, report=False):
+            return False
+        self.runs.steps.append(levels.label(level))
+        return True
+
+    def _refine_space(self, wanted: bool) -> bool:
+        level = len(self.runs.meshes)
+        if not wanted or level - 1 not in self.runs.space:
+            return False
+        if self._explicit:
+            tasks = self._space_of_explicit(level, level)
+            done = self._is_affordable(tasks, level) and self._run_space_of_explicit(level, False)
+        else:
+            tasks = {("space", level): self._task(level, 0)}
+            done = self._is_affordable(tasks, level) and self._run(tasks, report=False)
+        if done:
+            self.runs.meshes.append(_mesh_label(self._scenario, 2**level))
+            self._follow_the_branch([level])
+        return done
+
+    def _is_affordable(self, tasks: Mapping[Key, Task], level: int) -> bool:
+        seconds = self._base_seconds * total_weight(tasks.values())
+        return level <= _FINEST and self.runs.cpu_seconds + seconds <= _BUDGET
 
     def _space_levels(self) -> range:
-        return range(self._runs.levels if self._runs.space_is_refined else 0)
+        return range(self.runs.levels if self.runs.space_is_refined else 0)
 
     def _time_tasks(self) -> dict[Key, Task]:
         tasks: dict[Key, Task] = {("time", 0): self._task(0, 0)}
-        if self._runs.time_levels is None:
+        if self.runs.time_levels is None:
             return tasks
-        tasks |= {("time", n): self._task(0, n) for n in range(1, self._runs.levels)}
-        if stepper_of(self._runs.base).implicit:
-            tasks["witness", 0] = self._witness(self._runs.time_levels)
+        tasks |= {("time", n): self._task(0, n) for n in range(1, self.runs.levels)}
+        if not self._explicit:
+            tasks["witness", 0] = self._witness(self.runs.time_levels)
         return tasks
 
     def _task(self, space: int, time: int) -> Task:
         scenario = with_elements(self._scenario, 2**space)
-        levels = self._runs.time_levels
+        levels = self.runs.time_levels
         if levels is None:
             return Task([_with_tight_newton(scenario), scenario], 2.0**space)
         scenario = levels.at(scenario, time)
@@ -199,29 +269,51 @@ class Runner:
 
     def _witness(self, levels: TimeLevels) -> Task:
         times_base = levels.cost(self._finest)
-        halvings = witness_halvings(times_base * self._runs.cpu_seconds)
+        halvings = witness_halvings(times_base * self.runs.cpu_seconds)
         times_base *= 2.0**halvings
-        step = self._scenario.duration / int(self._runs.base.summary["steps"]) / times_base
+        step = self._scenario.duration / int(self.runs.base.summary["steps"]) / times_base
         return Task([witness_scenario(self._scenario, step)], times_base)
 
-    def _run_space_of_explicit(self) -> None:
-        """Compare meshes at a step that is stable on the finest one.
+    def _run_space_of_explicit(self, finest: int, report: bool = True) -> bool:
+        """Compare meshes at a step that is stable on the finest one; tell whether there is one.
 
         It shrinks with the elements where stretching sets it, with their square where bending does.
         """
-        if not self._runs.space_is_refined:
-            return
-        for time in (self._finest, 2 * self._finest):
-            tasks = self._space_of_explicit(time)
-            finest: Key = ("space", self._finest)
-            task = {finest: tasks.pop(finest)}
+        for time in (finest, 2 * finest):
+            tasks = self._space_of_explicit(finest, time)
+            key: Key = ("space", finest)
+            task = {key: tasks.pop(key)}
             rest = total_weight(tasks.values())
-            if self._run(task, report=time > self._finest, later=rest):
-                self._run(tasks)
-                break
+            if self._run(task, report=report and time > finest, later=rest):
+                return self._run(tasks)
+        return False
 
-    def _space_of_explicit(self, time: int) -> dict[Key, Task]:
-        return {("space", n): self._task(n, time) for n in self._space_levels()}
+    def _space_of_explicit(self, finest: int, time: int) -> dict[Key, Task]:
+        return {("space", n): self._task(n, time) for n in range(finest + 1)}
+
+    def _follow_the_branch(self, levels: Iterable[int]) -> None:
+        """Start levels that have come to another equilibrium from the shape of the scene's run."""
+        base = self.runs.base
+        if self.runs.time_levels is not None or base.scenario.analysis not in _AT_REST:
+            return
+        at_rest = {n: self.runs.space[n] for n in levels if n in self.runs.space}
+        apart = {n: found for n, found in at_rest.items() if are_far_apart(base, found)}
+        outcomes = self._workers.run({n: self._task_from_the_shape(n) for n in apart})
+        for level, outcome in outcomes.items():
+            self.runs.cpu_seconds += outcome.cpu_seconds
+            found = outcome.result
+            if outcome.error is not None or found is None:
+                continue
+            if distance(base, found) < 0.5 * distance(base, apart[level]):
+                self.runs.space[level] = found
+                self.runs.notes.append(
+                    f"the run with {self.runs.meshes[level]} came to another equilibrium; it was "
+                    "started again from the shape of the scene's own mesh, whose branch it follows"
+                )
+
+    def _task_from_the_shape(self, level: int) -> Task:
+        task = self._task(level, 0)
+        return replace(task, weight=0.0, start=shape_on(self.runs.base, task.scenarios[0]))
 
     def _run(self, tasks: Mapping[Key, Task], report: bool = True, later: float = 0.0) -> bool:
         """Run tasks and keep the results of those that succeed; tell whether all did.
@@ -230,23 +322,23 @@ class Runner:
         """
         self._workers.expect(total_weight(tasks.values()), later)
         outcomes = self._workers.run(tasks)
-        self._runs.cpu_seconds += sum(outcome.cpu_seconds for outcome in outcomes.values())
+        self.runs.cpu_seconds += sum(outcome.cpu_seconds for outcome in outcomes.values())
         for (axis, level), outcome in outcomes.items():
             if outcome.error is not None:
                 if report:
-                    self._runs.notes.append(f"{self._describe(axis, level)}: {outcome.error}")
+                    self.runs.notes.append(f"{self._describe(axis, level)}: {outcome.error}")
             elif axis == "witness":
-                self._runs.witness = outcome.value()
+                self.runs.witness = outcome.value()
             else:
-                getattr(self._runs, axis)[level] = outcome.value()
+                getattr(self.runs, axis)[level] = outcome.value()
         return all(outcome.error is None for outcome in outcomes.values())
 
     def _describe(self, axis: Axis, level: int) -> str:
         if axis == "space":
-            return f"the run with {self._runs.meshes[level]} failed"
-        if axis == "witness" or self._runs.time_levels is None:
+            return f"the run with {self.runs.meshes[level]} failed"
+        if axis == "witness" or self.runs.time_levels is None:
             return f"the run with {WITNESS if axis == 'witness' else 'a tight tolerance'} failed"
-        return f"the run with {self._runs.time_levels.label(level)} failed"
+        return f"the run with {self.runs.time_levels.label(level)} failed"
 
 
 def _with_tight_newton(scenario: Scenario) -> Scenario:

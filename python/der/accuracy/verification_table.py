@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from der.accuracy.error_bars import ErrorEstimate
 from der.accuracy.verification import Verification, VerifiedValue
@@ -25,7 +26,7 @@ def verification_table(verification: Verification) -> str:
         lines.append("  ".join(cells).rstrip())
     lines += ["", *_what_was_run(verification)]
     lines += [f"Note: {note.rstrip('.')}." for note in verification.notes]
-    lines.append(_summary(verification, hidden=len(verification.values) - len(shown)))
+    lines.append(_summary(verification, shown))
     return "\n".join(lines)
 
 
@@ -86,17 +87,27 @@ def _what_was_run(verification: Verification) -> list[str]:
     return lines
 
 
-def _summary(verification: Verification, hidden: int) -> str:
-    """Return what holds for all values, also for those whose rows the table leaves out."""
-    total, bad = len(verification.values), len(verification.flagged)
-    unmeasured = len(verification.order_not_measured)
+def _summary(verification: Verification, shown: Sequence[VerifiedValue]) -> str:
+    """Return what holds for the rows of the table; every flagged value has one."""
+    total = len(shown)
+    flagged = [value for value in shown if value.flagged]
+    settled = [value for value in shown if value.settled and not value.flagged]
+    unmeasured = {value.label for value in verification.order_not_measured}
+    unmeasured &= {value.label for value in shown}
     found = []
-    if bad:
-        found.append(f"{bad} of {total} values do not converge at the expected order")
-    elif not unmeasured:
+    if flagged:
+        found.append(f"{len(flagged)} of {total} values do not converge at the expected order")
+    elif not settled and not unmeasured:
         found.append(f"All {total} values converge at the expected order")
+    if settled:
+        found.append(f"{_share(len(settled), total)} values settle at no clear order")
     if unmeasured:
-        which = f"{unmeasured} of {total}" if unmeasured < total else f"all {total}"
-        found.append(f"The order of {which} values was not measured")
-    left_out = f"rows not shown: {hidden}; " if hidden else ""
+        share = _share(len(unmeasured), total).lower()
+        found.append(f"The order of {share} values was not measured")
+    hidden = len(verification.values) - total
+    left_out = f"extremes at the start or the end, not shown: {hidden}; " if hidden else ""
     return f"{'. '.join(found)} ({left_out}{verification.cpu_seconds:.2g} s of CPU time)."
+
+
+def _share(part: int, total: int) -> str:
+    return f"{part} of {total}" if part < total else f"All {total}"

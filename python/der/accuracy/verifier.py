@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 from operator import index
 
 from der._core import Scenario
 from der.accuracy.cross_check import hidden_motion
 from der.accuracy.default_probes import with_default_probes
-from der.accuracy.error_bars import ErrorEstimate, estimate_from_levels
+from der.accuracy.error_bars import ErrorEstimate, estimate_from_levels, on_one_branch
 from der.accuracy.noise import noise_floor
 from der.accuracy.probe_extremes import probe_values
 from der.accuracy.refinement import SPACE_ORDER, belongs_to_its_mesh
@@ -80,16 +81,18 @@ def verify(
         raise ValueError(f"levels must be 2 or 3, got {levels}")
     given = as_scenario(scenario)
     scene = with_default_probes(given)
-    runs = run_levels(scene, levels, Workers(jobs, progress))
+    runner = run_levels(scene, levels, Workers(jobs, progress))
+    runs = runner.runs
     if scene is not given:
         runs.notes.append("the scene has no probes: free ends and extreme points are shown")
     values, notes = _evaluate(runs, scene)
-    labels = runs.time_levels
+    while runs.levels > 2 and runner.refine(set().union(*(value.unsettled for value in values))):
+        values, notes = _evaluate(runs, scene)
     return Verification(
         scenario=scene,
         values=tuple(values),
         meshes=tuple(runs.meshes),
-        steps=() if labels is None else tuple(labels.label(level) for level in range(runs.levels)),
+        steps=tuple(runs.steps),
         notes=(*runs.notes, *_notes_on_angles(runs, scene), *notes),
         cpu_seconds=runs.cpu_seconds,
     )
@@ -105,18 +108,31 @@ def _whole_number(name: str, value: int | None) -> int | None:
 def _evaluate(runs: VerificationRuns, scene: Scenario) -> tuple[list[VerifiedValue], list[str]]:
     if runs.time_levels is None:
         found = StaticVerifier(runs)
-        return found.values(), found.notes()
+        values = found.values()
+        return values, [*found.notes(), *_notes_on_branches(values)]
+    mirrored = {axis for axis in ("space", "time") if runs.is_mirrored(axis)}
     evaluated = [
         _Evaluation(
             runs,
             runs.time_levels,
             probe,
             runs.space_is_refined and not belongs_to_its_mesh(scene, probe),
+            mirrored,
         )
         for probe in runs.base.probes
     ]
     values = [value for evaluation in evaluated for value in evaluation.values()]
-    return values, _notes_on_damping(runs, evaluated)
+    return values, [*_notes_on_damping(runs, evaluated), *_notes_on_branches(values)]
+
+
+def _notes_on_branches(values: list[VerifiedValue]) -> list[str]:
+    if not any("other branch" in value.verdict for value in values):
+        return []
+    return [
+        "it goes to one side, and on a finer level to the other, as its mirror image: nothing in "
+        "the scene says to which, so that rounding decides. A small force to one side does, or a "
+        "slight natural curvature"
+    ]
 
 
 def _notes_on_angles(runs: VerificationRuns, scene: Scenario) -> list[str]:
@@ -144,14 +160,22 @@ class _Evaluation:
     """What the runs say about one probe over time."""
 
     def __init__(
-        self, runs: VerificationRuns, levels: TimeLevels, probe: str, measures_space: bool
+        self,
+        runs: VerificationRuns,
+        levels: TimeLevels,
+        probe: str,
+        measures_space: bool,
+        mirrored: Collection[str],
     ) -> None:
         self._runs = runs
         self._levels = levels
+        self._mirrored = mirrored
         self.probe = probe
         self._series = runs.base.probes[probe]
         self._space = self._by_level(runs.space) if measures_space else None
         self._time = self._by_level(runs.time)
+        summary = self._series.summary
+        self._largest = max(abs(summary["min"]), abs(summary["max"]))
         self._noise = self._find_noise()
         self.hidden_motion = self._find_hidden_motion()
 
@@ -160,12 +184,13 @@ class _Evaluation:
 
     def _find_noise(self) -> float:
         base = self._runs.base
-        largest = max(abs(self._series.summary["min"]), abs(self._series.summary["max"]))
         steps = int(base.summary["steps"]) * self._levels.cost(self._runs.levels - 1)
-        return noise_floor(base.model, self._series.unit, base.scenario.duration / steps, largest)
+        step = base.scenario.duration / steps
+        return noise_floor(base.model, self._series.unit, step, self._largest)
 
     def _find_hidden_motion(self) -> float | None:
-        finest = sorted(self._runs.time)[-2:]
+        # Levels that were added later may have shorter steps than the witness.
+        finest = sorted(level for level in self._runs.time if level < self._runs.levels)[-2:]
         if self._runs.witness is None or len(finest) < 2:
             return None
         coarse, fine = (self._runs.time[level] for level in finest)
@@ -202,14 +227,16 @@ class _Evaluation:
         if self._space is None:
             return None
         by_level = {level: values[what] for level, values in self._space.items()}
-        return estimate_from_levels(by_level, SPACE_ORDER, self._noise)
+        estimate = estimate_from_levels(by_level, SPACE_ORDER, self._noise)
+        return on_one_branch(estimate, "space" in self._mirrored, self._largest)
 
     def _time_error(self, what: str) -> ErrorEstimate:
         by_level = {level: values[what] for level, values in self._time.items()}
         estimate = estimate_from_levels(
             by_level, self._levels.order, self._noise, self._levels.ratio
         )
-        if self._runs.witness is None or 0 not in self._time:
+        estimate = on_one_branch(estimate, "time" in self._mirrored, self._largest)
+        if self._runs.witness is None or 0 not in self._time or "time" in self._mirrored:
             return estimate
         away = abs(probe_values(self._runs.witness, self.probe)[what] - self._time[0][what])
         damped = self.hidden_motion is not None

@@ -50,6 +50,9 @@ class AdaptiveStepper {
   /// halves; everything else as in `state`, which is the state at the end of that step.
   void interpolate(double time, const State& state, State& result);
 
+  /// The longest step that has been done [s].
+  [[nodiscard]] double longest_step() const { return longest_step_; }
+
  private:
   [[nodiscard]] double first_step(const State& state) const;
   [[nodiscard]] double next_stop(double time, double horizon) const;
@@ -62,6 +65,7 @@ class AdaptiveStepper {
   double error_factor_;
   AdaptiveOptions options_;
   std::vector<double> breakpoints_;  // [s] ascending
+  double longest_step_ = 0.0;        // [s]
   State start_;                      // of the last step
   State middle_;
   State whole_;  // at the end of the step done as a whole

@@ -1,0 +1,81 @@
+"""Audit ``der verify``: random scenes with true values against its error bars.
+
+    python tests/audit/run.py --scenes 300 --seed 1
+    python tests/audit/run.py --kind static --only 17 --show    # one scene, as YAML
+
+Prints the share of true values within their bars, the share of right values that carry a flag, and
+every value outside its bar. Exits with 1 if an aim is missed (docs/validation.md).
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import traceback
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from audit import KINDS, aims_missed  # noqa: E402
+from audit.score import Outcome, judge, report, summarise  # noqa: E402
+
+
+def outcome_of(kind: str, seed: int, number: int) -> Outcome:
+    """Draw and judge one scene; the same numbers give the same scene."""
+    rng = np.random.default_rng([seed, number, sum(map(ord, kind))])
+    name = f"{kind}:{number}"
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return judge(KINDS[kind](rng), name)
+
+
+def audit(kinds: list[str], scenes: int, seed: int, first: int = 0) -> list[Outcome]:
+    """``scenes`` scenes, the kinds taking turns by their shares."""
+    outcomes = []
+    for number in range(first, first + scenes):
+        kind = kinds[number % len(kinds)]
+        outcomes.append(outcome_of(kind, seed, number))
+    return outcomes
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--scenes", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--kind", nargs="+", choices=sorted(KINDS), help="default: all, in turn")
+    parser.add_argument("--first", type=int, default=0, help="number of the first scene")
+    parser.add_argument("--only", type=int, help="this scene alone, with its YAML")
+    parser.add_argument("--dump", type=Path, help="folder for the scenes with a value outside")
+    arguments = parser.parse_args()
+    kinds = arguments.kind or sorted(KINDS)
+    if arguments.only is not None:
+        outcome = outcome_of(kinds[arguments.only % len(kinds)], arguments.seed, arguments.only)
+        print(outcome.scene, *outcome.refused, *outcome.rows, sep="\n")
+        outcomes = [outcome]
+    else:
+        outcomes = []
+        for number in range(arguments.first, arguments.first + arguments.scenes):
+            kind = kinds[number % len(kinds)]
+            try:
+                outcomes.append(outcome_of(kind, arguments.seed, number))
+            except Exception as error:
+                where = traceback.extract_tb(error.__traceback__)[-1]
+                remark = f"{type(error).__name__} in {where.name}: {str(error)[:200]}"
+                outcomes.append(Outcome(f"{kind}:{number}", kind, "", [], remark))
+    print(report(outcomes))
+    if arguments.dump:
+        arguments.dump.mkdir(parents=True, exist_ok=True)
+        for outcome in outcomes:
+            if any(row.measured and not row.inside for row in outcome.rows):
+                name = outcome.name.replace(":", "_") + ".yaml"
+                (arguments.dump / name).write_text(outcome.scene, encoding="utf-8")
+    missed = aims_missed(summarise(row for outcome in outcomes for row in outcome.rows))
+    print(*missed, sep="\n")
+    return 1 if missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

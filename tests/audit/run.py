@@ -10,12 +10,16 @@ every value outside its bar. Exits with 1 if an aim is missed (docs/validation.m
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import traceback
 import warnings
 from pathlib import Path
 
-import numpy as np
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).parent))
 

@@ -6,11 +6,17 @@ from collections.abc import Callable
 
 import numpy as np
 
+from .buckling import buckling
 from .case import Case
+from .modes import modes
+from .paths import paths
 from .score import Summary
 from .statics import static
 
 KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
+    "buckling": buckling,
+    "modes": modes,
+    "paths": paths,
     "static": static,
 }
 

@@ -324,9 +324,9 @@ class Mesh:
             return state
         raise NoSolutionError
 
-    def follow(self, start: Array | None = None) -> Array:
+    def follow(self, *, loads: bool = True, supports: bool = True) -> Array:
         """The solution that loads and motions, growing together from nothing, lead to."""
-        state = self.drawn() if start is None else start
+        state = self.drawn()
         t, step = 0.0, 0.25
         before: tuple[float, Array] | None = None
         while t < 1.0:
@@ -335,7 +335,7 @@ class Mesh:
             if before is not None:
                 guess = state + (state - before[1]) * (trial - t) / (t - before[0])
             try:
-                new = self.newton(guess, trial, trial, limit=8)
+                new = self.newton(guess, trial * loads, trial * supports, limit=8)
                 if np.abs(new - state)[..., :3].max() > 0.5:
                     raise NoSolutionError
             except NoSolutionError:
@@ -347,14 +347,13 @@ class Mesh:
             step *= 1.6
         return state
 
-    def vibrations(self, state: Array) -> Array:
+    def vibrations(self, state: Array, t: float = 1.0, supports: float = 1.0) -> Array:
         """The squares of all angular frequencies [1/s^2] about the equilibrium ``state``, rising.
 
         From ``J v = -w^2 B v``, ``J`` the Jacobian above and ``B`` the inertia in the balance.
         """
-        _, matrix = self.equations(state, 1.0, 1.0)
-        unit = self.F * self.L  # of the rod's mass times L^2 w^2
-        mass = self.rod.mass_per_length * self.L**3 / unit
+        _, matrix = self.equations(state, t, supports)
+        whole = self.rod.mass_per_length * self.length
         n, k = self.pieces, self.order
         row = np.arange(n * (k - 1) * 6).reshape(n, k - 1, 6)
         rows, columns, values = [], [], []
@@ -362,7 +361,7 @@ class Mesh:
             shape = (n, k - 1, k)
             rows.append(np.broadcast_to(row[:, :, balance, None], shape).ravel())
             columns.append(np.broadcast_to(self._unknown[:, None, :, v], shape).ravel())
-            weights = mass * self.metric[:, :, None] * self.at_gauss[None]
+            weights = self.metric[:, :, None] * self.at_gauss[None]
             values.append(weights.ravel())
         at = n * (k - 1) * 6
         for i, place in self._places():
@@ -372,23 +371,28 @@ class Mesh:
                 if place.mass and not place.fix[v]:
                     rows.append(np.array([at + v]))
                     columns.append(np.array([self._unknown[here][v]]))
-                    values.append(np.array([place.mass * self.L**2 / unit]))
+                    values.append(np.array([place.mass / whole]))
             at += 3
         inertia = scipy.sparse.csc_matrix(
             (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),
             shape=matrix.shape,
         )
+        # Arnoldi's method on (J - shift B)^-1 B; the largest eigenvalues are the lowest squares.
         shift = 1.0
-        used = np.unique(inertia.indices)
         factor = scipy.sparse.linalg.splu((matrix - shift * inertia).tocsc())
         moving = np.unique(np.concatenate(columns))
-        small = factor.solve(inertia[:, moving].toarray())[moving]
-        del used
-        eigenvalues = scipy.linalg.eigvals(small)
-        keep = np.abs(eigenvalues) > 1e-9 * np.abs(eigenvalues).max()
-        squares = -1.0 / eigenvalues[keep] - shift
-        real = np.abs(squares.imag) < 1e-6 * np.abs(squares)
-        return np.sort(squares[real].real)
+        operator = scipy.sparse.linalg.LinearOperator(
+            (len(moving), len(moving)),
+            matvec=lambda v: factor.solve(inertia[:, moving] @ np.ravel(v))[moving],
+            dtype=np.float64,
+        )
+        start = np.sin(1.0 + np.arange(len(moving)))  # the same on every run
+        eigenvalues = scipy.sparse.linalg.eigs(
+            operator, k=min(14, len(moving) - 2), v0=start, return_eigenvectors=False
+        )
+        squares = -1.0 / eigenvalues - shift
+        real = np.abs(squares.imag) < 1e-6 * (1 + np.abs(squares))
+        return np.sort(squares[real].real) * self.F / (whole * self.L)
 
     # -- reading ----------------------------------------------------------------------------------
 
@@ -439,8 +443,8 @@ class Mesh:
                 best = max(best, -float(found.fun))
         return sign * best
 
-    def energy(self, state: Array, name: str) -> float:
-        """Energies in J, by Gauss quadrature."""
+    def energy(self, state: Array, name: str, weight_factor: float = 1.0) -> float:
+        """Energies in J, by Gauss quadrature; gravity times ``weight_factor``."""
         g = np.einsum("ik,nkv->niv", self.at_gauss, state)
         weight = self.metric * self.quadrature
         unit = self.F * self.L
@@ -452,7 +456,7 @@ class Mesh:
         if name == "spring_energy":
             return self._spring_energy(state)
         if name == "gravity_energy":
-            pull = np.array(self.rod.gravity)
+            pull = weight_factor * np.array(self.rod.gravity)
             mass = self.rod.mass_per_length * self.L
             total = -mass * self.L * float((weight[..., None] * g[..., :2] * pull).sum())
             for i, place in self._places():
@@ -463,7 +467,8 @@ class Mesh:
         if name == "elastic_energy":
             return sum(self.energy(state, part) for part in elastic)
         assert name == "total_energy"
-        return sum(self.energy(state, part) for part in (*elastic, "gravity_energy"))
+        everything = (*elastic, "gravity_energy")
+        return sum(self.energy(state, part, weight_factor) for part in everything)
 
     def _spring_energy(self, state: Array) -> float:
         total = 0.0

@@ -230,22 +230,29 @@ def solve(
     drawing: Drawing, final: dict[str, Any], probes: dict[str, dict[str, Any]]
 ) -> dict[Label, Truth]:
     """True values of the probes, on the branch that the run is on."""
-    degree = 20 if len(drawing.rod.knots) == 2 else 9
-    nodes = np.asarray(final["positions"])
-    coarse = Mesh(drawing.rod, degree)
-    state = _branch(coarse, drawing, nodes, final["tension"])
-    fine = Mesh(drawing.rod, degree + 5, longest=0.2)
-    fine_state = fine.newton(_carry(coarse, state, fine))
+    coarse, state, fine, fine_state = solution(drawing, final)
     found = {}
     for name, probe in probes.items():
-        pair = _value(drawing, coarse, state, probe), _value(drawing, fine, fine_state, probe)
+        pair = value(drawing, coarse, state, probe), value(drawing, fine, fine_state, probe)
         if pair[0] is None or pair[1] is None:
             continue
-        scale = _scale(fine, fine_state, probe["quantity"])
+        size = scale(fine, fine_state, probe["quantity"])
         found[name, "final"] = Truth(
-            pair[1], 3 * abs(pair[1] - pair[0]) + 1e-10 * scale, scale, probe["quantity"]
+            pair[1], 3 * abs(pair[1] - pair[0]) + 1e-10 * size, size, probe["quantity"]
         )
     return found
+
+
+def solution(drawing: Drawing, final: dict[str, Any]) -> tuple[Mesh, Array, Mesh, Array]:
+    """The equilibrium on the branch of the run, on two meshes."""
+    degree = 20 if len(drawing.rod.knots) == 2 else 9
+    coarse = Mesh(drawing.rod, degree)
+    state = _branch(coarse, drawing, np.asarray(final["positions"]), final["tension"])
+    fine = Mesh(drawing.rod, degree + 5, longest=0.2)
+    try:
+        return coarse, state, fine, fine.newton(_carry(coarse, state, fine))
+    except NoSolutionError as error:
+        raise UnsolvedError("the reference is not converged") from error
 
 
 def _branch(mesh: Mesh, drawing: Drawing, nodes: Array, tension: tuple[Array, Array]) -> Array:
@@ -265,7 +272,8 @@ def _branch(mesh: Mesh, drawing: Drawing, nodes: Array, tension: tuple[Array, Ar
     distance = _distance(mesh, drawing, state, nodes)
     if distance > near:
         raise UnsolvedError(f"the nearest solution is {distance:.2g} L away")
-    if mesh.vibrations(state)[0] < -1e-3:
+    squares = mesh.vibrations(state)
+    if squares[0] < -1e-6 * abs(squares[-1]):
         raise UnsolvedError("the solution next to the shape that was found is unstable")
     return state
 
@@ -311,20 +319,21 @@ def _carry(coarse: Mesh, state: Array, fine: Mesh) -> Array:
     return moved
 
 
-def _value(
-    drawing: Drawing, mesh: Mesh, state: Array, probe: dict[str, Any]
+def value(
+    drawing: Drawing, mesh: Mesh, state: Array, probe: dict[str, Any], weight: float = 1.0
 ) -> float | None:
+    """A probe's value, all weight times ``weight``; None where the quantity jumps."""
     quantity = probe["quantity"]
     if quantity in ENERGIES:
-        return mesh.energy(state, quantity)
+        return mesh.energy(state, quantity, weight)
     if "over" in probe:
         return mesh.extreme(state, quantity, probe["reduce"])
     u = place(drawing, probe["at"])
     left, right = (mesh.quantity(state, quantity, u, side) for side in (-1, 1))
-    scale = _scale(mesh, state, quantity)
+    size = scale(mesh, state, quantity)
     if quantity == "curvature" and drawing.rod.natural is not None and abs(left - right) > 1e-9 / mesh.L:
         return None
-    if abs(left - right) > 1e-9 * scale:
+    if abs(left - right) > 1e-9 * size:
         return None  # the quantity jumps here
     return right
 
@@ -342,7 +351,7 @@ def place(drawing: Drawing, at: Any) -> float:
     return drawing.u(float(at))
 
 
-def _scale(mesh: Mesh, state: Array, quantity: str) -> float:
+def scale(mesh: Mesh, state: Array, quantity: str, weight: float = 1.0) -> float:
     """The size that is natural for the quantity in this solution."""
     if quantity in ("x", "y"):
         return float(np.abs(state[..., :2]).max() * mesh.L)
@@ -358,6 +367,6 @@ def _scale(mesh: Mesh, state: Array, quantity: str) -> float:
         return force
     if quantity == "strain":
         return force / mesh.rod.EA
-    return float(max(abs(mesh.energy(state, "elastic_energy")), abs(mesh.energy(state, quantity))))
+    return float(max(abs(mesh.energy(state, "elastic_energy")), abs(mesh.energy(state, quantity, weight))))
 
 

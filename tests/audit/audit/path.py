@@ -11,6 +11,7 @@ from collections.abc import Callable
 import numpy as np
 import scipy.sparse
 import scipy.sparse.linalg
+from scipy.interpolate import BarycentricInterpolator
 from scipy.optimize import brentq
 
 from .case import UnsolvedError
@@ -35,9 +36,14 @@ class Path:
         self.mesh, self.to, self.vary = mesh, to, vary
         weights = np.zeros((mesh.pieces, mesh.order, 6))
         weights[..., :3] = 1.0
+        drawn = mesh.drawn()  # the equations are affine in the factor, and the state has no part in it
+        self.column = (
+            mesh.equations(drawn, *self._factors(1.0))[0]
+            - mesh.equations(drawn, *self._factors(0.0))[0]
+        )
         self.weights = np.append(weights.ravel() / weights.sum(), 1.0 / to**2)
 
-    def events(self, step: float = 0.04, limit: int = 400) -> list[Event]:
+    def events(self, step: float = 0.08, limit: int = 400) -> list[Event]:
         """Folds and bifurcations in their order along the path, and the end."""
         point = self._start()
         count = self._unstable(point)
@@ -58,9 +64,9 @@ class Path:
                 goal = self.to if after[1] > 0 else -self.to
                 at = self._where(point, trial, lambda p: p[1] - goal)
                 kind = "end" if goal > 0 else "far side"
-                # The last stretch may hold an event as well.
-                found += self._between(point, trial, at, count)
-                return [*found, Event(kind, at[0], goal)]
+                # The last stretch may hold an event as well: it ends beyond the goal.
+                last = [e for e in self._between(point, trial, after, count) if abs(e.factor) < self.to]
+                return [*found, *last, Event(kind, at[0], goal)]
             found += self._between(point, trial, after, count)
             count = self._unstable(after)
             point = after
@@ -84,11 +90,17 @@ class Path:
         return found
 
     def _where(self, point: Point, step: float, function: Callable[[Point], float]) -> Point:
-        def at(length: float) -> Point:
-            return self._next(point, length) if length > 0 else point
+        """Where the function is 0 within the step, by polynomials through Chebyshev points.
 
-        length = brentq(lambda s: function(at(s)), 0.0, step, xtol=1e-13, rtol=1e-13)
-        return at(float(length))
+        None of them is likely to hit a bifurcation, where Newton's matrix is singular.
+        """
+        lengths = step * (1 - np.cos(np.pi * np.arange(9) / 8)) / 2
+        points = [point] + [self._next(point, float(s)) for s in lengths[1:]]
+        values = BarycentricInterpolator(lengths, [function(p) for p in points])
+        length = float(brentq(lambda s: float(values(s)), 0.0, step, xtol=1e-14))
+        states = BarycentricInterpolator(lengths, np.array([p[0] for p in points]))
+        factors = BarycentricInterpolator(lengths, [p[1] for p in points])
+        return states(length), float(factors(length)), point[2]
 
     def _squares(self, point: Point) -> Array:
         return self.mesh.vibrations(point[0], *self._factors(point[1]))
@@ -101,8 +113,7 @@ class Path:
 
     def _system(self, state: Array, factor: float) -> tuple[Array, scipy.sparse.csc_matrix, Array]:
         residual, matrix = self.mesh.equations(state, *self._factors(factor))
-        moved, _ = self.mesh.equations(state, *self._factors(factor + 1.0))
-        return residual, matrix, moved - residual  # the equations are affine in the factor
+        return residual, matrix, self.column
 
     def _start(self) -> Point:
         if self.vary == "loads":
@@ -139,7 +150,7 @@ class Path:
             state = state - change[:-1].reshape(state.shape)
             factor -= change[-1]
             size = float(np.sqrt((self.weights * change) @ change))
-            if size < 1e-12 or (size < 1e-9 and size > 0.3 * last):
+            if size < 1e-12 or (size < 1e-8 and size > 0.3 * last):
                 unit = np.zeros(len(change))
                 unit[-1] = 1.0
                 after = self._unit(solve.solve(unit))

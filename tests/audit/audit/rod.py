@@ -162,6 +162,7 @@ class Mesh:
         weight = rod.mass_per_length * np.array(rod.gravity)
         self.q_dead += weight * self.L / self.F
         self._index()
+        self._held, self._constants = self._conditions()
 
     # -- the equations ----------------------------------------------------------------------------
 
@@ -223,75 +224,69 @@ class Mesh:
         diagonal = np.arange(6)
         block[:, :, diagonal, :, diagonal] += self.slope_at_gauss[None, None, :, :]
 
-        rows, columns, values, right = [self._rows], [self._columns], [block.ravel()], [
-            residual.ravel()
-        ]
-        self._conditions(state, t, supports, rows, columns, values, right)
         matrix = scipy.sparse.csc_matrix(
-            (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))),
+            (
+                np.concatenate([block.ravel(), self._held.data]),
+                (
+                    np.concatenate([self._rows, self._held.row]),
+                    np.concatenate([self._columns, self._held.col]),
+                ),
+            ),
             shape=(self.size, self.size),
         )
-        return np.concatenate(right), matrix
+        constant, with_loads, with_supports = self._constants
+        held = self._held @ state.ravel() + constant + t * with_loads + supports * with_supports
+        held[: residual.size] = residual.ravel()
+        return held, matrix
 
-    def _conditions(
-        self,
-        state: Array,
-        t: float,
-        supports: float,
-        rows: list[Any],
-        columns: list[Any],
-        values: list[Any],
-        right: list[Any],
-    ) -> None:
-        """Continuity and balance at the breaks, supports in place of balance where they hold."""
+    def _conditions(self) -> tuple[scipy.sparse.coo_matrix, Array]:
+        """Continuity and balance at the breaks, supports in place of balance where they hold.
+
+        They are linear: a matrix, and what is added to its product with the state: always, times
+        the loads' factor, times the supports'.
+        """
         row = self.pieces * (self.order - 1) * 6
+        entries: list[tuple[int, int, float]] = []
+        constants = np.zeros((3, self.size))
+        angles = self.drawn()[..., THETA]
+        unit = self.F * self.L
         for i, place in self._places():
             left = (i - 1, self.order - 1) if i > 0 else None
             after = (i, 0) if i < self.pieces else None
             here = left if left is not None else after
             assert here is not None
-            position, angle, _, _ = self.rod.curve(np.array([self.breaks[i]]))
-            drawn_angle = self.drawn_angle(i)
+            position = self.rod.curve(self.breaks[i : i + 1])[0][0] / self.L
+            angle = angles[here]
 
-            def add(terms: list[tuple[tuple[int, int], int, float]], constant: float) -> None:
+            def add(terms: list[tuple[tuple[int, int] | None, int, float]], *right: float) -> None:
                 nonlocal row
-                total = constant
                 for where, variable, factor in terms:
-                    rows.append([row])
-                    columns.append([self._unknown[where][variable]])
-                    values.append([factor])
-                    total += factor * state[where][variable]
-                right.append([total])
+                    if where is not None:
+                        entries.append((row, self._unknown[where][variable], factor))
+                constants[:, row] = right
                 row += 1
 
             if left is not None and after is not None:
                 for v in (X, Y, THETA):
-                    add([(left, v, 1.0), (after, v, -1.0)], 0.0)
+                    add([(left, v, 1.0), (after, v, -1.0)], 0.0, 0.0, 0.0)
             for v, n in ((X, NX), (Y, NY)):
-                drawn = float(position[0, v]) / self.L
                 if place.fix[v]:
-                    add([(here, v, 1.0)], -(drawn + supports * place.shift[v] / self.L))
+                    add([(here, v, 1.0)], -position[v], 0.0, -place.shift[v] / self.L)
                     continue
                 k = place.spring[v] * self.L / self.F
-                anchor = drawn + supports * place.anchor_shift[v] / self.L
                 # The weight of a point mass acts like a force.
                 force = (place.force[v] + place.mass * self.rod.gravity[v]) / self.F
-                terms = [(here, v, -k)]
-                if after is not None:
-                    terms.append((after, n, 1.0))
-                if left is not None:
-                    terms.append((left, n, -1.0))
-                add(terms, t * force + k * anchor)
+                balance = [(here, v, -k), (after, n, 1.0), (left, n, -1.0)]
+                add(balance, k * position[v], force, k * place.anchor_shift[v] / self.L)
             if place.clamp:
-                add([(here, THETA, 1.0)], -(drawn_angle + supports * place.turn))
+                add([(here, THETA, 1.0)], -angle, 0.0, -place.turn)
             else:
-                k = place.torsion / (self.F * self.L)
-                terms = [(here, THETA, -k)]
-                if after is not None:
-                    terms.append((after, M, 1.0))
-                if left is not None:
-                    terms.append((left, M, -1.0))
-                add(terms, t * place.moment / (self.F * self.L) + k * drawn_angle)
+                k = place.torsion / unit
+                balance = [(here, THETA, -k), (after, M, 1.0), (left, M, -1.0)]
+                add(balance, k * angle, place.moment / unit, 0.0)
+        rows, columns, values = zip(*entries)
+        shape = (self.size, self.size)
+        return scipy.sparse.coo_matrix((values, (rows, columns)), shape=shape), constants
 
     def drawn_angle(self, i: int) -> float:
         """The direction of the drawn shape at break ``i``, counted continuously along the rod."""
@@ -356,7 +351,7 @@ class Mesh:
         whole = self.rod.mass_per_length * self.length
         n, k = self.pieces, self.order
         row = np.arange(n * (k - 1) * 6).reshape(n, k - 1, 6)
-        rows, columns, values = [], [], []
+        rows, columns, values = [], [], []  # inertia
         for v, balance in ((X, NX), (Y, NY)):
             shape = (n, k - 1, k)
             rows.append(np.broadcast_to(row[:, :, balance, None], shape).ravel())

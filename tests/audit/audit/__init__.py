@@ -9,13 +9,16 @@ import numpy as np
 from .buckling import buckling
 from .case import Case
 from .modes import modes
+from .motions import fall, motion
 from .paths import paths
 from .score import Summary
 from .statics import static
 
 KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
     "buckling": buckling,
+    "fall": fall,
     "modes": modes,
+    "motion": motion,
     "paths": paths,
     "static": static,
 }

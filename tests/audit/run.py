@@ -19,12 +19,9 @@ from pathlib import Path
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-import numpy as np  # noqa: E402
-
-sys.path.insert(0, str(Path(__file__).parent))
-
-from audit import KINDS, aims_missed  # noqa: E402
-from audit.score import Outcome, judge, report, summarise  # noqa: E402
+import numpy as np
+from audit import KINDS, aims_missed
+from audit.score import Outcome, judge, report, summarise
 
 
 def outcome_of(kind: str, seed: int, number: int) -> Outcome:

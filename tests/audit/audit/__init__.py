@@ -28,7 +28,9 @@ def aims_missed(summary: Summary) -> list[str]:
     """The aims that a run of the audit misses, in sentences."""
     missed = []
     if summary.coverage < 0.98:
-        missed.append(f"Only {summary.coverage:.1%} of the true values are inside; the aim is 98 %.")
+        missed.append(
+            f"Only {summary.coverage:.1%} of the true values are inside; the aim is 98 %."
+        )
     if summary.false_flags > 0.05:
         missed.append(f"{summary.false_flags:.1%} of the right values are flagged; the aim is 5 %.")
     if summary.quietly_wrong:

@@ -14,7 +14,7 @@ import numpy as np
 import scipy.linalg
 
 from .case import Case, Label, Truth, UnsolvedError
-from .rod import M, NX, NY, THETA, X, Array, Mesh, Rod, straight
+from .rod import NX, NY, THETA, Array, M, Mesh, Rod, X, straight
 from .shapes import Random, power
 
 
@@ -71,7 +71,7 @@ def buckling(rng: Random) -> Case:
             (f"load factor {i + 1}", "final"): Truth(
                 float(b), float(3 * abs(a - b) + 1e-9 * b), float(b), "load factor"
             )
-            for i, (a, b) in enumerate(zip(rough, fine))
+            for i, (a, b) in enumerate(zip(rough, fine, strict=True))
         }
 
     return Case("buckling", scene, truths)

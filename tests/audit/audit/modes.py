@@ -40,7 +40,7 @@ def modes(rng: Random) -> Case:
         coarse, state, fine, fine_state = statics.solution(drawing, final)
         pair = frequencies(coarse, state, count), frequencies(fine, fine_state, count)
         found = {}
-        for i, (rough, value) in enumerate(zip(*pair)):
+        for i, (rough, value) in enumerate(zip(*pair, strict=True)):
             # Rigid motions have frequency 0, here but for the rounding of its square.
             value = 0.0 if value < 1e-5 * pair[1][-1] else value
             error = 3 * abs(value - rough) + 1e-9 * pair[1][-1]

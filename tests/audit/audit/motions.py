@@ -126,19 +126,11 @@ def motion(rng: Random) -> Case:
         found = {}
         for name, probe in probes.items():
             quantity = probe["quantity"]
-            at = probe.get("at")
-            place = (
-                arc[at["node"]]
-                if isinstance(at, dict)
-                else {"start": 0.0, "middle": 0.5, "end": 1.0}.get(at, 0.0)
-                if at is None or isinstance(at, str)
-                else at / L
-            )
+            place = _place(probe.get("at", "start"), arc, L)
 
-            def values(what: str, place: float = float(place)) -> Array:
-                return np.array(
-                    [ritz.read(t, a, b, what, place) for t, a, b in zip(times, z, v)]
-                )
+            def values(what: str, place: float = place) -> Array:
+                at = zip(times, z, v, strict=True)
+                return np.array([ritz.read(t, a, b, what, place) for t, a, b in at])
 
             if quantity in ("x", "y", "vx", "vy"):
                 first = "x" if len(quantity) == 1 else "vx"
@@ -160,6 +152,15 @@ def motion(rng: Random) -> Case:
         return _compare(series(10, 80), series(13, 140), probes)
 
     return Case("motion", scene, truths)
+
+
+def _place(at: Any, arc: Array, L: float) -> float:
+    """The dimensionless arc length of a probe."""
+    if isinstance(at, dict):
+        return float(arc[at["node"]])
+    if isinstance(at, str):
+        return {"start": 0.0, "middle": 0.5, "end": 1.0}[at]
+    return float(at) / L
 
 
 def _force(
@@ -306,10 +307,11 @@ def fall(rng: Random) -> Case:
     pull = g * (1 - buoyant)
 
     def velocity(t: Array) -> Array:
-        return pull * tau + (v0 - pull * tau) * np.exp(-t[:, None] / tau)
+        return np.asarray(pull * tau + (v0 - pull * tau) * np.exp(-t[:, None] / tau))
 
     def shift(t: Array) -> Array:
-        return pull * tau * t[:, None] - (v0 - pull * tau) * tau * np.expm1(-t[:, None] / tau)
+        gone = -np.expm1(-t[:, None] / tau)
+        return np.asarray(pull * tau * t[:, None] + (v0 - pull * tau) * tau * gone)
 
     def truths(_: dict[str, Any]) -> Mapping[Label, Truth]:
         t = np.linspace(0, duration, 20001)

@@ -36,7 +36,9 @@ class Path:
         self.mesh, self.to, self.vary = mesh, to, vary
         weights = np.zeros((mesh.pieces, mesh.order, 6))
         weights[..., :3] = 1.0
-        drawn = mesh.drawn()  # the equations are affine in the factor, and the state has no part in it
+        drawn = (
+            mesh.drawn()
+        )  # the equations are affine in the factor, and the state has no part in it
         self.column = (
             mesh.equations(drawn, *self._factors(1.0))[0]
             - mesh.equations(drawn, *self._factors(0.0))[0]
@@ -62,10 +64,12 @@ class Path:
                     raise UnsolvedError("the path was lost")
             if abs(after[1]) >= self.to:
                 goal = self.to if after[1] > 0 else -self.to
-                at = self._where(point, trial, lambda p: p[1] - goal)
+                at = self._where(point, trial, _beyond(goal))
                 kind = "end" if goal > 0 else "far side"
                 # The last stretch may hold an event as well: it ends beyond the goal.
-                last = [e for e in self._between(point, trial, after, count) if abs(e.factor) < self.to]
+                last = [
+                    e for e in self._between(point, trial, after, count) if abs(e.factor) < self.to
+                ]
                 return [*found, *last, Event(kind, at[0], goal)]
             found += self._between(point, trial, after, count)
             count = self._unstable(after)
@@ -160,3 +164,7 @@ class Path:
                 raise NoSolutionError
             last = size
         raise NoSolutionError
+
+
+def _beyond(goal: float) -> Callable[[Point], float]:
+    return lambda point: point[1] - goal

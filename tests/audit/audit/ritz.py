@@ -3,13 +3,14 @@
 The potential ``1/2 EA (|r'| - 1)^2 + 1/2 EI (theta' - kappa_0)^2`` and the kinetic energy are those
 of the continuum; ``r`` is a polynomial of the arc length (Ritz' method), so smooth motions converge
 faster than any power of its degree. Time: the Gauss method of three stages, order 6 (E. Hairer,
-S. P. Norsett and G. Wanner, Solving ordinary differential equations I, II.7). Lengths are in units of
-the rod's, forces in ``EI/L^2``, times in ``L^2 sqrt(mu/EI)``.
+S. P. Norsett and G. Wanner, Solving ordinary differential equations I, II.7). Lengths are in units
+of the rod's, forces in ``EI/L^2``, times in ``L^2 sqrt(mu/EI)``.
 """
 
 from __future__ import annotations
 
 import dataclasses
+import itertools
 from collections.abc import Callable
 
 import numpy as np
@@ -59,8 +60,8 @@ class Ritz:
     def __init__(self, motion: Motion, degree: int):
         self.motion = motion
         n = degree + 1
-        s, w = legendre.leggauss(2 * degree)
-        self.s, self.w = (s + 1) / 2, w / 2
+        points, weights = legendre.leggauss(2 * degree)
+        self.s, self.w = np.asarray((points + 1) / 2), np.asarray(weights / 2)
         self.n = n
         identity = np.eye(n)
         self.value = self.basis(self.s)
@@ -98,18 +99,15 @@ class Ritz:
             )
             @ z
         )
-        self.slopes_at_rest = np.stack(
-            [np.ones(len(s)), np.zeros(len(s)), np.zeros(len(s)), np.zeros(len(s))]
-        )
+        self.slopes_at_rest = np.stack([np.ones(len(points)), *np.zeros((3, len(points)))])
 
     def basis(self, s: Array, derivative: int = 0) -> Array:
         """Legendre polynomials on (0, 1), or their derivatives, points x n."""
         columns = []
         for k in range(self.n):
-            coefficients = np.zeros(self.n)
-            coefficients[k] = 1.0
-            if derivative:
-                coefficients = legendre.legder(coefficients, derivative)
+            one = np.zeros(self.n)
+            one[k] = 1.0
+            coefficients = legendre.legder(one, derivative)
             columns.append(legendre.legval(2 * s - 1, coefficients) * 2.0**derivative)
         return np.stack(columns, axis=1)
 
@@ -157,9 +155,7 @@ class Ritz:
         back = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
         pull = back @ (np.array(m.gravity) + np.array(m.line))
         at_end = back @ (m.force(t) + m.end_mass * np.array(m.gravity))
-        force = np.concatenate(
-            [pull[v] * self.sum + at_end[v] * self.end for v in (0, 1)]
-        )
+        force = np.concatenate([pull[v] * self.sum + at_end[v] * self.end for v in (0, 1)])
         whole = self.rest + self.free @ z
         force = force + m.spin**2 * (self.whole_mass @ whole)
         return self.free.T @ force, m.spin**2 * self.mass
@@ -193,7 +189,7 @@ class Ritz:
         times, zs, vs = [0.0], [z], [v]
         acceleration = np.zeros((3, n))
         A2 = _A @ _A
-        for a, b in zip(corners[:-1], corners[1:]):
+        for a, b in itertools.pairwise(corners):
             count = max(1, int(np.ceil(steps * (b - a) / duration)))
             h = (b - a) / count
             for k in range(count):
@@ -245,9 +241,7 @@ class Ritz:
                 return float((turn @ position)[0 if name == "x" else 1])
             moving = np.array([row @ rate[: self.n], row @ rate[self.n :]])
             moving = turn @ (moving + m.spin * np.array([-position[1], position[0]]))
-            return float(
-                np.hypot(*moving) if name == "speed" else moving[0 if name == "vx" else 1]
-            )
+            return float(np.hypot(*moving) if name == "speed" else moving[0 if name == "vx" else 1])
         if name in ("moment", "curvature", "tension", "strain"):
             d1, d2 = self.basis(np.array([s]), 1)[0], self.basis(np.array([s]), 2)[0]
             n = self.n

@@ -6,15 +6,17 @@ Nothing here is shared with ``der``: no nodes, no turning angles, no energies. T
     r' = (1 + T/EA) t,  T = n . t,   theta' = kappa_0 + M/EI,   n' = -q,   M' = -(r' x n)_z,
 
 the equations of the energy ``1/2 EA (|r'| - 1)^2 + 1/2 EI (theta' - kappa_0)^2`` per rest length
-(S. S. Antman, Nonlinear Problems of Elasticity, 2nd ed., chapter 4, without shear). Pieces end where
-something acts; in each, the unknowns are polynomials through Chebyshev-Lobatto points that satisfy
-the equations at Gauss-Legendre points. Lengths are in units of the rod's, forces in ``EI/L^2``.
+(S. S. Antman, Nonlinear Problems of Elasticity, 2nd ed., chapter 4, without shear). Pieces end
+where something acts; in each, the unknowns are polynomials through Chebyshev-Lobatto points that
+satisfy the equations at Gauss-Legendre points. Lengths are in units of the rod's, forces in
+``EI/L^2``.
 """
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Sequence
+import itertools
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -51,8 +53,8 @@ class Place:
 class Rod:
     """A rod and all that acts on it.
 
-    ``curve(u)`` gives position (..., 2), direction (...), curvature (...) and ``ds/du`` (...) of the
-    drawn shape; ``u`` runs through ``knots``, at which the curve may be rough.
+    ``curve(u)`` gives position (..., 2), direction (...), curvature (...) and ``ds/du`` (...) of
+    the drawn shape; ``u`` runs through ``knots``, at which the curve may be rough.
     """
 
     knots: Array
@@ -74,7 +76,7 @@ class Rod:
         return self.places.setdefault(u, Place())
 
 
-def straight(start: Sequence[float], end: Sequence[float]) -> tuple[Array, Callable[[Array], Any]]:
+def straight(start: npt.ArrayLike, end: npt.ArrayLike) -> tuple[Array, Callable[[Array], Any]]:
     """Knots and curve of a straight rod, by its arc length."""
     a, b = np.asarray(start, float), np.asarray(end, float)
     length = float(np.hypot(*(b - a)))
@@ -92,7 +94,7 @@ def _barycentric(nodes: Array) -> Array:
     gaps = nodes[:, None] - nodes[None, :]
     np.fill_diagonal(gaps, 1.0)
     weights: Array = 1.0 / gaps.prod(axis=1)
-    return weights / np.abs(weights).max()
+    return np.asarray(weights / np.abs(weights).max())
 
 
 def _interpolation(nodes: Array, weights: Array, at: Array) -> Array:
@@ -122,14 +124,14 @@ class Mesh:
         self.rod = rod
         ends = {float(k) for k in rod.knots} | set(rod.places)
         ends |= {u for load in rod.line_loads for u in load[:2]}
-        ends_sorted = [ends_ for ends_ in sorted(ends)]
+        ends_sorted = sorted(ends)
         span = rod.knots[-1] - rod.knots[0]
         merged = [ends_sorted[0]]
         for u in ends_sorted[1:]:
             if u - merged[-1] > 1e-12 * span:
                 merged.append(u)
         breaks = [merged[0]]
-        for left, right in zip(merged[:-1], merged[1:]):
+        for left, right in itertools.pairwise(merged):
             count = int(np.ceil((right - left) / (longest * span) - 1e-9))
             breaks += list(np.linspace(left, right, count + 1)[1:])
         self.breaks = np.array(breaks)
@@ -186,8 +188,12 @@ class Mesh:
     def _places(self) -> list[tuple[int, Place]]:
         """The breaks, with what acts there."""
         return [
-            (i, self.rod.place(u) if any(abs(u - v) <= 1e-12 * abs(self.breaks[-1]) for v in
-             self.rod.places) else Place())
+            (
+                i,
+                self.rod.place(u)
+                if any(abs(u - v) <= 1e-12 * abs(self.breaks[-1]) for v in self.rod.places)
+                else Place(),
+            )
             for i, u in enumerate(self.breaks)
         ]
 
@@ -284,7 +290,7 @@ class Mesh:
                 k = place.torsion / unit
                 balance = [(here, THETA, -k), (after, M, 1.0), (left, M, -1.0)]
                 add(balance, k * angle, place.moment / unit, 0.0)
-        rows, columns, values = zip(*entries)
+        rows, columns, values = zip(*entries, strict=True)
         shape = (self.size, self.size)
         return scipy.sparse.coo_matrix((values, (rows, columns)), shape=shape), constants
 
@@ -308,7 +314,9 @@ class Mesh:
             except RuntimeError as error:
                 raise NoSolutionError from error
             step = step.reshape(state.shape)
-            size = float((np.abs(step).max(axis=(0, 1)) / (1 + np.abs(state).max(axis=(0, 1)))).max())
+            size = float(
+                (np.abs(step).max(axis=(0, 1)) / (1 + np.abs(state).max(axis=(0, 1)))).max()
+            )
             if not np.isfinite(size) or np.abs(step[..., THETA]).max() > 6.0:
                 raise NoSolutionError
             state -= step
@@ -387,7 +395,7 @@ class Mesh:
         )
         squares = -1.0 / eigenvalues - shift
         real = np.abs(squares.imag) < 1e-6 * (1 + np.abs(squares))
-        return np.sort(squares[real].real) * self.F / (whole * self.L)
+        return np.asarray(np.sort(squares[real].real) * self.F / (whole * self.L))
 
     # -- reading ----------------------------------------------------------------------------------
 
@@ -398,8 +406,8 @@ class Mesh:
         middle = (self.breaks[i] + self.breaks[i + 1]) / 2
         at = np.array([(u - middle) / self.half[i]])
         row = _interpolation(self.nodes, self.weights, np.clip(at, -1, 1))[0]
-        values: Array = row @ state[i]
-        return values * np.array([self.L, self.L, 1.0, self.F, self.F, self.F * self.L])
+        units = np.array([self.L, self.L, 1.0, self.F, self.F, self.F * self.L])
+        return np.asarray((row @ state[i]) * units)
 
     def quantity(self, state: Array, name: str, u: float, side: int = 1) -> float:
         x, y, theta, nx, ny, moment = self.read(state, u, side)

@@ -145,7 +145,9 @@ def _tension(result: Any) -> tuple[Any, Any]:
 
 # -- the report -----------------------------------------------------------------------------------
 
-COLUMNS = f"{'':22} {'values':>7} {'inside':>8} {'right':>7} {'flagged':>8} {'quietly':>8} {'no bar':>7}"
+COLUMNS = (
+    f"{'':22} {'values':>7} {'inside':>8} {'right':>7} {'flagged':>8} {'quietly':>8} {'no bar':>7}"
+)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -155,9 +155,9 @@ def _curve(rng: Random, t: Array) -> Array:
         x, y = t, rng.uniform(-1, 1) * t * (1 - t)
     else:
         fine = np.linspace(0, 1, 4001)
-        angle = rng.uniform(0.5, 3) * fine + rng.uniform(-3, 3) * fine**2
-        dx = np.concatenate([[0], np.cumsum((np.cos(angle[1:]) + np.cos(angle[:-1])) / 8000)])
-        dy = np.concatenate([[0], np.cumsum((np.sin(angle[1:]) + np.sin(angle[:-1])) / 8000)])
+        turned = rng.uniform(0.5, 3) * fine + rng.uniform(-3, 3) * fine**2
+        dx = np.concatenate([[0], np.cumsum((np.cos(turned[1:]) + np.cos(turned[:-1])) / 8000)])
+        dy = np.concatenate([[0], np.cumsum((np.sin(turned[1:]) + np.sin(turned[:-1])) / 8000)])
         x, y = np.interp(t, fine, dx), np.interp(t, fine, dy)
     turn = rng.uniform(-np.pi, np.pi) if rng.random() < 0.5 else 0.0
     c, s = np.cos(turn), np.sin(turn)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import der
 import numpy as np
 from scipy.interpolate import CubicSpline
 
@@ -331,7 +330,11 @@ def value(
     u = place(drawing, probe["at"])
     left, right = (mesh.quantity(state, quantity, u, side) for side in (-1, 1))
     size = scale(mesh, state, quantity)
-    if quantity == "curvature" and drawing.rod.natural is not None and abs(left - right) > 1e-9 / mesh.L:
+    if (
+        quantity == "curvature"
+        and drawing.rod.natural is not None
+        and abs(left - right) > 1e-9 / mesh.L
+    ):
         return None
     if abs(left - right) > 1e-9 * size:
         return None  # the quantity jumps here
@@ -367,6 +370,6 @@ def scale(mesh: Mesh, state: Array, quantity: str, weight: float = 1.0) -> float
         return force
     if quantity == "strain":
         return force / mesh.rod.EA
-    return float(max(abs(mesh.energy(state, "elastic_energy")), abs(mesh.energy(state, quantity, weight))))
-
-
+    return float(
+        max(abs(mesh.energy(state, "elastic_energy")), abs(mesh.energy(state, quantity, weight)))
+    )

@@ -23,7 +23,7 @@ def modes(rng: Random) -> Case:
         "analysis": {"modes": {"count": count}},
         "loads": [],
     }
-    free = drawing.rod.natural is None and rng.random() < 0.1
+    free = drawing.straight and drawing.rod.natural is None and rng.random() < 0.15
     if free:
         count += 3
         scene["analysis"]["modes"]["count"] = count
@@ -37,7 +37,11 @@ def modes(rng: Random) -> Case:
     scene["output"] = {"probes": {"end": {"rod": "rod", "at": "end", "quantity": "x"}}}
 
     def truths(final: dict[str, Any]) -> Mapping[Label, Truth]:
-        coarse, state, fine, fine_state = statics.solution(drawing, final)
+        if free:
+            coarse, fine = Mesh(drawing.rod, 16), Mesh(drawing.rod, 21)
+            state, fine_state = coarse.drawn(), fine.drawn()
+        else:
+            coarse, state, fine, fine_state = statics.solution(drawing, final)
         pair = frequencies(coarse, state, count), frequencies(fine, fine_state, count)
         found = {}
         for i, (rough, value) in enumerate(zip(*pair, strict=True)):

@@ -301,8 +301,15 @@ class Mesh:
 
     # -- solving ----------------------------------------------------------------------------------
 
-    def newton(self, state: Array, t: float = 1.0, supports: float = 1.0, limit: int = 12) -> Array:
-        """The solution near ``state``."""
+    def newton(
+        self,
+        state: Array,
+        t: float = 1.0,
+        supports: float = 1.0,
+        limit: int = 12,
+        longest: float = np.inf,
+    ) -> Array:
+        """The solution near ``state``, in steps that turn no section by more than ``longest``."""
         state = state.copy()
         last = np.inf
         for _ in range(limit):
@@ -317,9 +324,10 @@ class Mesh:
             size = float(
                 (np.abs(step).max(axis=(0, 1)) / (1 + np.abs(state).max(axis=(0, 1)))).max()
             )
-            if not np.isfinite(size) or np.abs(step[..., THETA]).max() > 6.0:
+            turn = float(np.abs(step[..., THETA]).max())
+            if not np.isfinite(size) or turn > max(6.0, 100 * longest):
                 raise NoSolutionError
-            state -= step
+            state -= step * min(1.0, longest / max(turn, 1e-300))
             if size < 1e-13 or (size < 1e-9 and size >= 0.3 * last):
                 return state
             last = size

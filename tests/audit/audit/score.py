@@ -12,6 +12,7 @@ import der
 import numpy as np
 
 from .case import Case, UnsolvedError
+from .rod import NoSolutionError
 
 
 @dataclasses.dataclass(frozen=True)
@@ -45,8 +46,8 @@ class Row:
 
     @property
     def right(self) -> bool:
-        """A value that deserves no flag: inside its bar; without one, within 1 % of its size."""
-        return self.inside if self.measured else self.error <= 0.01 * self.scale
+        """A value that deserves no flag: off by less than 1 %, and inside its bar if it has one."""
+        return self.error <= 0.01 * self.scale and (self.inside or not self.measured)
 
     @property
     def quietly_wrong(self) -> bool:
@@ -81,7 +82,7 @@ def judge(case: Case, name: str) -> Outcome:
         return outcome
     try:
         truths = case.truths(final)
-    except UnsolvedError as error:
+    except (UnsolvedError, NoSolutionError) as error:
         outcome.remark = f"unsolved: {error}"
         return outcome
     for value in verification.values:

@@ -70,7 +70,7 @@ def hold(rng: Random, drawing: Drawing, scene: dict[str, Any]) -> None:
         place = rod.place(u)
         place.fix, place.clamp = (True, True), True
         if rng.random() < moved:
-            place.turn = float(rng.uniform(-1.2, 1.2))
+            place.turn = float(rng.uniform(-1.2, 1.2) * (6 if rng.random() < 0.15 else 1))
             shift = rng.uniform(-0.1, 0.1, 2) * L
             place.shift = (float(shift[0]), float(shift[1]))
             entry["prescribe"] = {"x": place.shift[0], "y": place.shift[1], "angle": place.turn}
@@ -94,7 +94,7 @@ def hold(rng: Random, drawing: Drawing, scene: dict[str, Any]) -> None:
         supports.append({"rod": "rod", "at": at, "spring": spring})
 
     def somewhere() -> tuple[float, float]:
-        s = float(rng.uniform(0.05, 0.95) * L)
+        s = float(rng.uniform(1.2 / (drawing.nodes - 1), 0.95) * L)
         return s, drawing.u(s)
 
     kind = rng.choice(
@@ -137,7 +137,8 @@ def load(rng: Random, drawing: Drawing, scene: dict[str, Any]) -> None:
     rod, L = drawing.rod, drawing.length
     unit = rod.EI / L**2
     last = float(drawing.node_u[-1])
-    tiny = 1e-4 if rng.random() < 0.1 else 1.0
+    # Mostly large deflections; sometimes tiny ones, sometimes loads far beyond buckling.
+    size = float(rng.choice([1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1e-4, 5.0]))
     for _ in range(int(rng.integers(1, 4))):
         kind = rng.choice(["force", "force", "moment", "moment", "line", "gravity"])
         at: Any
@@ -150,8 +151,12 @@ def load(rng: Random, drawing: Drawing, scene: dict[str, Any]) -> None:
         else:
             at = float(rng.uniform(0.02, 0.98) * L)
             u = drawing.u(at)
+            # What happens within one element of the scene is not what a mesh can tell.
+            element = last / (drawing.nodes - 1)
+            if any(abs(u - other) < element for other in rod.places if 0 < other < last):
+                continue
         if kind == "force":
-            force = rng.uniform(-4, 4, 2) * unit * tiny
+            force = rng.uniform(-4, 4, 2) * unit * size
             place = rod.place(u)
             if any(place.fix):
                 continue
@@ -161,11 +166,11 @@ def load(rng: Random, drawing: Drawing, scene: dict[str, Any]) -> None:
             place = rod.place(u)
             if place.clamp:
                 continue
-            moment = float(rng.uniform(-3, 3) * unit * L * tiny)
+            moment = float(rng.uniform(-3, 3) * unit * L * size)
             place.moment += moment
             entry = {"moment": {"rod": "rod", "at": at, "moment": moment}}
         elif kind == "line":
-            force = rng.uniform(-5, 5, 2) * unit / L * tiny
+            force = rng.uniform(-5, 5, 2) * unit / L * size
             entry = {"distributed_force": {"rod": "rod", "force": force.tolist()}}
             lo, hi = 0.0, last
             # Where a curve is refined, so are its parts: whole rods only.
@@ -177,7 +182,7 @@ def load(rng: Random, drawing: Drawing, scene: dict[str, Any]) -> None:
         else:
             if any(rod.gravity):
                 continue
-            g = rng.uniform(-8, 8, 2) * unit / L / rod.mass_per_length * tiny
+            g = rng.uniform(-8, 8, 2) * unit / L / rod.mass_per_length * size
             rod.gravity = (float(g[0]), float(g[1]))
             entry = {"gravity": g.tolist()}
             if rng.random() < 0.4:
@@ -205,6 +210,8 @@ def ask(rng: Random, drawing: Drawing) -> dict[str, dict[str, Any]]:
     for i in range(int(rng.integers(4, 9))):
         if rng.random() < 0.25:
             probes[f"p{i}"] = {"quantity": str(rng.choice(ENERGIES))}
+            if rng.random() < 0.3:
+                probes[f"p{i}"]["rod"] = "rod"
             continue
         probe: dict[str, Any] = {"quantity": str(rng.choice(FIELDS)), "rod": "rod"}
         where = rng.random()
@@ -257,7 +264,7 @@ def solution(drawing: Drawing, final: dict[str, Any]) -> tuple[Mesh, Array, Mesh
 def _branch(mesh: Mesh, drawing: Drawing, nodes: Array, tension: tuple[Array, Array]) -> Array:
     """The exact equilibrium next to the one that the run found; it must be stable."""
     # A coarse chain is off by the square of its elements; another branch by far more.
-    near = 0.02 + 4.0 / drawing.nodes**2
+    near = 0.03 + 25.0 / drawing.nodes**2
     try:
         state = mesh.follow()
         if _distance(mesh, drawing, state, nodes) < near:
@@ -265,7 +272,7 @@ def _branch(mesh: Mesh, drawing: Drawing, nodes: Array, tension: tuple[Array, Ar
     except NoSolutionError:
         pass
     try:
-        state = mesh.newton(_guess(mesh, drawing, nodes, tension), limit=40)
+        state = mesh.newton(_guess(mesh, drawing, nodes, tension), limit=80, longest=0.3)
     except NoSolutionError as error:
         raise UnsolvedError("no solution near the shape that was found") from error
     distance = _distance(mesh, drawing, state, nodes)

@@ -1,0 +1,38 @@
+"""An audit of ``der verify``: random scenes, independently solved, against the error bars."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from .buckling import buckling
+from .case import Case
+from .modes import modes
+from .motions import fall, motion
+from .paths import paths
+from .score import Summary
+from .statics import static
+
+KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
+    "buckling": buckling,
+    "fall": fall,
+    "modes": modes,
+    "motion": motion,
+    "paths": paths,
+    "static": static,
+}
+
+
+def aims_missed(summary: Summary) -> list[str]:
+    """The aims that a run of the audit misses, in sentences."""
+    missed = []
+    if summary.coverage < 0.98:
+        missed.append(
+            f"Only {summary.coverage:.1%} of the true values are inside; the aim is 98 %."
+        )
+    if summary.false_flags > 0.05:
+        missed.append(f"{summary.false_flags:.1%} of the right values are flagged; the aim is 5 %.")
+    if summary.quietly_wrong:
+        missed.append(f"{summary.quietly_wrong} values outside their bars are not flagged.")
+    return missed

@@ -1,0 +1,32 @@
+"""What a case of the audit is: a scene, and true values for what ``der verify`` says about it."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from typing import Any
+
+Label = tuple[str, str]  # probe and what (final, min, max, fold 1, ...)
+
+
+class UnsolvedError(RuntimeError):
+    """The reference found no solution, so that the case says nothing."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Truth:
+    """A true value, the error of the reference, and the size that is natural for the quantity."""
+
+    value: float
+    error: float
+    scale: float
+    quantity: str
+
+
+@dataclasses.dataclass(frozen=True)
+class Case:
+    """A scene and the function that solves it; the function may look which branch was taken."""
+
+    kind: str
+    scene: dict[str, Any]
+    truths: Callable[[dict[str, Any]], Mapping[Label, Truth]]

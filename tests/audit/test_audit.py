@@ -1,0 +1,16 @@
+"""A short run of the audit: what must hold of every error bar."""
+
+from audit import KINDS, aims_missed
+from audit.score import report, summarise
+from run import audit
+
+# Scenes of each kind; about 20 s on one core. The long run: docs/validation.md.
+SCENES = {"static": 40, "modes": 12, "buckling": 12, "fall": 12, "motion": 6, "paths": 4}
+
+
+def test_true_values_are_inside_and_right_values_are_not_flagged() -> None:
+    assert SCENES.keys() == KINDS.keys()
+    outcomes = [o for kind, scenes in SCENES.items() for o in audit([kind], scenes, seed=1)]
+    rows = [row for outcome in outcomes for row in outcome.rows]
+    assert len(rows) > 300
+    assert not aims_missed(summarise(rows)), report(outcomes)

@@ -20,7 +20,7 @@ from der.result import Result
 if TYPE_CHECKING:
     import h5py
 
-_FORMAT_VERSION = 3
+_FORMAT_VERSION = 4
 #: What analyses find besides frames.
 _DATA_GROUPS = ("modes", "buckling", "path")
 #: Unit of each of these arrays that is no pure number.

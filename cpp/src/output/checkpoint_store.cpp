@@ -91,6 +91,7 @@ CheckpointStore::Slot CheckpointStore::create_slot(hid_t group, const Model& mod
   slot.history = create_list(group, "history", H5T_NATIVE_DOUBLE);
   slot.history_lengths = create_list(group, "history_lengths", H5T_NATIVE_INT64);
   slot.ramps = create_list(group, "ramps", H5T_NATIVE_DOUBLE);
+  slot.turns = create_list(group, "turns", H5T_NATIVE_DOUBLE);
   return slot;
 }
 
@@ -113,6 +114,7 @@ CheckpointStore::Slot CheckpointStore::open_slot(hid_t group) {
   slot.history = Column::open(group, "history");
   slot.history_lengths = Column::open(group, "history_lengths");
   slot.ramps = Column::open(group, "ramps");
+  slot.turns = Column::open(group, "turns");
   return slot;
 }
 
@@ -145,7 +147,7 @@ void CheckpointStore::write(const Checkpoint& checkpoint) {
   // Taken apart so that a new member of State does not compile until it is saved here and read
   // below.
   const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
-               next_step, last_error, work, ramps] = checkpoint.state;
+               next_step, last_error, work, ramps, turns] = checkpoint.state;
   hdf5::write_all(slot.time.id(), &time);
   hdf5::write_all(slot.step.id(), &step);
   hdf5::write_all(slot.positions.id(), positions.data());
@@ -182,6 +184,7 @@ void CheckpointStore::write(const Checkpoint& checkpoint) {
     moved.insert(moved.end(), {static_cast<double>(control), from_time, to_time, from, to});
   }
   slot.ramps.assign(moved);
+  slot.turns.assign(std::vector<double>(turns.begin(), turns.end()));
 }
 
 void CheckpointStore::publish() {
@@ -226,6 +229,7 @@ std::optional<Checkpoint> CheckpointStore::read() const {
     state.ramps.push_back(
         {static_cast<Index>(ramps[i]), ramps[i + 1], ramps[i + 2], ramps[i + 3], ramps[i + 4]});
   }
+  read_into(state.turns, slot.turns.id());
   return checkpoint;
 }
 

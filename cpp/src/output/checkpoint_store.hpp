@@ -31,6 +31,7 @@ class CheckpointStore {
     hdf5::Column history;          // all vectors one behind the other
     hdf5::Column history_lengths;  // of each vector
     hdf5::Column ramps;            // five numbers each
+    hdf5::Column turns;
   };
   static Slot create_slot(hid_t group, const Model& model, std::size_t num_probes);
   static Slot open_slot(hid_t group);

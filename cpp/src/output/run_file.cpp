@@ -22,7 +22,7 @@ using hdf5::Handle;
 using Seconds = std::chrono::duration<double>;
 
 /// Of the layout; readers refuse what they do not know.
-constexpr std::int64_t kFormatVersion = 3;
+constexpr std::int64_t kFormatVersion = 4;
 
 constexpr Seconds kFlushInterval{0.05};
 /// Flushing may take this share of a run's time on a slow disk.
@@ -260,10 +260,9 @@ void RunFile::Writer::for_each_data_column(F&& f) {
 /// more, off the beat.
 hsize_t RunFile::Writer::frames_up_to(double time, const StepPlan& plan) const {
   const auto times = hdf5::read_vector<double>(time_.column().id());
-  const auto steps = hdf5::read_vector<std::int64_t>(step_.column().id());
   hsize_t count = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
-    if (times[i] <= time && plan.is_frame(steps[i], times[i])) ++count;
+    if (times[i] <= time && plan.is_frame(times[i])) ++count;
   }
   return count;
 }
@@ -426,7 +425,13 @@ LastFrame read_last_frame(const std::filesystem::path& path) {
     const auto row = hdf5::read_row(hdf5::open_dataset(file.id(), name).id(), frames - 1);
     return Vector(Eigen::Map<const Vector>(row.data(), static_cast<Index>(row.size())));
   };
-  LastFrame last{read("positions"), read("velocities"), {}};
+  LastFrame last{read("positions"), read("velocities"), {}, {}, {}};
+  last.scene = hdf5::read_text(file.id(), "scene");
+  if (hdf5::exists(file.id(), "checkpoint")) {  // not where Python has saved a result
+    if (const auto checkpoint = CheckpointStore::open(file.id()).read()) {
+      last.turns = checkpoint->state.turns;
+    }
+  }
   for (const std::string& name : hdf5::names_in(file.id(), "rods")) {
     const std::string rod = "rods/" + name;
     last.rods.push_back(

@@ -12,8 +12,6 @@ namespace {
 constexpr double kMinimumStepShare = 1.0 / 1024.0;
 /// Of the duration: with that, 1e-12 of it for adaptive steps, a thousand times its rounding.
 constexpr double kAdaptiveShare = 1e-9;
-/// More steps than anyone can wait for.
-constexpr double kMaxSteps = 1e12;
 /// Frames of a run where the scene does not say how often to save.
 constexpr double kDefaultFrames = 1000.0;
 
@@ -47,10 +45,10 @@ void check_fixed_step(const Time& time, Complaints& complaints) {
                                                  "{} s",
                                                  time.duration, time.step));
   }
-  if (time.duration / time.step > kMaxSteps) {
+  if (time.duration / time.step > kMostSteps) {
     complaints.add({"time", "step"}, fmt::format("makes more than {:g} steps out of the duration, "
                                                  "{} s",
-                                                 kMaxSteps, time.duration));
+                                                 kMostSteps, time.duration));
   }
 }
 

@@ -111,8 +111,9 @@ void add_element(const RodLayout& rod, const TangentSpring& spring, const Stenci
   }
   typename Kernel::Constants constants;
   constants.stiffness = spring.stiffness * series_share(rod, spring, stencil);
-  const Vec2 drawn = drawn_edge(rod, stencil.first, model);
-  constants.direction = std::atan2(drawn.y(), drawn.x());
+  const FollowedEdge& first = model.followed_edges[at(follow_edge(rod, stencil.first, model))];
+  constants.direction = first.direction;
+  constants.turn = first.turn;
   constants.rest = rest_turn(rod, spring.arc_length, stencil, model);
   for (std::size_t i = 0; i < Edges; ++i) constants.weights[i] = stencil.weights[i];
   std::get<ElementList<Kernel>>(model.elements).add(dofs, constants);

@@ -9,6 +9,7 @@
 #include "der/energies/registry.hpp"
 #include "der/model/controls.hpp"
 #include "der/model/mass.hpp"
+#include "der/model/turns.hpp"
 #include "der/scenario/scenario.hpp"
 
 namespace der {
@@ -26,6 +27,7 @@ struct Clamp {
   Index place = 0;         ///< position in RodLayout::nodes
   double direction = 0.0;  ///< initial angle of the held tangent [rad]
   Index rotation = -1;     ///< control that turns it [rad]; -1: none
+  Index followed = -1;     ///< place in Model::followed_edges of the edge beside it, if it turns
 };
 
 /// A spring against turning of a rod's tangent.
@@ -114,6 +116,7 @@ struct Model {
   std::vector<Index> free_index;  ///< of each degree of freedom: its place in `free_dofs`, or -1
 
   std::vector<Edge> edges;  ///< of all rods
+  std::vector<FollowedEdge> followed_edges;
   ElementLists elements;
 
   /// The largest extent of the initial shape [m]: the length against which steps are small.
@@ -133,6 +136,9 @@ struct NodePlace {
   Index place = 0;  ///< position in RodLayout::nodes
 };
 NodePlace place_of(const Model& model, Index node);
+
+/// Number in Model::followed_edges of an edge of `rod`, which is followed from now on.
+Index follow_edge(const RodLayout& rod, Index edge, Model& model);
 
 /// "node 3 of rod 'beam' (y)"
 std::string describe_dof(const Model& model, Index dof);

@@ -7,6 +7,7 @@
 #include "der/model/state.hpp"
 #include "der/steppers/dense_output.hpp"
 #include "der/steppers/stepper.hpp"
+#include "der/steppers/support_motion.hpp"
 
 namespace der {
 
@@ -62,7 +63,8 @@ class AdaptiveStepper {
   double error_factor_;
   AdaptiveOptions options_;
   std::vector<double> breakpoints_;  // [s] ascending
-  State start_;                      // of the last step
+  SupportMotion support_motion_;
+  State start_;  // of the last step
   State middle_;
   State whole_;  // at the end of the step done as a whole
   DenseOutput dense_;

@@ -11,6 +11,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "der/core/error.hpp"
 #include "recording.hpp"
 #include "state.hpp"
 
@@ -51,14 +52,11 @@ py::dict probe_values(const PySimulation& simulation) {
 }
 
 void restore(PySimulation& simulation, const SavedState& saved) {
-  const Model& model = simulation.engine().model();
-  if (saved.dimension != model.dimension || saved.state.positions.size() != model.num_dofs()) {
-    throw py::value_error("the state has " + std::to_string(saved.state.positions.size()) +
-                          " degrees of freedom, this simulation has " +
-                          std::to_string(model.num_dofs()) +
-                          ": a state can only be restored into a simulation of the same rods");
+  try {
+    simulation.restore(saved.state);
+  } catch (const Error& error) {
+    throw py::value_error(error.what());
   }
-  simulation.restore(saved.state);
 }
 
 void bind_reports(py::module_& module) {
@@ -243,9 +241,16 @@ void bind_actions(PySimulationClass& cls) {
           "prescribe",
           [](PySimulation& simulation, std::size_t support, std::optional<double> x,
              std::optional<double> y, std::optional<double> angle) {
-            if (x) simulation.engine().prescribe(support, "x", *x);
-            if (y) simulation.engine().prescribe(support, "y", *y);
-            if (angle) simulation.engine().prescribe(support, "angle", *angle);
+            Simulation& engine = simulation.engine();
+            const std::vector<Ramp> before = engine.state().ramps;
+            try {
+              if (x) engine.prescribe(support, "x", *x);
+              if (y) engine.prescribe(support, "y", *y);
+              if (angle) engine.prescribe(support, "angle", *angle);
+            } catch (...) {  // all of them or none
+              engine.state().ramps = before;
+              throw;
+            }
           },
           py::arg("support"), py::kw_only(), py::arg("x") = py::none(), py::arg("y") = py::none(),
           py::arg("angle") = py::none(),
@@ -318,7 +323,8 @@ void bind_actions(PySimulationClass& cls) {
           "Return a copy of the state, to go back to with `restore_state`.")
       .def("restore_state", &restore, py::arg("state"),
            "Go back (or forward) to a saved state, bit for bit. Views stay valid.\n\n"
-           "The state may come from another simulation of the same rods. Raises ValueError if it\n"
+           "The state may come from another simulation of the same rods and supports, one with\n"
+           "another time step too: time goes on from that of the state. Raises ValueError if it\n"
            "does not fit.")
       .def("record", &record, py::arg("callback") = py::none(),
            py::arg("until") = std::numeric_limits<double>::infinity(), py::arg("tick") = py::none(),

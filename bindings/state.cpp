@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <string>
 #include <vector>
 
 #include "arrays.hpp"
@@ -10,9 +11,23 @@
 namespace der::python {
 namespace {
 
+/// Of the layout of a dumped state; another one is refused.
+constexpr int kVersion = 1;
+constexpr const char* kKind = "der.State";
+
 Array to_array(const Vector& vector) { return Array(vector.size(), vector.data()); }
 
-Vector to_vector(const Array& array) {
+[[noreturn]] void refuse(const std::string& why) {
+  throw py::value_error("this is no saved state of this version of der: " + why +
+                        ". Save it anew with save_state");
+}
+
+Vector to_vector(const py::handle& value) {
+  const auto array = py::array_t<double, py::array::c_style>::ensure(value);
+  if (!array || !py::isinstance<Array>(value) || array.ndim() != 1) {
+    PyErr_Clear();
+    refuse("a vector must be an array of doubles of one dimension");
+  }
   return Eigen::Map<const Vector>(array.data(), array.size());
 }
 
@@ -21,43 +36,61 @@ Vector to_vector(const Array& array) {
 
 py::tuple dump(const SavedState& saved) {
   const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
-               next_step, last_error, work, ramps] = saved.state;
+               next_step, last_error, work, ramps, turns] = saved.state;
   py::list remembered;
   for (const Vector& vector : history) remembered.append(to_array(vector));
   py::list moved;
   for (const auto& [control, start, end, from, to] : ramps) {
     moved.append(py::make_tuple(control, start, end, from, to));
   }
-  return py::make_tuple(saved.dimension, time, step, to_array(positions), to_array(velocities),
-                        to_array(extra_force), to_array(accelerations), last_step, remembered,
-                        next_step, last_error, work.start, work.loads, work.supports, work.drag,
-                        work.solver, moved);
+  return py::make_tuple(kKind, kVersion, saved.dimension, time, step, to_array(positions),
+                        to_array(velocities), to_array(extra_force), to_array(accelerations),
+                        last_step, remembered, next_step, last_error, work.start, work.loads,
+                        work.supports, work.drag, work.solver, moved, to_array(turns));
 }
 
-SavedState revive(const py::tuple& dumped) {
+SavedState read(const py::tuple& dumped) {
   SavedState saved;
   auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
-         next_step, last_error, work, ramps] = saved.state;
-  saved.dimension = dumped[0].cast<Index>();
-  time = dumped[1].cast<double>();
-  step = dumped[2].cast<std::int64_t>();
-  positions = to_vector(dumped[3].cast<Array>());
-  velocities = to_vector(dumped[4].cast<Array>());
-  extra_force = to_vector(dumped[5].cast<Array>());
-  accelerations = to_vector(dumped[6].cast<Array>());
-  last_step = dumped[7].cast<double>();
-  for (const auto& vector : dumped[8].cast<std::vector<Array>>()) {
-    history.push_back(to_vector(vector));
+         next_step, last_error, work, ramps, turns] = saved.state;
+  std::size_t next = 2;
+  const auto take = [&] { return dumped[next++]; };
+  const auto number = [&] { return take().cast<double>(); };
+  saved.dimension = take().cast<Index>();
+  time = number();
+  step = take().cast<std::int64_t>();
+  for (Vector* vector : {&positions, &velocities, &extra_force, &accelerations}) {
+    *vector = to_vector(take());
   }
-  next_step = dumped[9].cast<double>();
-  last_error = dumped[10].cast<double>();
-  const auto value = [&](std::size_t i) { return dumped[i].cast<double>(); };
-  work = {value(11), value(12), value(13), value(14), value(15)};
-  for (const auto& ramp : dumped[16].cast<std::vector<py::tuple>>()) {
+  last_step = number();
+  for (const py::handle& vector : take().cast<py::list>()) history.push_back(to_vector(vector));
+  next_step = number();
+  last_error = number();
+  for (double* part : {&work.start, &work.loads, &work.supports, &work.drag, &work.solver}) {
+    *part = number();
+  }
+  for (const auto& ramp : take().cast<std::vector<py::tuple>>()) {
+    if (ramp.size() != 5) refuse("a support that moves has five numbers");
     ramps.push_back({ramp[0].cast<Index>(), ramp[1].cast<double>(), ramp[2].cast<double>(),
                      ramp[3].cast<double>(), ramp[4].cast<double>()});
   }
+  turns = to_vector(take());
   return saved;
+}
+
+SavedState revive(const py::tuple& dumped) {
+  constexpr std::size_t kParts = 20;
+  try {
+    if (dumped.size() != kParts || dumped[0].cast<std::string>() != kKind) refuse("other content");
+    if (dumped[1].cast<int>() != kVersion) refuse("another version");
+    SavedState saved = read(dumped);
+    const Index dofs = saved.state.positions.size();
+    if (saved.dimension != 2 || dofs % saved.dimension != 0) refuse("another number of dimensions");
+    if (saved.state.velocities.size() != dofs) refuse("as many velocities as positions are needed");
+    return saved;
+  } catch (const py::cast_error&) {
+    refuse("a part of another type");
+  }
 }
 
 void bind_energies(py::module_& module) {

@@ -19,6 +19,8 @@ namespace {
 constexpr double kNewtonShare = 1e-5;
 /// Pieces of a step that differ by no more than this share are of one length.
 constexpr double kSameLength = 1e-9;
+/// Supports that move farther in a step, in edges or radians, are a mistake.
+constexpr double kMostStrips = 1e4;
 
 StepperOptions stepper_options(const scenario::Scene& scene) {
   StepperOptions options;
@@ -51,6 +53,29 @@ std::string advice(const std::string& status) {
          "over time with damping may show.";
 }
 
+/// The longest length up to `longest` of which `whole` is a multiple.
+double even_piece(double whole, double longest) {
+  return whole / std::max(1.0, std::ceil(whole / longest * (1.0 - kSameLength)));
+}
+
+/// Puts a state back to what it was when this was made, unless the change of it is kept.
+class Undo {
+ public:
+  /// `before` keeps its memory from one time to the next.
+  Undo(State& state, State& before) : state_(state), before_(before) { before_ = state_; }
+  ~Undo() {
+    if (!kept_) state_ = before_;
+  }
+  Undo(const Undo&) = delete;
+  Undo& operator=(const Undo&) = delete;
+  void keep() { kept_ = true; }
+
+ private:
+  State& state_;
+  State& before_;
+  bool kept_ = false;
+};
+
 /// The first control that moves this component; Error if the scene prescribes none.
 const PrescribedControl& check_prescribed(const Model& model, std::size_t support,
                                           const std::string& component) {
@@ -68,15 +93,15 @@ const PrescribedControl& check_prescribed(const Model& model, std::size_t suppor
                   component, support, component, known.empty() ? "nothing" : known));
 }
 
-/// A program may have written anything into the state.
-void check_finite(const Model& model, const Vector& values, const std::string& what) {
-  for (Index dof = 0; dof < model.num_dofs(); ++dof) {
-    if (std::isfinite(values[dof])) continue;
-    throw Error("model_error",
-                fmt::format("{} of {} is {}, not a finite number: write one there, or begin again "
-                            "with a new simulation",
-                            what, describe_dof(model, dof), values[dof]));
-  }
+/// The first value that is not a finite number, in words; empty if there is none.
+std::string find_nonfinite(const Model& model, const Vector& values, const std::string& what) {
+  if (values.allFinite()) return {};
+  Index dof = 0;
+  while (std::isfinite(values[dof])) ++dof;
+  return fmt::format(
+      "{} of {} is {}, not a finite number: write one there, or begin again with a "
+      "new simulation",
+      what, describe_dof(model, dof), values[dof]);
 }
 
 }  // namespace
@@ -90,6 +115,7 @@ Simulation::Simulation(Scenario scenario)
       stepper_info_(find_stepper(scenario_.scene().time.integrator)),
       stepper_(stepper_info_.make(model_, assembler_, *solver_.solver,
                                   stepper_options(scenario_.scene()))),
+      support_motion_(model_),
       horizon_(scenario_.scene().time.duration),
       state_(initial_state(model_)) {
   start_ledger(model_, state_);
@@ -109,10 +135,7 @@ Simulation::Simulation(Scenario scenario)
   }
 }
 
-bool Simulation::finished() const {
-  return adaptive_ ? state_.time >= scenario_.scene().time.duration
-                   : state_.step >= plan_.total_steps;
-}
+bool Simulation::finished() const { return state_.time >= plan_.duration; }
 
 void Simulation::check_first_step() {
   if (stability_) stability_->check_start(state_);
@@ -122,6 +145,9 @@ void Simulation::step() {
   if (!scenario_.scene().is_dynamic()) {
     throw Error("model_error", "a static scene has no time steps: use equilibrium()");
   }
+  Undo undo(state_, before_step_);
+  if (const std::string found = find_nonfinite(); !found.empty()) throw DivergedError(found);
+  follow_turns(model_, state_.positions, state_.turns);  // a program may have moved the rods
   if (adaptive_) {
     advance_adaptively();
   } else {
@@ -129,12 +155,17 @@ void Simulation::step() {
   }
   ++state_.step;
   ++counters_.steps;
+  undo.keep();
 }
 
 double Simulation::next_time() const {
-  if (state_.step + 1 == plan_.total_steps) return scenario_.scene().time.duration;
-  // Counted from the start, so that rounding does not add up over many steps.
-  return static_cast<double>(state_.step + 1) * plan_.step;
+  const double next = plan_.next_time(state_.time);
+  if (next > state_.time) return next;
+  throw Error(
+      "model_error",
+      fmt::format("a step of {:g} s is lost in the rounding of the time, {:g} s: go back to "
+                  "a state of an earlier time",
+                  plan_.step, state_.time));
 }
 
 void Simulation::advance_adaptively() {
@@ -151,12 +182,22 @@ void Simulation::advance_adaptively() {
 
 void Simulation::advance_to(double target) {
   const double whole = target - state_.time;
+  if (support_motion_.time_of(kMostStrips, state_) < whole) {
+    throw NotConvergedError(fmt::format(
+        "in the step from t = {:.6g} s a support moves by more than {:g} of its edges, or turns by "
+        "more than as many radians: look at the numbers and units of 'prescribe', or take a "
+        "smaller time.step",
+        state_.time, kMostStrips));
+  }
   double dt = whole;
+  int pieces = 0;
   while (true) {
     const double left = target - state_.time;
     if (stability_) dt = stable_piece(left, whole, dt);
-    const bool last = dt >= left * (1.0 - kSameLength);
-    const double tried = last ? left : dt;
+    const double piece = std::min(dt, even_piece(left, support_motion_.longest_step(state_)));
+    const bool last = piece >= left * (1.0 - kSameLength);
+    const double tried = last ? left : piece;
+    if (++pieces == 2) ++counters_.retried_steps;
     const StepReport report = stepper_->step(state_, tried);
     counters_.newton_iterations += report.newton_iterations;
     if (report.outcome == StepOutcome::Done) {
@@ -165,7 +206,6 @@ void Simulation::advance_to(double target) {
       continue;
     }
     if (report.outcome == StepOutcome::Diverged) fail(report, tried);
-    counters_.retried_steps += dt == whole ? 1 : 0;
     dt = 0.5 * tried;
     if (dt < scenario_.scene().time.minimum_step) fail(report, tried);
   }
@@ -177,8 +217,7 @@ double Simulation::stable_piece(double left, double whole, double dt) {
   stability_->look(state_, plan_.step);
   const double wanted = state_.next_step;
   if (wanted == 0.0 || dt <= wanted * (1.0 + kSameLength)) return dt;
-  counters_.retried_steps += dt == whole ? 1 : 0;
-  const double piece = left / std::ceil(left / wanted * (1.0 - kSameLength));
+  const double piece = even_piece(left, wanted);
   const auto pieces = static_cast<std::int64_t>(std::ceil(whole / piece * (1.0 - kSameLength)));
   counters_.most_pieces = std::max(counters_.most_pieces, pieces);
   return piece;
@@ -221,32 +260,37 @@ double Simulation::prescribed(std::size_t support, const std::string& component)
   return model_.controls.value(found.control, state_.time, state_.ramps);
 }
 
+std::string Simulation::find_nonfinite() const {
+  std::string found = der::find_nonfinite(model_, state_.positions, "the position");
+  if (found.empty()) found = der::find_nonfinite(model_, state_.extra_force, "the extra force");
+  if (found.empty()) found = der::find_nonfinite(model_, state_.velocities, "the velocity");
+  return found;
+}
+
 void Simulation::check_finite_state() const {
-  check_finite(model_, state_.positions, "the position");
-  check_finite(model_, state_.extra_force, "the extra force");
+  if (const std::string found = find_nonfinite(); !found.empty()) throw Error("model_error", found);
 }
 
 EquilibriumReport Simulation::equilibrium(bool leave_saddles) {
   check_finite_state();
-  for (Ramp& ramp : state_.ramps) ramp.from = ramp.to;
-  Vector positions = state_.positions;
+  State found = state_;
+  for (Ramp& ramp : found.ramps) ramp.from = ramp.to;
   EquilibriumOptions options;
   options.newton = stepper_options(scenario_.scene()).newton;
   // Solved once, not at every step: one more iteration takes the last digits too.
   options.newton.step_tolerance *= 0.01;
   options.leave_saddles = leave_saddles;
-  EquilibriumReport report =
-      find_equilibrium(model_, assembler_, *solver_.solver, options, state_, positions);
+  EquilibriumReport report = find_equilibrium(model_, assembler_, *solver_.solver, options, found);
   counters_.newton_iterations += report.newton_iterations;
   if (!report.converged) {
     throw NotConvergedError(
         fmt::format("no stable equilibrium found: {}. {}", report.failure, advice(report.status)),
         report.status);
   }
-  state_.positions = positions;
-  state_.velocities.setZero();
-  forget_steps(state_);
-  start_ledger(model_, state_);
+  found.velocities.setZero();
+  forget_steps(found);
+  start_ledger(model_, found);
+  state_ = found;
   return report;
 }
 
@@ -272,19 +316,25 @@ std::vector<Mode> Simulation::modes(int count) {
 LinearBuckling Simulation::buckling(int count) {
   const LoadPath loads(scenario_.scene(), model_, scenario::Varied::Loads, std::nullopt);
   const FactorGuard back_to_the_scene(loads, model_);
+  State before;
+  Undo undo(state_, before);
   loads.apply(0.0, model_);
   equilibrium();
-  return linear_buckling(model_, loads, assembler_, *solver_.solver, state_.positions, count);
+  LinearBuckling result =
+      linear_buckling(model_, loads, assembler_, *solver_.solver, state_, count);
+  undo.keep();
+  return result;
 }
 
 std::vector<PathBranch> Simulation::follow(const scenario::ContinuationAnalysis& analysis) {
-  load_path_.emplace(scenario_.scene(), model_, analysis.vary, analysis.number);
-  if (!load_path_->varies()) {
-    load_path_.reset();
+  const LoadPath loads(scenario_.scene(), model_, analysis.vary, analysis.number);
+  if (!loads.varies()) {
     throw Error("model_error", "nothing varies along the path: what it follows is zero");
   }
-  FactorGuard afterwards(*load_path_, model_);
-  load_path_->apply(analysis.from, model_);
+  FactorGuard afterwards(loads, model_);
+  State before;
+  Undo undo(state_, before);
+  loads.apply(analysis.from, model_);
   equilibrium();
   ContinuationOptions options;
   options.newton = stepper_options(scenario_.scene()).newton;
@@ -293,15 +343,17 @@ std::vector<PathBranch> Simulation::follow(const scenario::ContinuationAnalysis&
   options.largest_step = analysis.step;
   options.max_points = analysis.points;
   options.branching = analysis.branches;
-  auto path =
-      follow_path(model_, *load_path_, assembler_, *solver_.solver, options, state_.positions);
+  auto path = follow_path(model_, loads, assembler_, *solver_.solver, options, state_);
+  load_path_ = loads;
   afterwards.leave_at(analysis.from);
+  undo.keep();
   return path;
 }
 
 void Simulation::show(const PathPoint& point, std::int64_t index) {
   load_path_->apply(point.factor, model_);
   state_.positions = point.positions;
+  state_.turns = point.turns;
   state_.step = index;
   state_.time = static_cast<double>(index);
 }
@@ -313,7 +365,7 @@ Vector Simulation::Forces::unbalanced(const Model& model) const {
 Simulation::Forces Simulation::forces() const {
   Forces now;
   now.gradient.resize(model_.num_dofs());
-  model_.controls.evaluate(state_.time, state_.ramps, now.controls);
+  evaluate_controls(model_, state_, state_.time, now.controls);
   external_force(model_, now.controls, state_.extra_force, now.external);
   assembler_.gradient(state_.positions, now.controls, now.gradient);
   return now;
@@ -323,7 +375,7 @@ Vector Simulation::gradient() const { return forces().unbalanced(model_); }
 
 SymmetricMatrix Simulation::hessian() const {
   Vector controls;
-  model_.controls.evaluate(state_.time, state_.ramps, controls);
+  evaluate_controls(model_, state_, state_.time, controls);
   const Assembler assembler(model_, MatrixLayout::compressed(pattern_));
   Vector gradient(model_.num_dofs());
   Vector values(assembler.num_values());
@@ -339,6 +391,7 @@ SymmetricMatrix Simulation::mass() const {
 }
 
 void Simulation::restore(const State& saved) {
+  check_state(model_, saved);
   // Vectors of the same length keep their memory when assigned.
   state_ = saved;
 }

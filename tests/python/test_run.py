@@ -231,7 +231,6 @@ def test_equilibrium_takes_tables_at_time_0(tube):
     assert found.positions[0] == pytest.approx(started.positions, abs=1e-9)
     tube["supports"][0]["prescribe"]["angle"] = 0.1
     load["force"] = [0, -100]
-    del tube["start_from"]
     assert np.array_equal(found.positions, der.equilibrium(tube).positions)
 
 

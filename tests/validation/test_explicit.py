@@ -193,3 +193,17 @@ def test_the_first_step_is_judged_where_the_run_starts(tmp_path):
         der.Simulation(squeezed(tmp_path, 0.6, step=step))
     result = der.run(squeezed(tmp_path, 0.6, step="auto"))
     assert np.abs(result.work["numerical"]).max() < 0.01 * result.energies["stretch"][0]
+
+
+def test_a_rod_at_rest_far_away_does_not_shorten_the_steps():
+    """Its first edge does not follow on the last one of the arm."""
+    scene = soft_arm(21, 1e4)
+    weight = -9.81 * 1000 * np.pi * 0.05**2
+    scene["loads"] = [{"distributed_force": {"rod": "arm", "force": [0, weight]}}]
+    alone = der.run(scene).summary
+    scene["rods"].append({**scene["rods"][0], "name": "other", "from": [0, 9], "to": [1, 9]})
+    scene["supports"].append({"rod": "other", "at": "start", "clamp": True})
+    beside = der.run(scene).summary
+    assert alone["shortest_step"] < alone["step"]
+    for key in ("step", "shortest_step", "retried_steps"):
+        assert beside[key] == alone[key]

@@ -22,6 +22,7 @@
 #include "der/steppers/stability_watch.hpp"
 #include "der/steppers/step_plan.hpp"
 #include "der/steppers/stepper.hpp"
+#include "der/steppers/support_motion.hpp"
 
 namespace der {
 
@@ -42,7 +43,7 @@ struct SymmetricMatrix {
 };
 
 /// One simulation: a scenario's model, its state, and the stepper that advances it. This is the
-/// engine that der_run and Python both drive.
+/// engine that der_run and Python both drive. Whatever throws leaves the state as it was.
 class Simulation {
  public:
   /// Throws SceneError or Error where the scene cannot be simulated. A scene with `start_from` is
@@ -52,8 +53,8 @@ class Simulation {
   Simulation& operator=(const Simulation&) = delete;
 
   /// Advances by one time step: of the scene's length, or, with a tolerance, of the length that the
-  /// error allows. A step that fails is retried in smaller pieces. Throws NotConvergedError or
-  /// DivergedError; the state is then that of the last good step.
+  /// error allows. A step that fails is retried in smaller pieces, and one in which supports move
+  /// far is done in such. Throws NotConvergedError or DivergedError; the state is then as before.
   void step();
   /// Throws Error ("unstable_step") if the scene's step is too long for an explicit integrator at
   /// the present state, the start of a run.
@@ -101,7 +102,8 @@ class Simulation {
   /// Its vectors keep their memory for the life of the simulation, so views of them stay valid.
   [[nodiscard]] State& state() { return state_; }
   [[nodiscard]] const State& state() const { return state_; }
-  /// Goes back (or forward) to a state copied earlier, without moving the vectors' memory.
+  /// Goes back (or forward) to a state copied earlier, without moving the vectors' memory. Throws
+  /// Error if it is not one of such a model.
   void restore(const State& saved);
   [[nodiscard]] const Counters& counters() const { return counters_; }
   [[nodiscard]] bool adaptive() const { return adaptive_.has_value(); }
@@ -121,7 +123,9 @@ class Simulation {
   double stable_piece(double left, double whole, double dt);
   void advance_adaptively();
   [[noreturn]] void fail(const StepReport& report, double dt);
-  /// Throws Error if a position or an extra force is not a finite number.
+  /// The first position, velocity or extra force that is not a finite number, as a program may have
+  /// written it, in words; empty if there is none.
+  [[nodiscard]] std::string find_nonfinite() const;
   void check_finite_state() const;
   /// What acts at the present state.
   struct Forces {
@@ -146,8 +150,10 @@ class Simulation {
   std::optional<StabilityWatch> stability_;  // of explicit steppers
   StepPlan plan_;
   std::optional<AdaptiveStepper> adaptive_;
+  SupportMotion support_motion_;
   double horizon_ = 0.0;
   State state_;
+  State before_step_;  // to go back to from a step that fails
   Counters counters_;
   std::optional<LoadPath> load_path_;  // of the last continuation
 };

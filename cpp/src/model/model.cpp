@@ -48,6 +48,16 @@ RodLayout& Model::rod(const std::string& rod_name) {
   return rods[static_cast<std::size_t>(&std::as_const(*this).rod(rod_name) - rods.data())];
 }
 
+Index follow_edge(const RodLayout& rod, Index edge, Model& model) {
+  const std::array<Index, 4> dofs = rod.edge_dofs(edge, model);
+  const Vector& drawn = model.initial_positions;
+  const double direction =
+      std::atan2(drawn[dofs[3]] - drawn[dofs[1]], drawn[dofs[2]] - drawn[dofs[0]]);
+  // An entry of its own, which no table moves.
+  model.followed_edges.push_back({dofs, direction, model.controls.add({{0.0}, {0.0}})});
+  return static_cast<Index>(model.followed_edges.size()) - 1;
+}
+
 NodePlace place_of(const Model& model, Index node) {
   for (const RodLayout& rod : model.rods) {
     const auto found = std::find(rod.nodes.begin(), rod.nodes.end(), node);

@@ -34,10 +34,24 @@ double applied_moment(const MomentPlace& place, const Vector& controls) {
 }
 
 template <int Edges>
-double turn_of(Index element, const Model& model, const Vector& positions) {
+double turn_of(Index element, const Model& model, const Vector& positions, double before) {
   using Kernel = RotationalSpring<Edges>;
   const auto& springs = std::get<ElementList<Kernel>>(model.elements);
-  return Kernel::turn(springs.constants[at(element)], gather(springs.dofs[at(element)], positions));
+  return Kernel::turn(springs.constants[at(element)], before,
+                      gather(springs.dofs[at(element)], positions));
+}
+
+/// Turn [rad] of the weighted directions from where the springs are slack, the first edge having
+/// turned by `before` [rad] in the last state; 0 without springs.
+double spring_turn(const MomentPlace& place, const Model& model, const Vector& positions,
+                   double before) {
+  if (place.spring < 0) return 0.0;
+  return place.weights.size() == 1 ? turn_of<1>(place.spring, model, positions, before)
+                                   : turn_of<2>(place.spring, model, positions, before);
+}
+
+double moment_of(const MomentPlace& place, const RodLayout& rod, double applied, double turn) {
+  return place.series_share(rod.EI) * (applied - place.stiffness * turn);
 }
 
 /// What the cells hold with the edges as they were where the springs are slack [J].
@@ -70,16 +84,10 @@ MomentPlace& place_of_moments(double s, RodLayout& rod) {
   return rod.moment_places.emplace_back(std::move(place));
 }
 
-double spring_turn(const MomentPlace& place, const Model& model, const Vector& positions) {
-  if (place.spring < 0) return 0.0;
-  return place.weights.size() == 1 ? turn_of<1>(place.spring, model, positions)
-                                   : turn_of<2>(place.spring, model, positions);
-}
-
 double carried_moment(const MomentPlace& place, const RodLayout& rod, const Model& model,
-                      const Vector& positions, double applied) {
-  return place.series_share(rod.EI) *
-         (applied - place.stiffness * spring_turn(place, model, positions));
+                      const State& state, double applied) {
+  const double before = place.followed >= 0 ? state.turns[place.followed] : 0.0;
+  return moment_of(place, rod, applied, spring_turn(place, model, state.positions, before));
 }
 
 CellEnergies cell_energies(const RodLayout& rod, const Model& model, const Vector& controls,
@@ -87,11 +95,12 @@ CellEnergies cell_energies(const RodLayout& rod, const Model& model, const Vecto
   CellEnergies energies;
   if (rod.EI == 0.0) return energies;
   for (const MomentPlace& place : rod.moment_places) {
-    const double moment =
-        carried_moment(place, rod, model, positions, applied_moment(place, controls));
+    const double before =
+        place.followed >= 0 ? controls[model.followed_edges[at(place.followed)].turn] : 0.0;
+    const double turn = spring_turn(place, model, positions, before);
+    const double moment = moment_of(place, rod, applied_moment(place, controls), turn);
     const double cell_turn = place.cell_length * moment / rod.EI;
     energies.bend += 0.5 * cell_turn * moment;
-    const double turn = spring_turn(place, model, positions);
     const double tangent = turn + cell_turn;
     energies.spring +=
         0.5 * place.stiffness * (tangent * tangent - place.series_share(rod.EI) * turn * turn);

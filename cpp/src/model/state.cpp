@@ -18,12 +18,20 @@ State initial_state(const Model& model) {
   Vector controls;
   model.controls.evaluate(0.0, controls);
   place_held(model, controls, state.positions);
+  state.turns.setZero(static_cast<Index>(model.followed_edges.size()));
+  follow_turns(model, state.positions, state.turns);
   return state;
+}
+
+void evaluate_controls(const Model& model, const State& state, double time, Vector& controls) {
+  model.controls.evaluate(time, controls);
+  for (const Ramp& ramp : state.ramps) controls[ramp.control] = ramp.at(time);
+  enter_turns(model, state.turns, controls);
 }
 
 Energies energies(const Model& model, const State& state) {
   Vector controls;
-  model.controls.evaluate(state.time, state.ramps, controls);
+  evaluate_controls(model, state, state.time, controls);
   Energies result;
   result.kinetic = model.mass.kinetic_energy(state.velocities);
   result.gravity = -model.gravity_force.dot(state.positions);

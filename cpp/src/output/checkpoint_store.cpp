@@ -128,7 +128,7 @@ std::uint64_t checksum_of(const Checkpoint& checkpoint) {
     sum.add(numbers.data(), static_cast<std::size_t>(numbers.size()));
   };
   const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
-               next_step, last_error, work, ramps] = checkpoint.state;
+               next_step, last_error, work, ramps, turns] = checkpoint.state;
   sum.add(time);
   sum.add(step);
   for (const Vector* vector : {&positions, &velocities, &extra_force, &accelerations}) {
@@ -147,13 +147,15 @@ std::uint64_t checksum_of(const Checkpoint& checkpoint) {
     add(vector);
   }
   add(flatten(ramps));
+  add(turns);
   return sum.value();
 }
 
 /// Throws IoError for a state that no run comes to.
 void check_state(const State& state) {
   const bool numbers = std::isfinite(state.time) && state.positions.allFinite() &&
-                       state.velocities.allFinite() && state.accelerations.allFinite();
+                       state.velocities.allFinite() && state.accelerations.allFinite() &&
+                       state.turns.allFinite();
   if (!numbers) throw IoError("the checkpoint holds what is not a finite number");
   if (state.step < 0 || state.time < 0.0) {
     throw IoError("the checkpoint is of a negative time or number of steps");
@@ -186,6 +188,7 @@ CheckpointStore::Slot CheckpointStore::create_slot(hid_t group, hsize_t num_dofs
   slot.history_lengths =
       Column<std::int64_t>::create(group, "history_lengths", {}, "", kHistoryChunk);
   slot.ramps = Column<double>::create(group, "ramps", {}, "", kHistoryChunk);
+  slot.turns = Column<double>::create(group, "turns", {}, "rad", kHistoryChunk);
   slot.checksum = create_values<std::uint64_t>(group, "checksum", {}, "");
   return slot;
 }
@@ -213,6 +216,7 @@ CheckpointStore::Slot CheckpointStore::open_slot(hid_t group, hsize_t num_dofs,
   slot.history = Column<double>::open(group, "history", {});
   slot.history_lengths = Column<std::int64_t>::open(group, "history_lengths", {});
   slot.ramps = Column<double>::open(group, "ramps", {});
+  slot.turns = Column<double>::open(group, "turns", {});
   slot.checksum = open_values<std::uint64_t>(group, "checksum", {});
   return slot;
 }
@@ -280,6 +284,7 @@ void CheckpointStore::write(const Checkpoint& checkpoint) {
   slot.history.assign(flat);
   slot.history_lengths.assign(lengths);
   slot.ramps.assign(flatten(state.ramps));
+  slot.turns.assign(std::vector<double>(state.turns.begin(), state.turns.end()));
   const std::uint64_t checksum = checksum_of(checkpoint);
   hdf5::write_all(slot.checksum.id(), &checksum);
 }
@@ -316,6 +321,8 @@ std::optional<Checkpoint> CheckpointStore::read() const {
   state.history = to_history(slot.history.read(0, slot.history.rows()),
                              slot.history_lengths.read(0, slot.history_lengths.rows()));
   state.ramps = to_ramps(slot.ramps.read(0, slot.ramps.rows()));
+  const std::vector<double> turns = slot.turns.read(0, slot.turns.rows());
+  state.turns = Eigen::Map<const Vector>(turns.data(), static_cast<Index>(turns.size()));
   if (checksum_of(checkpoint) != read_one<std::uint64_t>(slot.checksum)) {
     throw IoError("the checkpoint is damaged: its checksum is another one");
   }

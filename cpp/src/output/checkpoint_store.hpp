@@ -37,7 +37,8 @@ class CheckpointStore {
     Column<double> history;                // all vectors one behind the other
     Column<std::int64_t> history_lengths;  // of each vector
     Column<double> ramps;                  // five numbers each
-    hdf5::Handle checksum;                 // of all these numbers
+    Column<double> turns;
+    hdf5::Handle checksum;  // of all these numbers
   };
   static Slot create_slot(hid_t group, hsize_t num_dofs, hsize_t num_probes);
   static Slot open_slot(hid_t group, hsize_t num_dofs, hsize_t num_probes);

@@ -68,7 +68,7 @@ class EnergyReader : public ProbeReader {
 
  private:
   double elastic(const Model& model, const State& state) {
-    model.controls.evaluate(state.time, state.ramps, controls_);
+    evaluate_controls(model, state, state.time, controls_);
     double energy = 0.0;
     for_each_list(part_.elements, [&](const auto& list) {
       constexpr EnergyTerm term = std::decay_t<decltype(list)>::KernelType::kTerm;

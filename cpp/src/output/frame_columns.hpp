@@ -67,7 +67,6 @@ class FrameColumns {
   void resize_data(hsize_t count);
 
   [[nodiscard]] std::vector<double> times() const { return time_.read(0, size()); }
-  [[nodiscard]] std::vector<std::int64_t> steps() const { return step_.read(0, size()); }
   /// Frames [first, first + count). Throws IoError where a checksum differs or a time is not a
   /// finite number or comes after a later one.
   [[nodiscard]] FrameData read(hsize_t first, hsize_t count) const;

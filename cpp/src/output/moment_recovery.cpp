@@ -128,7 +128,7 @@ double MomentRecovery::carried(std::size_t number, const Model& model, const Sta
   for (const Index moment : place.moments) {
     applied += model.controls.value(moment, state.time, state.ramps);
   }
-  return carried_moment(place, rod_, model, state.positions, applied);
+  return carried_moment(place, rod_, model, state, applied);
 }
 
 Vec2 MomentRecovery::node_point(Index node, const State& state) const {

@@ -26,8 +26,7 @@ void Recorder::observe(Simulation& simulation) {
   const State& state = simulation.state();
   if (state.time == seen_time_) return;
   if (simulation.adaptive() && has_data()) record_frames_between(simulation);
-  record(simulation, state,
-         simulation.finished() || simulation.plan().is_frame(state.step, state.time));
+  record(simulation, state, simulation.finished() || simulation.plan().is_frame(state.time));
   for (FrameSink* sink : sinks_) sink->stepped(simulation, *this);
 }
 
@@ -113,7 +112,7 @@ void Recorder::restore(const Checkpoint& checkpoint, Simulation& simulation) {
   seen_time_ = checkpoint.state.time;
   // Of the earlier part only the regular frames are kept, so any other one is not saved yet.
   saved_time_.reset();
-  if (simulation.plan().is_frame(checkpoint.state.step, checkpoint.state.time)) {
+  if (simulation.plan().is_frame(checkpoint.state.time)) {
     saved_time_ = seen_time_;
   }
   counters_before_ = checkpoint.counters;

@@ -133,10 +133,9 @@ void RunFile::Writer::go_on(Simulation& simulation, Recorder& recorder) {
 /// more, off the beat.
 hsize_t RunFile::Writer::frames_up_to(double time, const StepPlan& plan) const {
   const std::vector<double> times = frames_.times();
-  const std::vector<std::int64_t> steps = frames_.steps();
   hsize_t count = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
-    if (times[i] <= time && plan.is_frame(steps[i], times[i])) ++count;
+    if (times[i] <= time && plan.is_frame(times[i])) ++count;
   }
   return count;
 }

@@ -1,3 +1,4 @@
+#include <optional>
 #include <utility>
 
 #include "der/output/io_error.hpp"
@@ -42,16 +43,19 @@ std::vector<std::string> probe_units(hid_t file, const std::vector<std::string>&
   return units;
 }
 
+/// None where Python has saved a result, and before the first one is written.
+std::optional<Checkpoint> read_checkpoint(hid_t file, const FrameColumns& columns) {
+  if (!CheckpointStore::is_in(file)) return std::nullopt;
+  return CheckpointStore::open(file, columns.num_dofs(), columns.layout().probe_names.size())
+      .read();
+}
+
 RunFileHead read_head(hid_t file) {
   RunFileHead head;
   head.der_version = hdf5::read_text_attribute(file, "der_version");
   head.status = hdf5::read_text_attribute(file, "status");
   head.scene = read_text(file, "scene");
-  if (!CheckpointStore::is_in(file)) return head;
-  const FrameColumns columns = FrameColumns::open(file);
-  const auto checkpoint =
-      CheckpointStore::open(file, columns.num_dofs(), columns.layout().probe_names.size()).read();
-  if (checkpoint) {
+  if (const auto checkpoint = read_checkpoint(file, FrameColumns::open(file))) {
     head.has_checkpoint = true;
     head.step = checkpoint->state.step;
     head.time = checkpoint->state.time;
@@ -63,8 +67,13 @@ LastFrame read_last_frame(hid_t file) {
   const FrameColumns columns = FrameColumns::open(file);
   if (columns.size() == 0) throw IoError("it holds no frame");
   const FrameData frame = columns.read(columns.size() - 1, 1);
-  LastFrame last{to_vector(frame.positions), to_vector(frame.velocities), read_rods(file)};
+  LastFrame last;
+  last.positions = to_vector(frame.positions);
+  last.velocities = to_vector(frame.velocities);
+  last.rods = read_rods(file);
+  last.scene = read_text(file, "scene");
   check_nodes(last.rods, columns.layout().nodes);
+  if (const auto checkpoint = read_checkpoint(file, columns)) last.turns = checkpoint->state.turns;
   return last;
 }
 

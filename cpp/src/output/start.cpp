@@ -10,6 +10,7 @@
 #include <system_error>
 #include <vector>
 
+#include "der/model/builder.hpp"
 #include "der/output/io_error.hpp"
 #include "der/output/run_folder.hpp"
 #include "der/output/saved_run.hpp"
@@ -72,6 +73,20 @@ std::string difference(const std::vector<SavedRod>& there, const std::vector<Rod
                      here.size());
 }
 
+/// Whole turns go on where that run followed the same edges; else they count from the drawn shape.
+void take_over_turns(const LastFrame& last, const Model& model, State& state) {
+  if (last.turns.size() == state.turns.size()) {
+    const Model there = build_model(Scenario::parse(last.scene).scene());
+    const auto& before = there.followed_edges;
+    if (std::equal(before.begin(), before.end(), model.followed_edges.begin(),
+                   model.followed_edges.end(),
+                   [](const FollowedEdge& a, const FollowedEdge& b) { return a.dofs == b.dofs; })) {
+      state.turns = last.turns;
+    }
+  }
+  follow_turns(model, state.positions, state.turns);
+}
+
 LastFrame read_start(const std::string& from) {
   const RunFolder folder{fs::path(from)};
   std::error_code error;
@@ -113,6 +128,7 @@ void apply_start(Simulation& simulation) {
   Vector controls;
   model.controls.evaluate(state.time, controls);
   place_held(model, controls, state.positions);  // supports are where this scene has them
+  take_over_turns(last, model, state);
   start_ledger(model, state);
   simulation.check_first_step();
 }

@@ -12,8 +12,6 @@ namespace {
 constexpr double kMinimumStepShare = 1.0 / 1024.0;
 /// Of the duration: with that, 1e-12 of it for adaptive steps, a thousand times its rounding.
 constexpr double kAdaptiveShare = 1e-9;
-/// More steps than anyone can wait for.
-constexpr double kMaxSteps = 1e12;
 /// The smallest frame takes 200 bytes: these fill any disk.
 constexpr double kMaxFrames = 1e9;
 /// Frames of a run where the scene does not say how often to save.
@@ -54,10 +52,10 @@ void check_fixed_step(const Time& time, Complaints& complaints) {
                                                  "{} s",
                                                  time.duration, time.step));
   }
-  if (time.duration / time.step > kMaxSteps) {
+  if (time.duration / time.step > kMostSteps) {
     complaints.add({"time", "step"}, fmt::format("makes more than {:g} steps out of the duration, "
                                                  "{} s",
-                                                 kMaxSteps, time.duration));
+                                                 kMostSteps, time.duration));
   }
 }
 

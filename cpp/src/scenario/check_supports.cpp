@@ -18,6 +18,19 @@ void check_constant(CheckContext& context, bool constant, const Path& path) {
                          "a static analysis has no time: give a constant in place of a table");
 }
 
+/// A run over time begins with the drawn shape, where every prescribed motion is 0.
+void check_start(CheckContext& context, const Series& motion, const Path& path) {
+  if (!context.scene.is_dynamic() || !context.scene.start_from.empty()) return;
+  const double start = value_at(motion, 0.0);
+  if (start == 0.0) return;
+  context.complaints.add(
+      path,
+      fmt::format("is {:g} at time 0, where the rods are as drawn: the run would begin with a "
+                  "jump. Give a table that begins with 0, as {{times: [0, 1], values: [0, "
+                  "{:g}]}}, or begin at rest with 'start_from: equilibrium'",
+                  start, start));
+}
+
 /// Enters what a support holds of its nodes; complains once where another holds it already.
 void hold(CheckContext& context, int number, int rod, const std::vector<int>& nodes) {
   static constexpr std::array<const char*, 3> names{"x", "y", "the angle"};
@@ -46,11 +59,14 @@ void check_support(CheckContext& context, int number) {
   if (context.complaints.under(path)) return;
   Support& support = context.scene.supports[static_cast<std::size_t>(number)];
   for (const Prescribed& motion : support.prescribe) {
-    check_constant(context, motion.displacement.constant(),
-                   path / "prescribe" / (motion.component == Component::X ? "x" : "y"));
+    const Path key = path / "prescribe" / (motion.component == Component::X ? "x" : "y");
+    check_constant(context, motion.displacement.constant(), key);
+    check_start(context, motion.displacement, key);
   }
   if (support.rotation) {
-    check_constant(context, support.rotation->constant(), path / "prescribe" / "angle");
+    const Path key = path / "prescribe" / "angle";
+    check_constant(context, support.rotation->constant(), key);
+    check_start(context, *support.rotation, key);
   }
   const std::optional<int> rod = context.find_rod(support.rod, path / "rod");
   if (!rod) return;

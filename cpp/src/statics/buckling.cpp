@@ -171,7 +171,8 @@ std::vector<BucklingMode> buckling_modes(const Model& model, LinearSolver& solve
 }  // namespace
 
 LinearBuckling linear_buckling(Model& model, const LoadPath& loads, const Assembler& assembler,
-                               LinearSolver& solver, const Vector& positions, int count) {
+                               LinearSolver& solver, const State& state, int count) {
+  const Vector& positions = state.positions;
   const FactorGuard back_to_the_scene(loads, model);
   Stiffness stiffness(model, assembler, solver);
   Vector controls;
@@ -180,6 +181,7 @@ LinearBuckling linear_buckling(Model& model, const LoadPath& loads, const Assemb
   const auto evaluate = [&](double factor) -> Vector {
     loads.apply(factor, model);
     model.controls.evaluate(0.0, controls);
+    enter_turns(model, state.turns, controls);
     external_force(model, controls, Vector::Zero(model.num_dofs()), force);
     stiffness.evaluate(positions, controls);
     return (force - stiffness.gradient())(model.free_dofs);

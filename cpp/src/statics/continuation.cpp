@@ -28,6 +28,8 @@ constexpr int kHardIterations = 7;
 constexpr double kLastStep = 1e-7;
 /// The path may turn by this much from point to point [cosine].
 constexpr double kLargestBend = 0.9;
+/// No clamp turns by more than this from point to point [rad].
+constexpr double kLargestTurn = 1.0;
 /// Steps shorter than this, against the largest, end a branch.
 constexpr double kShortestStep = 1e-7;
 /// Events are located to this, against the step in which they lie ...
@@ -65,6 +67,7 @@ struct Node {
   Extended at;
   Extended tangent;
   Vector positions;
+  Vector turns;  // of the followed edges [rad]
   Stability stability;
   [[nodiscard]] bool rising() const { return tangent.factor > 0.0; }
 };
@@ -81,9 +84,9 @@ class Follower {
         tension_(model, assembler),
         range_(options.to - options.from) {}
 
-  std::vector<PathBranch> run(const Vector& start) {
+  std::vector<PathBranch> run(const State& start) {
     begin(start);
-    Node first = node_at({start(model_.free_dofs), options_.from});
+    Node first = node_at({start.positions(model_.free_dofs), options_.from});
     set_metric(first);
     orient_to_the_end(first);
     follow(first, std::nullopt, 0);
@@ -104,8 +107,16 @@ class Follower {
     return {a.x + factor * b.x, a.factor + factor * b.factor};
   }
 
-  void begin(const Vector& start) {
-    positions_ = start;
+  void begin(const State& start) {
+    positions_ = start.positions;
+    turns_ = start.turns;
+    largest_turn_ = 0.0;
+    for (const RodLayout& rod : model_.rods) {
+      for (const Clamp& clamp : rod.clamps) {
+        if (clamp.rotation < 0) continue;
+        largest_turn_ = std::max(largest_turn_, std::abs(loads_.change_of(clamp.rotation)));
+      }
+    }
     weight_ = 1.0 / (model_.num_nodes * model_.size * model_.size);
   }
 
@@ -132,6 +143,7 @@ class Follower {
   void place(const Extended& point) {
     loads_.apply(point.factor, model_);
     model_.controls.evaluate(0.0, controls_);
+    enter_turns(model_, turns_, controls_);
     place_held(model_, controls_, positions_);
     positions_(model_.free_dofs) = point.x;
   }
@@ -180,6 +192,8 @@ class Follower {
     Node node;
     node.at = point;
     node.positions = positions_;
+    node.turns = turns_;
+    follow_turns(model_, positions_, node.turns);
     node.tangent = tangent(point, node.stability);
     return node;
   }
@@ -217,6 +231,7 @@ class Follower {
 
   /// The point of the path at arc length `step` from `from`.
   std::optional<Node> next(const Node& from, double step, int& iterations) {
+    turns_ = from.turns;
     const auto found = solve_on_plane(from.at, from.tangent, step,
                                       combine(from.at, step, from.tangent), iterations);
     if (!found) return std::nullopt;
@@ -331,7 +346,8 @@ class Follower {
   }
 
   void add_point(PathBranch& branch, const Node& node, double arc, PathEvent event) const {
-    branch.points.push_back({node.at.factor, arc, node.stability, event, node.positions});
+    branch.points.push_back(
+        {node.at.factor, arc, node.stability, event, node.positions, node.turns});
   }
 
   /// How far the factor is on its way: 0 at `from`, 1 at `to`.
@@ -344,6 +360,7 @@ class Follower {
     int iterations = 0;
     Extended first = guess;
     first.factor = factor;
+    turns_ = near.turns;
     const auto found = solve_on_plane(base, normal, factor / std::abs(range_), first, iterations);
     if (!found) return std::nullopt;
     Node node = node_at(*found);
@@ -360,9 +377,12 @@ class Follower {
            std::max(norm(back), norm(ahead)) < 1.5 * length;
   }
 
-  /// Whether a point `step` ahead may be the next one: the path bends little up to it.
+  /// Whether a point `step` ahead may be the next one: the path bends little up to it, and nothing
+  /// turns so far that whole turns could be lost.
   [[nodiscard]] bool is_near(const Node& node, double step, const Node& found) const {
-    return dot(found.tangent, node.tangent) >= kLargestBend &&
+    const double turn = largest_turn_ * std::abs(found.at.factor - node.at.factor);
+    return turn <= kLargestTurn && edge_turned_too_far(model_, found.positions, node.turns) < 0 &&
+           dot(found.tangent, node.tangent) >= kLargestBend &&
            step >= kLargestBend * norm(combine(found.at, -1.0, node.at));
   }
 
@@ -419,6 +439,7 @@ class Follower {
   bool is_traced(const Extended& point) {
     for (const PathBranch& branch : branches_) {
       for (std::size_t i = 0; i + 1 < branch.points.size(); ++i) {
+        turns_ = branch.points[i].turns;
         if (lies_between(extended(branch.points[i]), extended(branch.points[i + 1]), point)) {
           return true;
         }
@@ -563,6 +584,7 @@ class Follower {
 
   /// The first point of the branch that leaves `bifurcation` to one side of the path it lies on.
   std::optional<Node> first_point(const Node& bifurcation, int side) {
+    turns_ = bifurcation.turns;
     evaluate(bifurcation.at);
     Extended across{stiffness_.nearest_to_zero().direction, 0.0};
     across = combine(across, -dot(across, bifurcation.tangent), bifurcation.tangent);
@@ -591,6 +613,8 @@ class Follower {
   double range_ = 1.0;
   double weight_ = 1.0;
   Vector positions_;
+  Vector turns_;               // of the point from which the search for the next one starts [rad]
+  double largest_turn_ = 0.0;  // of a clamp, by a unit of the factor [rad]
   Vector controls_;
   Vector force_;
   Vector residual_;
@@ -603,7 +627,7 @@ class Follower {
 
 std::vector<PathBranch> follow_path(Model& model, const LoadPath& loads, const Assembler& assembler,
                                     LinearSolver& solver, const ContinuationOptions& options,
-                                    const Vector& start) {
+                                    const State& start) {
   return Follower(model, loads, assembler, solver, options).run(start);
 }
 

@@ -70,6 +70,17 @@ constexpr double kFolded = 3.0;
 /// Share of its rest length at which an edge counts as pressed to a point.
 constexpr double kCollapsed = 1e-2;
 
+/// By how much a unit moment turns the softest spring against turning [1/(N m)].
+double softest_turn(const Model& model) {
+  double softest = 0.0;
+  for (const RodLayout& rod : model.rods) {
+    for (const MomentPlace& place : rod.moment_places) {
+      if (place.stiffness > 0.0) softest = std::max(softest, 1.0 / place.stiffness);
+    }
+  }
+  return softest;
+}
+
 /// How far [m] springs can let the structure move under `load` [N], counted from the drawn shape.
 double spring_travel(const Model& model, double load) {
   double farthest = 0.0;
@@ -100,26 +111,28 @@ class Search {
         options_(options),
         newton_(model, assembler, solver, options.newton),
         stiffness_(model, assembler, solver),
-        stage_(model) {
+        stage_(model),
+        turns_(state.turns) {
     stage_.mass = {Vector::Ones(model.num_dofs()), {}};
     turned_.setZero(static_cast<Index>(std::get<ElementList<PlanarMoment>>(model.elements).size()));
     for (const RodLayout& rod : model.rods) {
       if (rod.EI > 0.0) softness_ = std::max(softness_, rod.rest_length() / rod.EI);
     }
-    model.controls.evaluate(state.time, state.ramps, stage_.controls);
+    softness_ += softest_turn(model);
+    evaluate_controls(model, state, state.time, stage_.controls);
     external_force(model, stage_.controls, state.extra_force, stage_.force);
     spring_travel_ = spring_travel(model, stage_.force.lpNorm<1>());
   }
 
-  EquilibriumReport run(Vector& positions) {
-    Vector x = positions;
-    start_ = x;
+  EquilibriumReport run(State& state) {
+    Vector x = state.positions;
+    start_ = {x, turns_};
     if (const std::string unheld = find_unheld_part(model_, stage_.force); !unheld.empty()) {
       fail("not_held", unheld);
       return report_;
     }
     move_supports(x);
-    start_ = x;
+    start_ = {x, turns_};
     report_.converged = newton(x) || descend(x, report_.force_scale / model_.size) ||
                         step_loads(x) || swing(x) || start_elsewhere(x);
     if (report_.converged) judge(x);
@@ -138,11 +151,34 @@ class Search {
            "a clamp that turns does not take the rod along: a node folds over on the way, the mesh "
            "is too coarse for the bend there");
     }
-    if (report_.converged) positions = x;
+    if (report_.converged) {
+      state.positions = x;
+      state.turns = turns_;
+    }
     return report_;
   }
 
  private:
+  /// A shape with the turns of its followed edges, which it does not say itself.
+  struct Wound {
+    Vector positions;
+    Vector turns;
+  };
+
+  void set_turns(const Vector& turns) {
+    turns_ = turns;
+    enter_turns(model_, turns_, stage_.controls);
+  }
+  /// Follows the turns to `x`, which is not far from where they were followed to last.
+  void follow_turns_to(const Vector& x) {
+    follow_turns(model_, x, turns_);
+    enter_turns(model_, turns_, stage_.controls);
+  }
+  void go_to(const Wound& shape, Vector& x) {
+    x = shape.positions;
+    set_turns(shape.turns);
+  }
+
   /// Puts the held degrees of freedom to their places and turns the clamps. Where that would fold
   /// or crush the edges beside them, the shape follows on the way: first in tiny steps that double,
   /// so that a rod that is pressed buckles near its first buckling load and not, crushed, in a high
@@ -150,12 +186,16 @@ class Search {
   /// takes the rod along: at once it would be known up to whole turns only.
   void move_supports(Vector& x) {
     const bool as_drawn = x(model_.free_dofs) == model_.initial_positions(model_.free_dofs);
-    if (as_drawn) x = model_.initial_positions;
+    if (as_drawn) {
+      x = model_.initial_positions;
+      set_turns(Vector::Zero(turns_.size()));
+    }
+    follow_turns_to(x);
     Vector target = x;
     place_held(model_, stage_.controls, target);
     const Vector whole = target - x;
     const Vector turned = stage_.controls;
-    const Vector turns = turned - (as_drawn ? drawn_controls() : present_controls(x));
+    const Vector turns = turned - (as_drawn ? drawn_controls() : present_controls());
     const double longest = kSupportStep / std::max(largest_edge_change(model_, whole),
                                                    turns.lpNorm<Eigen::Infinity>());
     stage_.controls = turned - turns;
@@ -164,11 +204,13 @@ class Search {
     for (double share = step; share < 1.0; share += step) {
       x += step * whole;
       stage_.controls = turned - (1.0 - share) * turns;
+      enter_turns(model_, turns_, stage_.controls);
       follow(x);
       step = std::min({2.0 * step, longest, 1.0 - share});
     }
     stage_.controls = turned;
     place_held(model_, stage_.controls, x);
+    follow_turns_to(x);
   }
 
   /// By how many whole turns the rods wind up between their clamps besides what the directions of
@@ -213,23 +255,16 @@ class Search {
   /// The controls, with the clamps as drawn.
   Vector drawn_controls() const {
     Vector controls = stage_.controls;
-    for_each_turning_clamp(
-        [&](const RodLayout& /*rod*/, const Clamp& clamp) { controls[clamp.rotation] = 0.0; });
+    for_each_turning_clamp([&](const Clamp& clamp) { controls[clamp.rotation] = 0.0; });
     return controls;
   }
 
-  /// The controls, with each clamp turned as the edge beside it is in the shape `x`. That is known
-  /// up to whole turns: the way from there to what the control says is the shorter one.
-  Vector present_controls(const Vector& x) const {
+  /// The controls, with each clamp turned as the edge beside it has.
+  Vector present_controls() const {
     Vector controls = stage_.controls;
-    for_each_turning_clamp([&](const RodLayout& rod, const Clamp& clamp) {
-      const Index edge = std::min(clamp.place, rod.num_edges() - 1);
-      const Link link{rod.edge_dofs(edge, model_), {}, {}};
-      const double turn =
-          angle_between(link.vector(model_.initial_positions, 0.0, 0.0), link.vector(x, 0.0, 0.0));
-      const double control = stage_.controls[clamp.rotation];
-      const double from_control = std::remainder(turn - control, 2.0 * kPi);
-      if (std::abs(from_control) > kTurned) controls[clamp.rotation] = control + from_control;
+    for_each_turning_clamp([&](const Clamp& clamp) {
+      const double turn = turns_[clamp.followed];
+      if (std::abs(turn - controls[clamp.rotation]) > kTurned) controls[clamp.rotation] = turn;
     });
     return controls;
   }
@@ -238,7 +273,7 @@ class Search {
   void for_each_turning_clamp(const Use& use) const {
     for (const RodLayout& rod : model_.rods) {
       for (const Clamp& clamp : rod.clamps) {
-        if (clamp.rotation >= 0) use(rod, clamp);
+        if (clamp.rotation >= 0) use(clamp);
       }
     }
   }
@@ -259,7 +294,7 @@ class Search {
     const double scale = report_.force_scale;
     const auto [status, failure] = std::make_pair(report_.status, report_.failure);
     if (status == "unbounded") return false;
-    x = start_;
+    go_to(start_, x);
     bool found = true;
     for (double share = kSmallestShare; found && share <= 1.0; share *= 2.0) {
       stage_.force = share * whole.force;
@@ -269,6 +304,7 @@ class Search {
       found = descend(x, share * scale / model_.size);
     }
     stage_ = whole;
+    enter_turns(model_, turns_, stage_.controls);
     if (!found) fail(status, failure);  // that of the whole load says more
     return found;
   }
@@ -280,7 +316,7 @@ class Search {
   bool swing(Vector& x) {
     const auto [status, failure] = std::make_pair(report_.status, report_.failure);
     if (status == "unbounded") return false;
-    x = start_;
+    go_to(start_, x);
     Vector velocity = Vector::Zero(x.size());
     Vector next;
     stiffness_.evaluate(x, stage_.controls);
@@ -304,13 +340,14 @@ class Search {
       }
       velocity = (next - x) / step;
       x = next;
+      follow_turns_to(x);
       if (turn < 0.5 * kSwingTurn) step *= 1.2;
       if (turn < turn_for_newton) {
         if (finish(x)) return true;
         turn_for_newton *= 0.5;
       }
     }
-    x = start_;
+    go_to(start_, x);
     fail(status, failure);
     return false;
   }
@@ -321,29 +358,31 @@ class Search {
   bool start_elsewhere(Vector& x) {
     const auto [status, failure] = std::make_pair(report_.status, report_.failure);
     if (status == "unbounded") return false;
-    stiffness_.evaluate(start_, stage_.controls);
+    stiffness_.evaluate(start_.positions, stage_.controls);
     const Vector soft = bend(stiffness_.softest());
     std::vector<Vector> starts;
     for (const double turn : kBentStarts) {
-      for (const double side : {1.0, -1.0}) starts.emplace_back(start_ + side * turn * soft);
+      for (const double side : {1.0, -1.0})
+        starts.emplace_back(start_.positions + side * turn * soft);
     }
     for (int i = 0; i < kStraightStarts; ++i) {
       starts.push_back(laid_out(2.0 * kPi * i / kStraightStarts));
     }
     for (Vector& start : starts) {
-      x = std::move(start);
+      go_to({std::move(start), start_.turns}, x);
+      follow_turns_to(x);
       if (descend(x, report_.force_scale / model_.size)) return true;
     }
-    x = start_;
+    go_to(start_, x);
     fail(status, failure);
     return false;
   }
 
   /// Every rod straight from its first node in one direction [rad], but for what is held.
   Vector laid_out(double direction) const {
-    Vector x = start_;
+    Vector x = start_.positions;
     for (const RodLayout& rod : model_.rods) {
-      const Vec2 first = start_.segment<2>(model_.dof(rod.nodes.front(), 0));
+      const Vec2 first = start_.positions.segment<2>(model_.dof(rod.nodes.front(), 0));
       for (std::size_t i = 0; i < rod.nodes.size(); ++i) {
         x.segment<2>(model_.dof(rod.nodes[i], 0)) =
             first + rod.arc_length[i] * Vec2(std::cos(direction), std::sin(direction));
@@ -394,7 +433,8 @@ class Search {
       fail("not_converged", report.failure);
       return false;
     }
-    if ((x - start_).lpNorm<Eigen::Infinity>() > kDrift * (model_.size + spring_travel_)) {
+    if ((x - start_.positions).lpNorm<Eigen::Infinity>() >
+        kDrift * (model_.size + spring_travel_)) {
       fail("unbounded", "the structure moves away: nothing holds it");
       x = before;
       return false;
@@ -450,7 +490,9 @@ class Search {
 
   bool newton(Vector& x) {
     stage_.inertia = 0.0;
-    return solve(x);
+    if (!solve(x)) return false;
+    follow_turns_to(x);
+    return true;
   }
 
   double change(const Vector& from, const Vector& to) const {
@@ -479,6 +521,7 @@ class Search {
       const double turn = largest_edge_change(model_, next - x);
       if (turns_without_end(x, next)) return false;
       x = next;
+      follow_turns_to(x);
       fallen_ += *fall;
       if (turn < turn_for_newton) {
         if (finish(x)) return true;
@@ -522,6 +565,7 @@ class Search {
     for (const bool downhill : {false, true}) {
       next = x;
       if (!solve(next, downhill) || largest_edge_change(model_, next - x) > kLargestTurn) continue;
+      if (edge_turned_too_far(model_, next, turns_) >= 0) continue;
       const double fall = change(x, next);
       if (fall <= same_potential()) return fall;
     }
@@ -530,13 +574,18 @@ class Search {
 
   /// Plain Newton to the equilibrium at the end of a descent, if it is near and not uphill.
   bool finish(Vector& x) {
+    const Vector turns = turns_;
     Vector last = x;
-    if (!newton(last) || largest_edge_change(model_, last - x) > kLastTurn) return false;
-    const double fall = change(x, last);
-    if (fall > same_potential()) return false;
-    x = last;
-    fallen_ += fall;
-    return true;
+    if (newton(last) && largest_edge_change(model_, last - x) <= kLastTurn) {
+      const double fall = change(x, last);
+      if (fall <= same_potential()) {
+        x = last;
+        fallen_ += fall;
+        return true;
+      }
+    }
+    set_turns(turns);
+    return false;
   }
 
   /// Takes a few more Newton steps as long as they get shorter: the residual of stiff stretching
@@ -583,25 +632,28 @@ class Search {
     const SoftDirection soft = stiffness_.softest();
     const Vector direction = bend(soft);
     const double same = 1e-6;  // of the fall
+    const Vector turns = turns_;
     for (const double turn : {0.05, 0.001}) {
-      std::optional<Vector> best;
+      std::optional<Wound> best;
       double best_fall = -same_potential();
       for (const double side : {1.0, -1.0}) {
         Vector here = x + side * turn * direction;
+        set_turns(turns);
         const double push = change(x, here);
         if (!descend(here, 2.0 * std::abs(soft.curvature), kEasingAtSaddle)) continue;
         const double fall = push + fallen_;
         if (fall < best_fall - same * std::abs(best_fall)) {
-          best = here;
+          best = {here, turns_};
           best_fall = fall;
         }
       }
       if (best) {
-        x = *best;
+        go_to(*best, x);
         ++report_.saddles_left;
         return true;
       }
     }
+    set_turns(turns);
     return false;
   }
 
@@ -610,8 +662,9 @@ class Search {
   Newton newton_;
   Stiffness stiffness_;
   Stage stage_;
-  Vector start_;
-  double softness_ = 0.0;            // largest L / EI of a rod [1/(N m)]
+  Vector turns_;  // [rad] of the followed edges
+  Wound start_;
+  double softness_ = 0.0;            // largest turn by a unit moment [1/(N m)]
   double spring_travel_ = 0.0;       // [m]
   std::vector<double> whole_turns_;  // before clamps turn; empty if none does
   Vector turned_;                    // [rad] of each edge with a moment in the last descent
@@ -623,8 +676,8 @@ class Search {
 
 EquilibriumReport find_equilibrium(const Model& model, const Assembler& assembler,
                                    LinearSolver& solver, const EquilibriumOptions& options,
-                                   const State& state, Vector& positions) {
-  return Search(model, assembler, solver, options, state).run(positions);
+                                   State& state) {
+  return Search(model, assembler, solver, options, state).run(state);
 }
 
 }  // namespace der

@@ -42,6 +42,7 @@ AdaptiveStepper::AdaptiveStepper(const Model& model, const Assembler& assembler,
       error_factor_(info.error_factor),
       options_(options),
       breakpoints_(table_entries(model)),
+      support_motion_(model),
       start_(initial_state(model)),
       middle_(start_),
       whole_(start_),
@@ -51,9 +52,10 @@ AdaptiveReport AdaptiveStepper::advance(State& state, double horizon) {
   AdaptiveReport report;
   start_ = state;
   const double stop = next_stop(state.time, horizon);
+  const double longest = support_motion_.longest_step(state);
   double wanted = state.next_step > 0.0 ? state.next_step : first_step(state);
   while (true) {
-    wanted = std::min(std::max(wanted, options_.minimum_step), options_.largest_step);
+    wanted = std::min({std::max(wanted, options_.minimum_step), options_.largest_step, longest});
     const double left = stop - start_.time;
     // No sliver is left for the next step.
     const bool last = wanted >= left * (1.0 - kSliver);

@@ -41,7 +41,7 @@ void DenseOutput::evaluate(double time, const State& start, const State& end, St
                      weight.v0 * start.velocities + weight.v1 * end.velocities;
   result.velocities = weight.slope_x * (end.positions - start.positions) +
                       weight.slope_v0 * start.velocities + weight.slope_v1 * end.velocities;
-  model_.controls.evaluate(time, end.ramps, controls_);
+  evaluate_controls(model_, end, time, controls_);
   place_held(model_, controls_, result.positions);
 
   Work work_start = start.work;
@@ -79,10 +79,10 @@ Work DenseOutput::powers(const State& where, const State& start, const State& en
 /// By a central difference over the length of the step.
 void DenseOutput::add_table_powers(const State& where, const State& start, const State& end,
                                    Work& power) {
-  model_.controls.evaluate(start.time, end.ramps, controls_before_);
-  model_.controls.evaluate(end.time, end.ramps, controls_after_);
+  evaluate_controls(model_, end, start.time, controls_before_);
+  evaluate_controls(model_, end, end.time, controls_after_);
   controls_ = 0.5 * (controls_after_ - controls_before_);
-  model_.controls.evaluate(where.time, end.ramps, controls_before_);
+  evaluate_controls(model_, end, where.time, controls_before_);
   controls_after_ = controls_before_ + controls_;
   controls_before_ -= controls_;
   const double dt = end.time - start.time;

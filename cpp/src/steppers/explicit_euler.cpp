@@ -23,7 +23,7 @@ class ExplicitEuler final : public Stepper {
     velocities_ = state.velocities + dt * acceleration_;
     positions_ = state.positions + dt * velocities_;
     force_.place_held_at(state, state.time + dt, positions_);
-    const StepReport report = force_.check(positions_);
+    const StepReport report = force_.check(state, positions_);
     if (report.outcome != StepOutcome::Done) return report;
 
     displacement_ = positions_ - state.positions;

@@ -47,7 +47,7 @@ void ExplicitForce::evaluate_works(const State& state, const Vector& positions, 
 }
 
 void ExplicitForce::evaluate_loads(const State& state, const Vector& positions, double time) {
-  model_.controls.evaluate(time, state.ramps, controls_);
+  evaluate_controls(model_, state, time, controls_);
   external_force(model_, controls_, state.extra_force, force_);
   positions_ = positions;
 }
@@ -64,11 +64,11 @@ void ExplicitForce::book(const Vector& velocities, const Vector& displacement, W
 }
 
 void ExplicitForce::place_held_at(const State& state, double time, Vector& positions) {
-  model_.controls.evaluate(time, state.ramps, scratch_controls_);
+  evaluate_controls(model_, state, time, scratch_controls_);
   place_held(model_, scratch_controls_, positions);
 }
 
-StepReport ExplicitForce::check(const Vector& positions) const {
+StepReport ExplicitForce::check(const State& state, const Vector& positions) const {
   for (const Edge& edge : model_.edges) {
     const double limit = kLargestStretch * edge.rest_length;
     const double dx = positions[edge.dofs[2]] - positions[edge.dofs[0]];
@@ -77,7 +77,7 @@ StepReport ExplicitForce::check(const Vector& positions) const {
       return {StepOutcome::Diverged, 0, edge.dofs[2], "an edge grew beyond 100 times its length"};
     }
   }
-  return {};
+  return check_turns(model_, state, positions);
 }
 
 }  // namespace der

@@ -25,9 +25,9 @@ void ImplicitStage::place_held_at(const State& state, double time, Vector& where
 }
 
 void ImplicitStage::evaluate_controls(const State& state, double time, Vector& controls) {
-  model_.controls.evaluate(std::min(time, step_end_), state.ramps, controls);
+  der::evaluate_controls(model_, state, std::min(time, step_end_), controls);
   if (time <= step_end_) return;
-  model_.controls.evaluate(state.time, state.ramps, start_controls_);
+  der::evaluate_controls(model_, state, state.time, start_controls_);
   const double beyond = (time - step_end_) / (step_end_ - state.time);
   controls += beyond * (controls - start_controls_);
 }
@@ -43,7 +43,10 @@ StepReport ImplicitStage::solve(const State& state, double time) {
     report.outcome = StepOutcome::NotConverged;
     report.worst_dof = newton.worst_dof;
     report.failure = newton.failure;
+    return report;
   }
+  report = check_turns(model_, state, positions);
+  report.newton_iterations = newton.iterations;
   return report;
 }
 

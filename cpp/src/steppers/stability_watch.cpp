@@ -33,7 +33,7 @@ constexpr const char* kAdvice =
     "integrator, or say 'allow_unstable: true' to run it all the same";
 
 /// How fast the shape changes [1/s]: the largest rate of stretch of an edge, or of turn of one edge
-/// against the one before.
+/// against the one before it in its rod.
 double rate_of_change(const Model& model, const State& state) {
   double largest = 0.0;
   double turn_before = 0.0;
@@ -45,7 +45,8 @@ double rate_of_change(const Model& model, const State& state) {
     const double per_squared = 1.0 / edge.squaredNorm();
     const double turn = cross(edge, rate) * per_squared;
     largest = std::max(largest, std::abs(edge.dot(rate) * per_squared));
-    if (i > 0) largest = std::max(largest, std::abs(turn - turn_before));
+    const bool joined = i > 0 && model.edges[i - 1].dofs[2] == x0;
+    if (joined) largest = std::max(largest, std::abs(turn - turn_before));
     turn_before = turn;
   }
   return largest;
@@ -73,12 +74,12 @@ StabilityWatch::StabilityWatch(const Model& model, const StepperInfo& stepper,
       controls_(Vector::Zero(model.controls.size())) {}
 
 double StabilityWatch::stable_step(const State& state) {
-  model_.controls.evaluate(state.time, state.ramps, controls_);
+  evaluate_controls(model_, state, state.time, controls_);
   return bound_.evaluate(state.positions, controls_);
 }
 
 StableStep StabilityWatch::explain(const State& state) {
-  model_.controls.evaluate(state.time, state.ramps, controls_);
+  evaluate_controls(model_, state, state.time, controls_);
   return bound_.explain(state.positions, controls_);
 }
 

@@ -12,8 +12,8 @@ StepFinisher::StepFinisher(const Model& model)
 
 void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector>& velocities,
                           double dt, State& state) {
-  model_.controls.evaluate(state.time, state.ramps, controls_start_);
-  model_.controls.evaluate(state.time + dt, state.ramps, controls_end_);
+  evaluate_controls(model_, state, state.time, controls_start_);
+  evaluate_controls(model_, state, state.time + dt, controls_end_);
   state.work.supports +=
       rotation_work(model_, {state.positions, positions, controls_start_, controls_end_});
   state.work.loads += cell_work(model_, controls_start_, controls_end_);
@@ -31,6 +31,7 @@ void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector
     state.velocities[dof] = velocities[dof];
     state.positions[dof] = positions[dof];
   }
+  follow_turns(model_, state.positions, state.turns);
   state.last_step = dt;
 }
 

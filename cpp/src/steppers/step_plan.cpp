@@ -1,19 +1,37 @@
 #include "der/steppers/step_plan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "der/core/error.hpp"
 #include "der/steppers/stable_step.hpp"
 
 namespace der {
 namespace {
 
-/// Two times closer than this share of the time between frames are one.
+/// Two times closer than this share of the time between frames, or of a step, are one.
 constexpr double kSameFrame = 1e-9;
 
 /// Frames that an adaptive step may hold: a run can be interrupted, and its frames are counted,
 /// between steps alone.
 constexpr double kFramesOfAStep = 10'000.0;
+
+/// Times are counted in steps to this.
+double rounding(double steps) {
+  return std::max(kSameFrame, 4.0 * std::numeric_limits<double>::epsilon() * steps);
+}
+
+void check_count(double duration, double step) {
+  if (duration / step <= scenario::kMostSteps) return;
+  throw Error("too_many_steps",
+              fmt::format("a stable step of {:.3g} s makes more than {:g} steps out of the "
+                          "duration, {:g} s: take an implicit integrator, a shorter duration, or a "
+                          "rod that is less stiff for its mass",
+                          step, scenario::kMostSteps, duration));
+}
 
 std::int64_t count_steps(double duration, double step) {
   // A duration that is a whole number of steps but for rounding has no short last step.
@@ -22,8 +40,24 @@ std::int64_t count_steps(double duration, double step) {
 
 }  // namespace
 
-bool StepPlan::is_frame(std::int64_t steps_done, double time) const {
-  if (step > 0.0 || every == 0.0) return steps_done % steps_per_frame == 0;
+double StepPlan::next_time(double time) const {
+  const double count = time / step;
+  if (rounding(count) > 0.5) return time;
+  const double done = std::floor(count + rounding(count));
+  double next = (done + 1.0) * step;
+  if (done + 1.0 == static_cast<double>(total_steps)) next = duration;
+  // The last step may be short: from its end on the whole ones are counted again.
+  return next > time ? next : (done + 2.0) * step;
+}
+
+bool StepPlan::is_frame(double time) const {
+  if (every == 0.0) return true;
+  if (step > 0.0) {
+    const double count = time / step;
+    const double steps = std::round(count);
+    return std::abs(count - steps) <= rounding(count) &&
+           std::fmod(steps, static_cast<double>(steps_per_frame)) == 0.0;
+  }
   const double frames = time / every;
   return std::abs(frames - std::round(frames)) < kSameFrame;
 }
@@ -40,6 +74,8 @@ StepPlan plan_steps(const scenario::Scene& scene, double stable_step) {
   plan.largest_step = kStepMargin * stable_step;
   if (!scene.is_dynamic()) return plan;
 
+  plan.duration = time.duration;
+  if (time.stepping != scenario::Stepping::Fixed) check_count(time.duration, plan.largest_step);
   if (time.stepping == scenario::Stepping::Adaptive) {
     const double longest = std::max(kFramesOfAStep * plan.every, time.minimum_step);
     plan.largest_step = std::min(plan.largest_step, longest);

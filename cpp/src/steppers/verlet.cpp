@@ -26,11 +26,11 @@ class Verlet final : public Stepper {
     force_.place_held_at(state, state.time + half, positions_);
     force_.acceleration(state, positions_, state.velocities, state.time + half, half,
                         acceleration_);
-    StepReport report = force_.check(positions_);
-    if (report.outcome != StepOutcome::Done) return report;
-
     positions_ = state.positions + dt * (state.velocities + half * acceleration_);
     force_.place_held_at(state, state.time + dt, positions_);
+    const StepReport report = force_.check(state, positions_);
+    if (report.outcome != StepOutcome::Done) return report;
+
     displacement_ = positions_ - state.positions;
     mean_velocities_ = displacement_ / dt;
     force_.book(mean_velocities_, displacement_, state.work);

@@ -57,7 +57,9 @@ double tangent_angle(const Clamp& clamp, const Model& model, const State& state)
 void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod, Model& model) {
   if (rod.EI == 0.0 || rod.clamp_at(place) != nullptr) return;
   const Index rotation = support.rotation ? model.controls.add(*support.rotation) : -1;
-  rod.clamps.push_back({place, initial_tangent_angle(rod, place, model), rotation});
+  const Index beside = std::min(place, rod.num_edges() - 1);
+  const Index followed = support.rotation ? follow_edge(rod, beside, model) : -1;
+  rod.clamps.push_back({place, initial_tangent_angle(rod, place, model), rotation, followed});
 }
 
 Vec2 Link::vector(const Vector& positions, double first_turn, double last_turn) const {

@@ -75,7 +75,7 @@ double rest_turn(const RodLayout& rod, const MomentPlace& place, const Model& mo
 
 /// Returns the number of the element in its list.
 template <int Edges>
-Index add_element(const RodLayout& rod, const MomentPlace& place, Model& model) {
+Index add_element(const RodLayout& rod, MomentPlace& place, Model& model) {
   using Kernel = RotationalSpring<Edges>;
   std::array<Index, Kernel::kDofs> dofs{};
   for (Index i = 0; i <= Edges; ++i) {
@@ -85,8 +85,10 @@ Index add_element(const RodLayout& rod, const MomentPlace& place, Model& model) 
   }
   typename Kernel::Constants constants;
   constants.stiffness = place.stiffness * place.series_share(rod.EI);
-  const Vec2 drawn = drawn_edge(rod, place.first_edge, model);
-  constants.direction = std::atan2(drawn.y(), drawn.x());
+  place.followed = follow_edge(rod, place.first_edge, model);
+  const FollowedEdge& first = model.followed_edges[at(place.followed)];
+  constants.direction = first.direction;
+  constants.turn = first.turn;
   constants.rest = rest_turn(rod, place, model);
   for (std::size_t i = 0; i < Edges; ++i) constants.weights[i] = place.weights[i];
   auto& springs = std::get<ElementList<Kernel>>(model.elements);

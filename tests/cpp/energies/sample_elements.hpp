@@ -15,10 +15,10 @@ inline double uniform(Random& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-/// Controls that the sampled constants refer to: a moment and a rotation.
+/// Controls that the sampled constants refer to: a moment, a rotation, and a turn so far.
 inline Vector sample_controls(Random& random) {
-  Vector controls(2);
-  controls << uniform(random, -2.0, 2.0), uniform(random, -1.0, 1.0);
+  Vector controls(3);
+  controls << uniform(random, -2.0, 2.0), uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0);
   return controls;
 }
 
@@ -59,6 +59,7 @@ typename RotationalSpring<Edges>::Constants sample_constants(const RotationalSpr
   c.stiffness = uniform(random, 0.5, 5.0);
   c.direction = uniform(random, -0.5, 0.5);
   c.rest = uniform(random, -1.0, 1.0);
+  c.turn = 2;
   c.weights.back() = Edges == 1 ? 1.0 : uniform(random, -0.1, 1.1);
   c.weights.front() = Edges == 1 ? 1.0 : 1.0 - c.weights.back();
   return c;

@@ -154,7 +154,7 @@ TEST_CASE("held nodes follow their table and keep their velocity") {
       "    cross_section: {stiffness: {EA: 1e3, EI: 1, mass_per_length: 1}}\n"
       "    initial_velocity: [2, 0]\n",
       "supports:\n  - {rod: rod, at: start, fix: [y], prescribe: {x: {times: [0, 1], values: "
-      "[0.5, 1.5]}}}\n");
+      "[0.5, 1.5]}}}\nstart_from: equilibrium\n");
   const State state = initial_state(model);
   CHECK(state.positions[0] == 0.5);
   CHECK(state.velocities[0] == 0.0);

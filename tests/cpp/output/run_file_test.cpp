@@ -256,7 +256,7 @@ TEST_CASE("what a multi-step stepper remembers and outside forces are part of a 
     recorder.add(*file);
     recorder.observe(simulation);
     simulation.step();
-    simulation.state().history = {Vector::LinSpaced(6, 0.1, 0.7), Vector::LinSpaced(3, 1.0, 2.0)};
+    simulation.state().history = {Vector::LinSpaced(6, 0.1, 0.7), Vector::LinSpaced(6, 1.0, 2.0)};
     simulation.state().extra_force = Vector::LinSpaced(6, -1.0, 1.0) / 3.0;
     simulation.state().accelerations = Vector::LinSpaced(6, 0.1, 1.0) / 7.0;
     simulation.state().last_step = 0.1 / 3.0;

@@ -8,11 +8,9 @@
 
 namespace der {
 
-/// Value of a table at time `t` [s]: linear between entries, constant beyond both ends.
-double value_at(const scenario::Series& series, double t);
-
 /// The time tables of a model. Forces, supports and actuators name a table by its number; a stepper
-/// evaluates all of them once for each stage time.
+/// evaluates all of them once for each stage time (`evaluate_controls` in model/state.hpp, which
+/// adds what the state has in place of them).
 class Controls {
  public:
   /// Adds a table and returns its number.
@@ -24,9 +22,7 @@ class Controls {
   }
   /// Writes the value of every table at time `t` into `values`.
   void evaluate(double t, Vector& values) const;
-  /// The same, with `ramps` in place of the tables that they name.
-  void evaluate(double t, const std::vector<Ramp>& ramps, Vector& values) const;
-  /// Value of one of them.
+  /// Value of one of them, with `ramps` in place of the tables that they name.
   [[nodiscard]] double value(Index i, double t, const std::vector<Ramp>& ramps) const;
   [[nodiscard]] const scenario::Series& operator[](Index i) const {
     return series_[static_cast<std::size_t>(i)];

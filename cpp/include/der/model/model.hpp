@@ -9,6 +9,7 @@
 #include "der/energies/registry.hpp"
 #include "der/model/controls.hpp"
 #include "der/model/mass.hpp"
+#include "der/model/turns.hpp"
 #include "der/scenario/scenario.hpp"
 
 namespace der {
@@ -26,6 +27,7 @@ struct Clamp {
   Index place = 0;         ///< position in RodLayout::nodes
   double direction = 0.0;  ///< initial angle of the held tangent [rad]
   Index rotation = -1;     ///< control that turns it [rad]; -1: none
+  Index followed = -1;     ///< place in Model::followed_edges of the edge beside it, if it turns
 };
 
 /// A place at which moments act on a rod's tangent: those of loads, those of springs against
@@ -39,6 +41,7 @@ struct MomentPlace {
   std::vector<Index> moments;   ///< controls of the loads [N m]
   double stiffness = 0.0;       ///< of the springs together [N m/rad]
   Index spring = -1;            ///< number of their element in its list; -1: no spring
+  Index followed = -1;          ///< place in Model::followed_edges of the first edge, with a spring
 
   /// Stiffness of springs and cell in series against that of the springs, 1/(1 + k c/EI); the part
   /// of the loads' moments that turns the edges.
@@ -137,6 +140,7 @@ struct Model {
   std::vector<Index> free_index;  ///< of each degree of freedom: its place in `free_dofs`, or -1
 
   std::vector<Edge> edges;  ///< of all rods
+  std::vector<FollowedEdge> followed_edges;
   ElementLists elements;
 
   /// The largest extent of the initial shape [m]: the length against which steps are small.
@@ -156,6 +160,9 @@ struct NodePlace {
   Index place = 0;  ///< position in RodLayout::nodes
 };
 NodePlace place_of(const Model& model, Index node);
+
+/// Number in Model::followed_edges of an edge of `rod`, which is followed from now on.
+Index follow_edge(const RodLayout& rod, Index edge, Model& model);
 
 /// "node 3 of rod 'beam' (y)"
 std::string describe_dof(const Model& model, Index dof);

@@ -2,6 +2,7 @@
 
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
+#include "der/model/state.hpp"
 
 namespace der {
 
@@ -18,12 +19,9 @@ namespace der {
 /// The place of moments at arc length `s` [m] of a rod, made if it is not there.
 MomentPlace& place_of_moments(double s, RodLayout& rod);
 
-/// Turn [rad] of the weighted directions from where the springs are slack; 0 without springs.
-double spring_turn(const MomentPlace& place, const Model& model, const Vector& positions);
-
 /// Moment [N m] that acts on the rod where loads apply `applied`: less what the springs take.
 double carried_moment(const MomentPlace& place, const RodLayout& rod, const Model& model,
-                      const Vector& positions, double applied);
+                      const State& state, double applied);
 
 /// Energies [J] of the cells under the moments of a rod.
 struct CellEnergies {

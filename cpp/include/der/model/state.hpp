@@ -38,10 +38,21 @@ struct State {
   double last_error = 0.0;  ///< of the last adaptive step, over what it was allowed
   Work work;
   std::vector<Ramp> ramps;  ///< controls that a program has set, in place of their tables
+  /// [rad] by which the model's followed edges have turned since they were drawn, whole turns
+  /// included, as of the last step or equilibrium.
+  Vector turns;
 };
 
 /// The state at time 0.
 State initial_state(const Model& model);
+
+/// Throws Error if `state` cannot be one of the model: sizes, times, or supports that it moves.
+/// Positions, velocities and forces may be any numbers, as a program may have written them.
+void check_state(const Model& model, const State& state);
+
+/// Sets `controls` to what elements and supports follow besides the positions, at `time` [s] of a
+/// step that begins at `state`: the tables, the ramps in place of them, and the turns.
+void evaluate_controls(const Model& model, const State& state, double time, Vector& controls);
 
 /// Energies [J] of a state.
 struct Energies {

@@ -22,7 +22,8 @@ struct RodSeries {
 };
 
 /// Goes through the frames of a run that is over, to read off them what was not saved. Supports
-/// stand as the scene has them, not as `Simulation::prescribe` may have moved them.
+/// stand as the scene has them, not as `Simulation::prescribe` may have moved them. Frames hold
+/// positions only: whole turns are followed from frame to frame, the shorter way.
 class Replay {
  public:
   /// `instants` tells what each frame is of: a time [s], or, `on_path`, the factor of a point on

@@ -27,6 +27,9 @@ struct Series {
   [[nodiscard]] bool constant() const { return values.size() == 1; }
 };
 
+/// Value of a table at time `t` [s]: linear between entries, constant beyond both ends.
+double value_at(const Series& series, double t);
+
 /// As `Series`, with a vector value for each time.
 struct VectorSeries {
   std::vector<double> times{0.0};
@@ -198,6 +201,9 @@ enum class Stepping {
   Automatic,  ///< `step: auto`: what an explicit integrator can take
   Adaptive,   ///< `tolerance: 1e-3`: as the error demands
 };
+
+/// More steps than anyone can wait for.
+constexpr double kMostSteps = 1e12;
 
 struct Time {
   double duration = 0.0;  ///< [s]

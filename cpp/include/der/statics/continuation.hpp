@@ -6,6 +6,7 @@
 #include "der/assembly/assembler.hpp"
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
+#include "der/model/state.hpp"
 #include "der/solvers/newton.hpp"
 #include "der/statics/load_path.hpp"
 #include "der/statics/stiffness.hpp"
@@ -25,6 +26,7 @@ struct PathPoint {
   Stability stability;
   PathEvent event = PathEvent::None;
   Vector positions;  ///< all degrees of freedom [m]
+  Vector turns;      ///< as in the state [rad]
 };
 
 /// A path of equilibria.
@@ -65,6 +67,6 @@ struct ContinuationOptions {
 /// of the last point computed.
 std::vector<PathBranch> follow_path(Model& model, const LoadPath& loads, const Assembler& assembler,
                                     LinearSolver& solver, const ContinuationOptions& options,
-                                    const Vector& start);
+                                    const State& start);
 
 }  // namespace der

@@ -35,8 +35,8 @@ struct EquilibriumReport {
   std::string failure;  ///< in words
 };
 
-/// Moves `positions` to a static equilibrium under the loads at `state.time`; leaves them as they
-/// are if there is none.
+/// Moves the positions of `state`, with the turns, to a static equilibrium under the loads at its
+/// time; leaves the state as it is if there is none.
 ///
 /// Newton first. Where it fails, the positions follow the gradient flow x' = -grad(potential) by
 /// implicit Euler in a pseudo-time whose step grows as the forces come into balance
@@ -46,6 +46,6 @@ struct EquilibriumReport {
 /// the flow followed from there; the state of lower potential is taken, until one is stable.
 EquilibriumReport find_equilibrium(const Model& model, const Assembler& assembler,
                                    LinearSolver& solver, const EquilibriumOptions& options,
-                                   const State& state, Vector& positions);
+                                   State& state);
 
 }  // namespace der

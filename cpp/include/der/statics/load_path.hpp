@@ -20,6 +20,10 @@ class LoadPath {
   void apply(double factor, Model& model) const;
   /// Whether the forces of a given shape are linear in the factor: not where supports move.
   [[nodiscard]] bool is_linear() const { return linear_; }
+  /// By how much a unit of the factor changes a control.
+  [[nodiscard]] double change_of(Index control) const {
+    return controls1_[control] - controls0_[control];
+  }
   /// Whether anything varies at all.
   [[nodiscard]] bool varies() const {
     return (controls1_ - controls0_).norm() + (gravity1_ - gravity0_).norm() +

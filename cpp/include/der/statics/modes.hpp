@@ -5,6 +5,7 @@
 #include "der/assembly/assembler.hpp"
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
+#include "der/model/state.hpp"
 #include "der/solvers/linear_solver.hpp"
 #include "der/statics/load_path.hpp"
 
@@ -19,7 +20,7 @@ struct Mode {
 };
 
 /// The `count` modes of lowest frequency (fewer if there are not so many degrees of freedom) about
-/// the equilibrium `positions` under `controls`: K v = w^2 M v with the tangent stiffness, so that
+/// the equilibrium `state` under `controls`: K v = w^2 M v with the tangent stiffness, so that
 /// tensions, moments and curved shapes count. Lanczos' method on the sparse factorisation of K - s
 /// M (Ericsson and Ruhe, Math. Comp. 35, 1980; the library Spectra), repeated until the inertia of
 /// the factorisation says that none is missing. Damping is left out. Throws Error if a degree of
@@ -57,6 +58,6 @@ struct LinearBuckling {
 /// it buckle. Throws NotConvergedError if the unloaded structure is not stable. Leaves the model at
 /// the scene's loads.
 LinearBuckling linear_buckling(Model& model, const LoadPath& loads, const Assembler& assembler,
-                               LinearSolver& solver, const Vector& positions, int count);
+                               LinearSolver& solver, const State& state, int count);
 
 }  // namespace der

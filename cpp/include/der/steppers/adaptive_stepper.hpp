@@ -7,6 +7,7 @@
 #include "der/model/state.hpp"
 #include "der/steppers/dense_output.hpp"
 #include "der/steppers/stepper.hpp"
+#include "der/steppers/support_motion.hpp"
 
 namespace der {
 
@@ -66,7 +67,8 @@ class AdaptiveStepper {
   AdaptiveOptions options_;
   std::vector<double> breakpoints_;  // [s] ascending
   double longest_step_ = 0.0;        // [s]
-  State start_;                      // of the last step
+  SupportMotion support_motion_;
+  State start_;  // of the last step
   State middle_;
   State whole_;  // at the end of the step done as a whole
   DenseOutput dense_;

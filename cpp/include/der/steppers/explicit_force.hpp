@@ -27,8 +27,9 @@ class ExplicitForce {
   void book(const Vector& velocities, const Vector& displacement, Work& work) const;
   /// Puts held degrees of freedom of `positions` where the tables have them at `time`.
   void place_held_at(const State& state, double time, Vector& positions);
-  /// Not done where a value is no longer a number or an edge is stretched beyond reason.
-  [[nodiscard]] StepReport check(const Vector& positions) const;
+  /// Not done where a value is no longer a number, an edge is stretched beyond reason, or one whose
+  /// whole turns count has turned too far from where it is in `state`.
+  [[nodiscard]] StepReport check(const State& state, const Vector& positions) const;
 
  private:
   void evaluate_loads(const State& state, const Vector& positions, double time);

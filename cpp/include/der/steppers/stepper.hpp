@@ -27,6 +27,11 @@ struct StepReport {
   std::string failure;
 };
 
+/// Not done where an edge whose whole turns count has turned so far from where it is in `state`,
+/// the start of the step, that the shorter way from there to `positions` may not be the one it
+/// went.
+StepReport check_turns(const Model& model, const State& state, const Vector& positions);
+
 /// Advances a state by one time step. One file for each time integrator.
 class Stepper {
  public:

@@ -12,7 +12,8 @@ namespace der {
 /// A spring against turning: E = 1/2 k (sum w_i theta_i - rest)^2, theta the direction angles of
 /// one edge, or of two that share a node, from the drawn direction of the first; the weights w add
 /// up to 1. supports/spring.hpp says how the tangent of a rod is such a sum. The first edge is
-/// followed to half a turn from its drawn direction.
+/// within half a turn of where the state has followed it to (model/turns.hpp), so that the spring
+/// winds up without an end.
 template <int Edges>
 struct RotationalSpring {
   static_assert(Edges == 1 || Edges == 2);
@@ -23,13 +24,14 @@ struct RotationalSpring {
     double direction = 0.0;               ///< of the first edge as drawn [rad]
     double rest = 0.0;                    ///< [rad]
     std::array<double, Edges> weights{};  ///< [-]
+    Index turn = -1;  ///< control that holds how far the first edge has turned [rad]
   };
 
-  /// sum w_i theta_i - rest [rad].
-  static double turn(const Constants& c, const Eigen::Matrix<double, kDofs, 1>& x) {
-    const Vec2 drawn{std::cos(c.direction), std::sin(c.direction)};
+  /// sum w_i theta_i - rest [rad], the first edge being within half a turn of `before` [rad].
+  static double turn(const Constants& c, double before, const Eigen::Matrix<double, kDofs, 1>& x) {
+    const Vec2 then{std::cos(c.direction + before), std::sin(c.direction + before)};
     const Vec2 first = x.template segment<2>(2) - x.template segment<2>(0);
-    double turn = angle_between(drawn, first) - c.rest;
+    double turn = before + angle_between(then, first) - c.rest;
     if constexpr (Edges == 2) {
       const Vec2 second = x.template segment<2>(4) - x.template segment<2>(2);
       turn += c.weights[1] * angle_between(first, second);
@@ -38,10 +40,10 @@ struct RotationalSpring {
   }
 
   template <Derivatives D>
-  static void evaluate(const Constants& c, const Vector& /*controls*/,
+  static void evaluate(const Constants& c, const Vector& controls,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     using Coordinates = Eigen::Matrix<double, kDofs, 1>;
-    const double turned = turn(c, x);
+    const double turned = turn(c, controls[c.turn], x);
     const double moment = c.stiffness * turned;
     out.energy = 0.5 * moment * turned;
     if constexpr (D == Derivatives::Energy) return;

@@ -1,0 +1,18 @@
+#include <algorithm>
+#include <cstddef>
+
+#include "der/scenario/scenario.hpp"
+
+namespace der::scenario {
+
+double value_at(const Series& series, double t) {
+  const auto& times = series.times;
+  const auto after = std::upper_bound(times.begin(), times.end(), t);
+  if (after == times.begin()) return series.values.front();
+  if (after == times.end()) return series.values.back();
+  const auto i = static_cast<std::size_t>(after - times.begin());
+  const double share = (t - times[i - 1]) / (times[i] - times[i - 1]);
+  return series.values[i - 1] + share * (series.values[i] - series.values[i - 1]);
+}
+
+}  // namespace der::scenario

@@ -11,6 +11,8 @@ std::unique_ptr<Stepper> make_implicit_euler(const Model&, const Assembler&, Lin
                                              const StepperOptions&);
 std::unique_ptr<Stepper> make_implicit_midpoint(const Model&, const Assembler&, LinearSolver&,
                                                 const StepperOptions&);
+std::unique_ptr<Stepper> make_energy_momentum(const Model&, const Assembler&, LinearSolver&,
+                                              const StepperOptions&);
 std::unique_ptr<Stepper> make_generalized_alpha(const Model&, const Assembler&, LinearSolver&,
                                                 const StepperOptions&);
 std::unique_ptr<Stepper> make_bdf2(const Model&, const Assembler&, LinearSolver&,

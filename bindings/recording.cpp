@@ -107,6 +107,7 @@ std::unique_ptr<Recording> record(const py::object& self,
   recording->outcome =
       simulation.run(recorder, until, to_callback(callback), to_tick(tick), out, self);
   recording->data = datasets(simulation.engine(), recording->outcome);
+  recording->doubt = created_energy_warning(simulation.engine());
   recording->summary_json = summary_json(simulation.engine(), recorder, recording->outcome);
   return recording;
 }
@@ -122,6 +123,8 @@ void bind_recording(py::module_& module) {
           "Why it failed; empty if it did not.")
       .def_property_readonly(
           "failed", [](const Recording& r) { return r.outcome.failed(); }, "Whether it failed.")
+      .def_readonly("doubt", &Recording::doubt,
+                    "Why its result is unreliable though it did not fail; empty if it is not.")
       .def_readonly("summary_json", &Recording::summary_json, "Text of summary.json.")
       .def_property_readonly(
           "times",

@@ -19,6 +19,7 @@ namespace py = pybind11;
 /// Everything that a run recorded, in memory; der/simulation.py makes a Result of it.
 struct Recording {
   RunOutcome outcome;
+  std::string doubt;  ///< why its result is unreliable; empty: it is not
   std::string summary_json;
   MemorySink frames;
   std::vector<Dataset> data;

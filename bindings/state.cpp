@@ -21,7 +21,7 @@ Vector to_vector(const Array& array) {
 
 py::tuple dump(const SavedState& saved) {
   const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
-               next_step, last_error, work, ramps] = saved.state;
+               next_step, last_error, work, audit, ramps] = saved.state;
   py::list remembered;
   for (const Vector& vector : history) remembered.append(to_array(vector));
   py::list moved;
@@ -31,13 +31,14 @@ py::tuple dump(const SavedState& saved) {
   return py::make_tuple(saved.dimension, time, step, to_array(positions), to_array(velocities),
                         to_array(extra_force), to_array(accelerations), last_step, remembered,
                         next_step, last_error, work.start, work.loads, work.supports, work.drag,
-                        work.solver, moved);
+                        work.solver, moved, audit.exchanged, audit.created, audit.written,
+                        audit.unreliable_from);
 }
 
 SavedState revive(const py::tuple& dumped) {
   SavedState saved;
   auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
-         next_step, last_error, work, ramps] = saved.state;
+         next_step, last_error, work, audit, ramps] = saved.state;
   saved.dimension = dumped[0].cast<Index>();
   time = dumped[1].cast<double>();
   step = dumped[2].cast<std::int64_t>();
@@ -57,6 +58,7 @@ SavedState revive(const py::tuple& dumped) {
     ramps.push_back({ramp[0].cast<Index>(), ramp[1].cast<double>(), ramp[2].cast<double>(),
                      ramp[3].cast<double>(), ramp[4].cast<double>()});
   }
+  audit = {value(17), value(18), value(19), value(20)};
   return saved;
 }
 

@@ -50,7 +50,14 @@ from der.accuracy import (
     verify,
 )
 from der.analyses import BucklingModes, Modes, Path
-from der.errors import DerError, Diagnostic, DivergedError, NotConvergedError, SceneError
+from der.errors import (
+    DerError,
+    Diagnostic,
+    DivergedError,
+    NotConvergedError,
+    SceneError,
+    UnreliableResultWarning,
+)
 from der.exporting import export
 from der.probe_series import ProbeSeries
 from der.result import Result
@@ -89,6 +96,7 @@ __all__ = [
     "StepperInfo",
     "Study",
     "StudyRow",
+    "UnreliableResultWarning",
     "Verification",
     "VerifiedValue",
     "__version__",

@@ -75,14 +75,27 @@ class NotConvergedError(DerError):
 
 
 class DivergedError(DerError):
-    """The motion grew without bound, or a value stopped being a number."""
+    """The motion grew without bound, or a value stopped being a number (``diverged``).
+
+    Or the time stepping created as much as half of the energy that the run exchanges
+    (``unstable_motion``).
+    """
 
     def __init__(self, message: str, status: str = "diverged") -> None:
         super().__init__(message, status)
 
 
+class UnreliableResultWarning(UserWarning):
+    """The time stepping has created energy that is no longer small against what the run exchanges.
+
+    The run goes on: the message says since when the result is unreliable, and what to try.
+    """
+
+
 def error_for(status: str, message: str) -> DerError:
     """Return the error of the class that belongs to the status of a failed run."""
     not_found = ("not_converged", "not_held", "unbounded", "collapsed", "folded", "too_fine")
-    classes = dict.fromkeys(not_found, NotConvergedError) | {"diverged": DivergedError}
+    classes = dict.fromkeys(not_found, NotConvergedError) | dict.fromkeys(
+        ("diverged", "unstable_motion"), DivergedError
+    )
     return classes.get(status, DerError)(message, status)

@@ -17,7 +17,7 @@ from der._core import Scenario
 from der.errors import DerError
 from der.progress import ProgressFunction
 from der.result import Result
-from der.simulation import Simulation
+from der.simulation import Simulation, run_quietly
 
 #: Status of a run that was broken off.
 TOO_LONG = "too_long"
@@ -166,7 +166,7 @@ class Workers:
             shown(share)
 
         try:
-            result = Simulation(scenario).run(progress=tick)
+            result, _ = run_quietly(Simulation(scenario), progress=tick)
         except DerError as error:
             return Outcome(error.result, error, time.thread_time() - start)
         return Outcome(result, None, time.thread_time() - start)

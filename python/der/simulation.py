@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import math
 import os
+import sys
+import warnings
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -13,7 +15,7 @@ import numpy as np
 from der import _core
 from der._core import Recording, Scenario
 from der.analyses import Modes
-from der.errors import error_for
+from der.errors import UnreliableResultWarning, error_for
 from der.probe_series import make_probes
 from der.progress import ProgressFunction, ProgressLine
 from der.result import Result
@@ -91,25 +93,15 @@ class Simulation(_core.Simulation):
             If the run fails; their ``result`` holds everything up to the last good step.
         ValueError
             If `until` lies before the present time or beyond the scene's end.
+
+        Warns
+        -----
+        UnreliableResultWarning
+            If the integrator has created energy, but not enough for the run to fail.
         """
-        end = self._end_time(until)
-        line = ProgressLine() if progress is True else None
-        report = progress if callable(progress) else line
-        try:
-            recording = self.record(
-                callback=None if callback is None else lambda: _goes_on(callback(self)),
-                until=end,
-                tick=None if report is None else lambda: report(self._share_done(end)),
-                out=out,
-            )
-        finally:
-            if line is not None:
-                line.close()
-        result = _to_result(self.scenario, recording)
-        if check and recording.failed:
-            error = error_for(recording.status, recording.message)
-            error.result = result
-            raise error
+        result, doubt = run_quietly(self, callback, until, out=out, progress=progress, check=check)
+        if doubt:
+            warnings.warn(doubt, UnreliableResultWarning, stacklevel=_stack_level())
         return result
 
     def modes(self, k: int = 6) -> Modes:
@@ -158,6 +150,45 @@ class Simulation(_core.Simulation):
     def _share_done(self, end: float) -> float:
         duration = min(end, self.scenario.duration)
         return self.time / duration if duration > 0.0 else 0.0
+
+
+def run_quietly(
+    simulation: Simulation,
+    callback: StepCallback | None = None,
+    until: float | None = None,
+    *,
+    out: str | os.PathLike[str] | None = None,
+    progress: bool | ProgressFunction = False,
+    check: bool = True,
+) -> tuple[Result, str]:
+    """Run as `Simulation.run` does, and return what it would warn of, empty if of nothing."""
+    end = simulation._end_time(until)
+    line = ProgressLine() if progress is True else None
+    report = progress if callable(progress) else line
+    try:
+        recording = simulation.record(
+            callback=None if callback is None else lambda: _goes_on(callback(simulation)),
+            until=end,
+            tick=None if report is None else lambda: report(simulation._share_done(end)),
+            out=out,
+        )
+    finally:
+        if line is not None:
+            line.close()
+    result = _to_result(simulation.scenario, recording)
+    if check and recording.failed:
+        error = error_for(recording.status, recording.message)
+        error.result = result
+        raise error
+    return result, "" if recording.failed else recording.doubt
+
+
+def _stack_level() -> int:
+    """Return the level at which a warning of this module points to its caller's line."""
+    level, frame = 1, sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals.get("__name__") == __name__:
+        level, frame = level + 1, frame.f_back
+    return level
 
 
 def _symmetric(

@@ -245,7 +245,7 @@ std::string run_report(const Simulation& simulation, const Recorder& recorder,
   text += line("ran", what_ran(simulation), style);
   text += model_lines(simulation, style);
   text += cost_line(simulation, outcome, style);
-  for (const std::string& warning : warnings(simulation, recorder, outcome)) {
+  for (const std::string& warning : warnings(simulation, outcome)) {
     text += line("warning", style.warning(warning), style);
   }
   text += line("results", (folder.path() / "").string(), style);

@@ -12,8 +12,9 @@ using hdf5::Handle;
 constexpr hsize_t kHistoryChunk = 4096;
 constexpr hsize_t kSummaryValues = 5;  // of a ProbeSummary
 constexpr std::size_t kRampValues = 5;
-constexpr hsize_t kCounters = 5;    // of Counters
-constexpr hsize_t kWorkValues = 5;  // of Work
+constexpr hsize_t kCounters = 5;     // of Counters
+constexpr hsize_t kWorkValues = 5;   // of Work
+constexpr hsize_t kAuditValues = 4;  // of EnergyAudit
 
 Handle with_unit(Handle dataset, const std::string& unit) {
   hdf5::write_attribute(dataset.id(), "unit", unit);
@@ -81,13 +82,13 @@ CheckpointStore::Slot CheckpointStore::create_slot(hid_t group, const Model& mod
   slot.next_step = create_doubles(group, "next_step", {}, "s");
   slot.last_error = create_doubles(group, "last_error", {}, "");
   slot.work = create_doubles(group, "work", {kWorkValues}, "J");
+  slot.audit = create_doubles(group, "energy_audit", {kAuditValues}, "");
   if (num_probes > 0) {
     slot.extremes = create_doubles(group, "extremes", {num_probes, kSummaryValues}, "");
   }
   slot.counters =
       with_unit(hdf5::create_fixed(group, "counters", H5T_NATIVE_INT64, {kCounters}), "");
   slot.wall_seconds = create_doubles(group, "wall_seconds", {}, "s");
-  slot.largest_kinetic_energy = create_doubles(group, "largest_kinetic_energy", {}, "J");
   slot.history = create_list(group, "history", H5T_NATIVE_DOUBLE);
   slot.history_lengths = create_list(group, "history_lengths", H5T_NATIVE_INT64);
   slot.ramps = create_list(group, "ramps", H5T_NATIVE_DOUBLE);
@@ -106,10 +107,10 @@ CheckpointStore::Slot CheckpointStore::open_slot(hid_t group) {
   slot.next_step = hdf5::open_dataset(group, "next_step");
   slot.last_error = hdf5::open_dataset(group, "last_error");
   slot.work = hdf5::open_dataset(group, "work");
+  slot.audit = hdf5::open_dataset(group, "energy_audit");
   if (hdf5::exists(group, "extremes")) slot.extremes = hdf5::open_dataset(group, "extremes");
   slot.counters = hdf5::open_dataset(group, "counters");
   slot.wall_seconds = hdf5::open_dataset(group, "wall_seconds");
-  slot.largest_kinetic_energy = hdf5::open_dataset(group, "largest_kinetic_energy");
   slot.history = Column::open(group, "history");
   slot.history_lengths = Column::open(group, "history_lengths");
   slot.ramps = Column::open(group, "ramps");
@@ -145,7 +146,7 @@ void CheckpointStore::write(const Checkpoint& checkpoint) {
   // Taken apart so that a new member of State does not compile until it is saved here and read
   // below.
   const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
-               next_step, last_error, work, ramps] = checkpoint.state;
+               next_step, last_error, work, audit, ramps] = checkpoint.state;
   hdf5::write_all(slot.time.id(), &time);
   hdf5::write_all(slot.step.id(), &step);
   hdf5::write_all(slot.positions.id(), positions.data());
@@ -158,6 +159,9 @@ void CheckpointStore::write(const Checkpoint& checkpoint) {
   const auto& [start, loads, supports, drag, solver] = work;
   const std::array<double, kWorkValues> works{start, loads, supports, drag, solver};
   hdf5::write_all(slot.work.id(), works.data());
+  const auto& [exchanged, created, written, unreliable_from] = audit;
+  const std::array<double, kAuditValues> audited{exchanged, created, written, unreliable_from};
+  hdf5::write_all(slot.audit.id(), audited.data());
   const auto extremes = flatten(checkpoint.extremes);
   if (!extremes.empty()) hdf5::write_all(slot.extremes.id(), extremes.data());
   const auto& [steps, newton_iterations, retried_steps, rejected_steps, most_pieces] =
@@ -166,7 +170,6 @@ void CheckpointStore::write(const Checkpoint& checkpoint) {
                                                      rejected_steps, most_pieces};
   hdf5::write_all(slot.counters.id(), counters.data());
   hdf5::write_all(slot.wall_seconds.id(), &checkpoint.wall_seconds);
-  hdf5::write_all(slot.largest_kinetic_energy.id(), &checkpoint.largest_kinetic_energy);
 
   std::vector<double> flat;
   std::vector<std::int64_t> lengths;
@@ -205,6 +208,8 @@ std::optional<Checkpoint> CheckpointStore::read() const {
   state.last_error = read_one<double>(slot.last_error.id());
   const auto works = hdf5::read_vector<double>(slot.work.id());
   state.work = {works.at(0), works.at(1), works.at(2), works.at(3), works.at(4)};
+  const auto audited = hdf5::read_vector<double>(slot.audit.id());
+  state.audit = {audited.at(0), audited.at(1), audited.at(2), audited.at(3)};
   if (slot.extremes.id() >= 0) {
     checkpoint.extremes = unflatten(hdf5::read_vector<double>(slot.extremes.id()));
   }
@@ -212,7 +217,6 @@ std::optional<Checkpoint> CheckpointStore::read() const {
   checkpoint.counters = {counters.at(0), counters.at(1), counters.at(2), counters.at(3),
                          counters.at(4)};
   checkpoint.wall_seconds = read_one<double>(slot.wall_seconds.id());
-  checkpoint.largest_kinetic_energy = read_one<double>(slot.largest_kinetic_energy.id());
 
   const auto history = hdf5::read_vector<double>(slot.history.id());
   const double* next = history.data();

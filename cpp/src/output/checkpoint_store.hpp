@@ -27,7 +27,7 @@ class CheckpointStore {
   struct Slot {
     hdf5::Handle time, step, positions, velocities, extra_force, accelerations, last_step;
     hdf5::Handle next_step, last_error, work;
-    hdf5::Handle extremes, counters, wall_seconds, largest_kinetic_energy;
+    hdf5::Handle audit, extremes, counters, wall_seconds;
     hdf5::Column history;          // all vectors one behind the other
     hdf5::Column history_lengths;  // of each vector
     hdf5::Column ramps;            // five numbers each

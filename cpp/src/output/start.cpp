@@ -113,7 +113,7 @@ void apply_start(Simulation& simulation) {
   Vector controls;
   model.controls.evaluate(state.time, controls);
   place_held(model, controls, state.positions);  // supports are where this scene has them
-  start_ledger(model, state);
+  simulation.start_anew();
   simulation.check_first_step();
 }
 

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 
 #include "der/output/run_folder.hpp"
+#include "der/output/summary.hpp"
 #include "heartbeat.hpp"
 #include "py_simulation.hpp"
 
@@ -33,17 +35,28 @@ class PySimulation::Turn {
 void PySimulation::step(std::int64_t count, py::handle self) {
   if (count < 0) throw py::value_error("the number of steps must not be negative");
   const Turn turn(*this);
-  const py::gil_scoped_release unlocked;
-  Heartbeat heartbeat;
-  for (std::int64_t i = 0; i < count; ++i) {
-    if (!forces_.empty()) {
-      const py::gil_scoped_acquire lock;
-      forces_.apply(engine_.model(), engine_.state(), self);
+  {
+    const py::gil_scoped_release unlocked;
+    Heartbeat heartbeat;
+    for (std::int64_t i = 0; i < count; ++i) {
+      if (!forces_.empty()) {
+        const py::gil_scoped_acquire lock;
+        forces_.apply(engine_.model(), engine_.state(), self);
+      }
+      engine_.step();
+      forces_.take_off(engine_.state());
+      if (count > 1) heartbeat.beat();
     }
-    engine_.step();
-    forces_.take_off(engine_.state());
-    if (count > 1) heartbeat.beat();
   }
+  warn_once();
+}
+
+void PySimulation::warn_once() {
+  if (warned_ || engine_.state().audit.unreliable_from < 0.0) return;
+  warned_ = true;
+  const py::object category = py::module_::import("der.errors").attr("UnreliableResultWarning");
+  const std::string text = created_energy_warning(engine_);
+  if (PyErr_WarnEx(category.ptr(), text.c_str(), 1) < 0) throw py::error_already_set();
 }
 
 EquilibriumReport PySimulation::equilibrium(py::handle self, bool leave_saddles) {

@@ -45,9 +45,12 @@ class PySimulation {
 
  private:
   class Turn;
+  /// Warns where the integrator has created energy, if that has not been said before.
+  void warn_once();
   Simulation engine_;
   ForceFunctions forces_;
   bool busy_ = false;
+  bool warned_ = false;
 };
 
 }  // namespace der::python

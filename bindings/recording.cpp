@@ -110,6 +110,7 @@ std::unique_ptr<RunRecording> record(const py::object& self,
       simulation.run(recorder, until, to_callback(callback), to_tick(tick), out, self);
   recording->frames = std::move(static_cast<FrameData&>(memory));
   recording->data = datasets(simulation.engine(), recording->outcome);
+  recording->doubt = created_energy_warning(simulation.engine());
   recording->summary_json = summary_json(simulation.engine(), recorder, recording->outcome);
   return recording;
 }
@@ -153,6 +154,8 @@ void bind_recording(py::module_& module) {
           "Why it failed; empty if it did not.")
       .def_property_readonly(
           "failed", [](const RunRecording& r) { return r.outcome.failed(); }, "Whether it failed.")
+      .def_readonly("doubt", &RunRecording::doubt,
+                    "Why its result is unreliable though it did not fail; empty if it is not.")
       .def_readonly("summary_json", &RunRecording::summary_json, "Text of summary.json.");
 }
 

@@ -28,6 +28,7 @@ struct Recording {
 /// What a run that has just been done recorded, and how it ended.
 struct RunRecording : Recording {
   RunOutcome outcome;
+  std::string doubt;  ///< why its result is unreliable; empty: it is not
   std::string summary_json;
 };
 

@@ -36,7 +36,7 @@ Vector to_vector(const py::handle& value) {
 
 py::tuple dump(const SavedState& saved) {
   const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
-               next_step, last_error, work, ramps, turns] = saved.state;
+               next_step, last_error, work, audit, ramps, turns] = saved.state;
   py::list remembered;
   for (const Vector& vector : history) remembered.append(to_array(vector));
   py::list moved;
@@ -46,13 +46,14 @@ py::tuple dump(const SavedState& saved) {
   return py::make_tuple(kKind, kVersion, saved.dimension, time, step, to_array(positions),
                         to_array(velocities), to_array(extra_force), to_array(accelerations),
                         last_step, remembered, next_step, last_error, work.start, work.loads,
-                        work.supports, work.drag, work.solver, moved, to_array(turns));
+                        work.supports, work.drag, work.solver, audit.exchanged, audit.created,
+                        audit.written, audit.unreliable_from, moved, to_array(turns));
 }
 
 SavedState read(const py::tuple& dumped) {
   SavedState saved;
   auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
-         next_step, last_error, work, ramps, turns] = saved.state;
+         next_step, last_error, work, audit, ramps, turns] = saved.state;
   std::size_t next = 2;
   const auto take = [&] { return dumped[next++]; };
   const auto number = [&] { return take().cast<double>(); };
@@ -66,7 +67,8 @@ SavedState read(const py::tuple& dumped) {
   for (const py::handle& vector : take().cast<py::list>()) history.push_back(to_vector(vector));
   next_step = number();
   last_error = number();
-  for (double* part : {&work.start, &work.loads, &work.supports, &work.drag, &work.solver}) {
+  for (double* part : {&work.start, &work.loads, &work.supports, &work.drag, &work.solver,
+                       &audit.exchanged, &audit.created, &audit.written, &audit.unreliable_from}) {
     *part = number();
   }
   for (const auto& ramp : take().cast<std::vector<py::tuple>>()) {
@@ -79,7 +81,7 @@ SavedState read(const py::tuple& dumped) {
 }
 
 SavedState revive(const py::tuple& dumped) {
-  constexpr std::size_t kParts = 20;
+  constexpr std::size_t kParts = 24;
   try {
     if (dumped.size() != kParts || dumped[0].cast<std::string>() != kKind) refuse("other content");
     if (dumped[1].cast<int>() != kVersion) refuse("another version");

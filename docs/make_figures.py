@@ -137,7 +137,9 @@ def tolerance() -> Figure:
     exact = tips(step=5e-5, integrator="sdirk4")  # half the step moves it by 2e-10 m
     figure, axes = new_axes()
     axes.loglog(asked, asked, color="0.6", linestyle="--", label="what was asked for")
-    looks = zip(names, ("o", "s", "^", "D", "v", "P", "X"), (*PALETTE, "black"), strict=True)
+    looks = zip(
+        names, ("o", "s", "h", "^", "D", "v", "P", "X"), (*PALETTE, "black", "#5e3c99"), strict=True
+    )
     for name, marker, colour in looks:
         errors = {}
         # Of order 1, six digits would take a million steps.

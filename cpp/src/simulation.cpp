@@ -34,6 +34,15 @@ StepperOptions stepper_options(const scenario::Scene& scene) {
   return options;
 }
 
+/// Explicit steps as long as nine tenths of the stable one give the fastest motion an energy that
+/// swings by 1/(1 - 0.9^2) times what it has, without growing: that is doubtful, but no failure.
+constexpr double kLargestSwing = 5.0;
+
+bool is_unstable(const EnergyAudit& audit, const StepperInfo& stepper) {
+  return is_unstable(audit) &&
+         (stepper.implicit || audit.created > kLargestSwing * audit.exchanged);
+}
+
 /// What to try after a search for an equilibrium has failed.
 std::string advice(const std::string& status) {
   if (status == "not_held") return "Add a support that holds it, or balance the loads.";
@@ -115,10 +124,11 @@ Simulation::Simulation(Scenario scenario)
       stepper_info_(find_stepper(scenario_.scene().time.integrator)),
       stepper_(stepper_info_.make(model_, assembler_, *solver_.solver,
                                   stepper_options(scenario_.scene()))),
+      energy_watch_(model_),
       support_motion_(model_),
       horizon_(scenario_.scene().time.duration),
       state_(initial_state(model_)) {
-  start_ledger(model_, state_);
+  start_anew();
   const scenario::Scene& scene = scenario_.scene();
   const scenario::Time& time = scene.time;
   double stable_step = std::numeric_limits<double>::infinity();
@@ -148,6 +158,8 @@ void Simulation::step() {
   Undo undo(state_, before_step_);
   if (const std::string found = find_nonfinite(); !found.empty()) throw DivergedError(found);
   follow_turns(model_, state_.positions, state_.turns);  // a program may have moved the rods
+  const bool was_finished = finished();
+  energy_watch_.before_step(state_);
   if (adaptive_) {
     advance_adaptively();
   } else {
@@ -156,6 +168,31 @@ void Simulation::step() {
   ++state_.step;
   ++counters_.steps;
   undo.keep();
+  energy_watch_.after_step(state_);
+  watch_energy(finished() && !was_finished);
+}
+
+void Simulation::start_anew() {
+  forget_steps(state_);
+  start_ledger(model_, state_);
+  energy_watch_.begin(state_);
+}
+
+void Simulation::watch_energy(bool at_end) {
+  const std::int64_t stride = EnergyWatch::kStride * (stepper_info_.implicit ? 1 : 4);
+  // From rest there is nothing to compare with at first: early looks see what is exchanged only.
+  const bool is_early = state_.step < stride;
+  if (!is_early && !at_end && state_.step % stride != 0) return;
+  const EnergyAudit before = state_.audit;
+  energy_watch_.look(state_);
+  if (is_early) {
+    state_.audit.created = before.created;
+    state_.audit.unreliable_from = before.unreliable_from;
+    return;
+  }
+  if (is_unstable(state_.audit, stepper_info_) && !scenario_.scene().time.allow_unstable) {
+    throw DivergedError(describe_unstable_motion(), "unstable_motion");
+  }
 }
 
 double Simulation::next_time() const {
@@ -288,9 +325,8 @@ EquilibriumReport Simulation::equilibrium(bool leave_saddles) {
         report.status);
   }
   found.velocities.setZero();
-  forget_steps(found);
-  start_ledger(model_, found);
   state_ = found;
+  start_anew();
   return report;
 }
 
@@ -394,6 +430,7 @@ void Simulation::restore(const State& saved) {
   check_state(model_, saved);
   // Vectors of the same length keep their memory when assigned.
   state_ = saved;
+  energy_watch_.begin(state_);
 }
 
 std::string Simulation::describe_failure(const StepReport& report, double dt) const {
@@ -419,6 +456,31 @@ std::string Simulation::describe_inaccuracy(const AdaptiveReport& report) const 
                      : fmt::format(". Shorter steps are below time.minimum_step of {:.3g} s: lower "
                                    "that, or raise time.tolerance.",
                                    time.minimum_step));
+}
+
+std::string Simulation::advice_on_steps() const {
+  const char* shorter = "take smaller steps";
+  switch (scenario_.scene().time.stepping) {
+    case scenario::Stepping::Fixed:
+      break;
+    case scenario::Stepping::Adaptive:
+      shorter = "take a smaller tolerance";
+      break;
+    case scenario::Stepping::Automatic:
+      shorter = "give a step that is smaller than that of 'auto'";
+      break;
+  }
+  constexpr const char* kConserving = "energy_momentum";
+  if (stepper_info_.name == kConserving) return shorter;
+  return fmt::format("{}, or 'integrator: {}', which creates no energy", shorter, kConserving);
+}
+
+std::string Simulation::describe_unstable_motion() const {
+  return fmt::format(
+      "the motion is unstable at t = {:.6g} s: {}, and has been doubtful since t = {:.6g} s. To "
+      "get "
+      "a right result {}; to run on all the same, say 'allow_unstable: true' under 'time'",
+      state_.time, describe(state_.audit), state_.audit.unreliable_from, advice_on_steps());
 }
 
 std::string Simulation::describe_divergence(const StepReport& report, double dt) {

@@ -57,6 +57,7 @@ from der.errors import (
     DivergedError,
     NotConvergedError,
     SceneError,
+    UnreliableResultWarning,
 )
 from der.exporting import export
 from der.probe_series import ProbeSeries
@@ -97,6 +98,7 @@ __all__ = [
     "StepperInfo",
     "Study",
     "StudyRow",
+    "UnreliableResultWarning",
     "Verification",
     "VerifiedValue",
     "__version__",

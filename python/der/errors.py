@@ -53,8 +53,15 @@ class DerWarning(UserWarning):
     """What can be run as it is, but is most likely not what was meant."""
 
 
-def warn(messages: Iterable[str]) -> None:
-    """Issue a `DerWarning` for each message, at the line that called into der."""
+class UnreliableResultWarning(DerWarning):
+    """The time stepping has created energy that is no longer small against what the run exchanges.
+
+    The run goes on: the message says since when the result is unreliable, and what to try.
+    """
+
+
+def warn(messages: Iterable[str], category: type[DerWarning] = DerWarning) -> None:
+    """Issue a warning for each message, at the line that called into der."""
     level = 2
     frame = inspect.currentframe()
     while (
@@ -62,7 +69,7 @@ def warn(messages: Iterable[str]) -> None:
     ):
         level += 1
     for message in messages:
-        warnings.warn(message, DerWarning, stacklevel=level)
+        warnings.warn(message, category, stacklevel=level)
 
 
 class SceneError(DerError, ValueError):
@@ -93,7 +100,11 @@ class NotConvergedError(DerError):
 
 
 class DivergedError(DerError):
-    """The motion grew without bound, or a value stopped being a number."""
+    """The motion grew without bound, or a value stopped being a number (``diverged``).
+
+    Or the time stepping created as much as half of the energy that the run exchanges
+    (``unstable_motion``).
+    """
 
     def __init__(self, message: str, status: str = "diverged") -> None:
         super().__init__(message, status)
@@ -102,5 +113,7 @@ class DivergedError(DerError):
 def error_for(status: str, message: str) -> DerError:
     """Return the error of the class that belongs to the status of a failed run."""
     not_found = ("not_converged", "not_held", "unbounded", "collapsed", "folded", "too_fine")
-    classes = dict.fromkeys(not_found, NotConvergedError) | {"diverged": DivergedError}
+    classes = dict.fromkeys(not_found, NotConvergedError) | dict.fromkeys(
+        ("diverged", "unstable_motion"), DivergedError
+    )
     return classes.get(status, DerError)(message, status)

@@ -70,9 +70,13 @@ class Film:
 
 
 def failure_text(result: Result) -> str:
-    """Return how a run failed, such as ``diverged at t = 0.0041 s``, or an empty text."""
+    """Return how a run failed, such as ``diverged at t = 0.0041 s``, or an empty text.
+
+    A run that did not fail may still be unreliable: ``unreliable from t = 1.2 s on``.
+    """
     if result.status in ("completed", "static_converged", "stopped"):
-        return ""
+        since = result.unreliable_from
+        return "" if since is None else f"unreliable from t = {since:.4g} s on"
     words = result.status.replace("_", " ")
     if result.scenario.is_static or len(result.times) == 0:
         return words
@@ -80,7 +84,7 @@ def failure_text(result: Result) -> str:
 
 
 def title_of(result: Result) -> str:
-    """Return the title of a picture of a run: the scene's, and how it failed if it did."""
+    """Return the title of a picture of a run: the scene's, and what is wrong with the run."""
     failure = failure_text(result)
     return f"{result.scenario.title} ({failure})" if failure else result.scenario.title
 

@@ -80,6 +80,12 @@ class Result:
         return str(self.summary["status"])
 
     @property
+    def unreliable_from(self) -> float | None:
+        """Time [s] from which on the integrator had created too much energy; None: never."""
+        since = self.summary.get("unreliable_from")
+        return None if since is None else float(since)
+
+    @property
     def modes(self) -> Modes | None:
         """Vibration modes, of ``analysis: modes``."""
         return make_modes(self.data)

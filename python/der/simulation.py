@@ -13,7 +13,7 @@ import numpy as np
 from der import _core
 from der._core import RunRecording, Scenario
 from der.analyses import Modes
-from der.errors import error_for, warn
+from der.errors import UnreliableResultWarning, error_for, warn
 from der.probe_series import make_probes
 from der.progress import ProgressFunction, ProgressLine
 from der.result import Result
@@ -105,6 +105,8 @@ class Simulation(_core.Simulation):
         -----
         DerWarning
             If a run with a tolerance takes very many steps: why, and what takes fewer.
+        UnreliableResultWarning
+            If the integrator has created energy, but not enough for the run to fail.
         """
         end = self._end_time(until)
         line = ProgressLine() if progress is True else None
@@ -126,6 +128,8 @@ class Simulation(_core.Simulation):
             raise error
         if warns:
             warn(result.summary["hints"])
+            if recording.doubt and not recording.failed:
+                warn([recording.doubt], UnreliableResultWarning)
         return result
 
     def modes(self, k: int = 6) -> Modes:

@@ -135,10 +135,3 @@ def test_a_run_at_rest_has_made_no_energy(swing, stepper):
     swing["start_from"] = "equilibrium"
     swing["time"] |= {"integrator": stepper, "duration": 1.0, "step": 0.01}
     assert der.run(swing).summary["warnings"] == []
-
-
-def test_energy_that_steps_have_made_is_still_told(swing):
-    swing["time"] |= {"integrator": "implicit_midpoint", "duration": 2, "step": 0.005}
-    del swing["output"]["every"]
-    (warning,) = der.run(swing).summary["warnings"]
-    assert "time stepping itself has made" in warning

@@ -140,10 +140,15 @@ def test_the_ledger_is_that_of_a_witness(fitted_order, info):
         assert same or fitted_order(STEPS, differences) > min(info.order, 2) - 0.1, name
 
 
+def is_nothing(losses, integrator):
+    """Whether losses are the rounding that the energy-momentum method promises, of 0.1 J."""
+    return integrator == "energy_momentum" and max(losses) < 1e-13
+
+
 @SECOND_ORDER
 def test_the_numerical_loss_vanishes_at_second_order(fitted_order, integrator):
     losses = [np.abs(driven(integrator, step).work["numerical"]).max() for step in STEPS]
-    assert fitted_order(STEPS, losses) > 1.9
+    assert is_nothing(losses, integrator) or fitted_order(STEPS, losses) > 1.9
 
 
 def constant_loads():
@@ -216,7 +221,7 @@ def test_only_a_stepper_without_damping_keeps_the_energy_for_good(info):
     result = der.run(der.Scenario.from_dict(scene))
     lost = result.work["numerical"]
     trend = np.polyfit(result.times, lost, 1)[0] * result.times[-1]
-    bounded = abs(trend) < 0.02 * np.ptp(lost)
+    bounded = abs(trend) < 0.02 * np.ptp(lost) or is_nothing(np.abs(lost), info.name)
     assert bounded == (info.damping == "none")
 
 
@@ -251,7 +256,7 @@ def test_a_clamp_that_turns_and_a_moment_do_work(fitted_order, integrator, momen
         losses.append(np.abs(result.work["numerical"]).max())
         assert result.work["supports"][-1] > 0.01
         assert abs(result.work["loads"][-1]) > 0.01
-    assert fitted_order(STEPS, losses) > 1.9
+    assert is_nothing(losses, integrator) or fitted_order(STEPS, losses) > 1.9
 
 
 @SECOND_ORDER

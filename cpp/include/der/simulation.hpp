@@ -19,6 +19,7 @@
 #include "der/statics/load_path.hpp"
 #include "der/statics/modes.hpp"
 #include "der/steppers/adaptive_stepper.hpp"
+#include "der/steppers/energy_watch.hpp"
 #include "der/steppers/stability_watch.hpp"
 #include "der/steppers/step_plan.hpp"
 #include "der/steppers/stepper.hpp"
@@ -55,7 +56,16 @@ class Simulation {
   /// Advances by one time step: of the scene's length, or, with a tolerance, of the length that the
   /// error allows. A step that fails is retried in smaller pieces, and one in which supports move
   /// far is done in such. Throws NotConvergedError or DivergedError; the state is then as before.
+  /// Where the integrator creates too much energy that is a DivergedError ("unstable_motion") after
+  /// the step, unless the scene allows it.
   void step();
+  /// Takes the present state as the start of a motion: of a new ledger, with no steps before it.
+  void start_anew();
+  /// Enters the energy that the integrator has created by now into the state's audit; steps do so
+  /// now and then.
+  void audit_energy() { energy_watch_.look(state_); }
+  /// What to try where the time stepping is not good enough.
+  [[nodiscard]] std::string advice_on_steps() const;
   /// Throws Error ("unstable_step") if the scene's step is too long for an explicit integrator at
   /// the present state, the start of a run.
   void check_first_step();
@@ -122,6 +132,7 @@ class Simulation {
   void advance_to(double target);
   double stable_piece(double left, double whole, double dt);
   void advance_adaptively();
+  void watch_energy(bool at_end);
   [[noreturn]] void fail(const StepReport& report, double dt);
   /// The first position, velocity or extra force that is not a finite number, as a program may have
   /// written it, in words; empty if there is none.
@@ -138,6 +149,7 @@ class Simulation {
   [[nodiscard]] Forces forces() const;
   [[nodiscard]] std::string describe_failure(const StepReport& report, double dt) const;
   [[nodiscard]] std::string describe_inaccuracy(const AdaptiveReport& report) const;
+  [[nodiscard]] std::string describe_unstable_motion() const;
   [[nodiscard]] std::string describe_divergence(const StepReport& report, double dt);
 
   Scenario scenario_;
@@ -148,6 +160,7 @@ class Simulation {
   const StepperInfo& stepper_info_;
   std::unique_ptr<Stepper> stepper_;
   std::optional<StabilityWatch> stability_;  // of explicit steppers
+  EnergyWatch energy_watch_;
   StepPlan plan_;
   std::optional<AdaptiveStepper> adaptive_;
   SupportMotion support_motion_;

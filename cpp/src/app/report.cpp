@@ -270,7 +270,7 @@ std::string run_report(const Simulation& simulation, const Recorder& recorder,
   text += line("ran", what_ran(simulation), style);
   text += model_lines(simulation, style);
   text += cost_line(simulation, outcome, style);
-  text += warning_lines(warnings(simulation, recorder, outcome), style);
+  text += warning_lines(warnings(simulation, outcome), style);
   for (const std::string& hint : hints(simulation)) text += line("hint", hint, style);
   text += line("results", printable((folder.path() / "").string()), style);
   if (!outcome.path.empty()) return text + "\n" + path_tables(recorder, outcome, style);

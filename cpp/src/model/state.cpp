@@ -32,18 +32,23 @@ void evaluate_controls(const Model& model, const State& state, double time, Vect
 Energies energies(const Model& model, const State& state) {
   Vector controls;
   evaluate_controls(model, state, state.time, controls);
+  return energies(model, controls, state.positions, state.velocities);
+}
+
+Energies energies(const Model& model, const Vector& controls, const Vector& positions,
+                  const Vector& velocities) {
   Energies result;
-  result.kinetic = model.mass.kinetic_energy(state.velocities);
-  result.gravity = -model.gravity_force.dot(state.positions);
+  result.kinetic = model.mass.kinetic_energy(velocities);
+  result.gravity = -model.gravity_force.dot(positions);
   for_each_list(model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
-    const double energy = element_energy(list, controls, state.positions);
+    const double energy = element_energy(list, controls, positions);
     if constexpr (Kernel::kTerm == EnergyTerm::Stretch) result.stretch += energy;
     if constexpr (Kernel::kTerm == EnergyTerm::Bend) result.bend += energy;
     if constexpr (Kernel::kTerm == EnergyTerm::Spring) result.spring += energy;
   });
   for (const RodLayout& rod : model.rods) {
-    const CellEnergies cells = cell_energies(rod, model, controls, state.positions);
+    const CellEnergies cells = cell_energies(rod, model, controls, positions);
     result.bend += cells.bend;
     result.spring += cells.spring;
   }
@@ -64,7 +69,10 @@ void forget_steps(State& state) {
 
 void start_ledger(const Model& model, State& state) {
   state.work = {};
-  state.work.start = energies(model, state).total();
+  state.audit = {};
+  const Energies start = energies(model, state);
+  state.work.start = start.total();
+  state.audit.exchanged = start.kinetic;
 }
 
 double numerical_loss(const Work& work, const Energies& now) {

@@ -16,8 +16,9 @@ using hdf5::Handle;
 constexpr hsize_t kHistoryChunk = 4096;
 constexpr hsize_t kSummaryValues = 5;  // of a ProbeSummary
 constexpr std::size_t kRampValues = 5;
-constexpr hsize_t kCounters = 5;    // of Counters
-constexpr hsize_t kWorkValues = 5;  // of Work
+constexpr hsize_t kCounters = 5;     // of Counters
+constexpr hsize_t kWorkValues = 5;   // of Work
+constexpr hsize_t kAuditValues = 4;  // of EnergyAudit
 
 Handle with_unit(Handle dataset, const std::string& unit) {
   hdf5::write_attribute(dataset.id(), "unit", unit);
@@ -78,6 +79,11 @@ std::array<double, kWorkValues> flatten(const Work& work) {
   return {start, loads, supports, drag, solver};
 }
 
+std::array<double, kAuditValues> flatten(const EnergyAudit& audit) {
+  const auto& [exchanged, created, written, unreliable_from] = audit;
+  return {exchanged, created, written, unreliable_from};
+}
+
 std::array<std::int64_t, kCounters> flatten(const Counters& all) {
   const auto& [steps, newton_iterations, retried_steps, rejected_steps, most_pieces] = all;
   return {steps, newton_iterations, retried_steps, rejected_steps, most_pieces};
@@ -128,7 +134,7 @@ std::uint64_t checksum_of(const Checkpoint& checkpoint) {
     sum.add(numbers.data(), static_cast<std::size_t>(numbers.size()));
   };
   const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
-               next_step, last_error, work, ramps, turns] = checkpoint.state;
+               next_step, last_error, work, audit, ramps, turns] = checkpoint.state;
   sum.add(time);
   sum.add(step);
   for (const Vector* vector : {&positions, &velocities, &extra_force, &accelerations}) {
@@ -138,10 +144,10 @@ std::uint64_t checksum_of(const Checkpoint& checkpoint) {
   sum.add(next_step);
   sum.add(last_error);
   add(flatten(work));
+  add(flatten(audit));
   add(flatten(checkpoint.extremes));
   add(flatten(checkpoint.counters));
   sum.add(checkpoint.wall_seconds);
-  sum.add(checkpoint.largest_kinetic_energy);
   for (const Vector& vector : history) {
     sum.add(std::int64_t{vector.size()});
     add(vector);
@@ -178,12 +184,12 @@ CheckpointStore::Slot CheckpointStore::create_slot(hid_t group, hsize_t num_dofs
   slot.next_step = create_values<double>(group, "next_step", {}, "s");
   slot.last_error = create_values<double>(group, "last_error", {}, "");
   slot.work = create_values<double>(group, "work", {kWorkValues}, "J");
+  slot.audit = create_values<double>(group, "energy_audit", {kAuditValues}, "");
   if (num_probes > 0) {
     slot.extremes = create_values<double>(group, "extremes", {num_probes, kSummaryValues}, "");
   }
   slot.counters = create_values<std::int64_t>(group, "counters", {kCounters}, "");
   slot.wall_seconds = create_values<double>(group, "wall_seconds", {}, "s");
-  slot.largest_kinetic_energy = create_values<double>(group, "largest_kinetic_energy", {}, "J");
   slot.history = Column<double>::create(group, "history", {}, "", kHistoryChunk);
   slot.history_lengths =
       Column<std::int64_t>::create(group, "history_lengths", {}, "", kHistoryChunk);
@@ -207,12 +213,12 @@ CheckpointStore::Slot CheckpointStore::open_slot(hid_t group, hsize_t num_dofs,
   slot.next_step = open_values<double>(group, "next_step", {});
   slot.last_error = open_values<double>(group, "last_error", {});
   slot.work = open_values<double>(group, "work", {kWorkValues});
+  slot.audit = open_values<double>(group, "energy_audit", {kAuditValues});
   if (num_probes > 0) {
     slot.extremes = open_values<double>(group, "extremes", {num_probes, kSummaryValues});
   }
   slot.counters = open_values<std::int64_t>(group, "counters", {kCounters});
   slot.wall_seconds = open_values<double>(group, "wall_seconds", {});
-  slot.largest_kinetic_energy = open_values<double>(group, "largest_kinetic_energy", {});
   slot.history = Column<double>::open(group, "history", {});
   slot.history_lengths = Column<std::int64_t>::open(group, "history_lengths", {});
   slot.ramps = Column<double>::open(group, "ramps", {});
@@ -269,11 +275,11 @@ void CheckpointStore::write(const Checkpoint& checkpoint) {
   hdf5::write_all(slot.next_step.id(), &state.next_step);
   hdf5::write_all(slot.last_error.id(), &state.last_error);
   hdf5::write_all(slot.work.id(), flatten(state.work).data());
+  hdf5::write_all(slot.audit.id(), flatten(state.audit).data());
   const auto extremes = flatten(checkpoint.extremes);
   if (!extremes.empty()) hdf5::write_all(slot.extremes.id(), extremes.data());
   hdf5::write_all(slot.counters.id(), flatten(checkpoint.counters).data());
   hdf5::write_all(slot.wall_seconds.id(), &checkpoint.wall_seconds);
-  hdf5::write_all(slot.largest_kinetic_energy.id(), &checkpoint.largest_kinetic_energy);
 
   std::vector<double> flat;
   std::vector<std::int64_t> lengths;
@@ -310,6 +316,8 @@ std::optional<Checkpoint> CheckpointStore::read() const {
   state.last_error = read_one<double>(slot.last_error);
   const auto works = read_values<double>(slot.work, kWorkValues);
   state.work = {works[0], works[1], works[2], works[3], works[4]};
+  const auto audit = read_values<double>(slot.audit, kAuditValues);
+  state.audit = {audit[0], audit[1], audit[2], audit[3]};
   if (num_probes_ > 0) {
     checkpoint.extremes =
         unflatten(read_values<double>(slot.extremes, num_probes_ * kSummaryValues));
@@ -317,7 +325,6 @@ std::optional<Checkpoint> CheckpointStore::read() const {
   const auto counters = read_values<std::int64_t>(slot.counters, kCounters);
   checkpoint.counters = {counters[0], counters[1], counters[2], counters[3], counters[4]};
   checkpoint.wall_seconds = read_one<double>(slot.wall_seconds);
-  checkpoint.largest_kinetic_energy = read_one<double>(slot.largest_kinetic_energy);
   state.history = to_history(slot.history.read(0, slot.history.rows()),
                              slot.history_lengths.read(0, slot.history_lengths.rows()));
   state.ramps = to_ramps(slot.ramps.read(0, slot.ramps.rows()));

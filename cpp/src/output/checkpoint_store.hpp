@@ -33,7 +33,7 @@ class CheckpointStore {
   struct Slot {
     hdf5::Handle time, step, positions, velocities, extra_force, accelerations, last_step;
     hdf5::Handle next_step, last_error, work;
-    hdf5::Handle extremes, counters, wall_seconds, largest_kinetic_energy;
+    hdf5::Handle audit, extremes, counters, wall_seconds;
     Column<double> history;                // all vectors one behind the other
     Column<std::int64_t> history_lengths;  // of each vector
     Column<double> ramps;                  // five numbers each

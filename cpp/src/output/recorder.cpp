@@ -46,10 +46,7 @@ void Recorder::finish(const Simulation& simulation) {
 
 void Recorder::record(const Simulation& simulation, const State& state, bool save) {
   const std::string problem = try_record(simulation, state, save);
-  if (problem.empty()) {
-    if (save) largest_kinetic_energy_ = std::max(largest_kinetic_energy_, energies_->kinetic);
-    return;
-  }
+  if (problem.empty()) return;
   throw DivergedError("the motion diverged: at t = " + std::to_string(state.time) + " s " +
                       problem + " is not a finite number. A smaller time.step may help.");
 }
@@ -117,12 +114,10 @@ void Recorder::restore(const Checkpoint& checkpoint, Simulation& simulation) {
   }
   counters_before_ = checkpoint.counters;
   seconds_before_ = checkpoint.wall_seconds;
-  largest_kinetic_energy_ = checkpoint.largest_kinetic_energy;
 }
 
 Checkpoint Recorder::checkpoint(const Simulation& simulation) const {
-  return {simulation.state(), summaries_, counters(simulation), wall_seconds(),
-          largest_kinetic_energy_};
+  return {simulation.state(), summaries_, counters(simulation), wall_seconds()};
 }
 
 Counters Recorder::counters(const Simulation& simulation) const {

@@ -10,7 +10,10 @@ std::string advance(Simulation& simulation, Recorder& recorder, const StepCallba
   while (!simulation.finished()) {
     simulation.step();
     recorder.observe(simulation);
-    if (after_step && !after_step(simulation) && !simulation.finished()) return "stopped";
+    if (after_step && !after_step(simulation) && !simulation.finished()) {
+      if (simulation.state().step >= EnergyWatch::kStride) simulation.audit_energy();
+      return "stopped";
+    }
   }
   return "completed";
 }

@@ -129,7 +129,7 @@ void apply_start(Simulation& simulation) {
   model.controls.evaluate(state.time, controls);
   place_held(model, controls, state.positions);  // supports are where this scene has them
   take_over_turns(last, model, state);
-  start_ledger(model, state);
+  simulation.start_anew();
   simulation.check_first_step();
 }
 

@@ -18,11 +18,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;  // keys stay in the order in which a person wants to read them
 
-/// Of the energy that a run exchanges: what a method makes of its own beyond this is worth a
-/// warning.
-constexpr double kMuchEnergy = 0.05;
-/// Of the energy that it holds: what is less is rounding.
-constexpr double kRounding = 1e-10;
 /// Rotation [rad] or strain up to which a structure is much like its shape without loads. (Pinned
 /// arches under a point load: linear buckling is 67 % high where it is 0.06, 9 % where it is
 /// 0.035.)
@@ -109,36 +104,6 @@ void add_analysis(const Simulation& simulation, const RunOutcome& outcome, const
   if (!outcome.path.empty()) summary["path"] = path_json(outcome, recorder);
 }
 
-/// What to try where the time stepping is not good enough.
-std::string advice_on_steps(const Simulation& simulation) {
-  const bool is_default = simulation.integrator().name == "tr_bdf2";
-  switch (simulation.scenario().scene().time.stepping) {
-    case scenario::Stepping::Fixed:
-      return is_default ? "take smaller steps" : "take smaller steps, or tr_bdf2";
-    case scenario::Stepping::Adaptive:
-      return is_default ? "take a smaller tolerance" : "take a smaller tolerance, or tr_bdf2";
-    case scenario::Stepping::Automatic:
-      break;
-  }
-  return "give a step that is smaller than that of 'auto', or take tr_bdf2";
-}
-
-std::optional<std::string> made_energy_warning(const Simulation& simulation,
-                                               const Recorder& recorder) {
-  if (!recorder.energies() || recorder.largest_kinetic_energy() == 0.0) return std::nullopt;
-  const Work& work = simulation.state().work;
-  const Energies& now = *recorder.energies();
-  const double made = -numerical_loss(work, now);
-  const double exchanged = std::max({recorder.largest_kinetic_energy(), std::abs(work.loads),
-                                     std::abs(work.supports), std::abs(work.drag)});
-  const double held = std::abs(work.start) + now.kinetic + now.elastic() + std::abs(now.gravity);
-  if (made < std::max(kMuchEnergy * exchanged, kRounding * held)) return std::nullopt;
-  return fmt::format(
-      "the time stepping itself has made {:.2g} J of energy, against {:.2g} J that the run "
-      "exchanges: {}",
-      made, exchanged, advice_on_steps(simulation));
-}
-
 std::vector<std::string> buckling_warnings(const LinearBuckling& buckling) {
   if (buckling.modes.empty() && buckling.reversed) {
     return {
@@ -177,8 +142,14 @@ UsedSolver used_solver(const Simulation& simulation) {
   return {"none", std::string(integrator.name) + " is explicit: it solves no equations"};
 }
 
-std::vector<std::string> warnings(const Simulation& simulation, const Recorder& recorder,
-                                  const RunOutcome& outcome) {
+std::string created_energy_warning(const Simulation& simulation) {
+  const EnergyAudit& audit = simulation.state().audit;
+  if (audit.unreliable_from < 0.0) return {};
+  return fmt::format("result unreliable from t = {:.4g} s on: {}. To get a right one {}",
+                     audit.unreliable_from, describe(audit), simulation.advice_on_steps());
+}
+
+std::vector<std::string> warnings(const Simulation& simulation, const RunOutcome& outcome) {
   const scenario::Scene& scene = simulation.scenario().scene();
   std::vector<std::string> found = scene.warnings;
   const auto add = [&](const std::vector<std::string>& more) {
@@ -189,7 +160,8 @@ std::vector<std::string> warnings(const Simulation& simulation, const Recorder& 
     return found;
   }
   if (simulation.plan().step > 0.0) add(fine_table_warnings(scene, simulation.plan().step));
-  if (auto made = made_energy_warning(simulation, recorder)) found.push_back(std::move(*made));
+  std::string created = created_energy_warning(simulation);
+  if (!created.empty()) found.push_back(std::move(created));
   return found;
 }
 
@@ -241,7 +213,10 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
   if (recorder.energies() && !is_static) {
     summary["work"] = work_json(simulation.state().work, *recorder.energies());
   }
-  summary["warnings"] = warnings(simulation, recorder, outcome);
+  if (simulation.state().audit.unreliable_from >= 0.0) {
+    summary["unreliable_from"] = simulation.state().audit.unreliable_from;
+  }
+  summary["warnings"] = warnings(simulation, outcome);
   summary["hints"] = hints(simulation);
   summary["probes"] = probes_json(recorder);
   summary["scene"] = simulation.scenario().source();

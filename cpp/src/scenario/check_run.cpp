@@ -76,12 +76,6 @@ void check_integrator(const TimeText& given, Time& time, Complaints& complaints)
                                "stable with any: give a step, or 'tolerance'",
                                time.integrator));
   }
-  if (time.allow_unstable && (implicit || time.stepping != Stepping::Fixed)) {
-    complaints.add({"time", "allow_unstable"},
-                   implicit
-                       ? fmt::format("{} is stable with any step: remove this", time.integrator)
-                       : "only a fixed 'step' can be too large: remove this");
-  }
 }
 
 /// Where a probe can stand, by the kind of its quantity.

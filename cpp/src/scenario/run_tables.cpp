@@ -131,7 +131,9 @@ Format<TimeText> time_format() {
                     "(nothing) to 1 (all of it).",
                     "0.9")
           .optional("allow_unstable", &Time::allow_unstable, boolean(),
-                    "Whether an explicit integrator may run with a step that is too large for it.")
+                    "Whether a run may go on where the integrator creates as much as half of the "
+                    "energy that the run exchanges, and an explicit integrator with a step that is "
+                    "too large for it.")
           .optional("minimum_step", &TimeText::given_minimum_step, number("s", positive()),
                     "A step that fails is retried in smaller ones, down to this.",
                     "step / 1024; with `step: auto` 1e-5 of the step; with `tolerance` about 1e-12 "

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "der/assembly/discrete_gradient_assembler.hpp"
 #include "der/core/index.hpp"
 #include "stage_kernels.hpp"
 
@@ -63,6 +64,7 @@ Newton::Newton(const Model& model, const Assembler& assembler, LinearSolver& sol
       tension_(model, assembler) {}
 
 NewtonReport Newton::solve(const Stage& stage, Vector& positions) {
+  last_shift_ = 0.0;  // a step must not depend on those before but by the state
   guess_ = positions;
   NewtonReport report = iterate(stage, Mode::FullSteps, positions);
   if (report.converged) return report;
@@ -84,6 +86,7 @@ NewtonReport Newton::solve_downhill(const Stage& stage, Vector& positions) {
 NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
   const int limit = mode == Mode::FullSteps ? std::min(kFullStepIterations, options_.max_iterations)
                                             : options_.max_iterations;
+  const bool predicts_tension = mode == Mode::FullSteps && stage.discrete_gradient == nullptr;
   NewtonReport report;
   external_ = largest_magnitude(stage.force);
   displacement_ = positions - stage.origin;
@@ -105,7 +108,7 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
       have_system = step > kNearSolution * model_.size;
       if (have_system) {
         evaluate_system(stage, positions);
-        tension_.use(positions, direction_, values_);
+        if (predicts_tension) tension_.use(positions, direction_, values_);
       } else {
         evaluate_residual(stage, positions);
       }
@@ -132,7 +135,7 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
     }
     if (have_system) continue;
     evaluate_system(stage, positions);
-    if (mode == Mode::FullSteps) tension_.use(positions, direction_, values_);
+    if (predicts_tension) tension_.use(positions, direction_, values_);
   }
   report.worst_dof = worst_dof();
   report.failure = "no convergence in " + std::to_string(options_.max_iterations) + " iterations";
@@ -140,12 +143,21 @@ NewtonReport Newton::iterate(const Stage& stage, Mode mode, Vector& positions) {
 }
 
 void Newton::evaluate_residual(const Stage& stage, const Vector& positions) {
-  assembler_.gradient(positions, stage.controls, residual_);
+  if (stage.discrete_gradient != nullptr) {
+    stage.discrete_gradient->gradient(stage.origin, positions, residual_);
+  } else {
+    assembler_.gradient(positions, stage.controls, residual_);
+  }
   add_stage_forces(stage);
 }
 
 void Newton::evaluate_system(const Stage& stage, const Vector& positions) {
-  assembler_.gradient_and_hessian(positions, stage.controls, residual_, values_);
+  if (stage.discrete_gradient != nullptr) {
+    stage.discrete_gradient->gradient_and_hessian(stage.origin, positions, stage.controls,
+                                                  residual_, values_);
+  } else {
+    assembler_.gradient_and_hessian(positions, stage.controls, residual_, values_);
+  }
   add_stage_forces(stage);
   if (stage.inertia != 0.0) assembler_.add_mass(stage.mass, stage.inertia, values_);
   if (stage.velocity_factor != 0.0 && model_.damped) {

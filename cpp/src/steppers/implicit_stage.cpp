@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "der/assembly/discrete_gradient_assembler.hpp"
 #include "der/loads/loads.hpp"
 #include "der/steppers/work.hpp"
 #include "der/supports/supports.hpp"
@@ -57,8 +58,7 @@ void ImplicitStage::book(const Vector& displacement, Work& work) const {
 
 void ImplicitStage::book_forces(const Vector& displacement, Work& work) const {
   const Vector& moved = newton_.displacement();
-  work.loads += displacement.dot(equation.force - model_.gravity_force) +
-                moment_work(model_, positions, equation.controls, displacement);
+  work.loads += displacement.dot(equation.force - model_.gravity_force) + moments(displacement);
   if (model_.damped) {
     work.drag += equation.velocity_factor *
                  displacement.dot(model_.damping.cwiseProduct(moved - equation.velocity_reference));
@@ -72,6 +72,13 @@ void ImplicitStage::book_forces(const Vector& displacement, Work& work) const {
     work.drag -= displacement[held.dof] * drag;
     work.supports += displacement[held.dof] * (newton_.residual()[held.dof] - inertial - drag);
   }
+}
+
+double ImplicitStage::moments(const Vector& displacement) const {
+  if (equation.discrete_gradient == nullptr) {
+    return moment_work(model_, positions, equation.controls, displacement);
+  }
+  return equation.discrete_gradient->moment_work(equation.origin, positions, displacement);
 }
 
 void ImplicitStage::book_solver(const Vector& displacement, Work& work) const {

@@ -15,6 +15,8 @@ const std::vector<StepperInfo>& stepper_registry() {
        make_runge_kutta<kImplicitEuler>},
       {"implicit_midpoint", 2, true, true, false, 1.0, "A-stable: any step", "none",
        make_runge_kutta<kImplicitMidpoint>},
+      {"energy_momentum", 2, true, true, false, 1.0, "A-stable: any step", "none",
+       make_energy_momentum},
       {"generalized_alpha", 2, true, false, false, 1.0, "A-stable: any step",
        "fast motion only, as chosen", make_generalized_alpha},
       {"bdf2", 2, true, false, false, 2.5, "L-stable: any step", "fast motion, some of the slow",

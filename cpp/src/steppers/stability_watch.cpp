@@ -32,6 +32,12 @@ constexpr const char* kAdvice =
     "Write 'step: auto', which follows the limit, or a step of at most {:.2g} s, take an implicit "
     "integrator, or say 'allow_unstable: true' to run it all the same";
 
+/// Whether the step may be above the stable one. Those of `step: auto` and of a tolerance never
+/// are.
+bool may_be_unstable(const scenario::Time& time) {
+  return time.allow_unstable && time.stepping == scenario::Stepping::Fixed;
+}
+
 /// How fast the shape changes [1/s]: the largest rate of stretch of an edge, or of turn of one edge
 /// against the one before it in its rod.
 double rate_of_change(const Model& model, const State& state) {
@@ -84,7 +90,7 @@ StableStep StabilityWatch::explain(const State& state) {
 }
 
 void StabilityWatch::check_start(const State& state) {
-  if (time_.stepping == scenario::Stepping::Adaptive || time_.allow_unstable) return;
+  if (time_.stepping == scenario::Stepping::Adaptive || may_be_unstable(time_)) return;
   const bool automatic = time_.stepping == scenario::Stepping::Automatic;
   const double limit = stable_step(state);
   if (automatic && kStepMargin * limit < time_.minimum_step) {
@@ -102,7 +108,7 @@ void StabilityWatch::check_start(const State& state) {
 }
 
 void StabilityWatch::look(State& state, double step) {
-  if (time_.allow_unstable) return;
+  if (may_be_unstable(time_)) return;
   const bool looked = state.history.size() == 1;
   if (looked && !has_other_shape(model_, state.positions, state.history[0])) return;
   // What a program may have written there; the stepper says where.
@@ -150,13 +156,13 @@ std::string StabilityWatch::explain_end(const State& state, double least) {
 }
 
 std::string StabilityWatch::explain_blow_up(const State& start, const State& last, double step) {
-  const StableStep stable = explain(time_.allow_unstable ? start : last);
+  const StableStep stable = explain(may_be_unstable(time_) ? start : last);
   const std::string limit = describe_stable_step(stable, time_.integrator, model_);
   if (step <= stable.step) {
     return fmt::format(
         "The step of {:.3g} s is below {}{}: the motion itself is faster than that. Take an "
         "implicit integrator, or fewer nodes.",
-        step, limit, time_.allow_unstable ? " at the start" : " there");
+        step, limit, may_be_unstable(time_) ? " at the start" : " there");
   }
   return fmt::format(
       "The step of {:.3g} s is above {}. Use time.step <= {:.2g}, or an implicit "

@@ -13,6 +13,8 @@ namespace der {
 template <const Tableau& tableau>
 std::unique_ptr<Stepper> make_runge_kutta(const Model&, const Assembler&, LinearSolver&,
                                           const StepperOptions&);
+std::unique_ptr<Stepper> make_energy_momentum(const Model&, const Assembler&, LinearSolver&,
+                                              const StepperOptions&);
 std::unique_ptr<Stepper> make_generalized_alpha(const Model&, const Assembler&, LinearSolver&,
                                                 const StepperOptions&);
 std::unique_ptr<Stepper> make_bdf2(const Model&, const Assembler&, LinearSolver&,

@@ -16,7 +16,7 @@ from der.film import title_of
 from der.plotting.analyses import plot_modes, plot_path
 from der.plotting.lengths import label_positions
 from der.plotting.loads import draw_loads, room_for_loads
-from der.plotting.probes import draw_probe, mark_times
+from der.plotting.probes import draw_probe, mark_times, shade_unreliable
 from der.plotting.shapes import draw_shapes, limits, make_exactly_equal, pick_frames
 from der.plotting.style import (
     AXES_TITLE,
@@ -139,18 +139,26 @@ def _plot_motion(result: Result, what: What, names: list[str], frames: list[int]
         figure, panels = _figure(heights)
     else:
         figure, panels = _figure([_shape_height(result, shapes, frames[-1]), *heights])
-        labels = [time_text(time) for time in marks]
+        labels = [_time_label(result, time) for time in marks]
         _draw_shape_panel(panels.pop(0), result, shapes, labels, frames[-1])
     for axes, name in zip(panels, names, strict=True):
         probe = result.probes[name]
         draw_probe(axes, result.times, probe, name, probe.unit)
         if what == "overview":
             mark_times(axes, result.times, probe, marks)
+        if result.unreliable_from is not None:
+            shade_unreliable(axes, result.unreliable_from, float(result.times[-1]))
         axes.sharex(panels[0])
         axes.label_outer()
     if panels:
         panels[-1].set_xlabel("time [s]")
     return figure
+
+
+def _time_label(result: Result, time: float) -> str:
+    since = result.unreliable_from
+    trusted = since is None or time < since
+    return time_text(time) if trusted else f"{time_text(time)}, unreliable"
 
 
 def _plot_path_shapes(result: Result) -> Figure:

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from der.plotting.style import MUTED, PALETTE, axis_label
+from der.plotting.style import MUTED, PALETTE, WARNING, axis_label
 
 
 def draw_probe(
@@ -44,6 +44,20 @@ def mark_times(
     """Put a dot on a probe's curve at the times `marks` [s], such as those of the shapes shown."""
     at_marks = np.interp(marks, times, values)
     axes.plot(marks, at_marks, "o", color=MUTED, markersize=3.5, linestyle="none")
+
+
+def shade_unreliable(axes: Axes, since: float, last: float) -> None:
+    """Shade the times from `since` to `last` [s], in which the integrator had created energy."""
+    axes.axvspan(since, last, color=WARNING, alpha=0.12, linewidth=0.0)
+    axes.text(
+        since,
+        1.0,
+        " unreliable",
+        transform=axes.get_xaxis_transform(),
+        va="top",
+        color=WARNING,
+        clip_on=True,
+    )
 
 
 def _keep_rounding_flat(axes: Axes, values: NDArray[np.float64]) -> None:

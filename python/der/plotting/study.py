@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 _WIDTH = 10.0  # of the figure [inch]
 _HEIGHT = 3.4  # of the panels of one probe [inch]
 _MARGIN = 0.08  # of logarithmic axes [decades]
-_COLOURS = (*PALETTE, "black", "#8c6d31", "#7f7f7f")  # as many as there are steppers
-_MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", "*")
+_COLOURS = (*PALETTE, "black", "#8c6d31", "#7f7f7f", "#5e3c99")  # as many as there are steppers
+_MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", "*", "h")
 
 
 def plot_study(study: Study) -> Figure:

@@ -23,6 +23,9 @@ MUTED = "#6b6b6b"
 #: Loads: forces, moments, gravity.
 LOAD = PALETTE[1]
 
+#: Parts of a result that are not to be trusted.
+WARNING = "#B00020"
+
 #: Font sizes of titles [points].
 AXES_TITLE, FIGURE_TITLE = 11.0, 12.0
 _TITLE_LINES = 4  # what is longer ends with three dots

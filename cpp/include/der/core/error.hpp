@@ -57,10 +57,12 @@ class NotConvergedError : public Error {
       : Error(status, message) {}
 };
 
-/// The motion grew without bound or a value stopped being a number.
+/// The motion grew without bound or a value stopped being a number ("diverged"), or the time
+/// stepping created energy ("unstable_motion").
 class DivergedError : public Error {
  public:
-  explicit DivergedError(const std::string& message) : Error("diverged", message) {}
+  explicit DivergedError(const std::string& message, const std::string& status = "diverged")
+      : Error(status, message) {}
 };
 
 }  // namespace der

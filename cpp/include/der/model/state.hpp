@@ -20,6 +20,15 @@ struct Work {
   double solver = 0.0;    ///< done by what the solver has left of the residual
 };
 
+/// Energy that the time stepping creates, against what a run exchanges between kinds of energy, as
+/// `EnergyWatch` has seen it so far.
+struct EnergyAudit {
+  double exchanged = 0.0;         ///< [J] the most at an instant
+  double created = 0.0;           ///< [J] the most at an instant
+  double written = 0.0;           ///< [J] put in by a program that wrote positions or velocities
+  double unreliable_from = -1.0;  ///< [s] when it first was too much; negative: never
+};
+
 /// Everything that changes in a run. A plain value: copy it to save it, assign it to go back, bit
 /// for bit. Vectors have one entry a degree of freedom.
 struct State {
@@ -37,6 +46,7 @@ struct State {
   double next_step = 0.0;
   double last_error = 0.0;  ///< of the last adaptive step, over what it was allowed
   Work work;
+  EnergyAudit audit;
   std::vector<Ramp> ramps;  ///< controls that a program has set, in place of their tables
   /// [rad] by which the model's followed edges have turned since they were drawn, whole turns
   /// included, as of the last step or equilibrium.
@@ -69,11 +79,14 @@ constexpr std::array<const char*, 5> kEnergyNames{"kinetic", "stretch", "bend", 
                                                   "gravity"};
 std::array<double, kEnergyNames.size()> by_name(const Energies& energies);
 Energies energies(const Model& model, const State& state);
+/// As above under given values of the tables; allocates nothing.
+Energies energies(const Model& model, const Vector& controls, const Vector& positions,
+                  const Vector& velocities);
 
 /// Forgets what steppers remember of the steps so far, for a motion that begins anew.
 void forget_steps(State& state);
 
-/// Starts a new ledger: nothing has gone in or out yet.
+/// Starts a new ledger and audit: nothing has gone in or out yet.
 void start_ledger(const Model& model, State& state);
 
 /// Energy [J] that the time stepping itself has taken since the start: what is missing of the work

@@ -19,10 +19,9 @@ struct ProbeSummary {
 /// All it takes to go on with a run as if it had never stopped, bit for bit.
 struct Checkpoint {
   State state;
-  std::vector<ProbeSummary> extremes;   ///< one a probe
-  Counters counters;                    ///< of the run so far
-  double wall_seconds = 0.0;            ///< of the run so far
-  double largest_kinetic_energy = 0.0;  ///< of the run so far [J]
+  std::vector<ProbeSummary> extremes;  ///< one a probe
+  Counters counters;                   ///< of the run so far
+  double wall_seconds = 0.0;           ///< of the run so far
 };
 
 }  // namespace der

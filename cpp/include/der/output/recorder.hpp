@@ -44,8 +44,6 @@ class Recorder {
   [[nodiscard]] bool has_data() const { return seen_time_.has_value(); }
   /// Energies [J] of the last saved instant; none before it.
   [[nodiscard]] const std::optional<Energies>& energies() const { return energies_; }
-  /// [J] over the instants at which a frame is due.
-  [[nodiscard]] double largest_kinetic_energy() const { return largest_kinetic_energy_; }
   /// Cost of the run so far, earlier parts of a resumed run included.
   [[nodiscard]] Counters counters(const Simulation& simulation) const;
   [[nodiscard]] double wall_seconds() const;
@@ -65,11 +63,10 @@ class Recorder {
   std::vector<FrameSink*> sinks_;
   Vector values_;  // of the probes, now
   std::optional<Energies> energies_;
-  double largest_kinetic_energy_ = 0.0;  // [J]
-  State between_;                        // within an adaptive step
-  std::optional<double> seen_time_;      // [s] of the last instant recorded
-  std::optional<double> saved_time_;     // [s] of the last instant handed to the sinks
-  Counters counters_before_;             // of the earlier parts of a resumed run
+  State between_;                     // within an adaptive step
+  std::optional<double> seen_time_;   // [s] of the last instant recorded
+  std::optional<double> saved_time_;  // [s] of the last instant handed to the sinks
+  Counters counters_before_;          // of the earlier parts of a resumed run
   double seconds_before_ = 0.0;
   std::chrono::steady_clock::time_point start_;
 };

@@ -211,8 +211,10 @@ struct Time {
   double step = 0.0;       ///< [s] of Stepping::Fixed
   double tolerance = 0.0;  ///< of Stepping::Adaptive: error of positions over the structure's size
   std::string integrator = "tr_bdf2";
-  bool allow_unstable = false;  ///< whether an explicit step above the stable one may run
-  double minimum_step = 0.0;    ///< [s] floor for retries after a failed step; 0: not given
+  /// Whether an explicit step above the stable one may run, and a motion in which the integrator
+  /// creates energy.
+  bool allow_unstable = false;
+  double minimum_step = 0.0;  ///< [s] floor for retries after a failed step; 0: not given
   /// Of generalized_alpha: what a step leaves of the fastest motion, 0 (nothing) .. 1 (all).
   double spectral_radius = 0.9;
 };

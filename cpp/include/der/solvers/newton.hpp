@@ -11,6 +11,8 @@
 
 namespace der {
 
+class DiscreteGradientAssembler;
+
 /// The nonlinear system that one stage of an implicit stepper, or a static analysis, has to solve
 /// for the displacement d from the positions `origin`:
 ///   inertia M (d - inertia_target) + velocity_factor C (d - velocity_reference)
@@ -28,6 +30,9 @@ struct Stage {
   Vector velocity_reference;     ///< [m] from the origin
   Vector controls;               ///< values of the model's tables at the stage's time
   Vector force;                  ///< [N] external forces at the stage's time
+  /// If set, it gives the forces in place of grad E: the stage is the middle of a step from
+  /// `origin`.
+  DiscreteGradientAssembler* discrete_gradient = nullptr;
 };
 
 struct NewtonOptions {

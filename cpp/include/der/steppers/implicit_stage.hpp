@@ -53,6 +53,8 @@ class ImplicitStage {
   void evaluate_controls(const State& state, double time, Vector& controls);
   void book_forces(const Vector& displacement, Work& work) const;
   void book_solver(const Vector& displacement, Work& work) const;
+  /// Work [J] of the moments.
+  [[nodiscard]] double moments(const Vector& displacement) const;
 
   const Model& model_;
   Newton newton_;

@@ -18,7 +18,7 @@ from der._core import Scenario
 from der.errors import DerError
 from der.progress import ProgressFunction
 from der.result import Result
-from der.simulation import Simulation, run_quietly
+from der.simulation import Simulation
 
 #: Status of a run that was broken off.
 TOO_LONG = "too_long"

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <type_traits>
 
 #include "energies/sample_elements.hpp"
 
@@ -13,6 +14,11 @@ namespace der::test {
 namespace {
 
 constexpr int kSamples = 200;
+
+template <class Kernel>
+struct FollowsTurns : std::false_type {};
+template <int Edges>
+struct FollowsTurns<RotationalSpring<Edges>> : std::true_type {};
 
 /// One element with its controls, and what is asked of it.
 template <class Kernel>
@@ -42,13 +48,28 @@ struct Element {
   /// error to expect of it.
   [[nodiscard]] double gap(const Coordinates& start, const Coordinates& end) const {
     const Coordinates d = discrete(start, end);
-    double gap = energy(end) - energy(start) - d.dot(end - start);
+    double gap = followed(start, end).energy(end) - energy(start) - d.dot(end - start);
     if constexpr (std::is_same_v<Kernel, PlanarMoment>) {
       gap = std::remainder(gap, PlanarMoment::period(constants, controls));
     }
     const double scale = 1.0 + std::abs(energy(start)) + std::abs(energy(end)) +
                          d.norm() * (start.norm() + end.norm());
     return std::abs(gap) / scale;
+  }
+
+  /// The element at the end of a step: one that follows the turns of its first edge knows them.
+  [[nodiscard]] Element followed(const Coordinates& start, const Coordinates& end) const {
+    Element element = *this;
+    if constexpr (FollowsTurns<Kernel>::value) {
+      const auto edge = [](const Coordinates& x) -> Vec2 {
+        return x.template segment<2>(2) - x.template head<2>();
+      };
+      double& turn = element.controls[constants.turn];
+      const double then = constants.direction + turn;
+      turn += angle_between({std::cos(then), std::sin(then)}, edge(start)) +
+              angle_between(edge(start), edge(end));
+    }
+    return element;
   }
 
   typename Kernel::Constants constants;

@@ -199,6 +199,7 @@ void discrete_gradient(KernelTag<RotationalSpring<Edges>> /*kernel*/,
   const Vec2 a1 = edge(end, 0);
   const Turn first(a0, a1);
   double change = first.angle;
+  double known = first.angle;
   gradient.setZero();
   const auto act = [&gradient](int i, const Vec2& slope) {
     gradient.template segment<2>(2 * i) -= slope;
@@ -210,11 +211,16 @@ void discrete_gradient(KernelTag<RotationalSpring<Edges>> /*kernel*/,
     const Vec2 b1 = edge(end, 1);
     const TurningAngleGradient second(a0, b0, a1, b1);
     change += c.weights[1] * second.change;
+    known += c.weights[1] * (angle_between(a1, b1) - angle_between(a0, b0));
     act(0, c.weights[1] * second.by_a);
     act(1, c.weights[1] * second.by_b);
   }
   const double before = RotationalSpring<Edges>::turn(c, controls[c.turn], start);
-  gradient *= c.stiffness * (before + 0.5 * change);
+  double moment = c.stiffness * (before + 0.5 * known);
+  // As for bends, but what is lost of one of two angles is a share of a turn.
+  constexpr double kLostTurn = 1e-6;
+  if (std::abs(known - change) > kLostTurn) moment *= known / change;
+  gradient *= moment;
 }
 
 }  // namespace der

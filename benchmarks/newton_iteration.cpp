@@ -8,7 +8,7 @@
 #include <random>
 
 #include "der/assembly/assembler.hpp"
-#include "der/model/builder.hpp"
+#include "der/building/builder.hpp"
 #include "der/model/state.hpp"
 #include "der/solvers/banded_ldlt.hpp"
 #include "der/solvers/newton.hpp"

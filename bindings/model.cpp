@@ -7,8 +7,8 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "der/building/builder.hpp"
 #include "der/core/index.hpp"
-#include "der/model/builder.hpp"
 #include "der/model/location.hpp"
 #include "der/scenario/reader.hpp"
 

@@ -7,9 +7,9 @@
 #include <limits>
 #include <utility>
 
+#include "der/building/builder.hpp"
 #include "der/core/error.hpp"
 #include "der/loads/loads.hpp"
-#include "der/model/builder.hpp"
 
 namespace der {
 namespace {
@@ -122,8 +122,8 @@ Simulation::Simulation(Scenario scenario)
       solver_(make_linear_solver(scenario_.scene().solver.linear, pattern_)),
       assembler_(model_, solver_.solver->layout()),
       stepper_info_(find_stepper(scenario_.scene().time.integrator)),
-      stepper_(stepper_info_.make(model_, assembler_, *solver_.solver,
-                                  stepper_options(scenario_.scene()))),
+      stepper_(make_stepper(stepper_info_.name, model_, assembler_, *solver_.solver,
+                            stepper_options(scenario_.scene()))),
       energy_watch_(model_),
       support_motion_(model_),
       horizon_(scenario_.scene().time.duration),

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "der/assembly/element_energy.hpp"
 #include "der/core/index.hpp"
+#include "der/energies/element_energy.hpp"
 
 namespace der {
 namespace {

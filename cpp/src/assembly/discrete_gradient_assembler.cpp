@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "der/assembly/element_energy.hpp"
 #include "der/core/index.hpp"
 #include "der/energies/discrete_gradient.hpp"
+#include "der/energies/element_energy.hpp"
 
 namespace der {
 

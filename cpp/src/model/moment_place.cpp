@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "der/assembly/element_energy.hpp"
 #include "der/core/index.hpp"
+#include "der/energies/element_energy.hpp"
 #include "der/model/location.hpp"
 
 namespace der {

@@ -2,10 +2,10 @@
 
 #include <type_traits>
 
-#include "der/assembly/element_energy.hpp"
+#include "der/energies/element_energy.hpp"
 #include "der/model/model.hpp"
 #include "der/model/moment_place.hpp"
-#include "der/supports/supports.hpp"
+#include "der/model/prescribed_motion.hpp"
 
 namespace der {
 
@@ -17,7 +17,7 @@ State initial_state(const Model& model) {
   state.accelerations.setZero(model.num_dofs());
   Vector controls;
   model.controls.evaluate(0.0, controls);
-  place_held(model, controls, state.positions);
+  apply_prescribed_motion(model, controls, state.positions);
   state.turns.setZero(static_cast<Index>(model.followed_edges.size()));
   follow_turns(model, state.positions, state.turns);
   return state;

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "der/assembly/element_energy.hpp"
 #include "der/core/error.hpp"
+#include "der/energies/element_energy.hpp"
 #include "der/model/moment_place.hpp"
 
 namespace der {

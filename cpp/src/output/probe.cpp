@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <utility>
 
+#include "der/catalog/quantities.hpp"
 #include "der/core/error.hpp"
 #include "der/model/location.hpp"
-#include "der/output/quantities.hpp"
 #include "output/energy_reader.hpp"
 #include "output/rod_field.hpp"
 

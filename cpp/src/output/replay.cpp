@@ -5,8 +5,8 @@
 #include <utility>
 #include <variant>
 
+#include "der/building/builder.hpp"
 #include "der/core/error.hpp"
-#include "der/model/builder.hpp"
 #include "output/rod_field.hpp"
 
 namespace der {

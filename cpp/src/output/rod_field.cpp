@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "der/catalog/quantities.hpp"
 #include "der/core/error.hpp"
 #include "der/core/index.hpp"
-#include "der/output/quantities.hpp"
 #include "der/supports/clamp.hpp"
 #include "output/bend_field.hpp"
 

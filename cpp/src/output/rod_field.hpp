@@ -34,7 +34,7 @@ class RodField {
   std::vector<double> arc_length_;
 };
 
-/// The field of a quantity (output/quantities.hpp, but for the energies). Throws Error for a name
+/// The field of a quantity (catalog/quantities.hpp, but for the energies). Throws Error for a name
 /// that is no such quantity.
 std::unique_ptr<RodField> make_rod_field(const std::string& quantity, const RodLayout& rod,
                                          const Model& model);

@@ -10,11 +10,11 @@
 #include <system_error>
 #include <vector>
 
-#include "der/model/builder.hpp"
+#include "der/building/builder.hpp"
+#include "der/model/prescribed_motion.hpp"
 #include "der/output/io_error.hpp"
 #include "der/output/run_folder.hpp"
 #include "der/output/saved_run.hpp"
-#include "der/supports/supports.hpp"
 
 namespace der {
 namespace {
@@ -127,7 +127,8 @@ void apply_start(Simulation& simulation) {
   state.velocities = last.velocities;
   Vector controls;
   model.controls.evaluate(state.time, controls);
-  place_held(model, controls, state.positions);  // supports are where this scene has them
+  apply_prescribed_motion(model, controls,
+                          state.positions);  // supports are where this scene has them
   take_over_turns(last, model, state);
   simulation.start_anew();
   simulation.check_first_step();

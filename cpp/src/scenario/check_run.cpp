@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "der/output/quantities.hpp"
-#include "der/steppers/names.hpp"
+#include "der/catalog/quantities.hpp"
+#include "der/catalog/steppers.hpp"
 #include "scenario/checks.hpp"
 
 namespace der::scenario {
@@ -69,7 +69,7 @@ void check_integrator(const TimeText& given, Time& time, Complaints& complaints)
           fmt::format("only generalized_alpha has a spectral radius, not {}", time.integrator));
     }
   }
-  const bool implicit = is_implicit(time.integrator);
+  const bool implicit = find_stepper(time.integrator).implicit;
   if (time.stepping == Stepping::Automatic && implicit) {
     complaints.add({"time", "step"},
                    fmt::format("'auto' is the largest stable step of an explicit integrator; {} is "

@@ -1,10 +1,10 @@
 #include <string_view>
 #include <unordered_set>
 
+#include "der/catalog/linear_solvers.hpp"
+#include "der/catalog/quantities.hpp"
+#include "der/catalog/steppers.hpp"
 #include "der/core/printable.hpp"
-#include "der/output/quantities.hpp"
-#include "der/solvers/names.hpp"
-#include "der/steppers/names.hpp"
 #include "scenario/scene_text.hpp"
 #include "scenario/table.hpp"
 

@@ -2,7 +2,6 @@
 
 #include "der/core/error.hpp"
 #include "der/solvers/banded_ldlt.hpp"
-#include "der/solvers/names.hpp"
 #include "der/solvers/sparse_ldlt.hpp"
 
 namespace der {
@@ -21,7 +20,7 @@ struct LinearSolverInfo {
   std::unique_ptr<LinearSolver> (*make)(const Pattern&);
 };
 
-/// Every linear solver. A new one is one file and one line here.
+/// Every linear solver of the catalog. A new one is one file, one line here and one there.
 constexpr LinearSolverInfo kSolvers[] = {
     {"banded", make_banded},
     {"simplicial_ldlt", make_simplicial_ldlt},
@@ -29,15 +28,6 @@ constexpr LinearSolverInfo kSolvers[] = {
 };
 
 }  // namespace
-
-const std::vector<std::string>& linear_solver_names() {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all{"auto"};
-    for (const auto& info : kSolvers) all.emplace_back(info.name);
-    return all;
-  }();
-  return names;
-}
 
 LinearSolverChoice make_linear_solver(const std::string& name, const Pattern& pattern) {
   if (name == "auto") {

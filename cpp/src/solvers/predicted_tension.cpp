@@ -1,7 +1,7 @@
 #include "der/solvers/predicted_tension.hpp"
 
-#include "der/assembly/element_energy.hpp"
 #include "der/core/index.hpp"
+#include "der/energies/element_energy.hpp"
 
 namespace der {
 

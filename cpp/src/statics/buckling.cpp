@@ -2,9 +2,9 @@
 #include <array>
 #include <cmath>
 
-#include "der/assembly/element_energy.hpp"
 #include "der/core/error.hpp"
 #include "der/core/index.hpp"
+#include "der/energies/element_energy.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/loads/loads.hpp"
 #include "der/statics/modes.hpp"

@@ -12,9 +12,9 @@
 #include "der/core/error.hpp"
 #include "der/core/index.hpp"
 #include "der/loads/loads.hpp"
+#include "der/model/prescribed_motion.hpp"
 #include "der/solvers/predicted_tension.hpp"
 #include "der/statics/potential.hpp"
-#include "der/supports/supports.hpp"
 
 namespace der {
 namespace {
@@ -144,7 +144,7 @@ class Follower {
     loads_.apply(point.factor, model_);
     model_.controls.evaluate(0.0, controls_);
     enter_turns(model_, turns_, controls_);
-    place_held(model_, controls_, positions_);
+    apply_prescribed_motion(model_, controls_, positions_);
     positions_(model_.free_dofs) = point.x;
   }
 

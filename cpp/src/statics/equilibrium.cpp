@@ -8,15 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include "der/assembly/element_energy.hpp"
 #include "der/core/constants.hpp"
 #include "der/core/index.hpp"
+#include "der/energies/element_energy.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/loads/loads.hpp"
+#include "der/model/prescribed_motion.hpp"
 #include "der/statics/potential.hpp"
 #include "der/statics/rigid_motion.hpp"
 #include "der/supports/clamp.hpp"
-#include "der/supports/supports.hpp"
 
 namespace der {
 namespace {
@@ -192,7 +192,7 @@ class Search {
     }
     follow_turns_to(x);
     Vector target = x;
-    place_held(model_, stage_.controls, target);
+    apply_prescribed_motion(model_, stage_.controls, target);
     const Vector whole = target - x;
     const Vector turned = stage_.controls;
     const Vector turns = turned - (as_drawn ? drawn_controls() : present_controls());
@@ -209,7 +209,7 @@ class Search {
       step = std::min({2.0 * step, longest, 1.0 - share});
     }
     stage_.controls = turned;
-    place_held(model_, stage_.controls, x);
+    apply_prescribed_motion(model_, stage_.controls, x);
     follow_turns_to(x);
   }
 
@@ -388,7 +388,7 @@ class Search {
             first + rod.arc_length[i] * Vec2(std::cos(direction), std::sin(direction));
       }
     }
-    place_held(model_, stage_.controls, x);
+    apply_prescribed_motion(model_, stage_.controls, x);
     return x;
   }
 

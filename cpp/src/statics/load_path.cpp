@@ -1,7 +1,7 @@
 #include "der/statics/load_path.hpp"
 
+#include "der/building/builder.hpp"
 #include "der/core/index.hpp"
-#include "der/model/builder.hpp"
 
 namespace der {
 namespace {

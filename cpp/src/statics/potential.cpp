@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "der/assembly/element_energy.hpp"
+#include "der/energies/element_energy.hpp"
 #include "der/kinematics/planar_edge.hpp"
 
 namespace der {

@@ -1,8 +1,8 @@
 #include "der/steppers/dense_output.hpp"
 
 #include "der/model/moment_place.hpp"
+#include "der/model/prescribed_motion.hpp"
 #include "der/steppers/work.hpp"
-#include "der/supports/supports.hpp"
 
 namespace der {
 namespace {
@@ -42,7 +42,7 @@ void DenseOutput::evaluate(double time, const State& start, const State& end, St
   result.velocities = weight.slope_x * (end.positions - start.positions) +
                       weight.slope_v0 * start.velocities + weight.slope_v1 * end.velocities;
   evaluate_controls(model_, end, time, controls_);
-  place_held(model_, controls_, result.positions);
+  apply_prescribed_motion(model_, controls_, result.positions);
 
   Work work_start = start.work;
   for (const HeldDof& held : model_.held) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "der/loads/loads.hpp"
+#include "der/model/prescribed_motion.hpp"
 #include "der/steppers/work.hpp"
-#include "der/supports/supports.hpp"
 
 namespace der {
 namespace {
@@ -65,7 +65,7 @@ void ExplicitForce::book(const Vector& velocities, const Vector& displacement, W
 
 void ExplicitForce::place_held_at(const State& state, double time, Vector& positions) {
   evaluate_controls(model_, state, time, scratch_controls_);
-  place_held(model_, scratch_controls_, positions);
+  apply_prescribed_motion(model_, scratch_controls_, positions);
 }
 
 StepReport ExplicitForce::check(const State& state, const Vector& positions) const {

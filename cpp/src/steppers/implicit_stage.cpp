@@ -4,8 +4,8 @@
 
 #include "der/assembly/discrete_gradient_assembler.hpp"
 #include "der/loads/loads.hpp"
+#include "der/model/prescribed_motion.hpp"
 #include "der/steppers/work.hpp"
-#include "der/supports/supports.hpp"
 
 namespace der {
 
@@ -22,7 +22,7 @@ ImplicitStage::ImplicitStage(const Model& model, const Assembler& assembler, Lin
 
 void ImplicitStage::place_held_at(const State& state, double time, Vector& where) {
   evaluate_controls(state, time, held_controls_);
-  place_held(model_, held_controls_, where);
+  apply_prescribed_motion(model_, held_controls_, where);
 }
 
 void ImplicitStage::evaluate_controls(const State& state, double time, Vector& controls) {

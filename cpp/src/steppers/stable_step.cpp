@@ -8,8 +8,8 @@
 #include <map>
 #include <utility>
 
-#include "der/assembly/element_energy.hpp"
 #include "der/core/index.hpp"
+#include "der/energies/element_energy.hpp"
 
 namespace der {
 namespace {

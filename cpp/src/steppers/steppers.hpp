@@ -7,7 +7,7 @@
 
 namespace der {
 
-// One maker for each stepper's file; `registry.cpp` lists them.
+// One maker for each stepper's file; `make_stepper.cpp` lists them.
 
 /// Of any diagonally implicit Runge-Kutta method; the .cpp instantiates it for each tableau.
 template <const Tableau& tableau>

@@ -2,7 +2,7 @@
 
 #include <type_traits>
 
-#include "der/assembly/element_energy.hpp"
+#include "der/energies/element_energy.hpp"
 
 namespace der {
 namespace {

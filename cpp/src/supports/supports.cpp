@@ -46,11 +46,4 @@ void add_support(const scenario::Support& support, std::size_t number, Model& mo
   }
 }
 
-void place_held(const Model& model, const Vector& controls, Vector& positions) {
-  for (const HeldDof& held : model.held) {
-    positions[held.dof] = model.initial_positions[held.dof] +
-                          (held.displacement >= 0 ? controls[held.displacement] : 0.0);
-  }
-}
-
 }  // namespace der

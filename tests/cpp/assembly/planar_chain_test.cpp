@@ -7,9 +7,9 @@
 #include <string>
 
 #include "der/assembly/assembler.hpp"
-#include "der/assembly/element_energy.hpp"
+#include "der/building/builder.hpp"
 #include "der/core/index.hpp"
-#include "der/model/builder.hpp"
+#include "der/energies/element_energy.hpp"
 #include "der/model/state.hpp"
 #include "der/scenario/reader.hpp"
 #include "der/simulation.hpp"

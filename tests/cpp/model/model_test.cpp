@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "der/model/builder.hpp"
+#include "der/building/builder.hpp"
 #include "der/model/location.hpp"
 #include "der/model/state.hpp"
 #include "der/scenario/reader.hpp"

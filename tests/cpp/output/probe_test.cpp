@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "der/output/quantities.hpp"
+#include "der/catalog/quantities.hpp"
 #include "der/simulation.hpp"
 #include "output/output_scenes.hpp"
 

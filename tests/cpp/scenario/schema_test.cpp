@@ -4,8 +4,8 @@
 #include <set>
 #include <string>
 
-#include "der/output/quantities.hpp"
-#include "der/steppers/names.hpp"
+#include "der/catalog/quantities.hpp"
+#include "der/catalog/steppers.hpp"
 #include "scene_texts.hpp"
 
 namespace der {

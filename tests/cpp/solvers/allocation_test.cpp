@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include "der/output/quantities.hpp"
+#include "der/catalog/quantities.hpp"
 #include "der/output/recorder.hpp"
 #include "der/simulation.hpp"
 

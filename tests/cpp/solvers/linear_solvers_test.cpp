@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "der/building/builder.hpp"
+#include "der/catalog/linear_solvers.hpp"
 #include "der/core/error.hpp"
-#include "der/model/builder.hpp"
 #include "der/simulation.hpp"
 #include "der/solvers/linear_solver.hpp"
-#include "der/solvers/names.hpp"
 
 namespace der::test {
 namespace {

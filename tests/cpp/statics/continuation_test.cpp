@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "der/building/builder.hpp"
 #include "der/core/constants.hpp"
 #include "der/core/error.hpp"
-#include "der/model/builder.hpp"
 #include "der/simulation.hpp"
 #include "der/statics/load_path.hpp"
 #include "statics/statics_scenes.hpp"

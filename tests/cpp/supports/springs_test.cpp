@@ -3,7 +3,7 @@
 #include <string>
 
 #include "der/assembly/pattern.hpp"
-#include "der/model/builder.hpp"
+#include "der/building/builder.hpp"
 #include "der/scenario/reader.hpp"
 #include "der/simulation.hpp"
 #include "der/statics/rigid_motion.hpp"

@@ -6,10 +6,10 @@
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/energies/planar_clamp.hpp"
+#include "der/energies/planar_moment.hpp"
+#include "der/energies/point_spring.hpp"
+#include "der/energies/rotational_spring.hpp"
 #include "der/energies/stretch.hpp"
-#include "der/loads/planar_moment.hpp"
-#include "der/supports/point_spring.hpp"
-#include "der/supports/rotational_spring.hpp"
 
 namespace der {
 

@@ -40,7 +40,7 @@ class Replay {
 
   /// Puts loads and supports to a frame. Throws Error if there is no such frame.
   void show(std::size_t frame);
-  /// The values of a quantity (output/quantities.hpp, but for the energies) where the discrete rod
+  /// The values of a quantity (catalog/quantities.hpp, but for the energies) where the discrete rod
   /// has it: at its nodes, at those that bend, or at the middles of its edges; curvature and moment
   /// also where they have a kink, and twice where they jump. `positions` [m] and
   /// `velocities` [m/s] are frames x degrees of freedom. Throws Error for an unknown rod or

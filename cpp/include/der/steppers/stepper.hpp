@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
 
+#include "der/catalog/steppers.hpp"
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
@@ -49,25 +49,9 @@ struct StepperOptions {
   double spectral_radius = 0.9;
 };
 
-/// Facts about a stepper, for the registry, the docs and the tests that loop over them.
-struct StepperInfo {
-  std::string_view name;
-  int order;
-  bool implicit;
-  bool keeps_angular_momentum;
-  bool drag_limits_step;  ///< of the explicit ones: whether drag bounds the stable step
-  /// Of adaptive steps: what the difference between a step done as a whole and in two halves counts
-  /// times, as the error of the halves.
-  double error_factor;
-  std::string_view stability;  ///< in words
-  std::string_view damping;    ///< numerical damping, in words
-  std::unique_ptr<Stepper> (*make)(const Model&, const Assembler&, LinearSolver&,
-                                   const StepperOptions&);
-};
-
-/// Every stepper. A new one is one file and one line in the registry.
-const std::vector<StepperInfo>& stepper_registry();
-/// Throws Error for an unknown name.
-const StepperInfo& find_stepper(const std::string& name);
+/// The stepper of that name in the catalog. Throws Error if there is none.
+std::unique_ptr<Stepper> make_stepper(std::string_view name, const Model& model,
+                                      const Assembler& assembler, LinearSolver& solver,
+                                      const StepperOptions& options);
 
 }  // namespace der

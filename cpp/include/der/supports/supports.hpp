@@ -13,7 +13,4 @@ namespace der {
 /// `number` is its place in the scene.
 void add_support(const scenario::Support& support, std::size_t number, Model& model);
 
-/// Moves the held degrees of freedom of `positions` to where the tables put them.
-void place_held(const Model& model, const Vector& controls, Vector& positions);
-
 }  // namespace der

@@ -1,4 +1,4 @@
-#include "der/output/quantities.hpp"
+#include "der/catalog/quantities.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "der/model/rod_elements.hpp"
+#include "der/building/rod_elements.hpp"
 
 #include "der/core/index.hpp"
 #include "der/kinematics/planar_edge.hpp"

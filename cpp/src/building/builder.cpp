@@ -1,15 +1,15 @@
-#include "der/model/builder.hpp"
+#include "der/building/builder.hpp"
 
 #include <cmath>
 #include <cstddef>
 
+#include "der/building/rod_elements.hpp"
 #include "der/core/constants.hpp"
 #include "der/core/error.hpp"
 #include "der/core/index.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/cross_section.hpp"
 #include "der/model/location.hpp"
-#include "der/model/rod_elements.hpp"
 #include "der/supports/supports.hpp"
 
 namespace der {

@@ -418,7 +418,7 @@ class Search {
         report_.residual > kBalanced * report_.force_scale) {
       lose_in_rounding();
     }
-    report_.sharpest_turn = sharpest_turn(model_, x);
+    report_.largest_turning_angle = largest_turning_angle(model_, x);
   }
 
   /// Solves for the balance of forces, those of the pseudo-time included.
@@ -530,7 +530,7 @@ class Search {
       if (turn < 1.0) resistance *= turn < 0.1 ? easing * easing : easing;
       easing = std::max(kEasing, 0.9 * easing);
     }
-    if (report_.status == "not_converged" && sharpest_turn(model_, x) > kFolded) {
+    if (report_.status == "not_converged" && largest_turning_angle(model_, x) > kFolded) {
       fail("folded",
            "the rod folds back on itself at one node, where the curvature ends: the mesh is "
            "too coarse for this load");

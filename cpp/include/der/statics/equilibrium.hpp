@@ -26,7 +26,7 @@ struct EquilibriumReport {
   double residual = 0.0;     ///< largest unbalanced force [N]
   double force_scale = 0.0;  ///< largest acting force [N]
   Stability stability;       ///< of the equilibrium found
-  double sharpest_turn =
+  double largest_turning_angle =
       0.0;  ///< largest turning angle at a node [rad]; far above 1: a coarse mesh
   /// The failure's name, if not converged: "not_converged", "not_held" (a load moves the structure
   /// as a rigid body), "unbounded" (it moves on without end), "collapsed" (an edge is pressed to a

@@ -1,14 +1,10 @@
-#include <array>
-
-#include "der/core/error.hpp"
 #include "der/statics/equilibrium_failure.hpp"
 
 namespace der {
 namespace {
 
-/// One row of the table of failures. An empty message stands for the detail.
+/// What users read about a failure. An empty message stands for the detail of the search.
 struct FailureInfo {
-  EquilibriumFailure cause;
   const char* status;
   const char* message;
   const char* advice;
@@ -21,42 +17,45 @@ constexpr const char* kHold =
     "Is the structure held against every rigid motion, rotation included?";
 constexpr const char* kRefine = "Give the rod more nodes.";
 
-constexpr std::array<FailureInfo, 10> kFailures{{
-    {EquilibriumFailure::NewtonFailed, "not_converged", "", kSearchFurther},
-    {EquilibriumFailure::StepsUsedUp, "not_converged",
-     "the pseudo-time steps ran out before the forces were in balance", kSearchFurther},
-    {EquilibriumFailure::OnlySaddles, "not_converged", "only unstable equilibria were found",
-     kSearchFurther},
-    {EquilibriumFailure::NotHeld, "not_held", "",
-     "Add a support that holds it, or balance the loads."},
-    {EquilibriumFailure::DriftsAway, "unbounded", "the structure moves away: nothing holds it",
-     kHold},
-    {EquilibriumFailure::TurnsWithoutEnd, "unbounded", "a moment turns the rod on and on", kHold},
-    {EquilibriumFailure::Collapsed, "collapsed",
-     "every way that was tried presses a part of a rod together to a point, past which it is no "
-     "rod: the load may be too great for its stiffness against shortening, EA",
-     "Is the load, or the cross-section, the one that was meant? If so, a start from a bent shape "
-     "may find an equilibrium."},
-    {EquilibriumFailure::FoldedByLoad, "folded",
-     "the rod folds back on itself at one node, where the curvature ends: the mesh is too coarse "
-     "for this load",
-     kRefine},
-    {EquilibriumFailure::FoldedByClamp, "folded",
-     "a clamp that turns does not take the rod along: a node folds over on the way, the mesh is "
-     "too coarse for the bend there",
-     kRefine},
-    {EquilibriumFailure::LostInRoundoff, "too_fine",
-     "the forces balance to their rounding error, and that hides the shape: the mesh is too fine, "
-     "or the rod too stiff against stretching, for double precision",
-     "Give the rod fewer nodes (half as many lose sixteen times less to rounding) or a smaller "
-     "EA."},
-}};
-
-const FailureInfo& info(EquilibriumFailure cause) {
-  for (const FailureInfo& row : kFailures) {
-    if (row.cause == cause) return row;
+FailureInfo info(EquilibriumFailure cause) {
+  switch (cause) {
+    case EquilibriumFailure::NewtonFailed:
+      return {"not_converged", "", kSearchFurther};
+    case EquilibriumFailure::StepsUsedUp:
+      return {"not_converged", "the pseudo-time steps ran out before the forces were in balance",
+              kSearchFurther};
+    case EquilibriumFailure::OnlySaddles:
+      return {"not_converged", "only unstable equilibria were found", kSearchFurther};
+    case EquilibriumFailure::NotHeld:
+      return {"not_held", "", "Add a support that holds it, or balance the loads."};
+    case EquilibriumFailure::DriftsAway:
+      return {"unbounded", "the structure moves away: nothing holds it", kHold};
+    case EquilibriumFailure::TurnsWithoutEnd:
+      return {"unbounded", "a moment turns the rod on and on", kHold};
+    case EquilibriumFailure::Collapsed:
+      return {"collapsed",
+              "every way that was tried presses a part of a rod together to a point, past which it "
+              "is no rod: the load may be too great for its stiffness against shortening, EA",
+              "Is the load, or the cross-section, the one that was meant? If so, a start from a "
+              "bent shape may find an equilibrium."};
+    case EquilibriumFailure::FoldedByLoad:
+      return {"folded",
+              "the rod folds back on itself at one node, where the curvature ends: the mesh is too "
+              "coarse for this load",
+              kRefine};
+    case EquilibriumFailure::FoldedByClamp:
+      return {"folded",
+              "a clamp that turns does not take the rod along: a node folds over on the way, the "
+              "mesh is too coarse for the bend there",
+              kRefine};
+    case EquilibriumFailure::LostInRoundoff:
+      return {"too_fine",
+              "the forces balance to their rounding error, and that hides the shape: the mesh is "
+              "too fine, or the rod too stiff against stretching, for double precision",
+              "Give the rod fewer nodes (half as many lose sixteen times less to rounding) or a "
+              "smaller EA."};
   }
-  throw Error("internal_error", "a failure of the search for an equilibrium has no description");
+  return {};  // no value of the enumeration comes here
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "der/assembly/element_energy.hpp"
 #include "der/core/index.hpp"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"

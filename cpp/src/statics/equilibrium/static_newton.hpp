@@ -45,7 +45,7 @@ class StaticNewton {
 
   void measure_drift_from(const Vector& origin) { admissibility_.measure_drift_from(origin); }
 
-  /// Of all solves so far.
+  /// Newton iterations of all solves so far.
   [[nodiscard]] int iterations() const { return iterations_; }
   /// Largest acting force [N] in the last solve.
   [[nodiscard]] double force_scale() const { return force_scale_; }

@@ -83,7 +83,7 @@ void bind_reports(py::module_& module) {
       .def_readonly("force_scale", &EquilibriumReport::force_scale, "Largest acting force [N].")
       .def_readonly("saddles_left", &EquilibriumReport::saddles_left,
                     "Unstable equilibria that were found on the way and left downhill.")
-      .def_readonly("sharpest_turn", &EquilibriumReport::sharpest_turn,
+      .def_readonly("largest_turning_angle", &EquilibriumReport::largest_turning_angle,
                     "Largest turning angle at a node [rad]; far above 1 the mesh is too coarse.")
       .def_property_readonly(
           "stability", [](const EquilibriumReport& r) { return r.stability.name(); },

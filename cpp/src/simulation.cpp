@@ -43,25 +43,6 @@ bool is_unstable(const EnergyAudit& audit, const StepperInfo& stepper) {
          (stepper.implicit || audit.created > kLargestSwing * audit.exchanged);
 }
 
-/// What to try after a search for an equilibrium has failed.
-std::string advice(const std::string& status) {
-  if (status == "not_held") return "Add a support that holds it, or balance the loads.";
-  if (status == "unbounded") {
-    return "Is the structure held against every rigid motion, rotation included?";
-  }
-  if (status == "folded") return "Give the rod more nodes.";
-  if (status == "collapsed") {
-    return "Is the load, or the cross-section, the one that was meant? If so, a start from a bent "
-           "shape may find an equilibrium.";
-  }
-  if (status == "too_fine") {
-    return "Give the rod fewer nodes (half as many lose sixteen times less to rounding) or a "
-           "smaller EA.";
-  }
-  return "Does an equilibrium exist under this load? A start nearer to it, a finer mesh or a run "
-         "over time with damping may show.";
-}
-
 /// The longest length up to `longest` of which `whole` is a multiple.
 double even_piece(double whole, double longest) {
   return whole / std::max(1.0, std::ceil(whole / longest * (1.0 - kSameLength)));
@@ -319,10 +300,11 @@ EquilibriumReport Simulation::equilibrium(bool leave_saddles) {
   options.leave_saddles = leave_saddles;
   EquilibriumReport report = find_equilibrium(model_, assembler_, *solver_.solver, options, found);
   counters_.newton_iterations += report.newton_iterations;
-  if (!report.converged) {
+  if (report.failed) {
     throw NotConvergedError(
-        fmt::format("no stable equilibrium found: {}. {}", report.failure, advice(report.status)),
-        report.status);
+        fmt::format("no stable equilibrium found: {}. {}", message_of(*report.failed),
+                    advice_for(report.failed->cause)),
+        status_of(report.failed->cause));
   }
   found.velocities.setZero();
   state_ = found;

@@ -121,12 +121,12 @@ std::string equilibrium_lines(const EquilibriumReport& report, const Style& styl
                              format_count(report.saddles_left, "saddle")),
                  style);
   }
-  if (report.sharpest_turn > kSharpTurn) {
+  if (report.largest_turning_angle > kSharpTurn) {
     text +=
         line("",
              style.warning(fmt::format("the rod turns by {:.2g} rad at a single node: more nodes "
                                        "would resolve the bend",
-                                       report.sharpest_turn)),
+                                       report.largest_turning_angle)),
              style);
   }
   return text;

@@ -206,7 +206,7 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
     summary["neutral_directions"] = outcome.equilibrium->stability.neutral_directions;
     summary["unknown_directions"] = outcome.equilibrium->stability.unknown_directions;
     summary["saddles_left"] = outcome.equilibrium->saddles_left;
-    summary["sharpest_turn"] = outcome.equilibrium->sharpest_turn;
+    summary["largest_turning_angle"] = outcome.equilibrium->largest_turning_angle;
   }
   add_analysis(simulation, outcome, recorder, summary);
   if (recorder.energies()) summary["energies"] = energies_json(*recorder.energies());

@@ -7,6 +7,7 @@
 #include "der/energies/element_energy.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/loads/loads.hpp"
+#include "der/statics/equilibrium_failure.hpp"
 #include "der/statics/modes.hpp"
 #include "der/statics/potential.hpp"
 #include "der/statics/stiffness.hpp"
@@ -192,7 +193,8 @@ LinearBuckling linear_buckling(Model& model, const LoadPath& loads, const Assemb
   if (stability.unstable_directions + stability.neutral_directions + stability.unknown_directions >
       0) {
     throw NotConvergedError(
-        "the structure without its loads is not stable: it has no buckling loads", "not_held");
+        "the structure without its loads is not stable: it has no buckling loads",
+        status_of(EquilibriumFailure::NotHeld));
   }
   Vector step = loaded - unloaded;
   stiffness.factorize();

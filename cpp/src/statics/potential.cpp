@@ -140,7 +140,7 @@ double largest_edge_change(const Model& model, const Vector& displacement) {
   return std::sqrt(largest);
 }
 
-double sharpest_turn(const Model& model, const Vector& positions) {
+double largest_turning_angle(const Model& model, const Vector& positions) {
   double largest = 0.0;
   const auto look = [&](const auto& bends) {
     for (const auto& dofs : bends.dofs) {

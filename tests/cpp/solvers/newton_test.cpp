@@ -91,7 +91,7 @@ TEST_CASE("Newton's method converges quadratically near the solution") {
       {{"time", ""}, {"analysis", "static"}, {"loads.0.point_force.force", "[0, 0.02]"}});
   Simulation simulation(scenario);
   const EquilibriumReport report = simulation.equilibrium();
-  CHECK(report.converged);
+  CHECK(!report.failed);
   CHECK(report.relaxations == 0);
   CHECK(report.newton_iterations <= 8);
   CHECK(report.residual <= 1e-9 * report.force_scale);

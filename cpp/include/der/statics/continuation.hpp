@@ -46,11 +46,11 @@ struct ContinuationOptions {
   int branching = 0;           ///< how many bifurcations deep other branches are followed
 };
 
-/// Follows the equilibria of a model while its loads change in proportion to a factor, through
-/// limit points, by pseudo-arclength (Keller, in Applications of Bifurcation Theory, 1977; Riks,
-/// Int. J. Solids Struct. 15, 1979): the next point lies on a plane across the predictor, which is
-/// the tangent of the path. Arc length adds (change of factor / (to - from))^2 and the mean square
-/// displacement of the nodes, in units in which both are of like size at the start.
+/// Traces the equilibria of a model while its loads change in proportion to a factor, through limit
+/// points, by pseudo-arclength continuation (Keller, in Applications of Bifurcation Theory, 1977;
+/// Riks, Int. J. Solids Struct. 15, 1979): the next point lies on a plane across the predictor,
+/// which is the tangent of the path. Arc length adds (change of factor / (to - from))^2 and the
+/// mean square displacement of the nodes, in units in which both are of like size at the start.
 ///
 /// The number of unstable directions comes from the inertia of the stiffness. Where it or the sense
 /// of the factor changes between two points, the place is found by bisection and put into the path:
@@ -58,13 +58,13 @@ struct ContinuationOptions {
 /// null vector of the stiffness, to both sides.
 ///
 /// No path is traced twice: a branch ends at a bifurcation of another one behind which all is
-/// traced or will be, and none starts where its first point lies on one that is over. An event
+/// traced or will be, and none starts where its first point lies on one that is complete. An event
 /// belongs to the branch that meets it first.
 ///
-/// A branch ends at the factor `to`, when it has gone as far to the other side of `from`, at its
-/// largest number of points, where it closes on itself or meets another one, or where no further
-/// point is found. `start` is an equilibrium at the factor `from`. Leaves the model at the factor
-/// of the last point computed.
+/// A branch ends at the factor `to`, at the opposite limit 2 from - to, at its largest number of
+/// points, where it closes on itself or meets another one, or where no further point is found.
+/// `start` is an equilibrium at the factor `from`. Leaves the model at the factor of the last point
+/// computed.
 std::vector<PathBranch> follow_path(Model& model, const LoadPath& loads, const Assembler& assembler,
                                     LinearSolver& solver, const ContinuationOptions& options,
                                     const State& start);

@@ -45,6 +45,6 @@ Vector stiffness_product(const Model& model, const Vector& controls, const Vecto
 double largest_edge_change(const Model& model, const Vector& displacement);
 
 /// The largest turning angle [rad] at a node that bends.
-double sharpest_turn(const Model& model, const Vector& positions);
+double largest_turning_angle(const Model& model, const Vector& positions);
 
 }  // namespace der

@@ -1,0 +1,167 @@
+#include "statics/continuation/path_equations.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "der/loads/loads.hpp"
+#include "der/model/prescribed_motion.hpp"
+#include "der/model/turns.hpp"
+
+namespace der::statics {
+namespace {
+
+/// Newton iterations of one point; more mean that the step is too long.
+constexpr int kMaxIterations = 12;
+/// The last Newton step of a point, in arc length. Convergence is quadratic: the next one would be
+/// its square.
+constexpr double kLastStep = 1e-7;
+
+}  // namespace
+
+PathEquations::PathEquations(Model& model, const LoadPath& loads, const Assembler& assembler,
+                             LinearSolver& solver, const NewtonOptions& options, PathMetric metric,
+                             Vector positions)
+    : model_(model),
+      loads_(loads),
+      assembler_(assembler),
+      options_(options),
+      metric_(metric),
+      stiffness_(model, assembler, solver),
+      tension_(model, assembler),
+      positions_(std::move(positions)) {}
+
+void PathEquations::set_metric(PathNode& first) {
+  metric_.balance(first.tangent);
+  first.tangent = metric_.unit(first.tangent);
+}
+
+/// Sets the full positions, held degrees of freedom where the factor has them, and the controls.
+void PathEquations::place(const Vector& turns, const PathPosition& point) {
+  loads_.apply(point.factor, model_);
+  model_.controls.evaluate(0.0, controls_);
+  enter_turns(model_, turns, controls_);
+  apply_prescribed_motion(model_, controls_, positions_);
+  positions_(model_.free_dofs) = point.x;
+}
+
+/// Sets the residual and the stiffness at a point.
+void PathEquations::evaluate(const Vector& turns, const PathPosition& point) {
+  place(turns, point);
+  external_force(model_, controls_, Vector::Zero(model_.num_dofs()), force_);
+  stiffness_.evaluate(positions_, controls_);
+  residual_ = (stiffness_.gradient() - force_)(model_.free_dofs);
+  force_scale_ =
+      std::max(stiffness_.gradient().lpNorm<Eigen::Infinity>(), force_.lpNorm<Eigen::Infinity>());
+}
+
+Vector PathEquations::residual_at(const Vector& turns, const PathPosition& point) {
+  place(turns, point);
+  external_force(model_, controls_, Vector::Zero(model_.num_dofs()), force_);
+  Vector gradient(model_.num_dofs());
+  assembler_.gradient(positions_, controls_, gradient);
+  return (gradient - force_)(model_.free_dofs);
+}
+
+/// Derivative of the residual with respect to the factor, by central differences. Forces and
+/// moments are linear in it, so that a long step is exact; a moving support needs a short one.
+Vector PathEquations::factor_derivative(const Vector& turns, const PathPosition& point) {
+  const double step = (loads_.is_linear() ? 1.0 : 1e-6) * std::abs(metric_.range());
+  PathPosition forward = point;
+  PathPosition backward = point;
+  forward.factor += step;
+  backward.factor -= step;
+  return (residual_at(turns, forward) - residual_at(turns, backward)) / (2.0 * step);
+}
+
+/// Unit tangent of the path at a point just evaluated, factor rising. The inertia is that of the
+/// stiffness itself, without a margin for rounding, which would move the events.
+PathPosition PathEquations::tangent(const Vector& turns, const PathPosition& point,
+                                    Stability& stability) {
+  const Vector derivative = factor_derivative(turns, point);
+  stability.unstable_directions = stiffness_.factorize().negative_pivots;
+  PathPosition result{-derivative, 1.0};
+  stiffness_.solve(result.x);
+  return metric_.unit(result);
+}
+
+PathNode PathEquations::node_at(const Vector& turns, const PathPosition& point) {
+  evaluate(turns, point);
+  PathNode node;
+  node.at = point;
+  node.positions = positions_;
+  node.turns = turns;
+  follow_turns(model_, positions_, node.turns);
+  node.tangent = tangent(turns, point, node.stability);
+  return node;
+}
+
+std::optional<PathPosition> PathEquations::solve_on_plane(const Vector& turns,
+                                                          const PathPosition& base,
+                                                          const PathPosition& normal, double step,
+                                                          PathPosition guess, int& iterations) {
+  evaluate(turns, guess);
+  for (iterations = 1; iterations <= kMaxIterations; ++iterations) {
+    const Vector derivative = factor_derivative(turns, guess);
+    place(turns, guess);
+    if (!stiffness_.factorize().factorised) return std::nullopt;
+    Vector along = -residual_;
+    Vector across = -derivative;
+    stiffness_.solve(along);
+    stiffness_.solve(across);
+    const double miss = metric_.dot(normal, difference(guess, base)) - step;
+    const double range2 = metric_.range() * metric_.range();
+    const double slope = metric_.weight() * normal.x.dot(across) + normal.factor / range2;
+    PathPosition change;
+    change.factor = (-miss - metric_.weight() * normal.x.dot(along)) / slope;
+    change.x = along + change.factor * across;
+    const double length = metric_.norm(change);
+    if (!std::isfinite(length) || length > 10.0 * std::max(step, 1e-3)) return std::nullopt;
+    guess = combine(guess, 1.0, change);
+    evaluate(turns, guess);
+    const double allowed =
+        std::max(options_.residual_tolerance * force_scale_, stiffness_.rounding() * model_.size);
+    if (length < kLastStep && residual_.lpNorm<Eigen::Infinity>() <= allowed) return guess;
+    tension_.use(positions_, change.x, stiffness_.values());
+  }
+  return std::nullopt;
+}
+
+std::optional<PathNode> PathEquations::next(const PathNode& from, double step, int& iterations) {
+  const auto found = solve_on_plane(from.turns, from.at, from.tangent, step,
+                                    combine(from.at, step, from.tangent), iterations);
+  if (!found) return std::nullopt;
+  PathNode node = node_at(from.turns, *found);
+  if (metric_.dot(node.tangent, from.tangent) < 0.0) reverse(node.tangent);
+  return node;
+}
+
+std::optional<PathNode> PathEquations::node_at_factor(const PathNode& near, double factor,
+                                                      PathPosition guess) {
+  const double range = std::abs(metric_.range());
+  const PathPosition normal{Vector::Zero(model_.num_free()), range};
+  const PathPosition base{near.at.x, 0.0};
+  guess.factor = factor;
+  int iterations = 0;
+  const auto found =
+      solve_on_plane(near.turns, base, normal, factor / range, std::move(guess), iterations);
+  if (!found) return std::nullopt;
+  PathNode node = node_at(near.turns, *found);
+  if (metric_.dot(node.tangent, near.tangent) < 0.0) reverse(node.tangent);
+  return node;
+}
+
+bool PathEquations::is_singular(const PathNode& start, double step) {
+  int iterations = 0;
+  if (!next(start, step, iterations)) return true;
+  const double rounding = stiffness_.rounding();
+  return stiffness_.factorize(rounding).negative_pivots !=
+         stiffness_.factorize(-rounding).negative_pivots;
+}
+
+PathPosition PathEquations::null_direction(const PathNode& node) {
+  evaluate(node.turns, node.at);
+  return {stiffness_.nearest_to_zero().direction, 0.0};
+}
+
+}  // namespace der::statics

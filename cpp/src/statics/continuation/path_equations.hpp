@@ -1,0 +1,84 @@
+#pragma once
+
+#include <optional>
+
+#include "der/assembly/assembler.hpp"
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+#include "der/solvers/linear_solver.hpp"
+#include "der/solvers/newton.hpp"
+#include "der/solvers/predicted_tension.hpp"
+#include "der/statics/load_path.hpp"
+#include "der/statics/stiffness.hpp"
+#include "statics/continuation/path_metric.hpp"
+
+namespace der::statics {
+
+/// An equilibrium on the path, with the tangent of the path there.
+struct PathNode {
+  PathPosition at;
+  PathPosition tangent;  ///< of unit length
+  Vector positions;      ///< all degrees of freedom [m]
+  Vector turns;          ///< of the followed edges [rad]
+  Stability stability;
+  [[nodiscard]] bool rising() const { return tangent.factor > 0.0; }
+};
+
+/// The equations of equilibrium with the load factor as one more unknown, and Newton's method for
+/// them on a plane across the path. `turns` are always those of a point nearby.
+class PathEquations {
+ public:
+  /// `positions` give the values of held degrees of freedom that do not vary.
+  PathEquations(Model& model, const LoadPath& loads, const Assembler& assembler,
+                LinearSolver& solver, const NewtonOptions& options, PathMetric metric,
+                Vector positions);
+
+  [[nodiscard]] const PathMetric& metric() const { return metric_; }
+
+  /// Sets the metric from the tangent of the first node, and makes that tangent a unit one again.
+  void set_metric(PathNode& first);
+
+  /// The node at an equilibrium, with the factor rising along its tangent.
+  PathNode node_at(const Vector& turns, const PathPosition& point);
+
+  /// Newton's method on the plane normal to `normal` through `base + step * normal`, from `guess`.
+  /// Nothing if it does not converge; `iterations` are those that it took.
+  std::optional<PathPosition> solve_on_plane(const Vector& turns, const PathPosition& base,
+                                             const PathPosition& normal, double step,
+                                             PathPosition guess, int& iterations);
+
+  /// The node at arc length `step` from `from`, along the same sense of the path.
+  std::optional<PathNode> next(const PathNode& from, double step, int& iterations);
+
+  /// The node at which the path passes a load factor, from a node near it.
+  std::optional<PathNode> node_at_factor(const PathNode& near, double factor, PathPosition guess);
+
+  /// Whether an eigenvalue of the stiffness `step` ahead of `start` is zero to rounding, or no
+  /// equilibrium is found there.
+  bool is_singular(const PathNode& start, double step);
+
+  /// The direction of the eigenvector whose eigenvalue is nearest to zero, at a constant factor.
+  PathPosition null_direction(const PathNode& node);
+
+ private:
+  void place(const Vector& turns, const PathPosition& point);
+  void evaluate(const Vector& turns, const PathPosition& point);
+  Vector residual_at(const Vector& turns, const PathPosition& point);
+  Vector factor_derivative(const Vector& turns, const PathPosition& point);
+  PathPosition tangent(const Vector& turns, const PathPosition& point, Stability& stability);
+
+  Model& model_;
+  const LoadPath& loads_;
+  const Assembler& assembler_;
+  NewtonOptions options_;
+  PathMetric metric_;
+  Stiffness stiffness_;
+  PredictedTension tension_;
+  Vector positions_;
+  Vector controls_;
+  Vector force_;
+  Vector residual_;
+  double force_scale_ = 0.0;
+};
+
+}  // namespace der::statics

@@ -1,0 +1,73 @@
+#include "statics/equilibrium/dynamic_relaxation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "der/statics/potential.hpp"
+
+namespace der::statics {
+namespace {
+
+constexpr int kMaxSteps = 3000;
+/// A step changes no edge by more than this [rad].
+constexpr double kLargestEdgeChange = 0.2;
+/// The relaxation gives up when the step has shrunk to this fraction of the first one.
+constexpr double kSmallestStep = 1e-6;
+/// Damping coefficient times the first step.
+constexpr double kDamping = 0.3;
+constexpr double kGrowth = 1.2;
+/// A plain Newton step is tried once a step changes no edge by more than this [rad], and, if it
+/// fails, again when the change has halved.
+constexpr double kTryNewton = 0.1;
+
+/// The time in which the largest force moves a unit mass by about the size of the model.
+double first_time_step(const Model& model, const StaticLoads& loads, Stiffness& stiffness,
+                       const Shape& shape) {
+  stiffness.evaluate(shape.positions, loads.controls_of(model, shape));
+  const double acting = std::max(loads.force.lpNorm<Eigen::Infinity>(),
+                                 stiffness.gradient().lpNorm<Eigen::Infinity>());
+  return std::sqrt(model.size / acting);
+}
+
+}  // namespace
+
+bool relax_dynamically(const Model& model, const StaticLoads& loads, StaticNewton& newton,
+                       Stiffness& stiffness, Shape& shape, int& steps) {
+  Shape now = shape;
+  Vector velocity = Vector::Zero(now.positions.size());
+  Vector next;
+  double step = first_time_step(model, loads, stiffness, now);
+  const double damping = kDamping / step;
+  const double smallest = kSmallestStep * step;
+  double change_for_newton = kTryNewton;
+  Stage stage = newton.stage_of(loads, now);
+  for (int i = 0; i < kMaxSteps && step > smallest; ++i) {
+    ++steps;
+    const double damped = 1.0 + damping * step;
+    stage.inertia = damped / (step * step);
+    stage.inertia_target = now.positions + step / damped * velocity;
+    next = now.positions;
+    const bool solved = !newton.solve(stage, next);
+    const double change = solved ? largest_edge_change(model, next - now.positions) : 0.0;
+    if (!solved || change > kLargestEdgeChange) {
+      step *= 0.5;
+      continue;
+    }
+    velocity = (next - now.positions) / step;
+    now.positions = next;
+    update_turns(model, now);
+    stage.controls = loads.controls_of(model, now);
+    if (change < 0.5 * kLargestEdgeChange) step *= kGrowth;
+    if (change < change_for_newton) {
+      if (newton.balance_nearby(loads, now).reached) {
+        shape = std::move(now);
+        return true;
+      }
+      change_for_newton *= 0.5;
+    }
+  }
+  return false;
+}
+
+}  // namespace der::statics

@@ -1,0 +1,190 @@
+#include "der/statics/equilibrium.hpp"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "der/loads/loads.hpp"
+#include "der/statics/potential.hpp"
+#include "der/statics/rigid_motion.hpp"
+#include "statics/equilibrium/dynamic_relaxation.hpp"
+#include "statics/equilibrium/load_steps.hpp"
+#include "statics/equilibrium/moving_supports.hpp"
+#include "statics/equilibrium/polishing.hpp"
+#include "statics/equilibrium/pseudo_transient.hpp"
+#include "statics/equilibrium/restarts.hpp"
+#include "statics/equilibrium/saddles.hpp"
+#include "statics/equilibrium/shape.hpp"
+#include "statics/equilibrium/static_loads.hpp"
+#include "statics/equilibrium/static_newton.hpp"
+#include "statics/equilibrium/winding.hpp"
+
+namespace der::statics {
+namespace {
+
+/// Saddles left in a row before the search gives up; each has a lower potential than the one
+/// before.
+constexpr int kMaxSaddles = 30;
+/// Fraction of the acting forces that a neutral equilibrium may leave unbalanced.
+constexpr double kUnbalanced = 1e-3;
+
+StaticLoads loads_of(const Model& model, const State& state) {
+  StaticLoads loads;
+  evaluate_controls(model, state, state.time, loads.controls);
+  external_force(model, loads.controls, state.extra_force, loads.force);
+  return loads;
+}
+
+/// Whether the structure moved or turned without end: other methods then would, too.
+bool is_unbounded(const FailedSearch& failed) {
+  return failed.cause == EquilibriumFailure::DriftsAway ||
+         failed.cause == EquilibriumFailure::TurnsWithoutEnd;
+}
+
+/// Tries the methods in their order, and keeps count of what they did.
+class EquilibriumSearch {
+ public:
+  EquilibriumSearch(const Model& model, const Assembler& assembler, LinearSolver& solver,
+                    const EquilibriumOptions& options, const State& state)
+      : model_(model),
+        leave_saddles_(options.leave_saddles),
+        loads_(loads_of(model, state)),
+        newton_(model, assembler, solver, options.newton,
+                PlanarAdmissibility(model, loads_.force, state.positions)),
+        stiffness_(model, assembler, solver),
+        continuation_(model, newton_) {}
+
+  EquilibriumReport run(State& state) {
+    Shape shape{state.positions, state.turns};
+    report_.failed = search(shape);
+    report_.newton_iterations = newton_.iterations();
+    report_.relaxations = continuation_.steps() + relaxation_steps_;
+    report_.force_scale = newton_.force_scale();
+    if (!report_.failed) {
+      state.positions = std::move(shape.positions);
+      state.turns = std::move(shape.turns);
+    }
+    return report_;
+  }
+
+ private:
+  std::optional<FailedSearch> search(Shape& shape) {
+    if (std::string unheld = find_unheld_part(model_, loads_.force); !unheld.empty()) {
+      return FailedSearch{EquilibriumFailure::NotHeld, std::move(unheld)};
+    }
+    const std::vector<double> whole_turns = move_supports(
+        model_, loads_, [this](const auto& loads, Shape& moved) { equilibrate(loads, moved); },
+        shape);
+    newton_.measure_drift_from(shape.positions);
+    if (auto failed = find_any(shape)) return failed;
+    if (auto failed = find_stable(shape)) return failed;
+    const Vector controls = loads_.controls_of(model_, shape);
+    if (!whole_turns.empty() &&
+        planar_whole_turns(model_, shape.positions, controls) != whole_turns) {
+      return FailedSearch{EquilibriumFailure::FoldedByClamp, {}};
+    }
+    return std::nullopt;
+  }
+
+  /// Inverse of the first pseudo-time step [N/m].
+  [[nodiscard]] double inverse_step() const { return newton_.force_scale() / model_.size; }
+
+  /// Newton's method, then pseudo-transient continuation from where it started.
+  std::optional<FailedSearch> find_near(const StaticLoads& loads, Shape& shape) {
+    if (!newton_.balance(loads, shape)) return std::nullopt;
+    return continuation_.run(loads, inverse_step(), shape).failed;
+  }
+
+  /// Moves a shape on the way of the supports to the stable equilibrium near it, if there is one.
+  void equilibrate(const StaticLoads& loads, Shape& shape) {
+    if (find_near(loads, shape)) return;
+    stiffness_.evaluate(shape.positions, loads.controls_of(model_, shape));
+    if (leave_saddles_ && stiffness_.stability().unstable_directions > 0) {
+      go_down(loads, shape);
+    }
+  }
+
+  bool go_down(const StaticLoads& loads, Shape& shape) {
+    if (!leave_saddle(model_, loads, newton_, continuation_, stiffness_, shape)) return false;
+    ++report_.saddles_left;
+    return true;
+  }
+
+  /// Finds an equilibrium, stable or not, by the first method that succeeds. The failure of the
+  /// first two says more than that of the others.
+  std::optional<FailedSearch> find_any(Shape& shape) {
+    const Shape start = shape;
+    auto failed = find_near(loads_, shape);
+    if (!failed || is_unbounded(*failed)) return failed;
+    shape = start;
+    if (step_loads(model_, loads_, newton_.force_scale(), continuation_, shape) ||
+        relax_dynamically(model_, loads_, newton_, stiffness_, shape, relaxation_steps_) ||
+        start_elsewhere(shape)) {
+      return std::nullopt;
+    }
+    return failed;
+  }
+
+  bool start_elsewhere(Shape& shape) {
+    for (Shape& restart : planar_restarts(model_, loads_, stiffness_, shape)) {
+      if (!continuation_.run(loads_, inverse_step(), restart).failed) {
+        shape = std::move(restart);
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Assesses an equilibrium, and leaves it for a lower one as long as it is a saddle.
+  std::optional<FailedSearch> find_stable(Shape& shape) {
+    int left = 0;
+    for (;;) {
+      if (auto failed = assess(shape)) return failed;
+      if (!leave_saddles_ || report_.stability.unstable_directions == 0) return std::nullopt;
+      if (left == kMaxSaddles || !go_down(loads_, shape)) {
+        return FailedSearch{EquilibriumFailure::OnlySaddles, {}};
+      }
+      ++left;
+    }
+  }
+
+  /// Enters stability, residual and largest turning angle of an equilibrium into the report, and
+  /// polishes the equilibrium. Fails if round-off hides it.
+  std::optional<FailedSearch> assess(Shape& shape) {
+    const Vector controls = loads_.controls_of(model_, shape);
+    stiffness_.evaluate(shape.positions, controls);
+    report_.stability = stiffness_.stability();
+    const bool neutral = report_.stability.neutral_directions > 0;
+    bool resolved = neutral || polish(model_, controls, loads_.force, report_.stability, stiffness_,
+                                      shape.positions);
+    report_.residual =
+        (loads_.force - stiffness_.gradient())(model_.free_dofs).lpNorm<Eigen::Infinity>();
+    // A Newton step is meaningless in a neutral equilibrium, so the forces must be in balance.
+    if (neutral && report_.residual > kUnbalanced * newton_.force_scale()) resolved = false;
+    report_.largest_turning_angle = largest_turning_angle(model_, shape.positions);
+    if (resolved) return std::nullopt;
+    return FailedSearch{EquilibriumFailure::LostInRoundoff, {}};
+  }
+
+  const Model& model_;
+  const bool leave_saddles_;
+  const StaticLoads loads_;
+  StaticNewton newton_;
+  Stiffness stiffness_;
+  PseudoTransient continuation_;
+  int relaxation_steps_ = 0;  // of the dynamic relaxation
+  EquilibriumReport report_;
+};
+
+}  // namespace
+}  // namespace der::statics
+
+namespace der {
+
+EquilibriumReport find_equilibrium(const Model& model, const Assembler& assembler,
+                                   LinearSolver& solver, const EquilibriumOptions& options,
+                                   State& state) {
+  return statics::EquilibriumSearch(model, assembler, solver, options, state).run(state);
+}
+
+}  // namespace der

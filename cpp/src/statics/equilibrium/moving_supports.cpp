@@ -1,0 +1,80 @@
+#include "statics/equilibrium/moving_supports.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "der/model/prescribed_motion.hpp"
+#include "der/statics/potential.hpp"
+#include "statics/equilibrium/winding.hpp"
+
+namespace der::statics {
+namespace {
+
+/// A step changes no edge, and turns no clamp [rad], by more than this.
+constexpr double kLargestStep = 0.3;
+/// The first step of supports that need several, as a fraction of the whole motion.
+constexpr double kFirstStep = 1e-9;
+/// A clamp has not moved yet if the edge beside it differs from its direction by less than this
+/// [rad]: that much the rod may bend there.
+constexpr double kBentBesideClamp = 1.0;
+
+template <class Use>
+void for_each_turning_clamp(const Model& model, const Use& use) {
+  for (const RodLayout& rod : model.rods) {
+    for (const Clamp& clamp : rod.clamps) {
+      if (clamp.rotation >= 0) use(clamp);
+    }
+  }
+}
+
+/// The controls with all clamps as drawn.
+Vector drawn_controls(const Model& model, Vector controls) {
+  for_each_turning_clamp(model, [&](const Clamp& clamp) { controls[clamp.rotation] = 0.0; });
+  return controls;
+}
+
+/// The controls with each clamp turned as far as the edge beside it.
+Vector present_controls(const Model& model, Vector controls, const Vector& turns) {
+  for_each_turning_clamp(model, [&](const Clamp& clamp) {
+    const double turn = turns[clamp.followed];
+    if (std::abs(turn - controls[clamp.rotation]) > kBentBesideClamp) {
+      controls[clamp.rotation] = turn;
+    }
+  });
+  return controls;
+}
+
+}  // namespace
+
+std::vector<double> move_supports(const Model& model, const StaticLoads& loads,
+                                  const Equilibrate& equilibrate, Shape& shape) {
+  const bool as_drawn =
+      shape.positions(model.free_dofs) == model.initial_positions(model.free_dofs);
+  if (as_drawn) shape = {model.initial_positions, Vector::Zero(shape.turns.size())};
+  update_turns(model, shape);
+
+  const Vector target_controls = loads.controls_of(model, shape);
+  Vector target = shape.positions;
+  apply_prescribed_motion(model, target_controls, target);
+  const Vector displacement = target - shape.positions;
+  const Vector rotation =
+      target_controls - (as_drawn ? drawn_controls(model, target_controls)
+                                  : present_controls(model, target_controls, shape.turns));
+  const double longest = kLargestStep / std::max(largest_edge_change(model, displacement),
+                                                 rotation.lpNorm<Eigen::Infinity>());
+  std::vector<double> whole_turns;
+  if (!rotation.isZero(0.0)) {
+    whole_turns = planar_whole_turns(model, shape.positions, target_controls - rotation);
+  }
+  double step = longest < 1.0 ? kFirstStep : 1.0;
+  for (double done = step; done < 1.0; done += step) {
+    shape.positions += step * displacement;
+    equilibrate({target_controls - (1.0 - done) * rotation, loads.force}, shape);
+    step = std::min({2.0 * step, longest, 1.0 - done});
+  }
+  apply_prescribed_motion(model, target_controls, shape.positions);
+  update_turns(model, shape);
+  return whole_turns;
+}
+
+}  // namespace der::statics

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+#include "statics/equilibrium/shape.hpp"
+
+namespace der::statics {
+
+/// The loads and support motions under which an equilibrium is sought.
+struct StaticLoads {
+  Vector controls;  ///< values of the model's tables
+  Vector force;     ///< external forces [N], all degrees of freedom
+
+  /// The controls as the elements of a shape see them, its turns included.
+  [[nodiscard]] Vector controls_of(const Model& model, const Shape& shape) const {
+    Vector result = controls;
+    enter_turns(model, shape.turns, result);
+    return result;
+  }
+};
+
+/// Forces and moments times `share`; supports stay where they are.
+StaticLoads scaled(const Model& model, const StaticLoads& loads, double share);
+
+/// Change of the potential energy [J] between two shapes. The turns are those of `seen_from`.
+double energy_change(const Model& model, const StaticLoads& loads, const Shape& seen_from,
+                     const Vector& from, const Vector& to);
+
+}  // namespace der::statics

@@ -1,0 +1,66 @@
+#include "statics/equilibrium/static_newton.hpp"
+
+#include <utility>
+
+#include "der/statics/potential.hpp"
+
+namespace der::statics {
+namespace {
+
+/// Differences of the potential below this fraction of the largest force times the model's size are
+/// round-off.
+constexpr double kEnergyResolution = 1e-13;
+/// The step from the end of a continuation to the equilibrium changes no edge by more than this.
+constexpr double kLargestLastChange = 0.5;
+
+}  // namespace
+
+StaticNewton::StaticNewton(const Model& model, const Assembler& assembler, LinearSolver& solver,
+                           const NewtonOptions& options, PlanarAdmissibility admissibility)
+    : model_(model),
+      newton_(model, assembler, solver, options),
+      admissibility_(std::move(admissibility)) {}
+
+Stage StaticNewton::stage_of(const StaticLoads& loads, const Shape& shape) const {
+  Stage stage(model_);
+  stage.mass = {Vector::Ones(model_.num_dofs()), {}};
+  stage.controls = loads.controls_of(model_, shape);
+  stage.force = loads.force;
+  return stage;
+}
+
+std::optional<FailedSearch> StaticNewton::solve(const Stage& stage, Vector& positions,
+                                                LineSearch line_search) {
+  const Vector before = positions;
+  const NewtonReport report = line_search == LineSearch::Always
+                                  ? newton_.solve_downhill(stage, positions)
+                                  : newton_.solve(stage, positions);
+  iterations_ += report.iterations;
+  force_scale_ = report.force_scale;
+  if (!report.converged) return FailedSearch{EquilibriumFailure::NewtonFailed, report.failure};
+  auto inadmissible = admissibility_.check(positions, stage.controls);
+  if (inadmissible) positions = before;
+  return inadmissible;
+}
+
+std::optional<FailedSearch> StaticNewton::balance(const StaticLoads& loads, Shape& shape) {
+  auto failed = solve(stage_of(loads, shape), shape.positions);
+  if (!failed) update_turns(model_, shape);
+  return failed;
+}
+
+StaticNewton::LastStep StaticNewton::balance_nearby(const StaticLoads& loads, Shape& shape) {
+  Shape last = shape;
+  if (auto failed = balance(loads, last)) return {false, 0.0, std::move(failed)};
+  if (largest_edge_change(model_, last.positions - shape.positions) > kLargestLastChange) return {};
+  const double change = energy_change(model_, loads, last, shape.positions, last.positions);
+  if (!(change <= energy_resolution())) return {};
+  shape = std::move(last);
+  return {true, change, {}};
+}
+
+double StaticNewton::energy_resolution() const {
+  return kEnergyResolution * force_scale_ * model_.size;
+}
+
+}  // namespace der::statics

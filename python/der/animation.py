@@ -1,4 +1,4 @@
-"""Moving pictures of results, GIF and MP4, true to time and to scale."""
+"""Animations of results, GIF and MP4, true to time and to scale."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def animate(
     speed: float | None = None,
     progress: ProgressFunction | None = None,
 ) -> Path:
-    """Write a result as a moving picture.
+    """Write a result as an animation.
 
     A motion is shown true to time: between saved frames its nodes move in straight lines. A path of
     equilibria goes through its points, branch by branch; modes swing one after the other.
@@ -65,14 +65,14 @@ def animate(
     result
         What ``der.run`` or ``der.open_run`` returned.
     path
-        File to write; its ending tells the format: ``.gif``, or ``.mp4``, which takes the package
-        imageio-ffmpeg.
+        File to write; its ending tells the format: ``.gif``, or ``.mp4``, which requires the
+        package imageio-ffmpeg.
     fps
-        Pictures a second. A GIF counts hundredths of a second between pictures: what comes nearest
-        is taken.
+        Frames per second. A GIF counts hundredths of a second between frames: the nearest possible
+        rate is taken.
     speed
-        Simulated seconds that pass in a second; other than 1 it is written in the picture. Without
-        it 1 for runs of 1 to 20 s, and a round number that makes others last about 8 s.
+        Simulated seconds per second of the animation; a speed other than 1 is shown. The default is
+        1 for runs of 1 to 20 s, and a round number that makes others last about 8 s.
     progress
         Told how much is done, from 0 to 1.
 
@@ -84,8 +84,8 @@ def animate(
     Raises
     ------
     ValueError
-        For another ending, an fps or speed that cannot be or makes more than 20000 pictures, a run
-        in which nothing moves (a static one, or one of a single frame), and positions in space.
+        For another ending, an fps or speed out of range, more than 20,000 frames, a run in which
+        nothing moves (a static one, or one of a single frame), and positions in space.
     ModuleNotFoundError
         For an MP4 without imageio-ffmpeg.
     """
@@ -94,7 +94,7 @@ def animate(
     if path.suffix.lower() not in writers:
         raise ValueError(f"cannot write {path.name}: an animation ends with .gif or .mp4")
     if not 0.0 < fps <= 240.0:
-        raise ValueError(f"{fps:g} pictures a second cannot be shown: fps goes up to 240")
+        raise ValueError(f"fps must be greater than 0 and at most 240, not {fps:g}")
     if speed is not None and not 0.0 < speed < np.inf:
         raise ValueError(f"speed must be a positive number, not {speed:g}")
     gif = path.suffix.lower() == ".gif"
@@ -157,7 +157,8 @@ def _cut_motion(film: Film, times: Array, fps: float, speed: float | None) -> _C
     pictures = np.ceil(span / step * (1.0 - 1e-9)) + 1.0
     if not pictures <= _MOST_PICTURES:
         raise ValueError(
-            f"that would be {pictures:.3g} pictures, {_MOST_PICTURES} at most: use a larger --speed"
+            f"animations are limited to {_MOST_PICTURES:,} frames, and this one would have "
+            f"{pictures:.3g}: use a larger --speed"
         )
     count = int(pictures)
     instants = np.minimum(times[0] + step * np.arange(count), times[-1])
@@ -322,7 +323,8 @@ def _write_mp4(pictures: Iterator[Picture], path: Path, fps: float) -> None:
         import imageio_ffmpeg
     except ModuleNotFoundError:
         raise ModuleNotFoundError(
-            "an MP4 takes the package imageio-ffmpeg: pip install imageio-ffmpeg, or write a .gif"
+            "MP4 output requires the package imageio-ffmpeg: "
+            "pip install imageio-ffmpeg, or write a .gif"
         ) from None
     first = next(pictures)
     writer = imageio_ffmpeg.write_frames(

@@ -93,7 +93,8 @@ def make_film(result: Result) -> Film:
     """Return the frames of a result.
 
     A motion has its saved frames, a continuation its points, branch by branch. A static result has
-    two frames, the shape as drawn and the equilibrium; modes swing, magnified, one after the other.
+    two frames, the undeformed shape and the equilibrium; modes vibrate, magnified, one after
+    the other.
 
     Raises
     ------
@@ -146,7 +147,7 @@ def _path(result: Result) -> Film:
 
 
 def _equilibrium(result: Result) -> Film:
-    """Put the shape as drawn before the equilibrium; a failed search has only frames of its own."""
+    """Put the undeformed shape before the equilibrium; a failed search has its own frames only."""
     last = len(result.times) - 1
     positions = np.stack([result.model.initial_positions, result.positions[last]])
     fields = {
@@ -155,7 +156,8 @@ def _equilibrium(result: Result) -> Film:
         if name != "speed"
     }
     chapter = Chapter(result.scenario.title, 0, 1)
-    captions = ["as drawn", "equilibrium" if result.status == "static_converged" else result.status]
+    found = "equilibrium" if result.status == "static_converged" else result.status
+    captions = ["undeformed", found]
     return Film(positions, captions, [chapter], None, np.array([last, last]), fields)
 
 

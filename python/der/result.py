@@ -179,7 +179,7 @@ class Result:
         speed: float | None = None,
         progress: ProgressFunction | None = None,
     ) -> FilePath:
-        """Write a moving picture, GIF or MP4, true to time; see `der.animate`."""
+        """Write an animation, GIF or MP4, true to time; see `der.animate`."""
         from der.animation import animate  # here, because matplotlib takes long to load
 
         return animate(self, path, fps=fps, speed=speed, progress=progress)

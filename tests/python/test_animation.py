@@ -1,4 +1,4 @@
-"""Moving pictures: true to time, to scale, and of the run."""
+"""Animations: true to time, to scale, and of the run."""
 
 import subprocess
 import sys
@@ -185,10 +185,10 @@ def test_paths_go_through_their_points(tube):
     ("name", "arguments", "words"),
     [
         ("a.avi", {}, r"a\.avi.*\.gif or \.mp4"),
-        ("a.gif", {"fps": 0}, "fps goes up to 240"),
+        ("a.gif", {"fps": 0}, "fps must be greater than 0 and at most 240"),
         ("a.gif", {"speed": -1}, "positive"),
-        ("a.gif", {"speed": 1e-9}, r"2\.5e\+10 pictures.*use a larger --speed"),
-        ("a.gif", {"speed": 1e-320}, "inf pictures"),
+        ("a.gif", {"speed": 1e-9}, r"limited to 20,000 frames.*2\.5e\+10: use a larger --speed"),
+        ("a.gif", {"speed": 1e-320}, "would have inf"),
     ],
 )
 def test_mistakes(spheres, tmp_path, name, arguments, words):

@@ -282,7 +282,7 @@ def test_static_shape_beside_the_drawn_one(tube):
     assert np.all(drawn.get_ydata() == 0.0)
     assert np.array_equal(found.get_xydata(), result.positions[-1])
     labels = [text.get_text() for text in shape.get_legend().get_texts()]
-    assert labels == ["as drawn", "equilibrium"]
+    assert labels == ["undeformed", "equilibrium"]
     text = values.texts[0].get_text()
     assert f"deflection = {result.probes['deflection'][-1]:.6g} m" in text
 

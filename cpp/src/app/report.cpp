@@ -216,7 +216,7 @@ std::string buckling_table(const RunOutcome& outcome, const Style& style) {
 
 /// Where the path turns and where others cross it.
 std::string path_tables(const Recorder& recorder, const RunOutcome& outcome, const Style& style) {
-  std::vector<Row> rows{{"event", "branch", "load factor", "unstable in"}};
+  std::vector<Row> rows{{"event", "branch", "load factor", "unstable directions"}};
   for (const Probe& probe : recorder.probes()) rows.front().push_back(probe.name());
   rows.front().emplace_back();
   std::size_t index = 0;

@@ -89,9 +89,7 @@ Format<ContinuationText> continuation_format() {
                     "`loads`")
           .optional("from", &ContinuationAnalysis::from, number(""), "First factor.", "0")
           .optional("to", &ContinuationAnalysis::to, number(""),
-                    "Last factor. A path also ends when it has gone as far to the other side of "
-                    "`from`.",
-                    "1")
+                    "Last factor. A path also ends at the opposite limit, `2 from - to`.", "1")
           .optional("step", &ContinuationAnalysis::step, number("", positive()),
                     "Largest distance of two points: change of the factor against `to - from`, and "
                     "of the shape in units of like size.",

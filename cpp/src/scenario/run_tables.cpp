@@ -125,11 +125,12 @@ Format<TimeText> time_format() {
           .either({{"step"}, {"tolerance"}})
           .optional("integrator", &Time::integrator, one_of(words(integrator_names())),
                     "Time-stepping scheme.")
-          .optional("spectral_radius", &TimeText::given_spectral_radius,
-                    number("", Range{0.0, false, 1.0, false}),
-                    "For `generalized_alpha`: what a step leaves of the fastest motion, from 0 "
-                    "(nothing) to 1 (all of it).",
-                    "0.9")
+          .optional(
+              "spectral_radius", &TimeText::given_spectral_radius,
+              number("", Range{0.0, false, 1.0, false}),
+              "For `generalized_alpha`: spectral radius at infinite frequency (0: full damping, "
+              "1: none).",
+              "0.9")
           .optional("allow_unstable", &Time::allow_unstable, boolean(),
                     "Whether a run may go on where the integrator creates as much as half of the "
                     "energy that the run exchanges, and an explicit integrator with a step that is "

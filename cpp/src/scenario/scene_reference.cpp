@@ -95,7 +95,7 @@ std::string alternatives_text(const Alternatives& alternatives) {
       alternatives.described([](const auto& branch) { return code_list(branch, " and "); }));
 }
 
-/// The words of a key that mean something, one by one.
+/// The allowed words of a key, each with its meaning.
 std::string words_text(const FieldInfo& field) {
   std::vector<const Shape*> shapes{&field.shape};
   for (const Shape& part : field.shape.parts) shapes.push_back(&part);
@@ -105,7 +105,7 @@ std::string words_text(const FieldInfo& field) {
       if (!word.doc.empty()) text += fmt::format("- `{}`: {}\n", word.name, word.doc);
     }
   }
-  return text.empty() ? text : fmt::format("\nWords of `{}`:\n\n{}", field.key, text);
+  return text.empty() ? text : fmt::format("\nAllowed values of `{}`:\n\n{}", field.key, text);
 }
 
 /// Writes a table, then the tables that it refers to, each once.

@@ -11,7 +11,7 @@ from der.accuracy.error_bars import ErrorEstimate
 
 #: What a thousand times tighter Newton tolerance changes, is off by at most this times the change.
 SOLVER_FACTOR = 2.0
-#: A part of the error smaller than this share of the whole may converge as it likes.
+#: A part of the error smaller than this fraction of the whole is exempt from the order check.
 _COUNTS = 0.1
 
 
@@ -38,7 +38,7 @@ class VerifiedValue:
     solver_correction
         What the tighter tolerance changed.
     negligible
-        Parts of the error up to this may converge as they like.
+        Parts of the error up to this are exempt from the order check.
     """
 
     probe: str

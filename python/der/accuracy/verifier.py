@@ -24,8 +24,8 @@ from der.simulation import SceneLike, as_scenario
 
 #: Where the witness contradicts, the error is at most this times the difference to it.
 _WITNESS_FACTOR = 1.25
-#: Errors smaller than this share of what the probe goes through in the run may converge as they
-#: like: seven digits are more than anyone looks at.
+#: Errors smaller than this fraction of the range of the probe in the run are exempt from the order
+#: check: seven digits are more than anyone looks at.
 _NEGLIGIBLE = 1e-7
 #: A contradiction by less than this times the noise is none.
 _LITTLE_NOISE = 10.0

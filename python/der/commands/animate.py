@@ -1,7 +1,7 @@
-"""Write a moving picture of a run: GIF or MP4, true to time and to scale.
+"""Write an animation of a run: GIF or MP4, true to time and to scale.
 
-A path of equilibria goes through its points, and modes swing, one after the other. MP4 takes the
-package imageio-ffmpeg.
+The frames of a path of equilibria are its points; modes vibrate one after the other. MP4 output
+requires the package imageio-ffmpeg. Animations are limited to 20,000 frames.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="file to write, .gif or .mp4 (default: RUN/animation.gif)",
     )
     parser.add_argument(
-        "--fps", type=float, default=25.0, metavar="N", help="pictures a second (default: 25)"
+        "--fps", type=float, default=25.0, metavar="N", help="frames per second (default: 25)"
     )
     parser.add_argument(
         "--speed",
         type=float,
         metavar="X",
-        help="simulated seconds that pass in a second (default: 1 for runs of 1 to 20 s, else a "
-        "round number for about 8 s)",
+        help="simulated seconds per second of the animation (default: 1 for runs of 1 to 20 s, "
+        "else a round number for about 8 s)",
     )
 
 

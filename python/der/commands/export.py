@@ -18,7 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         choices=("csv", "npz", "vtk"),
         required=True,
         help="csv: a table of the nodes and one of the probes; npz: every array; vtk: a series of "
-        "files that ParaView opens (takes the package pyevtk)",
+        "files that ParaView opens (requires the package pyevtk)",
     )
     parser.add_argument(
         "--out",

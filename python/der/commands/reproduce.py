@@ -1,4 +1,4 @@
-"""Reproduce the course report: every figure and number of it, beside ours and the exact one.
+"""Regenerate every figure and number of the course report, beside ours and the exact one.
 
 Runs the report's three problems and writes report.html, which holds everything and needs no other
 file, report.md, every figure as PNG and the numbers as CSV. Takes about half a minute on two cores.

@@ -1,10 +1,10 @@
 """Measure what accuracy costs: vary nodes, step and stepper of a scene.
 
-Writes study.csv and study.png, and prints what to take for some errors. The error of a probe is its
-largest difference to a reference over the frames that the scene saves, in the unit of the probe;
-the reference is extrapolated from finer meshes and smaller steps. The cost is CPU time, the
-best of up to five runs. Exit codes: 0, 1 for a mistake in the scene or the arguments, 3 if the
-scene itself fails.
+Writes study.csv and study.png, and prints the cheapest configuration for each requested error. The
+error of a probe is its largest difference from a reference over the frames that the scene saves,
+in the unit of the probe; the reference is extrapolated from finer meshes and smaller steps. The
+cost is CPU time, the smallest of up to five runs. Exit codes: 0, 1 for a mistake in the
+scene or the arguments, 3 if the scene itself fails.
 """
 
 from __future__ import annotations

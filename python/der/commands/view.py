@@ -1,6 +1,6 @@
 """Write an interactive 3D view of a run: one HTML file that opens offline in a browser.
 
-Takes the package plotly.
+Requires the package plotly.
 """
 
 from __future__ import annotations

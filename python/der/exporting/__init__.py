@@ -33,7 +33,7 @@ def export(
     format
         ``csv``: two tables, of all nodes and of the probes. ``npz``: every array, for NumPy.
         ``vtk``: one file for each frame and a ``.pvd`` that ParaView opens as a series over time;
-        takes the package pyevtk.
+        requires the package pyevtk.
     out
         Folder to write to, made if it is not there; with ``npz`` a file.
     progress

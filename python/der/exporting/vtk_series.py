@@ -34,7 +34,9 @@ def write_vtk(result: Result, out: Path, progress: ProgressFunction) -> list[Pat
         from pyevtk.hl import unstructuredGridToVTK
         from pyevtk.vtk import VtkGroup, VtkPolyLine
     except ModuleNotFoundError:
-        raise ModuleNotFoundError("VTK files take the package pyevtk: pip install pyevtk") from None
+        raise ModuleNotFoundError(
+            "VTK output requires the package pyevtk: pip install pyevtk"
+        ) from None
     frames = out / "frames"
     frames.mkdir(parents=True, exist_ok=True)
     for old in frames.glob("rods_*.vtu"):

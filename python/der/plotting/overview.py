@@ -200,7 +200,7 @@ def _plot_static(result: Result, what: What, names: list[str]) -> Figure:
         heights = [_shape_height(result, shapes, last), *([table_height] if names else [])]
         figure, panels = _figure(heights)
         axes = panels.pop(0)
-        draw_shapes(axes, result.rods, shapes[0], MUTED, "as drawn", "--")
+        draw_shapes(axes, result.rods, shapes[0], MUTED, "undeformed", "--")
         label = "equilibrium" if result.status == "static_converged" else "where it ended"
         _draw_shape_panel(axes, result, [equilibrium], [label], last)
     if panels:

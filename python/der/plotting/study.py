@@ -27,9 +27,9 @@ _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", "*", "h")
 def plot_study(study: Study) -> Figure:
     """Draw, for each probe, cost against error, error in time against the step, and in space.
 
-    The grey band holds errors below that of the reference, of which nothing is known. Of the
-    configurations of a stepper only those are joined that nothing cheaper is as good as; the others
-    are small dots. A static scene has no panel for time. Probes without any error are left out.
+    The grey band marks errors below the error of the reference, which cannot be measured. Lines
+    trace the Pareto front of each stepper; its other configurations are small dots. A static scene
+    has no panel for time. Probes without any error are left out.
 
     Parameters
     ----------

@@ -363,7 +363,7 @@ def _tube(m: Measurements) -> Section:
                 None,
                 "deflection_by_load",
                 beam_figures.deflection_by_load,
-                "Deflection against load, and what is off. Ours stays within its error bar. "
+                "Deflection against load, and the errors. Ours stays within its error bar. "
                 f"Euler-Bernoulli theory is better than 51 nodes up to {number(good, 3)} N, and "
                 f"{percent(linear[20000.0] / exact[20000.0] - 1.0)} too large at 20 kN: the roller "
                 "comes in, which shortens the span.",

@@ -18,8 +18,8 @@ def view(result: Result, path: str | os.PathLike[str], *, open: bool = False) ->
     """Write an interactive view of a result as one HTML file.
 
     Rods are tubes of their radius, coloured by curvature, tension or speed; a slider and a play
-    button go through the frames. Static runs have the shape as drawn and the equilibrium, paths of
-    equilibria their points by branch, and modes swing. The file holds all it needs.
+    button go through the frames. Static runs have the undeformed shape and the equilibrium, paths
+    of equilibria their points by branch, and modes vibrate. The file holds all it needs.
 
     Parameters
     ----------
@@ -45,7 +45,9 @@ def view(result: Result, path: str | os.PathLike[str], *, open: bool = False) ->
     try:
         from plotly.offline import get_plotlyjs
     except ModuleNotFoundError:
-        raise ModuleNotFoundError("a view takes the package plotly: pip install plotly") from None
+        raise ModuleNotFoundError(
+            "a view requires the package plotly: pip install plotly"
+        ) from None
     from der.viewing.payload import make_payload
 
     path = Path(path)

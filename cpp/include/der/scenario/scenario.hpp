@@ -215,7 +215,7 @@ struct Time {
   /// creates energy.
   bool allow_unstable = false;
   double minimum_step = 0.0;  ///< [s] floor for retries after a failed step; 0: not given
-  /// Of generalized_alpha: what a step leaves of the fastest motion, 0 (nothing) .. 1 (all).
+  /// For generalized_alpha: spectral radius at infinite frequency (0: full damping, 1: none).
   double spectral_radius = 0.9;
 };
 

@@ -39,7 +39,8 @@ from der.accuracy.study_reference import (
     reference_tasks,
     static_reference,
 )
-from der.accuracy.study_result import Study, StudyRow, seconds_text
+from der.accuracy.study_result import Study
+from der.accuracy.study_row import StudyRow, seconds_text
 from der.accuracy.time_levels import find_stepper
 from der.errors import DerError
 from der.parallel import TOO_LONG, Outcome, Task, Workers, total_weight

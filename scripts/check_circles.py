@@ -12,7 +12,6 @@ import ast
 import re
 import sys
 from collections.abc import Iterator
-from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -55,7 +54,8 @@ def import_graph() -> Graph:
         ".".join(("der", *file.relative_to(PACKAGE).with_suffix("").parts)).removesuffix(
             ".__init__"
         ): file
-        for file in PACKAGE.rglob("*.py")
+        for file in PACKAGE.rglob("*.py*")
+        if file.suffix in (".py", ".pyi")
     }
     graph: Graph = {}
     for module, file in modules.items():
@@ -67,15 +67,36 @@ def import_graph() -> Graph:
     return graph
 
 
+def reached_from(start: str, graph: Graph) -> set[str]:
+    """Return everything that `start` needs, also by way of others."""
+    reached: set[str] = set()
+    waiting = [start]
+    while waiting:
+        new = graph.get(waiting.pop(), set()) - reached
+        reached |= new
+        waiting += new
+    return reached
+
+
+def circles(graph: Graph) -> list[list[str]]:
+    """Return the groups in which each member needs all others."""
+    reached = {node: reached_from(node, graph) for node in graph}
+    groups = {
+        frozenset(other for other in reached[node] if node in reached.get(other, ()))
+        for node in graph
+        if node in reached[node]
+    }
+    return sorted(sorted(group) for group in groups)
+
+
 def main() -> int:
     """Print the circles found; return the exit code."""
     found = 0
     for kind, graph in (("folders", include_graph()), ("modules", import_graph())):
-        try:
-            TopologicalSorter(graph).prepare()
-        except CycleError as error:
-            # graphlib lists a module before those that import it.
-            print(f"{kind} that need one another: {' -> '.join(reversed(error.args[1]))}")
+        for circle in circles(graph):
+            print(f"{kind} that need one another:")
+            for member in circle:
+                print(f"  {member} needs {', '.join(sorted(graph[member] & set(circle)))}")
             found += 1
     return 1 if found else 0
 

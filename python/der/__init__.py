@@ -62,7 +62,7 @@ from der.errors import (
 from der.exporting import export
 from der.probe_series import ProbeSeries
 from der.result import Result
-from der.run_folder import open_run
+from der.run_folder_reader import open_run
 from der.simulation import Simulation, continuation, equilibrium, run
 from der.viewing import view
 

@@ -10,6 +10,14 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+#: Unit of each array that an analysis finds and that is no pure number.
+DATA_UNITS = {
+    "modes/frequencies": "Hz",
+    "modes/growth_rates": "1/s",
+    "modes/shapes": "kg^-1/2 m",
+    "buckling/rotations": "rad",
+}
+
 _EVENTS = ("", "fold", "bifurcation")
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from der._core import SpringSupport
-    from der.result import Result
+    from der.run_data import RunData
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -48,7 +48,7 @@ class _Cut:
 
 
 def animate(
-    result: Result,
+    result: RunData,
     path: str | os.PathLike[str],
     *,
     fps: float = 25.0,
@@ -113,7 +113,7 @@ def _gif_rate(fps: float) -> float:
     return _CENTISECONDS / max(round(_CENTISECONDS / fps), _SHORTEST)
 
 
-def _cut(result: Result, film: Film, fps: float, speed: float | None) -> _Cut:
+def _cut(result: RunData, film: Film, fps: float, speed: float | None) -> _Cut:
     if result.positions.shape[2] != 2:
         raise ValueError("an animation shows planar runs; der view shows rods in space")
     if film.times is not None:
@@ -173,7 +173,7 @@ def _cut_motion(film: Film, times: Array, fps: float, speed: float | None) -> _C
     return _Cut(positions, frames, texts, fps)
 
 
-def _draw(result: Result, cut: _Cut, progress: ProgressFunction | None) -> Iterator[Picture]:
+def _draw(result: RunData, cut: _Cut, progress: ProgressFunction | None) -> Iterator[Picture]:
     """Draw one picture after the other, RGB, shape (height, width, 3), with even sizes."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
@@ -206,7 +206,7 @@ def _draw(result: Result, cut: _Cut, progress: ProgressFunction | None) -> Itera
 
 def _draw_moment(
     axes: Axes,
-    result: Result,
+    result: RunData,
     elastic: list[SpringSupport],
     positions: Array,
     frame: int,
@@ -228,7 +228,7 @@ def _draw_moment(
     axes.annotate(text, (0.0, 1.0), (0.0, 6.0), "axes fraction", "offset points", fontsize=11)
 
 
-def _set_stage(result: Result, cut: _Cut) -> Axes:
+def _set_stage(result: RunData, cut: _Cut) -> Axes:
     """Make a figure with one set of axes: equal, with limits that hold the whole motion."""
     from matplotlib.figure import Figure
 
@@ -269,7 +269,7 @@ def _set_stage(result: Result, cut: _Cut) -> Axes:
     return axes
 
 
-def _extent(result: Result, cut: _Cut) -> tuple[Array, Array]:
+def _extent(result: RunData, cut: _Cut) -> tuple[Array, Array]:
     """Return the corners [m] of all that is drawn, with some room around it."""
     from der.plotting.loads import room_for_loads
     from der.plotting.shapes import limits

@@ -7,15 +7,12 @@ carried on to all nodes.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from der._core import Rod
-
-if TYPE_CHECKING:
-    from der.result import Result
+from der.run_data import RunData
 
 Array = NDArray[np.float64]
 
@@ -62,12 +59,12 @@ class RodFields:
         return {"curvature": self.curvature, "tension": self.tension, "speed": self.speed}
 
 
-def rod_fields(result: Result) -> list[RodFields]:
-    """Return the quantities along each rod of a result, in the order of `Result.rods`."""
+def rod_fields(result: RunData) -> list[RodFields]:
+    """Return the quantities along each rod of a result, in the order of `RunData.rods`."""
     return [_fields_of(rod, result) for rod in result.rods]
 
 
-def _fields_of(rod: Rod, result: Result) -> RodFields:
+def _fields_of(rod: Rod, result: RunData) -> RodFields:
     bent, curvature = result.along(rod.name, "curvature")
     middles, edge_tension = result.along(rod.name, "tension")
     return RodFields(

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from der.fields import FIELD_UNITS, rod_fields
+from der.run_data import RunData
 from der.scene_loads import ActingLoads, acting_loads
-
-if TYPE_CHECKING:
-    from der.result import Result
 
 Array = NDArray[np.float64]
 
@@ -64,12 +61,12 @@ class Film:
     source: NDArray[np.int64]
     fields: dict[str, list[Array]]
 
-    def loads(self, result: Result, frame: int) -> ActingLoads:
+    def loads(self, result: RunData, frame: int) -> ActingLoads:
         """Return the loads of the scene at a frame."""
         return acting_loads(result, int(self.source[frame]))
 
 
-def failure_text(result: Result) -> str:
+def failure_text(result: RunData) -> str:
     """Return how a run failed, such as ``diverged at t = 0.0041 s``, or an empty text.
 
     A run that did not fail may still be unreliable: ``unreliable from t = 1.2 s on``.
@@ -83,13 +80,13 @@ def failure_text(result: Result) -> str:
     return f"{words} at t = {result.times[-1]:.4g} s"
 
 
-def title_of(result: Result) -> str:
+def title_of(result: RunData) -> str:
     """Return the title of a picture of a run: the scene's, and what is wrong with the run."""
     failure = failure_text(result)
     return f"{result.scenario.title} ({failure})" if failure else result.scenario.title
 
 
-def make_film(result: Result) -> Film:
+def make_film(result: RunData) -> Film:
     """Return the frames of a result.
 
     A motion has its saved frames, a continuation its points, branch by branch. A static result has
@@ -122,12 +119,12 @@ def make_film(result: Result) -> Film:
     )
 
 
-def _fields(result: Result, frames: NDArray[np.int64]) -> dict[str, list[Array]]:
+def _fields(result: RunData, frames: NDArray[np.int64]) -> dict[str, list[Array]]:
     rods = [rod.named() for rod in rod_fields(result)]
     return {name: [rod[name][frames] for rod in rods] for name in FIELD_UNITS}
 
 
-def _path(result: Result) -> Film:
+def _path(result: RunData) -> Film:
     path = result.path
     if path is None:
         raise ValueError("the run has found no path to show")
@@ -146,7 +143,7 @@ def _path(result: Result) -> Film:
     return Film(result.positions, captions, chapters, None, frames, fields)
 
 
-def _equilibrium(result: Result) -> Film:
+def _equilibrium(result: RunData) -> Film:
     """Put the undeformed shape before the equilibrium; a failed search has its own frames only."""
     last = len(result.times) - 1
     positions = np.stack([result.model.initial_positions, result.positions[last]])
@@ -161,7 +158,7 @@ def _equilibrium(result: Result) -> Film:
     return Film(positions, captions, [chapter], None, np.array([last, last]), fields)
 
 
-def _modes(result: Result) -> Film:
+def _modes(result: RunData) -> Film:
     shapes = mode_shapes(result)
     if not len(shapes):
         raise ValueError("the run has found no modes to show")
@@ -183,13 +180,13 @@ def _modes(result: Result) -> Film:
     return Film(np.stack(positions), captions, chapters, None, source, {})
 
 
-def mode_shapes(result: Result) -> Array:
+def mode_shapes(result: RunData) -> Array:
     """Return vibration or buckling modes, shape (modes, nodes, dim); of other runs none."""
     found = result.modes or result.buckling
     return found.shapes if found is not None else np.zeros((0, *result.positions.shape[1:]))
 
 
-def _mode_values(result: Result) -> list[str]:
+def _mode_values(result: RunData) -> list[str]:
     if result.buckling is not None:
         return [f"load factor {factor:.5g}" for factor in result.buckling.load_factors]
     assert result.modes is not None

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from der._core import Rod
-
-if TYPE_CHECKING:
-    from der.result import Result
+from der.run_data import RunData
 
 Array = NDArray[np.float64]
 
@@ -56,7 +54,7 @@ class ActingLoads:
     gravity: Array | None = None
 
 
-def acting_loads(result: Result, frame: int) -> ActingLoads:
+def acting_loads(result: RunData, frame: int) -> ActingLoads:
     """Return the loads of the scene at a frame of a result.
 
     Along a continuation those that its factor varies are scaled by it. Forces from Python are not
@@ -131,7 +129,7 @@ def place_on(rod: Rod, positions: Array, at: float) -> Array:
     return np.array([np.interp(at, rod.arc_lengths, column) for column in line.T])
 
 
-def _factor(result: Result, frame: int, number: int) -> float:
+def _factor(result: RunData, frame: int, number: int) -> float:
     """Return the factor of a load at a frame: other than 1 only along a continuation."""
     if result.path is None:
         return 1.0

@@ -16,7 +16,8 @@ from der.accuracy.study_plan import (
     reference_step,
 )
 from der.accuracy.study_reference import Reference, converge_in_space
-from der.accuracy.study_result import Study, StudyRow, seconds_text
+from der.accuracy.study_result import Study
+from der.accuracy.study_row import StudyRow, seconds_text
 from der.cli import main
 from der.parallel import Task, Workers
 from matplotlib.image import imread

@@ -2,8 +2,10 @@
 
 from der.accuracy.error_bars import ErrorEstimate
 from der.accuracy.studier import study
-from der.accuracy.study_result import Study, StudyRow
-from der.accuracy.verification import Verification, VerifiedValue
+from der.accuracy.study_result import Study
+from der.accuracy.study_row import StudyRow
+from der.accuracy.verification import Verification
+from der.accuracy.verified_value import VerifiedValue
 from der.accuracy.verifier import verify
 
 __all__ = [

@@ -14,8 +14,8 @@ from der.accuracy.event_matching import numbered_as
 from der.accuracy.noise import noise_floor
 from der.accuracy.refinement import SPACE_ORDER, belongs_to_its_mesh
 from der.accuracy.static_readings import Reading, Readings, describe_counts, static_readings
-from der.accuracy.verification import SOLVER_FACTOR, VerifiedValue
 from der.accuracy.verification_runs import VerificationRuns
+from der.accuracy.verified_value import SOLVER_FACTOR, VerifiedValue
 from der.result import Result
 
 

@@ -114,6 +114,22 @@ def finer(mesh: Mesh, factor: int) -> Mesh:
     return Mesh(factor * (mesh.nodes - 1) + 1, with_elements(mesh.scenario, factor))
 
 
+def reference_meshes(scenario: Scenario, meshes: Sequence[Mesh]) -> dict[int, Scenario]:
+    """Return the meshes of a study by their place, and after them two finer ones if there can be.
+
+    Parameters
+    ----------
+    scenario
+        The scene.
+    meshes
+        Those of the study, coarsest first.
+    """
+    scenarios = [mesh.scenario for mesh in meshes]
+    if find_leading_rod(scenario) is not None:
+        scenarios += [finer(meshes[-1], factor).scenario for factor in (2, 4)]
+    return dict(enumerate(scenarios))
+
+
 def choose_steppers(names: Sequence[str] | None) -> list[str]:
     """Return the names of the steppers to try: those given, or all.
 

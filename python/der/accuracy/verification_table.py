@@ -1,4 +1,4 @@
-"""A verification as text."""
+"""Values with error bars as text."""
 
 from __future__ import annotations
 
@@ -6,35 +6,73 @@ import math
 from collections.abc import Sequence
 
 from der.accuracy.error_bars import ErrorEstimate
-from der.accuracy.verification import Verification, VerifiedValue
+from der.accuracy.verified_value import VerifiedValue
 
 
-def verification_table(verification: Verification) -> str:
-    """Return the table: one line for each value, then what was run, notes and a summary.
+def values_to_show(values: Sequence[VerifiedValue], duration: float) -> list[VerifiedValue]:
+    """Return the values that tell something new about a run of this duration [s].
 
-    Extremes that tell nothing new, at the start of the run or equal to the final value, are left
-    out unless they are flagged.
+    Extremes at its start or its end, and those equal to the final value, are left out unless they
+    are flagged.
     """
-    duration = 0.0 if verification.scenario.is_static else verification.scenario.duration
-    shown = [value for value in verification.values if _tells(verification, value, duration)]
+    final = {value.probe: value.value for value in values if value.what == "final"}
+
+    def tells(value: VerifiedValue) -> bool:
+        if value.what not in ("min", "max") or value.flagged:
+            return True
+        same_as_final = abs(value.value - final[value.probe]) <= value.solver
+        return 0.0 < value.time_of_value < duration and not same_as_final
+
+    return [value for value in values if tells(value)]
+
+
+def value_table(values: Sequence[VerifiedValue]) -> list[str]:
+    """Return the lines of the table: a header, and one line for each value."""
     header = ("probe", "value", "error", "space", "time", "extrapolated", "orders", "verdict")
-    rows = [header, *(_row(value) for value in shown)]
+    rows = [header, *(_row(value) for value in values)]
     widths = [max(len(row[i]) for row in rows) for i in range(len(header))]
-    lines = [verification.scenario.title, ""]
-    for row in rows:
-        cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
-        lines.append("  ".join(cells).rstrip())
-    lines += ["", *_what_was_run(verification)]
-    lines += [f"Note: {note.rstrip('.')}." for note in verification.notes]
-    lines.append(_summary(verification, shown))
-    return "\n".join(lines)
+    return [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    ]
 
 
-def _tells(verification: Verification, value: VerifiedValue, duration: float) -> bool:
-    if value.what not in ("min", "max") or value.flagged:
-        return True
-    same_as_final = abs(value.value - verification[value.probe].value) <= value.solver
-    return 0.0 < value.time_of_value < duration and not same_as_final
+def summary_line(
+    shown: Sequence[VerifiedValue],
+    order_not_measured: Sequence[VerifiedValue],
+    hidden: int,
+    cpu_seconds: float,
+) -> str:
+    """Return in words what holds for the values shown.
+
+    Parameters
+    ----------
+    shown
+        The rows of the table; every flagged value has one.
+    order_not_measured
+        `Verification.order_not_measured`, shown or not.
+    hidden
+        How many values are not shown.
+    cpu_seconds
+        CPU time of all runs [s].
+    """
+    total = len(shown)
+    flagged = [value for value in shown if value.flagged]
+    settled = [value for value in shown if value.settled and not value.flagged]
+    unmeasured = {value.label for value in order_not_measured}
+    unmeasured &= {value.label for value in shown}
+    found = []
+    if flagged:
+        found.append(f"{len(flagged)} of {total} values do not converge at the expected order")
+    elif not settled and not unmeasured:
+        found.append(f"All {total} values converge at the expected order")
+    if settled:
+        found.append(f"{_share(len(settled), total)} values settle at no clear order")
+    if unmeasured:
+        share = _share(len(unmeasured), total).lower()
+        found.append(f"The order of {share} values was not measured")
+    left_out = f"extremes at the start or the end, not shown: {hidden}; " if hidden else ""
+    return f"{'. '.join(found)} ({left_out}{cpu_seconds:.2g} s of CPU time)."
 
 
 def _row(value: VerifiedValue) -> tuple[str, ...]:
@@ -76,37 +114,6 @@ def _order(part: ErrorEstimate | None) -> str:
     if part is None or part.order is None:
         return "-"
     return f"{part.order:.1f}"
-
-
-def _what_was_run(verification: Verification) -> list[str]:
-    lines = []
-    if len(verification.meshes) > 1:
-        lines.append(f"Space: {', '.join(verification.meshes)}.")
-    if len(verification.steps) > 1:
-        lines.append(f"Time: {', '.join(verification.steps)}.")
-    return lines
-
-
-def _summary(verification: Verification, shown: Sequence[VerifiedValue]) -> str:
-    """Return what holds for the rows of the table; every flagged value has one."""
-    total = len(shown)
-    flagged = [value for value in shown if value.flagged]
-    settled = [value for value in shown if value.settled and not value.flagged]
-    unmeasured = {value.label for value in verification.order_not_measured}
-    unmeasured &= {value.label for value in shown}
-    found = []
-    if flagged:
-        found.append(f"{len(flagged)} of {total} values do not converge at the expected order")
-    elif not settled and not unmeasured:
-        found.append(f"All {total} values converge at the expected order")
-    if settled:
-        found.append(f"{_share(len(settled), total)} values settle at no clear order")
-    if unmeasured:
-        share = _share(len(unmeasured), total).lower()
-        found.append(f"The order of {share} values was not measured")
-    hidden = len(verification.values) - total
-    left_out = f"extremes at the start or the end, not shown: {hidden}; " if hidden else ""
-    return f"{'. '.join(found)} ({left_out}{verification.cpu_seconds:.2g} s of CPU time)."
 
 
 def _share(part: int, total: int) -> str:

@@ -15,8 +15,9 @@ from der.accuracy.probe_extremes import probe_values
 from der.accuracy.refinement import SPACE_ORDER, belongs_to_its_mesh
 from der.accuracy.static_verifier import StaticVerifier
 from der.accuracy.time_levels import TimeLevels
-from der.accuracy.verification import SOLVER_FACTOR, Verification, VerifiedValue
+from der.accuracy.verification import Verification
 from der.accuracy.verification_runs import VerificationRuns, run_levels
+from der.accuracy.verified_value import SOLVER_FACTOR, VerifiedValue
 from der.parallel import Workers
 from der.progress import ProgressFunction
 from der.result import Result

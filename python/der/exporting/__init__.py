@@ -5,18 +5,16 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import Literal, get_args
 
 from der.progress import ProgressFunction
-
-if TYPE_CHECKING:
-    from der.result import Result
+from der.run_data import RunData
 
 ExportFormat = Literal["csv", "npz", "vtk"]
 
 
 def export(
-    result: Result,
+    result: RunData,
     format: ExportFormat,
     out: str | os.PathLike[str],
     *,
@@ -56,7 +54,7 @@ def export(
     from der.exporting.npz_file import write_npz
     from der.exporting.vtk_series import write_vtk
 
-    writers: dict[str, Callable[[Result, Path, ProgressFunction], list[Path]]] = {
+    writers: dict[str, Callable[[RunData, Path, ProgressFunction], list[Path]]] = {
         "csv": write_csv,
         "npz": write_npz,
         "vtk": write_vtk,

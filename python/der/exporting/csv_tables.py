@@ -4,24 +4,22 @@ from __future__ import annotations
 
 import csv
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import Any, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
 
+from der.analyses import DATA_UNITS
 from der.fields import FIELD_UNITS, rod_fields
 from der.film import mode_shapes
 from der.progress import ProgressFunction
-from der.run_folder import DATA_UNITS
-
-if TYPE_CHECKING:
-    from der.result import Result
+from der.run_data import RunData
 
 _AXES = "xyz"
 _MODE_UNIT = DATA_UNITS["modes/shapes"]
 
 
-def write_csv(result: Result, out: Path, progress: ProgressFunction) -> list[Path]:
+def write_csv(result: RunData, out: Path, progress: ProgressFunction) -> list[Path]:
     """Write ``nodes.csv`` and ``probes.csv`` into a folder; see `der.export`."""
     out.mkdir(parents=True, exist_ok=True)
     nodes, probes = out / "nodes.csv", out / "probes.csv"
@@ -37,7 +35,7 @@ def write_csv(result: Result, out: Path, progress: ProgressFunction) -> list[Pat
     return [nodes, probes, modes]
 
 
-def _write_nodes(result: Result, file: TextIO, progress: ProgressFunction) -> None:
+def _write_nodes(result: RunData, file: TextIO, progress: ProgressFunction) -> None:
     dimension = result.positions.shape[2]
     writer = csv.writer(file)
     writer.writerow(
@@ -68,7 +66,7 @@ def _write_nodes(result: Result, file: TextIO, progress: ProgressFunction) -> No
         progress((frame + 1) / count)
 
 
-def _write_probes(result: Result, file: TextIO) -> None:
+def _write_probes(result: RunData, file: TextIO) -> None:
     writer = csv.writer(file)
     titles = [
         f"{name} [{probe.unit}]" if probe.unit else name for name, probe in result.probes.items()
@@ -79,7 +77,7 @@ def _write_probes(result: Result, file: TextIO) -> None:
         writer.writerow([*start, *(float(column[frame]) for column in columns)])
 
 
-def _write_modes(result: Result, file: TextIO) -> None:
+def _write_modes(result: RunData, file: TextIO) -> None:
     if result.modes is not None:
         kind, values, unit = "frequency [Hz]", result.modes.frequencies, _MODE_UNIT
     else:
@@ -98,13 +96,13 @@ def _write_modes(result: Result, file: TextIO) -> None:
             )
 
 
-def _frame_titles(result: Result) -> list[str]:
+def _frame_titles(result: RunData) -> list[str]:
     if result.path is None:
         return ["frame", "time [s]"]
     return ["frame", "branch", "load factor"]
 
 
-def _frame_columns(result: Result) -> list[list[Any]]:
+def _frame_columns(result: RunData) -> list[list[Any]]:
     """Return what begins each row of a frame: where on a path it is, or when."""
     if result.path is None:
         return [[frame, time] for frame, time in enumerate(result.times.tolist())]

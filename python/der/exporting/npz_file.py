@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from der.analyses import DATA_UNITS
 from der.fields import FIELD_UNITS, rod_fields
 from der.progress import ProgressFunction
-from der.run_folder import DATA_UNITS
-
-if TYPE_CHECKING:
-    from der.result import Result
+from der.run_data import RunData
 
 #: Unit of each array, of those of a rod by their last name; pure numbers have an empty one.
 _UNITS = {
@@ -29,7 +27,7 @@ _UNITS = {
 }
 
 
-def write_npz(result: Result, out: Path, progress: ProgressFunction) -> list[Path]:
+def write_npz(result: RunData, out: Path, progress: ProgressFunction) -> list[Path]:
     """Write one file, its ending added if it lacks; see `der.export`."""
     out = out if out.suffix == ".npz" else out.with_name(out.name + ".npz")
     out.parent.mkdir(parents=True, exist_ok=True)

@@ -7,7 +7,6 @@ size, and meshio knows no series over time.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,16 +14,14 @@ from numpy.typing import NDArray
 from der.fields import RodFields, rod_fields
 from der.film import mode_shapes
 from der.progress import ProgressFunction
-
-if TYPE_CHECKING:
-    from der.result import Result
+from der.run_data import RunData
 
 Array = NDArray[np.float64]
 #: Values or vectors (their x, y and z) at all points, by name.
 PointData = dict[str, Array | tuple[Array, ...]]
 
 
-def write_vtk(result: Result, out: Path, progress: ProgressFunction) -> list[Path]:
+def write_vtk(result: RunData, out: Path, progress: ProgressFunction) -> list[Path]:
     """Write ``rods.pvd`` and the frames beside it in ``frames/``; see `der.export`.
 
     Each rod is a polyline with points of its own, also where rods share a node. Files of an earlier
@@ -81,7 +78,7 @@ def _point_data(rods: list[RodFields], frame: int) -> PointData:
     return data
 
 
-def _mode_data(result: Result, rods: list[RodFields]) -> PointData:
+def _mode_data(result: RunData, rods: list[RodFields]) -> PointData:
     """Return the displacements of each mode as vectors, which ParaView warps the rods by."""
     return {
         f"mode_{number}": _in_space(np.vstack([shape[fields.rod.nodes] for fields in rods]))
@@ -89,7 +86,7 @@ def _mode_data(result: Result, rods: list[RodFields]) -> PointData:
     }
 
 
-def _field_data(result: Result, frame: int, time: float) -> dict[str, Array]:
+def _field_data(result: RunData, frame: int, time: float) -> dict[str, Array]:
     data = {"TimeValue": np.array([time])}
     if result.path is not None:
         data["load_factor"] = result.path.factor[frame : frame + 1].copy()

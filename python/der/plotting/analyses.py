@@ -18,7 +18,7 @@ from der.plotting.supports import draw_springs, draw_supports
 
 if TYPE_CHECKING:
     from der.analyses import Path
-    from der.result import Result
+    from der.run_data import RunData
 
 Array = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ _ROW = 1.6  # height of a panel [inch]
 _WIDTH = 7.2  # of the figure [inch]
 
 
-def plot_modes(result: Result) -> Figure:
+def plot_modes(result: RunData) -> Figure:
     """Draw each mode: the equilibrium, and the shape to both sides of it, not to scale."""
     labels: list[str] = []
     if result.modes is not None:
@@ -60,7 +60,7 @@ def plot_modes(result: Result) -> Figure:
     return figure
 
 
-def _draw_mode(axes: Axes, result: Result, rest: Array, shape: Array, label: str) -> None:
+def _draw_mode(axes: Axes, result: RunData, rest: Array, shape: Array, label: str) -> None:
     draw_shapes(axes, result.rods, rest - shape, MUTED, linestyle=":")
     draw_shapes(axes, result.rods, rest, MUTED, linestyle="--")
     for rod in result.rods:
@@ -72,7 +72,7 @@ def _draw_mode(axes: Axes, result: Result, rest: Array, shape: Array, label: str
     axes.text(1.01, 0.5, f"{label},\nnot to scale", transform=axes.transAxes, va="center")
 
 
-def plot_path(result: Result, names: list[str]) -> Figure:
+def plot_path(result: RunData, names: list[str]) -> Figure:
     """Draw the load factor against each probe: stable solid, unstable thin and dashed.
 
     Branches that look the same there, such as shapes that are mirror images, are drawn once: dashes

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -29,10 +29,8 @@ from der.plotting.style import (
     wrapped,
 )
 from der.plotting.supports import draw_springs, draw_supports
+from der.run_data import RunData
 from der.scene_loads import acting_loads
-
-if TYPE_CHECKING:
-    from der.result import Result
 
 Array = NDArray[np.float64]
 What = Literal["overview", "shapes", "probes"]
@@ -45,7 +43,7 @@ _PROBE_HEIGHT = 1.55  # [inch]
 
 
 def plot(
-    result: Result,
+    result: RunData,
     what: What = "overview",
     *,
     times: Sequence[float] | None = None,
@@ -109,7 +107,7 @@ def plot(
     return figure
 
 
-def _probe_names(result: Result, probes: Sequence[str] | None) -> list[str]:
+def _probe_names(result: RunData, probes: Sequence[str] | None) -> list[str]:
     if probes is None:
         return list(result.probes)
     unknown = [name for name in probes if name not in result.probes]
@@ -120,7 +118,7 @@ def _probe_names(result: Result, probes: Sequence[str] | None) -> list[str]:
     return list(probes)
 
 
-def _frames_to_draw(result: Result, times: Sequence[float] | None) -> list[int]:
+def _frames_to_draw(result: RunData, times: Sequence[float] | None) -> list[int]:
     if times is None:
         return pick_frames(result.positions, 6)
     first, last = float(result.times[0]), float(result.times[-1])
@@ -131,7 +129,7 @@ def _frames_to_draw(result: Result, times: Sequence[float] | None) -> list[int]:
     return sorted({int(np.argmin(np.abs(result.times - time))) for time in times})
 
 
-def _plot_motion(result: Result, what: What, names: list[str], frames: list[int]) -> Figure:
+def _plot_motion(result: RunData, what: What, names: list[str], frames: list[int]) -> Figure:
     marks = result.times[frames]
     shapes = [result.positions[frame] for frame in frames]
     heights = [_PROBE_HEIGHT] * len(names)
@@ -155,13 +153,13 @@ def _plot_motion(result: Result, what: What, names: list[str], frames: list[int]
     return figure
 
 
-def _time_label(result: Result, time: float) -> str:
+def _time_label(result: RunData, time: float) -> str:
     since = result.unreliable_from
     trusted = since is None or time < since
     return time_text(time) if trusted else f"{time_text(time)}, unreliable"
 
 
-def _plot_path_shapes(result: Result) -> Figure:
+def _plot_path_shapes(result: RunData) -> Figure:
     """Draw shapes along a path: coloured by load factor, or by branch where there are several."""
     path = result.path
     if path is None:
@@ -189,7 +187,7 @@ def _plot_path_shapes(result: Result) -> Figure:
     return figure
 
 
-def _plot_static(result: Result, what: What, names: list[str]) -> Figure:
+def _plot_static(result: RunData, what: What, names: list[str]) -> Figure:
     equilibrium = result.positions[-1]
     shapes = [result.model.initial_positions, equilibrium]
     last = len(result.times) - 1
@@ -220,7 +218,7 @@ def _figure(heights: list[float]) -> tuple[Figure, list[Axes]]:
     return figure, list(axes[:, 0])
 
 
-def _shape_height(result: Result, shapes: Sequence[Array], frame: int) -> float:
+def _shape_height(result: RunData, shapes: Sequence[Array], frame: int) -> float:
     """Return the height [inch] at which the shapes fill the width, within bounds."""
     low, high = _corners(result, shapes, frame)
     return _panel_height(*(high - low))
@@ -230,7 +228,7 @@ def _panel_height(width: float, height: float) -> float:
     return float(np.clip(_SHAPE_WIDTH * height / max(width, 1e-300) + 0.5, *_SHAPE_HEIGHT))
 
 
-def _corners(result: Result, shapes: Sequence[Array], frame: int) -> tuple[Array, Array]:
+def _corners(result: RunData, shapes: Sequence[Array], frame: int) -> tuple[Array, Array]:
     """Return the lower left and upper right corner [m] of shapes and the symbols of loads."""
     low, high = limits(result.rods, shapes)
     width, height = high - low
@@ -241,7 +239,7 @@ def _corners(result: Result, shapes: Sequence[Array], frame: int) -> tuple[Array
 
 def _draw_shape_panel(
     axes: Axes,
-    result: Result,
+    result: RunData,
     shapes: Sequence[Array],
     labels: Sequence[str],
     frame: int,
@@ -264,7 +262,7 @@ def _finish_shape_panel(axes: Axes) -> None:
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
 
 
-def _write_values(axes: Axes, result: Result, names: list[str]) -> None:
+def _write_values(axes: Axes, result: RunData, names: list[str]) -> None:
     axes.set_axis_off()
     lines = [f"{name} = {result.probes[name][-1]:.6g} {result.probes[name].unit}" for name in names]
     axes.text(0.0, 1.0, "\n".join(lines), transform=axes.transAxes, va="top", linespacing=1.4)

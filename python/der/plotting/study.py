@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -12,10 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
+from der.accuracy.study_row import StudyRow
 from der.plotting.style import FIGURE_TITLE, MUTED, PALETTE, axis_label, style, wrapped
-
-if TYPE_CHECKING:
-    from der.accuracy.study_result import Study, StudyRow
 
 _WIDTH = 10.0  # of the figure [inch]
 _HEIGHT = 3.4  # of the panels of one probe [inch]
@@ -24,30 +21,31 @@ _COLOURS = (*PALETTE, "black", "#8c6d31", "#7f7f7f", "#5e3c99")  # as many as th
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", "*", "h")
 
 
-def plot_study(study: Study) -> Figure:
+def plot_study(title: str, probes: Sequence[Sequence[StudyRow]]) -> Figure:
     """Draw, for each probe, cost against error, error in time against the step, and in space.
 
-    The grey band marks errors below the error of the reference, which cannot be measured. Lines
-    trace the Pareto front of each stepper; its other configurations are small dots. A static scene
-    has no panel for time. Probes without any error are left out.
+    The grey band holds errors below that of the reference, of which nothing is known. Of the
+    configurations of a stepper only those are joined that nothing cheaper is as good as; the others
+    are small dots. A static scene has no panel for time.
 
     Parameters
     ----------
-    study
-        What `der.study` returned.
+    title
+        Of the figure.
+    probes
+        For each probe its rows, one for each configuration.
 
     Returns
     -------
     matplotlib.figure.Figure
         Made with pyplot, so that ``plt.show()`` shows it.
     """
-    static = study.scenario.is_static
-    meshes = len({row.nodes for row in study.rows})
-    probes = [probe for probe in study.probes if not study.is_exact(probe)] or study.probes[:1]
+    rows_of_all = [row for rows in probes for row in rows]
+    static = not any(row.stepper for row in rows_of_all)
     draw = [_draw_cost]
     if not static:
         draw.append(_draw_time)
-    if meshes > 1:
+    if len({row.nodes for row in rows_of_all}) > 1:
         draw.append(_draw_space)
     with style():
         figure, panels = plt.subplots(
@@ -57,10 +55,10 @@ def plot_study(study: Study) -> Figure:
             figsize=(_WIDTH * len(draw) / 3, _HEIGHT * len(probes)),
             layout="constrained",
         )
-        for line, probe in zip(panels, probes, strict=True):
+        for line, rows in zip(panels, probes, strict=True):
             for axes, function in zip(line, draw, strict=True):
-                function(axes, [row for row in study.of(probe) if row.completed])
-        lines = wrapped(study.scenario.title, FIGURE_TITLE, 0.98 * figure.get_figwidth())
+                function(axes, [row for row in rows if row.completed])
+        lines = wrapped(title, FIGURE_TITLE, 0.98 * figure.get_figwidth())
         figure.suptitle("\n".join(lines), x=0.01, ha="left", parse_math=False)
         if not static:
             handles, labels = panels[0][0].get_legend_handles_labels()

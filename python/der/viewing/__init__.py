@@ -6,15 +6,13 @@ import json
 import os
 import webbrowser
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from der.result import Result
+from der.run_data import RunData
 
 _FOLDER = Path(__file__).parent
 
 
-def view(result: Result, path: str | os.PathLike[str], *, open: bool = False) -> Path:
+def view(result: RunData, path: str | os.PathLike[str], *, open: bool = False) -> Path:
     """Write an interactive view of a result as one HTML file.
 
     Rods are tubes of their radius, coloured by curvature, tension or speed; a slider and a play

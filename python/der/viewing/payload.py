@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +13,8 @@ from der.fields import FIELD_UNITS
 from der.film import Film, failure_text, make_film, mode_shapes, round_speed, speed_text
 from der.plotting.lengths import LengthScale
 from der.plotting.style import quantity_text
+from der.run_data import RunData
 from der.scene_loads import ActingLoads
-
-if TYPE_CHECKING:
-    from der.result import Result
 
 Array = NDArray[np.float64]
 
@@ -30,7 +28,7 @@ _LINE_ARROWS = 9
 _SPEEDS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 
 
-def make_payload(result: Result) -> dict[str, Any]:
+def make_payload(result: RunData) -> dict[str, Any]:
     """Return what ``view.js`` reads; arrays are base64 of 32-bit floats, positions have x, y, z.
 
     All lengths are in the unit of the axes, and positions count from where these begin: 32 bits
@@ -193,7 +191,7 @@ def _limits(
     return low - depth, high + depth, symbol
 
 
-def _loads(result: Result, film: Film, frames: NDArray[np.int64]) -> dict[str, Any]:
+def _loads(result: RunData, film: Film, frames: NDArray[np.int64]) -> dict[str, Any]:
     """Return the different sets of loads that there are, and which of them acts at each frame.
 
     A load has a ``kind``, its rod, the ``share`` of the edge after a ``place``, a unit vector
@@ -216,7 +214,7 @@ def _loads(result: Result, film: Film, frames: NDArray[np.int64]) -> dict[str, A
     return {"loads": sets, "load_set": chosen}
 
 
-def _load_symbols(result: Result, loads: ActingLoads) -> list[dict[str, Any]]:
+def _load_symbols(result: RunData, loads: ActingLoads) -> list[dict[str, Any]]:
     rods = {rod.name: (number, rod) for number, rod in enumerate(result.rods)}
 
     def symbol(kind: str, rod: str, at: float, value: Array, text: str) -> dict[str, Any]:
@@ -254,7 +252,7 @@ def _load_symbols(result: Result, loads: ActingLoads) -> list[dict[str, Any]]:
     return found
 
 
-def _supports(result: Result, source: NDArray[np.int64]) -> list[dict[str, Any]]:
+def _supports(result: RunData, source: NDArray[np.int64]) -> list[dict[str, Any]]:
     """Return the symbol of each held node.
 
     Clamps have the ``angles`` of the tangent that they hold [rad]: one for all frames, or one for
@@ -283,7 +281,7 @@ def _supports(result: Result, source: NDArray[np.int64]) -> list[dict[str, Any]]
     return found
 
 
-def _clamp_angles(result: Result, source: NDArray[np.int64]) -> list[list[float]]:
+def _clamp_angles(result: RunData, source: NDArray[np.int64]) -> list[list[float]]:
     """Return for each held node the angles of the tangent [rad] as `_supports` has them."""
     frames = {frame: result.held_nodes(frame) for frame in np.unique(source).tolist()}
     found: list[list[float]] = []
@@ -294,7 +292,7 @@ def _clamp_angles(result: Result, source: NDArray[np.int64]) -> list[list[float]
     return found
 
 
-def _springs(result: Result) -> list[dict[str, Any]]:
+def _springs(result: RunData) -> list[dict[str, Any]]:
     """Return the symbol of each spring support.
 
     It stands where the ``weights`` of the rod's nodes put it, has a zigzag line along each of the

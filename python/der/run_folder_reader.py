@@ -1,4 +1,4 @@
-"""Run folders: reading what der_run wrote, and writing the same from a `Result`.
+"""Reading the run folders that der_run and `Result.save` write.
 
 The layout of ``results.h5`` is described in ``docs/results.md``.
 """
@@ -10,19 +10,10 @@ import os
 from pathlib import Path
 from typing import Any
 
-from der._core import FileRecording, Scenario, __version__, read_run
-from der._core import save_run as _save_run
+from der._core import FileRecording, Scenario, read_run
 from der.errors import DerError
 from der.probe_series import make_probes
 from der.result import Result
-
-#: Unit of each array that an analysis finds and that is no pure number.
-DATA_UNITS = {
-    "modes/frequencies": "Hz",
-    "modes/growth_rates": "1/s",
-    "modes/shapes": "kg^-1/2 m",
-    "buckling/rotations": "rad",
-}
 
 
 def open_run(folder: str | os.PathLike[str]) -> Result:
@@ -87,24 +78,3 @@ def _read_summary(folder: Path, status: str) -> dict[str, Any]:
         return {"status": status}
     summary: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     return summary
-
-
-def save_run(result: Result, folder: str | os.PathLike[str]) -> Path:
-    """Write a result as a run folder; see `Result.save`."""
-    folder = Path(folder)
-    # That of a killed run is bare, and the version is what marks the file as one of der's.
-    summary = json.dumps(
-        {**result.summary, "der_version": result.summary.get("der_version", __version__)},
-        indent=2,
-        ensure_ascii=False,
-    )
-    _save_run(
-        folder,
-        result.scenario,
-        result.model,
-        result,
-        {name: probe.unit for name, probe in result.probes.items()},
-        {name: (values, DATA_UNITS.get(name, "")) for name, values in result.data.items()},
-        summary + "\n",
-    )
-    return folder

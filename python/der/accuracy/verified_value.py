@@ -1,0 +1,157 @@
+"""A number of a run with its error bar, and what its convergence tells."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from der.accuracy.error_bars import ErrorEstimate
+
+#: What a thousand times tighter Newton tolerance changes, is off by at most this times the change.
+SOLVER_FACTOR = 2.0
+#: A part of the error smaller than this fraction of the whole is exempt from the order check.
+_COUNTS = 0.1
+
+
+@dataclass(frozen=True)
+class VerifiedValue:
+    """A number of a run, its error bar and its extrapolated value.
+
+    Attributes
+    ----------
+    probe, what, unit
+        Name of the probe, or of what the analysis finds (``frequency 1``, ``load factor 1``,
+        ``factor`` of a path); ``final``, ``min`` or ``max`` over the run, on a path where
+        (``fold 1``, ``bifurcation 1``, ``end``); the SI unit.
+    value
+        As the scene gives it when it is run as written; NaN for an event that only finer meshes
+        find.
+    time_of_value
+        When it is reached [s]; 0 without time.
+    space, time
+        Error by the mesh and by the step; None where there is nothing to refine.
+    solver
+        Bar of the rest: Newton's tolerance, measured with a tolerance a thousand times tighter, and
+        rounding.
+    solver_correction
+        What the tighter tolerance changed.
+    negligible
+        Parts of the error up to this are exempt from the order check.
+    """
+
+    probe: str
+    what: str
+    unit: str
+    value: float
+    time_of_value: float
+    space: ErrorEstimate | None
+    time: ErrorEstimate | None
+    solver: float
+    solver_correction: float = 0.0
+    negligible: float = 0.0
+
+    @property
+    def label(self) -> str:
+        """What it is called in the table: ``tip_y``, or ``tip_y, min``."""
+        return self.probe if self.what == "final" else f"{self.probe}, {self.what}"
+
+    @property
+    def bar(self) -> float:
+        """The whole error bar: the truth is within value -bar .. +bar with 95 % confidence.
+
+        The truth is that of the rod as a continuum and of exact time; errors of space, time and
+        solver add up.
+        """
+        return self.solver + sum(part.bar for part in self._parts)
+
+    @property
+    def extrapolated(self) -> float:
+        """Best guess of the truth: Richardson's extrapolation in space and time.
+
+        NaN where a part of the error is unknown.
+        """
+        if math.isinf(self.bar):
+            return math.nan
+        corrections = sum(part.correction for part in self._parts)
+        return self.value + self.solver_correction + corrections
+
+    @property
+    def flagged(self) -> bool:
+        """Whether what makes up its error does not converge at the expected order.
+
+        A part of the error that is less than a tenth of the whole bar, or negligible, does not
+        count.
+        """
+        return any(part.flagged for _, part in self._parts_that_count)
+
+    @property
+    def unsettled(self) -> set[str]:
+        """In which of ``space`` and ``time`` a finer level may still show that it converges."""
+        return {where for where, part in self._parts_that_count if part.unsettled}
+
+    @property
+    def settled(self) -> bool:
+        """Whether a part that counts converges without the expected order."""
+        return any(part.verdict == "settled" for _, part in self._parts_that_count)
+
+    @property
+    def has_two_levels(self) -> bool:
+        """Whether a part that counts was refined only once, so that its order is not known."""
+        return any(part.verdict == "two levels" for _, part in self._parts_that_count)
+
+    @property
+    def verdict(self) -> str:
+        """``converged``, or what is to be known of it and where, such as ``slow in time``."""
+        found = [
+            f"{part.verdict} in {where}"
+            for where, part in self._parts_that_count
+            if part.flagged or part.verdict in ("two levels", "settled")
+        ]
+        return ", ".join(found) or "converged"
+
+    @property
+    def _parts_that_count(self) -> list[tuple[str, ErrorEstimate]]:
+        named = (("space", self.space), ("time", self.time))
+        return [(w, p) for w, p in named if p is not None and self._counts(p)]
+
+    def _counts(self, part: ErrorEstimate) -> bool:
+        # Written so that an unknown bar, which is infinite, counts beside another one.
+        return part.bar > self.negligible and not part.bar < _COUNTS * self.bar
+
+    @property
+    def _parts(self) -> list[ErrorEstimate]:
+        return [part for part in (self.space, self.time) if part is not None]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return everything as JSON knows it; an unknown bar is null."""
+        return {
+            "probe": self.probe,
+            "what": self.what,
+            "unit": self.unit,
+            "value": _finite(self.value),
+            "time": self.time_of_value,
+            "bar": _finite(self.bar),
+            "extrapolated": _finite(self.extrapolated),
+            "verdict": self.verdict,
+            "flagged": self.flagged,
+            "space_error": _part_to_dict(self.space),
+            "time_error": _part_to_dict(self.time),
+            "solver_error": {"bar": self.solver, "correction": self.solver_correction},
+        }
+
+
+def _part_to_dict(part: ErrorEstimate | None) -> dict[str, Any] | None:
+    if part is None:
+        return None
+    return {
+        "bar": _finite(part.bar),
+        "correction": part.correction,
+        "order": part.order,
+        "expected_order": part.expected_order,
+        "verdict": part.verdict,
+    }
+
+
+def _finite(number: float) -> float | None:
+    return number if math.isfinite(number) else None

@@ -1,0 +1,152 @@
+"""The data of a run, which everything that draws, writes or compares runs reads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from der._core import HeldNode, Model, Replay, Rod, Scenario
+from der.analyses import (
+    BucklingModes,
+    Modes,
+    Path,
+    make_buckling_modes,
+    make_modes,
+    make_path,
+)
+from der.probe_series import ProbeSeries
+
+
+@dataclass(frozen=True, eq=False)
+class RunData:
+    """What a run recorded: its saved frames, probes and summary.
+
+    Whatever reads a run takes this: drawings, exports, the run folder. `Result` adds ways to call
+    these.
+
+    Attributes
+    ----------
+    scenario
+        The scenario that was run.
+    times
+        Times of the saved frames [s], shape (frames,).
+    steps
+        Time steps done at the saved frames, shape (frames,).
+    positions
+        Node positions [m], shape (frames, nodes, dim).
+    velocities
+        Node velocities [m/s], shape (frames, nodes, dim).
+    energies
+        Energies [J] by name (``kinetic``, ``stretch``, ``bend``, ``spring``, ``gravity``), each of
+        shape (frames,).
+    work
+        What has gone in and out of the energy since the start [J] by name, each of shape (frames,):
+        work of the ``loads`` (but for weight), of moving ``supports`` and of the ``solver``'s
+        residual went in; ``drag`` and the ``numerical`` loss of the time stepping went out.
+    probes
+        Probes by name, each an array of shape (frames,) with its ``unit`` and ``summary``.
+    summary
+        What ``summary.json`` of a run folder says: status, model, solver, costs, probes.
+    data
+        Arrays that an analysis found besides, by name, as in ``results.h5``; `modes`, `buckling`
+        and `path` make objects of them.
+    """
+
+    scenario: Scenario
+    times: NDArray[np.float64]
+    steps: NDArray[np.int64]
+    positions: NDArray[np.float64]
+    velocities: NDArray[np.float64]
+    energies: dict[str, NDArray[np.float64]]
+    work: dict[str, NDArray[np.float64]]
+    probes: dict[str, ProbeSeries]
+    summary: dict[str, Any]
+    data: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+
+    @property
+    def status(self) -> str:
+        """``completed``, ``static_converged``, ``stopped``, or the name of a failure."""
+        return str(self.summary["status"])
+
+    @property
+    def unreliable_from(self) -> float | None:
+        """Time [s] from which on the integrator had created too much energy; None: never."""
+        since = self.summary.get("unreliable_from")
+        return None if since is None else float(since)
+
+    @property
+    def modes(self) -> Modes | None:
+        """Vibration modes, of ``analysis: modes``."""
+        return make_modes(self.data)
+
+    @property
+    def buckling(self) -> BucklingModes | None:
+        """Buckling modes, of ``analysis: buckling``; None also where nothing buckles."""
+        return make_buckling_modes(self.data)
+
+    @property
+    def path(self) -> Path | None:
+        """The path of equilibria, of ``analysis: continuation``; its points are the frames."""
+        return make_path(self.data)
+
+    @cached_property
+    def model(self) -> Model:
+        """What stayed constant in the run."""
+        return Model(self.scenario)
+
+    @property
+    def rods(self) -> list[Rod]:
+        """The rods: which nodes are theirs, arc lengths, radii."""
+        return self.model.rods
+
+    @cached_property
+    def _replay(self) -> Replay:
+        path = self.path
+        instants = self.times if path is None else path.factor
+        return Replay(self.scenario, instants, path is not None)
+
+    def along(self, rod: str, quantity: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return a quantity along a rod at every frame, where the discrete rod has it.
+
+        Parameters
+        ----------
+        rod
+            Name of the rod.
+        quantity
+            Any quantity of probes but the energies, such as ``moment``, whether the scene has a
+            probe of it or not.
+
+        Returns
+        -------
+        arc_lengths
+            Of the places [m], shape (places,), ascending: the nodes, of a turning angle those that
+            bend, of strain and tension the middles of the edges. Curvature and moment also have the
+            places between nodes at which a load makes a kink, and where they jump the place stands
+            twice, with the values before and after it: between any two places in a row they are
+            linear.
+        values
+            In the SI unit of the quantity, shape (frames, places).
+
+        Raises
+        ------
+        DerError
+            If there is no such rod or quantity.
+
+        Notes
+        -----
+        Clamps that `Simulation.prescribe` turned are taken to stand as the scene has them, since
+        frames do not tell; this concerns the values at the clamp and at the node or edge beside it.
+        """
+        return self._replay.along(rod, quantity, self.positions, self.velocities)
+
+    def held_nodes(self, frame: int) -> list[HeldNode]:
+        """Return every node that a support of the scene holds, clamps turned as at a frame.
+
+        Those that `Simulation.prescribe` turned stand as the scene has them. Raises `DerError` if
+        there is no such frame.
+        """
+        return self._replay.held_nodes(frame)

@@ -125,8 +125,9 @@ class Result:
         -------
         arc_lengths
             Of the places [m], shape (places,), ascending: the nodes, of a turning angle those that
-            bend, of strain and tension the middles of the edges. Curvature and moment also have the
-            places between nodes at which a load makes a kink, and where they jump the place stands
+            bend, of strain and tension the middles of the edges and the ends of the rod. Curvature,
+            moment, strain and tension also have the places at which a load or a support makes a
+            kink. Where they jump, and at every such place of strain and tension, the place stands
             twice, with the values before and after it: between any two places in a row they are
             linear.
         values

@@ -36,10 +36,10 @@ class RodFields:
         carried on linearly to the ends; 0 on such a rod of two nodes. Signed in the plane, positive
         counter-clockwise.
     tension
-        Axial force [N], shape (frames, nodes of the rod): between the middles of the edges linear,
-        and carried on linearly to the ends.
+        Axial force [N], shape (frames, nodes of the rod), as its probes have it; where it jumps at
+        a node, the value after it.
     edge_tension
-        Axial force in each edge [N], shape (frames, edges of the rod).
+        Axial force at the middle of each edge [N], shape (frames, edges of the rod).
     """
 
     rod: Rod
@@ -66,14 +66,15 @@ def rod_fields(result: RunData) -> list[RodFields]:
 
 def _fields_of(rod: Rod, result: RunData) -> RodFields:
     bent, curvature = result.along(rod.name, "curvature")
-    middles, edge_tension = result.along(rod.name, "tension")
+    pulled, tension = result.along(rod.name, "tension")
+    middles = 0.5 * (rod.arc_lengths[1:] + rod.arc_lengths[:-1])
     return RodFields(
         rod=rod,
         positions=result.positions[:, rod.nodes],
         velocities=result.velocities[:, rod.nodes],
         curvature=_carry(curvature, bent, rod.arc_lengths),
-        tension=_carry(edge_tension, middles, rod.arc_lengths),
-        edge_tension=edge_tension,
+        tension=_carry(tension, pulled, rod.arc_lengths),
+        edge_tension=_carry(tension, pulled, middles),
     )
 
 

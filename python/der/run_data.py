@@ -123,9 +123,10 @@ class RunData:
         Returns
         -------
         arc_lengths
-            Of the places [m], shape (places,), ascending: the nodes, of a turning angle those that
-            bend, of strain and tension the middles of the edges. Curvature and moment also have the
-            places between nodes at which a load makes a kink, and where they jump the place stands
+            Places [m], shape (places,), ascending: the nodes; for a turning angle those that bend;
+            for strain and tension the middles of the edges and the ends of the rod. Curvature,
+            moment, strain and tension also have the places at which a load or a support makes a
+            kink. Where they jump, and at every such place of strain and tension, the place stands
             twice, with the values before and after it: between any two places in a row they are
             linear.
         values

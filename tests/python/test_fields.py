@@ -81,7 +81,7 @@ def test_every_quantity_where_the_rod_has_it(swing):
     places = dict.fromkeys(("x", "y", "vx", "vy", "speed"), rod.arc_lengths)
     places |= dict.fromkeys(("curvature", "moment"), rod.arc_lengths)
     places["turning_angle"] = rod.arc_lengths[:-1]
-    places |= dict.fromkeys(("strain", "tension"), middles)
+    places |= dict.fromkeys(("strain", "tension"), np.r_[0.0, middles, rod.arc_lengths[-1]])
     swing["output"]["probes"] = {
         f"{quantity}-{i}": {"rod": "arm", "at": float(s), "quantity": quantity}
         for quantity, known in places.items()

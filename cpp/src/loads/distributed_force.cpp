@@ -4,11 +4,10 @@
 
 namespace der {
 
-// Consistent loads of the piecewise linear interpolation over the rest length: for the part a..b of
-// an edge from s0 to s1, its end s1 takes the integral of (s - s0)/(s1 - s0).
+// Consistent loads of the piecewise linear interpolation over the rest length.
 void add_load(const scenario::DistributedForce& load, const scenario::Scene& /*scene*/,
               Model& model) {
-  const RodLayout& rod = model.rod(load.rod);
+  RodLayout& rod = model.rod(load.rod);
   const DeadForce force(load.force, model);
   for (std::size_t i = 0; i + 1 < rod.nodes.size(); ++i) {
     const double s0 = rod.arc_length[i];
@@ -16,10 +15,11 @@ void add_load(const scenario::DistributedForce& load, const scenario::Scene& /*s
     const double a = std::max(load.from, s0);
     const double b = std::min(load.to, s1);
     if (a >= b) continue;
-    const double right = (b - a) * (0.5 * (a + b) - s0) / (s1 - s0);
+    const double right = DistributedPlace::share_of_end(a, b, s0, s1);
     force.act_on(rod.nodes[i], (b - a) - right, model);
     force.act_on(rod.nodes[i + 1], right, model);
   }
+  rod.distributed_places.push_back({load.from, load.to, force.as_controls(model)});
 }
 
 }  // namespace der

@@ -29,19 +29,16 @@ Index clamp_beyond(const RodLayout& rod, Index edge) {
 }  // namespace
 
 MomentRecovery::MomentRecovery(const RodLayout& rod, const Model& model)
-    : rod_(rod), edges_(at(rod.num_edges())) {
-  for (const Index node : rod.nodes) first_dofs_.push_back(model.dof(node, 0));
-  for (const ForcePlace& place : rod.force_places) {
-    std::vector<Weighted> nodes = node_weights(rod, place.arc_length);
-    if (nodes.size() > 1) forces_.push_back({place, std::move(nodes)});
-  }
+    : rod_(rod),
+      forces_(rod, model),
+      edges_(at(rod.num_edges())),
+      kinks_(loaded_nodes(rod, model)) {
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     const Index start = clamp_before(rod, edge);
     const Index end = clamp_beyond(rod, edge);
     add_moments(edge, start, end);
     add_forces(edge, start, end);
   }
-  find_kinks(model);
 }
 
 MomentRecovery::Where MomentRecovery::where_is(double s, Index edge) const {
@@ -97,7 +94,7 @@ void MomentRecovery::add_moments(Index edge, Index start, Index end) {
 
 void MomentRecovery::add_forces(Index edge, Index start, Index end) {
   for (std::size_t f = 0; f < forces_.size(); ++f) {
-    const Force& force = forces_[f];
+    const SpreadForces::Force& force = forces_[f];
     if (force.nodes.front().place > edge || force.nodes.back().place <= edge) continue;
     const bool from_before = end != kNone && force.nodes.back().place > end;
     ForceTerm term{f, where_is(force.place.arc_length, edge), from_before ? -1.0 : 1.0, {}};
@@ -111,17 +108,6 @@ void MomentRecovery::add_forces(Index edge, Index start, Index end) {
   }
 }
 
-void MomentRecovery::find_kinks(const Model& model) {
-  kinks_.assign(rod_.nodes.size(), false);
-  for (std::size_t i = 0; i < rod_.nodes.size(); ++i) {
-    kinks_[i] = rod_.sphere_radius[i] > 0.0 || model.free_index[at(first_dofs_[i])] < 0 ||
-                model.free_index[at(first_dofs_[i] + 1)] < 0;
-    for (const ForcePlace& place : rod_.force_places) {
-      if (std::abs(place.arc_length - rod_.arc_length[i]) <= rod_.same_place()) kinks_[i] = true;
-    }
-  }
-}
-
 double MomentRecovery::carried(std::size_t number, const Model& model, const State& state) const {
   const MomentPlace& place = rod_.moment_places[number];
   double applied = 0.0;
@@ -131,47 +117,26 @@ double MomentRecovery::carried(std::size_t number, const Model& model, const Sta
   return carried_moment(place, rod_, model, state, applied);
 }
 
-Vec2 MomentRecovery::node_point(Index node, const State& state) const {
-  return state.positions.segment<2>(first_dofs_[at(node)]);
-}
-
-Vec2 MomentRecovery::point_of(const Force& force, const State& state) const {
-  Vec2 point = Vec2::Zero();
-  for (const auto& [node, weight] : force.nodes) point += weight * node_point(node, state);
-  return point;
-}
-
-Vec2 MomentRecovery::value_of(const Force& force, const Vec2& point, const Model& model,
-                              const State& state) {
-  const ForcePlace& place = force.place;
-  Vec2 value = -place.stiffness.cwiseProduct(point - place.anchor);
-  for (int c = 0; c < 2; ++c) {
-    const Index control = place.force[at(c)];
-    if (control >= 0) value[c] += model.controls.value(control, state.time, state.ramps);
-  }
-  return value;
-}
-
 double MomentRecovery::smooth(Index edge, bool last, const Vec2& point, const Model& model,
                               const State& state) const {
   const EdgeTerms& terms = edges_[at(edge)];
   double moment = 0.0;
   // A moment is a couple at the nodes of its edge: a pivot between them sees the nearer one's force
   // taken by the clamp.
-  const Vec2 along = node_point(edge + 1, state) - node_point(edge, state);
+  const Vec2 along = forces_.node_point(edge + 1, state) - forces_.node_point(edge, state);
   const double pivot =
-      (point - node_point(last ? edge + 1 : edge, state)).dot(along) / along.squaredNorm();
+      (point - forces_.node_point(last ? edge + 1 : edge, state)).dot(along) / along.squaredNorm();
   for (const MomentTerm& term : terms.moments) {
     const double factor = (last ? term.last : term.first) + term.own * pivot;
     if (factor != 0.0) moment += factor * carried(term.place, model, state);
   }
   for (const ForceTerm& term : terms.forces) {
-    const Force& force = forces_[term.place];
-    const Vec2 stands = point_of(force, state);
+    const Vec2 stands = forces_.point(term.place, state);
     Vec2 arm = Vec2::Zero();  // of the true force, less those of the spread one
     if (term.where == (term.sign > 0.0 ? Where::Beyond : Where::Before)) arm = stands - point;
-    for (const auto& [node, weight] : term.nodes) arm -= weight * (node_point(node, state) - point);
-    moment += term.sign * cross(arm, value_of(force, stands, model, state));
+    for (const auto& [node, weight] : term.nodes)
+      arm -= weight * (forces_.node_point(node, state) - point);
+    moment += term.sign * cross(arm, forces_.value(term.place, model, state));
   }
   return moment;
 }
@@ -191,15 +156,13 @@ double MomentRecovery::inside(Index edge, const Place& place, const Model& model
   }
   for (const ForceTerm& term : terms.forces) {
     if (term.where != Where::Inside) continue;
-    const Force& force = forces_[term.place];
-    const double there = force.place.arc_length;
+    const double there = forces_[term.place].place.arc_length;
     const bool counts = term.sign > 0.0 ? there > s : there < s;
     if (!counts) continue;
     const Index end = term.sign > 0.0 ? edge : edge + 1;
     const double share = (there - s) / (there - rod_.arc_length[at(end)]);
-    const Vec2 stands = point_of(force, state);
-    const Vec2 arm = share * (stands - node_point(end, state));
-    moment += term.sign * cross(arm, value_of(force, stands, model, state));
+    const Vec2 arm = share * (forces_.point(term.place, state) - forces_.node_point(end, state));
+    moment += term.sign * cross(arm, forces_.value(term.place, model, state));
   }
   return moment;
 }

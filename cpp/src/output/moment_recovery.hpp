@@ -6,6 +6,7 @@
 #include "der/model/location.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
+#include "output/spread_forces.hpp"
 
 namespace der {
 
@@ -72,10 +73,6 @@ class MomentRecovery {
     double sign = 1.0;            // -1: counted by what stands before the edge
     std::vector<Weighted> nodes;  // on that side
   };
-  struct Force {
-    ForcePlace place;
-    std::vector<Weighted> nodes;
-  };
   struct EdgeTerms {
     std::vector<MomentTerm> moments;
     std::vector<ForceTerm> forces;
@@ -84,16 +81,10 @@ class MomentRecovery {
   [[nodiscard]] Where where_is(double s, Index edge) const;
   void add_moments(Index edge, Index start, Index end);
   void add_forces(Index edge, Index start, Index end);
-  void find_kinks(const Model& model);
   [[nodiscard]] double carried(std::size_t place, const Model& model, const State& state) const;
-  [[nodiscard]] Vec2 node_point(Index node, const State& state) const;
-  [[nodiscard]] Vec2 point_of(const Force& force, const State& state) const;
-  [[nodiscard]] static Vec2 value_of(const Force& force, const Vec2& point, const Model& model,
-                                     const State& state);
 
   RodLayout rod_;
-  std::vector<Index> first_dofs_;  // of each node
-  std::vector<Force> forces_;      // between nodes
+  SpreadForces forces_;
   std::vector<EdgeTerms> edges_;
   std::vector<bool> kinks_;
 };

@@ -104,11 +104,23 @@ double parabola_extreme(const double* s, const double* f) {
   return f[1] - 0.25 * slope * slope / second;
 }
 
+/// Whether the parabola through three points has its largest value between two places.
+bool peaks_between(const double* s, const double* f, double from, double to) {
+  const double left = (f[1] - f[0]) / (s[1] - s[0]);
+  const double right = (f[2] - f[1]) / (s[2] - s[1]);
+  const double second = (right - left) / (s[2] - s[0]);
+  if (second >= 0.0) return false;
+  const double peak = 0.5 * (s[0] + s[1] - left / second);
+  return from < peak && peak < to;
+}
+
 /// The smallest or largest value of a field along its rod.
 class ExtremeReader : public ProbeReader {
  public:
-  ExtremeReader(std::unique_ptr<RodField> field, const RodLayout& rod, scenario::Reduce reduce)
+  ExtremeReader(std::unique_ptr<RodField> field, const RodLayout& rod, scenario::Reduce reduce,
+                bool parabola_at_ends)
       : field_(std::move(field)),
+        parabola_at_ends_(parabola_at_ends),
         arc_length_(field_->arc_length()),
         sign_(reduce == scenario::Reduce::Max ? 1.0 : -1.0) {
     if (field_->continuous()) add_ends(rod);
@@ -119,8 +131,9 @@ class ExtremeReader : public ProbeReader {
     evaluate(model, state);
     const auto best = static_cast<std::size_t>(std::max_element(values_.begin(), values_.end()) -
                                                values_.begin());
-    const bool inside = best > 0 && best + 1 < values_.size();
-    if (!inside || !smooth_at(best)) return sign_ * values_[best];
+    const std::size_t last = values_.size() - 1;
+    if (best == 0 || best == last) return sign_ * end_extreme(best, best == 0 ? 1 : last - 1);
+    if (!smooth_at(best)) return sign_ * values_[best];
     return sign_ * parabola_extreme(&arc_length_[best - 1], &values_[best - 1]);
   }
 
@@ -137,6 +150,16 @@ class ExtremeReader : public ProbeReader {
       end_ = linear_weights(field_->arc_length(), rod.rest_length());
       arc_length_.push_back(rod.rest_length());
     }
+  }
+
+  /// The end of the rod has the largest sample: the value there, or a larger one on the way to its
+  /// neighbour, of the parabola through the three outermost samples.
+  [[nodiscard]] double end_extreme(std::size_t end, std::size_t next) const {
+    if (!parabola_at_ends_ || values_.size() < 3 || !smooth_at(next)) return values_[end];
+    const double* s = &arc_length_[next - 1];
+    const double* f = &values_[next - 1];
+    const auto [from, to] = std::minmax(arc_length_[end], arc_length_[next]);
+    return peaks_between(s, f, from, to) ? parabola_extreme(s, f) : values_[end];
   }
 
   /// Whether a parabola may be laid through a value and its neighbours.
@@ -156,6 +179,7 @@ class ExtremeReader : public ProbeReader {
   }
 
   std::unique_ptr<RodField> field_;
+  bool parabola_at_ends_;           // of fields that are smooth up to the ends: positions
   std::vector<double> arc_length_;  // of the samples and the ends [m]
   Weights start_, end_;             // empty where the end is a sample
   double sign_;
@@ -186,10 +210,10 @@ Weights point_weights(const scenario::Probe& probe, QuantityKind kind, const Rod
     case QuantityKind::Velocity:
       return sample_weights(node_weights(rod, s));
     case QuantityKind::Bend:
+    case QuantityKind::Edge:
       return one_sided_weights(field.arc_length(), s, probe.side.value_or(scenario::Side::After),
                                rod.same_place());
     case QuantityKind::Turn:
-    case QuantityKind::Edge:
     case QuantityKind::Energy:
       break;
   }
@@ -210,7 +234,8 @@ std::unique_ptr<ProbeReader> make_reader(const scenario::Probe& probe, QuantityK
   if (kind == QuantityKind::Energy) return make_energy_reader(probe.quantity, probe.rod, model);
   const RodLayout& rod = model.rod(probe.rod.value());
   if (probe.over == scenario::Reduce::None) return make_point_reader(probe, kind, rod, model);
-  return std::make_unique<ExtremeReader>(make_probed_field(probe, rod, model), rod, probe.over);
+  return std::make_unique<ExtremeReader>(make_probed_field(probe, rod, model), rod, probe.over,
+                                         kind == QuantityKind::Position);
 }
 
 }  // namespace

@@ -117,9 +117,10 @@ class ProbeCheck {
   }
 
   void check_along(int rod, QuantityKind kind) {
-    if (probe_.side && kind != QuantityKind::Bend) {
+    if (probe_.side && kind != QuantityKind::Bend && kind != QuantityKind::Edge) {
       complain(path_ / "side",
-               fmt::format("'{}' has no sides: only curvature and moment jump", probe_.quantity));
+               fmt::format("'{}' has no sides: only curvature, moment, strain and tension jump",
+                           probe_.quantity));
     } else if (probe_.side && !probe_.at) {
       complain(path_ / "side", "a side is that of a place: it goes with 'at'");
     }

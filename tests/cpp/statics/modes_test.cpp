@@ -1,5 +1,6 @@
 // Vibration modes and linear buckling loads.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <cmath>
 
@@ -39,6 +40,30 @@ TEST_CASE("more modes than degrees of freedom are all there are") {
   Simulation simulation(Scenario::parse(straight_rod(3, kPinned + kStatic)));
   simulation.equilibrium();
   CHECK(simulation.modes(100).size() == 3);
+}
+
+TEST_CASE("rods from nanometres to kilometres have their modes") {
+  for (const double length : {1e-8, 1e-4, 1.0, 1e3}) {
+    // Density 2000 kg/m^3, modulus 1e11 Pa, square of length/50: f1 is pi/2 sqrt(EI/mu) / L^2.
+    const double side = length / 50.0;
+    const double EI = 1e11 * std::pow(side, 4) / 12.0;
+    const double mu = 2000.0 * side * side;
+    Simulation simulation(Scenario::parse(fmt::format(
+        "title: t\nrods:\n  - {{name: rod, nodes: 35, from: [0, 0], to: [{}, 0], cross_section: "
+        "{{stiffness: {{EA: {}, EI: {}, mass_per_length: {}}}}}}}\n"
+        "supports:\n  - {{rod: rod, at: start, fix: [x, \"y\"]}}\n"
+        "  - {{rod: rod, at: end, fix: [\"y\"]}}\nanalysis: {{modes: {{count: 4}}}}\n",
+        length, 1e11 * side * side, EI, mu)));
+    simulation.equilibrium();
+    const auto modes = simulation.modes(4);
+    REQUIRE(modes.size() == 4);
+    const double first = 0.5 * kPi * std::sqrt(EI / mu) / (length * length);
+    for (std::size_t i = 0; i < 3; ++i) {
+      CAPTURE(length);
+      const auto number = static_cast<double>(i + 1);
+      CHECK(modes[i].frequency == doctest::Approx(first * number * number).epsilon(2e-3));
+    }
+  }
 }
 
 TEST_CASE("an unstable equilibrium grows, one out of balance has no modes") {

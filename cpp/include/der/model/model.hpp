@@ -59,6 +59,18 @@ struct ForcePlace {
   Vec2 anchor = Vec2::Zero();     ///< [m]
 };
 
+/// A part of a rod on which a distributed force acts.
+struct DistributedPlace {
+  double from = 0.0, to = 0.0;         ///< rest arc length [m]
+  std::array<Index, 2> force{-1, -1};  ///< controls of the load [N/m]
+
+  /// Consistent load of the linear interpolation along an edge from s0 to s1: what its end s1 takes
+  /// of its part from `a` to `b`, as a length [m], the integral of (s - s0)/(s1 - s0).
+  static double share_of_end(double a, double b, double s0, double s1) {
+    return (b - a) * (0.5 * (a + b) - s0) / (s1 - s0);
+  }
+};
+
 /// Where the nodes and edges of one rod are in the model, and what is known of it for probes and
 /// drawings. Only the builder assumes that a rod is a chain; everybody else reads these lists.
 struct RodLayout {
@@ -78,8 +90,9 @@ struct RodLayout {
   std::vector<Clamp> clamps;               ///< none on a rod that does not bend
   std::vector<MomentPlace> moment_places;  ///< no two at the same place
   std::vector<ForcePlace> force_places;    ///< of forces at single places
-  double draw_radius = 0.0;                ///< half the height of the section [m]; 0 if not known
-  std::vector<double> sphere_radius;       ///< per node [m]; 0: no sphere
+  std::vector<DistributedPlace> distributed_places;
+  double draw_radius = 0.0;           ///< half the height of the section [m]; 0 if not known
+  std::vector<double> sphere_radius;  ///< per node [m]; 0: no sphere
 
   [[nodiscard]] double rest_length() const { return arc_length.back(); }
   /// Two arc lengths [m] closer than this are the same place.

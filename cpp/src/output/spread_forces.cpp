@@ -1,0 +1,51 @@
+#include "output/spread_forces.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "der/core/index.hpp"
+
+namespace der {
+
+SpreadForces::SpreadForces(const RodLayout& rod, const Model& model) {
+  for (const Index node : rod.nodes) first_dofs_.push_back(model.dof(node, 0));
+  for (const ForcePlace& place : rod.force_places) {
+    std::vector<Weighted> nodes = node_weights(rod, place.arc_length);
+    if (nodes.size() > 1) forces_.push_back({place, std::move(nodes)});
+  }
+}
+
+Vec2 SpreadForces::node_point(Index node, const State& state) const {
+  return state.positions.segment<2>(first_dofs_[at(node)]);
+}
+
+Vec2 SpreadForces::point(std::size_t i, const State& state) const {
+  Vec2 point = Vec2::Zero();
+  for (const auto& [node, weight] : forces_[i].nodes) point += weight * node_point(node, state);
+  return point;
+}
+
+Vec2 SpreadForces::value(std::size_t i, const Model& model, const State& state) const {
+  const ForcePlace& place = forces_[i].place;
+  Vec2 value = -place.stiffness.cwiseProduct(point(i, state) - place.anchor);
+  for (int c = 0; c < 2; ++c) {
+    const Index control = place.force[at(c)];
+    if (control >= 0) value[c] += model.controls.value(control, state.time, state.ramps);
+  }
+  return value;
+}
+
+std::vector<bool> loaded_nodes(const RodLayout& rod, const Model& model) {
+  std::vector<bool> loaded(rod.nodes.size());
+  for (std::size_t i = 0; i < loaded.size(); ++i) {
+    loaded[i] = rod.sphere_radius[i] > 0.0 ||
+                model.free_index[at(model.dof(rod.nodes[i], 0))] < 0 ||
+                model.free_index[at(model.dof(rod.nodes[i], 1))] < 0;
+    for (const ForcePlace& place : rod.force_places) {
+      if (std::abs(place.arc_length - rod.arc_length[i]) <= rod.same_place()) loaded[i] = true;
+    }
+  }
+  return loaded;
+}
+
+}  // namespace der

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "der/core/types.hpp"
+#include "der/model/location.hpp"
+#include "der/model/model.hpp"
+#include "der/model/state.hpp"
+
+namespace der {
+
+/// The point forces between the nodes of a rod, of loads and of springs: where they stand, what
+/// they are, and the nodes over which the chain spreads them.
+class SpreadForces {
+ public:
+  struct Force {
+    ForcePlace place;
+    std::vector<Weighted> nodes;
+  };
+
+  SpreadForces(const RodLayout& rod, const Model& model);
+
+  [[nodiscard]] std::size_t size() const { return forces_.size(); }
+  [[nodiscard]] const Force& operator[](std::size_t i) const { return forces_[i]; }
+
+  /// [m]
+  [[nodiscard]] Vec2 node_point(Index node, const State& state) const;
+  /// Where force number `i` stands [m].
+  [[nodiscard]] Vec2 point(std::size_t i, const State& state) const;
+  /// Force number `i` [N].
+  [[nodiscard]] Vec2 value(std::size_t i, const Model& model, const State& state) const;
+
+ private:
+  std::vector<Index> first_dofs_;  // of each node
+  std::vector<Force> forces_;
+};
+
+/// Of each node of a rod: whether a force of a load, a support or a sphere may act on it.
+std::vector<bool> loaded_nodes(const RodLayout& rod, const Model& model);
+
+}  // namespace der

@@ -47,7 +47,8 @@ py::tuple dump(const SavedState& saved) {
                         to_array(velocities), to_array(extra_force), to_array(accelerations),
                         last_step, remembered, next_step, last_error, work.start, work.loads,
                         work.supports, work.drag, work.solver, audit.exchanged, audit.created,
-                        audit.written, audit.unreliable_from, moved, to_array(turns));
+                        audit.written, audit.folded_from, audit.folded_node, audit.unreliable_from,
+                        moved, to_array(turns));
 }
 
 SavedState read(const py::tuple& dumped) {
@@ -68,7 +69,8 @@ SavedState read(const py::tuple& dumped) {
   next_step = number();
   last_error = number();
   for (double* part : {&work.start, &work.loads, &work.supports, &work.drag, &work.solver,
-                       &audit.exchanged, &audit.created, &audit.written, &audit.unreliable_from}) {
+                       &audit.exchanged, &audit.created, &audit.written, &audit.folded_from,
+                       &audit.folded_node, &audit.unreliable_from}) {
     *part = number();
   }
   for (const auto& ramp : take().cast<std::vector<py::tuple>>()) {
@@ -81,7 +83,7 @@ SavedState read(const py::tuple& dumped) {
 }
 
 SavedState revive(const py::tuple& dumped) {
-  constexpr std::size_t kParts = 24;
+  constexpr std::size_t kParts = 26;
   try {
     if (dumped.size() != kParts || dumped[0].cast<std::string>() != kKind) refuse("other content");
     if (dumped[1].cast<int>() != kVersion) refuse("another version");

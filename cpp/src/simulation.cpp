@@ -462,7 +462,7 @@ std::string Simulation::describe_unstable_motion() const {
       "the motion is unstable at t = {:.6g} s: {}, and has been doubtful since t = {:.6g} s. To "
       "get "
       "a right result {}; to run on all the same, say 'allow_unstable: true' under 'time'",
-      state_.time, describe(state_.audit), state_.audit.unreliable_from, advice_on_steps());
+      state_.time, describe(model_, state_.audit), state_.audit.unreliable_from, advice_on_steps());
 }
 
 std::string Simulation::describe_divergence(const StepReport& report, double dt) {

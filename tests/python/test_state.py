@@ -235,7 +235,7 @@ PARTS = [
     *("positions", "velocities", "extra_force", "accelerations"),
     *("last_step", "history", "next_step", "last_error"),
     *("start", "loads", "supports", "drag", "solver"),
-    *("exchanged", "created", "written", "unreliable_from"),
+    *("exchanged", "created", "written", "folded_from", "folded_node", "unreliable_from"),
     *("ramps", "turns"),
 ]
 

@@ -138,3 +138,33 @@ def test_adaptive_steps_are_watched_too(whip):
         result = der.Simulation(whip).run(until=4)
     assert 2 < result.unreliable_from < 4
     assert -result.work["numerical"].min() > 0.4
+
+
+@pytest.mark.parametrize("integrator", ["tr_bdf2", "sdirk5", "energy_momentum"])
+def test_a_node_that_folds_over_is_named(integrator):
+    """A free rod that is flung together: beyond half a turn its bending energy jumps.
+
+    No step is short enough for that.
+    """
+    scene = {
+        "rods": [
+            {
+                "name": "rod",
+                "nodes": 3,
+                "from": [0, 0],
+                "to": [1, 0],
+                "natural_curvature": -1,
+                "initial_velocity": [[0, 9], [0, -9], [0, 9]],
+                "cross_section": {"stiffness": {"EA": 1e4, "EI": 0.5, "mass_per_length": 1}},
+            }
+        ],
+        "time": {"duration": 0.12, "step": 2e-4, "integrator": integrator},
+    }
+    with pytest.warns(der.UnreliableResultWarning, match=r"node 1 of rod 'rod' folded over"):
+        result = der.run(scene)
+    (warning,) = result.summary["warnings"]
+    assert "more nodes" in warning
+    # Both halves are turned up by then: the middle node is below the ends.
+    folded = result.positions[np.searchsorted(result.times, result.unreliable_from)]
+    first, last = folded[1] - folded[0], folded[2] - folded[1]
+    assert first @ last < -0.9 * np.linalg.norm(first) * np.linalg.norm(last)

@@ -18,7 +18,7 @@ constexpr hsize_t kSummaryValues = 5;  // of a ProbeSummary
 constexpr std::size_t kRampValues = 5;
 constexpr hsize_t kCounters = 5;     // of Counters
 constexpr hsize_t kWorkValues = 5;   // of Work
-constexpr hsize_t kAuditValues = 4;  // of EnergyAudit
+constexpr hsize_t kAuditValues = 6;  // of EnergyAudit
 
 Handle with_unit(Handle dataset, const std::string& unit) {
   hdf5::write_attribute(dataset.id(), "unit", unit);
@@ -80,8 +80,8 @@ std::array<double, kWorkValues> flatten(const Work& work) {
 }
 
 std::array<double, kAuditValues> flatten(const EnergyAudit& audit) {
-  const auto& [exchanged, created, written, unreliable_from] = audit;
-  return {exchanged, created, written, unreliable_from};
+  const auto& [exchanged, created, written, folded_from, folded_node, unreliable_from] = audit;
+  return {exchanged, created, written, folded_from, folded_node, unreliable_from};
 }
 
 std::array<std::int64_t, kCounters> flatten(const Counters& all) {
@@ -317,7 +317,7 @@ std::optional<Checkpoint> CheckpointStore::read() const {
   const auto works = read_values<double>(slot.work, kWorkValues);
   state.work = {works[0], works[1], works[2], works[3], works[4]};
   const auto audit = read_values<double>(slot.audit, kAuditValues);
-  state.audit = {audit[0], audit[1], audit[2], audit[3]};
+  state.audit = {audit[0], audit[1], audit[2], audit[3], audit[4], audit[5]};
   if (num_probes_ > 0) {
     checkpoint.extremes =
         unflatten(read_values<double>(slot.extremes, num_probes_ * kSummaryValues));

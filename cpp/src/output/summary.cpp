@@ -145,8 +145,11 @@ UsedSolver used_solver(const Simulation& simulation) {
 std::string created_energy_warning(const Simulation& simulation) {
   const EnergyAudit& audit = simulation.state().audit;
   if (audit.unreliable_from < 0.0) return {};
+  const std::string advice = audit.folded_from >= 0.0
+                                 ? "give the rod more nodes, damping or a smoother load"
+                                 : simulation.advice_on_steps();
   return fmt::format("result unreliable from t = {:.4g} s on: {}. To get a right one {}",
-                     audit.unreliable_from, describe(audit), simulation.advice_on_steps());
+                     audit.unreliable_from, describe(simulation.model(), audit), advice);
 }
 
 std::vector<std::string> warnings(const Simulation& simulation, const RunOutcome& outcome) {

@@ -3,7 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <tuple>
+
+#include "der/core/index.hpp"
+#include "der/energies/element_energy.hpp"
 
 namespace der {
 namespace {
@@ -24,6 +29,46 @@ double strain_energy(const Model& model, double strain) {
   return energy;
 }
 
+/// The two edges that an element of bending lies between.
+struct Corner {
+  double cosine;  ///< times both lengths
+  double sine;
+};
+Corner corner(const std::array<Index, 6>& dofs, const Vector& positions) {
+  const auto x = gather(dofs, positions);
+  const Vec2 e0 = x.segment<2>(2) - x.head<2>();
+  const Vec2 e1 = x.tail<2>() - x.segment<2>(2);
+  return {e0.dot(e1), e0.x() * e1.y() - e0.y() * e1.x()};
+}
+
+template <class Kernel>
+Index folded_node_of(const ElementList<Kernel>& bends, const Model& model, const Vector& before,
+                     const Vector& after) {
+  for (const auto& dofs : bends.dofs) {
+    const Corner now = corner(dofs, after);
+    if (now.cosine >= 0.0) continue;
+    const Corner then = corner(dofs, before);
+    if (then.cosine < 0.0 && now.sine * then.sine < 0.0) return dofs[2] / model.dimension;
+  }
+  return -1;
+}
+
+/// The first node whose turning angle has gone through half a turn; -1 if there is none.
+Index folded_node(const Model& model, const Vector& before, const Vector& after) {
+  using Bend = PlanarBend<AngleCurvature>;
+  const Index node =
+      folded_node_of(std::get<ElementList<Bend>>(model.elements), model, before, after);
+  return node >= 0 ? node
+                   : folded_node_of(std::get<ElementList<FromPivot<Bend>>>(model.elements), model,
+                                    before, after);
+}
+
+std::string created_text(const EnergyAudit& audit, const std::string& times) {
+  return fmt::format(
+      "the integrator created {:.2g} J, {} the energy exchanged in the run ({:.2g} J)",
+      audit.created, times, audit.exchanged);
+}
+
 std::string times_text(double share) {
   if (share < 1.0) return fmt::format("{:.0f} % of", 100.0 * share);
   if (share < 1.5) return "as much as";
@@ -40,7 +85,7 @@ EnergyWatch::EnergyWatch(const Model& model)
       positions_(Vector::Zero(model.num_dofs())),
       velocities_(Vector::Zero(model.num_dofs())) {}
 
-void EnergyWatch::begin(const State& state) { after_step(state); }
+void EnergyWatch::begin(const State& state) { keep(state); }
 
 void EnergyWatch::before_step(State& state) {
   if (state.positions == positions_ && state.velocities == velocities_) return;
@@ -50,7 +95,20 @@ void EnergyWatch::before_step(State& state) {
       energies(model_, controls_, state.positions, state.velocities).total() - before;
 }
 
-void EnergyWatch::after_step(const State& state) {
+void EnergyWatch::after_step(State& state) {
+  EnergyAudit& audit = state.audit;
+  if (audit.folded_from < 0.0) {
+    const Index node = folded_node(model_, positions_, state.positions);
+    if (node >= 0) {
+      audit.folded_from = state.time;
+      audit.folded_node = node;
+      if (audit.unreliable_from < 0.0) audit.unreliable_from = state.time;
+    }
+  }
+  keep(state);
+}
+
+void EnergyWatch::keep(const State& state) {
   positions_ = state.positions;
   velocities_ = state.velocities;
 }
@@ -75,10 +133,18 @@ bool is_doubtful(const EnergyAudit& audit) { return audit.created > kDoubtful * 
 
 bool is_unstable(const EnergyAudit& audit) { return audit.created > kUnstable * audit.exchanged; }
 
-std::string describe(const EnergyAudit& audit) {
-  return fmt::format(
-      "the integrator created {:.2g} J, {} the energy exchanged in the run ({:.2g} J)",
-      audit.created, times_text(audit.created / audit.exchanged), audit.exchanged);
+std::string describe(const Model& model, const EnergyAudit& audit) {
+  std::string text;
+  if (audit.folded_from >= 0.0) {
+    const NodePlace place = place_of(model, static_cast<Index>(audit.folded_node));
+    text = fmt::format(
+        "node {} of rod '{}' folded over at t = {:.4g} s, where the turning angle jumps by a whole "
+        "turn",
+        place.place, place.rod, audit.folded_from);
+  }
+  if (!is_doubtful(audit)) return text;
+  return text + (text.empty() ? "" : ", and ") +
+         created_text(audit, times_text(audit.created / audit.exchanged));
 }
 
 }  // namespace der

@@ -23,10 +23,12 @@ struct Work {
 /// Energy that the time stepping creates, against what a run exchanges between kinds of energy, as
 /// `EnergyWatch` has seen it so far.
 struct EnergyAudit {
-  double exchanged = 0.0;         ///< [J] the most at an instant
-  double created = 0.0;           ///< [J] the most at an instant
-  double written = 0.0;           ///< [J] put in by a program that wrote positions or velocities
-  double unreliable_from = -1.0;  ///< [s] when it first was too much; negative: never
+  double exchanged = 0.0;     ///< [J] the most at an instant
+  double created = 0.0;       ///< [J] the most at an instant
+  double written = 0.0;       ///< [J] put in by a program that wrote positions or velocities
+  double folded_from = -1.0;  ///< [s] when a node first turned through half a turn; negative: never
+  double folded_node = -1.0;  ///< its number
+  double unreliable_from = -1.0;  ///< [s] when one of these first was too much; negative: never
 };
 
 /// Everything that changes in a run. A plain value: copy it to save it, assign it to go back, bit

@@ -18,6 +18,9 @@ namespace der {
 /// as little as 1/4.) A look costs a fifteenth of an implicit step and half of an explicit one, so
 /// that only every sixteenth is looked at, of explicit ones every sixty-fourth. What a program
 /// writes into the state between two steps is told apart.
+///
+/// A node that turns through half a turn is another reason for doubt: the turning angle, and with
+/// it the bending energy of a rod with a natural shape or a moment, jumps there by a whole turn.
 class EnergyWatch {
  public:
   /// Implicit steps between two looks.
@@ -29,12 +32,14 @@ class EnergyWatch {
   void begin(const State& state);
   /// To be called before each step: books what a program has written since the last one.
   void before_step(State& state);
-  /// To be called after each step. Allocates nothing.
-  void after_step(const State& state);
+  /// To be called after each step: enters a node that has folded over in it. Allocates nothing.
+  void after_step(State& state);
   /// Enters the energies of the present state into its audit.
   void look(State& state);
 
  private:
+  void keep(const State& state);
+
   const Model& model_;
   double rounding_;  // [J] of the energies
   Vector controls_;
@@ -46,7 +51,8 @@ class EnergyWatch {
 bool is_doubtful(const EnergyAudit& audit);
 bool is_unstable(const EnergyAudit& audit);
 
-/// "the integrator created 7.4e+05 J, twice the energy exchanged in the run (3.7e+05 J)"
-std::string describe(const EnergyAudit& audit);
+/// "the integrator created 7.4e+05 J, twice the energy exchanged in the run (3.7e+05 J)", or which
+/// node folded over, or both; empty if there is no reason for doubt.
+std::string describe(const Model& model, const EnergyAudit& audit);
 
 }  // namespace der

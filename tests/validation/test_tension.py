@@ -1,9 +1,8 @@
 """Strain and tension beside the forces that make them jump, against statics by hand."""
 
+import der
 import numpy as np
 import pytest
-
-import der
 
 SCENE = """
 title: Axial forces

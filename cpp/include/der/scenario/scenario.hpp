@@ -237,7 +237,7 @@ struct Probe {
   std::optional<std::string> rod;  ///< absent: the whole model (energies only)
   std::optional<Location> at;
   Reduce over = Reduce::None;  ///< with `over: rod`: the extreme along the rod
-  std::optional<Side> side;    ///< absent: after; curvature and moment only
+  std::optional<Side> side;    ///< absent: after; quantities that jump only
   Mark mark;
 };
 

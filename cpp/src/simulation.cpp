@@ -307,7 +307,7 @@ EquilibriumReport Simulation::equilibrium(bool leave_saddles) {
         status_of(report.failed->cause));
   }
   found.velocities.setZero();
-  state_ = found;
+  state_ = std::as_const(found);  // copied, not moved: views of the vectors stay valid
   start_anew();
   return report;
 }

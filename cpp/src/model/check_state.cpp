@@ -18,7 +18,7 @@ void demand(bool fits, const std::string& problem) {
 }
 
 void check_sizes(const Model& model, const State& state) {
-  const auto check = [](Index size, Index wanted, const char* what) {
+  const auto check = [](Eigen::Index size, Index wanted, const char* what) {
     demand(size == wanted,
            fmt::format("the state has {} {}, this simulation has {}: a state can only be restored "
                        "into a simulation of the same rods and supports",

@@ -58,7 +58,9 @@ class TurnField : public RodField {
   TurnField(const RodLayout& rod, const std::vector<Weighted>& nodes, bool continuous,
             const Model& model)
       : RodField(arc_lengths(rod, nodes)), continuous_(continuous) {
-    for (const auto& [node, factor] : nodes) cells_.push_back({cell_at(rod, node, model), factor});
+    for (const auto& [node, factor] : nodes) {
+      cells_.emplace_back(cell_at(rod, node, model), factor);
+    }
   }
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {

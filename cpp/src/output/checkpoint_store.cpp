@@ -102,8 +102,8 @@ std::vector<Ramp> to_ramps(const std::vector<double>& flat) {
   std::vector<Ramp> ramps;
   for (std::size_t i = 0; i < flat.size(); i += kRampValues) {
     const double control = flat[i];
-    if (!(control >= 0.0 && control <= std::numeric_limits<Index>::max()) ||
-        control != std::floor(control)) {
+    const bool in_range = control >= 0.0 && control <= std::numeric_limits<Index>::max();
+    if (!in_range || control != std::floor(control)) {
       throw IoError("a ramp of the checkpoint is of no control");
     }
     ramps.push_back(

@@ -116,7 +116,7 @@ Handle uncached_access() {
 /// Modification times are left out: they would be written with every frame.
 Handle plain_creation() {
   Handle creation = property_list(H5P_DATASET_CREATE);
-  check(H5Pset_obj_track_times(creation.id(), 0), "create a dataset");
+  check(H5Pset_obj_track_times(creation.id(), false), "create a dataset");
   return creation;
 }
 
@@ -219,7 +219,7 @@ Handle open_to_read(const std::filesystem::path& path) {
   const Handle access = property_list(H5P_FILE_ACCESS);
 #if H5_VERSION_GE(1, 10, 7)
   // A run that goes on can be read: what it has flushed is whole.
-  check(H5Pset_file_locking(access.id(), 0, 1), "open a file without a lock");
+  check(H5Pset_file_locking(access.id(), false, true), "open a file without a lock");
 #endif
   return open_any_file(path, H5F_ACC_RDONLY, access.id());
 }

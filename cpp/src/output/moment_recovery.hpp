@@ -81,7 +81,7 @@ class MomentRecovery {
   [[nodiscard]] Where where_is(double s, Index edge) const;
   void add_moments(Index edge, Index start, Index end);
   void add_forces(Index edge, Index start, Index end);
-  [[nodiscard]] double carried(std::size_t place, const Model& model, const State& state) const;
+  [[nodiscard]] double carried(std::size_t number, const Model& model, const State& state) const;
 
   RodLayout rod_;
   SpreadForces forces_;

@@ -134,8 +134,8 @@ void RunFile::Writer::go_on(Simulation& simulation, Recorder& recorder) {
 hsize_t RunFile::Writer::frames_up_to(double time, const StepPlan& plan) const {
   const std::vector<double> times = frames_.times();
   hsize_t count = 0;
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    if (times[i] <= time && plan.is_frame(times[i])) ++count;
+  for (const double saved : times) {
+    if (saved <= time && plan.is_frame(saved)) ++count;
   }
   return count;
 }

@@ -18,10 +18,10 @@ constexpr std::size_t kStatusLength = 32;
 /// The groups of `Dataset`s, and what each holds: one value an item, but for shapes.
 struct DataGroup {
   const char* name;
-  std::vector<std::string> columns;
+  std::array<const char*, 5> columns;  // null beyond the last one
   bool has_shapes;
 };
-const std::array<DataGroup, 3> kDataGroups{{
+constexpr std::array<DataGroup, 3> kDataGroups{{
     {"modes", {"frequencies", "growth_rates"}, true},
     {"buckling", {"load_factors", "rotations", "strains"}, true},
     {"path", {"arc", "branch", "event", "factor", "unstable_directions"}, false},
@@ -75,7 +75,8 @@ Dataset read_dataset(hid_t group, const std::string& group_name, const std::stri
 /// Throws IoError where numbers that count or number things do not.
 void check_whole(const Dataset& dataset, double largest) {
   for (const double value : dataset.values) {
-    if (!(value >= 0.0 && value <= largest) || value != std::floor(value)) {
+    const bool in_range = value >= 0.0 && value <= largest;
+    if (!in_range || value != std::floor(value)) {
       throw IoError("'" + dataset.name + "' holds what is no whole number in its range");
     }
   }
@@ -145,7 +146,8 @@ std::vector<Dataset> read_datasets(hid_t file, hsize_t nodes, hsize_t dimension,
     const hsize_t items = kind.has_shapes
                               ? read_array<double>(group.id(), kind.columns.front()).values.size()
                               : frames;
-    for (const std::string& column : kind.columns) {
+    for (const char* column : kind.columns) {
+      if (column == nullptr) break;
       datasets.push_back(read_dataset(group.id(), kind.name, column, {items}));
     }
     if (kind.has_shapes) {

@@ -56,6 +56,8 @@ _FLAGGED = (*_UNSETTLED, "damped", "contradicted", "failed", "other branch", "un
 
 _FACTOR_AT_ORDER = 1.25
 _FACTOR_OFF_ORDER = 3.0
+#: Where the changes shrink at no order, what is left of them may be more than at order 1.
+_FACTOR_SETTLED = 4.0
 _NEAR_ORDER = 0.1  # of the expected order
 _SLOW = 0.75  # of the expected order
 _LEAST_ORDER = 0.5
@@ -141,6 +143,8 @@ def estimate_error(
         verdict = "settled"
     factor = _FACTOR_AT_ORDER if trend.at_order and len(values) == 3 else _FACTOR_OFF_ORDER
     reached = (*values, trend.limit)
+    if verdict == "settled":
+        factor = _FACTOR_SETTLED
     bar = factor * (max(reached) - min(reached)) + noise
     return ErrorEstimate(trend.limit - values[0], bar, trend.order, order, verdict)
 

@@ -301,6 +301,7 @@ class PathTracer {
     for (const int side : {1, -1}) {
       if (const auto node = first_point(crossings_[number].node, side)) trace_new(*node, side);
     }
+    // Tracing may add to both lists. NOLINTNEXTLINE(modernize-loop-convert)
     for (std::size_t i = 0; i < crossings_[number].beyond.size(); ++i) {
       trace_new(PathNode(crossings_[number].beyond[i]), 0);
     }

@@ -171,12 +171,11 @@ TEST_CASE("a run that would fill the disk is refused before anything is touched"
   const TemporaryFolder temporary;
   const RunFolder folder(temporary.path());
   run_scene(folder, Scenario::parse(kSpheres));
-  const Scenario endless =
-      Scenario::parse(kSpheres, "spheres",
-                      {{"time.duration", "9e5"},
-                       {"time.step", "1e-3"},
-                       {"output.every", "1e-3"},
-                       {"rods.0.nodes", "10001"}});
+  const Scenario endless = Scenario::parse(kSpheres, "spheres",
+                                           {{"time.duration", "9e5"},
+                                            {"time.step", "1e-3"},
+                                            {"output.every", "1e-3"},
+                                            {"rods.0.nodes", "10001"}});
   CHECK_THROWS_WITH_AS(run_scene(folder, endless), doctest::Contains("raise output.every"),
                        IoError);
   CHECK(summary_of(folder)["status"] == "completed");

@@ -149,6 +149,8 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
 template <const Tableau& tableau>
 std::unique_ptr<Stepper> make_runge_kutta(const Model& model, const Assembler& assembler,
                                           LinearSolver& solver, const StepperOptions& options) {
+  // The check sees parentheses that only the instantiation has.
+  // NOLINTNEXTLINE(readability-redundant-parentheses)
   return std::make_unique<DiagonallyImplicitRungeKutta>(tableau, model, assembler, solver, options);
 }
 

@@ -49,7 +49,7 @@ std::vector<double> table(const py::dict& columns, const Names& names, std::size
   const std::size_t width = std::size(names);
   std::vector<double> rows(width * frames);
   for (std::size_t i = 0; i < width; ++i) {
-    const std::string name = names[i];
+    const std::string& name = names[i];
     if (!columns.contains(name)) throw py::value_error("there is no column " + name);
     const auto column =
         numbers(columns[py::str(name)].cast<Numbers>(), {static_cast<py::ssize_t>(frames)}, name);

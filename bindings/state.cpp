@@ -88,7 +88,7 @@ SavedState revive(const py::tuple& dumped) {
     if (dumped.size() != kParts || dumped[0].cast<std::string>() != kKind) refuse("other content");
     if (dumped[1].cast<int>() != kVersion) refuse("another version");
     SavedState saved = read(dumped);
-    const Index dofs = saved.state.positions.size();
+    const Eigen::Index dofs = saved.state.positions.size();
     if (saved.dimension != 2 || dofs % saved.dimension != 0) refuse("another number of dimensions");
     if (saved.state.velocities.size() != dofs) refuse("as many velocities as positions are needed");
     return saved;

@@ -66,6 +66,10 @@ class Outcome:
     refused: list[str] = dataclasses.field(default_factory=list)
 
 
+#: A reference whose own error is larger, against the size of the quantity, tells nothing.
+_KNOWN = 0.5
+
+
 def judge(case: Case, name: str) -> Outcome:
     """Run ``der verify`` on a case and compare."""
     scene, refused = _accepted(case.scene)
@@ -85,9 +89,13 @@ def judge(case: Case, name: str) -> Outcome:
     except (UnsolvedError, NoSolutionError) as error:
         outcome.remark = f"unsolved: {error}"
         return outcome
+    if any(truth.error > _KNOWN * truth.scale for truth in truths.values()):
+        outcome.remark = "unsolved: the reference is not converged"
+        return outcome
+    alone = _events_of_this_mesh(verification)
     for value in verification.values:
-        truth = truths.get((value.probe, value.what))
-        if truth is None or not math.isfinite(value.value):
+        truth = truths.get((value.probe, _true_event(value.what, alone)))
+        if truth is None or value.what in alone or not math.isfinite(value.value):
             continue
         outcome.rows.append(
             Row(
@@ -105,6 +113,24 @@ def judge(case: Case, name: str) -> Outcome:
             )
         )
     return outcome
+
+
+def _events_of_this_mesh(verification: der.Verification) -> set[str]:
+    """The events that verify says only the scene's own mesh has: they have no true values."""
+    return {
+        value.what
+        for value in verification.values
+        if value.verdict.startswith("unmatched") and math.isfinite(value.value)
+    }
+
+
+def _true_event(what: str, alone: set[str]) -> str:
+    """Name an event as the reference counts it, without those of the mesh alone."""
+    kind, _, number = what.rpartition(" ")
+    if not alone or not number.isdigit():
+        return what
+    before = sum(f"{kind} {n}" in alone for n in range(1, int(number)))
+    return f"{kind} {int(number) - before}"
 
 
 def _accepted(scene: dict[str, Any]) -> tuple[der.Scenario | None, list[str]]:

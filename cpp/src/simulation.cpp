@@ -460,8 +460,7 @@ std::string Simulation::advice_on_steps() const {
 std::string Simulation::describe_unstable_motion() const {
   return fmt::format(
       "the motion is unstable at t = {:.6g} s: {}, and has been doubtful since t = {:.6g} s. To "
-      "get "
-      "a right result {}; to run on all the same, say 'allow_unstable: true' under 'time'",
+      "get a right result {}; to run on all the same, say 'allow_unstable: true' under 'time'",
       state_.time, describe(model_, state_.audit), state_.audit.unreliable_from, advice_on_steps());
 }
 

@@ -6,9 +6,10 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from der.exporting import ExportFormat, export
+from der.probe_series import make_probes
 from der.progress import ProgressFunction
 from der.run_data import RunData
 from der.run_folder_writer import save_run
@@ -17,6 +18,7 @@ from der.viewing import view
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from der._core import Recording, Scenario
     from der.plotting.overview import What
 
 
@@ -86,3 +88,23 @@ class Result(RunData):
             f"<der.Result of {self.scenario.title!r}: {self.status}, {frames} frames of "
             f"{nodes} nodes, probes: {', '.join(self.probes) or 'none'}>"
         )
+
+
+def to_result(
+    scenario: Scenario, recording: Recording, probes: Sequence[str], summary: dict[str, Any]
+) -> Result:
+    """Return what the engine recorded as a result, with its `probes` in that order."""
+    return Result(
+        scenario=scenario,
+        times=recording.times,
+        steps=recording.steps,
+        positions=recording.positions,
+        velocities=recording.velocities,
+        energies=recording.energies,
+        work=recording.work,
+        probes=make_probes(
+            {name: recording.probes[name] for name in probes}, recording.probe_units, summary
+        ),
+        summary=summary,
+        data={name: array for name, (array, _) in recording.data.items()},
+    )

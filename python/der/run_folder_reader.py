@@ -12,8 +12,7 @@ from typing import Any
 
 from der._core import FileRecording, Scenario, read_run
 from der.errors import DerError
-from der.probe_series import make_probes
-from der.result import Result
+from der.result import Result, to_result
 
 
 def open_run(folder: str | os.PathLike[str]) -> Result:
@@ -56,20 +55,7 @@ def _to_result(recording: FileRecording, scenario: Scenario, folder: Path) -> Re
     if set(names) != set(recording.probe_units):
         raise ValueError(f"{folder / 'results.h5'} has other probes than its scene")
     summary = _read_summary(folder, status=recording.status)
-    return Result(
-        scenario=scenario,
-        times=recording.times,
-        steps=recording.steps,
-        positions=recording.positions,
-        velocities=recording.velocities,
-        energies=recording.energies,
-        work=recording.work,
-        probes=make_probes(
-            {name: recording.probes[name] for name in names}, recording.probe_units, summary
-        ),
-        summary=summary,
-        data={name: array for name, (array, _) in recording.data.items()},
-    )
+    return to_result(scenario, recording, list(names), summary)
 
 
 def _read_summary(folder: Path, status: str) -> dict[str, Any]:

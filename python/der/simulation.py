@@ -14,9 +14,8 @@ from der import _core
 from der._core import RunRecording, Scenario
 from der.analyses import Modes
 from der.errors import UnreliableResultWarning, error_for, warn
-from der.probe_series import make_probes
 from der.progress import ProgressFunction, ProgressLine
-from der.result import Result
+from der.result import Result, to_result
 from der.scene_loads import value_at
 
 if TYPE_CHECKING:
@@ -365,16 +364,6 @@ def as_scenario(scenario: SceneLike) -> Scenario:
 
 
 def _to_result(scenario: Scenario, recording: RunRecording) -> Result:
-    summary = json.loads(recording.summary_json)
-    return Result(
-        scenario=scenario,
-        times=recording.times,
-        steps=recording.steps,
-        positions=recording.positions,
-        velocities=recording.velocities,
-        energies=recording.energies,
-        work=recording.work,
-        probes=make_probes(recording.probes, recording.probe_units, summary),
-        summary=summary,
-        data={name: array for name, (array, _) in recording.data.items()},
+    return to_result(
+        scenario, recording, list(recording.probes), json.loads(recording.summary_json)
     )

@@ -11,7 +11,7 @@
 namespace der::python {
 namespace {
 
-/// Of the layout of a dumped state; another one is refused.
+/// Version of the layout of a dumped state; another one is refused.
 constexpr int kVersion = 1;
 constexpr const char* kKind = "der.State";
 

@@ -13,7 +13,7 @@
 namespace der::hdf5 {
 namespace {
 
-/// Of attributes that are read [bytes].
+/// Largest size of attributes that are read [bytes].
 constexpr std::size_t kLongestText = std::size_t{1} << 16;
 
 std::recursive_mutex& library_mutex() {
@@ -163,7 +163,7 @@ RowSelection select_rows(hid_t dataset, hsize_t first, hsize_t count) {
   return {std::move(in_file), simple_space(block, nullptr)};
 }
 
-/// Of an open file, in the operating system.
+/// Descriptor of an open file in the operating system.
 int descriptor(hid_t file) {
   void* handle = nullptr;
   check(H5Fget_vfd_handle(file, H5P_DEFAULT, &handle), "find an open file");

@@ -17,7 +17,7 @@ namespace {
 constexpr double kDirectoryBytes = 30e3;
 constexpr double kCheckpointVectors = 12.0;
 
-/// Of a quotient: a whole number of intervals must not become one more.
+/// Rounding error of a quotient: a whole number of intervals must not become one more.
 constexpr double kRounding = 1e-12;
 
 double num_dofs(const Simulation& simulation) {

@@ -16,7 +16,7 @@ namespace der {
 
 /// What a run file holds besides frames and checkpoints (layout: docs/results.md).
 
-/// Of the layout; readers refuse what they do not know.
+/// Version of the layout; readers refuse what they do not know.
 constexpr std::int64_t kFormatVersion = 4;
 
 /// Attributes of the file, the scene, and the rods.

@@ -35,7 +35,7 @@ class SpreadForces {
   std::vector<Force> forces_;
 };
 
-/// Of each node of a rod: whether a force of a load, a support or a sphere may act on it.
+/// For each node of a rod: whether a force of a load, a support or a sphere may act on it.
 std::vector<bool> loaded_nodes(const RodLayout& rod, const Model& model);
 
 }  // namespace der

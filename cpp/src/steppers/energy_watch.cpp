@@ -16,7 +16,7 @@ namespace {
 // Shares of the energy exchanged.
 constexpr double kDoubtful = 0.05;
 constexpr double kUnstable = 0.5;
-/// Of the energy held: what is less is rounding.
+/// Share of the energy held below which a change is rounding.
 constexpr double kRounding = 1e-10;
 /// Strain of all edges whose energy is rounding, in a structure at rest too.
 constexpr double kRoundingStrain = 1e-10;

@@ -9,7 +9,7 @@ namespace der {
 
 // One maker for each stepper's file; `make_stepper.cpp` lists them.
 
-/// Of any diagonally implicit Runge-Kutta method; the .cpp instantiates it for each tableau.
+/// Maker of diagonally implicit Runge-Kutta methods; the .cpp instantiates it for each tableau.
 template <const Tableau& tableau>
 std::unique_ptr<Stepper> make_runge_kutta(const Model&, const Assembler&, LinearSolver&,
                                           const StepperOptions&);

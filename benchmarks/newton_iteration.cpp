@@ -11,7 +11,7 @@
 #include "der/building/builder.hpp"
 #include "der/model/state.hpp"
 #include "der/solvers/banded_ldlt.hpp"
-#include "der/solvers/newton.hpp"
+#include "der/solvers/stage.hpp"
 
 namespace der {
 namespace {
@@ -43,18 +43,17 @@ struct Problem {
         pattern(build_pattern(model)),
         solver(pattern),
         assembler(model, solver.layout()),
-        state(initial_state(model)),
+        here(configuration_of(model, initial_state(model))),
         stage(model),
         gradient(Vector::Zero(model.num_dofs())),
         values(Vector::Zero(assembler.num_values())),
         right_side(Vector::Zero(model.num_free())) {
-    model.controls.evaluate(0.0, stage.controls);
     stage.inertia = 1e6;  // a time step of 1 ms
-    stage.inertia_target = state.positions;
+    stage.inertia_target = here.coordinates;
   }
 
   void assemble() {
-    assembler.gradient_and_hessian(state.positions, stage.controls, gradient, values);
+    assembler.gradient_and_hessian(here, gradient, values);
     assembler.add_mass(stage.mass, stage.inertia, values);
   }
 
@@ -62,7 +61,7 @@ struct Problem {
     assemble();
     benchmark::DoNotOptimize(solver.factorize(values));
     for (Index i = 0; i < model.num_free(); ++i) {
-      right_side[i] = -gradient[model.free_dofs[static_cast<std::size_t>(i)]];
+      right_side[i] = -gradient[model.dofs.free()[static_cast<std::size_t>(i)]];
     }
     solver.solve(right_side);
     benchmark::DoNotOptimize(right_side.data());
@@ -72,7 +71,7 @@ struct Problem {
   Pattern pattern;
   BandedLdlt solver;
   Assembler assembler;
-  State state;
+  Configuration here;
   Stage stage;
   Vector gradient;
   Vector values;
@@ -103,7 +102,7 @@ void assembly_alone(benchmark::State& state) {
 void residual_alone(benchmark::State& state) {
   Problem problem(static_cast<int>(state.range(0)));
   for (auto _ : state) {
-    problem.assembler.gradient(problem.state.positions, problem.stage.controls, problem.gradient);
+    problem.assembler.gradient(problem.here, problem.gradient);
     benchmark::DoNotOptimize(problem.gradient.data());
   }
   count_nodes(state);

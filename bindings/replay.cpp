@@ -28,7 +28,7 @@ std::vector<std::string> held_components(Index node, const Model& model) {
   const std::array<const char*, 3> names{"x", "y", "z"};
   std::vector<std::string> result;
   for (int c = 0; c < model.dimension; ++c) {
-    if (model.free_index[at(model.dof(node, c))] < 0) result.emplace_back(names[at(c)]);
+    if (!model.dofs.is_free(model.dof(node, c))) result.emplace_back(names[at(c)]);
   }
   return result;
 }

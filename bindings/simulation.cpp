@@ -146,7 +146,7 @@ void bind_arrays(PySimulationClass& cls) {
       .def_property_readonly(
           "free_dofs",
           [](const PySimulation& s) {
-            const std::vector<Index>& free = s.engine().model().free_dofs;
+            const std::vector<Index>& free = s.engine().model().dofs.free();
             return py::array_t<Index>(static_cast<py::ssize_t>(free.size()), free.data());
           },
           "Places in `positions.ravel()` of the degrees of freedom that no support holds, shape\n"

@@ -317,7 +317,7 @@ std::vector<Mode> Simulation::modes(int count) {
   constexpr double kBalanced = 1e-6;
   const Forces now = forces();
   Stiffness stiffness(model_, assembler_, *solver_.solver);
-  stiffness.evaluate(state_.positions, now.controls);
+  stiffness.evaluate(now.here);
   const double unbalanced = now.unbalanced(model_).lpNorm<Eigen::Infinity>();
   const double acting =
       std::max(now.gradient.lpNorm<Eigen::Infinity>(), now.external.lpNorm<Eigen::Infinity>());
@@ -327,8 +327,7 @@ std::vector<Mode> Simulation::modes(int count) {
                             "balance here: call equilibrium() first",
                             unbalanced));
   }
-  return vibration_modes(model_, assembler_, *solver_.solver, state_.positions, now.controls,
-                         count);
+  return vibration_modes(model_, assembler_, *solver_.solver, now.here, count);
 }
 
 LinearBuckling Simulation::buckling(int count) {
@@ -377,27 +376,25 @@ void Simulation::show(const PathPoint& point, std::int64_t index) {
 }
 
 Vector Simulation::Forces::unbalanced(const Model& model) const {
-  return (gradient - external)(model.free_dofs);
+  return (gradient - external)(model.dofs.free());
 }
 
 Simulation::Forces Simulation::forces() const {
   Forces now;
   now.gradient.resize(model_.num_dofs());
-  evaluate_controls(model_, state_, state_.time, now.controls);
-  external_force(model_, now.controls, state_.extra_force, now.external);
-  assembler_.gradient(state_.positions, now.controls, now.gradient);
+  configuration_of(model_, state_, now.here);
+  external_force(model_, now.here.controls, state_.extra_force, now.external);
+  assembler_.gradient(now.here, now.gradient);
   return now;
 }
 
 Vector Simulation::gradient() const { return forces().unbalanced(model_); }
 
 SymmetricMatrix Simulation::hessian() const {
-  Vector controls;
-  evaluate_controls(model_, state_, state_.time, controls);
   const Assembler assembler(model_, MatrixLayout::compressed(pattern_));
   Vector gradient(model_.num_dofs());
   Vector values(assembler.num_values());
-  assembler.gradient_and_hessian(state_.positions, controls, gradient, values);
+  assembler.gradient_and_hessian(configuration_of(model_, state_), gradient, values);
   return {pattern_, values.head(pattern_.nonzeros())};
 }
 

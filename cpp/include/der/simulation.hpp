@@ -140,7 +140,7 @@ class Simulation {
   void check_finite_state() const;
   /// What acts at the present state.
   struct Forces {
-    Vector controls;
+    Configuration here;
     Vector external;  ///< [N]
     Vector gradient;  ///< [N] of the elements' energies
     /// Over the free degrees of freedom [N].

@@ -1,10 +1,15 @@
 #include "der/assembly/assembler.hpp"
 
 #include <algorithm>
+#include <array>
+#include <tuple>
 #include <utility>
 
+#include "der/assembly/planar_chain.hpp"
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
+#include "der/energies/registry.hpp"
+#include "der/kinematics/planar_edge.hpp"
 
 namespace der {
 namespace {
@@ -42,50 +47,78 @@ std::vector<std::size_t> loose_elements(std::size_t size, const std::vector<Plan
   return loose;
 }
 
-constexpr auto kKinds = std::make_index_sequence<std::tuple_size_v<ElementLists>>{};
+/// Where the elements of one kind that no chain assembles go.
+template <class Kernel>
+struct ScatterMap {
+  static constexpr std::size_t kSlots = Kernel::kDofs * (Kernel::kDofs + 1) / 2;
+  std::vector<std::size_t> elements;
+  std::vector<std::array<Index, kSlots>> slots;  // their lower triangles, column by column
+};
+
+template <class Lists>
+struct MapsOf;
+template <class... Kernels>
+struct MapsOf<std::tuple<ElementList<Kernels>...>> {
+  using type = std::tuple<ScatterMap<Kernels>...>;
+};
+
+constexpr auto kKinds = std::make_index_sequence<std::tuple_size_v<ElementLists::Lists>>{};
 
 }  // namespace
 
+struct Assembler::ScatterMaps {
+  std::vector<PlanarChain> chains;
+  MapsOf<ElementLists::Lists>::type elements;
+  std::vector<std::array<Index, 10>> edges;  // slots of every plain stretch element
+
+  template <Derivatives D>
+  void assemble(const Model& model, const Configuration& here, Vector& gradient,
+                Vector* values) const;
+};
+
+Assembler::~Assembler() = default;
+
 Assembler::Assembler(const Model& model, const MatrixLayout& layout)
-    : model_(model),
-      num_values_(layout.num_values() + 1),
-      chains_(PlanarChain::find(model, layout)) {
+    : model_(model), num_values_(layout.num_values() + 1) {
   const auto slot_of = [&](Index a, Index b) {
-    return layout.slot_or_spare(model.free_index[at(a)], model.free_index[at(b)]);
+    return layout.slot_or_spare(model.dofs.free_index(a), model.dofs.free_index(b));
   };
   for (Index i = 0; i < model.num_free(); ++i) diagonal_slots_.push_back(layout.slot(i, i));
   for (const auto& [a, b, mass] : model.mass.coupling) {
     coupling_slots_.push_back({slot_of(a, a), slot_of(b, b), slot_of(a, b)});
   }
+  auto maps = std::make_unique<ScatterMaps>();
+  maps->chains = PlanarChain::find(model, layout);
   for_each_pair(
-      model.elements, scatter_,
+      model.elements->lists, maps->elements,
       [&](const auto& list, auto& map) {
         using Kernel = typename std::decay_t<decltype(list)>::KernelType;
-        map.elements = loose_elements<Kernel>(list.size(), chains_);
+        map.elements = loose_elements<Kernel>(list.size(), maps->chains);
         for (const std::size_t e : map.elements) {
           map.slots.push_back(element_slots(list.dofs[e], slot_of));
         }
       },
       kKinds);
-  for (const auto& dofs : std::get<ElementList<Stretch<2>>>(model.elements).dofs) {
-    edge_slots_.push_back(element_slots(dofs, slot_of));
+  for (const auto& dofs : model.elements->of<Stretch<2>>().dofs) {
+    maps->edges.push_back(element_slots(dofs, slot_of));
   }
+  maps_ = std::move(maps);
 }
 
 template <Derivatives D>
-void Assembler::assemble(const Vector& positions, const Vector& controls, Vector& gradient,
-                         Vector* values) const {
+void Assembler::ScatterMaps::assemble(const Model& model, const Configuration& here,
+                                      Vector& gradient, Vector* values) const {
   gradient.setZero();
   if constexpr (D == Derivatives::Hessian) values->setZero();
-  for (const PlanarChain& chain : chains_) {
+  for (const PlanarChain& chain : chains) {
     if constexpr (D == Derivatives::Hessian) {
-      chain.add_gradient_and_hessian(model_, positions, gradient, values->data());
+      chain.add_gradient_and_hessian(model, here, gradient, values->data());
     } else {
-      chain.add_gradient(model_, positions, gradient);
+      chain.add_gradient(model, here, gradient);
     }
   }
   for_each_pair(
-      model_.elements, scatter_,
+      model.elements->lists, elements,
       [&](const auto& list, const auto& map) {
         using Kernel = typename std::decay_t<decltype(list)>::KernelType;
         constexpr int n = Kernel::kDofs;
@@ -93,7 +126,8 @@ void Assembler::assemble(const Vector& positions, const Vector& controls, Vector
         for (std::size_t k = 0; k < map.elements.size(); ++k) {
           const std::size_t e = map.elements[k];
           const auto& dofs = list.dofs[e];
-          Kernel::template evaluate<D>(list.constants[e], controls, gather(dofs, positions), local);
+          Kernel::template evaluate<D>(list.constants[e], here, gather(dofs, here.coordinates),
+                                       local);
           for (int i = 0; i < n; ++i) gradient[dofs[at(i)]] += local.gradient[i];
           if constexpr (D == Derivatives::Hessian) {
             const Index* slot = map.slots[k].data();
@@ -109,13 +143,13 @@ void Assembler::assemble(const Vector& positions, const Vector& controls, Vector
       kKinds);
 }
 
-void Assembler::gradient(const Vector& positions, const Vector& controls, Vector& gradient) const {
-  assemble<Derivatives::Gradient>(positions, controls, gradient, nullptr);
+void Assembler::gradient(const Configuration& here, Vector& gradient) const {
+  maps_->assemble<Derivatives::Gradient>(model_, here, gradient, nullptr);
 }
 
-void Assembler::gradient_and_hessian(const Vector& positions, const Vector& controls,
-                                     Vector& gradient, Vector& values) const {
-  assemble<Derivatives::Hessian>(positions, controls, gradient, &values);
+void Assembler::gradient_and_hessian(const Configuration& here, Vector& gradient,
+                                     Vector& values) const {
+  maps_->assemble<Derivatives::Hessian>(model_, here, gradient, &values);
 }
 
 void Assembler::add_mass(const Mass& mass, double factor, Vector& values) const {
@@ -128,16 +162,15 @@ void Assembler::add_mass(const Mass& mass, double factor, Vector& values) const 
   }
 }
 
-void Assembler::add_tension_stiffness(const Vector& positions, const Vector& tension,
+void Assembler::add_tension_stiffness(const Configuration& here, const Vector& tension,
                                       Vector& values) const {
-  const auto& edges = std::get<ElementList<Stretch<2>>>(model_.elements);
+  const auto& edges = model_.elements->of<Stretch<2>>();
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    const auto ends = gather(edges.dofs[i], positions);
-    const Vec2 e = ends.tail<2>() - ends.head<2>();
+    const Vec2 e = Stretch<2>::edge(gather(edges.dofs[i], here.coordinates));
     const double length = e.norm();
-    const Vec2 normal{-e.y() / length, e.x() / length};
+    const Vec2 normal = perpendicular(e) / length;
     const Mat2 block = tension[static_cast<Index>(i)] / length * normal * normal.transpose();
-    const Index* slot = edge_slots_[i].data();
+    const Index* slot = maps_->edges[i].data();
     for (int column = 0; column < 4; ++column) {
       for (int row = column; row < 4; ++row) {
         const double entry = block(row % 2, column % 2);
@@ -149,12 +182,8 @@ void Assembler::add_tension_stiffness(const Vector& positions, const Vector& ten
 
 void Assembler::add_diagonal(const Vector& diagonal, double factor, Vector& values) const {
   for (std::size_t i = 0; i < diagonal_slots_.size(); ++i) {
-    values[diagonal_slots_[i]] += factor * diagonal[model_.free_dofs[i]];
+    values[diagonal_slots_[i]] += factor * diagonal[model_.dofs.free()[i]];
   }
-}
-
-void Assembler::shift_diagonal(double shift, Vector& values) const {
-  for (const Index slot : diagonal_slots_) values[slot] += shift;
 }
 
 }  // namespace der

@@ -1,47 +1,45 @@
 #include "der/assembly/discrete_gradient_assembler.hpp"
 
-#include <cmath>
-
-#include "der/core/index.hpp"
 #include "der/energies/discrete_gradient.hpp"
 #include "der/energies/element_energy.hpp"
+#include "der/energies/registry.hpp"
 
 namespace der {
 
 DiscreteGradientAssembler::DiscreteGradientAssembler(const Model& model, const Assembler& assembler)
-    : controls_start(Vector::Zero(model.controls.size())),
-      controls_end(Vector::Zero(model.controls.size())),
+    : start{Vector::Zero(model.num_dofs()), Vector::Zero(model.controls.size())},
+      end(start),
       model_(model),
       assembler_(assembler),
-      end_(Vector::Zero(model.num_dofs())),
       at_middle_(Vector::Zero(model.num_dofs())),
-      excess_(Vector::Zero(
-          static_cast<Index>(std::get<ElementList<Stretch<2>>>(model.elements).size()))) {}
+      excess_(Vector::Zero(static_cast<Index>(model.elements->of<Stretch<2>>().size()))) {}
 
 template <class Kernel>
 void DiscreteGradientAssembler::evaluate(const ElementList<Kernel>& list, std::size_t element,
-                                         const Vector& start,
                                          Eigen::Matrix<double, Kernel::kDofs, 1>& gradient) const {
   const auto& constants = list.constants[element];
-  const auto before = gather(list.dofs[element], start);
-  const auto after = gather(list.dofs[element], end_);
-  discrete_gradient(KernelTag<Kernel>{}, constants, controls_start, before, after, gradient);
+  const auto before = gather(list.dofs[element], start.coordinates);
+  const auto after = gather(list.dofs[element], end.coordinates);
+  discrete_gradient(KernelTag<Kernel>{}, constants, start, before, after, gradient);
   if (!tables_change_) return;
   Eigen::Matrix<double, Kernel::kDofs, 1> at_end;
-  discrete_gradient(KernelTag<Kernel>{}, constants, controls_end, before, after, at_end);
+  discrete_gradient(KernelTag<Kernel>{}, constants, end, before, after, at_end);
   gradient = 0.5 * (gradient + at_end);
 }
 
-void DiscreteGradientAssembler::gradient(const Vector& start, const Vector& middle,
-                                         Vector& gradient) {
-  end_ = 2.0 * middle - start;
-  tables_change_ = controls_start != controls_end;
+void DiscreteGradientAssembler::reach_end(const Configuration& middle) {
+  end.coordinates = 2.0 * middle.coordinates - start.coordinates;
+  tables_change_ = start.controls != end.controls;
+}
+
+void DiscreteGradientAssembler::gradient(const Configuration& middle, Vector& gradient) {
+  reach_end(middle);
   gradient.setZero();
-  for_each_list(model_.elements, [&](const auto& list) {
+  for_each_list(*model_.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     Eigen::Matrix<double, Kernel::kDofs, 1> local;
     for (std::size_t e = 0; e < list.size(); ++e) {
-      evaluate(list, e, start, local);
+      evaluate(list, e, local);
       for (std::size_t i = 0; i < Kernel::kDofs; ++i) {
         gradient[list.dofs[e][i]] += local[static_cast<Index>(i)];
       }
@@ -49,35 +47,33 @@ void DiscreteGradientAssembler::gradient(const Vector& start, const Vector& midd
   });
 }
 
-void DiscreteGradientAssembler::gradient_and_hessian(const Vector& start, const Vector& middle,
-                                                     const Vector& controls, Vector& gradient,
+void DiscreteGradientAssembler::gradient_and_hessian(const Configuration& middle, Vector& gradient,
                                                      Vector& values) {
-  this->gradient(start, middle, gradient);
-  assembler_.gradient_and_hessian(middle, controls, at_middle_, values);
+  this->gradient(middle, gradient);
+  assembler_.gradient_and_hessian(middle, at_middle_, values);
   // The force over the mean edge vector is EA/l (1 - 2 l/(l0 + l1)), at the middle
   // EA/l (1 - l/l_middle).
-  const auto& edges = std::get<ElementList<Stretch<2>>>(model_.elements);
+  const auto& edges = model_.elements->of<Stretch<2>>();
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    const auto length = [&dofs = edges.dofs[i]](const Vector& x) {
-      return std::hypot(x[dofs[2]] - x[dofs[0]], x[dofs[3]] - x[dofs[1]]);
+    const auto length = [&dofs = edges.dofs[i]](const Configuration& there) {
+      return Stretch<2>::edge(gather(dofs, there.coordinates)).norm();
     };
-    const double over_mean = 2.0 * length(middle) / (length(start) + length(end_));
+    const double over_mean = 2.0 * length(middle) / (length(start) + length(end));
     excess_[static_cast<Index>(i)] = edges.constants[i].EA * (1.0 - over_mean);
   }
   assembler_.add_tension_stiffness(middle, excess_, values);
 }
 
-double DiscreteGradientAssembler::moment_work(const Vector& start, const Vector& middle,
+double DiscreteGradientAssembler::moment_work(const Configuration& middle,
                                               const Vector& displacement) {
-  end_ = 2.0 * middle - start;
-  tables_change_ = controls_start != controls_end;
+  reach_end(middle);
   double work = 0.0;
-  for_each_list(model_.elements, [&](const auto& list) {
+  for_each_list(*model_.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if constexpr (Kernel::kTerm == EnergyTerm::Load) {
       Eigen::Matrix<double, Kernel::kDofs, 1> local;
       for (std::size_t e = 0; e < list.size(); ++e) {
-        evaluate(list, e, start, local);
+        evaluate(list, e, local);
         work -= local.dot(gather(list.dofs[e], displacement));
       }
     }

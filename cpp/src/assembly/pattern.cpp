@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "der/core/index.hpp"
+#include "der/energies/registry.hpp"
 
 namespace der {
 namespace {
@@ -13,13 +14,13 @@ namespace {
 using Entries = std::vector<std::pair<Index, Index>>;
 
 void add_entry(Index dof_a, Index dof_b, const Model& model, Entries& entries) {
-  const Index a = model.free_index[at(dof_a)];
-  const Index b = model.free_index[at(dof_b)];
+  const Index a = model.dofs.free_index(dof_a);
+  const Index b = model.dofs.free_index(dof_b);
   if (a >= 0 && b >= 0) entries.emplace_back(std::min(a, b), std::max(a, b));
 }
 
 void add_mass_entries(const Model& model, Entries& entries) {
-  for (const Index dof : model.free_dofs) add_entry(dof, dof, model, entries);
+  for (const Index dof : model.dofs.free()) add_entry(dof, dof, model, entries);
   for (const auto& [a, b, mass] : model.mass.coupling) add_entry(a, b, model, entries);
 }
 
@@ -44,7 +45,7 @@ Pattern compress(Entries entries, const Model& model) {
 Pattern build_pattern(const Model& model) {
   Entries entries;
   add_mass_entries(model, entries);
-  for_each_list(model.elements, [&](const auto& list) {
+  for_each_list(*model.elements, [&](const auto& list) {
     for (const auto& dofs : list.dofs) {
       for (std::size_t i = 0; i < dofs.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) add_entry(dofs[i], dofs[j], model, entries);
@@ -63,12 +64,14 @@ Pattern build_mass_pattern(const Model& model) {
 MatrixLayout MatrixLayout::compressed(const Pattern& pattern) {
   MatrixLayout layout;
   layout.pattern_ = &pattern;
+  layout.size_ = pattern.size;
   layout.num_values_ = pattern.nonzeros();
   return layout;
 }
 
 MatrixLayout MatrixLayout::band(Index size, Index half_bandwidth) {
   MatrixLayout layout;
+  layout.size_ = size;
   layout.width_ = half_bandwidth + 1;
   layout.num_values_ = size * layout.width_;
   return layout;
@@ -76,6 +79,10 @@ MatrixLayout MatrixLayout::band(Index size, Index half_bandwidth) {
 
 Index MatrixLayout::slot_or_spare(Index i, Index j) const {
   return i < 0 || j < 0 ? num_values_ : slot(std::max(i, j), std::min(i, j));
+}
+
+void MatrixLayout::shift_diagonal(double shift, Vector& values) const {
+  for (Index i = 0; i < size_; ++i) values[slot(i, i)] += shift;
 }
 
 Index MatrixLayout::slot(Index row, Index column) const {

@@ -93,8 +93,8 @@ struct Run {
 template <class Curvature>
 std::vector<Run> find_runs(const Model& model) {
   std::vector<Run> runs;
-  const auto& edges = std::get<Edges>(model.elements);
-  const auto& bends = std::get<Bends<Curvature>>(model.elements);
+  const auto& edges = model.elements->of<Stretch<2>>();
+  const auto& bends = model.elements->of<PlanarBend<Curvature>>();
   const auto starts = bends_by_start(bends);
   for (std::size_t first = 0; first < edges.size();) {
     const auto bend = starts.find(edges.dofs[first][0]);
@@ -125,7 +125,7 @@ std::vector<PlanarChain> PlanarChain::find(const Model& model, const MatrixLayou
 }
 
 void PlanarChain::map_nodes(const Model& model, const MatrixLayout& layout) {
-  first_dof_ = std::get<Edges>(model.elements).dofs[edges_.first][0];
+  first_dof_ = model.elements->of<Stretch<2>>().dofs[edges_.first][0];
   const Index end = first_dof_ + 2 * static_cast<Index>(edges_.count + 1);
   for (Index dof = first_dof_; dof < end; dof += 2) {
     NodeSlots& slots = slots_.emplace_back();
@@ -133,8 +133,8 @@ void PlanarChain::map_nodes(const Model& model, const MatrixLayout& layout) {
     for (Index other = dof; other < dof + 6; other += 2) {
       for (Index column = dof; column < dof + 2; ++column) {
         for (Index row = std::max(column, other); row < other + 2; ++row) {
-          slots[k++] = layout.slot_or_spare(row < end ? model.free_index[at(row)] : -1,
-                                            model.free_index[at(column)]);
+          slots[k++] = layout.slot_or_spare(row < end ? model.dofs.free_index(row) : -1,
+                                            model.dofs.free_index(column));
         }
       }
     }
@@ -142,12 +142,12 @@ void PlanarChain::map_nodes(const Model& model, const MatrixLayout& layout) {
 }
 
 template <Derivatives D>
-void PlanarChain::add(const Model& model, const Vector& positions, Vector& gradient,
+void PlanarChain::add(const Model& model, const Configuration& here, Vector& gradient,
                       double* values) const {
   if (tangent_) {
-    add_measured<D, TangentCurvature>(model, positions, gradient, values);
+    add_measured<D, TangentCurvature>(model, here, gradient, values);
   } else {
-    add_measured<D, AngleCurvature>(model, positions, gradient, values);
+    add_measured<D, AngleCurvature>(model, here, gradient, values);
   }
 }
 
@@ -156,12 +156,12 @@ void PlanarChain::add(const Model& model, const Vector& positions, Vector& gradi
 /// F_{j-1} - F_j and, in its columns of the Hessian,
 ///   B_{j-1} + B_j - C_j - C_j',  then -B_j + C_j + C_{j+1},  then -C_{j+1}.
 template <Derivatives D, class Curvature>
-void PlanarChain::add_measured(const Model& model, const Vector& positions, Vector& gradient,
+void PlanarChain::add_measured(const Model& model, const Configuration& here, Vector& gradient,
                                double* values) const {
-  const auto* edge_constants = std::get<Edges>(model.elements).constants.data() + edges_.first;
+  const auto* edge_constants = model.elements->of<Stretch<2>>().constants.data() + edges_.first;
   const auto* bend_constants =
-      std::get<Bends<Curvature>>(model.elements).constants.data() + bends_.first;
-  const double* x = positions.data() + first_dof_;
+      model.elements->of<PlanarBend<Curvature>>().constants.data() + bends_.first;
+  const double* x = here.coordinates.data() + first_dof_;
   double* g = gradient.data() + first_dof_;
 
   EdgeTerms edge(edge_constants[0], x);
@@ -213,15 +213,15 @@ void PlanarChain::add_measured(const Model& model, const Vector& positions, Vect
 }
 
 DER_FOR_EACH_PROCESSOR
-void PlanarChain::add_gradient(const Model& model, const Vector& positions,
+void PlanarChain::add_gradient(const Model& model, const Configuration& here,
                                Vector& gradient) const {
-  add<Derivatives::Gradient>(model, positions, gradient, nullptr);
+  add<Derivatives::Gradient>(model, here, gradient, nullptr);
 }
 
 DER_FOR_EACH_PROCESSOR
-void PlanarChain::add_gradient_and_hessian(const Model& model, const Vector& positions,
+void PlanarChain::add_gradient_and_hessian(const Model& model, const Configuration& here,
                                            Vector& gradient, double* values) const {
-  add<Derivatives::Hessian>(model, positions, gradient, values);
+  add<Derivatives::Hessian>(model, here, gradient, values);
 }
 
 }  // namespace der

@@ -7,6 +7,7 @@
 #include "der/core/constants.hpp"
 #include "der/core/error.hpp"
 #include "der/core/index.hpp"
+#include "der/energies/registry.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/cross_section.hpp"
 #include "der/model/location.hpp"
@@ -25,6 +26,7 @@ void choose_model(const scenario::Scene& scene, Model& model) {
 
 void place_nodes(const scenario::Scene& scene, Model& model) {
   for (const auto& rod : scene.rods) model.num_nodes += static_cast<Index>(rod.points.size());
+  model.dofs = DofMap(model.dimension, model.num_nodes);
   const Index dofs = model.num_dofs();
   for (Vector* v : {&model.initial_positions, &model.initial_velocities, &model.mass.lumped,
                     &model.damping, &model.gravity_force, &model.dead_force}) {
@@ -61,7 +63,7 @@ RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, In
     layout.arc_length.push_back(layout.arc_length.back() + layout.edge_length.back());
   }
   for (Index edge = 0; edge < layout.num_edges(); ++edge) {
-    model.edges.push_back({layout.edge_dofs(edge, model), layout.edge_length[at(edge)]});
+    model.edges.push_back(layout.edge(edge, model));
   }
   layout.sphere_radius.assign(rod.points.size(), 0.0);
   return layout;
@@ -107,7 +109,7 @@ void couple_masses(const RodLayout& rod, Model& model) {
       for (int c = 0; c < model.dimension; ++c) {
         const Index a = model.dof(rod.nodes[at(edge)], c);
         const Index b = model.dof(rod.nodes[at(edge) + 1], c);
-        if (model.free_index[at(a)] < 0 || model.free_index[at(b)] < 0) continue;
+        if (!model.dofs.is_free(a) || !model.dofs.is_free(b)) continue;
         model.mass.coupling.push_back({a, b, mass});
       }
     }
@@ -128,18 +130,15 @@ void lay_out_rods(const scenario::Scene& scene, Model& model) {
   }
 }
 
-void number_free_dofs(Model& model) {
-  model.free_index.assign(at(model.num_dofs()), 0);
-  for (const HeldDof& held : model.held) {
-    model.free_index[at(held.dof)] = -1;
-    model.initial_velocities[held.dof] = 0.0;
+void hold_dofs(Model& model) {
+  std::vector<Index> held;
+  for (const HeldDof& support : model.held) {
+    held.push_back(support.dof);
+    model.initial_velocities[support.dof] = 0.0;
   }
-  for (Index dof = 0; dof < model.num_dofs(); ++dof) {
-    if (model.free_index[at(dof)] < 0) continue;
-    model.free_index[at(dof)] = model.num_free();
-    model.free_dofs.push_back(dof);
-  }
-  if (model.free_dofs.empty()) {
+  model.dofs.hold(held);
+  model.dofs.set_length(model.size);
+  if (model.num_free() == 0) {
     throw Error("model_error", "every node is held by a support: there is nothing to find");
   }
 }
@@ -148,6 +147,7 @@ void number_free_dofs(Model& model) {
 
 Model build_model(const scenario::Scene& scene) {
   Model model;
+  model.elements = make_hidden<ElementLists>();
   choose_model(scene, model);
   place_nodes(scene, model);
   lay_out_rods(scene, model);
@@ -159,7 +159,7 @@ Model build_model(const scenario::Scene& scene) {
     std::visit([&](const auto& l) { add_load(l, scene, model); }, load.what);
   }
   model.damped = (model.damping.array() != 0.0).any();
-  number_free_dofs(model);
+  hold_dofs(model);
   for (const RodLayout& rod : model.rods) couple_masses(rod, model);
   return model;
 }

@@ -1,6 +1,7 @@
 #include "der/building/rod_elements.hpp"
 
 #include "der/core/index.hpp"
+#include "der/energies/registry.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spring.hpp"
@@ -15,28 +16,29 @@ void add_element(const std::array<Index, Kernel::kDofs>& dofs,
                  const typename Kernel::Constants& constants, const Pivot& first, const Pivot& last,
                  Model& model) {
   if (first.distance == 0.0 && last.distance == 0.0) {
-    std::get<ElementList<Kernel>>(model.elements).add(dofs, constants);
+    model.elements->of<Kernel>().add(dofs, constants);
   } else {
-    std::get<ElementList<FromPivot<Kernel>>>(model.elements).add(dofs, {constants, first, last});
+    model.elements->of<FromPivot<Kernel>>().add(dofs, {constants, first, last});
   }
 }
 
-Vec2 drawn(const Link& link, const Model& model) {
-  return link.vector(model.initial_positions, 0.0, 0.0);
+Vec2 drawn(const EffectiveEdge& effective, const Model& model) {
+  return effective.vector(model.initial_positions, 0.0, 0.0);
 }
 
-/// A link from a pivot is shorter than its edge and stretches for all of it.
+/// An effective edge from a pivot is shorter than its edge and stretches for all of it.
 void add_stretch(const RodLayout& rod, Model& model) {
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-    const Link link = link_of(rod, edge, model);
-    const double length = link.has_pivot() ? drawn(link, model).norm() : rod.edge_length[at(edge)];
+    const EffectiveEdge effective = effective_edge(rod, edge, model);
+    const double length =
+        effective.has_pivot() ? drawn(effective, model).norm() : rod.edge_length[at(edge)];
     const double EA = rod.EA * (length / rod.edge_length[at(edge)]);
-    add_element<Stretch<2>>(link.dofs, {EA, length}, link.first, link.last, model);
+    add_element<Stretch<2>>(effective.dofs, {EA, length}, effective.first, effective.last, model);
   }
 }
 
-double rest_angle_between(const RodLayout& rod, Index place, const Link& before, const Link& after,
-                          const Model& model) {
+double rest_angle_between(const RodLayout& rod, Index place, const EffectiveEdge& before,
+                          const EffectiveEdge& after, const Model& model) {
   if (rod.natural_curvature.empty())
     return angle_between(drawn(before, model), drawn(after, model));
   double angle = rod.natural_curvature[at(place)] * bend_length(rod, place);
@@ -54,8 +56,8 @@ template <class Curvature>
 void add_bend(RodLayout& rod, Model& model) {
   for (Index i = 1; i < rod.num_edges(); ++i) {
     if (rod.clamp_at(i) != nullptr) continue;
-    const Link before = link_of(rod, i - 1, model);
-    const Link after = link_of(rod, i, model);
+    const EffectiveEdge before = effective_edge(rod, i - 1, model);
+    const EffectiveEdge after = effective_edge(rod, i, model);
     const double rest = rest_angle_between(rod, i, before, after, model);
     rod.rest_turning_angle[at(i)] = rest;
     add_element<PlanarBend<Curvature>>({before.dofs[0], before.dofs[1], after.dofs[0],

@@ -14,7 +14,7 @@ Vector total_gravity(const scenario::Scene& scene) {
 
 void add_load(const scenario::Gravity& load, const scenario::Scene& /*scene*/, Model& model) {
   for (Index i = 0; i < model.num_dofs(); ++i) {
-    const auto component = static_cast<std::size_t>(i % model.dimension);
+    const auto component = static_cast<std::size_t>(model.dofs[i].component);
     model.gravity_force[i] += model.mass.lumped[i] * load.acceleration[component];
   }
 }

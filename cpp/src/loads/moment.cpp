@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "der/energies/registry.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/location.hpp"
 #include "der/model/moment_place.hpp"
@@ -25,7 +26,7 @@ void add_load(const scenario::Moment& load, const scenario::Scene& /*scene*/, Mo
   if (is_clamped(rod, s)) return;
   MomentPlace& place = place_of_moments(s, rod);
   place.moments.push_back(control);
-  auto& moments = std::get<ElementList<PlanarMoment>>(model.elements);
+  auto& moments = model.elements->of<PlanarMoment>();
   for (std::size_t i = 0; i < place.weights.size(); ++i) {
     moments.add(rod.edge_dofs(place.first_edge + static_cast<Index>(i), model),
                 {place.series_share(rod.EI) * place.weights[i], control});

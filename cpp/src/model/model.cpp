@@ -17,6 +17,11 @@ double RodLayout::voronoi_length(Index node) const {
   return 0.5 * (before + after);
 }
 
+Edge RodLayout::edge(Index number, const Model& model) const {
+  const auto i = static_cast<std::size_t>(number);
+  return {model.dof(nodes[i], 0), model.dof(nodes[i + 1], 0), edge_length[i]};
+}
+
 std::array<Index, 4> RodLayout::edge_dofs(Index edge, const Model& model) const {
   const Index a = nodes[static_cast<std::size_t>(edge)];
   const Index b = nodes[static_cast<std::size_t>(edge) + 1];
@@ -49,12 +54,11 @@ RodLayout& Model::rod(const std::string& rod_name) {
 }
 
 Index follow_edge(const RodLayout& rod, Index edge, Model& model) {
-  const std::array<Index, 4> dofs = rod.edge_dofs(edge, model);
-  const Vector& drawn = model.initial_positions;
-  const double direction =
-      std::atan2(drawn[dofs[3]] - drawn[dofs[1]], drawn[dofs[2]] - drawn[dofs[0]]);
+  const Edge followed = rod.edge(edge, model);
+  const Vec2 drawn = along_edge(followed, model.initial_positions);
+  const double direction = std::atan2(drawn.y(), drawn.x());
   // An entry of its own, which no table moves.
-  model.followed_edges.push_back({dofs, direction, model.controls.add({{0.0}, {0.0}})});
+  model.followed_edges.push_back({followed, direction, model.controls.add({{0.0}, {0.0}})});
   return static_cast<Index>(model.followed_edges.size()) - 1;
 }
 
@@ -68,12 +72,21 @@ NodePlace place_of(const Model& model, Index node) {
   return {};
 }
 
+Vector over_all_dofs(const Model& model, const Vector& free) {
+  Vector full = Vector::Zero(model.num_dofs());
+  full(model.dofs.free()) = free;
+  return full;
+}
+
 std::string describe_dof(const Model& model, Index dof) {
-  const Index node = dof / model.dimension;
-  const char component = "xyz"[dof % model.dimension];
+  const Dof what = model.dofs[dof];
+  const Index node = model.dofs.node_of(dof);
   const NodePlace place = place_of(model, node);
-  if (place.rod.empty()) return fmt::format("node {} ({})", node, component);
-  return fmt::format("node {} of rod '{}' ({})", place.place, place.rod, component);
+  const std::string rod = place.rod.empty() ? "" : fmt::format(" of rod '{}'", place.rod);
+  const Index number = place.rod.empty() ? node : place.place;
+  if (what.kind == DofKind::Angle)
+    return fmt::format("the edge after node {}{} (angle)", number, rod);
+  return fmt::format("node {}{} ({})", number, rod, "xyz"[what.component]);
 }
 
 }  // namespace der

@@ -4,6 +4,7 @@
 
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
+#include "der/energies/registry.hpp"
 #include "der/model/location.hpp"
 
 namespace der {
@@ -36,7 +37,7 @@ double applied_moment(const MomentPlace& place, const Vector& controls) {
 template <int Edges>
 double turn_of(Index element, const Model& model, const Vector& positions, double before) {
   using Kernel = RotationalSpring<Edges>;
-  const auto& springs = std::get<ElementList<Kernel>>(model.elements);
+  const auto& springs = model.elements->of<Kernel>();
   return Kernel::turn(springs.constants[at(element)], before,
                       gather(springs.dofs[at(element)], positions));
 }
@@ -90,15 +91,14 @@ double carried_moment(const MomentPlace& place, const RodLayout& rod, const Mode
   return moment_of(place, rod, applied, spring_turn(place, model, state.positions, before));
 }
 
-CellEnergies cell_energies(const RodLayout& rod, const Model& model, const Vector& controls,
-                           const Vector& positions) {
+CellEnergies cell_energies(const RodLayout& rod, const Model& model, const Configuration& here) {
   CellEnergies energies;
   if (rod.EI == 0.0) return energies;
   for (const MomentPlace& place : rod.moment_places) {
     const double before =
-        place.followed >= 0 ? controls[model.followed_edges[at(place.followed)].turn] : 0.0;
-    const double turn = spring_turn(place, model, positions, before);
-    const double moment = moment_of(place, rod, applied_moment(place, controls), turn);
+        place.followed >= 0 ? here.controls[model.followed_edges[at(place.followed)].turn] : 0.0;
+    const double turn = spring_turn(place, model, here.coordinates, before);
+    const double moment = moment_of(place, rod, applied_moment(place, here.controls), turn);
     const double cell_turn = place.cell_length * moment / rod.EI;
     energies.bend += 0.5 * cell_turn * moment;
     const double tangent = turn + cell_turn;

@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "der/energies/element_energy.hpp"
+#include "der/energies/registry.hpp"
 #include "der/model/model.hpp"
 #include "der/model/moment_place.hpp"
 #include "der/model/prescribed_motion.hpp"
@@ -29,26 +30,34 @@ void evaluate_controls(const Model& model, const State& state, double time, Vect
   enter_turns(model, state.turns, controls);
 }
 
-Energies energies(const Model& model, const State& state) {
-  Vector controls;
-  evaluate_controls(model, state, state.time, controls);
-  return energies(model, controls, state.positions, state.velocities);
+void configuration_of(const Model& model, const State& state, Configuration& here) {
+  here.coordinates = state.positions;
+  evaluate_controls(model, state, state.time, here.controls);
 }
 
-Energies energies(const Model& model, const Vector& controls, const Vector& positions,
-                  const Vector& velocities) {
+Configuration configuration_of(const Model& model, const State& state) {
+  Configuration here;
+  configuration_of(model, state, here);
+  return here;
+}
+
+Energies energies(const Model& model, const State& state) {
+  return energies(model, configuration_of(model, state), state.velocities);
+}
+
+Energies energies(const Model& model, const Configuration& here, const Vector& velocities) {
   Energies result;
   result.kinetic = model.mass.kinetic_energy(velocities);
-  result.gravity = -model.gravity_force.dot(positions);
-  for_each_list(model.elements, [&](const auto& list) {
+  result.gravity = -model.gravity_force.dot(here.coordinates);
+  for_each_list(*model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
-    const double energy = element_energy(list, controls, positions);
+    const double energy = element_energy(list, here);
     if constexpr (Kernel::kTerm == EnergyTerm::Stretch) result.stretch += energy;
     if constexpr (Kernel::kTerm == EnergyTerm::Bend) result.bend += energy;
     if constexpr (Kernel::kTerm == EnergyTerm::Spring) result.spring += energy;
   });
   for (const RodLayout& rod : model.rods) {
-    const CellEnergies cells = cell_energies(rod, model, controls, positions);
+    const CellEnergies cells = cell_energies(rod, model, here);
     result.bend += cells.bend;
     result.spring += cells.spring;
   }

@@ -9,11 +9,6 @@
 namespace der {
 namespace {
 
-Vec2 vector_of(const FollowedEdge& edge, const Vector& positions) {
-  const auto& [x0, y0, x1, y1] = edge.dofs;
-  return {positions[x1] - positions[x0], positions[y1] - positions[y0]};
-}
-
 Vec2 turned_by(const FollowedEdge& edge, double turn) {
   return {std::cos(edge.direction + turn), std::sin(edge.direction + turn)};
 }
@@ -23,7 +18,7 @@ Vec2 turned_by(const FollowedEdge& edge, double turn) {
 void follow_turns(const Model& model, const Vector& positions, Vector& turns) {
   for (Index i = 0; i < turns.size(); ++i) {
     const FollowedEdge& edge = model.followed_edges[at(i)];
-    turns[i] += angle_between(turned_by(edge, turns[i]), vector_of(edge, positions));
+    turns[i] += angle_between(turned_by(edge, turns[i]), along_edge(edge.edge, positions));
   }
 }
 
@@ -36,7 +31,7 @@ void enter_turns(const Model& model, const Vector& turns, Vector& controls) {
 Index edge_turned_too_far(const Model& model, const Vector& positions, const Vector& turns) {
   for (Index i = 0; i < turns.size(); ++i) {
     const FollowedEdge& edge = model.followed_edges[at(i)];
-    if (turned_by(edge, turns[i]).dot(vector_of(edge, positions)) < 0.0) return i;
+    if (turned_by(edge, turns[i]).dot(along_edge(edge.edge, positions)) < 0.0) return i;
   }
   return -1;
 }

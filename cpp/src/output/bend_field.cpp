@@ -16,10 +16,10 @@ namespace {
 
 /// The turn from one direction to the next.
 struct BendCell {
-  Link before;
-  Link after;
-  std::optional<Clamp> start;  // its tangent stands in place of the link before
-  std::optional<Clamp> end;    // its tangent stands in place of the link after
+  EffectiveEdge before;
+  EffectiveEdge after;
+  std::optional<Clamp> start;  // its tangent stands in place of the edge before
+  std::optional<Clamp> end;    // its tangent stands in place of the edge after
 };
 
 Vec2 tangent(const Clamp& clamp, const Model& model, const State& state) {
@@ -29,9 +29,9 @@ Vec2 tangent(const Clamp& clamp, const Model& model, const State& state) {
 
 double turning_angle(const BendCell& cell, const Model& model, const State& state) {
   const Vec2 before =
-      cell.start ? tangent(*cell.start, model, state) : link_vector(cell.before, model, state);
+      cell.start ? tangent(*cell.start, model, state) : effective_vector(cell.before, model, state);
   const Vec2 after =
-      cell.end ? tangent(*cell.end, model, state) : link_vector(cell.after, model, state);
+      cell.end ? tangent(*cell.end, model, state) : effective_vector(cell.after, model, state);
   return angle_between(before, after);
 }
 
@@ -39,12 +39,12 @@ double turning_angle(const BendCell& cell, const Model& model, const State& stat
 BendCell cell_at(const RodLayout& rod, Index node, const Model& model) {
   BendCell cell;
   if (node > 0) {
-    cell.before = link_of(rod, node - 1, model);
+    cell.before = effective_edge(rod, node - 1, model);
   } else {
     cell.start = *rod.clamp_at(node);
   }
   if (node < rod.num_edges()) {
-    cell.after = link_of(rod, node, model);
+    cell.after = effective_edge(rod, node, model);
   } else {
     cell.end = *rod.clamp_at(node);
   }
@@ -137,7 +137,7 @@ class BendField : public RodField {
     std::optional<BendCell> cell;    // none at an end
     double length = 0.0;             // over which the cell turns [m]
     double rest_angle = 0.0;         // of the cell [rad]
-    Link link;                       // of the edge
+    EffectiveEdge effective;         // of the edge
   };
 
   BendField(bool moment, const RodLayout& rod, const Model& model, std::vector<Sample> samples,
@@ -184,18 +184,18 @@ class BendField : public RodField {
     const Index node = last ? edge + 1 : edge;
     Known result;
     result.last = last;
-    result.link = link_of(rod, edge, model);
+    result.effective = effective_edge(rod, edge, model);
     result.arc_length = rod.arc_length[at(node)];
     if (const Clamp* clamp = rod.clamp_at(node)) {
       const double pivot = clamp_pivot_share() * rod.edge_length[at(edge)];
       result.arc_length += last ? -pivot : pivot;
       result.cell.emplace();
       if (last) {
-        result.cell->before = result.link;
+        result.cell->before = result.effective;
         result.cell->end = *clamp;
       } else {
         result.cell->start = *clamp;
-        result.cell->after = result.link;
+        result.cell->after = result.effective;
       }
       result.length = clamp_cell_length(rod, edge);
       result.rest_angle = clamp_rest_angle(rod, *clamp, edge, model);
@@ -218,7 +218,7 @@ class BendField : public RodField {
       return moment / per_moment_ + (moment_ ? 0.0 : known.natural_curvature);
     }
     const double angle = turning_angle(*known.cell, model, state);
-    const Vec2 point = link_end(known.link, known.last, model, state);
+    const Vec2 point = effective_end(known.effective, known.last, model, state);
     return chain(known, angle) +
            recovery_.smooth(edge, known.last, point, model, state) / per_moment_;
   }

@@ -8,6 +8,7 @@
 
 #include "der/core/error.hpp"
 #include "der/energies/element_energy.hpp"
+#include "der/energies/registry.hpp"
 #include "der/model/moment_place.hpp"
 
 namespace der {
@@ -68,14 +69,14 @@ class EnergyReader : public ProbeReader {
 
  private:
   double elastic(const Model& model, const State& state) {
-    evaluate_controls(model, state, state.time, controls_);
+    configuration_of(model, state, here_);
     double energy = 0.0;
     for_each_list(part_.elements, [&](const auto& list) {
       constexpr EnergyTerm term = std::decay_t<decltype(list)>::KernelType::kTerm;
-      if (terms_.has(term)) energy += element_energy(list, controls_, state.positions);
+      if (terms_.has(term)) energy += element_energy(list, here_);
     });
     for (const RodLayout& rod : part_.rods) {
-      const CellEnergies cells = cell_energies(rod, model, controls_, state.positions);
+      const CellEnergies cells = cell_energies(rod, model, here_);
       if (terms_.bend) energy += cells.bend;
       if (terms_.spring) energy += cells.spring;
     }
@@ -84,7 +85,7 @@ class EnergyReader : public ProbeReader {
 
   Terms terms_;
   Part part_;
-  Vector controls_;
+  Configuration here_;
 };
 
 std::vector<Index> rod_dofs(const RodLayout& rod, const Model& model) {
@@ -106,8 +107,8 @@ Part part_of(const RodLayout& rod, const Model& model) {
   for (const MassCoupling& coupling : model.mass.coupling) {
     if (is_here(coupling.a) && is_here(coupling.b)) part.mass.coupling.push_back(coupling);
   }
-  for_each_list(model.elements, [&](const auto& list) {
-    auto& kept = std::get<std::decay_t<decltype(list)>>(part.elements);
+  for_each_list(*model.elements, [&](const auto& list) {
+    auto& kept = std::get<std::decay_t<decltype(list)>>(part.elements.lists);
     for (std::size_t e = 0; e < list.size(); ++e) {
       if (std::all_of(list.dofs[e].begin(), list.dofs[e].end(), is_here)) {
         kept.add(list.dofs[e], list.constants[e]);
@@ -120,7 +121,7 @@ Part part_of(const RodLayout& rod, const Model& model) {
 Part whole(const Model& model) {
   std::vector<Index> dofs(static_cast<std::size_t>(model.num_dofs()));
   std::iota(dofs.begin(), dofs.end(), Index{0});
-  return {model.mass, std::move(dofs), model.elements, model.rods};
+  return {model.mass, std::move(dofs), *model.elements, model.rods};
 }
 
 }  // namespace

@@ -38,9 +38,8 @@ Vec2 SpreadForces::value(std::size_t i, const Model& model, const State& state) 
 std::vector<bool> loaded_nodes(const RodLayout& rod, const Model& model) {
   std::vector<bool> loaded(rod.nodes.size());
   for (std::size_t i = 0; i < loaded.size(); ++i) {
-    loaded[i] = rod.sphere_radius[i] > 0.0 ||
-                model.free_index[at(model.dof(rod.nodes[i], 0))] < 0 ||
-                model.free_index[at(model.dof(rod.nodes[i], 1))] < 0;
+    loaded[i] = rod.sphere_radius[i] > 0.0 || !model.dofs.is_free(model.dof(rod.nodes[i], 0)) ||
+                !model.dofs.is_free(model.dof(rod.nodes[i], 1));
     for (const ForcePlace& place : rod.force_places) {
       if (std::abs(place.arc_length - rod.arc_length[i]) <= rod.same_place()) loaded[i] = true;
     }

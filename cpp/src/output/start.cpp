@@ -79,8 +79,9 @@ void take_over_turns(const LastFrame& last, const Model& model, State& state) {
     const Model there = build_model(Scenario::parse(last.scene).scene());
     const auto& before = there.followed_edges;
     if (std::equal(before.begin(), before.end(), model.followed_edges.begin(),
-                   model.followed_edges.end(),
-                   [](const FollowedEdge& a, const FollowedEdge& b) { return a.dofs == b.dofs; })) {
+                   model.followed_edges.end(), [](const FollowedEdge& a, const FollowedEdge& b) {
+                     return a.edge.first == b.edge.first && a.edge.last == b.edge.last;
+                   })) {
       state.turns = last.turns;
     }
   }

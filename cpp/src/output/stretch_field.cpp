@@ -188,8 +188,8 @@ class StretchField : public RodField {
         loads_(at(rod.num_edges())),
         samples_(layout.samples) {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-      links_.push_back(link_of(rod, edge, model));
-      rest_length_.push_back(links_.back().vector(model.initial_positions, 0.0, 0.0).norm());
+      effective_.push_back(effective_edge(rod, edge, model));
+      rest_length_.push_back(effective_.back().vector(model.initial_positions, 0.0, 0.0).norm());
       add_loads(edge, layout.middles[at(edge)], rod);
     }
   }
@@ -221,12 +221,12 @@ class StretchField : public RodField {
   }
 
   [[nodiscard]] Vec2 direction(Index edge, const Model& model, const State& state) const {
-    return link_vector(links_[at(edge)], model, state).normalized();
+    return effective_vector(effective_[at(edge)], model, state).normalized();
   }
 
   [[nodiscard]] double middle_strain(Index edge, const Model& model, const State& state) const {
-    const Vec2 link = link_vector(links_[at(edge)], model, state);
-    const double length = link.norm();
+    const Vec2 effective = effective_vector(effective_[at(edge)], model, state);
+    const double length = effective.norm();
     const double chain = (length - rest_length_[at(edge)]) / edge_length_[at(edge)];
     const EdgeLoads& loads = loads_[at(edge)];
     if (loads.forces.empty() && loads.distributed.empty()) return chain;
@@ -240,14 +240,14 @@ class StretchField : public RodField {
         excess[c] += amount * model.controls.value(control, state.time, state.ramps);
       }
     }
-    return chain + link.dot(excess) / (length * EA_);
+    return chain + effective.dot(excess) / (length * EA_);
   }
 
   double stiffness_;
   double EA_;
   std::vector<double> edge_length_;
-  std::vector<double> rest_length_;  // of the links
-  std::vector<Link> links_;
+  std::vector<double> rest_length_;  // of the effective edges
+  std::vector<EffectiveEdge> effective_;
   SpreadForces forces_;
   std::vector<DistributedPlace> distributed_;
   std::vector<EdgeLoads> loads_;

@@ -19,9 +19,9 @@ void MassSolver::prepare(double t) {
   prepared_for_ = t;
   if (!solver_) return;
   const MatrixLayout& layout = solver_->layout();
-  const auto free = [&](Index dof) { return model_.free_index[at(dof)]; };
+  const auto free = [&](Index dof) { return model_.dofs.free_index(dof); };
   values_.setZero();
-  for (const Index dof : model_.free_dofs) {
+  for (const Index dof : model_.dofs.free()) {
     values_[layout.slot(free(dof), free(dof))] = diagonal_[dof];
   }
   for (const auto& [a, b, mass] : model_.mass.coupling) {
@@ -35,9 +35,9 @@ void MassSolver::prepare(double t) {
 void MassSolver::solve(double t, Vector& b) {
   if (t != prepared_for_) prepare(t);
   if (solver_) {
-    for (Index i = 0; i < free_.size(); ++i) free_[i] = b[model_.free_dofs[at(i)]];
+    for (Index i = 0; i < free_.size(); ++i) free_[i] = b[model_.dofs.free()[at(i)]];
     solver_->solve(free_);
-    for (Index i = 0; i < free_.size(); ++i) b[model_.free_dofs[at(i)]] = free_[i];
+    for (Index i = 0; i < free_.size(); ++i) b[model_.dofs.free()[at(i)]] = free_[i];
   } else {
     b.array() /= diagonal_.array();
   }

@@ -5,6 +5,7 @@
 #include "der/core/error.hpp"
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
+#include "der/energies/stretched_edges.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/loads/loads.hpp"
 #include "der/statics/equilibrium_failure.hpp"
@@ -26,38 +27,25 @@ struct LoadedEdge {
 
   /// How much a displacement turns the edge [rad].
   [[nodiscard]] double turned_by(const Vector& displacement) const {
-    const auto d = gather(dofs, displacement);
-    return turn.dot(d.tail<2>() - d.head<2>());
+    return turn.dot(Stretch<2>::edge(gather(dofs, displacement)));
   }
 };
 
-std::vector<LoadedEdge> loaded_edges(const Model& model, const Vector& controls,
-                                     const Vector& positions, const Vector& displacement) {
+std::vector<LoadedEdge> loaded_edges(const Model& model, const Configuration& here,
+                                     const Vector& displacement) {
   std::vector<LoadedEdge> edges;
-  const auto add = [&](const std::array<Index, 4>& dofs, const Stretch<2>::Constants& c,
-                       const Vec2& between_pivots) {
-    const auto x = gather(dofs, positions);
-    const auto d = gather(dofs, displacement);
-    const Vec2 e = x.tail<2>() - x.head<2>() + between_pivots;
-    const Vec2 change = d.tail<2>() - d.head<2>();
-    LoadedEdge& edge = edges.emplace_back();
-    edge.dofs = dofs;
-    edge.length = e.norm();
-    edge.turn = direction_gradient(e, 1.0 / e.squaredNorm());
-    edge.strain = e.dot(change) / (edge.length * c.rest_length);
-    edge.tension = c.EA * edge.strain;
-    edge.rotation = edge.turn.dot(change);
-  };
-  const auto& plain = std::get<ElementList<Stretch<2>>>(model.elements);
-  for (std::size_t i = 0; i < plain.size(); ++i) {
-    add(plain.dofs[i], plain.constants[i], Vec2::Zero());
-  }
-  const auto& clamped = std::get<ElementList<FromPivot<Stretch<2>>>>(model.elements);
-  for (std::size_t i = 0; i < clamped.size(); ++i) {
-    const auto& c = clamped.constants[i];
-    add(clamped.dofs[i], c.element,
-        c.last.offset(c.last.turn(controls)) - c.first.offset(c.first.turn(controls)));
-  }
+  for_each_stretched_edge(
+      *model.elements, [&](const EffectiveEdge& effective, const Stretch<2>::Constants& c) {
+        const Vec2 e = effective.vector(here);
+        const Vec2 change = Stretch<2>::edge(gather(effective.dofs, displacement));
+        LoadedEdge& edge = edges.emplace_back();
+        edge.dofs = effective.dofs;
+        edge.length = e.norm();
+        edge.turn = direction_gradient(e, 1.0 / e.squaredNorm());
+        edge.strain = e.dot(change) / (edge.length * c.rest_length);
+        edge.tension = c.EA * edge.strain;
+        edge.rotation = edge.turn.dot(change);
+      });
   return edges;
 }
 
@@ -77,8 +65,8 @@ Vector initial_stress_stiffness(const Model& model, const MatrixLayout& layout,
     slope << -edge.turn, edge.turn;
     for (int column = 0; column < 4; ++column) {
       for (int row = column; row < 4; ++row) {
-        const Index slot = layout.slot_or_spare(model.free_index[at(edge.dofs[at(row)])],
-                                                model.free_index[at(edge.dofs[at(column)])]);
+        const Index slot = layout.slot_or_spare(model.dofs.free_index(edge.dofs[at(row)]),
+                                                model.dofs.free_index(edge.dofs[at(column)]));
         values[slot] += edge.tension * edge.length * slope[row] * slope[column];
       }
     }
@@ -126,8 +114,7 @@ class Pencil {
 /// The `count` modes of lowest factor of the tensions of `edges`; fewer if there are not so many.
 std::vector<BucklingMode> buckling_modes(const Model& model, LinearSolver& solver, const Vector& k0,
                                          const std::vector<LoadedEdge>& edges,
-                                         const Vector& controls, const Vector& positions,
-                                         int count) {
+                                         const Configuration& here, int count) {
   const Vector k1 = initial_stress_stiffness(model, solver.layout(), edges);
   // Factors are sought in units in which both matrices are of a size, so that no load is too large
   // or too small. As K0 is positive definite beyond rounding, none is less than that.
@@ -147,15 +134,14 @@ std::vector<BucklingMode> buckling_modes(const Model& model, LinearSolver& solve
     const double factor = pencil.bisect(i, low, kMost);
     if (factor > before * (1.0 + 1e-9)) same.clear();
     same.push_back(pencil.shape(factor, same, model.num_free()));
-    Vector shape = Vector::Zero(model.num_dofs());
-    shape(model.free_dofs) = same.back();
+    Vector shape = over_all_dofs(model, same.back());
     // Taken element by element, the quotient keeps the digits of slender rods.
     double released = 0.0;
     for (const LoadedEdge& edge : edges) {
       const double turned = edge.turned_by(shape);
       released -= edge.tension * edge.length * turned * turned;
     }
-    const double exact = second_variation(model, controls, positions, shape) / released;
+    const double exact = second_variation(model, here, shape) / released;
     // Where K1 is much the larger of the two, its rounding makes critical factors that are none.
     if (!(std::abs(exact / (unit * factor) - 1.0) < 0.5)) break;
     Eigen::Index main = 0;
@@ -173,19 +159,18 @@ std::vector<BucklingMode> buckling_modes(const Model& model, LinearSolver& solve
 
 LinearBuckling linear_buckling(Model& model, const LoadPath& loads, const Assembler& assembler,
                                LinearSolver& solver, const State& state, int count) {
-  const Vector& positions = state.positions;
   const FactorGuard back_to_the_scene(loads, model);
   Stiffness stiffness(model, assembler, solver);
-  Vector controls;
+  Configuration here{state.positions, {}};
   Vector force;
   // Sets the stiffness at a load factor; returns the unbalanced force.
   const auto evaluate = [&](double factor) -> Vector {
     loads.apply(factor, model);
-    model.controls.evaluate(0.0, controls);
-    enter_turns(model, state.turns, controls);
-    external_force(model, controls, Vector::Zero(model.num_dofs()), force);
-    stiffness.evaluate(positions, controls);
-    return (force - stiffness.gradient())(model.free_dofs);
+    model.controls.evaluate(0.0, here.controls);
+    enter_turns(model, state.turns, here.controls);
+    external_force(model, here.controls, Vector::Zero(model.num_dofs()), force);
+    stiffness.evaluate(here);
+    return (force - stiffness.gradient())(model.dofs.free());
   };
   const Vector loaded = evaluate(1.0);
   const Vector unloaded = evaluate(0.0);
@@ -199,9 +184,7 @@ LinearBuckling linear_buckling(Model& model, const LoadPath& loads, const Assemb
   Vector step = loaded - unloaded;
   stiffness.factorize();
   stiffness.solve(step);
-  Vector displacement = Vector::Zero(model.num_dofs());
-  displacement(model.free_dofs) = step;
-  auto edges = loaded_edges(model, controls, positions, displacement);
+  auto edges = loaded_edges(model, here, over_all_dofs(model, step));
 
   LinearBuckling result;
   result.rotation = largest(edges, &LoadedEdge::rotation);
@@ -210,7 +193,7 @@ LinearBuckling linear_buckling(Model& model, const LoadPath& loads, const Assemb
   if (largest(edges, &LoadedEdge::tension) <= noise) return result;
 
   const auto modes_of = [&](const std::vector<LoadedEdge>& of, int most) {
-    return buckling_modes(model, solver, stiffness.values(), of, controls, positions, most);
+    return buckling_modes(model, solver, stiffness.values(), of, here, most);
   };
   result.modes = modes_of(edges, count);
   if (result.modes.empty()) {

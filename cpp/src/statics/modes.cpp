@@ -66,8 +66,8 @@ class MassProduct {
   [[nodiscard]] Eigen::Index rows() const { return model_.num_free(); }
   [[nodiscard]] Eigen::Index cols() const { return model_.num_free(); }
   void perform_op(const double* in, double* out) const {
-    full_(model_.free_dofs) = Eigen::Map<const Vector>(in, rows());
-    Eigen::Map<Vector>(out, rows()) = model_.mass.momentum(full_)(model_.free_dofs);
+    full_(model_.dofs.free()) = Eigen::Map<const Vector>(in, rows());
+    Eigen::Map<Vector>(out, rows()) = model_.mass.momentum(full_)(model_.dofs.free());
   }
 
  private:
@@ -116,7 +116,7 @@ struct Noise {
 
 Noise matrix_noise(Stiffness& stiffness, const Model& model) {
   Noise noise;
-  noise.square = stiffness.rounding() / model.mass.lower_bound()(model.free_dofs).minCoeff();
+  noise.square = stiffness.rounding() / model.mass.lower_bound()(model.dofs.free()).minCoeff();
   const auto below = [&](double square) {
     return stiffness.factorize(-square, model.mass).negative_pivots;
   };
@@ -142,26 +142,24 @@ double shift_below(Stiffness& stiffness, const Model& model, Index count, double
 }
 
 void check_masses(const Model& model) {
-  if (model.mass.lumped(model.free_dofs).minCoeff() > 0.0) return;
+  if (model.mass.lumped(model.dofs.free()).minCoeff() > 0.0) return;
   throw Error("model_error",
               "a node without mass has no vibration: give the rod a density, or spheres");
 }
 
 Vector over_all(const Model& model, const Vector& free) {
   Vector full = Vector::Zero(model.num_dofs());
-  full(model.free_dofs) = free;
+  full(model.dofs.free()) = free;
   return full;
 }
 
 /// The shapes of lowest square w^2, found in as many passes as it takes until none is missing.
 class ModeSearch {
  public:
-  ModeSearch(const Model& model, Stiffness& stiffness, const Vector& positions,
-             const Vector& controls)
+  ModeSearch(const Model& model, Stiffness& stiffness, const Configuration& here)
       : model_(model),
         stiffness_(stiffness),
-        positions_(positions),
-        controls_(controls),
+        here_(here),
         known_(model.num_free(), 0),
         momenta_(model.num_free(), 0) {}
 
@@ -219,7 +217,7 @@ class ModeSearch {
     momenta_.conservativeResize(Eigen::NoChange, old + vectors.cols());
     for (Eigen::Index i = 0; i < vectors.cols(); ++i) {
       const Shape& added = shapes_.emplace_back(measured(over_all(model_, vectors.col(i))));
-      known_.col(old + i) = added.vector(model_.free_dofs);
+      known_.col(old + i) = added.vector(model_.dofs.free());
       mass.perform_op(known_.col(old + i).data(), momenta_.col(old + i).data());
     }
     sort();
@@ -245,9 +243,7 @@ class ModeSearch {
     const auto at_zero = [&](Eigen::Index i) -> Shape& {
       return shapes_[at(noise.below) + static_cast<std::size_t>(i)];
     };
-    const auto energy = [&](const Vector& v) {
-      return second_variation(model_, controls_, positions_, v);
-    };
+    const auto energy = [&](const Vector& v) { return second_variation(model_, here_, v); };
     Eigen::MatrixXd stiffness(size, size);
     Eigen::MatrixXd vectors(model_.num_dofs(), size);
     for (Eigen::Index i = 0; i < size; ++i) {
@@ -272,7 +268,7 @@ class ModeSearch {
     v.cwiseAbs().maxCoeff(&largest);
     v *= std::copysign(1.0, v[largest]) / std::sqrt(2.0 * model_.mass.kinetic_energy(v));
     // Taken element by element, which keeps the digits of soft modes of stiff rods.
-    const SummedVariation sum = summed_variation(model_, controls_, positions_, v);
+    const SummedVariation sum = summed_variation(model_, here_, v);
     return {sum.value, sum.terms, std::move(v)};
   }
 
@@ -283,8 +279,7 @@ class ModeSearch {
 
   const Model& model_;
   Stiffness& stiffness_;
-  const Vector& positions_;
-  const Vector& controls_;
+  const Configuration& here_;
   std::vector<Shape> shapes_;  // by ascending square
   Eigen::MatrixXd known_;      // the same over the free degrees of freedom, as they were found
   Eigen::MatrixXd momenta_;    // M times those
@@ -293,14 +288,13 @@ class ModeSearch {
 }  // namespace
 
 std::vector<Mode> vibration_modes(const Model& model, const Assembler& assembler,
-                                  LinearSolver& solver, const Vector& positions,
-                                  const Vector& controls, int count) {
+                                  LinearSolver& solver, const Configuration& here, int count) {
   check_masses(model);
   const Index wanted = std::min<Index>(count, model.num_free());
   Stiffness stiffness(model, assembler, solver);
-  stiffness.evaluate(positions, controls);
+  stiffness.evaluate(here);
   const Noise noise = matrix_noise(stiffness, model);
-  auto shapes = ModeSearch(model, stiffness, positions, controls)
+  auto shapes = ModeSearch(model, stiffness, here)
                     .lowest(std::max(wanted, noise.below + noise.near_zero), noise);
   shapes.resize(at(wanted));
 

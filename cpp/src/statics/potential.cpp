@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "der/energies/element_energy.hpp"
+#include "der/energies/registry.hpp"
 #include "der/kinematics/planar_edge.hpp"
 
 namespace der {
@@ -18,20 +19,19 @@ template <class Kernel>
 struct HasPeriod<Kernel, std::void_t<decltype(&Kernel::period)>> : std::true_type {};
 
 template <class Kernel>
-double energy_change(const ElementList<Kernel>& list, const Vector& controls, const Vector& from,
-                     const Vector& to) {
+double energy_change(const ElementList<Kernel>& list, const Configuration& from, const Vector& to) {
   LocalTerm<Kernel::kDofs> before;
   LocalTerm<Kernel::kDofs> after;
   double total = 0.0;
   for (std::size_t e = 0; e < list.size(); ++e) {
     const auto& constants = list.constants[e];
-    Kernel::template evaluate<Derivatives::Energy>(constants, controls, gather(list.dofs[e], from),
-                                                   before);
-    Kernel::template evaluate<Derivatives::Energy>(constants, controls, gather(list.dofs[e], to),
+    Kernel::template evaluate<Derivatives::Energy>(constants, from,
+                                                   gather(list.dofs[e], from.coordinates), before);
+    Kernel::template evaluate<Derivatives::Energy>(constants, from, gather(list.dofs[e], to),
                                                    after);
     double change = after.energy - before.energy;
     if constexpr (HasPeriod<Kernel>::value) {
-      const double period = Kernel::period(constants, controls);
+      const double period = Kernel::period(constants, from);
       if (period > 0.0) change = std::remainder(change, period);
     }
     total += change;
@@ -42,15 +42,14 @@ double energy_change(const ElementList<Kernel>& list, const Vector& controls, co
 /// Calls use(dofs, hessian, shared) for each element; of its displacement the first `shared`
 /// components, those of its first node, may be taken from all nodes at no cost of energy.
 template <class Use>
-void for_each_hessian(const Model& model, const Vector& controls, const Vector& positions,
-                      const Use& use) {
-  for_each_list(model.elements, [&](const auto& list) {
+void for_each_hessian(const Model& model, const Configuration& here, const Use& use) {
+  for_each_list(*model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     constexpr int kDofs = Kernel::kDofs;
     LocalTerm<kDofs> local;
     for (std::size_t e = 0; e < list.size(); ++e) {
-      Kernel::template evaluate<Derivatives::Hessian>(list.constants[e], controls,
-                                                      gather(list.dofs[e], positions), local);
+      Kernel::template evaluate<Derivatives::Hessian>(
+          list.constants[e], here, gather(list.dofs[e], here.coordinates), local);
       const Eigen::Matrix<double, kDofs, kDofs> hessian =
           local.hessian.template selfadjointView<Eigen::Lower>();
       use(list.dofs[e], hessian, HoldsElement<Kernel>::value ? 0 : model.dimension);
@@ -74,84 +73,66 @@ Eigen::Matrix<double, static_cast<int>(N), 1> relative(const std::array<Index, N
 
 }  // namespace
 
-double potential_change(const Model& model, const Vector& controls, const Vector& force,
-                        const Vector& from, const Vector& to) {
-  double total = -force.dot(to - from);
-  for_each_list(model.elements,
-                [&](const auto& list) { total += energy_change(list, controls, from, to); });
+double potential_change(const Model& model, const Vector& force, const Configuration& from,
+                        const Vector& to) {
+  double total = -force.dot(to - from.coordinates);
+  for_each_list(*model.elements, [&](const auto& list) { total += energy_change(list, from, to); });
   return total;
 }
 
-double second_variation(const Model& model, const Vector& controls, const Vector& positions,
-                        const Vector& direction) {
-  return summed_variation(model, controls, positions, direction).value;
+double second_variation(const Model& model, const Configuration& here, const Vector& direction) {
+  return summed_variation(model, here, direction).value;
 }
 
-SummedVariation summed_variation(const Model& model, const Vector& controls,
-                                 const Vector& positions, const Vector& direction) {
+SummedVariation summed_variation(const Model& model, const Configuration& here,
+                                 const Vector& direction) {
   SummedVariation total;
-  for_each_hessian(model, controls, positions,
-                   [&](const auto& dofs, const auto& hessian, int shared) {
-                     const auto d = relative(dofs, direction, shared);
-                     total.value += d.dot(hessian * d);
-                     total.terms += d.cwiseAbs().dot(hessian.cwiseAbs() * d.cwiseAbs());
-                   });
+  for_each_hessian(model, here, [&](const auto& dofs, const auto& hessian, int shared) {
+    const auto d = relative(dofs, direction, shared);
+    total.value += d.dot(hessian * d);
+    total.terms += d.cwiseAbs().dot(hessian.cwiseAbs() * d.cwiseAbs());
+  });
   return total;
 }
 
-SecondVariations second_variations(const Model& model, const Vector& controls,
-                                   const Vector& positions, const Eigen::MatrixXd& directions) {
+SecondVariations second_variations(const Model& model, const Configuration& here,
+                                   const Eigen::MatrixXd& directions) {
   const Eigen::Index count = directions.cols();
   SecondVariations result{Eigen::MatrixXd::Zero(count, count), Vector::Zero(count)};
-  for_each_hessian(
-      model, controls, positions, [&](const auto& dofs, const auto& hessian, int shared) {
-        constexpr int kDofs = std::decay_t<decltype(hessian)>::RowsAtCompileTime;
-        Eigen::Matrix<double, kDofs, Eigen::Dynamic> d(kDofs, count);
-        for (Eigen::Index i = 0; i < count; ++i) {
-          d.col(i) = relative(dofs, directions.col(i), shared);
-        }
-        result.values.noalias() += d.transpose() * (hessian * d).eval();
-        const auto terms = d.cwiseAbs().cwiseProduct(hessian.cwiseAbs() * d.cwiseAbs()).eval();
-        result.terms += terms.colwise().sum().transpose();
-      });
+  for_each_hessian(model, here, [&](const auto& dofs, const auto& hessian, int shared) {
+    constexpr int kDofs = std::decay_t<decltype(hessian)>::RowsAtCompileTime;
+    Eigen::Matrix<double, kDofs, Eigen::Dynamic> d(kDofs, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      d.col(i) = relative(dofs, directions.col(i), shared);
+    }
+    result.values.noalias() += d.transpose() * (hessian * d).eval();
+    const auto terms = d.cwiseAbs().cwiseProduct(hessian.cwiseAbs() * d.cwiseAbs()).eval();
+    result.terms += terms.colwise().sum().transpose();
+  });
   return result;
 }
 
-Vector stiffness_product(const Model& model, const Vector& controls, const Vector& positions,
-                         const Vector& direction) {
+Vector stiffness_product(const Model& model, const Configuration& here, const Vector& direction) {
   Vector product = Vector::Zero(direction.size());
-  for_each_hessian(model, controls, positions,
-                   [&](const auto& dofs, const auto& hessian, int shared) {
-                     const auto force = (hessian * relative(dofs, direction, shared)).eval();
-                     for (std::size_t i = 0; i < dofs.size(); ++i) {
-                       product[dofs[i]] += force[static_cast<Eigen::Index>(i)];
-                     }
-                   });
+  for_each_hessian(model, here, [&](const auto& dofs, const auto& hessian, int shared) {
+    const auto force = (hessian * relative(dofs, direction, shared)).eval();
+    for (std::size_t i = 0; i < dofs.size(); ++i) {
+      product[dofs[i]] += force[static_cast<Eigen::Index>(i)];
+    }
+  });
   return product;
-}
-
-double largest_edge_change(const Model& model, const Vector& displacement) {
-  double largest = 0.0;  // squared
-  for (const Edge& edge : model.edges) {
-    const auto d = gather(edge.dofs, displacement);
-    const double length = edge.rest_length;
-    largest = std::max(largest, (d.tail<2>() - d.head<2>()).squaredNorm() / (length * length));
-  }
-  return std::sqrt(largest);
 }
 
 double largest_turning_angle(const Model& model, const Vector& positions) {
   double largest = 0.0;
   const auto look = [&](const auto& bends) {
     for (const auto& dofs : bends.dofs) {
-      const auto x = gather(dofs, positions);
-      const Vec2 before = x.template segment<2>(2) - x.template segment<2>(0);
-      const Vec2 after = x.template segment<2>(4) - x.template segment<2>(2);
+      const auto [before, after] = PlanarBend<AngleCurvature>::edges(gather(dofs, positions));
       largest = std::max(largest, std::abs(angle_between(before, after)));
     }
   };
-  look(std::get<ElementList<PlanarBend<AngleCurvature>>>(model.elements));
-  look(std::get<ElementList<PlanarBend<TangentCurvature>>>(model.elements));
+  look(model.elements->of<PlanarBend<AngleCurvature>>());
+  look(model.elements->of<PlanarBend<TangentCurvature>>());
   return largest;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "der/core/index.hpp"
+#include "der/energies/registry.hpp"
 
 namespace der {
 namespace {
@@ -19,11 +20,11 @@ std::vector<Index> connected_parts(const Model& model) {
     while (parent[at(node)] != node) node = parent[at(node)] = parent[at(parent[at(node)])];
     return node;
   };
-  for_each_list(model.elements, [&](const auto& list) {
+  for_each_list(*model.elements, [&](const auto& list) {
     for (const auto& dofs : list.dofs) {
       for (const Index dof : dofs) {
-        const Index a = root(dofs.front() / model.dimension);
-        const Index b = root(dof / model.dimension);
+        const Index a = root(model.dofs.node_of(dofs.front()));
+        const Index b = root(model.dofs.node_of(dof));
         parent[at(std::max(a, b))] = std::min(a, b);
       }
     }
@@ -35,12 +36,12 @@ std::vector<Index> connected_parts(const Model& model) {
 /// Marks the parts that a spring holds in one component.
 void mark_held_by_springs(const Model& model, int component, const std::vector<Index>& part,
                           std::vector<char>& held) {
-  for_each_list(model.elements, [&](const auto& list) {
+  for_each_list(*model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if constexpr (HoldsElement<Kernel>::value) {
       for (std::size_t e = 0; e < list.size(); ++e) {
         if (!Kernel::holds(list.constants[e], component)) continue;
-        held[at(part[at(list.dofs[e].front() / model.dimension)])] = 1;
+        held[at(part[at(model.dofs.node_of(list.dofs[e].front()))])] = 1;
       }
     }
   });
@@ -58,7 +59,7 @@ std::string find_unheld_part(const Model& model, const Vector& force) {
     for (Index node = 0; node < model.num_nodes; ++node) {
       const Index dof = model.dof(node, c);
       const std::size_t first = at(part[at(node)]);
-      if (model.free_index[at(dof)] < 0) held[first] = 1;
+      if (!model.dofs.is_free(dof)) held[first] = 1;
       net[first] += force[dof];
       acting[first] += std::abs(force[dof]);
     }

@@ -34,10 +34,9 @@ Stiffness::Stiffness(const Model& model, const Assembler& assembler, LinearSolve
       values_(Vector::Zero(assembler.num_values())),
       ones_{Vector::Ones(model.num_dofs()), {}} {}
 
-void Stiffness::evaluate(const Vector& positions, const Vector& controls) {
-  assembler_.gradient_and_hessian(positions, controls, gradient_, values_);
-  positions_ = positions;
-  controls_ = controls;
+void Stiffness::evaluate(const Configuration& here) {
+  assembler_.gradient_and_hessian(here, gradient_, values_);
+  here_ = here;
 }
 
 Inertia Stiffness::factorize(double shift, const Mass& mass) {
@@ -139,7 +138,7 @@ SoftDirection Stiffness::soft_direction(Vector free) const {
   Eigen::Index largest = 0;
   free.cwiseAbs().maxCoeff(&largest);
   if (free[largest] < 0.0) free = -free;
-  const double curvature = second_variation(model_, controls_, positions_, over_all(free));
+  const double curvature = second_variation(model_, here_, over_all_dofs(model_, free));
   return {std::move(free), curvature};
 }
 
@@ -167,7 +166,7 @@ Stiffness::SoftSpace Stiffness::softest_space(Index count) {
     for (Index i = 0; i < wanted; ++i) {
       const Vector& x = space.directions.col(i);
       const Vector force =
-          stiffness_product(model_, controls_, positions_, over_all(x))(model_.free_dofs) -
+          stiffness_product(model_, here_, over_all_dofs(model_, x))(model_.dofs.free()) -
           space.curvatures[i] * x;
       column = force;
       solver_.solve(column);
@@ -193,8 +192,8 @@ Stiffness::SoftSpace Stiffness::rayleigh_ritz(const Eigen::MatrixXd& basis, Inde
   const auto variations = [&](const Eigen::MatrixXd& free) {
     full.resize(full.rows(), free.cols());
     full.setZero();
-    full(model_.free_dofs, Eigen::all) = free;
-    return second_variations(model_, controls_, positions_, full);
+    full(model_.dofs.free(), Eigen::all) = free;
+    return second_variations(model_, here_, full);
   };
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(variations(directions).values);
   SoftSpace space;
@@ -220,24 +219,18 @@ bool Stiffness::solve_by_elements(Vector& b) {
   b.setZero();
   for (int i = 0; i < kIterations; ++i) {
     if (energy <= kReduction * first) return b.allFinite();
-    const Vector full = over_all(direction);
-    const double curvature = second_variation(model_, controls_, positions_, full);
+    const Vector full = over_all_dofs(model_, direction);
+    const double curvature = second_variation(model_, here_, full);
     if (!(curvature > 0.0)) return false;
     const double step = energy / curvature;
     b += step * direction;
-    rest -= step * stiffness_product(model_, controls_, positions_, full)(model_.free_dofs);
+    rest -= step * stiffness_product(model_, here_, full)(model_.dofs.free());
     answer = rest;
     solver_.solve(answer);
     const double before = std::exchange(energy, rest.dot(answer));
     direction = answer + energy / before * direction;
   }
   return false;
-}
-
-Vector Stiffness::over_all(const Vector& free) const {
-  Vector full = Vector::Zero(model_.num_dofs());
-  full(model_.free_dofs) = free;
-  return full;
 }
 
 Vector unstructured_vector(Index size) {

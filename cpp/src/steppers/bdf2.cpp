@@ -39,8 +39,9 @@ class Bdf2 final : public Stepper {
     equation.inertia_target = past_displacement_ + h * past_velocities_;
     equation.velocity_factor = 1.0 / h;
     equation.velocity_reference = past_displacement_;
-    stage_.positions = state.positions + dt * (state.velocities + 0.5 * dt * state.accelerations);
-    stage_.place_held_at(state, state.time + dt, stage_.positions);
+    stage_.here.coordinates =
+        state.positions + dt * (state.velocities + 0.5 * dt * state.accelerations);
+    stage_.place_held_at(state, state.time + dt, stage_.here.coordinates);
     const StepReport report = stage_.solve(state, state.time + dt);
     if (report.outcome != StepOutcome::Done) return report;
 
@@ -49,7 +50,7 @@ class Bdf2 final : public Stepper {
     state.history.resize(2);
     state.history[0] = stage_.displacement();
     state.history[1] = state.velocities;
-    stage_.book_and_finish(stage_.positions, velocities_, dt, 1.0, force_, state);
+    stage_.book_and_finish(stage_.here.coordinates, velocities_, dt, 1.0, force_, state);
     return report;
   }
 

@@ -29,8 +29,8 @@ DenseOutput::DenseOutput(const Model& model, const Assembler& assembler)
       force_(model, assembler),
       velocities_(Vector::Zero(model.num_dofs())),
       controls_(Vector::Zero(model.controls.size())),
-      controls_before_(controls_),
-      controls_after_(controls_) {}
+      before_{Vector::Zero(model.num_dofs()), controls_},
+      after_(before_) {}
 
 void DenseOutput::evaluate(double time, const State& start, const State& end, State& result) {
   const double h = end.time - start.time;
@@ -79,17 +79,17 @@ Work DenseOutput::powers(const State& where, const State& start, const State& en
 /// By a central difference over the length of the step.
 void DenseOutput::add_table_powers(const State& where, const State& start, const State& end,
                                    Work& power) {
-  evaluate_controls(model_, end, start.time, controls_before_);
-  evaluate_controls(model_, end, end.time, controls_after_);
-  controls_ = 0.5 * (controls_after_ - controls_before_);
-  evaluate_controls(model_, end, where.time, controls_before_);
-  controls_after_ = controls_before_ + controls_;
-  controls_before_ -= controls_;
+  evaluate_controls(model_, end, start.time, before_.controls);
+  evaluate_controls(model_, end, end.time, after_.controls);
+  controls_ = 0.5 * (after_.controls - before_.controls);
+  evaluate_controls(model_, end, where.time, before_.controls);
+  after_.controls = before_.controls + controls_;
+  before_.controls -= controls_;
   const double dt = end.time - start.time;
-  power.supports +=
-      rotation_work(model_, {where.positions, where.positions, controls_before_, controls_after_}) /
-      dt;
-  power.loads += cell_work(model_, controls_before_, controls_after_) / dt;
+  before_.coordinates = where.positions;
+  after_.coordinates = where.positions;
+  power.supports += rotation_work(model_, before_, after_) / dt;
+  power.loads += cell_work(model_, before_.controls, after_.controls) / dt;
 }
 
 }  // namespace der

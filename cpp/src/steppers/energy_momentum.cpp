@@ -28,12 +28,12 @@ class EnergyMomentum final : public Stepper {
     equation.inertia = 1.0 / (half * half);
     equation.inertia_target = half * state.velocities;
     equation.velocity_factor = 1.0 / half;
-    evaluate_controls(model_, state, state.time, gradient_.controls_start);
-    evaluate_controls(model_, state, state.time + dt, gradient_.controls_end);
+    configuration_of(model_, state, gradient_.start);
+    evaluate_controls(model_, state, state.time + dt, gradient_.end.controls);
 
     positions_ = state.positions + dt * (state.velocities + half * state.accelerations);
     stage_.place_held_at(state, state.time + dt, positions_);
-    stage_.positions = 0.5 * (state.positions + positions_);
+    stage_.here.coordinates = 0.5 * (state.positions + positions_);
     const StepReport report = stage_.solve(state, state.time + half);
     if (report.outcome != StepOutcome::Done) return report;
 

@@ -9,6 +9,7 @@
 
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
+#include "der/energies/registry.hpp"
 
 namespace der {
 namespace {
@@ -35,10 +36,8 @@ struct Corner {
   double sine;
 };
 Corner corner(const std::array<Index, 6>& dofs, const Vector& positions) {
-  const auto x = gather(dofs, positions);
-  const Vec2 e0 = x.segment<2>(2) - x.head<2>();
-  const Vec2 e1 = x.tail<2>() - x.segment<2>(2);
-  return {e0.dot(e1), e0.x() * e1.y() - e0.y() * e1.x()};
+  const auto [before, after] = PlanarBend<AngleCurvature>::edges(gather(dofs, positions));
+  return {before.dot(after), cross(before, after)};
 }
 
 template <class Kernel>
@@ -48,7 +47,7 @@ Index folded_node_of(const ElementList<Kernel>& bends, const Model& model, const
     const Corner now = corner(dofs, after);
     if (now.cosine >= 0.0) continue;
     const Corner then = corner(dofs, before);
-    if (then.cosine < 0.0 && now.sine * then.sine < 0.0) return dofs[2] / model.dimension;
+    if (then.cosine < 0.0 && now.sine * then.sine < 0.0) return model.dofs.node_of(dofs[2]);
   }
   return -1;
 }
@@ -56,11 +55,9 @@ Index folded_node_of(const ElementList<Kernel>& bends, const Model& model, const
 /// The first node whose turning angle has gone through half a turn; -1 if there is none.
 Index folded_node(const Model& model, const Vector& before, const Vector& after) {
   using Bend = PlanarBend<AngleCurvature>;
-  const Index node =
-      folded_node_of(std::get<ElementList<Bend>>(model.elements), model, before, after);
+  const Index node = folded_node_of(model.elements->of<Bend>(), model, before, after);
   return node >= 0 ? node
-                   : folded_node_of(std::get<ElementList<FromPivot<Bend>>>(model.elements), model,
-                                    before, after);
+                   : folded_node_of(model.elements->of<FromPivot<Bend>>(), model, before, after);
 }
 
 std::string created_text(const EnergyAudit& audit, const std::string& times) {
@@ -81,7 +78,7 @@ std::string times_text(double share) {
 EnergyWatch::EnergyWatch(const Model& model)
     : model_(model),
       rounding_(strain_energy(model, kRoundingStrain)),
-      controls_(Vector::Zero(model.controls.size())),
+      here_{Vector::Zero(model.num_dofs()), Vector::Zero(model.controls.size())},
       positions_(Vector::Zero(model.num_dofs())),
       velocities_(Vector::Zero(model.num_dofs())) {}
 
@@ -89,10 +86,10 @@ void EnergyWatch::begin(const State& state) { keep(state); }
 
 void EnergyWatch::before_step(State& state) {
   if (state.positions == positions_ && state.velocities == velocities_) return;
-  evaluate_controls(model_, state, state.time, controls_);
-  const double before = energies(model_, controls_, positions_, velocities_).total();
-  state.audit.written +=
-      energies(model_, controls_, state.positions, state.velocities).total() - before;
+  configuration_of(model_, state, here_);
+  const double now = energies(model_, here_, state.velocities).total();
+  here_.coordinates = positions_;
+  state.audit.written += now - energies(model_, here_, velocities_).total();
 }
 
 void EnergyWatch::after_step(State& state) {
@@ -114,8 +111,8 @@ void EnergyWatch::keep(const State& state) {
 }
 
 void EnergyWatch::look(State& state) {
-  evaluate_controls(model_, state, state.time, controls_);
-  const Energies now = energies(model_, controls_, state.positions, state.velocities);
+  configuration_of(model_, state, here_);
+  const Energies now = energies(model_, here_, state.velocities);
   const Work& work = state.work;
   EnergyAudit& audit = state.audit;
   const double created = -numerical_loss(work, now) - audit.written;

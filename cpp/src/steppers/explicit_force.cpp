@@ -25,9 +25,8 @@ ExplicitForce::ExplicitForce(const Model& model, const Assembler& assembler)
       assembler_(assembler),
       supports_move_(any_support_moves(model)),
       mass_(model),
-      controls_(Vector::Zero(model.controls.size())),
-      scratch_controls_(controls_),
-      positions_(Vector::Zero(model.num_dofs())),
+      here_{Vector::Zero(model.num_dofs()), Vector::Zero(model.controls.size())},
+      scratch_controls_(here_.controls),
       force_(Vector::Zero(model.num_dofs())),
       gradient_(Vector::Zero(model.num_dofs())) {}
 
@@ -35,7 +34,7 @@ void ExplicitForce::acceleration(const State& state, const Vector& positions,
                                  const Vector& velocities, double time, double damping_time,
                                  Vector& acceleration) {
   evaluate_loads(state, positions, time);
-  assembler_.gradient(positions, controls_, gradient_);
+  assembler_.gradient(here_, gradient_);
   acceleration = force_ - gradient_ - model_.damping.cwiseProduct(velocities);
   mass_.solve(damping_time, acceleration);
 }
@@ -43,18 +42,18 @@ void ExplicitForce::acceleration(const State& state, const Vector& positions,
 void ExplicitForce::evaluate_works(const State& state, const Vector& positions, double time) {
   evaluate_loads(state, positions, time);
   // Only the reactions on held degrees of freedom need it, and those work where supports move.
-  if (supports_move_) assembler_.gradient(positions, controls_, gradient_);
+  if (supports_move_) assembler_.gradient(here_, gradient_);
 }
 
 void ExplicitForce::evaluate_loads(const State& state, const Vector& positions, double time) {
-  evaluate_controls(model_, state, time, controls_);
-  external_force(model_, controls_, state.extra_force, force_);
-  positions_ = positions;
+  evaluate_controls(model_, state, time, here_.controls);
+  external_force(model_, here_.controls, state.extra_force, force_);
+  here_.coordinates = positions;
 }
 
 void ExplicitForce::book(const Vector& velocities, const Vector& displacement, Work& work) const {
-  work.loads += displacement.dot(force_ - model_.gravity_force) +
-                moment_work(model_, positions_, controls_, displacement);
+  work.loads +=
+      displacement.dot(force_ - model_.gravity_force) + moment_work(model_, here_, displacement);
   work.drag += displacement.dot(model_.damping.cwiseProduct(velocities));
   for (const HeldDof& held : model_.held) {
     // The step's finisher has the drag on held nodes.
@@ -71,10 +70,8 @@ void ExplicitForce::place_held_at(const State& state, double time, Vector& posit
 StepReport ExplicitForce::check(const State& state, const Vector& positions) const {
   for (const Edge& edge : model_.edges) {
     const double limit = kLargestStretch * edge.rest_length;
-    const double dx = positions[edge.dofs[2]] - positions[edge.dofs[0]];
-    const double dy = positions[edge.dofs[3]] - positions[edge.dofs[1]];
-    if (!(dx * dx + dy * dy < limit * limit)) {  // also true for NaN
-      return {StepOutcome::Diverged, 0, edge.dofs[2], "an edge grew beyond 100 times its length"};
+    if (!(along_edge(edge, positions).squaredNorm() < limit * limit)) {  // also true for NaN
+      return {StepOutcome::Diverged, 0, edge.last, "an edge grew beyond 100 times its length"};
     }
   }
   return check_turns(model_, state, positions);

@@ -45,7 +45,7 @@ class GeneralizedAlpha final : public Stepper {
 
     positions_ = q + dt * (v + 0.5 * dt * a);
     stage_.place_held_at(state, state.time + dt, positions_);
-    stage_.positions = kept * positions_ + alpha_f_ * q;
+    stage_.here.coordinates = kept * positions_ + alpha_f_ * q;
     const StepReport report = stage_.solve(state, state.time + kept * dt);
     if (report.outcome != StepOutcome::Done) return report;
 

@@ -12,9 +12,10 @@ namespace der {
 ImplicitStage::ImplicitStage(const Model& model, const Assembler& assembler, LinearSolver& solver,
                              const NewtonOptions& options)
     : equation(model),
-      positions(Vector::Zero(model.num_dofs())),
+      here{Vector::Zero(model.num_dofs()), Vector::Zero(model.controls.size())},
       model_(model),
-      newton_(model, assembler, solver, options),
+      problem_(model, assembler),
+      newton_(model.dofs, solver, assembler.num_values(), options),
       finisher_(model),
       held_controls_(Vector::Zero(model.controls.size())),
       start_controls_(Vector::Zero(model.controls.size())),
@@ -34,10 +35,11 @@ void ImplicitStage::evaluate_controls(const State& state, double time, Vector& c
 }
 
 StepReport ImplicitStage::solve(const State& state, double time) {
-  evaluate_controls(state, time, equation.controls);
-  external_force(model_, equation.controls, state.extra_force, equation.force);
+  evaluate_controls(state, time, here.controls);
+  external_force(model_, here.controls, state.extra_force, equation.force);
   equation.origin = state.positions;
-  const NewtonReport newton = newton_.solve(equation, positions);
+  problem_.pose(equation, here);
+  const NewtonReport newton = newton_.solve(problem_);
   StepReport report;
   report.newton_iterations = newton.iterations;
   if (!newton.converged) {
@@ -46,7 +48,7 @@ StepReport ImplicitStage::solve(const State& state, double time) {
     report.failure = newton.failure;
     return report;
   }
-  report = check_turns(model_, state, positions);
+  report = check_turns(model_, state, here.coordinates);
   report.newton_iterations = newton.iterations;
   return report;
 }
@@ -76,14 +78,14 @@ void ImplicitStage::book_forces(const Vector& displacement, Work& work) const {
 
 double ImplicitStage::moments(const Vector& displacement) const {
   if (equation.discrete_gradient == nullptr) {
-    return moment_work(model_, positions, equation.controls, displacement);
+    return moment_work(model_, here, displacement);
   }
-  return equation.discrete_gradient->moment_work(equation.origin, positions, displacement);
+  return equation.discrete_gradient->moment_work(here, displacement);
 }
 
 void ImplicitStage::book_solver(const Vector& displacement, Work& work) const {
   const Vector& residual = newton_.residual();
-  for (const Index dof : model_.free_dofs) work.solver += displacement[dof] * residual[dof];
+  for (const Index dof : model_.dofs.free()) work.solver += displacement[dof] * residual[dof];
 }
 
 void ImplicitStage::book_and_finish(const Vector& new_positions,

@@ -91,18 +91,18 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
       past_displacement_ += weight * velocities_.col(j);
       past_velocities_ += weight * accelerations_.col(j);
     }
-    stage_.positions = state.positions + past_displacement_ + g * past_velocities_;
+    stage_.here.coordinates = state.positions + past_displacement_ + g * past_velocities_;
     // The acceleration is guessed to be that of the stage before.
     if (i == 0) {
-      stage_.positions += g * g * state.accelerations;
+      stage_.here.coordinates += g * g * state.accelerations;
     } else {
-      stage_.positions += g * g * accelerations_.col(i - 1);
+      stage_.here.coordinates += g * g * accelerations_.col(i - 1);
     }
-    stage_.place_held_at(state, time, stage_.positions);
+    stage_.place_held_at(state, time, stage_.here.coordinates);
     for (const HeldDof& held : model_.held) {
       // So that the stage's velocity is that of the motion over the step.
       past_displacement_[held.dof] =
-          stage_.positions[held.dof] - state.positions[held.dof] -
+          stage_.here.coordinates[held.dof] - state.positions[held.dof] -
           tableau_.diagonal * (end_positions_[held.dof] - state.positions[held.dof]);
     }
     stage_.equation.inertia_target = past_displacement_ + g * past_velocities_;
@@ -115,7 +115,7 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
     state.work = work_;
     state.accelerations = accelerations_.col(last);  // the next guess
     if (tableau_.stiffly_accurate()) {
-      stage_.finish(stage_.positions, velocities_.col(last), dt, state);
+      stage_.finish(stage_.here.coordinates, velocities_.col(last), dt, state);
       return;
     }
     displacement_.setZero();
@@ -125,7 +125,7 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
       displacement_ += weight * velocities_.col(i);
       past_velocities_ += weight * accelerations_.col(i);
     }
-    for (const Index dof : model_.free_dofs) {
+    for (const Index dof : model_.dofs.free()) {
       end_positions_[dof] = state.positions[dof] + displacement_[dof];
     }
     stage_.finish(end_positions_, past_velocities_, dt, state);

@@ -44,14 +44,12 @@ double rate_of_change(const Model& model, const State& state) {
   double largest = 0.0;
   double turn_before = 0.0;
   for (std::size_t i = 0; i < model.edges.size(); ++i) {
-    const auto& [x0, y0, x1, y1] = model.edges[i].dofs;
-    const auto between = [](const Vector& v, Index a, Index b) { return v[b] - v[a]; };
-    const Vec2 edge{between(state.positions, x0, x1), between(state.positions, y0, y1)};
-    const Vec2 rate{between(state.velocities, x0, x1), between(state.velocities, y0, y1)};
+    const Vec2 edge = along_edge(model.edges[i], state.positions);
+    const Vec2 rate = along_edge(model.edges[i], state.velocities);
     const double per_squared = 1.0 / edge.squaredNorm();
     const double turn = cross(edge, rate) * per_squared;
     largest = std::max(largest, std::abs(edge.dot(rate) * per_squared));
-    const bool joined = i > 0 && model.edges[i - 1].dofs[2] == x0;
+    const bool joined = i > 0 && model.edges[i - 1].last == model.edges[i].first;
     if (joined) largest = std::max(largest, std::abs(turn - turn_before));
     turn_before = turn;
   }
@@ -62,9 +60,8 @@ double rate_of_change(const Model& model, const State& state) {
 /// does not count.
 bool has_other_shape(const Model& model, const Vector& positions, const Vector& before) {
   for (const Edge& edge : model.edges) {
-    const auto& [x0, y0, x1, y1] = edge.dofs;
-    const Vec2 then{before[x1] - before[x0], before[y1] - before[y0]};
-    const Vec2 now{positions[x1] - positions[x0], positions[y1] - positions[y0]};
+    const Vec2 then = along_edge(edge, before);
+    const Vec2 now = along_edge(edge, positions);
     if ((now - then).squaredNorm() > kOtherShape * kOtherShape * then.squaredNorm()) return true;
   }
   return false;
@@ -77,16 +74,16 @@ StabilityWatch::StabilityWatch(const Model& model, const StepperInfo& stepper,
     : model_(model),
       time_(time),
       bound_(model, stepper.drag_limits_step),
-      controls_(Vector::Zero(model.controls.size())) {}
+      here_{Vector::Zero(model.num_dofs()), Vector::Zero(model.controls.size())} {}
 
 double StabilityWatch::stable_step(const State& state) {
-  evaluate_controls(model_, state, state.time, controls_);
-  return bound_.evaluate(state.positions, controls_);
+  configuration_of(model_, state, here_);
+  return bound_.evaluate(here_);
 }
 
 StableStep StabilityWatch::explain(const State& state) {
-  evaluate_controls(model_, state, state.time, controls_);
-  return bound_.explain(state.positions, controls_);
+  configuration_of(model_, state, here_);
+  return bound_.explain(here_);
 }
 
 void StabilityWatch::check_start(const State& state) {

@@ -10,6 +10,7 @@
 
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
+#include "der/energies/registry.hpp"
 
 namespace der {
 namespace {
@@ -35,7 +36,7 @@ StableStepBound::StableStepBound(const Model& model, bool drag_limits_step)
       sums_(model.num_nodes) {
   find_blocks();
   if (!drag_limits_step) return;
-  for (const Index dof : model.free_dofs) {
+  for (const Index dof : model.dofs.free()) {
     const double rate = model.damping[dof] * inverse_root_mass_[dof] * inverse_root_mass_[dof];
     if (rate <= damping_rate_) continue;
     damping_rate_ = rate;
@@ -46,8 +47,8 @@ StableStepBound::StableStepBound(const Model& model, bool drag_limits_step)
 void StableStepBound::find_blocks() {
   std::map<std::pair<Index, Index>, Block> blocks;
   const auto add = [&](Index row_dof, Index column_dof, Index slot) {
-    const Index row = row_dof / model_.dimension;
-    const Index column = column_dof / model_.dimension;
+    const Index row = model_.dofs.node_of(row_dof);
+    const Index column = model_.dofs.node_of(column_dof);
     const auto [found, is_new] = blocks.try_emplace({row, column});
     Block& block = found->second;
     if (is_new) {
@@ -55,24 +56,25 @@ void StableStepBound::find_blocks() {
       block.column = column;
       block.slots.fill(layout_.num_values());  // the spare one, for entries that are not there
     }
-    const Index place = 2 * (row_dof % model_.dimension) + column_dof % model_.dimension;
+    const Index place = 2 * model_.dofs[row_dof].component + model_.dofs[column_dof].component;
     block.slots[at(place)] = slot;
     block.scale[at(place)] = inverse_root_mass_[row_dof] * inverse_root_mass_[column_dof];
   };
   for (Index column = 0; column < pattern_.size; ++column) {
     for (Index k = pattern_.outer[at(column)]; k < pattern_.outer[at(column + 1)]; ++k) {
-      const Index row_dof = model_.free_dofs[at(pattern_.inner[at(k)])];
-      const Index column_dof = model_.free_dofs[at(column)];
+      const Index row_dof = model_.dofs.free()[at(pattern_.inner[at(k)])];
+      const Index column_dof = model_.dofs.free()[at(column)];
       add(row_dof, column_dof, k);
       // Of a block on the diagonal the pattern has the lower half.
-      if (row_dof / model_.dimension == column_dof / model_.dimension) add(column_dof, row_dof, k);
+      if (model_.dofs.node_of(row_dof) == model_.dofs.node_of(column_dof))
+        add(column_dof, row_dof, k);
     }
   }
   for (const auto& [nodes, block] : blocks) blocks_.push_back(block);
 }
 
-double StableStepBound::evaluate(const Vector& positions, const Vector& controls) {
-  assembler_.gradient_and_hessian(positions, controls, gradient_, values_);
+double StableStepBound::evaluate(const Configuration& here) {
+  assembler_.gradient_and_hessian(here, gradient_, values_);
   values_[layout_.num_values()] = 0.0;
   sums_.setZero();
   for (const Block& block : blocks_) {
@@ -88,9 +90,9 @@ double StableStepBound::evaluate(const Vector& positions, const Vector& controls
   return std::isnan(step) ? 0.0 : step;
 }
 
-StableStep StableStepBound::explain(const Vector& positions, const Vector& controls) {
+StableStep StableStepBound::explain(const Configuration& here) {
   StableStep result;
-  result.step = evaluate(positions, controls);
+  result.step = evaluate(here);
   result.limited_by = "nothing";
   if (std::isinf(result.step)) return result;
 
@@ -105,15 +107,15 @@ StableStep StableStepBound::explain(const Vector& positions, const Vector& contr
   for (const auto& [term, name] :
        {std::pair{EnergyTerm::Stretch, "stretch"}, std::pair{EnergyTerm::Bend, "bend"},
         std::pair{EnergyTerm::Spring, "spring"}}) {
-    const double bound = term_bound(term, node, positions, controls);
+    const double bound = term_bound(term, node, here);
     if (bound <= largest) continue;
     largest = bound;
     result.limited_by = name;
   }
   double stiffest = -1.0;
   for (Index i = 0; i < pattern_.size; ++i) {
-    const Index dof = model_.free_dofs[at(i)];
-    if (dof / model_.dimension != node) continue;
+    const Index dof = model_.dofs.free()[at(i)];
+    if (model_.dofs.node_of(dof) != node) continue;
     const double stiffness = std::abs(values_[layout_.slot(i, i)]);
     if (stiffness <= stiffest) continue;
     stiffest = stiffness;
@@ -123,27 +125,26 @@ StableStep StableStepBound::explain(const Vector& positions, const Vector& contr
 }
 
 /// The sum over a node's blocks from the elements booked under one term [1/s^2].
-double StableStepBound::term_bound(EnergyTerm term, Index node, const Vector& positions,
-                                   const Vector& controls) const {
+double StableStepBound::term_bound(EnergyTerm term, Index node, const Configuration& here) const {
   std::map<Index, Mat2> blocks;  // by the other node
-  const auto is_free = [&](Index dof) { return model_.free_index[at(dof)] >= 0; };
-  for_each_list(model_.elements, [&](const auto& list) {
+  const DofMap& map = model_.dofs;
+  for_each_list(*model_.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if (Kernel::kTerm != term) return;
     LocalTerm<Kernel::kDofs> local;
     for (std::size_t e = 0; e < list.size(); ++e) {
       const auto& dofs = list.dofs[e];
-      const auto here = [&](Index dof) { return dof / model_.dimension == node && is_free(dof); };
-      if (std::none_of(dofs.begin(), dofs.end(), here)) continue;
-      Kernel::template evaluate<Derivatives::Hessian>(list.constants[e], controls,
-                                                      gather(dofs, positions), local);
+      const auto is_here = [&](Index dof) { return map.node_of(dof) == node && map.is_free(dof); };
+      if (std::none_of(dofs.begin(), dofs.end(), is_here)) continue;
+      Kernel::template evaluate<Derivatives::Hessian>(list.constants[e], here,
+                                                      gather(dofs, here.coordinates), local);
       for (int i = 0; i < Kernel::kDofs; ++i) {
         for (int j = 0; j < Kernel::kDofs; ++j) {
           const Index row = dofs[at(i)];
           const Index column = dofs[at(j)];
-          if (!here(row) || !is_free(column)) continue;
-          Mat2& block = blocks.try_emplace(column / model_.dimension, Mat2::Zero()).first->second;
-          block(row % model_.dimension, column % model_.dimension) +=
+          if (!is_here(row) || !map.is_free(column)) continue;
+          Mat2& block = blocks.try_emplace(map.node_of(column), Mat2::Zero()).first->second;
+          block(map[row].component, map[column].component) +=
               local.hessian(std::max(i, j), std::min(i, j)) * inverse_root_mass_[row] *
               inverse_root_mass_[column];
         }
@@ -158,9 +159,9 @@ double StableStepBound::term_bound(EnergyTerm term, Index node, const Vector& po
 }
 
 StableStep stable_step(const Model& model, const Vector& positions, bool drag_limits_step) {
-  Vector controls;
-  model.controls.evaluate(0.0, controls);
-  return StableStepBound(model, drag_limits_step).explain(positions, controls);
+  Configuration here{positions, {}};
+  model.controls.evaluate(0.0, here.controls);
+  return StableStepBound(model, drag_limits_step).explain(here);
 }
 
 std::string describe_stable_step(const StableStep& stable, const std::string& integrator,

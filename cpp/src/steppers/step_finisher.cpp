@@ -7,16 +7,16 @@ namespace der {
 
 StepFinisher::StepFinisher(const Model& model)
     : model_(model),
-      controls_start_(Vector::Zero(model.controls.size())),
-      controls_end_(Vector::Zero(model.controls.size())) {}
+      start_{Vector::Zero(model.num_dofs()), Vector::Zero(model.controls.size())},
+      end_(start_) {}
 
 void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector>& velocities,
                           double dt, State& state) {
-  evaluate_controls(model_, state, state.time, controls_start_);
-  evaluate_controls(model_, state, state.time + dt, controls_end_);
-  state.work.supports +=
-      rotation_work(model_, {state.positions, positions, controls_start_, controls_end_});
-  state.work.loads += cell_work(model_, controls_start_, controls_end_);
+  configuration_of(model_, state, start_);
+  end_.coordinates = positions;
+  evaluate_controls(model_, state, state.time + dt, end_.controls);
+  state.work.supports += rotation_work(model_, start_, end_);
+  state.work.loads += cell_work(model_, start_.controls, end_.controls);
   for (const HeldDof& held : model_.held) {
     const double before = state.velocities[held.dof];
     const double after = (positions[held.dof] - state.positions[held.dof]) / dt;
@@ -27,7 +27,7 @@ void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector
     state.velocities[held.dof] = after;
     state.positions[held.dof] = positions[held.dof];
   }
-  for (const Index dof : model_.free_dofs) {
+  for (const Index dof : model_.dofs.free()) {
     state.velocities[dof] = velocities[dof];
     state.positions[dof] = positions[dof];
   }

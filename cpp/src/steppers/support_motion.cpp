@@ -49,9 +49,10 @@ double time_of_limit(const scenario::Series& series, double limit, double time) 
 
 /// Length [m] of the shortest edge that ends at a degree of freedom's node.
 double shortest_edge_at(Index dof, const Model& model) {
+  const Index node = model.dof(model.dofs.node_of(dof), 0);
   double shortest = kNever;
   for (const Edge& edge : model.edges) {
-    if (std::find(edge.dofs.begin(), edge.dofs.end(), dof) == edge.dofs.end()) continue;
+    if (edge.first != node && edge.last != node) continue;
     shortest = std::min(shortest, edge.rest_length);
   }
   return shortest;

@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "der/energies/element_energy.hpp"
+#include "der/energies/registry.hpp"
 
 namespace der {
 namespace {
@@ -27,16 +28,15 @@ void stage_displacement(const Model& model, const Vector& start, const Vector& e
   }
 }
 
-double moment_work(const Model& model, const Vector& positions, const Vector& controls,
-                   const Vector& displacement) {
+double moment_work(const Model& model, const Configuration& here, const Vector& displacement) {
   double work = 0.0;
-  for_each_list(model.elements, [&](const auto& list) {
+  for_each_list(*model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if constexpr (Kernel::kTerm == EnergyTerm::Load) {
       LocalTerm<Kernel::kDofs> local;
       for (std::size_t e = 0; e < list.size(); ++e) {
-        Kernel::template evaluate<Derivatives::Gradient>(list.constants[e], controls,
-                                                         gather(list.dofs[e], positions), local);
+        Kernel::template evaluate<Derivatives::Gradient>(
+            list.constants[e], here, gather(list.dofs[e], here.coordinates), local);
         work -= local.gradient.dot(gather(list.dofs[e], displacement));
       }
     }
@@ -44,15 +44,15 @@ double moment_work(const Model& model, const Vector& positions, const Vector& co
   return work;
 }
 
-double rotation_work(const Model& model, const StepEnds& step) {
+double rotation_work(const Model& model, const Configuration& start, const Configuration& end) {
   if (!any_clamp_turns(model)) return 0.0;
   double work = 0.0;
-  for_each_list(model.elements, [&](const auto& list) {
+  for_each_list(*model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if constexpr (Kernel::kTerm != EnergyTerm::Load) {
-      for (const Vector* positions : {&step.start, &step.end}) {
-        work += 0.5 * (element_energy(list, step.controls_end, *positions) -
-                       element_energy(list, step.controls_start, *positions));
+      for (const Configuration* there : {&start, &end}) {
+        work += 0.5 * (element_energy(list, end, there->coordinates) -
+                       element_energy(list, start, there->coordinates));
       }
     }
   });

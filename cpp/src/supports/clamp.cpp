@@ -16,7 +16,7 @@ constexpr double kNextCellLoss = 1.0 / 48.0;
 
 /// From node to node in the initial shape.
 Vec2 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
-  return Link{rod.edge_dofs(edge, model), {}, {}}.vector(model.initial_positions, 0.0, 0.0);
+  return along_edge(rod.edge(edge, model), model.initial_positions);
 }
 
 double direction(const Vec2& e) { return std::atan2(e.y(), e.x()); }
@@ -62,26 +62,23 @@ void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod,
   rod.clamps.push_back({place, initial_tangent_angle(rod, place, model), rotation, followed});
 }
 
-Vec2 Link::vector(const Vector& positions, double first_turn, double last_turn) const {
-  return Vec2(positions[dofs[2]], positions[dofs[3]]) + last.offset(last_turn) -
-         Vec2(positions[dofs[0]], positions[dofs[1]]) - first.offset(first_turn);
-}
-
-Link link_of(const RodLayout& rod, Index edge, const Model& model) {
+EffectiveEdge effective_edge(const RodLayout& rod, Index edge, const Model& model) {
   return {rod.edge_dofs(edge, model), pivot_at(rod, edge, edge), pivot_at(rod, edge + 1, edge)};
 }
 
-Vec2 link_end(const Link& link, bool last, const Model& model, const State& state) {
-  const Pivot& pivot = last ? link.last : link.first;
+Vec2 effective_end(const EffectiveEdge& effective, bool last, const Model& model,
+                   const State& state) {
+  const Pivot& pivot = last ? effective.last : effective.first;
   const double turn =
       pivot.rotation >= 0 ? model.controls.value(pivot.rotation, state.time, state.ramps) : 0.0;
   const std::size_t x = last ? 2 : 0;
-  return Vec2(state.positions[link.dofs[x]], state.positions[link.dofs[x + 1]]) +
+  return Vec2(state.positions[effective.dofs[x]], state.positions[effective.dofs[x + 1]]) +
          pivot.offset(turn);
 }
 
-Vec2 link_vector(const Link& link, const Model& model, const State& state) {
-  return link_end(link, true, model, state) - link_end(link, false, model, state);
+Vec2 effective_vector(const EffectiveEdge& effective, const Model& model, const State& state) {
+  return effective_end(effective, true, model, state) -
+         effective_end(effective, false, model, state);
 }
 
 double bend_length(const RodLayout& rod, Index place) {
@@ -99,8 +96,9 @@ double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, co
   const double side = side_of(clamp, edge);
   if (rod.natural_curvature.empty()) {
     const Vec2 tangent{std::cos(clamp.direction), std::sin(clamp.direction)};
-    const Vec2 link = link_of(rod, edge, model).vector(model.initial_positions, 0.0, 0.0);
-    return side * angle_between(tangent, link);
+    const Vec2 effective =
+        effective_edge(rod, edge, model).vector(model.initial_positions, 0.0, 0.0);
+    return side * angle_between(tangent, effective);
   }
   const Index next = clamp.place + (side > 0.0 ? 1 : -1);
   const double at_pivot = (1.0 - kPivotShare) * rod.natural_curvature[at(clamp.place)] +
@@ -113,16 +111,16 @@ double clamp_pivot_share() { return kPivotShare; }
 void add_clamp_cells(const Clamp& clamp, RodLayout& rod, Model& model) {
   for (const Index edge : {clamp.place - 1, clamp.place}) {
     if (edge < 0 || edge >= rod.num_edges()) continue;
-    const Link link = link_of(rod, edge, model);
+    const EffectiveEdge effective = effective_edge(rod, edge, model);
     const double rest = clamp_rest_angle(rod, clamp, edge, model);
     rod.rest_turning_angle[at(clamp.place)] += rest;
     const auto add = [&](auto measure) {
       using Measure = decltype(measure);
-      auto& list = std::get<ElementList<FromPivot<PlanarClamp<Measure>>>>(model.elements);
-      list.add(link.dofs, {{rod.EI / clamp_cell_length(rod, edge), Measure::of(rest).kappa,
-                            clamp.direction, side_of(clamp, edge), clamp.rotation},
-                           link.first,
-                           link.last});
+      auto& list = model.elements->of<FromPivot<PlanarClamp<Measure>>>();
+      list.add(effective.dofs, {{rod.EI / clamp_cell_length(rod, edge), Measure::of(rest).kappa,
+                                 clamp.direction, side_of(clamp, edge), clamp.rotation},
+                                effective.first,
+                                effective.last});
     };
     if (rod.curvature == scenario::CurvatureMeasure::Angle) {
       add(AngleCurvature{});

@@ -39,7 +39,7 @@ void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s,
     constants.anchor += weight * drawn_node(rod, place, model);
   }
   if (!spring.anchor.empty()) constants.anchor = Eigen::Map<const Vec2>(spring.anchor.data());
-  std::get<ElementList<Kernel>>(model.elements).add(dofs, constants);
+  model.elements->of<Kernel>().add(dofs, constants);
   rod.force_places.push_back({s, {-1, -1}, constants.stiffness, constants.anchor});
 }
 
@@ -91,7 +91,7 @@ Index add_element(const RodLayout& rod, MomentPlace& place, Model& model) {
   constants.turn = first.turn;
   constants.rest = rest_turn(rod, place, model);
   for (std::size_t i = 0; i < Edges; ++i) constants.weights[i] = place.weights[i];
-  auto& springs = std::get<ElementList<Kernel>>(model.elements);
+  auto& springs = model.elements->of<Kernel>();
   springs.add(dofs, constants);
   return static_cast<Index>(springs.size()) - 1;
 }

@@ -7,9 +7,11 @@
 #include <string>
 
 #include "der/assembly/assembler.hpp"
+#include "der/assembly/planar_chain.hpp"
 #include "der/building/builder.hpp"
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
+#include "der/energies/registry.hpp"
 #include "der/model/state.hpp"
 #include "der/scenario/reader.hpp"
 #include "der/simulation.hpp"
@@ -41,16 +43,16 @@ struct Derivatives2 {
   Eigen::MatrixXd hessian;  // over all degrees of freedom
 };
 
-Derivatives2 sum_of_kernels(const Model& model, const Vector& controls, const Vector& positions) {
+Derivatives2 sum_of_kernels(const Model& model, const Configuration& here) {
   Derivatives2 sum{Vector::Zero(model.num_dofs()),
                    Eigen::MatrixXd::Zero(model.num_dofs(), model.num_dofs())};
-  for_each_list(model.elements, [&](const auto& list) {
+  for_each_list(*model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     LocalTerm<Kernel::kDofs> local;
     for (std::size_t e = 0; e < list.size(); ++e) {
       const auto& dofs = list.dofs[e];
-      Kernel::template evaluate<Derivatives::Hessian>(list.constants[e], controls,
-                                                      gather(dofs, positions), local);
+      Kernel::template evaluate<Derivatives::Hessian>(list.constants[e], here,
+                                                      gather(dofs, here.coordinates), local);
       for (Index i = 0; i < Kernel::kDofs; ++i) {
         sum.gradient[dofs[at(i)]] += local.gradient[i];
         for (Index j = 0; j <= i; ++j) {
@@ -82,13 +84,12 @@ TEST_CASE("chains are found where edges follow one another") {
 TEST_CASE("a chain gives the gradient and the Hessian of its elements") {
   const Model model = build_model(Scenario::parse(kRods).scene());
   const Pattern pattern = build_pattern(model);
-  const Vector controls = Vector::Zero(model.controls.size());
   std::mt19937_64 random(11);
   std::normal_distribution<double> shake(0.0, 0.1);
   for (const double disorder : {0.0, 0.01, 0.2, 2.0}) {
-    Vector positions = initial_state(model).positions;
-    for (double& x : positions) x += disorder * shake(random);
-    const Derivatives2 expected = sum_of_kernels(model, controls, positions);
+    Configuration here = configuration_of(model, initial_state(model));
+    for (double& x : here.coordinates) x += disorder * shake(random);
+    const Derivatives2 expected = sum_of_kernels(model, here);
     const double rounding = 1e-14 * expected.hessian.lpNorm<Eigen::Infinity>();
 
     for (const MatrixLayout& layout : {MatrixLayout::compressed(pattern),
@@ -96,15 +97,15 @@ TEST_CASE("a chain gives the gradient and the Hessian of its elements") {
       const Assembler assembler(model, layout);
       Vector gradient(model.num_dofs());
       Vector values(assembler.num_values());
-      assembler.gradient(positions, controls, gradient);
+      assembler.gradient(here, gradient);
       CHECK((gradient - expected.gradient).lpNorm<Eigen::Infinity>() <= rounding);
-      assembler.gradient_and_hessian(positions, controls, gradient, values);
+      assembler.gradient_and_hessian(here, gradient, values);
       CHECK((gradient - expected.gradient).lpNorm<Eigen::Infinity>() <= rounding);
       double worst = 0.0;
       for (Index j = 0; j < pattern.size; ++j) {
         for (Index k = pattern.outer[at(j)]; k < pattern.outer[at(j) + 1]; ++k) {
           const Index i = pattern.inner[at(k)];
-          const double entry = expected.hessian(model.free_dofs[at(i)], model.free_dofs[at(j)]);
+          const double entry = expected.hessian(model.dofs.free()[at(i)], model.dofs.free()[at(j)]);
           worst = std::max(worst, std::abs(values[layout.slot(i, j)] - entry));
         }
       }

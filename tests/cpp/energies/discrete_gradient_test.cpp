@@ -8,6 +8,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "der/energies/registry.hpp"
 #include "energies/sample_elements.hpp"
 
 namespace der::test {
@@ -27,21 +28,21 @@ struct Element {
   using Coordinates = Eigen::Matrix<double, n, 1>;
 
   explicit Element(Random& random)
-      : constants(sample_constants(Kernel{}, random)), controls(sample_controls(random)) {}
+      : constants(sample_constants(Kernel{}, random)), here(sample_configuration(random)) {}
 
   [[nodiscard]] double energy(const Coordinates& x) const {
     LocalTerm<n> term;
-    Kernel::template evaluate<Derivatives::Energy>(constants, controls, x, term);
+    Kernel::template evaluate<Derivatives::Energy>(constants, here, x, term);
     return term.energy;
   }
   [[nodiscard]] Coordinates gradient(const Coordinates& x) const {
     LocalTerm<n> term;
-    Kernel::template evaluate<Derivatives::Gradient>(constants, controls, x, term);
+    Kernel::template evaluate<Derivatives::Gradient>(constants, here, x, term);
     return term.gradient;
   }
   [[nodiscard]] Coordinates discrete(const Coordinates& start, const Coordinates& end) const {
     Coordinates result;
-    discrete_gradient(KernelTag<Kernel>{}, constants, controls, start, end, result);
+    discrete_gradient(KernelTag<Kernel>{}, constants, here, start, end, result);
     return result;
   }
   /// Change of energy from `start` to `end` less the discrete gradient along it, and the rounding
@@ -50,7 +51,7 @@ struct Element {
     const Coordinates d = discrete(start, end);
     double gap = followed(start, end).energy(end) - energy(start) - d.dot(end - start);
     if constexpr (std::is_same_v<Kernel, PlanarMoment>) {
-      gap = std::remainder(gap, PlanarMoment::period(constants, controls));
+      gap = std::remainder(gap, PlanarMoment::period(constants, here));
     }
     const double scale = 1.0 + std::abs(energy(start)) + std::abs(energy(end)) +
                          d.norm() * (start.norm() + end.norm());
@@ -64,7 +65,7 @@ struct Element {
       const auto edge = [](const Coordinates& x) -> Vec2 {
         return x.template segment<2>(2) - x.template head<2>();
       };
-      double& turn = element.controls[constants.turn];
+      double& turn = element.here.controls[constants.turn];
       const double then = constants.direction + turn;
       turn += angle_between({std::cos(then), std::sin(then)}, edge(start)) +
               angle_between(edge(start), edge(end));
@@ -73,7 +74,7 @@ struct Element {
   }
 
   typename Kernel::Constants constants;
-  Vector controls;
+  Configuration here;
 };
 
 /// Nodes turned together about the origin and moved.

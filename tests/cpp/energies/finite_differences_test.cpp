@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "der/energies/registry.hpp"
 #include "energies/sample_elements.hpp"
 
 namespace der::test {
@@ -28,21 +29,21 @@ void check_derivatives(Shape shape, Random& random) {
   constexpr int n = Kernel::kDofs;
   using Coordinates = Eigen::Matrix<double, n, 1>;
   const auto constants = sample_constants(Kernel{}, random);
-  const Vector controls = sample_controls(random);
+  const Configuration here = sample_configuration(random);
   const Coordinates x = sample_positions<n>(shape, random);
 
   const auto energy = [&](const Coordinates& y) {
     LocalTerm<n> term;
-    Kernel::template evaluate<Derivatives::Energy>(constants, controls, y, term);
+    Kernel::template evaluate<Derivatives::Energy>(constants, here, y, term);
     return term.energy;
   };
   const auto gradient = [&](const Coordinates& y) {
     LocalTerm<n> term;
-    Kernel::template evaluate<Derivatives::Gradient>(constants, controls, y, term);
+    Kernel::template evaluate<Derivatives::Gradient>(constants, here, y, term);
     return term.gradient;
   };
   LocalTerm<n> exact;
-  Kernel::template evaluate<Derivatives::Hessian>(constants, controls, x, exact);
+  Kernel::template evaluate<Derivatives::Hessian>(constants, here, x, exact);
   CHECK(exact.energy == energy(x));
   CHECK(exact.gradient == gradient(x));
 
@@ -73,10 +74,10 @@ template <class Kernel>
 void check_rigid_motion(Shape shape, Random& random) {
   constexpr int n = Kernel::kDofs;
   const auto constants = sample_constants(Kernel{}, random);
-  const Vector controls = sample_controls(random);
+  const Configuration here = sample_configuration(random);
   const auto x = sample_positions<n>(shape, random);
   LocalTerm<n> before;
-  Kernel::template evaluate<Derivatives::Gradient>(constants, controls, x, before);
+  Kernel::template evaluate<Derivatives::Gradient>(constants, here, x, before);
 
   // No net force, and no net moment about the origin.
   Vec2 force = Vec2::Zero();
@@ -98,7 +99,7 @@ void check_rigid_motion(Shape shape, Random& random) {
         rotation * x.template segment<2>(2 * node) + Vec2{0.3, -0.7};
   }
   LocalTerm<n> after;
-  Kernel::template evaluate<Derivatives::Energy>(constants, controls, moved, after);
+  Kernel::template evaluate<Derivatives::Energy>(constants, here, moved, after);
   CHECK(after.energy == doctest::Approx(before.energy).epsilon(1e-11));
 }
 

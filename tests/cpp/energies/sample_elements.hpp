@@ -15,11 +15,14 @@ inline double uniform(Random& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-/// Controls that the sampled constants refer to: a moment, a rotation, and a turn so far.
-inline Vector sample_controls(Random& random) {
-  Vector controls(3);
-  controls << uniform(random, -2.0, 2.0), uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0);
-  return controls;
+/// All that elements read of a configuration besides their own coordinates: the controls that the
+/// sampled constants refer to, a moment, a rotation, and a turn so far.
+inline Configuration sample_configuration(Random& random) {
+  Configuration here;
+  here.controls.resize(3);
+  here.controls << uniform(random, -2.0, 2.0), uniform(random, -1.0, 1.0),
+      uniform(random, -1.0, 1.0);
+  return here;
 }
 
 inline Stretch<2>::Constants sample_constants(const Stretch<2>&, Random& random) {

@@ -43,7 +43,7 @@ std::vector<std::size_t> rows(const PathBranch& branch, PathEvent event) {
 TEST_CASE("a load path scales every load, and nothing else") {
   const Scenario scenario = Scenario::parse(straight_rod(11, kAllKinds));
   const Model whole = build_model(scenario.scene());
-  Model model = whole;
+  Model model = build_model(scenario.scene());
   const LoadPath loads(scenario.scene(), model, scenario::Varied::Loads, std::nullopt);
   CHECK(loads.varies());
   CHECK(loads.is_linear());
@@ -59,11 +59,11 @@ TEST_CASE("a load path scales every load, and nothing else") {
 TEST_CASE("a load path of one load, and one of the supports") {
   const Scenario scenario = Scenario::parse(straight_rod(11, kAllKinds));
   const Model whole = build_model(scenario.scene());
-  Model model = whole;
+  Model model = build_model(scenario.scene());
   LoadPath(scenario.scene(), model, scenario::Varied::Loads, 0).apply(0.0, model);
   CHECK(model.gravity_force.norm() == 0.0);
   CHECK(model.dead_force == whole.dead_force);
-  model = whole;
+  model = build_model(scenario.scene());
   const LoadPath motion(scenario.scene(), model, scenario::Varied::Supports, std::nullopt);
   CHECK_FALSE(motion.is_linear());
   motion.apply(2.0, model);
@@ -75,7 +75,7 @@ TEST_CASE("a load path of one load, and one of the supports") {
 TEST_CASE("a guard puts the loads back when an exception passes") {
   const Scenario scenario = Scenario::parse(straight_rod(11, kAllKinds));
   const Model whole = build_model(scenario.scene());
-  Model model = whole;
+  Model model = build_model(scenario.scene());
   const LoadPath loads(scenario.scene(), model, scenario::Varied::Loads, std::nullopt);
   try {
     const FactorGuard guard(loads, model);

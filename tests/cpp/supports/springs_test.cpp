@@ -4,6 +4,7 @@
 
 #include "der/assembly/pattern.hpp"
 #include "der/building/builder.hpp"
+#include "der/energies/registry.hpp"
 #include "der/scenario/reader.hpp"
 #include "der/simulation.hpp"
 #include "der/statics/rigid_motion.hpp"
@@ -32,7 +33,7 @@ Model model_with(const std::string& supports) {
 
 template <class Kernel>
 std::size_t count(const Model& model) {
-  return std::get<ElementList<Kernel>>(model.elements).size();
+  return model.elements->of<Kernel>().size();
 }
 
 }  // namespace

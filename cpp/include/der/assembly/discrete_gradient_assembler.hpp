@@ -1,7 +1,11 @@
 #pragma once
 
+#include <array>
+
 #include "der/assembly/assembler.hpp"
 #include "der/core/types.hpp"
+#include "der/energies/element_list.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 
 namespace der {
@@ -15,30 +19,29 @@ class DiscreteGradientAssembler {
  public:
   DiscreteGradientAssembler(const Model& model, const Assembler& assembler);
 
-  /// Values of the tables at both ends of the step, to be set before it.
-  Vector controls_start;
-  Vector controls_end;
+  /// The ends of the step: to be set before it, but for the coordinates of `end`, which follow from
+  /// those of the middle.
+  Configuration start;
+  Configuration end;
 
-  /// Sets `gradient` (all degrees of freedom) [N] to the discrete gradient over the step from
-  /// `start` whose middle is `middle` [m].
-  void gradient(const Vector& start, const Vector& middle, Vector& gradient);
+  /// Sets `gradient` (all degrees of freedom) [N] to the discrete gradient over the step whose
+  /// middle is `middle`.
+  void gradient(const Configuration& middle, Vector& gradient);
   /// As above, and sets `values` to the Hessian [N/m] at the middle, with the tensions of the
   /// discrete gradient: the derivative of it by the middle, but for terms that fall with the step.
-  void gradient_and_hessian(const Vector& start, const Vector& middle, const Vector& controls,
-                            Vector& gradient, Vector& values);
-  /// Work [J] of the moments along `displacement` [m], in the step from `start` whose middle is
-  /// `middle`.
-  double moment_work(const Vector& start, const Vector& middle, const Vector& displacement);
+  void gradient_and_hessian(const Configuration& middle, Vector& gradient, Vector& values);
+  /// Work [J] of the moments along `displacement` [m], in the step whose middle is `middle`.
+  double moment_work(const Configuration& middle, const Vector& displacement);
 
  private:
   template <class Kernel>
-  void evaluate(const ElementList<Kernel>& list, std::size_t element, const Vector& start,
+  void evaluate(const ElementList<Kernel>& list, std::size_t element,
                 Eigen::Matrix<double, Kernel::kDofs, 1>& gradient) const;
+  void reach_end(const Configuration& middle);
 
   const Model& model_;
   const Assembler& assembler_;
   bool tables_change_ = false;
-  Vector end_;        // positions [m]
   Vector at_middle_;  // gradient [N]
   Vector excess_;     // of each plain edge's tension over that at the middle [N]
 };

@@ -35,10 +35,13 @@ class MatrixLayout {
   /// a held degree of freedom.
   [[nodiscard]] Index slot_or_spare(Index i, Index j) const;
   [[nodiscard]] Index num_values() const { return num_values_; }
+  /// Adds `shift` to every entry of the diagonal.
+  void shift_diagonal(double shift, Vector& values) const;
 
  private:
   MatrixLayout() = default;
   const Pattern* pattern_ = nullptr;  // null: a band
+  Index size_ = 0;
   Index width_ = 0;
   Index num_values_ = 0;
 };

@@ -7,6 +7,8 @@
 #include "der/assembly/pattern.hpp"
 #include "der/core/types.hpp"
 #include "der/energies/local_term.hpp"
+#include "der/energies/registry.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 
 namespace der {
@@ -38,9 +40,9 @@ class PlanarChain {
   }
 
   /// Adds to `gradient` (all degrees of freedom).
-  void add_gradient(const Model& model, const Vector& positions, Vector& gradient) const;
+  void add_gradient(const Model& model, const Configuration& here, Vector& gradient) const;
   /// As above, and to the matrix's `values`.
-  void add_gradient_and_hessian(const Model& model, const Vector& positions, Vector& gradient,
+  void add_gradient_and_hessian(const Model& model, const Configuration& here, Vector& gradient,
                                 double* values) const;
 
  private:
@@ -50,9 +52,9 @@ class PlanarChain {
 
   void map_nodes(const Model& model, const MatrixLayout& layout);
   template <Derivatives D>
-  void add(const Model& model, const Vector& positions, Vector& gradient, double* values) const;
+  void add(const Model& model, const Configuration& here, Vector& gradient, double* values) const;
   template <Derivatives D, class Curvature>
-  void add_measured(const Model& model, const Vector& positions, Vector& gradient,
+  void add_measured(const Model& model, const Configuration& here, Vector& gradient,
                     double* values) const;
 
   Range edges_;

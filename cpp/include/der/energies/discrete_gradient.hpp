@@ -11,6 +11,7 @@
 #include "der/energies/point_spring.hpp"
 #include "der/energies/rotational_spring.hpp"
 #include "der/energies/stretch.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/kinematics/planar_edge.hpp"
 
 namespace der {
@@ -100,12 +101,12 @@ double secant_moment(double stiffness_per_length, double rest_kappa, double befo
 
 template <int Dim>
 void discrete_gradient(KernelTag<Stretch<Dim>> /*kernel*/,
-                       const typename Stretch<Dim>::Constants& c, const Vector& /*controls*/,
+                       const typename Stretch<Dim>::Constants& c, const Configuration& /*here*/,
                        const Local<2 * Dim>& start, const Local<2 * Dim>& end,
                        Local<2 * Dim>& gradient) {
   using Vec = Eigen::Matrix<double, Dim, 1>;
-  const Vec before = start.template tail<Dim>() - start.template head<Dim>();
-  const Vec after = end.template tail<Dim>() - end.template head<Dim>();
+  const Vec before = Stretch<Dim>::edge(start);
+  const Vec after = Stretch<Dim>::edge(end);
   const double lengths = before.norm() + after.norm();
   const Vec force =
       c.EA / c.rest_length * (lengths - 2.0 * c.rest_length) / lengths * 0.5 * (before + after);
@@ -116,12 +117,10 @@ void discrete_gradient(KernelTag<Stretch<Dim>> /*kernel*/,
 template <class Curvature>
 void discrete_gradient(KernelTag<PlanarBend<Curvature>> /*kernel*/,
                        const typename PlanarBend<Curvature>::Constants& c,
-                       const Vector& /*controls*/, const Local<6>& start, const Local<6>& end,
+                       const Configuration& /*here*/, const Local<6>& start, const Local<6>& end,
                        Local<6>& gradient) {
-  const Vec2 a0 = start.segment<2>(2) - start.segment<2>(0);
-  const Vec2 b0 = start.segment<2>(4) - start.segment<2>(2);
-  const Vec2 a1 = end.segment<2>(2) - end.segment<2>(0);
-  const Vec2 b1 = end.segment<2>(4) - end.segment<2>(2);
+  const auto [a0, b0] = PlanarBend<Curvature>::edges(start);
+  const auto [a1, b1] = PlanarBend<Curvature>::edges(end);
   const TurningAngleGradient angle(a0, b0, a1, b1);
   const double moment =
       secant_moment<Curvature>(c.stiffness_per_length, c.rest_kappa, angle_between(a0, b0),
@@ -133,9 +132,10 @@ void discrete_gradient(KernelTag<PlanarBend<Curvature>> /*kernel*/,
 
 template <class Curvature>
 void discrete_gradient(KernelTag<PlanarClamp<Curvature>> /*kernel*/,
-                       const typename PlanarClamp<Curvature>::Constants& c, const Vector& controls,
-                       const Local<4>& start, const Local<4>& end, Local<4>& gradient) {
-  const double direction = c.direction + (c.rotation >= 0 ? controls[c.rotation] : 0.0);
+                       const typename PlanarClamp<Curvature>::Constants& c,
+                       const Configuration& here, const Local<4>& start, const Local<4>& end,
+                       Local<4>& gradient) {
+  const double direction = c.direction + (c.rotation >= 0 ? here.controls[c.rotation] : 0.0);
   const Vec2 tangent{std::cos(direction), std::sin(direction)};
   const Vec2 before = start.tail<2>() - start.head<2>();
   const Vec2 after = end.tail<2>() - end.head<2>();
@@ -150,26 +150,26 @@ void discrete_gradient(KernelTag<PlanarClamp<Curvature>> /*kernel*/,
 
 template <class Kernel>
 void discrete_gradient(KernelTag<FromPivot<Kernel>> /*kernel*/,
-                       const typename FromPivot<Kernel>::Constants& c, const Vector& controls,
+                       const typename FromPivot<Kernel>::Constants& c, const Configuration& here,
                        Local<Kernel::kDofs> start, Local<Kernel::kDofs> end,
                        Local<Kernel::kDofs>& gradient) {
-  const Vec2 first = c.first.offset(c.first.turn(controls));
-  const Vec2 last = c.last.offset(c.last.turn(controls));
+  const Vec2 first = c.first.offset(c.first.turn(here));
+  const Vec2 last = c.last.offset(c.last.turn(here));
   for (auto* ends : {&start, &end}) {
     ends->template head<2>() += first;
     ends->template tail<2>() += last;
   }
-  discrete_gradient(KernelTag<Kernel>{}, c.element, controls, start, end, gradient);
+  discrete_gradient(KernelTag<Kernel>{}, c.element, here, start, end, gradient);
 }
 
 /// Of the potential followed through whole turns, not of the kernel's energy, which is known up to
 /// its period.
 inline void discrete_gradient(KernelTag<PlanarMoment> /*kernel*/, const PlanarMoment::Constants& c,
-                              const Vector& controls, const Local<4>& start, const Local<4>& end,
+                              const Configuration& here, const Local<4>& start, const Local<4>& end,
                               Local<4>& gradient) {
   const Vec2 before = start.tail<2>() - start.head<2>();
   const Vec2 after = end.tail<2>() - end.head<2>();
-  const Vec2 force = c.share * controls[c.moment] *
+  const Vec2 force = c.share * here.controls[c.moment] *
                      discrete_direction_gradient(Turn(before, after), before, after);
   gradient.head<2>() = force;
   gradient.tail<2>() = -force;
@@ -177,9 +177,9 @@ inline void discrete_gradient(KernelTag<PlanarMoment> /*kernel*/, const PlanarMo
 
 template <int Nodes>
 void discrete_gradient(KernelTag<PointSpring<Nodes>> /*kernel*/,
-                       const typename PointSpring<Nodes>::Constants& c, const Vector& /*controls*/,
-                       const Local<2 * Nodes>& start, const Local<2 * Nodes>& end,
-                       Local<2 * Nodes>& gradient) {
+                       const typename PointSpring<Nodes>::Constants& c,
+                       const Configuration& /*here*/, const Local<2 * Nodes>& start,
+                       const Local<2 * Nodes>& end, Local<2 * Nodes>& gradient) {
   const Local<2 * Nodes> middle = 0.5 * (start + end);
   const Vec2 stretch =
       Eigen::Map<const Eigen::Matrix<double, 2, Nodes>>(middle.data()) * c.weights - c.anchor;
@@ -189,9 +189,9 @@ void discrete_gradient(KernelTag<PointSpring<Nodes>> /*kernel*/,
 
 template <int Edges>
 void discrete_gradient(KernelTag<RotationalSpring<Edges>> /*kernel*/,
-                       const typename RotationalSpring<Edges>::Constants& c, const Vector& controls,
-                       const Local<2 * (Edges + 1)>& start, const Local<2 * (Edges + 1)>& end,
-                       Local<2 * (Edges + 1)>& gradient) {
+                       const typename RotationalSpring<Edges>::Constants& c,
+                       const Configuration& here, const Local<2 * (Edges + 1)>& start,
+                       const Local<2 * (Edges + 1)>& end, Local<2 * (Edges + 1)>& gradient) {
   const auto edge = [](const Local<2 * (Edges + 1)>& x, int i) -> Vec2 {
     return x.template segment<2>(2 * i + 2) - x.template segment<2>(2 * i);
   };
@@ -215,7 +215,7 @@ void discrete_gradient(KernelTag<RotationalSpring<Edges>> /*kernel*/,
     act(0, c.weights[1] * second.by_a);
     act(1, c.weights[1] * second.by_b);
   }
-  const double before = RotationalSpring<Edges>::turn(c, controls[c.turn], start);
+  const double before = RotationalSpring<Edges>::turn(c, here.controls[c.turn], start);
   double moment = c.stiffness * (before + 0.5 * known);
   // As for bends, but what is lost of one of two angles is a share of a turn.
   constexpr double kLostTurn = 1e-6;

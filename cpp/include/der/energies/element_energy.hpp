@@ -6,30 +6,38 @@
 #include "der/core/types.hpp"
 #include "der/energies/element_list.hpp"
 #include "der/energies/local_term.hpp"
+#include "der/kinematics/configuration.hpp"
 
 namespace der {
 
-/// The coordinates of one element's stencil.
+/// The entries of a field over all degrees of freedom that belong to one element's stencil.
 template <std::size_t N>
 Eigen::Matrix<double, static_cast<int>(N), 1> gather(const std::array<Index, N>& dofs,
-                                                     const Vector& positions) {
+                                                     const Vector& field) {
   Eigen::Matrix<double, static_cast<int>(N), 1> local;
-  for (std::size_t i = 0; i < N; ++i) local[static_cast<Index>(i)] = positions[dofs[i]];
+  for (std::size_t i = 0; i < N; ++i) local[static_cast<Index>(i)] = field[dofs[i]];
   return local;
 }
 
-/// Energy [J] of all elements of one kind.
+/// Energy [J] of all elements of one kind with the controls of a configuration, at other
+/// coordinates.
 template <class Kernel>
-double element_energy(const ElementList<Kernel>& list, const Vector& controls,
-                      const Vector& positions) {
+double element_energy(const ElementList<Kernel>& list, const Configuration& here,
+                      const Vector& coordinates) {
   LocalTerm<Kernel::kDofs> local;
   double total = 0.0;
   for (std::size_t e = 0; e < list.size(); ++e) {
-    Kernel::template evaluate<Derivatives::Energy>(list.constants[e], controls,
-                                                   gather(list.dofs[e], positions), local);
+    Kernel::template evaluate<Derivatives::Energy>(list.constants[e], here,
+                                                   gather(list.dofs[e], coordinates), local);
     total += local.energy;
   }
   return total;
+}
+
+/// As above, at its own.
+template <class Kernel>
+double element_energy(const ElementList<Kernel>& list, const Configuration& here) {
+  return element_energy(list, here, here.coordinates);
 }
 
 }  // namespace der

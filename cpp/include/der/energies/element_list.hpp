@@ -18,7 +18,7 @@ namespace der {
 ///   static constexpr EnergyTerm kTerm;       what its energy is booked under
 ///   struct Constants;                        of one element, fixed during a run
 ///   template <Derivatives D>
-///   static void evaluate(const Constants&, const Vector& controls,
+///   static void evaluate(const Constants&, const Configuration& here,
 ///                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out);
 /// and, if its energy changes with a translation of the element,
 ///   static bool holds(const Constants&, int component);    against moving along x (0) or y (1)

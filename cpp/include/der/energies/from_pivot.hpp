@@ -4,6 +4,7 @@
 
 #include "der/core/types.hpp"
 #include "der/energies/local_term.hpp"
+#include "der/kinematics/configuration.hpp"
 
 namespace der {
 
@@ -19,8 +20,8 @@ struct Pivot {
     if (distance == 0.0) return Vec2::Zero();
     return {distance * std::cos(direction + turn), distance * std::sin(direction + turn)};
   }
-  [[nodiscard]] double turn(const Vector& controls) const {
-    return rotation >= 0 ? controls[rotation] : 0.0;
+  [[nodiscard]] double turn(const Configuration& here) const {
+    return rotation >= 0 ? here.controls[rotation] : 0.0;
   }
 };
 
@@ -37,12 +38,12 @@ struct FromPivot {
   };
 
   template <Derivatives D>
-  static void evaluate(const Constants& c, const Vector& controls,
+  static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     Eigen::Matrix<double, kDofs, 1> moved = x;
-    moved.template head<2>() += c.first.offset(c.first.turn(controls));
-    moved.template tail<2>() += c.last.offset(c.last.turn(controls));
-    Kernel::template evaluate<D>(c.element, controls, moved, out);
+    moved.template head<2>() += c.first.offset(c.first.turn(here));
+    moved.template tail<2>() += c.last.offset(c.last.turn(here));
+    Kernel::template evaluate<D>(c.element, here, moved, out);
   }
 };
 

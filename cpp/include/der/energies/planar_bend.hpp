@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 #include "der/core/types.hpp"
 #include "der/energies/local_term.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/kinematics/curvature_measure.hpp"
 #include "der/kinematics/planar_edge.hpp"
 
@@ -36,11 +38,15 @@ struct PlanarBend {
     double rest_kappa = 0.0;            ///< integrated natural curvature [-]
   };
 
+  /// The vectors of the edges before and after the node, from the values at their ends.
+  static std::pair<Vec2, Vec2> edges(const Eigen::Matrix<double, kDofs, 1>& x) {
+    return {x.segment<2>(2) - x.segment<2>(0), x.segment<2>(4) - x.segment<2>(2)};
+  }
+
   template <Derivatives D>
-  static void evaluate(const Constants& c, const Vector& /*controls*/,
+  static void evaluate(const Constants& c, const Configuration& /*here*/,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
-    const Vec2 e0 = x.segment<2>(2) - x.segment<2>(0);
-    const Vec2 e1 = x.segment<2>(4) - x.segment<2>(2);
+    const auto [e0, e1] = edges(x);
     const BendResponse bend =
         bend_response<Curvature>(c.stiffness_per_length, c.rest_kappa, angle_between(e0, e1));
     out.energy = bend.energy;

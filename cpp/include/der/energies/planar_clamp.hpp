@@ -5,6 +5,7 @@
 #include "der/core/types.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/energies/planar_bend.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/kinematics/planar_edge.hpp"
 
 namespace der {
@@ -25,9 +26,9 @@ struct PlanarClamp {
   };
 
   template <Derivatives D>
-  static void evaluate(const Constants& c, const Vector& controls,
+  static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
-    const double direction = c.direction + (c.rotation >= 0 ? controls[c.rotation] : 0.0);
+    const double direction = c.direction + (c.rotation >= 0 ? here.controls[c.rotation] : 0.0);
     const Vec2 tangent{std::cos(direction), std::sin(direction)};
     const Vec2 e = x.tail<2>() - x.head<2>();
     const BendResponse bend = bend_response<Curvature>(c.stiffness_per_length, c.rest_kappa,

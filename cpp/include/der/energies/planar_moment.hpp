@@ -5,6 +5,7 @@
 #include "der/core/constants.hpp"
 #include "der/core/types.hpp"
 #include "der/energies/local_term.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/kinematics/planar_edge.hpp"
 
 namespace der {
@@ -21,14 +22,14 @@ struct PlanarMoment {
   };
 
   /// The energy [J] is known up to multiples of this.
-  static double period(const Constants& c, const Vector& controls) {
-    return 2.0 * kPi * std::abs(c.share * controls[c.moment]);
+  static double period(const Constants& c, const Configuration& here) {
+    return 2.0 * kPi * std::abs(c.share * here.controls[c.moment]);
   }
 
   template <Derivatives D>
-  static void evaluate(const Constants& c, const Vector& controls,
+  static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
-    const double moment = c.share * controls[c.moment];
+    const double moment = c.share * here.controls[c.moment];
     const Vec2 e = x.tail<2>() - x.head<2>();
     out.energy = -moment * angle_between(Vec2::UnitX(), e);
     if constexpr (D == Derivatives::Energy) return;

@@ -2,6 +2,7 @@
 
 #include "der/core/types.hpp"
 #include "der/energies/local_term.hpp"
+#include "der/kinematics/configuration.hpp"
 
 namespace der {
 
@@ -23,7 +24,7 @@ struct PointSpring {
   static bool holds(const Constants& c, int component) { return c.stiffness[component] > 0.0; }
 
   template <Derivatives D>
-  static void evaluate(const Constants& c, const Vector& /*controls*/,
+  static void evaluate(const Constants& c, const Configuration& /*here*/,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     const Vec2 stretch =
         Eigen::Map<const Eigen::Matrix<double, 2, Nodes>>(x.data()) * c.weights - c.anchor;

@@ -16,26 +16,39 @@ namespace der {
 /// Every kind of element. A new energy is one header with its kernel and one line here; assembly,
 /// the energy report and the finite-difference tests loop over this list. A kind without elements
 /// costs nothing in a run.
-using ElementLists = std::tuple<ElementList<Stretch<2>>,                                //
-                                ElementList<FromPivot<Stretch<2>>>,                     //
-                                ElementList<PlanarBend<AngleCurvature>>,                //
-                                ElementList<PlanarBend<TangentCurvature>>,              //
-                                ElementList<FromPivot<PlanarBend<AngleCurvature>>>,     //
-                                ElementList<FromPivot<PlanarBend<TangentCurvature>>>,   //
-                                ElementList<FromPivot<PlanarClamp<AngleCurvature>>>,    //
-                                ElementList<FromPivot<PlanarClamp<TangentCurvature>>>,  //
-                                ElementList<PlanarMoment>,                              //
-                                ElementList<PointSpring<1>>,                            //
-                                ElementList<PointSpring<2>>,                            //
-                                ElementList<PointSpring<3>>,                            //
-                                ElementList<PointSpring<4>>,                            //
-                                ElementList<RotationalSpring<1>>,                       //
-                                ElementList<RotationalSpring<2>>>;
+struct ElementLists {
+  using Lists = std::tuple<ElementList<Stretch<2>>,                                //
+                           ElementList<FromPivot<Stretch<2>>>,                     //
+                           ElementList<PlanarBend<AngleCurvature>>,                //
+                           ElementList<PlanarBend<TangentCurvature>>,              //
+                           ElementList<FromPivot<PlanarBend<AngleCurvature>>>,     //
+                           ElementList<FromPivot<PlanarBend<TangentCurvature>>>,   //
+                           ElementList<FromPivot<PlanarClamp<AngleCurvature>>>,    //
+                           ElementList<FromPivot<PlanarClamp<TangentCurvature>>>,  //
+                           ElementList<PlanarMoment>,                              //
+                           ElementList<PointSpring<1>>,                            //
+                           ElementList<PointSpring<2>>,                            //
+                           ElementList<PointSpring<3>>,                            //
+                           ElementList<PointSpring<4>>,                            //
+                           ElementList<RotationalSpring<1>>,                       //
+                           ElementList<RotationalSpring<2>>>;
+  Lists lists;
+
+  /// The elements of one kind.
+  template <class Kernel>
+  [[nodiscard]] ElementList<Kernel>& of() {
+    return std::get<ElementList<Kernel>>(lists);
+  }
+  template <class Kernel>
+  [[nodiscard]] const ElementList<Kernel>& of() const {
+    return std::get<ElementList<Kernel>>(lists);
+  }
+};
 
 /// Calls `f(list)` for each kind of element.
-template <class Lists, class F>
-void for_each_list(Lists&& lists, F&& f) {
-  std::apply([&](auto&&... list) { (f(list), ...); }, lists);
+template <class Elements, class F>
+void for_each_list(Elements&& elements, F&& f) {
+  std::apply([&](auto&&... list) { (f(list), ...); }, elements.lists);
 }
 
 }  // namespace der

@@ -5,6 +5,7 @@
 
 #include "der/core/types.hpp"
 #include "der/energies/local_term.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/kinematics/planar_edge.hpp"
 
 namespace der {
@@ -40,10 +41,10 @@ struct RotationalSpring {
   }
 
   template <Derivatives D>
-  static void evaluate(const Constants& c, const Vector& controls,
+  static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     using Coordinates = Eigen::Matrix<double, kDofs, 1>;
-    const double turned = turn(c, controls[c.turn], x);
+    const double turned = turn(c, here.controls[c.turn], x);
     const double moment = c.stiffness * turned;
     out.energy = 0.5 * moment * turned;
     if constexpr (D == Derivatives::Energy) return;

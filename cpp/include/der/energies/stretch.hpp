@@ -4,6 +4,7 @@
 
 #include "der/core/types.hpp"
 #include "der/energies/local_term.hpp"
+#include "der/kinematics/configuration.hpp"
 
 namespace der {
 
@@ -26,6 +27,11 @@ struct Stretch {
     double rest_length = 0.0;  ///< [m]
   };
 
+  /// The edge's vector, or the change of it, from the values at its ends.
+  static Eigen::Matrix<double, Dim, 1> edge(const Eigen::Matrix<double, kDofs, 1>& x) {
+    return x.template tail<Dim>() - x.template head<Dim>();
+  }
+
   static StretchResponse response(const Constants& c, double length) {
     const double extension = length - c.rest_length;
     const double along = c.EA / c.rest_length;
@@ -34,11 +40,11 @@ struct Stretch {
   }
 
   template <Derivatives D>
-  static void evaluate(const Constants& c, const Vector& /*controls*/,
+  static void evaluate(const Constants& c, const Configuration& /*here*/,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     using Vec = Eigen::Matrix<double, Dim, 1>;
     using Mat = Eigen::Matrix<double, Dim, Dim>;
-    const Vec e = x.template tail<Dim>() - x.template head<Dim>();
+    const Vec e = edge(x);
     const double length = e.norm();
     const StretchResponse stretch = response(c, length);
     out.energy = 0.5 * stretch.tension * stretch.extension;

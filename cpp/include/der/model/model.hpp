@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "der/core/hidden.hpp"
 #include "der/core/types.hpp"
-#include "der/energies/registry.hpp"
 #include "der/model/controls.hpp"
+#include "der/model/dof_map.hpp"
+#include "der/model/edge.hpp"
 #include "der/model/mass.hpp"
 #include "der/model/turns.hpp"
 #include "der/scenario/scenario.hpp"
@@ -15,12 +17,7 @@
 namespace der {
 
 struct Model;
-
-/// An edge of the graph of nodes.
-struct Edge {
-  std::array<Index, 4> dofs{};  ///< x, y of both ends
-  double rest_length = 0.0;     ///< [m]
-};
+struct ElementLists;  // energies/registry.hpp
 
 /// A node of a rod whose tangent is held.
 struct Clamp {
@@ -100,6 +97,7 @@ struct RodLayout {
   [[nodiscard]] Index num_edges() const { return static_cast<Index>(nodes.size()) - 1; }
   /// Voronoi length [m]: the rod's part that is nearer to this node than to another.
   [[nodiscard]] double voronoi_length(Index node) const;
+  [[nodiscard]] Edge edge(Index number, const Model& model) const;
   /// Degrees of freedom (x, y of both ends) of an edge of a planar model.
   [[nodiscard]] std::array<Index, 4> edge_dofs(Index edge, const Model& model) const;
   /// Null if the tangent at that node is free.
@@ -128,13 +126,14 @@ struct ControlledForce {
   double weight = 1.0;
 };
 
-/// Everything that stays constant in a run. Degrees of freedom are numbered node by node
-/// (dof = dimension * node + component); `free_dofs` lists those that the solver finds.
+/// Everything that stays constant in a run. Vectors have one entry a degree of freedom, in the
+/// order of `dofs`.
 struct Model {
   std::string name;    ///< "planar"
   std::string reason;  ///< why this model, in words
   int dimension = 2;
   Index num_nodes = 0;
+  DofMap dofs;
   std::vector<RodLayout> rods;
 
   Vector initial_positions;   ///< [m]
@@ -149,19 +148,19 @@ struct Model {
 
   std::vector<HeldDof> held;
   std::vector<PrescribedControl> prescribed;  ///< of all supports, in their order
-  std::vector<Index> free_dofs;   ///< full number of each free degree of freedom, ascending
-  std::vector<Index> free_index;  ///< of each degree of freedom: its place in `free_dofs`, or -1
 
   std::vector<Edge> edges;  ///< of all rods
   std::vector<FollowedEdge> followed_edges;
-  ElementLists elements;
+  Hidden<ElementLists> elements;
 
   /// The largest extent of the initial shape [m]: the length against which steps are small.
   double size = 0.0;
 
-  [[nodiscard]] Index num_dofs() const { return dimension * num_nodes; }
-  [[nodiscard]] Index num_free() const { return static_cast<Index>(free_dofs.size()); }
-  [[nodiscard]] Index dof(Index node, int component) const { return dimension * node + component; }
+  [[nodiscard]] Index num_dofs() const { return dofs.size(); }
+  [[nodiscard]] Index num_free() const { return dofs.num_free(); }
+  [[nodiscard]] Index dof(Index node, int component) const {
+    return dofs.position(node, component);
+  }
   /// Throws Error if there is no rod of that name.
   [[nodiscard]] const RodLayout& rod(const std::string& rod_name) const;
   [[nodiscard]] RodLayout& rod(const std::string& rod_name);
@@ -176,6 +175,9 @@ NodePlace place_of(const Model& model, Index node);
 
 /// Number in Model::followed_edges of an edge of `rod`, which is followed from now on.
 Index follow_edge(const RodLayout& rod, Index edge, Model& model);
+
+/// A vector over the free degrees of freedom as one over all, zero on held ones.
+Vector over_all_dofs(const Model& model, const Vector& free);
 
 /// "node 3 of rod 'beam' (y)"
 std::string describe_dof(const Model& model, Index dof);

@@ -28,8 +28,7 @@ struct CellEnergies {
   double bend = 0.0;
   double spring = 0.0;  ///< besides that of the elements
 };
-CellEnergies cell_energies(const RodLayout& rod, const Model& model, const Vector& controls,
-                           const Vector& positions);
+CellEnergies cell_energies(const RodLayout& rod, const Model& model, const Configuration& here);
 
 /// Work [J] that the loads' moments do on the cells while the tables go from one set of values to
 /// another: with t = share (w + c M/EI) the edges turn by share w, and the rest of the tangent's

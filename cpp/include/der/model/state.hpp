@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "der/core/types.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/model/ramp.hpp"
 
 namespace der {
@@ -65,6 +66,9 @@ void check_state(const Model& model, const State& state);
 /// Sets `controls` to what elements and supports follow besides the positions, at `time` [s] of a
 /// step that begins at `state`: the tables, the ramps in place of them, and the turns.
 void evaluate_controls(const Model& model, const State& state, double time, Vector& controls);
+/// Where a state is. As above at its own time, without allocating where `here` has the sizes.
+void configuration_of(const Model& model, const State& state, Configuration& here);
+Configuration configuration_of(const Model& model, const State& state);
 
 /// Energies [J] of a state.
 struct Energies {
@@ -81,9 +85,8 @@ constexpr std::array<const char*, 5> kEnergyNames{"kinetic", "stretch", "bend", 
                                                   "gravity"};
 std::array<double, kEnergyNames.size()> by_name(const Energies& energies);
 Energies energies(const Model& model, const State& state);
-/// As above under given values of the tables; allocates nothing.
-Energies energies(const Model& model, const Vector& controls, const Vector& positions,
-                  const Vector& velocities);
+/// As above; allocates nothing.
+Energies energies(const Model& model, const Configuration& here, const Vector& velocities);
 
 /// Forgets what steppers remember of the steps so far, for a motion that begins anew.
 void forget_steps(State& state);

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <array>
-
 #include "der/core/types.hpp"
+#include "der/model/edge.hpp"
 
 namespace der {
 
@@ -12,8 +11,8 @@ struct Model;
 /// shape says the direction of an edge, but not how often it has gone round, so the state follows
 /// it from step to step (`State::turns`).
 struct FollowedEdge {
-  std::array<Index, 4> dofs{};  ///< x, y of both ends
-  double direction = 0.0;       ///< as drawn [rad]
+  Edge edge;
+  double direction = 0.0;  ///< as drawn [rad]
   Index turn = -1;  ///< entry of the controls through which elements see what it has turned by
 };
 

@@ -2,6 +2,7 @@
 
 #include "der/assembly/assembler.hpp"
 #include "der/core/types.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 
 namespace der {
@@ -16,9 +17,9 @@ class PredictedTension {
  public:
   PredictedTension(const Model& model, const Assembler& assembler);
 
-  /// Puts the tensions predicted by the step along `direction` (free degrees of freedom) that led
-  /// to `positions` into a matrix just assembled there, in place of the tensions there.
-  void use(const Vector& positions, const Vector& direction, Vector& values);
+  /// Puts the tensions predicted by the `step` [m] (all degrees of freedom) that led `here` into a
+  /// matrix just assembled here, in place of the tensions here.
+  void use(const Configuration& here, const Vector& step, Vector& values);
 
  private:
   const Model& model_;

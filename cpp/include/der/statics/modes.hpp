@@ -4,6 +4,7 @@
 
 #include "der/assembly/assembler.hpp"
 #include "der/core/types.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 #include "der/solvers/linear_solver.hpp"
@@ -20,14 +21,13 @@ struct Mode {
 };
 
 /// The `count` modes of lowest frequency (fewer if there are not so many degrees of freedom) about
-/// the equilibrium `state` under `controls`: K v = w^2 M v with the tangent stiffness, so that
+/// an equilibrium: K v = w^2 M v with the tangent stiffness, so that
 /// tensions, moments and curved shapes count. Lanczos' method on the sparse factorisation of K - s
 /// M (Ericsson and Ruhe, Math. Comp. 35, 1980; the library Spectra), repeated until the inertia of
 /// the factorisation says that none is missing. Damping is left out. Throws Error if a degree of
 /// freedom has no mass, NotConvergedError if modes cannot be found.
 std::vector<Mode> vibration_modes(const Model& model, const Assembler& assembler,
-                                  LinearSolver& solver, const Vector& positions,
-                                  const Vector& controls, int count);
+                                  LinearSolver& solver, const Configuration& here, int count);
 
 /// A load at which the straight or little deformed structure becomes unstable.
 struct BucklingMode {

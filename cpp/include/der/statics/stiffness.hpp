@@ -2,6 +2,7 @@
 
 #include "der/assembly/assembler.hpp"
 #include "der/core/types.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 #include "der/solvers/linear_solver.hpp"
 
@@ -37,7 +38,7 @@ class Stiffness {
  public:
   Stiffness(const Model& model, const Assembler& assembler, LinearSolver& solver);
 
-  void evaluate(const Vector& positions, const Vector& controls);
+  void evaluate(const Configuration& here);
   /// Gradient [N] of the elements' energies at the same shape, all degrees of freedom.
   [[nodiscard]] const Vector& gradient() const { return gradient_; }
   /// K in the layout of the linear solver.
@@ -84,7 +85,6 @@ class Stiffness {
   SoftSpace rayleigh_ritz(const Eigen::MatrixXd& basis, Index count) const;
   SoftDirection inverse_iteration();
   [[nodiscard]] SoftDirection soft_direction(Vector free) const;
-  [[nodiscard]] Vector over_all(const Vector& free) const;
 
   const Model& model_;
   const Assembler& assembler_;
@@ -93,8 +93,7 @@ class Stiffness {
   Vector values_;
   Vector shifted_;
   Mass ones_;
-  Vector positions_;
-  Vector controls_;
+  Configuration here_;
 };
 
 /// A vector without structure, always the same, to start an iteration from.

@@ -2,6 +2,7 @@
 
 #include "der/assembly/assembler.hpp"
 #include "der/core/types.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 #include "der/steppers/explicit_force.hpp"
@@ -33,8 +34,8 @@ class DenseOutput {
   ExplicitForce force_;
   Vector velocities_;
   Vector controls_;
-  Vector controls_before_;
-  Vector controls_after_;
+  Configuration before_;
+  Configuration after_;
 };
 
 }  // namespace der

@@ -42,7 +42,7 @@ class EnergyWatch {
 
   const Model& model_;
   double rounding_;  // [J] of the energies
-  Vector controls_;
+  Configuration here_;
   Vector positions_;   // as the last step has left them
   Vector velocities_;  // likewise
 };

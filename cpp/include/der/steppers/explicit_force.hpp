@@ -2,6 +2,7 @@
 
 #include "der/assembly/assembler.hpp"
 #include "der/core/types.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 #include "der/solvers/mass_solver.hpp"
@@ -38,9 +39,8 @@ class ExplicitForce {
   const Assembler& assembler_;
   bool supports_move_;
   MassSolver mass_;
-  Vector controls_;  // of the last evaluation
+  Configuration here_;  // of the last evaluation
   Vector scratch_controls_;
-  Vector positions_;  // of the last evaluation
   Vector force_;
   Vector gradient_;
 };

@@ -6,6 +6,7 @@
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 #include "der/solvers/newton.hpp"
+#include "der/solvers/stage.hpp"
 #include "der/steppers/explicit_force.hpp"
 #include "der/steppers/step_finisher.hpp"
 #include "der/steppers/stepper.hpp"
@@ -22,8 +23,9 @@ class ImplicitStage {
   /// Inertia and velocity terms, to be set by the stepper before `solve`; displacements are those
   /// from the start of the step.
   Stage equation;
-  /// On entry to `solve` the guess, held degrees of freedom included; on exit the solution.
-  Vector positions;
+  /// Its coordinates are on entry to `solve` the guess, held degrees of freedom included; on exit
+  /// the solution, with the controls of the stage.
+  Configuration here;
 
   /// Tells where the step at hand ends [s]: tables that have a kink there go on without it in
   /// stages beyond.
@@ -57,9 +59,10 @@ class ImplicitStage {
   [[nodiscard]] double moments(const Vector& displacement) const;
 
   const Model& model_;
+  StageProblem problem_;
   Newton newton_;
   StepFinisher finisher_;
-  Vector held_controls_;  // those of `equation` are the solved stage's until it is booked
+  Vector held_controls_;  // those of `here` are the solved stage's until it is booked
   Vector start_controls_;
   Vector displacement_;
   double step_end_ = std::numeric_limits<double>::infinity();

@@ -41,7 +41,7 @@ class StabilityWatch {
   const Model& model_;
   const scenario::Time& time_;
   StableStepBound bound_;
-  Vector controls_;
+  Configuration here_;
 };
 
 }  // namespace der

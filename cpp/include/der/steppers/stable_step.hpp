@@ -7,6 +7,7 @@
 #include "der/assembly/assembler.hpp"
 #include "der/assembly/pattern.hpp"
 #include "der/core/types.hpp"
+#include "der/energies/local_term.hpp"
 #include "der/model/model.hpp"
 
 namespace der {
@@ -34,9 +35,9 @@ class StableStepBound {
   StableStepBound(const Model& model, bool drag_limits_step);
 
   /// [s], infinite where nothing limits it, 0 where an edge has no length. Allocates nothing.
-  double evaluate(const Vector& positions, const Vector& controls);
+  double evaluate(const Configuration& here);
   /// As `evaluate`, with what sets it.
-  StableStep explain(const Vector& positions, const Vector& controls);
+  StableStep explain(const Configuration& here);
 
  private:
   /// The entries that couple two nodes, or a node with itself.
@@ -48,8 +49,7 @@ class StableStepBound {
   };
 
   void find_blocks();
-  [[nodiscard]] double term_bound(EnergyTerm term, Index node, const Vector& positions,
-                                  const Vector& controls) const;
+  [[nodiscard]] double term_bound(EnergyTerm term, Index node, const Configuration& here) const;
 
   const Model& model_;
   Pattern pattern_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "der/core/types.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 
@@ -20,8 +21,8 @@ class StepFinisher {
 
  private:
   const Model& model_;
-  Vector controls_start_;
-  Vector controls_end_;
+  Configuration start_;
+  Configuration end_;
 };
 
 }  // namespace der

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "der/assembly/assembler.hpp"
 #include "der/catalog/steppers.hpp"
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"

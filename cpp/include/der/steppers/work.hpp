@@ -1,6 +1,7 @@
 #pragma once
 
 #include "der/core/types.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 
 namespace der {
@@ -17,20 +18,11 @@ void stage_displacement(const Model& model, const Vector& start, const Vector& e
                         double dt, const Eigen::Ref<const Vector>& velocities,
                         Vector& displacement);
 
-/// Work [J] of moments along `displacement` [m] at `positions`.
-double moment_work(const Model& model, const Vector& positions, const Vector& controls,
-                   const Vector& displacement);
-
-/// A step from `start` to `end` positions [m] and between the values of the tables there.
-struct StepEnds {
-  const Vector& start;
-  const Vector& end;
-  const Vector& controls_start;
-  const Vector& controls_end;
-};
+/// Work [J] of moments along `displacement` [m].
+double moment_work(const Model& model, const Configuration& here, const Vector& displacement);
 
 /// Work [J] of clamps that turn during a step: the energy that turning gives the elements, the mean
 /// of that at both ends.
-double rotation_work(const Model& model, const StepEnds& step);
+double rotation_work(const Model& model, const Configuration& start, const Configuration& end);
 
 }  // namespace der

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <array>
-
 #include "der/core/types.hpp"
-#include "der/energies/from_pivot.hpp"
+#include "der/energies/effective_edge.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 #include "der/scenario/scenario.hpp"
@@ -28,21 +26,13 @@ double tangent_angle(const Clamp& clamp, const Model& model, const State& state)
 /// made after it. Without effect on a rod that does not bend.
 void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod, Model& model);
 
-/// An edge as its elements see it: from node to node, or from a clamp's pivot.
-struct Link {
-  std::array<Index, 4> dofs{};
-  Pivot first;
-  Pivot last;
-
-  [[nodiscard]] bool has_pivot() const { return first.distance != 0.0 || last.distance != 0.0; }
-  /// The link's vector [m] where the tangents are turned by `first_turn` and `last_turn` [rad].
-  [[nodiscard]] Vec2 vector(const Vector& positions, double first_turn, double last_turn) const;
-};
-Link link_of(const RodLayout& rod, Index edge, const Model& model);
-/// The link's vector [m] in a state, with the clamps as they are turned there.
-Vec2 link_vector(const Link& link, const Model& model, const State& state);
-/// The point [m] about which the link turns at its first or last end: a clamp's pivot, or the node.
-Vec2 link_end(const Link& link, bool last, const Model& model, const State& state);
+EffectiveEdge effective_edge(const RodLayout& rod, Index edge, const Model& model);
+/// The vector [m] in a state, with the clamps as they are turned there.
+Vec2 effective_vector(const EffectiveEdge& effective, const Model& model, const State& state);
+/// The point [m] about which an effective edge turns at its first or last end: a clamp's pivot, or
+/// the node.
+Vec2 effective_end(const EffectiveEdge& effective, bool last, const Model& model,
+                   const State& state);
 
 /// Length [m] over which the turning angle at a node without a clamp acts: its Voronoi length, less
 /// 1/48 of an edge that a clamp ends.

@@ -73,7 +73,7 @@ class PathTracer {
 
   std::vector<PathBranch> run(const State& start) {
     PathNode first =
-        equations_.node_at(start.turns, {start.positions(model_.free_dofs), options_.from});
+        equations_.node_at(start.turns, {start.positions(model_.dofs.free()), options_.from});
     equations_.set_metric(first);
     if (first.tangent.factor * range_ < 0.0) reverse(first.tangent);
     trace(first, std::nullopt, 0);
@@ -157,7 +157,7 @@ class PathTracer {
   }
 
   [[nodiscard]] PathPosition position_of(const PathPoint& point) const {
-    return {point.positions(model_.free_dofs), point.factor};
+    return {point.positions(model_.dofs.free()), point.factor};
   }
 
   /// Whether a point lies on a branch that is over: whether Newton leads to it from the line that

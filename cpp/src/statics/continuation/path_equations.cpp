@@ -29,7 +29,7 @@ PathEquations::PathEquations(Model& model, const LoadPath& loads, const Assemble
       metric_(metric),
       stiffness_(model, assembler, solver),
       tension_(model, assembler),
-      positions_(std::move(positions)) {}
+      here_{std::move(positions), {}} {}
 
 void PathEquations::set_metric(PathNode& first) {
   metric_.balance(first.tangent);
@@ -39,28 +39,28 @@ void PathEquations::set_metric(PathNode& first) {
 /// Sets the full positions, held degrees of freedom where the factor has them, and the controls.
 void PathEquations::place(const Vector& turns, const PathPosition& point) {
   loads_.apply(point.factor, model_);
-  model_.controls.evaluate(0.0, controls_);
-  enter_turns(model_, turns, controls_);
-  apply_prescribed_motion(model_, controls_, positions_);
-  positions_(model_.free_dofs) = point.x;
+  model_.controls.evaluate(0.0, here_.controls);
+  enter_turns(model_, turns, here_.controls);
+  apply_prescribed_motion(model_, here_.controls, here_.coordinates);
+  here_.coordinates(model_.dofs.free()) = point.x;
 }
 
 /// Sets the residual and the stiffness at a point.
 void PathEquations::evaluate(const Vector& turns, const PathPosition& point) {
   place(turns, point);
-  external_force(model_, controls_, Vector::Zero(model_.num_dofs()), force_);
-  stiffness_.evaluate(positions_, controls_);
-  residual_ = (stiffness_.gradient() - force_)(model_.free_dofs);
+  external_force(model_, here_.controls, Vector::Zero(model_.num_dofs()), force_);
+  stiffness_.evaluate(here_);
+  residual_ = (stiffness_.gradient() - force_)(model_.dofs.free());
   force_scale_ =
       std::max(stiffness_.gradient().lpNorm<Eigen::Infinity>(), force_.lpNorm<Eigen::Infinity>());
 }
 
 Vector PathEquations::residual_at(const Vector& turns, const PathPosition& point) {
   place(turns, point);
-  external_force(model_, controls_, Vector::Zero(model_.num_dofs()), force_);
+  external_force(model_, here_.controls, Vector::Zero(model_.num_dofs()), force_);
   Vector gradient(model_.num_dofs());
-  assembler_.gradient(positions_, controls_, gradient);
-  return (gradient - force_)(model_.free_dofs);
+  assembler_.gradient(here_, gradient);
+  return (gradient - force_)(model_.dofs.free());
 }
 
 /// Derivative of the residual with respect to the factor, by central differences. Forces and
@@ -89,9 +89,9 @@ PathNode PathEquations::node_at(const Vector& turns, const PathPosition& point) 
   evaluate(turns, point);
   PathNode node;
   node.at = point;
-  node.positions = positions_;
+  node.positions = here_.coordinates;
   node.turns = turns;
-  follow_turns(model_, positions_, node.turns);
+  follow_turns(model_, here_.coordinates, node.turns);
   node.tangent = tangent(turns, point, node.stability);
   return node;
 }
@@ -122,7 +122,7 @@ std::optional<PathPosition> PathEquations::solve_on_plane(const Vector& turns,
     const double allowed =
         std::max(options_.residual_tolerance * force_scale_, stiffness_.rounding() * model_.size);
     if (length < kLastStep && residual_.lpNorm<Eigen::Infinity>() <= allowed) return guess;
-    tension_.use(positions_, change.x, stiffness_.values());
+    tension_.use(here_, over_all_dofs(model_, change.x), stiffness_.values());
   }
   return std::nullopt;
 }

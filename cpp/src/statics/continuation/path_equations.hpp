@@ -74,8 +74,7 @@ class PathEquations {
   PathMetric metric_;
   Stiffness stiffness_;
   PredictedTension tension_;
-  Vector positions_;
-  Vector controls_;
+  Configuration here_;
   Vector force_;
   Vector residual_;
   double force_scale_ = 0.0;

@@ -1,13 +1,13 @@
 #include "statics/equilibrium/admissibility.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
+#include "der/energies/registry.hpp"
+#include "der/energies/stretched_edges.hpp"
 #include "der/statics/potential.hpp"
-#include "der/supports/clamp.hpp"
 
 namespace der::statics {
 namespace {
@@ -25,7 +25,7 @@ constexpr double kFolded = 3.0;
 /// How far [m] springs let the structure move under `load` [N], counted from the drawn shape.
 double spring_travel(const Model& model, double load) {
   double farthest = 0.0;
-  for_each_list(model.elements, [&](const auto& list) {
+  for_each_list(*model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if constexpr (HoldsElement<Kernel>::value) {
       LocalTerm<Kernel::kDofs> drawn;
@@ -45,39 +45,26 @@ double spring_travel(const Model& model, double load) {
 }
 
 /// Smallest ratio of the length of an edge to its rest length; 1 if none is shortened.
-double smallest_length_ratio(const Model& model, const Vector& positions, const Vector& controls) {
+double smallest_length_ratio(const Model& model, const Configuration& here) {
   double smallest = 1.0;
-  const auto compare = [&](const Vec2& edge, double rest_length) {
-    smallest = std::min(smallest, edge.norm() / rest_length);
-  };
-  const auto& edges = std::get<ElementList<Stretch<2>>>(model.elements);
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const auto ends = gather(edges.dofs[e], positions);
-    compare(ends.tail<2>() - ends.head<2>(), edges.constants[e].rest_length);
-  }
-  const auto& links = std::get<ElementList<FromPivot<Stretch<2>>>>(model.elements);
-  for (std::size_t e = 0; e < links.size(); ++e) {
-    const auto& c = links.constants[e];
-    const Link link{links.dofs[e], c.first, c.last};
-    compare(link.vector(positions, c.first.turn(controls), c.last.turn(controls)),
-            c.element.rest_length);
-  }
+  for_each_stretched_edge(*model.elements,
+                          [&](const EffectiveEdge& edge, const Stretch<2>::Constants& c) {
+                            smallest = std::min(smallest, edge.vector(here).norm() / c.rest_length);
+                          });
   return smallest;
 }
 
 /// Whether an edge that supports guide along an axis, so that it cannot turn, points backwards.
 bool is_turned_inside_out(const Model& model, const Vector& positions) {
-  const auto held = [&](Index dof) { return model.free_index[at(dof)] < 0; };
+  const auto held = [&](Index dof) { return !model.dofs.is_free(dof); };
   return std::any_of(model.edges.begin(), model.edges.end(), [&](const Edge& edge) {
-    const auto now = gather(edge.dofs, positions);
-    const auto drawn = gather(edge.dofs, model.initial_positions);
-    const Vec2 e = now.tail<2>() - now.head<2>();
-    const Vec2 e0 = drawn.tail<2>() - drawn.head<2>();
+    const Vec2 now = along_edge(edge, positions);
+    const Vec2 drawn = along_edge(edge, model.initial_positions);
     for (const int c : {0, 1}) {
-      const bool guided = held(edge.dofs[at(c)]) && held(edge.dofs[at(2 + c)]);
-      const bool slides = !held(edge.dofs[at(1 - c)]) || !held(edge.dofs[at(3 - c)]);
-      const bool aligned = std::abs(e[c]) < kAligned * edge.rest_length;
-      if (guided && slides && aligned && e[1 - c] * e0[1 - c] < 0.0) return true;
+      const bool guided = held(edge.first + c) && held(edge.last + c);
+      const bool slides = !held(edge.first + 1 - c) || !held(edge.last + 1 - c);
+      const bool aligned = std::abs(now[c]) < kAligned * edge.rest_length;
+      if (guided && slides && aligned && now[1 - c] * drawn[1 - c] < 0.0) return true;
     }
     return false;
   });
@@ -90,13 +77,12 @@ PlanarAdmissibility::PlanarAdmissibility(const Model& model, const Vector& force
       origin_(std::move(origin)),
       largest_drift_(kDrift * (model.size + spring_travel(model, force.lpNorm<1>()))) {}
 
-std::optional<FailedSearch> PlanarAdmissibility::check(const Vector& positions,
-                                                       const Vector& controls) const {
-  if ((positions - origin_).lpNorm<Eigen::Infinity>() > largest_drift_) {
+std::optional<FailedSearch> PlanarAdmissibility::check(const Configuration& here) const {
+  if (model_.dofs.largest_motion(here.coordinates - origin_) > largest_drift_) {
     return FailedSearch{EquilibriumFailure::DriftsAway, {}};
   }
-  if (smallest_length_ratio(model_, positions, controls) < kCollapsed ||
-      is_turned_inside_out(model_, positions)) {
+  if (smallest_length_ratio(model_, here) < kCollapsed ||
+      is_turned_inside_out(model_, here.coordinates)) {
     return FailedSearch{EquilibriumFailure::Collapsed, {}};
   }
   return std::nullopt;

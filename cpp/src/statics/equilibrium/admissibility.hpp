@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "der/core/types.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 #include "der/statics/equilibrium_failure.hpp"
 
@@ -19,8 +20,7 @@ class PlanarAdmissibility {
   void measure_drift_from(Vector origin) { origin_ = std::move(origin); }
 
   /// What rules the shape out: it has drifted away, or collapsed. Nothing if it is admissible.
-  [[nodiscard]] std::optional<FailedSearch> check(const Vector& positions,
-                                                  const Vector& controls) const;
+  [[nodiscard]] std::optional<FailedSearch> check(const Configuration& here) const;
 
  private:
   const Model& model_;

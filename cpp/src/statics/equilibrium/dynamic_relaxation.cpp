@@ -24,7 +24,7 @@ constexpr double kTryNewton = 0.1;
 /// The time in which the largest force moves a unit mass by about the size of the model.
 double first_time_step(const Model& model, const StaticLoads& loads, Stiffness& stiffness,
                        const Shape& shape) {
-  stiffness.evaluate(shape.positions, loads.controls_of(model, shape));
+  stiffness.evaluate(loads.at(model, shape));
   const double acting = std::max(loads.force.lpNorm<Eigen::Infinity>(),
                                  stiffness.gradient().lpNorm<Eigen::Infinity>());
   return std::sqrt(model.size / acting);
@@ -36,28 +36,29 @@ bool relax_dynamically(const Model& model, const StaticLoads& loads, StaticNewto
                        Stiffness& stiffness, Shape& shape, int& steps) {
   Shape now = shape;
   Vector velocity = Vector::Zero(now.positions.size());
-  Vector next;
   double step = first_time_step(model, loads, stiffness, now);
   const double damping = kDamping / step;
   const double smallest = kSmallestStep * step;
   double change_for_newton = kTryNewton;
-  Stage stage = newton.stage_of(loads, now);
+  Stage stage = newton.stage_of(loads);
+  Configuration here = loads.at(model, now);
   for (int i = 0; i < kMaxSteps && step > smallest; ++i) {
     ++steps;
     const double damped = 1.0 + damping * step;
     stage.inertia = damped / (step * step);
     stage.inertia_target = now.positions + step / damped * velocity;
-    next = now.positions;
-    const bool solved = !newton.solve(stage, next);
-    const double change = solved ? largest_edge_change(model, next - now.positions) : 0.0;
+    here.coordinates = now.positions;
+    const bool solved = !newton.solve(stage, here);
+    const double change =
+        solved ? largest_edge_change(model, here.coordinates - now.positions) : 0.0;
     if (!solved || change > kLargestEdgeChange) {
       step *= 0.5;
       continue;
     }
-    velocity = (next - now.positions) / step;
-    now.positions = next;
+    velocity = (here.coordinates - now.positions) / step;
+    now.positions = here.coordinates;
     update_turns(model, now);
-    stage.controls = loads.controls_of(model, now);
+    here = loads.at(model, now);
     if (change < 0.5 * kLargestEdgeChange) step *= kGrowth;
     if (change < change_for_newton) {
       if (newton.balance_nearby(loads, now).reached) {

@@ -78,9 +78,8 @@ class EquilibriumSearch {
     newton_.measure_drift_from(shape.positions);
     if (auto failed = find_any(shape)) return failed;
     if (auto failed = find_stable(shape)) return failed;
-    const Vector controls = loads_.controls_of(model_, shape);
     if (!whole_turns.empty() &&
-        planar_whole_turns(model_, shape.positions, controls) != whole_turns) {
+        planar_whole_turns(model_, loads_.at(model_, shape)) != whole_turns) {
       return FailedSearch{EquilibriumFailure::FoldedByClamp, {}};
     }
     return std::nullopt;
@@ -98,7 +97,7 @@ class EquilibriumSearch {
   /// Moves a shape on the way of the supports to the stable equilibrium near it, if there is one.
   void equilibrate(const StaticLoads& loads, Shape& shape) {
     if (find_near(loads, shape)) return;
-    stiffness_.evaluate(shape.positions, loads.controls_of(model_, shape));
+    stiffness_.evaluate(loads.at(model_, shape));
     if (leave_saddles_ && stiffness_.stability().unstable_directions > 0) {
       go_down(loads, shape);
     }
@@ -151,14 +150,13 @@ class EquilibriumSearch {
   /// Enters stability, residual and largest turning angle of an equilibrium into the report, and
   /// polishes the equilibrium. Fails if round-off hides it.
   std::optional<FailedSearch> assess(Shape& shape) {
-    const Vector controls = loads_.controls_of(model_, shape);
-    stiffness_.evaluate(shape.positions, controls);
+    Configuration here = loads_.at(model_, shape);
+    stiffness_.evaluate(here);
     report_.stability = stiffness_.stability();
     const bool neutral = report_.stability.neutral_directions > 0;
-    bool resolved = neutral || polish(model_, controls, loads_.force, report_.stability, stiffness_,
-                                      shape.positions);
-    report_.residual =
-        (loads_.force - stiffness_.gradient())(model_.free_dofs).lpNorm<Eigen::Infinity>();
+    bool resolved = neutral || polish(model_, loads_.force, report_.stability, stiffness_, here);
+    shape.positions = std::move(here.coordinates);
+    report_.residual = model_.dofs.largest_free_force(loads_.force - stiffness_.gradient());
     // A Newton step is meaningless in a neutral equilibrium, so the forces must be in balance.
     if (neutral && report_.residual > kUnbalanced * newton_.force_scale()) resolved = false;
     report_.largest_turning_angle = largest_turning_angle(model_, shape.positions);

@@ -5,6 +5,7 @@
 
 #include "der/core/constants.hpp"
 #include "der/energies/element_energy.hpp"
+#include "der/energies/registry.hpp"
 #include "der/kinematics/planar_edge.hpp"
 
 namespace der::statics {
@@ -24,7 +25,7 @@ double rotational_compliance(const Model& model) {
 }
 
 const ElementList<PlanarMoment>& moments_of(const Model& model) {
-  return std::get<ElementList<PlanarMoment>>(model.elements);
+  return model.elements->of<PlanarMoment>();
 }
 
 }  // namespace

@@ -49,11 +49,11 @@ Vector present_controls(const Model& model, Vector controls, const Vector& turns
 std::vector<double> move_supports(const Model& model, const StaticLoads& loads,
                                   const Equilibrate& equilibrate, Shape& shape) {
   const bool as_drawn =
-      shape.positions(model.free_dofs) == model.initial_positions(model.free_dofs);
+      shape.positions(model.dofs.free()) == model.initial_positions(model.dofs.free());
   if (as_drawn) shape = {model.initial_positions, Vector::Zero(shape.turns.size())};
   update_turns(model, shape);
 
-  const Vector target_controls = loads.controls_of(model, shape);
+  const Vector target_controls = loads.at(model, shape).controls;
   Vector target = shape.positions;
   apply_prescribed_motion(model, target_controls, target);
   const Vector displacement = target - shape.positions;
@@ -64,7 +64,7 @@ std::vector<double> move_supports(const Model& model, const StaticLoads& loads,
                                                  rotation.lpNorm<Eigen::Infinity>());
   std::vector<double> whole_turns;
   if (!rotation.isZero(0.0)) {
-    whole_turns = planar_whole_turns(model, shape.positions, target_controls - rotation);
+    whole_turns = planar_whole_turns(model, {shape.positions, target_controls - rotation});
   }
   double step = longest < 1.0 ? kFirstStep : 1.0;
   for (double done = step; done < 1.0; done += step) {

@@ -25,19 +25,20 @@ bool solve_for_step(Stiffness& stiffness, const Stability& stability, Vector& st
 
 }  // namespace
 
-bool polish(const Model& model, const Vector& controls, const Vector& force,
-            const Stability& stability, Stiffness& stiffness, Vector& positions) {
+bool polish(const Model& model, const Vector& force, const Stability& stability,
+            Stiffness& stiffness, Configuration& here) {
   double length = std::numeric_limits<double>::infinity();
   Vector step;
   for (int i = 0; i < kMaxSteps; ++i) {
-    step = (force - stiffness.gradient())(model.free_dofs);
+    step = (force - stiffness.gradient())(model.dofs.free());
     const bool solved = solve_for_step(stiffness, stability, step);
     const double next = solved ? step.lpNorm<Eigen::Infinity>() : length;
     if (!(next < 0.5 * length)) break;
     length = next;
     if (length > kLongestStep * model.size) break;
-    for (Index k = 0; k < model.num_free(); ++k) positions[model.free_dofs[at(k)]] += step[k];
-    stiffness.evaluate(positions, controls);
+    for (Index k = 0; k < model.num_free(); ++k)
+      here.coordinates[model.dofs.free()[at(k)]] += step[k];
+    stiffness.evaluate(here);
   }
   return length <= kAccepted * model.size;
 }

@@ -87,15 +87,16 @@ std::optional<PseudoTransient::Step> PseudoTransient::try_step(
     const StaticLoads& loads, const Shape& shape, double inverse_step,
     std::optional<FailedSearch>& failed) {
   using LineSearch = StaticNewton::LineSearch;
-  Stage stage = newton_.stage_of(loads, shape);
+  Stage stage = newton_.stage_of(loads);
   stage.inertia = inverse_step;
   stage.inertia_target = shape.positions;
   for (const LineSearch line_search : {LineSearch::IfNeeded, LineSearch::Always}) {
-    Step step{shape.positions, 0.0};
-    if (auto why = newton_.solve(stage, step.positions, line_search)) {
+    Configuration here = loads.at(model_, shape);
+    if (auto why = newton_.solve(stage, here, line_search)) {
       failed = std::move(why);
       continue;
     }
+    Step step{std::move(here.coordinates), 0.0};
     if (largest_edge_change(model_, step.positions - shape.positions) > kLargestEdgeChange ||
         edge_turned_too_far(model_, step.positions, shape.turns) >= 0) {
       continue;

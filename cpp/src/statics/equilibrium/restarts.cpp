@@ -35,7 +35,7 @@ Vector straightened(const Model& model, const StaticLoads& loads, const Shape& s
 
 std::vector<Shape> planar_restarts(const Model& model, const StaticLoads& loads,
                                    Stiffness& stiffness, const Shape& start) {
-  stiffness.evaluate(start.positions, loads.controls_of(model, start));
+  stiffness.evaluate(loads.at(model, start));
   const Vector bend = unit_displacement(model, stiffness.softest());
   std::vector<Shape> restarts;
   const auto add = [&](Vector positions) {

@@ -18,14 +18,13 @@ constexpr double kSameChange = 1e-6;
 }  // namespace
 
 Vector unit_displacement(const Model& model, const SoftDirection& soft) {
-  Vector displacement = Vector::Zero(model.num_dofs());
-  displacement(model.free_dofs) = soft.direction;
+  const Vector displacement = over_all_dofs(model, soft.direction);
   return displacement / largest_edge_change(model, displacement);
 }
 
 bool leave_saddle(const Model& model, const StaticLoads& loads, const StaticNewton& newton,
                   PseudoTransient& continuation, Stiffness& stiffness, Shape& shape) {
-  stiffness.evaluate(shape.positions, loads.controls_of(model, shape));
+  stiffness.evaluate(loads.at(model, shape));
   const SoftDirection soft = stiffness.softest();
   const Vector direction = unit_displacement(model, soft);
   const double inverse_step = 2.0 * std::abs(soft.curvature);

@@ -1,5 +1,6 @@
 #include "statics/equilibrium/static_loads.hpp"
 
+#include "der/energies/registry.hpp"
 #include "der/statics/potential.hpp"
 
 namespace der::statics {
@@ -7,7 +8,7 @@ namespace der::statics {
 StaticLoads scaled(const Model& model, const StaticLoads& loads, double share) {
   StaticLoads result = loads;
   result.force = share * loads.force;
-  for (const auto& moment : std::get<ElementList<PlanarMoment>>(model.elements).constants) {
+  for (const auto& moment : model.elements->of<PlanarMoment>().constants) {
     result.controls[moment.moment] = share * loads.controls[moment.moment];
   }
   return result;
@@ -15,7 +16,7 @@ StaticLoads scaled(const Model& model, const StaticLoads& loads, double share) {
 
 double energy_change(const Model& model, const StaticLoads& loads, const Shape& seen_from,
                      const Vector& from, const Vector& to) {
-  return potential_change(model, loads.controls_of(model, seen_from), loads.force, from, to);
+  return potential_change(model, loads.force, loads.at(model, {from, seen_from.turns}), to);
 }
 
 }  // namespace der::statics

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "der/core/types.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 #include "statics/equilibrium/shape.hpp"
 
@@ -11,11 +12,11 @@ struct StaticLoads {
   Vector controls;  ///< values of the model's tables
   Vector force;     ///< external forces [N], all degrees of freedom
 
-  /// The controls as the elements of a shape see them, its turns included.
-  [[nodiscard]] Vector controls_of(const Model& model, const Shape& shape) const {
-    Vector result = controls;
-    enter_turns(model, shape.turns, result);
-    return result;
+  /// A shape as its elements see it, its turns included.
+  [[nodiscard]] Configuration at(const Model& model, const Shape& shape) const {
+    Configuration here{shape.positions, controls};
+    enter_turns(model, shape.turns, here.controls);
+    return here;
   }
 };
 

@@ -18,35 +18,37 @@ constexpr double kLargestLastChange = 0.5;
 StaticNewton::StaticNewton(const Model& model, const Assembler& assembler, LinearSolver& solver,
                            const NewtonOptions& options, PlanarAdmissibility admissibility)
     : model_(model),
-      newton_(model, assembler, solver, options),
+      problem_(model, assembler),
+      newton_(model.dofs, solver, assembler.num_values(), options),
       admissibility_(std::move(admissibility)) {}
 
-Stage StaticNewton::stage_of(const StaticLoads& loads, const Shape& shape) const {
+Stage StaticNewton::stage_of(const StaticLoads& loads) const {
   Stage stage(model_);
   stage.mass = {Vector::Ones(model_.num_dofs()), {}};
-  stage.controls = loads.controls_of(model_, shape);
   stage.force = loads.force;
   return stage;
 }
 
-std::optional<FailedSearch> StaticNewton::solve(const Stage& stage, Vector& positions,
+std::optional<FailedSearch> StaticNewton::solve(const Stage& stage, Configuration& here,
                                                 LineSearch line_search) {
-  const Vector before = positions;
-  const NewtonReport report = line_search == LineSearch::Always
-                                  ? newton_.solve_downhill(stage, positions)
-                                  : newton_.solve(stage, positions);
+  const Vector before = here.coordinates;
+  problem_.pose(stage, here);
+  const NewtonReport report = line_search == LineSearch::Always ? newton_.solve_downhill(problem_)
+                                                                : newton_.solve(problem_);
   iterations_ += report.iterations;
   force_scale_ = report.force_scale;
   if (!report.converged) return FailedSearch{EquilibriumFailure::NewtonFailed, report.failure};
-  auto inadmissible = admissibility_.check(positions, stage.controls);
-  if (inadmissible) positions = before;
+  auto inadmissible = admissibility_.check(here);
+  if (inadmissible) here.coordinates = before;
   return inadmissible;
 }
 
 std::optional<FailedSearch> StaticNewton::balance(const StaticLoads& loads, Shape& shape) {
-  auto failed = solve(stage_of(loads, shape), shape.positions);
-  if (!failed) update_turns(model_, shape);
-  return failed;
+  Configuration here = loads.at(model_, shape);
+  if (auto failed = solve(stage_of(loads), here)) return failed;
+  shape.positions = std::move(here.coordinates);
+  update_turns(model_, shape);
+  return std::nullopt;
 }
 
 StaticNewton::LastStep StaticNewton::balance_nearby(const StaticLoads& loads, Shape& shape) {

@@ -7,6 +7,7 @@
 #include "der/model/model.hpp"
 #include "der/solvers/linear_solver.hpp"
 #include "der/solvers/newton.hpp"
+#include "der/solvers/stage.hpp"
 #include "der/statics/equilibrium_failure.hpp"
 #include "statics/equilibrium/admissibility.hpp"
 #include "statics/equilibrium/shape.hpp"
@@ -36,12 +37,12 @@ class StaticNewton {
   LastStep balance_nearby(const StaticLoads& loads, Shape& shape);
 
   enum class LineSearch { IfNeeded, Always };
-  /// Solves a stage for the positions. On failure they stay as they are.
-  std::optional<FailedSearch> solve(const Stage& stage, Vector& positions,
+  /// Solves a stage for the coordinates of `here`. On failure they stay as they are.
+  std::optional<FailedSearch> solve(const Stage& stage, Configuration& here,
                                     LineSearch line_search = LineSearch::IfNeeded);
 
   /// The equation of equilibrium with unit masses and, until it is set, no inertia.
-  [[nodiscard]] Stage stage_of(const StaticLoads& loads, const Shape& shape) const;
+  [[nodiscard]] Stage stage_of(const StaticLoads& loads) const;
 
   void measure_drift_from(const Vector& origin) { admissibility_.measure_drift_from(origin); }
 
@@ -54,6 +55,7 @@ class StaticNewton {
 
  private:
   const Model& model_;
+  StageProblem problem_;
   Newton newton_;
   PlanarAdmissibility admissibility_;
   int iterations_ = 0;

@@ -9,39 +9,38 @@
 namespace der::statics {
 namespace {
 
-double tangent_angle(const Clamp& clamp, const Vector& controls) {
-  return clamp.direction + (clamp.rotation >= 0 ? controls[clamp.rotation] : 0.0);
+double tangent_angle(const Clamp& clamp, const Configuration& here) {
+  return clamp.direction + (clamp.rotation >= 0 ? here.controls[clamp.rotation] : 0.0);
 }
 
 /// Sum of the turning angles [rad] at all nodes from one clamp to another, both included.
 double turning_angle(const Model& model, const RodLayout& rod, const Clamp& first,
-                     const Clamp& last, const Vector& positions, const Vector& controls) {
+                     const Clamp& last, const Configuration& here) {
   const auto tangent = [&](const Clamp& clamp) {
-    const double angle = tangent_angle(clamp, controls);
+    const double angle = tangent_angle(clamp, here);
     return Vec2(std::cos(angle), std::sin(angle));
   };
   double sum = 0.0;
   Vec2 before = tangent(first);
   for (Index edge = first.place; edge < last.place; ++edge) {
-    const Link link = link_of(rod, edge, model);
-    const Vec2 here = link.vector(positions, link.first.turn(controls), link.last.turn(controls));
-    sum += angle_between(before, here);
-    before = here;
+    const EffectiveEdge effective = effective_edge(rod, edge, model);
+    const Vec2 next = effective.vector(here);
+    sum += angle_between(before, next);
+    before = next;
   }
   return sum + angle_between(before, tangent(last));
 }
 
 }  // namespace
 
-std::vector<double> planar_whole_turns(const Model& model, const Vector& positions,
-                                       const Vector& controls) {
+std::vector<double> planar_whole_turns(const Model& model, const Configuration& here) {
   std::vector<double> turns;
   for (const RodLayout& rod : model.rods) {
     for (const Clamp& first : rod.clamps) {
       for (const Clamp& last : rod.clamps) {
         if (first.place >= last.place) continue;
-        const double between = turning_angle(model, rod, first, last, positions, controls) -
-                               tangent_angle(last, controls) + tangent_angle(first, controls);
+        const double between = turning_angle(model, rod, first, last, here) -
+                               tangent_angle(last, here) + tangent_angle(first, here);
         turns.push_back(std::round(between / (2.0 * kPi)));
       }
     }

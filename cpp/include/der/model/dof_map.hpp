@@ -1,0 +1,105 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "der/core/index.hpp"
+#include "der/core/magnitude.hpp"
+#include "der/core/types.hpp"
+
+namespace der {
+
+enum class DofKind {
+  Position,  ///< a component of a node's position [m]
+  Angle,     ///< the angle of an edge's material frame [rad]
+};
+
+/// What a degree of freedom is.
+struct Dof {
+  DofKind kind = DofKind::Position;
+  Index owner = 0;    ///< the node, or the edge
+  int component = 0;  ///< of a position: 0 x, 1 y, 2 z
+};
+
+/// Degrees of freedom of one kind, which lie one behind the other in storage.
+struct DofBlock {
+  DofKind kind = DofKind::Position;
+  Index first = 0;
+  Index count = 0;
+  double length = 1.0;  ///< [m] that a unit of it counts as where degrees of freedom are compared
+};
+
+/// The largest of `value(block)`; not a number where one of them is not.
+template <class Value>
+double largest_over(const std::vector<DofBlock>& blocks, const Value& value) {
+  std::int64_t largest = 0;
+  for (const DofBlock& block : blocks) largest = std::max(largest, magnitude_bits(value(block)));
+  return magnitude_of(largest);
+}
+
+/// The only place that knows how degrees of freedom are numbered: what each one is, where it is
+/// stored, in which order the solver eliminates it, and what it counts for in a norm.
+///
+/// Stored are the positions of all nodes, one behind the other, then the angles of all edges, so
+/// that either is one contiguous view. Those that the solver finds, the free ones, are eliminated
+/// node by node, an angle after the node at which its edge begins: that makes the matrix a band.
+class DofMap {
+ public:
+  DofMap() = default;
+  /// `edge_starts`: the first node of each edge that has an angle. All are free at first.
+  DofMap(int dimension, Index num_nodes, std::vector<Index> edge_starts = {});
+
+  [[nodiscard]] Index size() const { return num_positions() + static_cast<Index>(starts_.size()); }
+  [[nodiscard]] Index num_positions() const { return dimension_ * num_nodes_; }
+  [[nodiscard]] Index position(Index node, int component) const {
+    return dimension_ * node + component;
+  }
+  [[nodiscard]] Index angle(Index edge) const { return num_positions() + edge; }
+  /// What a degree of freedom is.
+  [[nodiscard]] Dof operator[](Index dof) const;
+  /// Its node, or the node at which its edge begins.
+  [[nodiscard]] Index node_of(Index dof) const;
+
+  /// Leaves the `held` ones to the supports and numbers the others anew.
+  void hold(const std::vector<Index>& held);
+  /// All free ones, in the order of elimination.
+  [[nodiscard]] const std::vector<Index>& free() const { return free_; }
+  [[nodiscard]] Index num_free() const { return static_cast<Index>(free_.size()); }
+  /// Place in the order of elimination; -1: held.
+  [[nodiscard]] Index free_index(Index dof) const { return free_index_[at(dof)]; }
+  [[nodiscard]] bool is_free(Index dof) const { return free_index(dof) >= 0; }
+
+  /// States the length [m] against which motions are small, and that a radian counts as: that of
+  /// the model.
+  void set_length(double length);
+  [[nodiscard]] double length() const { return length_; }
+  /// Magnitude [N] that a force or moment on one degree of freedom counts as.
+  [[nodiscard]] double force_of(Index dof, double force) const {
+    return std::abs(force) / (dof < num_positions() ? 1.0 : length_);
+  }
+  [[nodiscard]] const std::vector<DofBlock>& blocks() const { return blocks_; }
+
+  /// Largest motion [m] among displacements of all degrees of freedom: angles count times the
+  /// length. Not a number where one of them is not.
+  [[nodiscard]] double largest_motion(const Vector& displacement) const;
+  /// Largest force [N] among those on all degrees of freedom: moments count over the length.
+  [[nodiscard]] double largest_force(const Vector& force) const;
+  /// As above, of free degrees of freedom alone.
+  [[nodiscard]] double largest_free_force(const Vector& force) const;
+
+ private:
+  void number_free();
+
+  int dimension_ = 2;
+  double length_ = 1.0;
+  Index num_nodes_ = 0;
+  std::vector<Index> starts_;  // of the edges that have an angle
+  std::vector<DofBlock> blocks_;
+  std::vector<Index> free_;
+  std::vector<Index> free_index_;
+  CountMask counts_;  // the free ones
+};
+
+}  // namespace der

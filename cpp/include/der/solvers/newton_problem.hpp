@@ -1,0 +1,51 @@
+#pragma once
+
+#include "der/core/types.hpp"
+
+namespace der {
+
+/// How much of a step may be taken.
+struct StepBound {
+  double share = 1.0;  ///< largest admissible share of the step, in (0, 1]
+  double change =
+      0.0;  ///< nonlinearity of that share of it: largest change of an edge over its length
+};
+
+/// A system of nonlinear equations as Newton's method sees it: a residual [N] and its derivative as
+/// functions of a displacement [m] of all degrees of freedom, held ones included. The residual is
+/// the gradient of a potential, or nearly so.
+class NewtonProblem {
+ public:
+  NewtonProblem() = default;
+  NewtonProblem(const NewtonProblem&) = delete;
+  NewtonProblem& operator=(const NewtonProblem&) = delete;
+  virtual ~NewtonProblem() = default;
+
+  /// Sets `displacement` to that of the guess, which is remembered.
+  virtual void begin(Vector& displacement) = 0;
+  /// As `begin`, back from wherever the solution is now to the guess remembered.
+  virtual void begin_again(Vector& displacement) = 0;
+  /// The solution is at another displacement now, in its free components. What the equations need
+  /// of a new point is prepared here.
+  virtual void solution_changed(const Vector& displacement) = 0;
+
+  /// Sets the left side of the equations at the solution, over all degrees of freedom.
+  virtual void residual(Vector& residual) = 0;
+  /// As above, and its derivative in the layout of the linear solver.
+  virtual void system(Vector& residual, Vector& values) = 0;
+  /// May improve the derivative just evaluated after a full `step` (all degrees of freedom) that
+  /// led here.
+  virtual void correct_after(const Vector& step, Vector& values) = 0;
+
+  /// The largest admissible share of a step (all degrees of freedom, 0 on held ones).
+  virtual StepBound largest_step(const Vector& step) = 0;
+
+  /// Largest force [N] that acted in the last evaluation: what residuals are compared with.
+  [[nodiscard]] virtual double acting_force() const = 0;
+  /// Rounding error [m] of the solution's positions.
+  [[nodiscard]] virtual double position_rounding() const = 0;
+  /// Rounding error [N] of the residual. Uses `values`, which the next `system` sets anew.
+  virtual double residual_rounding(Vector& values) = 0;
+};
+
+}  // namespace der

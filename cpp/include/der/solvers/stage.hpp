@@ -1,0 +1,71 @@
+#pragma once
+
+#include "der/assembly/assembler.hpp"
+#include "der/core/types.hpp"
+#include "der/kinematics/configuration.hpp"
+#include "der/model/model.hpp"
+#include "der/solvers/newton_problem.hpp"
+#include "der/solvers/predicted_tension.hpp"
+
+namespace der {
+
+class DiscreteGradientAssembler;
+
+/// The nonlinear system that one stage of an implicit stepper, or a static analysis, has to solve
+/// for the displacement d from the positions `origin`:
+///   inertia M (d - inertia_target) + velocity_factor C (d - velocity_reference)
+///     + grad E(origin + d) - force = 0
+/// over the free degrees of freedom; M is `mass`, C the model's diagonal damping. All vectors have
+/// one entry a degree of freedom. The velocity that a stepper makes of a displacement has the
+/// rounding error of the displacement; that of a difference of positions grows as steps get short.
+struct Stage {
+  explicit Stage(const Model& model);
+  double inertia = 0.0;          ///< [1/s^2]; 0: statics
+  Mass mass;                     ///< [kg]; the model's, unless a static analysis brings its own
+  Vector origin;                 ///< [m]; zero unless set
+  Vector inertia_target;         ///< [m] from the origin
+  double velocity_factor = 0.0;  ///< [1/s]
+  Vector velocity_reference;     ///< [m] from the origin
+  Vector force;                  ///< [N] external forces at the stage's time
+  /// If set, it gives the forces in place of grad E: the stage is the middle of a step from
+  /// `origin`.
+  DiscreteGradientAssembler* discrete_gradient = nullptr;
+};
+
+/// A stage as Newton's method solves it, on preallocated memory: evaluations allocate nothing.
+class StageProblem final : public NewtonProblem {
+ public:
+  StageProblem(const Model& model, const Assembler& assembler);
+
+  /// Poses a stage to be solved for the coordinates of `here`: on entry the guess, with held
+  /// degrees of freedom already at their values, and the controls at the stage's time. Both must
+  /// outlive the solve.
+  void pose(const Stage& stage, Configuration& here);
+
+  void begin(Vector& displacement) override;
+  void begin_again(Vector& displacement) override;
+  void solution_changed(const Vector& displacement) override;
+  void residual(Vector& residual) override;
+  void system(Vector& residual, Vector& values) override;
+  void correct_after(const Vector& step, Vector& values) override;
+  StepBound largest_step(const Vector& step) override;
+  [[nodiscard]] double acting_force() const override { return acting_; }
+  [[nodiscard]] double position_rounding() const override;
+  double residual_rounding(Vector& values) override;
+
+ private:
+  void add_stage_forces(Vector& residual);
+
+  const Model& model_;
+  const Assembler& assembler_;
+  const Stage* stage_ = nullptr;
+  Configuration* here_ = nullptr;
+  PredictedTension tension_;
+  Vector guess_;           // coordinates
+  Vector displacement_;    // from the stage's origin
+  Vector term_;            // one term of the residual
+  double external_ = 0.0;  // largest external force of the stage [N]
+  double acting_ = 0.0;
+};
+
+}  // namespace der

@@ -1,0 +1,76 @@
+#include "der/model/dof_map.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace der {
+
+DofMap::DofMap(int dimension, Index num_nodes, std::vector<Index> edge_starts)
+    : dimension_(dimension), num_nodes_(num_nodes), starts_(std::move(edge_starts)) {
+  blocks_.push_back({DofKind::Position, 0, num_positions(), 1.0});
+  if (!starts_.empty()) {
+    blocks_.push_back({DofKind::Angle, num_positions(), static_cast<Index>(starts_.size()), 1.0});
+  }
+  free_index_.assign(at(size()), 0);
+  number_free();
+}
+
+Dof DofMap::operator[](Index dof) const {
+  if (dof >= num_positions()) return {DofKind::Angle, dof - num_positions(), 0};
+  return {DofKind::Position, dof / dimension_, dof % dimension_};
+}
+
+Index DofMap::node_of(Index dof) const {
+  const Dof what = (*this)[dof];
+  return what.kind == DofKind::Position ? what.owner : starts_[at(what.owner)];
+}
+
+void DofMap::hold(const std::vector<Index>& held) {
+  for (const Index dof : held) free_index_[at(dof)] = -1;
+  number_free();
+}
+
+void DofMap::number_free() {
+  free_.clear();
+  counts_.setZero(size());
+  for (Index dof = 0; dof < size(); ++dof) {
+    if (!is_free(dof)) continue;
+    free_.push_back(dof);
+    counts_[dof] = kCounts;
+  }
+  // Positions of a node come before the angles of edges that begin there, as they do in storage.
+  std::sort(free_.begin(), free_.end(), [this](Index a, Index b) {
+    return std::make_tuple(node_of(a), a) < std::make_tuple(node_of(b), b);
+  });
+  for (Index i = 0; i < num_free(); ++i) free_index_[at(free_[at(i)])] = i;
+}
+
+void DofMap::set_length(double length) {
+  length_ = length;
+  for (DofBlock& block : blocks_) {
+    if (block.kind == DofKind::Angle) block.length = length;
+  }
+}
+
+double DofMap::largest_motion(const Vector& displacement) const {
+  return largest_over(blocks_, [&](const DofBlock& block) {
+    return block.length * largest_magnitude(block.count, displacement.data() + block.first);
+  });
+}
+
+double DofMap::largest_force(const Vector& force) const {
+  return largest_over(blocks_, [&](const DofBlock& block) {
+    return largest_magnitude(block.count, force.data() + block.first) / block.length;
+  });
+}
+
+double DofMap::largest_free_force(const Vector& force) const {
+  return largest_over(blocks_, [&](const DofBlock& block) {
+    return largest_magnitude(block.count, force.data() + block.first,
+                             counts_.data() + block.first) /
+           block.length;
+  });
+}
+
+}  // namespace der

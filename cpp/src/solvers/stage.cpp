@@ -1,0 +1,136 @@
+#include "der/solvers/stage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "der/assembly/discrete_gradient_assembler.hpp"
+#include "der/core/index.hpp"
+#include "der/model/edge_change.hpp"
+#include "stage_kernels.hpp"
+
+namespace der {
+namespace {
+
+/// No step changes an edge by more than this, over its length: as an angle [rad], beyond it the
+/// quadratic model says nothing.
+constexpr double kLargestEdgeChange = 0.7;
+
+/// A few rounding errors of numbers up to this.
+double rounding(double largest) { return 8.0 * std::numeric_limits<double>::epsilon() * largest; }
+
+}  // namespace
+
+Stage::Stage(const Model& model)
+    : mass(model.mass),
+      origin(Vector::Zero(model.num_dofs())),
+      inertia_target(Vector::Zero(model.num_dofs())),
+      velocity_reference(Vector::Zero(model.num_dofs())),
+      force(Vector::Zero(model.num_dofs())) {}
+
+StageProblem::StageProblem(const Model& model, const Assembler& assembler)
+    : model_(model),
+      assembler_(assembler),
+      tension_(model, assembler),
+      guess_(Vector::Zero(model.num_dofs())),
+      displacement_(Vector::Zero(model.num_dofs())),
+      term_(Vector::Zero(model.num_dofs())) {}
+
+void StageProblem::pose(const Stage& stage, Configuration& here) {
+  stage_ = &stage;
+  here_ = &here;
+}
+
+void StageProblem::begin(Vector& displacement) {
+  guess_ = here_->coordinates;
+  external_ = model_.dofs.largest_force(stage_->force);
+  displacement_ = guess_ - stage_->origin;
+  displacement = displacement_;
+}
+
+void StageProblem::begin_again(Vector& displacement) {
+  here_->coordinates = guess_;
+  displacement_ = guess_ - stage_->origin;
+  displacement = displacement_;
+}
+
+void StageProblem::solution_changed(const Vector& displacement) {
+  displacement_ = displacement;
+  for (const Index dof : model_.dofs.free()) {
+    here_->coordinates[dof] = stage_->origin[dof] + displacement[dof];
+  }
+}
+
+void StageProblem::residual(Vector& residual) {
+  if (stage_->discrete_gradient != nullptr) {
+    stage_->discrete_gradient->gradient(*here_, residual);
+  } else {
+    assembler_.gradient(*here_, residual);
+  }
+  add_stage_forces(residual);
+}
+
+void StageProblem::system(Vector& residual, Vector& values) {
+  if (stage_->discrete_gradient != nullptr) {
+    stage_->discrete_gradient->gradient_and_hessian(*here_, residual, values);
+  } else {
+    assembler_.gradient_and_hessian(*here_, residual, values);
+  }
+  add_stage_forces(residual);
+  if (stage_->inertia != 0.0) assembler_.add_mass(stage_->mass, stage_->inertia, values);
+  if (stage_->velocity_factor != 0.0 && model_.damped) {
+    assembler_.add_diagonal(model_.damping, stage_->velocity_factor, values);
+  }
+}
+
+/// The tensions of a discrete gradient are those over the whole step, not those that a step of
+/// Newton's method has put in.
+void StageProblem::correct_after(const Vector& step, Vector& values) {
+  if (stage_->discrete_gradient == nullptr) tension_.use(*here_, step, values);
+}
+
+/// Rigid translation does not count.
+StepBound StageProblem::largest_step(const Vector& step) {
+  const double change = largest_edge_change(model_, step);
+  if (change <= kLargestEdgeChange) return {1.0, change};
+  return {kLargestEdgeChange / change, kLargestEdgeChange};
+}
+
+double StageProblem::position_rounding() const {
+  return rounding(model_.dofs.largest_motion(here_->coordinates));
+}
+
+/// Positions are known to their rounding, displacements to their own.
+double StageProblem::residual_rounding(Vector& values) {
+  assembler_.gradient_and_hessian(*here_, term_, values);
+  const auto largest_term = [&](const Vector& diagonal) {
+    term_ = diagonal.cwiseProduct(displacement_);
+    return model_.dofs.largest_force(term_);
+  };
+  return rounding(largest_magnitude(values) * largest_magnitude(here_->coordinates) +
+                  stage_->inertia * largest_term(stage_->mass.lumped) +
+                  stage_->velocity_factor * largest_term(model_.damping));
+}
+
+void StageProblem::add_stage_forces(Vector& residual) {
+  const DofMap& dofs = model_.dofs;
+  acting_ = std::max(subtract_force(dofs, stage_->force, residual), external_);
+  if (stage_->inertia != 0.0) {
+    Vector& acceleration = term_;  // minus it
+    acting_ = std::max(acting_,
+                       add_lumped_inertia(dofs, stage_->inertia, stage_->mass.lumped, displacement_,
+                                          stage_->inertia_target, acceleration, residual));
+    for (const auto& [a, b, mass] : stage_->mass.coupling) {
+      const double inertial = mass * (acceleration[a] - acceleration[b]);
+      residual[a] -= inertial;
+      residual[b] += inertial;
+    }
+  }
+  if (stage_->velocity_factor != 0.0 && model_.damped) {
+    acting_ = std::max(
+        acting_, add_lumped_inertia(dofs, stage_->velocity_factor, model_.damping, displacement_,
+                                    stage_->velocity_reference, term_, residual));
+  }
+}
+
+}  // namespace der

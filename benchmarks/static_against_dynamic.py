@@ -73,8 +73,8 @@ def report(label: str, name: str) -> float:
     verified = der.verify(static)
     print(f"{label}: {static.title}\n")
     for value in verified.values:
-        print(f"  {value.probe:22s} {value.value:.6f} +- {value.bar:.1e} {value.unit}")
-    error = next(value.bar for value in verified.values if value.probe == "deflection")
+        print(f"  {value.probe:22s} {value.value:.6f} +- {value.error_bar:.1e} {value.unit}")
+    error = next(value.error_bar for value in verified.values if value.probe == "deflection")
 
     simulation = der.Simulation(static)
     seconds = cpu_seconds(simulation, simulation.equilibrium, REPEATS)

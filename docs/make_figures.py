@@ -124,7 +124,7 @@ def study() -> Figure:
 
 
 def tolerance() -> Figure:
-    """Draw the error in time that comes out against the tolerance that was asked for."""
+    """Draw the error in time against the requested tolerance."""
     asked = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
     names = [info.name for info in der.steppers() if info.implicit]
 
@@ -136,7 +136,7 @@ def tolerance() -> Figure:
 
     exact = tips(step=5e-5, integrator="sdirk4")  # half the step moves it by 2e-10 m
     figure, axes = new_axes()
-    axes.loglog(asked, asked, color="0.6", linestyle="--", label="what was asked for")
+    axes.loglog(asked, asked, color="0.6", linestyle="--", label="requested tolerance")
     looks = zip(
         names, ("o", "s", "h", "^", "D", "v", "P", "X"), (*PALETTE, "black", "#5e3c99"), strict=True
     )

@@ -67,7 +67,7 @@ def swing() -> None:
 
 
 def tolerance() -> None:
-    """Error in time against the tolerance asked for, 51 nodes."""
+    """Error in time against the requested tolerance, 51 nodes."""
     fine = scene("soft", 51, step=1e-4, integrator="sdirk5")
     tight = {"solver.residual_tolerance": 1e-12, "solver.step_tolerance": 1e-13}
     exact = der.run(fine.with_(**tight)).positions[:, -1]

@@ -254,8 +254,8 @@ void Simulation::prescribe(std::size_t support, const std::string& component, do
                 "scene a time.step in place of its tolerance");
   }
   if (!std::isfinite(value)) {
-    throw Error("model_error", fmt::format("support {}: {} = {} is no number to move it to",
-                                           support, component, value));
+    throw Error("model_error",
+                fmt::format("support {}: {} must be finite, got {}", support, component, value));
   }
   const bool steps = scenario_.scene().is_dynamic();
   for (const PrescribedControl& moved : model_.prescribed) {

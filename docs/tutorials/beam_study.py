@@ -49,7 +49,7 @@ class Point:
 
     load: float  # N
     found: float
-    bar: float  # the truth is within found +- bar
+    error_bar: float  # the truth is within found +- bar
     extrapolated: float
     verdict: str
     linear: float
@@ -90,7 +90,7 @@ def study() -> list[Point]:
             Point(
                 load,
                 -tip.value,
-                tip.bar,
+                tip.error_bar,
                 -tip.extrapolated,
                 tip.verdict,
                 linear(load),
@@ -111,7 +111,7 @@ def figure(points: list[Point]) -> Figure:
         left.errorbar(
             loads,
             [point.found for point in points],
-            [point.bar for point in points],
+            [point.error_bar for point in points],
             fmt="o",
             capsize=3,
             color=PALETTE[0],
@@ -121,7 +121,12 @@ def figure(points: list[Point]) -> Figure:
         left.legend(loc="lower right")
 
         right.loglog(
-            loads, [p.bar for p in points], "_", color=PALETTE[0], markersize=14, label="error bar"
+            loads,
+            [p.error_bar for p in points],
+            "_",
+            color=PALETTE[0],
+            markersize=14,
+            label="error bar",
         )
         for values, marker, label in (
             ([p.found - p.exact for p in points], "o", "error"),
@@ -140,7 +145,7 @@ def main() -> None:
     print("load [N]  der [m]                 elastica [m]  linear [m]")
     for point in points:
         print(
-            f"{point.load:8.4f}  {point.found:.7f} +- {point.bar:.1e}   "
+            f"{point.load:8.4f}  {point.found:.7f} +- {point.error_bar:.1e}   "
             f"{point.exact:.7f}     {point.linear:.7f}"
         )
     figure(points).savefig("beam_study.png")

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Diagnostic:
-    """One complaint about a scene.
+    """One diagnostic of a scene.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class SceneError(DerError, ValueError):
     Attributes
     ----------
     diagnostics
-        Every complaint found, in the order of the text.
+        Every diagnostic, in the order of the text.
     """
 
     def __init__(self, message: str, diagnostics: Sequence[Diagnostic] = ()) -> None:

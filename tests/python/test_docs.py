@@ -241,8 +241,8 @@ def test_tutorial_of_the_beam(tutorial):
     for point in points:
         assert point.verdict == "converged"
         # The ruler stretches, which the elastica does not: 1e-8 of its length and less.
-        assert abs(point.found - point.exact) <= point.bar + 3e-9
-        assert point.bar < 5e-4 * point.found
+        assert abs(point.found - point.exact) <= point.error_bar + 3e-9
+        assert point.error_bar < 5e-4 * point.found
     assert points[-1].linear > 4 * points[-1].exact
 
 

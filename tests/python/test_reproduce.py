@@ -21,7 +21,7 @@ from der.reproduce.falling_exact import FallingChain, fall
 from der.reproduce.html import to_html
 from der.reproduce.markdown import to_markdown
 from der.reproduce.measurements import nodes_beside_the_load
-from der.reproduce.numbers_as_text import digits_within, duration, number, percent, with_bar
+from der.reproduce.numbers_as_text import digits_within, duration, number, percent, with_error_bar
 from der.reproduce.report_claims import Claim
 from der.reproduce.stages import Stages
 from der.scene_files import scene_file
@@ -56,10 +56,10 @@ def test_numbers(value, digits, text):
 
 
 def test_digits_follow_the_bar():
-    assert with_bar(0.0377377, 3.0e-5) == "0.037738"
-    assert with_bar(0.0, 1e-12) == "0"
+    assert with_error_bar(0.0377377, 3.0e-5) == "0.037738"
+    assert with_error_bar(0.0, 1e-12) == "0"
     assert digits_within(1.0, 1e-20) == 12
-    assert with_bar(2.0, 30.0) == "2"
+    assert with_error_bar(2.0, 30.0) == "2"
 
 
 def test_shares_and_times():

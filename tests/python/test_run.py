@@ -311,8 +311,10 @@ def assert_same(first, second):
         assert np.array_equal(one, other)
         assert one.dtype == other.dtype
     assert second.energies.keys() == first.energies.keys()
-    for name, values in first.energies.items():
-        assert np.array_equal(second.energies[name], values)
+    assert second.work.keys() == first.work.keys()
+    for part in ("energies", "work"):
+        for name, values in getattr(first, part).items():
+            assert np.array_equal(getattr(second, part)[name], values), name
     assert list(second.probes) == list(first.probes)
     for name, probe in first.probes.items():
         assert np.array_equal(second.probes[name], probe)

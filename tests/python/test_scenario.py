@@ -56,7 +56,7 @@ def test_numpy_scalars(tube):
     assert scenario.to_dict()["time"]["step"] == 0.02
 
 
-def test_every_complaint_names_its_key_path(tube):
+def test_every_diagnostic_names_its_key_path(tube):
     tube["rods"][0]["nodes"] = "many"
     tube["titel"] = "typo"
     tube["output"]["probes"]["roller"]["quantity"] = "w"
@@ -76,11 +76,11 @@ def test_every_complaint_names_its_key_path(tube):
         (object(), "rods.beam.nodes", "object"),
         (1 + 2j, "rods.beam.nodes", "complex"),
         (2**70, "rods.beam.nodes", "64 bits"),
-        (math.nan, "rods.beam.nodes", ""),
-        (math.inf, "rods.beam.nodes", ""),
-        (True, "rods.beam.nodes", ""),
+        (math.nan, "rods.beam.nodes", "whole number, got nan"),
+        (math.inf, "rods.beam.nodes", "whole number, got inf"),
+        (True, "rods.beam.nodes", "whole number, got true"),
         ({1: 2}, "rods.beam.nodes", "int"),
-        (None, "rods.beam.nodes", ""),
+        (None, "rods.beam.nodes", "has no value"),
     ],
 )
 def test_values_that_do_not_belong_there(tube, value, path, words):

@@ -103,7 +103,7 @@ def test_a_folder_without_a_run_is_refused(swing, tmp_path):
         der.Simulation(swing)
 
 
-def test_a_run_from_another_keeps_a_book_of_its_own(swing, tmp_path):
+def test_a_run_from_another_starts_a_ledger_of_its_own(swing, tmp_path):
     """A rod is let go: what it holds is what it begins with, not what the steps have made."""
     held = {key: value for key, value in swing.items() if key not in ("time", "output")}
     pull = {"point_force": {"rod": "arm", "at": "end", "force": [0, 5]}}
@@ -115,7 +115,9 @@ def test_a_run_from_another_keeps_a_book_of_its_own(swing, tmp_path):
     total = sum(second.energies.values())
     assert total[0] > 1.0
     assert total[0] == pytest.approx(sum(first.energies.values())[-1], rel=1e-12)
-    assert {name: book[0] for name, book in second.work.items()} == dict.fromkeys(second.work, 0.0)
+    assert {name: values[0] for name, values in second.work.items()} == dict.fromkeys(
+        second.work, 0.0
+    )
     assert second.work["numerical"][-1] == pytest.approx(total[0] - total[-1], rel=1e-9)
     assert second.summary["warnings"] == []
 

@@ -110,7 +110,7 @@ def documented():
 def test_everything_has_a_docstring(name):
     lines = [line for line in look_up(name).__doc__.splitlines() if line.strip()]
     text = [line for line in lines if not re.match(r"\w+\(.*\) -> ", line)]
-    assert text[0].strip().endswith((".", ".", ":")) or len(text) > 1
+    assert text[0].strip().endswith((".", ":")) or len(text) > 1
 
 
 @pytest.mark.skipif(importlib.util.find_spec("mypy") is None, reason="mypy is not installed")

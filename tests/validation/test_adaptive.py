@@ -97,6 +97,13 @@ def test_errors_stay_below_the_tolerance_in_other_motions(make):
 def test_verlet_adapts_below_its_stable_step(exact):
     result = der.run(swing(tolerance=1e-3, integrator="verlet"))
     assert error(result, exact) < 1e-3
+    stable = der.Simulation(swing(step="auto", integrator="verlet")).time_step / 0.9
+    simulation = der.Simulation(swing(tolerance=1e-1, integrator="verlet"))
+    times = [0.0]
+    while not simulation.finished:
+        simulation.step()
+        times.append(simulation.time)
+    assert 0.5 * stable < np.diff(times).max() <= stable
 
 
 def test_frames_come_at_the_times_asked_for_and_are_as_accurate(exact):

@@ -1,6 +1,6 @@
 """The energy ledger: what goes in, what goes out, and what the time stepping makes of it.
 
-References: `Witness` below, which integrates powers over recorded positions and velocities with
+References: `CrossCheck` below, which integrates powers over recorded positions and velocities with
 formulas of its own and knows nothing of the steppers; exact works of constant forces.
 """
 
@@ -54,7 +54,7 @@ def driven(integrator, step):
     return der.run(der.Scenario.from_dict({**DRIVEN, "time": time, "output": {"every": step}}))
 
 
-class Witness:
+class CrossCheck:
     """The energies and the ledger of DRIVEN, from positions and velocities alone."""
 
     def __init__(self, result):
@@ -126,17 +126,17 @@ def test_the_solver_leaves_little(info):
 
 
 @STEPPERS
-def test_the_ledger_is_that_of_a_witness(fitted_order, info):
-    """A work booked wrongly, and so a wrong numerical loss, would not go away with the step."""
+def test_the_ledger_is_that_of_positions_and_velocities_alone(fitted_order, info):
+    """A work in the wrong account, and so a wrong loss, would not go away with the step."""
     runs = [driven(info.name, step) for step in STEPS]
-    witnesses = [Witness(run) for run in runs]
+    checks = [CrossCheck(run) for run in runs]
     total = sum(runs[0].energies.values())
-    mine = witnesses[0].kinetic() + witnesses[0].potential(witnesses[0].x)
+    mine = checks[0].kinetic() + checks[0].potential(checks[0].x)
     assert np.abs(total - mine).max() < 1e-12 * np.ptp(mine)
     for name in ("loads", "drag", "supports", "numerical"):
-        pairs = zip(runs, witnesses, strict=True)
+        pairs = zip(runs, checks, strict=True)
         differences = [np.abs(run.work[name] - seen.work[name]).max() for run, seen in pairs]
-        same = max(differences) < 1e-13 * np.ptp(mine)  # booked by trapezoids, too
+        same = max(differences) < 1e-13 * np.ptp(mine)  # by trapezoids, too
         assert same or fitted_order(STEPS, differences) > min(info.order, 2) - 0.1, name
 
 
@@ -164,9 +164,9 @@ def constant_loads():
 def test_the_numerical_loss_is_exact_where_all_forces_are_constant(info):
     time = {"duration": 0.4, "step": 1e-3, "integrator": info.name}
     result = der.run(der.Scenario.from_dict({**constant_loads(), "time": time}))
-    witness = Witness(result)
-    energy = witness.kinetic() + witness.potential(witness.x)
-    loads = (witness.x[:, -1] - witness.x[0, -1]) @ [0.5, 1]
+    check = CrossCheck(result)
+    energy = check.kinetic() + check.potential(check.x)
+    loads = (check.x[:, -1] - check.x[0, -1]) @ [0.5, 1]
     numerical = loads + result.work["solver"] - (energy - energy[0])
     assert np.abs(result.work["loads"] - loads).max() < 1e-12 * np.ptp(energy)
     assert np.abs(result.work["numerical"] - numerical).max() < 1e-12 * np.ptp(loads)

@@ -50,16 +50,35 @@ def test_nearly_all_are_found(outcomes, record_property):
     assert share >= 0.99
 
 
-def test_the_cantilever_that_fails_has_no_equilibrium(outcomes):
-    """Its load presses the clamp with more than EA, which no strain above -1 can carry."""
-    _, failed, _ = outcomes
-    assert failed == {130: "collapsed"}
-    scene = random_scene(130)
-    assert scene["supports"] == [{"rod": "rod", "at": "start", "clamp": True}]
+def thrust_on_its_only_clamp(scene):
+    """What dead forces press the clamp of a cantilever with, over EA; 0 for any other scene.
+
+    An edge bears EA at the most, at a strain of -1. Beyond that there is no equilibrium.
+    """
+    if scene["supports"] != [{"rod": "rod", "at": "start", "clamp": True}]:
+        return 0.0
     (rod,) = scene["rods"]
     edges = np.diff(rod["points"], axis=0)
-    acting = scene["loads"]
-    per_length = [a.get("gravity") or a["distributed_force"]["force"] for a in acting]
-    force = np.linalg.norm(edges, axis=1).sum() * np.sum(per_length, axis=0)
-    axial = force @ edges[0] / np.linalg.norm(edges[0])
-    assert axial < -2.0 * rod["cross_section"]["stiffness"]["EA"]
+    length = np.linalg.norm(edges, axis=1).sum()
+    total = np.zeros(2)
+    for load in scene["loads"]:
+        ((kind, what),) = load.items()
+        if kind == "gravity":
+            total += length * np.array(what)  # 1 kg/m
+        elif kind == "distributed_force":
+            total += length * np.array(what["force"])
+        elif kind == "point_force":
+            total += what["force"]
+    along = edges[0] / np.linalg.norm(edges[0])
+    return -(total @ along) / rod["cross_section"]["stiffness"]["EA"]
+
+
+def test_what_cannot_be_borne_is_called_collapsed_and_the_rest_is_found(outcomes):
+    """Whatever has no equilibrium for certain fails by that name, and little else fails at all."""
+    _, failed, _ = outcomes
+    # The clamp holds the tangent, and the first edge turns against it: a margin of two.
+    crushed = {seed for seed in SEEDS if thrust_on_its_only_clamp(random_scene(seed)) > 2.0}
+    assert crushed, "no scene of the series is beyond bearing"
+    assert {failed.get(seed) for seed in crushed} == {"collapsed"}
+    others = len(SEEDS) - len(crushed)
+    assert len(set(failed) - crushed) <= 0.01 * others

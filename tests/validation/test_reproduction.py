@@ -146,10 +146,10 @@ def test_exact_values_are_within_the_error_bars(rows):
     assert {key for key, row in rows.items() if row["error_bar"]} == VERIFIED
     for key in VERIFIED:
         row = rows[key]
-        bar = value(row, "error_bar")
-        assert abs(value(row) - value(row, "exact")) <= bar, key
+        error_bar = value(row, "error_bar")
+        assert abs(value(row) - value(row, "exact")) <= error_bar, key
         # Bars that tell something: below a thousandth, or of rounding alone.
-        assert bar < max(1e-3 * abs(value(row)), 1e-11), key
+        assert error_bar < max(1e-3 * abs(value(row)), 1e-11), key
 
 
 def test_ours_is_what_der_run_gives(rows, tmp_path):

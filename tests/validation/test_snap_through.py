@@ -184,13 +184,20 @@ def test_clamped_beam_loses_its_symmetry_under_half_a_turn(reference, fitted_ord
 
 
 def test_long_steps_stay_on_the_path():
-    """An arch so high that mirrored sheets of its path are nearer than the next point."""
+    """An arch so high that mirrored sheets of its path are nearer than the next point.
+
+    The events are those that `chain.py` meets in short steps.
+    """
+    scene = arch(20, 0.17)
+    chain = pinned_chain(np.array(scene["rods"][0]["points"]), 1e4, 1.0, {10: (0.0, -1.0)})
+    exact = chain.follow(255.0, step=0.01, scale=200.0).events()
     found = []
     for steps in ({}, {"step": 5e-3}):
-        path = der.continuation(arch(20, 0.17), to=255.0, points=4000, **steps).path
+        path = der.continuation(scene, to=255.0, points=4000, **steps).path
         met = np.flatnonzero(path.events != "")
         found.append((list(path.events[met]), path.factor[met]))
-    assert len(found[0][0]) == 18
+    # It cannot tell the order of a fold and a bifurcation that are met in one of its steps.
+    assert sorted(found[0][0]) == sorted(kind for kind, _ in exact)
     assert found[0][0] == found[1][0]
     assert found[0][1] == pytest.approx(found[1][1], abs=1e-4)
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "der/app/format.hpp"
@@ -155,19 +156,7 @@ std::string status_line(const Simulation& simulation, const RunOutcome& outcome,
   return text;
 }
 
-std::string what_ran(const Simulation& simulation) {
-  switch (simulation.scenario().scene().analysis.index()) {
-    case 1:
-      return "static equilibrium";
-    case 2:
-      return "vibration modes about the equilibrium";
-    case 3:
-      return "linear buckling loads";
-    case 4:
-      return "continuation of equilibria";
-    default:
-      break;
-  }
+std::string what_stepped(const Simulation& simulation) {
   const std::string_view name = simulation.integrator().name;
   if (simulation.adaptive()) {
     return fmt::format("{}, adaptive steps for an error of {:g} of the size", name,
@@ -175,6 +164,28 @@ std::string what_ran(const Simulation& simulation) {
   }
   const StepPlan& plan = simulation.plan();
   return fmt::format("{}, {} of {:g} s", name, format_count(plan.total_steps, "step"), plan.step);
+}
+
+/// One overload for each kind of analysis.
+struct WhatRan {
+  const Simulation& simulation;
+  std::string operator()(const scenario::DynamicAnalysis&) const {
+    return what_stepped(simulation);
+  }
+  std::string operator()(const scenario::StaticAnalysis&) const { return "static equilibrium"; }
+  std::string operator()(const scenario::ModesAnalysis&) const {
+    return "vibration modes about the equilibrium";
+  }
+  std::string operator()(const scenario::BucklingAnalysis&) const {
+    return "linear buckling loads";
+  }
+  std::string operator()(const scenario::ContinuationAnalysis&) const {
+    return "continuation of equilibria";
+  }
+};
+
+std::string what_ran(const Simulation& simulation) {
+  return std::visit(WhatRan{simulation}, simulation.scenario().scene().analysis);
 }
 
 std::string cost_line(const Simulation& simulation, const RunOutcome& outcome, const Style& style) {

@@ -5,6 +5,7 @@
 
 #include "der/core/error.hpp"
 #include "der/core/index.hpp"
+#include "der/core/nearest_node.hpp"
 
 namespace der {
 namespace {
@@ -13,15 +14,6 @@ namespace {
 /// back: turns the last edge by l kappa/12 more, which brings the end from the chain's place beside
 /// the curve onto it (supports/clamp.hpp).
 constexpr double kEndShare = 1.0 / 12.0;
-
-Index nearest_node(const RodLayout& rod, double s) {
-  const auto& arc = rod.arc_length;
-  const auto above = std::lower_bound(arc.begin(), arc.end(), s);
-  if (above == arc.begin()) return 0;
-  if (above == arc.end()) return static_cast<Index>(arc.size()) - 1;
-  const auto i = static_cast<Index>(above - arc.begin());
-  return s - arc[at(i - 1)] <= arc[at(i)] - s ? i - 1 : i;
-}
 
 bool is_node(const RodLayout& rod, Index i, double s) {
   return std::abs(rod.arc_length[at(i)] - s) <= rod.same_place();
@@ -52,7 +44,7 @@ double arc_length_of(const scenario::Location& location, const RodLayout& rod) {
 
 Index node_at(const scenario::Location& location, const RodLayout& rod) {
   const double s = arc_length_of(location, rod);
-  const Index node = nearest_node(rod, s);
+  const Index node = nearest_node(rod.arc_length, s);
   if (!is_node(rod, node, s)) {
     throw Error("model_error", "rod '" + rod.name + "': no node at arc length " +
                                    std::to_string(s) + " m; the nearest is at " +
@@ -69,7 +61,7 @@ std::vector<Index> nodes_at(const scenario::Location& location, const RodLayout&
 }
 
 std::vector<Weighted> node_weights(const RodLayout& rod, double s) {
-  const Index nearest = nearest_node(rod, s);
+  const Index nearest = nearest_node(rod.arc_length, s);
   if (is_node(rod, nearest, s)) return {{nearest, 1.0}};
 
   // Four nodes with `s` in the middle edge, moved inwards at the ends, fewer on a short rod.

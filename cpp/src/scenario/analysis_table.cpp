@@ -84,7 +84,8 @@ Format<ContinuationText> continuation_format() {
                               "The path of equilibria as loads change in proportion to a factor, "
                               "through limit points; its folds and bifurcations.")
           .optional("vary", &ContinuationText::given_vary, text(),
-                    "What the factor scales: `loads` (all of them), `supports` (all prescribed "
+                    "Quantities that the factor scales: `loads` (all of them), `supports` (all "
+                    "prescribed "
                     "motions), or one by its number, as `loads.0`.",
                     "`loads`")
           .optional("from", &ContinuationAnalysis::from, number(""), "First factor.", "0")

@@ -54,7 +54,7 @@ std::vector<Node> nodes_of(const CheckContext& context) {
 
 bool is_held(const CheckContext& context, const Node& node) {
   const HeldNode* held = context.held_at(node.rod, node.number);
-  return held && held->by[0] >= 0 && held->by[1] >= 0;
+  return held && held->holds(Hold::X) && held->holds(Hold::Y);
 }
 
 /// "the start of rod 'a'"

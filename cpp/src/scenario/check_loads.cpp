@@ -78,17 +78,18 @@ class LoadCheck {
 
   /// A force on what supports hold goes into them.
   void check_acts(const PointForce& load, int rod, const std::vector<int>& nodes) {
-    static constexpr std::array<const char*, 2> names{"x", "y"};
-    for (std::size_t c = 0; c < names.size(); ++c) {
+    constexpr std::array axes{Hold::X, Hold::Y};
+    for (std::size_t c = 0; c < axes.size(); ++c) {
       const auto is_zero = [c](const Components& force) { return force[c] == 0.0; };
       if (std::all_of(load.force.values.begin(), load.force.values.end(), is_zero)) continue;
       const bool held = std::all_of(nodes.begin(), nodes.end(), [&](int node) {
         const HeldNode* holding = context_.held_at(rod, node);
-        return holding && holding->by[c] >= 0;
+        return holding && holding->holds(axes[c]);
       });
       if (held) {
-        warn_of_taken(fmt::format("the {} component of {}", names[c], path_text("point_force")),
-                      load.rod, names[c]);
+        const char* axis = name_of(axes[c]);
+        warn_of_taken(fmt::format("the {} component of {}", axis, path_text("point_force")),
+                      load.rod, axis);
       }
     }
   }

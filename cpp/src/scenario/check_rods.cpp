@@ -183,7 +183,7 @@ std::vector<int> weightless_nodes(CheckContext& context, int i) {
   std::vector<int> nodes;
   for (int node = 0; node < static_cast<int>(density.size()); ++node) {
     const HeldNode* held = context.held_at(i, node);
-    const bool fixed = held && held->by[0] >= 0 && held->by[1] >= 0;
+    const bool fixed = held && held->holds(Hold::X) && held->holds(Hold::Y);
     if (density[static_cast<std::size_t>(node)] == 0.0 && !fixed) nodes.push_back(node);
   }
   return nodes;

@@ -1,14 +1,17 @@
 #include "scenario/checks.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace der::scenario {
 namespace {
 
-std::array<bool, 3> components_held(const Support& support) {
-  std::array<bool, 3> held{support.clamp, support.clamp, support.clamp};
-  for (const Component component : support.fix) held[static_cast<std::size_t>(component)] = true;
-  for (const Prescribed& motion : support.prescribe) {
-    held[static_cast<std::size_t>(motion.component)] = true;
-  }
+std::vector<Hold> held_by(const Support& support) {
+  if (support.clamp) return {kHolds.begin(), kHolds.end()};
+  std::vector<Hold> held;
+  for (const Component component : support.fix) held.push_back(hold_of(component));
+  for (const Prescribed& motion : support.prescribe) held.push_back(hold_of(motion.component));
+  std::sort(held.begin(), held.end());
   return held;
 }
 
@@ -33,23 +36,21 @@ void check_start(CheckContext& context, const Series& motion, const Path& path) 
 
 /// Enters what a support holds of its nodes; complains once where another holds it already.
 void hold(CheckContext& context, int number, int rod, const std::vector<int>& nodes) {
-  static constexpr std::array<const char*, 3> names{"x", "y", "the angle"};
   const Support& support = context.scene.supports[static_cast<std::size_t>(number)];
-  const std::array<bool, 3> held = components_held(support);
+  const std::vector<Hold> held = held_by(support);
   for (const int node : nodes) {
     HeldNode& holding = context.held[CheckContext::node_key(rod, node)];
-    for (std::size_t c = 0; c < held.size(); ++c) {
-      if (!held[c]) continue;
-      if (holding.by[c] >= 0) {
-        const int line = context.scene.supports[static_cast<std::size_t>(holding.by[c])].mark.line;
+    for (const Hold component : held) {
+      if (const std::optional<int> other = holding.holder(component)) {
+        const int line = context.scene.supports[static_cast<std::size_t>(*other)].mark.line;
         context.complaints.add(
             {"supports", number},
-            fmt::format("{} of node {} of rod '{}' is already held by support {}{}", names[c], node,
-                        support.rod, holding.by[c],
+            fmt::format("{} of node {} of rod '{}' is already held by support {}{}",
+                        name_of(component), node, support.rod, *other,
                         line > 0 ? fmt::format(" (line {})", line) : std::string()));
         return;
       }
-      holding.by[c] = number;
+      holding.enter(component, number);
     }
   }
 }
@@ -95,18 +96,20 @@ void check_spring(CheckContext& context, int number) {
   if (!nodes || nodes->empty()) return;
   const HeldNode* held = context.held_at(*rod, nodes->front());
   if (!held) return;
-  const auto complain = [&](std::size_t component, const char* name, const char* key) {
+  const auto complain_if_held = [&](Hold component, const char* key) {
+    const std::optional<int> holder = held->holder(component);
+    if (!holder) return;
     context.complaints.add(
         here / key, fmt::format("{} of node {} of rod '{}' is held by support {}: a spring has no "
                                 "effect there",
-                                name, nodes->front(), support.rod, held->by[component]));
+                                name_of(component), nodes->front(), support.rod, *holder));
   };
   const Components& stiffness = support.spring->stiffness;
-  if (!stiffness.empty() && stiffness[0] > 0.0 && held->by[0] >= 0) complain(0, "x", "stiffness");
-  if (!stiffness.empty() && stiffness[1] > 0.0 && held->by[1] >= 0) complain(1, "y", "stiffness");
-  if (turns && held->by[HeldNode::kAngle] >= 0) {
-    complain(HeldNode::kAngle, "the angle", "rotational_stiffness");
+  constexpr std::array axes{Hold::X, Hold::Y};
+  for (std::size_t c = 0; c < std::min(axes.size(), stiffness.size()); ++c) {
+    if (stiffness[c] > 0.0) complain_if_held(axes[c], "stiffness");
   }
+  if (turns) complain_if_held(Hold::Angle, "rotational_stiffness");
 }
 
 }  // namespace

@@ -25,6 +25,32 @@ std::string no_node_there(const RestLine& line, const Location& at, double s) {
 
 }  // namespace
 
+Hold hold_of(Component component) {
+  switch (component) {
+    case Component::X:
+      return Hold::X;
+    case Component::Y:
+      return Hold::Y;
+    case Component::Z:
+      break;
+  }
+  return Hold::Z;
+}
+
+const char* name_of(Hold hold) {
+  switch (hold) {
+    case Hold::X:
+      return "x";
+    case Hold::Y:
+      return "y";
+    case Hold::Z:
+      return "z";
+    case Hold::Angle:
+      break;
+  }
+  return "the angle";
+}
+
 const HeldNode* CheckContext::held_at(int rod, int node) const {
   const auto found = held.find(node_key(rod, node));
   return found == held.end() ? nullptr : &found->second;
@@ -32,7 +58,7 @@ const HeldNode* CheckContext::held_at(int rod, int node) const {
 
 bool CheckContext::is_clamped(int rod, int node) const {
   const HeldNode* holding = held_at(rod, node);
-  return holding && holding->by[HeldNode::kAngle] >= 0;
+  return holding && holding->holds(Hold::Angle);
 }
 
 std::optional<int> CheckContext::find_rod(const std::string& name, const Path& path) {

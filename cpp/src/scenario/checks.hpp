@@ -14,10 +14,26 @@
 /// one mistake does not cause a second complaint.
 namespace der::scenario {
 
-/// What supports hold of a node: the number of the support that does, or -1, for x, y and angle.
-struct HeldNode {
-  static constexpr std::size_t kAngle = 2;
-  std::array<int, 3> by{-1, -1, -1};
+/// What supports can hold of a node: components, and the angle of the rod's tangent.
+enum class Hold { X, Y, Z, Angle };
+inline constexpr std::array kHolds{Hold::X, Hold::Y, Hold::Z, Hold::Angle};
+
+/// A component as what is held.
+Hold hold_of(Component component);
+/// "x", or "the angle".
+const char* name_of(Hold hold);
+
+/// What supports hold of a node.
+class HeldNode {
+ public:
+  /// Number of the support that holds it; none: no support does.
+  [[nodiscard]] std::optional<int> holder(Hold hold) const { return by_[slot(hold)]; }
+  [[nodiscard]] bool holds(Hold hold) const { return holder(hold).has_value(); }
+  void enter(Hold hold, int support) { by_[slot(hold)] = support; }
+
+ private:
+  static std::size_t slot(Hold hold) { return static_cast<std::size_t>(hold); }
+  std::array<std::optional<int>, kHolds.size()> by_;
 };
 
 /// Everything that the checks share.

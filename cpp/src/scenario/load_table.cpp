@@ -36,14 +36,13 @@ Format<Damping> damping_format() {
 }
 
 Format<PointForce> point_force_format() {
-  return mapping(
-      Table<PointForce>("point force", "A force that keeps its direction.")
-          .required("rod", &PointForce::rod, name(), "Name of the rod.")
-          .required("at", &PointForce::at, location(),
-                    "Where; any arc length. With `all` it acts on each node. What a support holds "
-                    "there it takes up, with a warning.")
-          .required("force", &PointForce::force, vector_series("N"),
-                    "A constant, or a table over time."));
+  return mapping(Table<PointForce>("point force", "A force that keeps its direction.")
+                     .required("rod", &PointForce::rod, name(), "Name of the rod.")
+                     .required("at", &PointForce::at, location(),
+                               "Where; any arc length. With `all` it acts on each node. A support "
+                               "takes up the components that it holds there, with a warning.")
+                     .required("force", &PointForce::force, vector_series("N"),
+                               "A constant, or a table over time."));
 }
 
 Format<Moment> moment_format() {

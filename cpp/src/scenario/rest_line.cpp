@@ -1,7 +1,8 @@
 #include "scenario/rest_line.hpp"
 
-#include <algorithm>
 #include <cmath>
+
+#include "der/core/nearest_node.hpp"
 
 namespace der::scenario {
 
@@ -14,12 +15,7 @@ RestLine::RestLine(const std::vector<Components>& points) : arc_length_(points.s
 
 double RestLine::arc_length(int node) const { return arc_length_[static_cast<std::size_t>(node)]; }
 
-int RestLine::nearest_node(double s) const {
-  const auto above = std::lower_bound(arc_length_.begin(), arc_length_.end(), s);
-  const int after = std::min(static_cast<int>(above - arc_length_.begin()), num_nodes() - 1);
-  if (after == 0) return 0;
-  return s - arc_length(after - 1) < arc_length(after) - s ? after - 1 : after;
-}
+int RestLine::nearest_node(double s) const { return der::nearest_node(arc_length_, s); }
 
 std::optional<int> RestLine::node_at(double s) const {
   const int nearest = nearest_node(s);

@@ -16,6 +16,7 @@ class RestLine {
   [[nodiscard]] int num_nodes() const { return static_cast<int>(arc_length_.size()); }
   [[nodiscard]] double length() const { return arc_length_.back(); }
   [[nodiscard]] double arc_length(int node) const;
+  /// As der::nearest_node.
   [[nodiscard]] int nearest_node(double s) const;
   /// The node at arc length `s` [m], if there is one within `same_place()`.
   [[nodiscard]] std::optional<int> node_at(double s) const;

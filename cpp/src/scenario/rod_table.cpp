@@ -137,7 +137,7 @@ Format<RodText> rod_format() {
           .required("cross_section", &Rod::cross_section, cross_section_format(),
                     "Shape and size across the rod.")
           .optional("material", &Rod::material, material_format(),
-                    "What the rod is made of; needed with every cross-section but `stiffness`.")
+                    "Material of the rod; needed with every cross-section but `stiffness`.")
           .optional("curvature", &Rod::curvature, curvature_format(),
                     "Measure of bending at a node.")
           .optional("natural_curvature", &Rod::natural_curvature, natural_curvature_format(),

@@ -36,7 +36,7 @@ struct ProbeText : Probe {
 
 Table<ProbeText> probe_table() {
   return Table<ProbeText>("probe", "A number recorded at every step.")
-      .required("quantity", &Probe::quantity, quantity_format(), "What is recorded.")
+      .required("quantity", &Probe::quantity, quantity_format(), "Recorded quantity.")
       .optional("rod", &Probe::rod, name(),
                 "Name of the rod; energies of the whole model go "
                 "without it.")
@@ -159,7 +159,7 @@ Format<Solver> solver_format() {
 
 Format<OutputText> output_format() {
   return mapping(
-      Table<OutputText>("output", "What is saved.")
+      Table<OutputText>("output", "Saved frames and probes.")
           .optional("every", &OutputText::given_every, number("s", positive()),
                     "Time between saved frames; with a fixed step a whole multiple of it.",
                     "a thousandth of the duration, or the step if that is longer")
@@ -182,8 +182,8 @@ const Format<SceneText>& scene_format() {
               "Mechanical model.")
           .required("rods", &SceneText::given_rods, list_of(rod_format(), 1), "The rods.")
           .optional("supports", &Scene::supports, list_of(support_format(), 0),
-                    "What holds or moves the rods.")
-          .optional("loads", &Scene::loads, list_of(load_format(), 0), "What acts on the rods.")
+                    "Supports that hold or move the rods.")
+          .optional("loads", &Scene::loads, list_of(load_format(), 0), "Loads on the rods.")
           .optional("time", &SceneText::given_time, time_format(), "A run over time.")
           .optional("analysis", &Scene::analysis, analysis_format(),
                     "In place of `time`: an analysis without it.")
@@ -194,7 +194,8 @@ const Format<SceneText>& scene_format() {
               "a run of the same rods, whose last frame it is.",
               "the shape as drawn")
           .optional("solver", &Scene::solver, solver_format(), "Numerical settings.")
-          .optional("output", &SceneText::given_output, output_format(), "What is saved."));
+          .optional("output", &SceneText::given_output, output_format(),
+                    "Saved frames and probes."));
   return format;
 }
 

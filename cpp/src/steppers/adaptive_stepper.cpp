@@ -18,7 +18,8 @@ constexpr double kRetryFactor = 0.25;
 /// Differences below this share of the positions say nothing: what Newton's method leaves of them,
 /// and their rounding.
 constexpr double kRounding = 1e-14;
-/// A step that leaves less than this share of itself takes it along.
+/// If the remainder would be shorter than this fraction of the step, the step is extended to the
+/// end.
 constexpr double kSliver = 1e-9;
 
 std::vector<double> table_entries(const Model& model) {

@@ -1,8 +1,8 @@
 """A check on the levels in time, which can agree with each other and be wrong together.
 
 A stepper with damping of its own, run with steps longer than a vibration, lets the vibration die at
-once, and does so again with half the step. A run with another stepper and steps that are smaller by
-far knows better: the witness.
+once, and does so again with half the step. A run with another stepper and much smaller steps
+shows that: the cross-check run.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from der.accuracy.refinement import with_time
 from der.accuracy.time_levels import save_every_step
 from der.result import Result
 
-#: The witness's stepper: second order, stable in the hardest scenes, hardly any damping of motion
-#: that its steps resolve.
-WITNESS = "tr_bdf2"
+#: Stepper of the cross-check run: second order, stable in the hardest scenes, hardly any damping of
+#: motion that its steps resolve.
+CROSS_CHECK_STEPPER = "tr_bdf2"
 
 #: CPU time [s] that its steps are chosen for; they are never longer than those of the finest level.
 _BUDGET = 1.0
@@ -27,13 +27,13 @@ _BUDGET = 1.0
 _COST = 2.0
 _MOST_HALVINGS = 10
 
-#: The witness contradicts if it differs this many times more than the two finest runs do ...
+#: It contradicts if it differs this many times more than the two finest runs do ...
 _CONTRADICTION = 5.0
 #: ... and by more than this share of what the probe goes through in the run.
 _NOTABLE = 0.005
 
 
-def witness_halvings(cpu_seconds: float) -> int:
+def cross_check_halvings(cpu_seconds: float) -> int:
     """Return how many times the finest step is to be halved.
 
     Parameters
@@ -45,11 +45,11 @@ def witness_halvings(cpu_seconds: float) -> int:
     return min(max(0, math.floor(math.log2(affordable))), _MOST_HALVINGS)
 
 
-def witness_scenario(scenario: Scenario, step: float) -> Scenario:
-    """Return the scene with the witness's stepper and this step [s]."""
+def cross_check_scenario(scenario: Scenario, step: float) -> Scenario:
+    """Return the scene with the stepper of the cross-check run and this step [s]."""
     changed = with_time(
         scenario,
-        integrator=WITNESS,
+        integrator=CROSS_CHECK_STEPPER,
         step=step,
         tolerance=None,
         minimum_step=None,
@@ -61,15 +61,15 @@ def witness_scenario(scenario: Scenario, step: float) -> Scenario:
 
 
 def hidden_motion(
-    coarse: Result, fine: Result, witness: Result, probe: str, noise: float
+    coarse: Result, fine: Result, cross_check: Result, probe: str, noise: float
 ) -> float | None:
-    """Return how far the witness moves away from where the levels agree; None if it does not.
+    """Return how far the cross-check run is from where the levels agree; None if it is not.
 
     Parameters
     ----------
     coarse, fine
         The two finest levels.
-    witness
+    cross_check
         The run with much smaller steps.
     probe
         Name of the probe to look at, over the second half of the run.
@@ -84,9 +84,9 @@ def hidden_motion(
     late = fine.times >= 0.5 * fine.times[-1]
     times = fine.times[late]
     expected = np.asarray(fine.probes[probe])[late]
-    away = _largest_difference(expected, witness, times, probe)
+    away = _largest_difference(expected, cross_check, times, probe)
     agreed = _largest_difference(expected, coarse, times, probe)
-    travelled = float(np.ptp(np.asarray(witness.probes[probe])))
+    travelled = float(np.ptp(np.asarray(cross_check.probes[probe])))
     if away > max(_CONTRADICTION * agreed, _NOTABLE * travelled, noise):
         return away
     return None

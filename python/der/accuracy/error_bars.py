@@ -75,7 +75,7 @@ class ErrorEstimate:
     ----------
     correction
         Richardson's: what is to be added to the value to come to the limit of the sequence.
-    bar
+    error_bar
         The error is at most this large, with 95 % confidence; infinite if it is not known.
     order
         Observed order of convergence; None with fewer than two refinements, or without change.
@@ -86,7 +86,7 @@ class ErrorEstimate:
     """
 
     correction: float
-    bar: float
+    error_bar: float
     order: float | None
     expected_order: float
     verdict: Verdict
@@ -101,9 +101,11 @@ class ErrorEstimate:
         """Whether a finer level may still show that the sequence converges."""
         return self.verdict in _UNSETTLED
 
-    def widened(self, bar: float, correction: float = 0.0) -> ErrorEstimate:
+    def widened(self, error_bar: float, correction: float = 0.0) -> ErrorEstimate:
         """Return an estimate with a correction and a bar added."""
-        return replace(self, bar=self.bar + bar, correction=self.correction + correction)
+        return replace(
+            self, error_bar=self.error_bar + error_bar, correction=self.correction + correction
+        )
 
 
 def estimate_error(
@@ -145,8 +147,8 @@ def estimate_error(
     reached = (*values, trend.limit)
     if verdict == "settled":
         factor = _FACTOR_SETTLED
-    bar = factor * (max(reached) - min(reached)) + noise
-    return ErrorEstimate(trend.limit - values[0], bar, trend.order, order, verdict)
+    error_bar = factor * (max(reached) - min(reached)) + noise
+    return ErrorEstimate(trend.limit - values[0], error_bar, trend.order, order, verdict)
 
 
 def estimate_from_levels(
@@ -176,7 +178,7 @@ def on_one_branch(estimate: ErrorEstimate, mirrored: bool, largest: float) -> Er
     largest
         Largest absolute value in the run.
     """
-    if not mirrored or not _SAME_ON_BOTH_SIDES * largest < estimate.bar < math.inf:
+    if not mirrored or not _SAME_ON_BOTH_SIDES * largest < estimate.error_bar < math.inf:
         return estimate
     return unknown_error("other branch", estimate.expected_order)
 

@@ -32,8 +32,8 @@ class Reading:
         and ``growth rate 1`` of modes, ``load factor 1`` of buckling.
     what
         ``final``; on a path the place: ``fold 1``, ``bifurcation 1``, counted along it, ``end``
-        where the factor comes to its last value, ``far side`` where it comes as far to the other
-        side of its first.
+        where the factor reaches its last value, ``opposite limit`` where it reaches twice the
+        first value less the last.
     unit
         In SI.
     value
@@ -109,7 +109,7 @@ def _places(result: Result, path: Path) -> list[tuple[str, int]]:
     last = int(np.flatnonzero(path.branch == 0)[-1])
     settings = continuation_settings(result.scenario.to_dict())
     start, to = float(settings.get("from", 0.0)), float(settings.get("to", 1.0))
-    for what, factor in (("end", to), ("far side", 2.0 * start - to)):
+    for what, factor in (("end", to), ("opposite limit", 2.0 * start - to)):
         if abs(path.factor[last] - factor) <= _SAME_FACTOR * abs(to - start):
             places.append((what, last))
     return sorted(places, key=lambda place: place[1])

@@ -8,7 +8,7 @@ from typing import Literal
 
 from der._core import Scenario
 from der.accuracy.branches import are_far_apart, are_mirrored, distance, shape_on
-from der.accuracy.cross_check import WITNESS, witness_halvings, witness_scenario
+from der.accuracy.cross_check import CROSS_CHECK_STEPPER, cross_check_halvings, cross_check_scenario
 from der.accuracy.refinement import (
     count_elements,
     rods_that_cannot_be_refined,
@@ -28,7 +28,7 @@ _FINEST = 4
 _TIGHTER = 1e-3
 _LEAST_TOLERANCE = 1e-13
 
-Axis = Literal["space", "time", "witness"]
+Axis = Literal["space", "time", "cross-check"]
 #: Analyses of an equilibrium, which is one near the shape that they start from.
 _AT_REST = ("static", "modes")
 Key = tuple[Axis, int]
@@ -49,7 +49,7 @@ class VerificationRuns:
     time, space
         Results by level, with a tighter tolerance of Newton's method than the scene's. Space is
         empty where no rod can be refined; levels that failed are missing.
-    witness
+    cross_check
         The run with another stepper and much smaller steps (`der.accuracy.cross_check`); None for
         static scenes and explicit steppers, whose steps are small already.
     meshes, steps, notes
@@ -63,7 +63,7 @@ class VerificationRuns:
     time_levels: TimeLevels | None = None
     time: dict[int, Result] = field(default_factory=dict)
     space: dict[int, Result] = field(default_factory=dict)
-    witness: Result | None = None
+    cross_check: Result | None = None
     meshes: list[str] = field(default_factory=list)
     steps: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -79,8 +79,8 @@ class VerificationRuns:
         if self.base.path is not None or self.base.buckling is not None:
             return False  # what they find does not depend on the side
         results: list[Result] = list(getattr(self, axis).values())
-        if axis == "time" and self.witness is not None:
-            results.append(self.witness)
+        if axis == "time" and self.cross_check is not None:
+            results.append(self.cross_check)
         return any(are_mirrored(self.base, found) for found in results)
 
 
@@ -124,7 +124,7 @@ def _guess_rest(scenario: Scenario, levels: int | None) -> float:
     doubled = 2.0 ** (finest + 1) - 1.0  # 1 + 2 + ... over all levels
     if scenario.is_static:
         return doubled
-    return doubled + (doubled - 1.0) + 2.0**finest  # in time, in space, and the witness
+    return doubled + (doubled - 1.0) + 2.0**finest  # in time, in space, and the cross-check run
 
 
 def _run_base(scenario: Scenario, workers: Workers, rest: float) -> VerificationRuns:
@@ -256,7 +256,7 @@ class Runner:
             return tasks
         tasks |= {("time", n): self._task(0, n) for n in range(1, self.runs.levels)}
         if not self._explicit:
-            tasks["witness", 0] = self._witness(self.runs.time_levels)
+            tasks["cross-check", 0] = self._cross_check(self.runs.time_levels)
         return tasks
 
     def _task(self, space: int, time: int) -> Task:
@@ -267,12 +267,12 @@ class Runner:
         scenario = levels.at(scenario, time)
         return Task([_with_tight_newton(scenario), scenario], 2.0**space * levels.cost(time))
 
-    def _witness(self, levels: TimeLevels) -> Task:
+    def _cross_check(self, levels: TimeLevels) -> Task:
         times_base = levels.cost(self._finest)
-        halvings = witness_halvings(times_base * self.runs.cpu_seconds)
+        halvings = cross_check_halvings(times_base * self.runs.cpu_seconds)
         times_base *= 2.0**halvings
         step = self._scenario.duration / int(self.runs.base.summary["steps"]) / times_base
-        return Task([witness_scenario(self._scenario, step)], times_base)
+        return Task([cross_check_scenario(self._scenario, step)], times_base)
 
     def _run_space_of_explicit(self, finest: int, report: bool = True) -> bool:
         """Compare meshes at a step that is stable on the finest one; tell whether there is one.
@@ -327,8 +327,8 @@ class Runner:
             if outcome.error is not None:
                 if report:
                     self.runs.notes.append(f"{self._describe(axis, level)}: {outcome.error}")
-            elif axis == "witness":
-                self.runs.witness = outcome.value()
+            elif axis == "cross-check":
+                self.runs.cross_check = outcome.value()
             else:
                 getattr(self.runs, axis)[level] = outcome.value()
         return all(outcome.error is None for outcome in outcomes.values())
@@ -336,8 +336,9 @@ class Runner:
     def _describe(self, axis: Axis, level: int) -> str:
         if axis == "space":
             return f"the run with {self.runs.meshes[level]} failed"
-        if axis == "witness" or self.runs.time_levels is None:
-            return f"the run with {WITNESS if axis == 'witness' else 'a tight tolerance'} failed"
+        if axis == "cross-check" or self.runs.time_levels is None:
+            other = CROSS_CHECK_STEPPER if axis == "cross-check" else "a tight tolerance"
+            return f"the run with {other} failed"
         return f"the run with {self.runs.time_levels.label(level)} failed"
 
 

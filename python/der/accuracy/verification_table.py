@@ -79,9 +79,9 @@ def _row(value: VerifiedValue) -> tuple[str, ...]:
     return (
         value.label,
         _number(value.value, value),
-        f"± {_bar(value.bar)}",
-        _bar(None if value.space is None else value.space.bar),
-        _bar(None if value.time is None else value.time.bar),
+        f"± {_error_bar_text(value.error_bar)}",
+        _error_bar_text(None if value.space is None else value.space.error_bar),
+        _error_bar_text(None if value.time is None else value.time.error_bar),
         _number(value.extrapolated, value),
         f"{_order(value.space)}, {_order(value.time)}",
         value.verdict,
@@ -91,23 +91,23 @@ def _row(value: VerifiedValue) -> tuple[str, ...]:
 def _number(number: float, value: VerifiedValue) -> str:
     if math.isnan(number):
         return "-"
-    return f"{with_digits_of(number, value.bar)} {value.unit}".rstrip()
+    return f"{with_digits_of(number, value.error_bar)} {value.unit}".rstrip()
 
 
-def with_digits_of(value: float, bar: float) -> str:
+def with_digits_of(value: float, error_bar: float) -> str:
     """Return a value with the digits that its error bar leaves, at two digits of the bar."""
-    if not math.isfinite(bar) or bar <= 0.0:
+    if not math.isfinite(error_bar) or error_bar <= 0.0:
         return f"{value:.6g}"
-    least = math.floor(math.log10(bar)) - 1
+    least = math.floor(math.log10(error_bar)) - 1
     leading = math.floor(math.log10(abs(value))) if value else least
     digits = min(max(leading - least + 1, 1), 12)
     return f"{value:#.{digits}g}".replace(".e", "e").rstrip(".")
 
 
-def _bar(bar: float | None) -> str:
-    if bar is None:
+def _error_bar_text(error_bar: float | None) -> str:
+    if error_bar is None:
         return "-"
-    return f"{bar:.2g}" if math.isfinite(bar) else "unknown"
+    return f"{error_bar:.2g}" if math.isfinite(error_bar) else "unknown"
 
 
 def _order(part: ErrorEstimate | None) -> str:

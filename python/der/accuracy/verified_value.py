@@ -57,13 +57,13 @@ class VerifiedValue:
         return self.probe if self.what == "final" else f"{self.probe}, {self.what}"
 
     @property
-    def bar(self) -> float:
+    def error_bar(self) -> float:
         """The whole error bar: the truth is within value -bar .. +bar with 95 % confidence.
 
         The truth is that of the rod as a continuum and of exact time; errors of space, time and
         solver add up.
         """
-        return self.solver + sum(part.bar for part in self._parts)
+        return self.solver + sum(part.error_bar for part in self._parts)
 
     @property
     def extrapolated(self) -> float:
@@ -71,7 +71,7 @@ class VerifiedValue:
 
         NaN where a part of the error is unknown.
         """
-        if math.isinf(self.bar):
+        if math.isinf(self.error_bar):
             return math.nan
         corrections = sum(part.correction for part in self._parts)
         return self.value + self.solver_correction + corrections
@@ -117,7 +117,7 @@ class VerifiedValue:
 
     def _counts(self, part: ErrorEstimate) -> bool:
         # Written so that an unknown bar, which is infinite, counts beside another one.
-        return part.bar > self.negligible and not part.bar < _COUNTS * self.bar
+        return part.error_bar > self.negligible and not part.error_bar < _COUNTS * self.error_bar
 
     @property
     def _parts(self) -> list[ErrorEstimate]:
@@ -131,13 +131,13 @@ class VerifiedValue:
             "unit": self.unit,
             "value": _finite(self.value),
             "time": self.time_of_value,
-            "bar": _finite(self.bar),
+            "error_bar": _finite(self.error_bar),
             "extrapolated": _finite(self.extrapolated),
             "verdict": self.verdict,
             "flagged": self.flagged,
             "space_error": _part_to_dict(self.space),
             "time_error": _part_to_dict(self.time),
-            "solver_error": {"bar": self.solver, "correction": self.solver_correction},
+            "solver_error": {"error_bar": self.solver, "correction": self.solver_correction},
         }
 
 
@@ -145,7 +145,7 @@ def _part_to_dict(part: ErrorEstimate | None) -> dict[str, Any] | None:
     if part is None:
         return None
     return {
-        "bar": _finite(part.bar),
+        "error_bar": _finite(part.error_bar),
         "correction": part.correction,
         "order": part.order,
         "expected_order": part.expected_order,

@@ -23,8 +23,8 @@ from der.progress import ProgressFunction
 from der.result import Result
 from der.simulation import SceneLike, as_scenario
 
-#: Where the witness contradicts, the error is at most this times the difference to it.
-_WITNESS_FACTOR = 1.25
+#: Where the cross-check run contradicts, the error is at most this times the difference to it.
+_CROSS_CHECK_FACTOR = 1.25
 #: Errors smaller than this fraction of the range of the probe in the run are exempt from the order
 #: check: seven digits are more than anyone looks at.
 _NEGLIGIBLE = 1e-7
@@ -75,7 +75,7 @@ def verify(
     Examples
     --------
     >>> verification = der.verify("configs/cantilever.yaml")
-    >>> verification["tip_y"].value, verification["tip_y"].bar
+    >>> verification["tip_y"].value, verification["tip_y"].error_bar
     """
     levels, jobs = _whole_number("levels", levels), _whole_number("jobs", jobs)
     if levels not in (None, 2, 3):
@@ -190,12 +190,12 @@ class _Evaluation:
         return noise_floor(base.model, self._series.unit, step, self._largest)
 
     def _find_hidden_motion(self) -> float | None:
-        # Levels that were added later may have shorter steps than the witness.
+        # Levels that were added later may have shorter steps than the cross-check run.
         finest = sorted(level for level in self._runs.time if level < self._runs.levels)[-2:]
-        if self._runs.witness is None or len(finest) < 2:
+        if self._runs.cross_check is None or len(finest) < 2:
             return None
         coarse, fine = (self._runs.time[level] for level in finest)
-        return hidden_motion(coarse, fine, self._runs.witness, self.probe, self._noise)
+        return hidden_motion(coarse, fine, self._runs.cross_check, self.probe, self._noise)
 
     def values(self) -> list[VerifiedValue]:
         """Return the final value and the extremes with their error bars."""
@@ -237,15 +237,17 @@ class _Evaluation:
             by_level, self._levels.order, self._noise, self._levels.ratio
         )
         estimate = on_one_branch(estimate, "time" in self._mirrored, self._largest)
-        if self._runs.witness is None or 0 not in self._time or "time" in self._mirrored:
+        if self._runs.cross_check is None or 0 not in self._time or "time" in self._mirrored:
             return estimate
-        away = abs(probe_values(self._runs.witness, self.probe)[what] - self._time[0][what])
+        away = abs(probe_values(self._runs.cross_check, self.probe)[what] - self._time[0][what])
         damped = self.hidden_motion is not None
         if what == "final" and self.hidden_motion is not None:
             away = max(away, self.hidden_motion)
-        elif away <= estimate.bar:
+        elif away <= estimate.error_bar:
             return estimate
-        bar = max(estimate.bar, _WITNESS_FACTOR * away)
+        error_bar = max(estimate.error_bar, _CROSS_CHECK_FACTOR * away)
         if away <= _LITTLE_NOISE * self._noise:
-            return replace(estimate, bar=bar)
-        return replace(estimate, bar=bar, verdict="damped" if damped else "contradicted")
+            return replace(estimate, error_bar=error_bar)
+        return replace(
+            estimate, error_bar=error_bar, verdict="damped" if damped else "contradicted"
+        )

@@ -15,7 +15,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def execute(arguments: argparse.Namespace) -> int:
-    """Print every complaint of every file; return 0 only if there is none."""
+    """Print every diagnostic of every file; return 0 only if there is none."""
     invalid = 0
     for path in arguments.scenes:
         try:

@@ -103,7 +103,7 @@ class Deflection:
     """
 
     value: float
-    bar: float
+    error_bar: float
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ class Speed:
     """The speed of the middle sphere at the end of a run, downward, and its error bar [m/s]."""
 
     value: float
-    bar: float
+    error_bar: float
 
 
 @dataclass(frozen=True)
@@ -295,7 +295,7 @@ def _deflections(
         for probe, found in by_probe.items():
             value = -float(run.summary["probes"][probe]["final"])
             rest = verified[probe]
-            found[load] = Deflection(value, rest.bar + abs(value + rest.value))
+            found[load] = Deflection(value, rest.error_bar + abs(value + rest.value))
         tell((i + 1) / len(LOADS))
     return by_probe["deflection"], by_probe["middle"]
 

@@ -21,14 +21,14 @@ def number(value: float, digits: int = 3) -> str:
     return f"{mantissa}{_TIMES_TEN}{str(power).translate(_SUPERSCRIPTS)}"
 
 
-def with_bar(value: float, bar: float) -> str:
+def with_error_bar(value: float, error_bar: float) -> str:
     """Return a value with the digits that its error bar leaves, of which two are uncertain."""
-    return number(value, digits_within(value, bar))
+    return number(value, digits_within(value, error_bar))
 
 
-def digits_within(value: float, bar: float) -> int:
+def digits_within(value: float, error_bar: float) -> int:
     """Return how many digits an error bar leaves: down to the second of its own, at most twelve."""
-    last = math.floor(math.log10(bar)) - 1
+    last = math.floor(math.log10(error_bar)) - 1
     first = math.floor(math.log10(abs(value))) if value else last
     return min(max(first - last + 1, 1), 12)
 

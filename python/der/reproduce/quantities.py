@@ -20,7 +20,7 @@ from der.reproduce.measurements import (
     command_of,
     nodes_beside_the_load,
 )
-from der.reproduce.numbers_as_text import digits_within, duration, number, percent, with_bar
+from der.reproduce.numbers_as_text import digits_within, duration, number, percent, with_error_bar
 from der.reproduce.report_claims import Claim
 from der.simulation import Simulation
 
@@ -41,7 +41,7 @@ class Quantity:
         What the report says; a text where that is no number.
     ours
         What der gives; None for a formula that the report evaluates.
-    bar
+    error_bar
         Error bar of `ours`; None where there is none, as for a wall time.
     exact
         By independent mathematics; None where there is no such thing.
@@ -61,7 +61,7 @@ class Quantity:
     unit: str
     claim: Claim | str
     ours: float | None
-    bar: float | None
+    error_bar: float | None
     exact: float | None
     remark: str
     command: str = ""
@@ -72,15 +72,15 @@ class Quantity:
         """Return the row as it is printed."""
         claim = self.claim.text if isinstance(self.claim, Claim) else self.claim
         digits, exact_digits = self.digits, _EXACT_DIGITS
-        if self.ours is not None and self.bar is not None:
-            digits = digits_within(self.ours, self.bar)
+        if self.ours is not None and self.error_bar is not None:
+            digits = digits_within(self.ours, self.error_bar)
             exact_digits = digits + 1  # so that it shows where in the bar the exact value is
         return [
             self.name,
             self.unit,
             claim or "-",
             "-" if self.ours is None else number(self.ours, digits),
-            "-" if self.bar is None else f"±\u00a0{number(self.bar, 2)}",
+            "-" if self.error_bar is None else f"±\u00a0{number(self.error_bar, 2)}",
             "-" if self.exact is None else number(self.exact, exact_digits),
             self.remark,
         ]
@@ -108,7 +108,7 @@ def comparison_csv(rows: Sequence[Quantity]) -> str:
     table: list[list[str]] = [[*heads, "remark", "command", "probe"]]
     for row in rows:
         claim = row.claim.text if isinstance(row.claim, Claim) else row.claim
-        numbers = ["" if x is None else repr(x) for x in (row.ours, row.bar, row.exact)]
+        numbers = ["" if x is None else repr(x) for x in (row.ours, row.error_bar, row.exact)]
         table.append(
             [row.key, row.name, row.unit, claim, *numbers, row.remark, row.command, row.probe]
         )
@@ -129,8 +129,8 @@ def deflection_table(m: Measurements) -> Table:
         rows.append(
             [
                 number(load, 1 if load < 1e4 else 2),
-                with_bar(ours.value, ours.bar),
-                f"±\u00a0{number(ours.bar, 2)}",
+                with_error_bar(ours.value, ours.error_bar),
+                f"±\u00a0{number(ours.error_bar, 2)}",
                 number(exact, _EXACT_DIGITS),
                 number(linear, _EXACT_DIGITS),
                 percent(ours.value / exact - 1.0),
@@ -158,7 +158,7 @@ def deflection_csv(m: Measurements) -> str:
     """Return deflection against load with all digits."""
     heads = ["load_N", "ours_m", "error_bar_m", "exact_m", "euler_bernoulli_m", "command"]
     rows = [
-        [*map(repr, (load, ours.value, ours.bar, exact, linear)), command_of(("load", load))]
+        [*map(repr, (load, ours.value, ours.error_bar, exact, linear)), command_of(("load", load))]
         for load, ours, exact, linear in _deflections(m)
     ]
     return to_csv([heads, *rows])
@@ -181,7 +181,7 @@ def speeds_csv(m: Measurements) -> str:
 def _final(m: Measurements, run: str, probe: str) -> tuple[float, float]:
     """Return a probe's last value without its sign, and its error bar."""
     found: VerifiedValue = m.bars[run][probe]
-    return abs(float(m.runs[run].summary["probes"][probe]["final"])), found.bar
+    return abs(float(m.runs[run].summary["probes"][probe]["final"])), found.error_bar
 
 
 def _three_nodes(m: Measurements) -> list[Quantity]:
@@ -192,7 +192,7 @@ def _three_nodes(m: Measurements) -> list[Quantity]:
     balance = FallingChain(3, WATER).terminal_speed
     late = percent(float(exact.speed[-1]) / balance - 1.0)
     angle = m.runs["three_equal"].summary["probes"]["angle"]
-    angle_bars = [m.bars["three_equal"]["angle", what].bar for what in ("min", "max")]
+    angle_bars = [m.bars["three_equal"]["angle", what].error_bar for what in ("min", "max")]
     return [
         Quantity(
             "speed_3",
@@ -405,7 +405,7 @@ def _twenty_one_nodes(m: Measurements) -> list[Quantity]:
             "there it does.",
         ),
     ):
-        value, bar = _final(m, run, "v_mid")
+        value, error_bar = _final(m, run, "v_mid")
         rows.append(
             Quantity(
                 key,
@@ -413,7 +413,7 @@ def _twenty_one_nodes(m: Measurements) -> list[Quantity]:
                 "m/s",
                 report.TERMINAL_SPEED_21,
                 value,
-                bar,
+                error_bar,
                 chain.terminal_speed,
                 remark,
                 command_of(run),
@@ -441,7 +441,7 @@ def _tube(m: Measurements) -> list[Quantity]:
                 "m",
                 claim,
                 middle.value,
-                middle.bar,
+                middle.error_bar,
                 m.exact_middles[Tube().load_at][load],
                 _what_is_drawn(middle.value, claim),
                 command_of(run),
@@ -453,7 +453,7 @@ def _tube(m: Measurements) -> list[Quantity]:
                 "m",
                 claim,
                 ours.value,
-                ours.bar,
+                ours.error_bar,
                 exact,
                 _where_the_load_is(m, load, claim),
                 command_of(run),

@@ -65,7 +65,7 @@ class Path:
             if abs(after[1]) >= self.to:
                 goal = self.to if after[1] > 0 else -self.to
                 at = self._where(point, trial, _beyond(goal))
-                kind = "end" if goal > 0 else "far side"
+                kind = "end" if goal > 0 else "opposite limit"
                 # The last stretch may hold an event as well: it ends beyond the goal.
                 last = [
                     e for e in self._between(point, trial, after, count) if abs(e.factor) < self.to

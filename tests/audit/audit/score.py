@@ -24,7 +24,7 @@ class Row:
     label: str
     quantity: str
     value: float
-    bar: float
+    error_bar: float
     verdict: str
     flagged: bool
     truth: float
@@ -37,12 +37,12 @@ class Row:
 
     @property
     def measured(self) -> bool:
-        return math.isfinite(self.bar)
+        return math.isfinite(self.error_bar)
 
     @property
     def inside(self) -> bool:
         """Whether the truth is within the bar, but for the error of the reference and rounding."""
-        return self.measured and self.error <= self.bar + self.slack
+        return self.measured and self.error <= self.error_bar + self.slack
 
     @property
     def right(self) -> bool:
@@ -104,7 +104,7 @@ def judge(case: Case, name: str) -> Outcome:
                 f"{value.probe} {value.what}",
                 truth.quantity,
                 float(value.value),
-                math.nan if value.bar is None else float(value.bar),
+                math.nan if value.error_bar is None else float(value.error_bar),
                 value.verdict,
                 bool(value.flagged),
                 truth.value,
@@ -250,9 +250,9 @@ def report(outcomes: list[Outcome]) -> str:
 
 
 def _describe(row: Row) -> str:
-    times = row.error / row.bar if row.bar > 0 else math.inf
+    times = row.error / row.error_bar if row.error_bar > 0 else math.inf
     return (
-        f"  {row.name:14} {row.label:22} {row.quantity:15} {row.value:.9g} ± {row.bar:.2g}, truth "
-        f"{row.truth:.9g} ({row.error / max(row.scale, 1e-300):.1e} of its size, {times:.3g} bars; "
-        f"{row.verdict})"
+        f"  {row.name:14} {row.label:22} {row.quantity:15} {row.value:.9g} ± {row.error_bar:.2g}, "
+        f"truth {row.truth:.9g} ({row.error / max(row.scale, 1e-300):.1e} of its size, "
+        f"{times:.3g} bars; {row.verdict})"
     )

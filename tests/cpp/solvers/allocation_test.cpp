@@ -81,6 +81,12 @@ TEST_CASE("an adaptive step allocates nothing, with any stepper, rejected ones i
         Scenario::parse(scene, "scene", {{"time.integrator", std::string(info.name)}}));
     CHECK(allocations_of_steps(simulation) == 0);
     CHECK(simulation.counters().steps == 43);
+    // A blow to the end, for which the next step is too long.
+    simulation.state().velocities.tail<2>() << 0.0, 10.0;
+    const long before = allocations;
+    simulation.step();
+    CHECK(allocations == before);
+    CHECK(simulation.counters().rejected_steps > 0);
   }
 }
 

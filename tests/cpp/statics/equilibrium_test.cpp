@@ -125,6 +125,20 @@ TEST_CASE("the forces balance: the residual on held nodes is the reaction") {
   const EquilibriumReport report = simulation.equilibrium();
   CHECK(report.residual <= 1e-9 * report.force_scale);
   CHECK(report.force_scale == doctest::Approx(10.0).epsilon(1e-6));
+
+  // What the elements pull at the clamped node with, the support has to hold: the load turned
+  // round.
+  const Model& model = simulation.model();
+  Vector controls;
+  evaluate_controls(model, simulation.state(), 0.0, controls);
+  Vector gradient(model.num_dofs());
+  const Pattern pattern = build_pattern(model);
+  Assembler(model, MatrixLayout::compressed(pattern))
+      .gradient(simulation.state().positions, controls, gradient);
+  // As many residuals as there are nodes may add up.
+  const double left = static_cast<double>(model.num_nodes) * report.residual + 1e-12 * 10.0;
+  CHECK((gradient.head<2>() - Vec2{0.0, 10.0}).lpNorm<Eigen::Infinity>() <= left);
+  CHECK(left < 1e-6);
 }
 
 TEST_CASE("a structure that nothing holds has no equilibrium") {

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "der/core/constants.hpp"
@@ -61,7 +62,8 @@ TEST_CASE("rods from nanometres to kilometres have their modes") {
     for (std::size_t i = 0; i < 3; ++i) {
       CAPTURE(length);
       const auto number = static_cast<double>(i + 1);
-      CHECK(modes[i].frequency == doctest::Approx(first * number * number).epsilon(2e-3));
+      // Off by order 2 or more in the element length, (i pi / 34)^2 / 12 at the most.
+      CHECK(std::abs(modes[i].frequency / (first * number * number) - 1.0) < 2e-3);
     }
   }
 }
@@ -76,7 +78,7 @@ TEST_CASE("an unstable equilibrium grows, one out of balance has no modes") {
   const auto modes = simulation.modes(2);
   // w^2 = k^2 (k^2 - P)
   CHECK(modes[0].frequency == 0.0);
-  CHECK(modes[0].growth_rate == doctest::Approx(kPi * std::sqrt(15.0 - kPi * kPi)).epsilon(1e-2));
+  CHECK(modes[0].growth_rate == doctest::Approx(kPi * std::sqrt(15.0 - kPi * kPi)).epsilon(1e-3));
   CHECK(modes[1].growth_rate == 0.0);
   CHECK(modes[1].frequency > 0.0);
 }
@@ -86,7 +88,7 @@ TEST_CASE("a rod that nothing holds has three rigid motions") {
   CHECK(simulation.equilibrium().stability.neutral_directions == 3);
   const auto modes = simulation.modes(4);
   for (std::size_t i = 0; i < 3; ++i) CHECK(modes[i].frequency == 0.0);
-  CHECK(modes[3].frequency == doctest::Approx(4.73004 * 4.73004 / (2.0 * kPi)).epsilon(1e-2));
+  CHECK(modes[3].frequency == doctest::Approx(4.73004 * 4.73004 / (2.0 * kPi)).epsilon(1e-3));
 }
 
 TEST_CASE("buckling loads of a column, and shapes whose largest displacement is 1") {
@@ -148,10 +150,15 @@ TEST_CASE("all modes of many degrees of freedom are orthogonal and in order") {
   const Index size = simulation.model().num_free();
   const auto modes = simulation.modes(size);
   REQUIRE(modes.size() == static_cast<std::size_t>(size));
-  for (std::size_t i = 1; i < modes.size(); ++i) {
-    CHECK(modes[i].frequency > modes[i - 1].frequency);
-    CHECK(std::abs(product(simulation.model(), modes[i].shape, modes[i - 1].shape)) < 1e-7);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    if (i > 0) CHECK(modes[i].frequency > modes[i - 1].frequency);
+    for (std::size_t j = 0; j < i; ++j) {
+      worst =
+          std::max(worst, std::abs(product(simulation.model(), modes[i].shape, modes[j].shape)));
+    }
   }
+  CHECK(worst < 1e-7);
 }
 
 }  // namespace der::test

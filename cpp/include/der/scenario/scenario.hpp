@@ -165,24 +165,32 @@ struct Load {
 
 enum class ModelChoice { Auto, Planar };
 
+// Each analysis has its word in the scene as `kName`.
+
 /// A run over time: `time:`.
-struct DynamicAnalysis {};
+struct DynamicAnalysis {
+  static constexpr const char* kName = "dynamic";
+};
 /// The static equilibrium under the loads.
 struct StaticAnalysis {
+  static constexpr const char* kName = "static";
   bool leave_saddles = true;  ///< whether an unstable equilibrium is left for a stable one
 };
 /// Free vibrations about the equilibrium.
 struct ModesAnalysis {
+  static constexpr const char* kName = "modes";
   int count = 6;
 };
 /// Linear buckling loads of the unloaded equilibrium.
 struct BucklingAnalysis {
+  static constexpr const char* kName = "buckling";
   int count = 3;
 };
 /// What a continuation scales: what acts, or what moves.
 enum class Varied { Loads, Supports };
 /// The path of equilibria as a factor of loads or prescribed motions changes.
 struct ContinuationAnalysis {
+  static constexpr const char* kName = "continuation";
   Varied vary = Varied::Loads;
   std::optional<int> number;  ///< of the one load or support that varies; absent: all
   double from = 0.0;          ///< first factor
@@ -268,8 +276,7 @@ struct Scene {
   }
   /// "dynamic", or the word of `analysis:`.
   [[nodiscard]] const char* analysis_name() const {
-    constexpr const char* kNames[] = {"dynamic", "static", "modes", "buckling", "continuation"};
-    return kNames[analysis.index()];
+    return std::visit([](const auto& chosen) { return chosen.kName; }, analysis);
   }
 };
 

@@ -45,8 +45,8 @@ class Stepper {
 /// What a stepper can be told.
 struct StepperOptions {
   NewtonOptions newton;
-  /// Of generalized_alpha: what is left of the fastest motion after a step, 0 (all damped) .. 1
-  /// (none).
+  /// For generalized_alpha: spectral radius at infinite frequency (0: full damping, 1: none;
+  /// Chung and Hulbert, J. Appl. Mech. 60, 1993).
   double spectral_radius = 0.9;
 };
 

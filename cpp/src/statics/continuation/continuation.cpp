@@ -128,7 +128,7 @@ class PathTracer {
         found = *last;
         reached = metric().dot(node.tangent, difference(found.at, node.at));
       }
-      return limit > 0.0 ? "last factor" : "as far to the other side";
+      return limit > 0.0 ? "last factor" : "reached the opposite limit";
     }
     return "";
   }

@@ -30,7 +30,7 @@ bool EventLocator::locate(const PathNode& start, double reached, const PathNode&
   return bisect(start, reached, {0.0, start, reached, end}, events);
 }
 
-/// Places are told apart against the length `whole` of the first interval.
+/// Places closer than a fraction of the first interval's length `whole` are treated as one.
 bool EventLocator::bisect(const PathNode& start, double whole, Interval interval,
                           std::vector<LocatedEvent>& events) {
   auto& [low, before, high, after] = interval;

@@ -6,6 +6,7 @@ import der
 import numpy as np
 import pytest
 from der.fields import FIELDS, rod_fields
+from der.natural_sizes import natural_size
 
 TURN = {"times": [0, 0.2], "values": [0, -0.9]}
 
@@ -105,6 +106,18 @@ def test_exports_have_every_quantity_with_a_value_at_all_nodes():
     left_out = {"x", "y", "vx", "vy", "turning_angle"}
     assert set(FIELDS) == set(along_rods) - left_out
     assert [name for name in FIELDS if FIELDS[name].kind == "velocity"] == list(FIELDS)[-1:]
+
+
+def test_every_quantity_has_a_natural_size(swing):
+    """Views and error bars need one to tell rounding from numbers."""
+    rods = der.Model(der.Scenario.from_dict(swing)).rods
+    (rod,) = rods
+    sizes = {one.name: natural_size(rods, one.unit, 0.5) for one in der.quantities()}
+    assert all(size > 0.0 for size in sizes.values()), sizes
+    assert sizes["curvature"] == pytest.approx(1.0 / rod.length)
+    assert sizes["moment"] == pytest.approx(rod.EI / rod.length)
+    assert sizes["tension"] == pytest.approx(rod.EA)
+    assert sizes["speed"] == pytest.approx(2.0 * rod.length)
 
 
 def test_held_nodes_turn_with_their_clamps(swing):

@@ -39,8 +39,6 @@ Energies energies(const Model& model, const State& state) {
 Energies energies(const Model& model, const Vector& controls, const Vector& positions,
                   const Vector& velocities) {
   Energies result;
-  result[EnergyTerm::Kinetic] = model.mass.kinetic_energy(velocities);
-  result[EnergyTerm::Gravity] = -model.gravity_force.dot(positions);
   for_each_list(model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if constexpr (is_recorded(Kernel::kTerm)) {
@@ -50,6 +48,8 @@ Energies energies(const Model& model, const Vector& controls, const Vector& posi
   for (const RodLayout& rod : model.rods) {
     result += cell_energies(rod, model, controls, positions);
   }
+  result[EnergyTerm::Kinetic] = model.mass.kinetic_energy(velocities);
+  result[EnergyTerm::Gravity] = -model.gravity_force.dot(positions);
   return result;
 }
 

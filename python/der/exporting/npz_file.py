@@ -41,7 +41,7 @@ def write_npz(result: RunData, out: Path, progress: ProgressFunction) -> list[Pa
     arrays |= {f"probes/{name}": np.asarray(probe) for name, probe in result.probes.items()}
     arrays |= result.data
     for fields in rod_fields(result):
-        rod = {
+        rod: dict[str, NDArray[Any]] = {
             "nodes": fields.rod.nodes,
             "arc_lengths": fields.rod.arc_lengths,
             "radius": np.array(fields.rod.radius),

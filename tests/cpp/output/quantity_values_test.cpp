@@ -130,8 +130,9 @@ TEST_CASE("every quantity has the value worked out by hand") {
   for (const Quantity& quantity : quantities()) {
     CAPTURE(quantity.name);
     const auto value = expected.find(quantity.name);
-    REQUIRE_MESSAGE(value != expected.end(), "give expected_values() a value of this quantity");
-    REQUIRE(std::abs(value->second) > 1e-3);
+    const bool is_known = value != expected.end() && value->second != 0.0;
+    CHECK_MESSAGE(is_known, "give expected_values() a value of this quantity, not zero");
+    if (!is_known) continue;
     std::string probe = "quantity: " + quantity.name;
     if (quantity.kind == QuantityKind::Energy) {
       CHECK(probe_value(probe) == doctest::Approx(value->second).epsilon(1e-12));

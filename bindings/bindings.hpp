@@ -9,6 +9,7 @@ namespace py = pybind11;
 // One function for each file of bindings; module.cpp calls them in an order in which every type is
 // known before a signature names it.
 void bind_errors(py::module_& module);
+void bind_quantities(py::module_& module);
 void bind_scenario(py::module_& module);
 void bind_model(py::module_& module);
 void bind_replay(py::module_& module);

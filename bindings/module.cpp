@@ -6,6 +6,7 @@ PYBIND11_MODULE(_core, module) {
   module.doc() = "The C++ engine of der. Use the package `der`, which re-exports what is public.";
   module.attr("__version__") = der::version;
   bindings::bind_errors(module);
+  bindings::bind_quantities(module);
   bindings::bind_scenario(module);
   bindings::bind_model(module);
   bindings::bind_replay(module);

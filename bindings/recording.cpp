@@ -8,6 +8,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "der/output/memory_sink.hpp"
+#include "der/output/run_arrays.hpp"
 #include "der/output/summary.hpp"
 #include "py_simulation.hpp"
 
@@ -46,9 +47,8 @@ py::array_t<double> column(const std::vector<double>& data, const py::object& se
 }
 
 /// The columns of a (frames x names) table by name, copied.
-template <class Names>
-py::dict columns_by_name(const std::vector<double>& table, const Names& names) {
-  const std::size_t count = std::size(names);
+py::dict columns_by_name(const std::vector<double>& table, const std::vector<std::string>& names) {
+  const std::size_t count = names.size();
   const auto frames = static_cast<py::ssize_t>(count == 0 ? 0 : table.size() / count);
   const auto row = static_cast<py::ssize_t>(count * sizeof(double));
   py::dict columns;
@@ -61,7 +61,7 @@ py::dict columns_by_name(const std::vector<double>& table, const Names& names) {
 }
 
 py::dict energy_columns(const Recording& recording) {
-  return columns_by_name(recording.frames.energies, kEnergyNames);
+  return columns_by_name(recording.frames.energies, names_in_group("energies"));
 }
 
 py::dict probe_columns(const Recording& recording) {
@@ -69,15 +69,14 @@ py::dict probe_columns(const Recording& recording) {
 }
 
 py::dict work_columns(const Recording& recording) {
-  return columns_by_name(recording.frames.work, kLedgerNames);
+  return columns_by_name(recording.frames.work, names_in_group("work"));
 }
 
 py::dict analysis_data(const Recording& recording) {
   py::dict data;
   for (const Dataset& dataset : recording.data) {
     const std::vector<py::ssize_t> shape(dataset.shape.begin(), dataset.shape.end());
-    data[py::str(dataset.name)] =
-        py::make_tuple(py::array_t<double>(shape, dataset.values.data()), dataset.unit);
+    data[py::str(dataset.name)] = py::array_t<double>(shape, dataset.values.data());
   }
   return data;
 }
@@ -142,8 +141,9 @@ void bind_recording(py::module_& module) {
                              "What has gone in and out of the energy since the start [J] by name, "
                              "shape (frames,).")
       .def_property_readonly("probes", &probe_columns, "Probes by name, shape (frames,).")
-      .def_property_readonly("data", &analysis_data,
-                             "What an analysis found besides: (array, unit) by name.")
+      .def_property_readonly(
+          "data", &analysis_data,
+          "What an analysis found besides, by name; `array_units` has the units.")
       .def_property_readonly("probe_units", &probe_units, "SI units of the probes by name.");
   py::class_<RunRecording, Recording>(module, "RunRecording",
                                       "What a run that has just been done recorded.")

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "der/output/run_arrays.hpp"
 #include "der/output/run_folder.hpp"
 #include "recording.hpp"
 
@@ -19,7 +20,6 @@ namespace der::python {
 namespace {
 
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using Columns = std::vector<std::pair<std::string, Numbers>>;
 
 std::unique_ptr<FileRecording> read(const std::filesystem::path& file) {
   auto recording = std::make_unique<FileRecording>();
@@ -44,9 +44,9 @@ std::vector<double> numbers(const Numbers& array, const std::vector<py::ssize_t>
 }
 
 /// The columns side by side, one row a frame, in the order of `names`.
-template <class Names>
-std::vector<double> table(const py::dict& columns, const Names& names, std::size_t frames) {
-  const std::size_t width = std::size(names);
+std::vector<double> table(const py::dict& columns, const std::vector<std::string>& names,
+                          std::size_t frames) {
+  const std::size_t width = names.size();
   std::vector<double> rows(width * frames);
   for (std::size_t i = 0; i < width; ++i) {
     const std::string& name = names[i];
@@ -58,14 +58,15 @@ std::vector<double> table(const py::dict& columns, const Names& names, std::size
   return rows;
 }
 
-/// Name: (array, unit).
 std::vector<Dataset> to_datasets(const py::dict& data) {
   std::vector<Dataset> result;
-  for (const auto& [name, value] : data) {
-    const auto pair = value.cast<std::pair<Numbers, std::string>>();
-    const Numbers& array = pair.first;
-    result.push_back({name.cast<std::string>(),
-                      pair.second,
+  for (const auto& [key, value] : data) {
+    const auto name = key.cast<std::string>();
+    const auto array = value.cast<Numbers>();
+    const RunArray* known = find_run_array(name);
+    if (known == nullptr) throw py::value_error("run files have no array '" + name + "'");
+    result.push_back({name,
+                      known->unit,
                       {array.shape(), array.shape() + array.ndim()},
                       {array.data(), array.data() + array.size()}});
   }
@@ -73,13 +74,12 @@ std::vector<Dataset> to_datasets(const py::dict& data) {
 }
 
 void save(const std::filesystem::path& folder, const Scenario& scenario, const Model& model,
-          const py::object& result, const py::dict& probe_units, const py::dict& data,
-          const std::string& summary_json) {
+          const py::object& result, const std::string& summary_json) {
   SavedRun run;
   run.status = result.attr("status").cast<std::string>();
-  for (const auto& [name, unit] : probe_units) {
+  for (const auto& [name, probe] : result.attr("probes").cast<py::dict>()) {
     run.probe_names.push_back(name.cast<std::string>());
-    run.probe_units.push_back(unit.cast<std::string>());
+    run.probe_units.push_back(probe.attr("unit").cast<std::string>());
   }
   const auto times = result.attr("times").cast<Numbers>();
   const auto frames = static_cast<std::size_t>(times.size());
@@ -91,10 +91,10 @@ void save(const std::filesystem::path& folder, const Scenario& scenario, const M
   run.frames.steps = steps.cast<std::vector<std::int64_t>>();
   run.frames.positions = numbers(result.attr("positions").cast<Numbers>(), vectors, "positions");
   run.frames.velocities = numbers(result.attr("velocities").cast<Numbers>(), vectors, "velocities");
-  run.frames.energies = table(result.attr("energies"), kEnergyNames, frames);
-  run.frames.work = table(result.attr("work"), kLedgerNames, frames);
+  run.frames.energies = table(result.attr("energies"), names_in_group("energies"), frames);
+  run.frames.work = table(result.attr("work"), names_in_group("work"), frames);
   run.frames.probes = table(result.attr("probes"), run.probe_names, frames);
-  run.data = to_datasets(data);
+  run.data = to_datasets(result.attr("data"));
   const py::gil_scoped_release unlocked;
   save_in_folder(RunFolder(folder), scenario, model, run, summary_json);
 }
@@ -109,7 +109,7 @@ void bind_saved_run(py::module_& module) {
   module.def("read_run", &read, py::arg("file"),
              "Read a results.h5. Raises DerError where it is damaged or of another version.");
   module.def("save_run", &save, py::arg("folder"), py::arg("scenario"), py::arg("model"),
-             py::arg("result"), py::arg("probe_units"), py::arg("data"), py::arg("summary_json"),
+             py::arg("result"), py::arg("summary_json"),
              "Write the folder of a Result. Raises ValueError where its arrays do not fit the "
              "model, DerError where the folder must not be written to.");
 }

@@ -1,8 +1,11 @@
+#include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -72,6 +75,19 @@ void bind_readers(ScenarioClass& cls) {
           "`scenario.with_(**{\"rods.beam.nodes\": 101, \"loads.0.gravity\": [0, -1.6]})`.");
 }
 
+/// First and last factor of a continuation.
+std::optional<std::pair<double, double>> factor_range(const Scenario& scenario) {
+  const auto* path = std::get_if<scenario::ContinuationAnalysis>(&scenario.scene().analysis);
+  if (path == nullptr) return std::nullopt;
+  return std::pair{path->from, path->to};
+}
+
+bool varies_load(const Scenario& scenario, int number) {
+  const auto* path = std::get_if<scenario::ContinuationAnalysis>(&scenario.scene().analysis);
+  return path != nullptr && path->vary == scenario::Varied::Loads &&
+         path->number.value_or(number) == number;
+}
+
 void bind_facts(ScenarioClass& cls) {
   cls.def_property_readonly(
          "title", [](const Scenario& s) { return s.scene().title; }, "The scene's title.")
@@ -86,6 +102,11 @@ void bind_facts(ScenarioClass& cls) {
       .def_property_readonly(
           "duration", [](const Scenario& s) { return s.scene().time.duration; },
           "Duration of the motion [s]; 0 for a static scene.")
+      .def_property_readonly("factor_range", &factor_range,
+                             "First and last load factor of a continuation; None without one.")
+      .def(
+          "varies_load", &varies_load, py::arg("number"),
+          "Return whether the factor of a continuation scales a load of the scene, counted from 0.")
       .def_property_readonly(
           "warnings",
           [](const Scenario& s) {

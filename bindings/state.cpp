@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <cctype>
 #include <string>
 #include <vector>
 
@@ -98,21 +99,24 @@ SavedState revive(const py::tuple& dumped) {
 }
 
 void bind_energies(py::module_& module) {
-  py::class_<Energies>(module, "Energies", "Energies of a state [J].")
-      .def_readonly("kinetic", &Energies::kinetic, "Kinetic energy [J].")
-      .def_readonly("stretch", &Energies::stretch, "Elastic energy of stretching [J].")
-      .def_readonly("bend", &Energies::bend, "Elastic energy of bending [J].")
-      .def_readonly("spring", &Energies::spring, "Elastic energy of spring supports [J].")
-      .def_readonly("gravity", &Energies::gravity,
-                    "Potential energy of the weight [J], zero at the origin.")
+  py::class_<Energies> energies(module, "Energies", "Energies of a state [J].");
+  for (const EnergyTermInfo& row : kEnergyTerms) {
+    std::string meaning = std::string(row.meaning) + " [J].";
+    meaning.front() = static_cast<char>(std::toupper(meaning.front()));
+    energies.def_property_readonly(
+        row.name, [term = row.term](const Energies& e) { return e[term]; }, meaning.c_str());
+  }
+  energies
       .def_property_readonly("elastic", &Energies::elastic,
-                             "Stretching, bending and springs together [J].")
+                             "What is stored in rods and spring supports [J].")
       .def_property_readonly("total", &Energies::total, "The sum of all [J].")
       .def("__repr__", [](const Energies& e) {
-        return py::str(
-                   "Energies(kinetic={:.6g}, stretch={:.6g}, bend={:.6g}, spring={:.6g}, "
-                   "gravity={:.6g}) J")
-            .format(e.kinetic, e.stretch, e.bend, e.spring, e.gravity);
+        std::string terms;
+        for (const EnergyTermInfo& row : kEnergyTerms) {
+          terms += (terms.empty() ? "" : ", ") + std::string(row.name) + "=" +
+                   py::str("{:.6g}").format(e[row.term]).cast<std::string>();
+        }
+        return "Energies(" + terms + ") J";
       });
 }
 

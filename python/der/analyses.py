@@ -8,17 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from der._core import path_events
+
 Array = NDArray[np.float64]
-
-#: Unit of each array that an analysis finds and that is no pure number.
-DATA_UNITS = {
-    "modes/frequencies": "Hz",
-    "modes/growth_rates": "1/s",
-    "modes/shapes": "kg^-1/2 m",
-    "buckling/rotations": "rad",
-}
-
-_EVENTS = ("", "fold", "bifurcation")
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,5 +118,5 @@ def make_path(data: Mapping[str, Array]) -> Path | None:
         data["path/factor"],
         data["path/arc"],
         data["path/unstable_directions"].astype(np.int64),
-        np.array(_EVENTS)[data["path/event"].astype(np.int64)],
+        np.array(path_events())[data["path/event"].astype(np.int64)],
     )

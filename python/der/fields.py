@@ -11,13 +11,33 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from der._core import Rod
+from der._core import Quantity, Rod, quantities
 from der.run_data import RunData
 
 Array = NDArray[np.float64]
 
-#: Unit of each quantity along a rod.
-FIELD_UNITS = {"curvature": "1/m", "tension": "N", "speed": "m/s"}
+
+def _exported() -> dict[str, Quantity]:
+    """Return the quantities with a value at every arc length, those of the motion last.
+
+    Components of positions and velocities are left out, as the vectors are exported.
+    """
+    along_rods = [
+        quantity
+        for quantity in quantities()
+        if quantity.kind not in ("turn", "energy") and not quantity.is_component
+    ]
+    along_rods.sort(key=is_motion)
+    return {quantity.name: quantity for quantity in along_rods}
+
+
+def is_motion(quantity: Quantity) -> bool:
+    """Return whether a quantity is zero where nothing moves."""
+    return quantity.kind == "velocity"
+
+
+#: The quantities along rods that exports and views have, by name.
+FIELDS = _exported()
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,33 +50,21 @@ class RodFields:
         The rod.
     positions, velocities
         Of its nodes [m], [m/s], shape (frames, nodes of the rod, dim).
-    curvature
-        Of the rod [1/m], shape (frames, nodes of the rod), as its probes have it; where it jumps
-        at a node, the value after it. Without bending stiffness it is known at inner nodes and
-        carried on linearly to the ends; 0 on such a rod of two nodes. Signed in the plane, positive
-        counter-clockwise.
-    tension
-        Axial force [N], shape (frames, nodes of the rod), as its probes have it; where it jumps at
-        a node, the value after it.
-    edge_tension
-        Axial force at the middle of each edge [N], shape (frames, edges of the rod).
+    at_nodes
+        Each quantity of `FIELDS` by name, in its SI unit, shape (frames, nodes of the rod), as its
+        probes have it; where it jumps at a node, the value after it. Without bending stiffness
+        curvature and moment are known at inner nodes and carried on linearly to the ends; 0 on such
+        a rod of two nodes. Signed in the plane, positive counter-clockwise.
+    at_edges
+        Those that belong to edges (strain and tension) at the middle of each, shape (frames, edges
+        of the rod).
     """
 
     rod: Rod
     positions: Array
     velocities: Array
-    curvature: Array
-    tension: Array
-    edge_tension: Array
-
-    @property
-    def speed(self) -> Array:
-        """Magnitude of the velocity [m/s], shape (frames, nodes of the rod)."""
-        return np.asarray(np.linalg.norm(self.velocities, axis=2))
-
-    def named(self) -> dict[str, Array]:
-        """Return each quantity of `FIELD_UNITS`, shape (frames, nodes of the rod), by name."""
-        return {"curvature": self.curvature, "tension": self.tension, "speed": self.speed}
+    at_nodes: dict[str, Array]
+    at_edges: dict[str, Array]
 
 
 def rod_fields(result: RunData) -> list[RodFields]:
@@ -65,16 +73,19 @@ def rod_fields(result: RunData) -> list[RodFields]:
 
 
 def _fields_of(rod: Rod, result: RunData) -> RodFields:
-    bent, curvature = result.along(rod.name, "curvature")
-    pulled, tension = result.along(rod.name, "tension")
     middles = 0.5 * (rod.arc_lengths[1:] + rod.arc_lengths[:-1])
+    at_nodes, at_edges = {}, {}
+    for name, quantity in FIELDS.items():
+        known, values = result.along(rod.name, name)
+        at_nodes[name] = _carry(values, known, rod.arc_lengths)
+        if quantity.kind == "edge":
+            at_edges[name] = _carry(values, known, middles)
     return RodFields(
         rod=rod,
         positions=result.positions[:, rod.nodes],
         velocities=result.velocities[:, rod.nodes],
-        curvature=_carry(curvature, bent, rod.arc_lengths),
-        tension=_carry(tension, pulled, rod.arc_lengths),
-        edge_tension=_carry(tension, pulled, middles),
+        at_nodes=at_nodes,
+        at_edges=at_edges,
     )
 
 

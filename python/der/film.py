@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from der.fields import FIELD_UNITS, rod_fields
+from der.fields import FIELDS, is_motion, rod_fields
 from der.run_data import RunData
 from der.scene_loads import ActingLoads, acting_loads
 
@@ -50,7 +50,7 @@ class Film:
     source
         The frame of the result that each frame belongs to, shape (frames,): its loads and supports.
     fields
-        For each quantity of ``der.fields.FIELD_UNITS`` its values for each rod, of shape (frames,
+        For each quantity of ``der.fields.FIELDS`` its values for each rod, of shape (frames,
         nodes of the rod); empty for modes, whose size means nothing.
     """
 
@@ -120,8 +120,13 @@ def make_film(result: RunData) -> Film:
 
 
 def _fields(result: RunData, frames: NDArray[np.int64]) -> dict[str, list[Array]]:
-    rods = [rod.named() for rod in rod_fields(result)]
-    return {name: [rod[name][frames] for rod in rods] for name in FIELD_UNITS}
+    """Return the quantities along rods; without time, those that do not vanish with the motion."""
+    rods = rod_fields(result)
+    return {
+        name: [rod.at_nodes[name][frames] for rod in rods]
+        for name, quantity in FIELDS.items()
+        if not (result.scenario.is_static and is_motion(quantity))
+    }
 
 
 def _path(result: RunData) -> Film:
@@ -138,9 +143,7 @@ def _path(result: RunData) -> Film:
         rows = np.flatnonzero(path.branch == branch)
         chapters.append(Chapter(f"branch {branch}", int(rows[0]), int(rows[-1])))
     frames = np.arange(len(captions))
-    fields = _fields(result, frames)
-    fields.pop("speed")
-    return Film(result.positions, captions, chapters, None, frames, fields)
+    return Film(result.positions, captions, chapters, None, frames, _fields(result, frames))
 
 
 def _equilibrium(result: RunData) -> Film:
@@ -150,7 +153,6 @@ def _equilibrium(result: RunData) -> Film:
     fields = {
         name: [np.vstack([np.zeros_like(values), values]) for values in rods]
         for name, rods in _fields(result, np.array([last])).items()
-        if name != "speed"
     }
     chapter = Chapter(result.scenario.title, 0, 1)
     found = "equilibrium" if result.status == "static_converged" else result.status

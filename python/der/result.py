@@ -106,5 +106,5 @@ def to_result(
             {name: recording.probes[name] for name in probes}, recording.probe_units, summary
         ),
         summary=summary,
-        data={name: array for name, (array, _) in recording.data.items()},
+        data=recording.data,
     )

@@ -10,7 +10,6 @@ import os
 from pathlib import Path
 
 from der import _core
-from der.analyses import DATA_UNITS
 from der.run_data import RunData
 
 
@@ -23,13 +22,5 @@ def save_run(result: RunData, folder: str | os.PathLike[str]) -> Path:
         indent=2,
         ensure_ascii=False,
     )
-    _core.save_run(
-        folder,
-        result.scenario,
-        result.model,
-        result,
-        {name: probe.unit for name, probe in result.probes.items()},
-        {name: (values, DATA_UNITS.get(name, "")) for name, values in result.data.items()},
-        summary + "\n",
-    )
+    _core.save_run(folder, result.scenario, result.model, result, summary + "\n")
     return folder

@@ -131,14 +131,6 @@ def place_on(rod: Rod, positions: Array, at: float) -> Array:
 
 def _factor(result: RunData, frame: int, number: int) -> float:
     """Return the factor of a load at a frame: other than 1 only along a continuation."""
-    if result.path is None:
+    if result.path is None or not result.scenario.varies_load(number):
         return 1.0
-    varied = continuation_settings(result.scenario.to_dict()).get("vary", "loads")
-    return float(result.path.factor[frame]) if varied in ("loads", f"loads.{number}") else 1.0
-
-
-def continuation_settings(scene: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a scene says under ``analysis.continuation``; empty without."""
-    analysis = scene.get("analysis")
-    settings = analysis.get("continuation") if isinstance(analysis, Mapping) else None
-    return dict(settings or {})
+    return float(result.path.factor[frame])

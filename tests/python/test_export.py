@@ -8,12 +8,13 @@ import xml.etree.ElementTree as ET
 import der
 import numpy as np
 import pytest
+from der.fields import FIELDS
 
 
 def probes_at(scene, nodes):
     """Add a probe of each quantity at some nodes of the first rod."""
     rod = scene["rods"][0]["name"]
-    for quantity in ("curvature", "tension", "vx", "vy", "speed"):
+    for quantity in ("vx", "vy", *FIELDS):
         for node in nodes:
             scene["output"]["probes"][f"{quantity}-{node}"] = {
                 "rod": rod,
@@ -35,8 +36,9 @@ def test_csv(swing, tmp_path):
     titles, rows = read_table(nodes)
     assert titles == [
         *("frame", "time [s]", "rod", "node", "s [m]", "x [m]", "y [m]", "vx [m/s]", "vy [m/s]"),
-        *("curvature [1/m]", "tension [N]", "speed [m/s]"),
+        *(f"{name} [{one.unit}]" if one.unit else name for name, one in FIELDS.items()),
     ]
+    assert {"curvature [1/m]", "strain", "tension [N]", "speed [m/s]"} < set(titles)
     assert len(rows) == len(result.times) * 11
     for frame in (0, 7, len(result.times) - 1):
         for node in (0, 4):
@@ -44,7 +46,7 @@ def test_csv(swing, tmp_path):
             assert row[:4] == [str(frame), repr(float(result.times[frame])), "arm", str(node)]
             values = [float(value) for value in row[4:]]
             assert values[1:3] == pytest.approx(result.positions[frame, node])
-            for column, name in enumerate(("vx", "vy", "curvature", "tension", "speed"), 3):
+            for column, name in enumerate(("vx", "vy", *FIELDS), 3):
                 known = result.probes[f"{name}-{node}"][frame]
                 scale = np.abs(result.probes[f"{name}-{node}"]).max()
                 assert values[column] == pytest.approx(known, rel=1e-9, abs=1e-9 * scale + 1e-12)
@@ -85,7 +87,7 @@ def test_npz(swing, tmp_path):
         assert np.array_equal(arrays["probes/tip"], np.asarray(result.probes["tip"]))
         assert str(arrays["units/probes/tip"]) == "m"
         assert np.array_equal(arrays["energies/bend"], result.energies["bend"])
-        for name in ("curvature", "tension"):
+        for name in FIELDS:
             known = result.probes[f"{name}-4"]
             scale = np.abs(known).max()
             assert arrays[f"rods/arm/{name}"][:, 4] == pytest.approx(known, abs=1e-8 * scale)
@@ -94,6 +96,7 @@ def test_npz(swing, tmp_path):
         assert units == {"times": "s", "positions": "m", "velocities": "m/s"}
         assert str(arrays["units/energies/bend"]) == str(arrays["units/work/loads"]) == "J"
         for name, unit in {"arc_lengths": "m", "radius": "m", "edge_tension": "N"}.items():
+            assert f"rods/arm/{name}" in arrays.files
             assert str(arrays[f"units/{name}"]) == unit
         without = {"scene", "status"}
         for key in set(arrays.files) - without:
@@ -150,7 +153,7 @@ def test_vtk_is_read_by_vtk(swing, tmp_path):
         assert arrays["velocity"][:, :2] == pytest.approx(result.velocities[frame])
         assert arrays["radius"] == pytest.approx(np.full(18, 0.01))
         assert np.array_equal(arrays["twist"], np.zeros(18))
-        for name in ("curvature", "tension"):
+        for name in FIELDS:
             for node in (0, 4):
                 known = result.probes[f"{name}-{node}"]
                 scale = np.abs(known).max()

@@ -5,21 +5,22 @@ from dataclasses import replace
 import der
 import numpy as np
 import pytest
-from der.fields import rod_fields
+from der.fields import FIELDS, rod_fields
+from der.natural_sizes import natural_size
 
 TURN = {"times": [0, 0.2], "values": [0, -0.9]}
 
 
 def with_probes(scene, bent):
-    """The scene with a probe of each quantity at every node, and of tension in every edge."""
+    """The scene with a probe of each exported quantity at every node, those of edges there too."""
     scenario = der.Scenario.from_dict(scene)
     probes = {}
     for rod in der.Model(scenario).rods:
         arc = rod.arc_lengths
         middles = 0.5 * (arc[1:] + arc[:-1])
         for i in range(len(arc)):
-            for quantity in ("curvature", "tension", "speed"):
-                if quantity != "curvature" or bent(rod, i):
+            for quantity in FIELDS:
+                if FIELDS[quantity].kind != "bend" or bent(rod, i):
                     place = {"node": i}
                     probes[f"{rod.name}-{quantity}-{i}"] = {
                         "rod": rod.name,
@@ -27,11 +28,12 @@ def with_probes(scene, bent):
                         "quantity": quantity,
                     }
         for i, s in enumerate(middles):
-            probes[f"{rod.name}-edge-{i}"] = {
-                "rod": rod.name,
-                "at": float(s),
-                "quantity": "tension",
-            }
+            for quantity in ("strain", "tension"):
+                probes[f"{rod.name}-edge_{quantity}-{i}"] = {
+                    "rod": rod.name,
+                    "at": float(s),
+                    "quantity": quantity,
+                }
     scene.setdefault("output", {})["probes"] = probes
     return scene
 
@@ -49,7 +51,9 @@ def check(result):
     for name, probe in result.probes.items():
         rod, quantity, place = name.split("-")
         fields = values[rod]
-        known = fields.edge_tension if quantity == "edge" else fields.named()[quantity]
+        known = {**fields.at_nodes, **{f"edge_{n}": v for n, v in fields.at_edges.items()}}[
+            quantity
+        ]
         difference = np.abs(known[:, int(place)] - np.asarray(probe)).max()
         assert difference <= 1e-8 * scale[quantity] + 1e-300, name
     assert scale["curvature"] > 0.0
@@ -78,10 +82,11 @@ def test_every_quantity_where_the_rod_has_it(swing):
     swing["supports"][0]["prescribe"] = {"angle": TURN}
     rod = der.Model(der.Scenario.from_dict(swing)).rods[0]
     middles = 0.5 * (rod.arc_lengths[1:] + rod.arc_lengths[:-1])
-    places = dict.fromkeys(("x", "y", "vx", "vy", "speed"), rod.arc_lengths)
-    places |= dict.fromkeys(("curvature", "moment"), rod.arc_lengths)
-    places["turning_angle"] = rod.arc_lengths[:-1]
-    places |= dict.fromkeys(("strain", "tension"), np.r_[0.0, middles, rod.arc_lengths[-1]])
+    of_kind = dict.fromkeys(("position", "velocity", "bend"), rod.arc_lengths)
+    of_kind["turn"] = rod.arc_lengths[:-1]
+    of_kind["edge"] = np.r_[0.0, middles, rod.arc_lengths[-1]]
+    places = {one.name: of_kind[one.kind] for one in der.quantities() if one.kind != "energy"}
+    assert len(places) >= 10
     swing["output"]["probes"] = {
         f"{quantity}-{i}": {"rod": "arm", "at": float(s), "quantity": quantity}
         for quantity, known in places.items()
@@ -92,7 +97,28 @@ def test_every_quantity_where_the_rod_has_it(swing):
         found, values = result.along("arm", quantity)
         probes = np.column_stack([result.probes[f"{quantity}-{i}"] for i in range(len(known))])
         assert found == pytest.approx(known, abs=1e-15)
+        assert np.abs(probes).max() > 0.0, quantity
         assert np.abs(values - probes).max() <= 1e-8 * np.abs(probes).max(), quantity
+
+
+def test_exports_have_every_quantity_with_a_value_at_all_nodes():
+    """Components are exported as vectors; a turning angle has no value between nodes that bend."""
+    along_rods = [quantity.name for quantity in der.quantities() if quantity.kind != "energy"]
+    left_out = {"x", "y", "vx", "vy", "turning_angle"}
+    assert set(FIELDS) == set(along_rods) - left_out
+    assert [name for name in FIELDS if FIELDS[name].kind == "velocity"] == list(FIELDS)[-1:]
+
+
+def test_every_quantity_has_a_natural_size(swing):
+    """Views and error bars need one to tell rounding from numbers."""
+    rods = der.Model(der.Scenario.from_dict(swing)).rods
+    (rod,) = rods
+    sizes = {one.name: natural_size(rods, one.unit, 0.5) for one in der.quantities()}
+    assert all(size > 0.0 for size in sizes.values()), sizes
+    assert sizes["curvature"] == pytest.approx(1.0 / rod.length)
+    assert sizes["moment"] == pytest.approx(rod.EI / rod.length)
+    assert sizes["tension"] == pytest.approx(rod.EA)
+    assert sizes["speed"] == pytest.approx(2.0 * rod.length)
 
 
 def test_held_nodes_turn_with_their_clamps(swing):
@@ -165,14 +191,14 @@ def test_rod_without_bending_stiffness(swing):
 
 def test_free_ends_and_short_rods_are_not_bent(spheres):
     (fields,) = rod_fields(der.run(spheres))
-    assert np.abs(fields.curvature[-1, 1]) > 0.0
-    assert np.all(fields.curvature[:, [0, -1]] == 0.0)
+    assert np.abs(fields.at_nodes["curvature"][-1, 1]) > 0.0
+    assert np.all(fields.at_nodes["curvature"][:, [0, -1]] == 0.0)
     spheres["rods"][0] |= {"nodes": 2}
     spheres["rods"][0]["spheres"].pop()
     spheres["output"]["probes"].pop("angle")
     spheres["output"]["probes"]["v_mid"]["at"] = "start"
     (fields,) = rod_fields(der.run(spheres))
-    assert np.all(fields.curvature == 0.0)
+    assert np.all(fields.at_nodes["curvature"] == 0.0)
 
 
 def test_drawn_circle(swing):
@@ -183,9 +209,8 @@ def test_drawn_circle(swing):
     swing["rods"][0]["points"] = circle.tolist()
     swing["supports"][0] = {"rod": "arm", "at": "start", "fix": ["x", "y"]}
     (fields,) = rod_fields(der.run(swing))
-    assert fields.curvature[0] == pytest.approx(np.ones(len(angle)), rel=1e-3)
-    assert fields.tension[0] == pytest.approx(0.0)
-    assert replace(fields, velocities=circle[np.newaxis]).speed.shape == (1, len(angle))
+    assert fields.at_nodes["curvature"][0] == pytest.approx(np.ones(len(angle)), rel=1e-3)
+    assert fields.at_nodes["tension"][0] == pytest.approx(0.0)
 
 
 def test_no_frames(swing):
@@ -194,8 +219,8 @@ def test_no_frames(swing):
         whole, times=whole.times[:0], positions=whole.positions[:0], velocities=whole.velocities[:0]
     )
     (fields,) = rod_fields(result)
-    assert {values.shape for values in fields.named().values()} == {(0, 11)}
-    assert fields.edge_tension.shape == (0, 10)
+    assert {values.shape for values in fields.at_nodes.values()} == {(0, 11)}
+    assert {values.shape for values in fields.at_edges.values()} == {(0, 10)}
     with pytest.raises(der.DerError, match="there is no frame 0: the run has 0"):
         result.held_nodes(0)
 

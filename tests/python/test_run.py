@@ -412,6 +412,9 @@ def test_arrays_that_do_not_fit_the_model_are_not_saved(tube, tmp_path):
         wrong = dataclasses.replace(result, **{name: getattr(result, name)[1:]})
         with pytest.raises(ValueError, match=name):
             wrong.save(tmp_path / "run")
+    wrong = dataclasses.replace(result, data={"modes/mine": np.zeros(3)})
+    with pytest.raises(ValueError, match="run files have no array 'modes/mine'"):
+        wrong.save(tmp_path / "run")
     assert not (tmp_path / "run").exists()
 
 

@@ -14,7 +14,7 @@ from dataclasses import replace
 import der
 import numpy as np
 import pytest
-from der.fields import rod_fields
+from der.fields import FIELDS, rod_fields
 from der.viewing.payload import make_payload
 from PIL import Image
 
@@ -60,7 +60,7 @@ def test_page_holds_the_run_and_nothing_from_elsewhere(swing, tmp_path):
     assert np.all(positions[:, :, 2] == 0.0)
     assert rod["radius"] == 0.01
     (fields,) = rod_fields(result)
-    for name, values in fields.named().items():
+    for name, values in fields.at_nodes.items():
         scale = np.abs(values).max()
         assert unpack(rod["fields"][name], count, 11) == pytest.approx(values, abs=1e-6 * scale)
         assert data["fields"][name]["high"] == pytest.approx(values.max())
@@ -171,9 +171,10 @@ def test_rounding_is_not_coloured(swing):
     swing["loads"] = [{"point_force": {"rod": "arm", "at": "end", "force": [0.3e-9, 0.7e-9]}}]
     result = der.run(swing)
     (fields,) = rod_fields(result)
-    assert 0.0 < np.abs(fields.curvature).max() < 1e-9, "rounding"
+    assert 0.0 < np.abs(fields.at_nodes["curvature"]).max() < 1e-9, "rounding"
     data = make_payload(result)["fields"]
-    for name in ("curvature", "tension", "speed"):
+    assert list(data) == list(FIELDS)
+    for name in data:
         assert (data[name]["low"], data[name]["high"]) == (-1.0, 1.0), name
 
 
@@ -186,8 +187,8 @@ def test_small_quantities_are_coloured(swing):
     result = der.run(swing)
     (fields,) = rod_fields(result)
     data = make_payload(result)["fields"]
-    assert data["tension"]["high"] == pytest.approx(fields.tension.max())
-    assert data["curvature"]["low"] == pytest.approx(fields.curvature.min())
+    assert data["tension"]["high"] == pytest.approx(fields.at_nodes["tension"].max())
+    assert data["curvature"]["low"] == pytest.approx(fields.at_nodes["curvature"].min())
 
 
 def test_static_modes_and_paths(tube):
@@ -365,7 +366,7 @@ def test_browser_draws_the_run(browser, swing, tmp_path):
     line = drawn_line(browser)
     drawn = line[:2].T
     assert drawn == pytest.approx(result.positions[20], abs=1e-6)
-    assert line[3] == pytest.approx(fields.curvature[20], rel=1e-5, abs=1e-6)
+    assert line[3] == pytest.approx(fields.at_nodes["curvature"][20], rel=1e-5, abs=1e-6)
     end = time.monotonic() + 20
     while rod_pixels(second := screenshot(browser))[:, 0].max() < lit[:, 0].max() + 10:
         assert time.monotonic() < end, "the tip does not fall on the screen"
@@ -377,7 +378,9 @@ def test_browser_draws_the_run(browser, swing, tmp_path):
         "const s = document.getElementById('quantity'); s.value = 'tension';"
         "s.dispatchEvent(new Event('change'))"
     )
-    assert drawn_line(browser)[3] == pytest.approx(fields.tension[20], rel=1e-5, abs=1e-6)
+    assert drawn_line(browser)[3] == pytest.approx(
+        fields.at_nodes["tension"][20], rel=1e-5, abs=1e-6
+    )
     bar = "document.querySelector('#scene .cbtitle text, #scene [class*=cb] text.cbtitle') "
     bar += "|| document.querySelector('#scene [class*=cbtitle]')"
     assert "tension" in wait_for(browser, f"({bar})?.textContent")

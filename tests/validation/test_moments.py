@@ -326,7 +326,9 @@ def test_along_has_a_jump_twice_and_a_kink_once():
         (before, after) = moment[-1, np.isclose(places, place)]
         assert before - after == pytest.approx(SMALL, rel=1e-8)
     fields = rod_fields(result)[0]
-    assert fields.curvature[-1, 5] == pytest.approx(moment[-1][np.isclose(places, 0.5)][1])
+    assert fields.at_nodes["curvature"][-1, 5] == pytest.approx(
+        moment[-1][np.isclose(places, 0.5)][1]
+    )
 
 
 def test_clamped_ends_and_the_nodes_beside_them_have_the_curvature_of_a_drawn_arc(fitted_order):

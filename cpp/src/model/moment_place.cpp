@@ -91,8 +91,8 @@ double carried_moment(const MomentPlace& place, const RodLayout& rod, const Mode
   return moment_of(place, rod, applied, spring_turn(place, model, state.positions, before));
 }
 
-CellEnergies cell_energies(const RodLayout& rod, const Model& model, const Configuration& here) {
-  CellEnergies energies;
+Energies cell_energies(const RodLayout& rod, const Model& model, const Configuration& here) {
+  Energies energies;
   if (rod.EI == 0.0) return energies;
   for (const MomentPlace& place : rod.moment_places) {
     const double before =
@@ -100,9 +100,9 @@ CellEnergies cell_energies(const RodLayout& rod, const Model& model, const Confi
     const double turn = spring_turn(place, model, here.coordinates, before);
     const double moment = moment_of(place, rod, applied_moment(place, here.controls), turn);
     const double cell_turn = place.cell_length * moment / rod.EI;
-    energies.bend += 0.5 * cell_turn * moment;
+    energies[EnergyTerm::Bend] += 0.5 * cell_turn * moment;
     const double tangent = turn + cell_turn;
-    energies.spring +=
+    energies[EnergyTerm::Spring] +=
         0.5 * place.stiffness * (tangent * tangent - place.series_share(rod.EI) * turn * turn);
   }
   return energies;

@@ -1,5 +1,6 @@
 #include "der/model/state.hpp"
 
+#include <cstddef>
 #include <type_traits>
 
 #include "der/energies/element_energy.hpp"
@@ -47,25 +48,16 @@ Energies energies(const Model& model, const State& state) {
 
 Energies energies(const Model& model, const Configuration& here, const Vector& velocities) {
   Energies result;
-  result.kinetic = model.mass.kinetic_energy(velocities);
-  result.gravity = -model.gravity_force.dot(here.coordinates);
   for_each_list(*model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
-    const double energy = element_energy(list, here);
-    if constexpr (Kernel::kTerm == EnergyTerm::Stretch) result.stretch += energy;
-    if constexpr (Kernel::kTerm == EnergyTerm::Bend) result.bend += energy;
-    if constexpr (Kernel::kTerm == EnergyTerm::Spring) result.spring += energy;
+    if constexpr (is_recorded(Kernel::kTerm)) result[Kernel::kTerm] += element_energy(list, here);
   });
   for (const RodLayout& rod : model.rods) {
-    const CellEnergies cells = cell_energies(rod, model, here);
-    result.bend += cells.bend;
-    result.spring += cells.spring;
+    result += cell_energies(rod, model, here);
   }
+  result[EnergyTerm::Kinetic] = model.mass.kinetic_energy(velocities);
+  result[EnergyTerm::Gravity] = -model.gravity_force.dot(here.coordinates);
   return result;
-}
-
-std::array<double, kEnergyNames.size()> by_name(const Energies& energies) {
-  return {energies.kinetic, energies.stretch, energies.bend, energies.spring, energies.gravity};
 }
 
 void forget_steps(State& state) {
@@ -81,15 +73,17 @@ void start_ledger(const Model& model, State& state) {
   state.audit = {};
   const Energies start = energies(model, state);
   state.work.start = start.total();
-  state.audit.exchanged = start.kinetic;
+  state.audit.exchanged = start[EnergyTerm::Kinetic];
 }
 
 double numerical_loss(const Work& work, const Energies& now) {
   return work.start + work.loads + work.supports + work.solver - work.drag - now.total();
 }
 
-std::array<double, kLedgerNames.size()> ledger(const Work& work, const Energies& now) {
-  return {work.loads, work.supports, work.drag, numerical_loss(work, now), work.solver};
+std::array<double, kLedger.size()> ledger(const Work& work, const Energies& now) {
+  std::array<double, kLedger.size()> values{};
+  for (std::size_t row = 0; row < values.size(); ++row) values[row] = kLedger[row].value(work, now);
+  return values;
 }
 
 }  // namespace der

@@ -79,16 +79,6 @@ class TurnField : public RodField {
   bool continuous_;
 };
 
-/// Inner nodes, and ends that are clamped.
-std::unique_ptr<RodField> turning_angles(const RodLayout& rod, const Model& model) {
-  std::vector<Weighted> nodes;
-  for (Index i = 0; i <= rod.num_edges(); ++i) {
-    const bool inner = i > 0 && i < rod.num_edges();
-    if (inner || rod.clamp_at(i) != nullptr) nodes.push_back({i, 1.0});
-  }
-  return std::make_unique<TurnField>(rod, nodes, false, model);
-}
-
 /// Curvature or moment of a rod without bending stiffness.
 std::unique_ptr<RodField> limp_field(bool moment, const RodLayout& rod, const Model& model) {
   std::vector<Weighted> nodes;
@@ -238,17 +228,31 @@ class BendField : public RodField {
   std::vector<std::pair<Known, Known>> edges_;  // first and last of each
 };
 
-}  // namespace
-
-std::unique_ptr<RodField> make_bend_field(const std::string& quantity, const RodLayout& rod,
-                                          const Model& model) {
-  if (quantity == "turning_angle") return turning_angles(rod, model);
-  const bool moment = quantity == "moment";
+std::unique_ptr<RodField> make_bend_field(bool moment, const RodLayout& rod, const Model& model) {
   if (rod.EI == 0.0) return limp_field(moment, rod, model);
   if (rod.curvature == scenario::CurvatureMeasure::Angle) {
     return BendField<AngleCurvature>::make(moment, rod, model);
   }
   return BendField<TangentCurvature>::make(moment, rod, model);
+}
+
+}  // namespace
+
+std::unique_ptr<RodField> make_turning_angle_field(const RodLayout& rod, const Model& model) {
+  std::vector<Weighted> nodes;
+  for (Index i = 0; i <= rod.num_edges(); ++i) {
+    const bool inner = i > 0 && i < rod.num_edges();
+    if (inner || rod.clamp_at(i) != nullptr) nodes.push_back({i, 1.0});
+  }
+  return std::make_unique<TurnField>(rod, nodes, false, model);
+}
+
+std::unique_ptr<RodField> make_curvature_field(const RodLayout& rod, const Model& model) {
+  return make_bend_field(false, rod, model);
+}
+
+std::unique_ptr<RodField> make_moment_field(const RodLayout& rod, const Model& model) {
+  return make_bend_field(true, rod, model);
 }
 
 }  // namespace der

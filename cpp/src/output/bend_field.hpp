@@ -1,17 +1,21 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "output/rod_field.hpp"
 
 namespace der {
 
-/// The field of `turning_angle`, at the nodes that bend, or of `curvature` or `moment`, at all
-/// nodes and wherever loads between them make a kink or a jump: there linear in between, of order 2
-/// up to the ends (output/moment_recovery.hpp). A rod without bending stiffness has a curvature at
-/// its inner nodes alone.
-std::unique_ptr<RodField> make_bend_field(const std::string& quantity, const RodLayout& rod,
-                                          const Model& model);
+/// Turning angles [rad] at the nodes that bend: inner nodes, and ends that are clamped.
+std::unique_ptr<RodField> make_turning_angle_field(const RodLayout& rod, const Model& model);
+
+// Curvature and moment: at all nodes and wherever loads between them make a kink or a jump, linear
+// in between, of order 2 up to the ends (output/moment_recovery.hpp). A rod without bending
+// stiffness has them at its inner nodes alone.
+
+/// In [1/m].
+std::unique_ptr<RodField> make_curvature_field(const RodLayout& rod, const Model& model);
+/// In [N m].
+std::unique_ptr<RodField> make_moment_field(const RodLayout& rod, const Model& model);
 
 }  // namespace der

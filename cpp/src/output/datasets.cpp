@@ -4,15 +4,16 @@
 
 #include <utility>
 
+#include "der/output/run_arrays.hpp"
+
 namespace der {
 namespace {
 
 /// Shapes one behind the other: number x nodes x dimension.
 template <class M>
-Dataset shapes(const std::string& name, const std::string& unit, const Model& model,
-               const std::vector<M>& modes) {
+Dataset shapes(const std::string& name, const Model& model, const std::vector<M>& modes) {
   Dataset result{name,
-                 unit,
+                 unit_of_array(name),
                  {modes.size(), static_cast<std::size_t>(model.num_nodes),
                   static_cast<std::size_t>(model.dimension)},
                  {}};
@@ -24,9 +25,8 @@ Dataset shapes(const std::string& name, const std::string& unit, const Model& mo
 }
 
 template <class T, class F>
-Dataset column(const std::string& name, const std::string& unit, const std::vector<T>& items,
-               F&& value) {
-  Dataset result{name, unit, {items.size()}, {}};
+Dataset column(const std::string& name, const std::vector<T>& items, F&& value) {
+  Dataset result{name, unit_of_array(name), {items.size()}, {}};
   for (const T& item : items) result.values.push_back(static_cast<double>(value(item)));
   return result;
 }
@@ -54,27 +54,27 @@ std::vector<Dataset> datasets(const Simulation& simulation, const RunOutcome& ou
   if (!outcome.modes.empty()) {
     const auto& modes = outcome.modes;
     result.push_back(
-        column("modes/frequencies", "Hz", modes, [](const Mode& mode) { return mode.frequency; }));
-    result.push_back(column("modes/growth_rates", "1/s", modes,
-                            [](const Mode& mode) { return mode.growth_rate; }));
-    result.push_back(shapes("modes/shapes", "kg^-1/2 m", model, modes));
+        column("modes/frequencies", modes, [](const Mode& mode) { return mode.frequency; }));
+    result.push_back(
+        column("modes/growth_rates", modes, [](const Mode& mode) { return mode.growth_rate; }));
+    result.push_back(shapes("modes/shapes", model, modes));
   }
   if (!outcome.buckling.modes.empty()) {
     const LinearBuckling& buckling = outcome.buckling;
-    const auto add = [&](const char* name, const char* unit, double times) {
-      result.push_back(column(name, unit, buckling.modes, [times](const BucklingMode& mode) {
+    const auto add = [&](const char* name, double times) {
+      result.push_back(column(name, buckling.modes, [times](const BucklingMode& mode) {
         return times * mode.load_factor;
       }));
     };
-    add("buckling/load_factors", "", 1.0);
-    add("buckling/rotations", "rad", buckling.rotation);
-    add("buckling/strains", "", buckling.strain);
-    result.push_back(shapes("buckling/shapes", "", model, buckling.modes));
+    add("buckling/load_factors", 1.0);
+    add("buckling/rotations", buckling.rotation);
+    add("buckling/strains", buckling.strain);
+    result.push_back(shapes("buckling/shapes", model, buckling.modes));
   }
   if (!outcome.path.empty()) {
     const auto points = points_of(outcome);
     const auto add = [&](const std::string& name, auto&& value) {
-      result.push_back(column("path/" + name, "", points, value));
+      result.push_back(column("path/" + name, points, value));
     };
     add("branch", [](const PlacedPoint& p) { return p.first; });
     add("factor", [](const PlacedPoint& p) { return p.second->factor; });

@@ -6,39 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "der/core/error.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/registry.hpp"
 #include "der/model/moment_place.hpp"
 
 namespace der {
 namespace {
-
-/// Which terms a quantity adds up.
-struct Terms {
-  bool kinetic = false;
-  bool stretch = false;
-  bool bend = false;
-  bool spring = false;
-  bool gravity = false;
-
-  [[nodiscard]] bool elastic() const { return stretch || bend || spring; }
-  [[nodiscard]] bool has(EnergyTerm term) const {
-    return (term == EnergyTerm::Stretch && stretch) || (term == EnergyTerm::Bend && bend) ||
-           (term == EnergyTerm::Spring && spring);
-  }
-};
-
-Terms terms_of(const std::string& quantity) {
-  if (quantity == "kinetic_energy") return {true, false, false, false, false};
-  if (quantity == "stretch_energy") return {false, true, false, false, false};
-  if (quantity == "bend_energy") return {false, false, true, false, false};
-  if (quantity == "spring_energy") return {false, false, false, true, false};
-  if (quantity == "elastic_energy") return {false, true, true, true, false};
-  if (quantity == "gravity_energy") return {false, false, false, false, true};
-  if (quantity == "total_energy") return {true, true, true, true, true};
-  throw Error("model_error", "'" + quantity + "' is not an energy");
-}
 
 /// What an energy is read from: the whole model, or a part of it. Its weight is not kept, as along
 /// a continuation the factor of the loads changes it.
@@ -57,33 +30,41 @@ struct Part {
 
 class EnergyReader : public ProbeReader {
  public:
-  EnergyReader(Terms terms, Part part) : terms_(terms), part_(std::move(part)) {}
+  EnergyReader(std::vector<EnergyTerm> terms, Part part)
+      : terms_(std::move(terms)), part_(std::move(part)) {}
 
   double value(const Model& model, const State& state) override {
     double energy = 0.0;
-    if (terms_.kinetic) energy += part_.mass.kinetic_energy(state.velocities);
-    if (terms_.gravity) energy += part_.gravity_energy(model, state.positions);
-    if (terms_.elastic()) energy += elastic(model, state);
+    if (reads(EnergyTerm::Kinetic)) energy += part_.mass.kinetic_energy(state.velocities);
+    if (reads(EnergyTerm::Gravity)) energy += part_.gravity_energy(model, state.positions);
+    if (reads_elastic()) energy += elastic(model, state);
     return energy;
   }
 
  private:
+  [[nodiscard]] bool reads(EnergyTerm term) const {
+    return std::find(terms_.begin(), terms_.end(), term) != terms_.end();
+  }
+  [[nodiscard]] bool reads_elastic() const {
+    return std::any_of(kEnergyTerms.begin(), kEnergyTerms.end(),
+                       [&](const EnergyTermInfo& row) { return row.elastic && reads(row.term); });
+  }
+
   double elastic(const Model& model, const State& state) {
     configuration_of(model, state, here_);
     double energy = 0.0;
     for_each_list(part_.elements, [&](const auto& list) {
       constexpr EnergyTerm term = std::decay_t<decltype(list)>::KernelType::kTerm;
-      if (terms_.has(term)) energy += element_energy(list, here_);
+      if (reads(term)) energy += element_energy(list, here_);
     });
     for (const RodLayout& rod : part_.rods) {
-      const CellEnergies cells = cell_energies(rod, model, here_);
-      if (terms_.bend) energy += cells.bend;
-      if (terms_.spring) energy += cells.spring;
+      const Energies cells = cell_energies(rod, model, here_);
+      for (const EnergyTerm term : terms_) energy += cells[term];
     }
     return energy;
   }
 
-  Terms terms_;
+  std::vector<EnergyTerm> terms_;
   Part part_;
   Configuration here_;
 };
@@ -126,10 +107,10 @@ Part whole(const Model& model) {
 
 }  // namespace
 
-std::unique_ptr<ProbeReader> make_energy_reader(const std::string& quantity,
+std::unique_ptr<ProbeReader> make_energy_reader(const std::vector<EnergyTerm>& terms,
                                                 const std::optional<std::string>& rod,
                                                 const Model& model) {
-  return std::make_unique<EnergyReader>(terms_of(quantity),
+  return std::make_unique<EnergyReader>(terms,
                                         rod ? part_of(model.rod(*rod), model) : whole(model));
 }
 

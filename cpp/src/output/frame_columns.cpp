@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "der/output/io_error.hpp"
+#include "der/output/run_arrays.hpp"
 #include "output/checksum.hpp"
 
 namespace der {
@@ -25,10 +26,8 @@ hsize_t chunk_rows(hsize_t row_bytes, hsize_t total_rows) {
   return std::max<hsize_t>(1, std::min(wanted, largest));
 }
 
-template <std::size_t N>
-std::vector<std::string> texts(const std::array<const char*, N>& names) {
-  return {names.begin(), names.end()};
-}
+constexpr const char* kEnergies = "energies";
+constexpr const char* kWork = "work";
 
 std::vector<std::size_t> alphabetical(const std::vector<std::string>& names) {
   std::vector<std::size_t> order(names.size());
@@ -79,8 +78,8 @@ FrameRow row_of(const FrameData& data, std::size_t frame, std::size_t dofs, std:
           data.steps[frame],
           data.positions.data() + frame * dofs,
           data.velocities.data() + frame * dofs,
-          data.energies.data() + frame * kEnergyNames.size(),
-          data.work.data() + frame * kLedgerNames.size(),
+          data.energies.data() + frame * kEnergyTerms.size(),
+          data.work.data() + frame * kLedger.size(),
           data.probes.data() + frame * probes};
 }
 
@@ -95,6 +94,14 @@ FrameColumns::Group FrameColumns::create_group(hid_t file, const std::string& na
         Column<double>::create(handle.id(), names[i], {}, units[i], chunk_rows));
   }
   return group;
+}
+
+FrameColumns::Group FrameColumns::create_group(hid_t file, const std::string& name,
+                                               hsize_t chunk_rows) {
+  const std::vector<std::string> names = names_in_group(name);
+  std::vector<std::string> units;
+  for (const std::string& column : names) units.push_back(unit_of_array(name + '/' + column));
+  return create_group(file, name, names, units, chunk_rows);
 }
 
 FrameColumns::Group FrameColumns::open_group(hid_t file, const std::string& name,
@@ -115,16 +122,16 @@ FrameColumns FrameColumns::create(hid_t file, const FrameLayout& layout, hsize_t
   const hsize_t vector_chunk = chunk_rows(sizeof(double) * row[0] * row[1], frames);
   // One chunk for all times: its place in the index is written with the first frame and never
   // again.
-  columns.time_ =
-      Column<double>::create(file, "time", {}, "s", std::min(frames, kLargestTimeChunk));
-  columns.step_ = Column<std::int64_t>::create(file, "step", {}, "", scalar_chunk);
-  columns.positions_ = Column<double>::create(file, "positions", row, "m", vector_chunk);
-  columns.velocities_ = Column<double>::create(file, "velocities", row, "m/s", vector_chunk);
-  const auto in_joule = [](std::size_t count) { return std::vector<std::string>(count, "J"); };
-  columns.energies_ = create_group(file, "energies", texts(kEnergyNames),
-                                   in_joule(kEnergyNames.size()), scalar_chunk);
-  columns.work_ =
-      create_group(file, "work", texts(kLedgerNames), in_joule(kLedgerNames.size()), scalar_chunk);
+  columns.time_ = Column<double>::create(file, "time", {}, unit_of_array("time"),
+                                         std::min(frames, kLargestTimeChunk));
+  columns.step_ =
+      Column<std::int64_t>::create(file, "step", {}, unit_of_array("step"), scalar_chunk);
+  columns.positions_ =
+      Column<double>::create(file, "positions", row, unit_of_array("positions"), vector_chunk);
+  columns.velocities_ =
+      Column<double>::create(file, "velocities", row, unit_of_array("velocities"), vector_chunk);
+  columns.energies_ = create_group(file, kEnergies, scalar_chunk);
+  columns.work_ = create_group(file, kWork, scalar_chunk);
   columns.probes_ =
       create_group(file, "probes", layout.probe_names, layout.probe_units, scalar_chunk);
   columns.checksum_ = Column<std::uint64_t>::create(file, "checksum", {}, "", scalar_chunk);
@@ -148,8 +155,8 @@ FrameColumns FrameColumns::open(hid_t file, const FrameLayout& layout) {
   columns.step_ = Column<std::int64_t>::open(file, "step", {});
   columns.positions_ = Column<double>::open(file, "positions", row);
   columns.velocities_ = Column<double>::open(file, "velocities", row);
-  columns.energies_ = open_group(file, "energies", texts(kEnergyNames));
-  columns.work_ = open_group(file, "work", texts(kLedgerNames));
+  columns.energies_ = open_group(file, kEnergies, names_in_group(kEnergies));
+  columns.work_ = open_group(file, kWork, names_in_group(kWork));
   columns.probes_ = open_group(file, "probes", layout.probe_names);
   columns.checksum_ = Column<std::uint64_t>::open(file, "checksum", {});
   return columns;

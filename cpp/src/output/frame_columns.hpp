@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -81,6 +80,8 @@ class FrameColumns {
   static Group create_group(hid_t file, const std::string& name,
                             const std::vector<std::string>& names,
                             const std::vector<std::string>& units, hsize_t chunk_rows);
+  /// With the names and units of `run_arrays`.
+  static Group create_group(hid_t file, const std::string& name, hsize_t chunk_rows);
   static Group open_group(hid_t file, const std::string& name,
                           const std::vector<std::string>& names);
   [[nodiscard]] std::uint64_t checksum(const FrameRow& row) const;

@@ -14,8 +14,8 @@ void MemorySink::write(const Frame& frame) {
   steps.push_back(frame.step);
   append(positions, frame.positions);
   append(velocities, frame.velocities);
-  const auto energies_now = by_name(frame.energies);
-  energies.insert(energies.end(), energies_now.begin(), energies_now.end());
+  const auto& terms = frame.energies.values();
+  energies.insert(energies.end(), terms.begin(), terms.end());
   const auto works = ledger(frame.work, frame.energies);
   work.insert(work.end(), works.begin(), works.end());
   append(probes, frame.probes);

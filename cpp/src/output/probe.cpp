@@ -14,14 +14,8 @@
 namespace der {
 namespace {
 
-struct SampleWeight {
-  std::size_t sample = 0;
-  double weight = 0.0;
-};
-using Weights = std::vector<SampleWeight>;
-
 /// Linear between the two samples nearest to `s`, and beyond the outermost ones.
-Weights linear_weights(const std::vector<double>& arc, double s) {
+SampleWeights linear_weights(const std::vector<double>& arc, double s) {
   if (arc.size() == 1) return {{0, 1.0}};
   const auto above =
       static_cast<std::size_t>(std::upper_bound(arc.begin(), arc.end(), s) - arc.begin());
@@ -31,8 +25,8 @@ Weights linear_weights(const std::vector<double>& arc, double s) {
 }
 
 /// Linear between the samples on one side of `s`, which may be a place where the field jumps.
-Weights one_sided_weights(const std::vector<double>& arc, double s, scenario::Side side,
-                          double same_place) {
+SampleWeights one_sided_weights(const std::vector<double>& arc, double s, scenario::Side side,
+                                double same_place) {
   if (arc.size() == 1) return {{0, 1.0}};
   if (side == scenario::Side::Before) {
     const auto here = std::lower_bound(arc.begin(), arc.end(), s - same_place);
@@ -48,49 +42,18 @@ Weights one_sided_weights(const std::vector<double>& arc, double s, scenario::Si
   return linear_weights(arc, s);
 }
 
-double weighted_sum(const Weights& weights, const RodField& field, const Model& model,
-                    const State& state) {
-  double sum = 0.0;
-  for (const auto& [sample, weight] : weights) sum += weight * field.sample(sample, model, state);
-  return sum;
-}
-
 /// A field at one place.
 class PointReader : public ProbeReader {
  public:
-  PointReader(std::unique_ptr<RodField> field, Weights weights)
+  PointReader(std::unique_ptr<RodField> field, SampleWeights weights)
       : field_(std::move(field)), weights_(std::move(weights)) {}
   double value(const Model& model, const State& state) override {
-    return weighted_sum(weights_, *field_, model, state);
+    return field_->interpolate(weights_, model, state);
   }
 
  private:
   std::unique_ptr<RodField> field_;
-  Weights weights_;
-};
-
-/// The speed between nodes: of the interpolated velocity, not the interpolated speed, which has a
-/// kink where the velocity changes its sign.
-class SpeedReader : public ProbeReader {
- public:
-  SpeedReader(std::vector<Weighted> weights, const RodLayout& rod)
-      : weights_(std::move(weights)), nodes_(rod.nodes) {}
-  double value(const Model& model, const State& state) override {
-    double squared = 0.0;
-    for (int c = 0; c < model.dimension; ++c) {
-      double component = 0.0;
-      for (const auto& [place, weight] : weights_) {
-        const Index node = nodes_[static_cast<std::size_t>(place)];
-        component += weight * state.velocities[model.dof(node, c)];
-      }
-      squared += component * component;
-    }
-    return std::sqrt(squared);
-  }
-
- private:
-  std::vector<Weighted> weights_;
-  std::vector<Index> nodes_;
+  SampleWeights weights_;
 };
 
 /// Extreme value of the parabola through three points with ascending `s`, the middle one being the
@@ -170,72 +133,65 @@ class ExtremeReader : public ProbeReader {
   void evaluate(const Model& model, const State& state) {
     std::size_t next = 0;
     if (!start_.empty()) {
-      values_[next++] = sign_ * weighted_sum(start_, *field_, model, state);
+      values_[next++] = sign_ * field_->interpolate(start_, model, state);
     }
     for (std::size_t i = 0; i < field_->arc_length().size(); ++i) {
       values_[next++] = sign_ * field_->sample(i, model, state);
     }
-    if (!end_.empty()) values_[next] = sign_ * weighted_sum(end_, *field_, model, state);
+    if (!end_.empty()) values_[next] = sign_ * field_->interpolate(end_, model, state);
   }
 
   std::unique_ptr<RodField> field_;
   bool parabola_at_ends_;           // of fields that are smooth up to the ends: positions
   std::vector<double> arc_length_;  // of the samples and the ends [m]
-  Weights start_, end_;             // empty where the end is a sample
+  SampleWeights start_, end_;       // empty where the end is a sample
   double sign_;
   std::vector<double> values_;  // times sign_, so that the largest one is looked for
 };
 
-Weights sample_weights(const std::vector<Weighted>& weights) {
-  Weights result;
+SampleWeights sample_weights(const std::vector<Weighted>& weights) {
+  SampleWeights result;
   for (const auto& [place, weight] : weights) {
     result.push_back({static_cast<std::size_t>(place), weight});
   }
   return result;
 }
 
-std::unique_ptr<RodField> make_probed_field(const scenario::Probe& probe, const RodLayout& rod,
-                                            const Model& model) {
-  auto field = make_rod_field(probe.quantity, rod, model);
+std::unique_ptr<RodField> make_probed_field(const scenario::Probe& probe, const Quantity& quantity,
+                                            const RodLayout& rod, const Model& model) {
+  auto field = quantity.make_field(rod, model);
   if (field->arc_length().empty()) {
     throw Error("model_error", "probe '" + probe.name + "': rod '" + rod.name + "' bends nowhere");
   }
   return field;
 }
 
-Weights point_weights(const scenario::Probe& probe, QuantityKind kind, const RodField& field,
-                      const RodLayout& rod, double s) {
-  switch (kind) {
-    case QuantityKind::Position:
-    case QuantityKind::Velocity:
-      return sample_weights(node_weights(rod, s));
-    case QuantityKind::Bend:
-    case QuantityKind::Edge:
-      return one_sided_weights(field.arc_length(), s, probe.side.value_or(scenario::Side::After),
-                               rod.same_place());
-    case QuantityKind::Turn:
-    case QuantityKind::Energy:
-      break;
+SampleWeights point_weights(const scenario::Probe& probe, QuantityKind kind, const RodField& field,
+                            const RodLayout& rod, double s) {
+  if (kind == QuantityKind::Position || kind == QuantityKind::Velocity) {
+    return sample_weights(node_weights(rod, s));
+  }
+  if (can_jump(kind)) {
+    return one_sided_weights(field.arc_length(), s, probe.side.value_or(scenario::Side::After),
+                             rod.same_place());
   }
   return linear_weights(field.arc_length(), s);
 }
 
-std::unique_ptr<ProbeReader> make_point_reader(const scenario::Probe& probe, QuantityKind kind,
-                                               const RodLayout& rod, const Model& model) {
-  const double s = arc_length_of(*probe.at, rod);
-  if (probe.quantity == "speed") return std::make_unique<SpeedReader>(node_weights(rod, s), rod);
-  auto field = make_probed_field(probe, rod, model);
-  Weights weights = point_weights(probe, kind, *field, rod, s);
-  return std::make_unique<PointReader>(std::move(field), std::move(weights));
-}
-
-std::unique_ptr<ProbeReader> make_reader(const scenario::Probe& probe, QuantityKind kind,
+std::unique_ptr<ProbeReader> make_reader(const scenario::Probe& probe, const Quantity& quantity,
                                          const Model& model) {
-  if (kind == QuantityKind::Energy) return make_energy_reader(probe.quantity, probe.rod, model);
+  if (quantity.kind == QuantityKind::Energy) {
+    return make_energy_reader(quantity.energies, probe.rod, model);
+  }
   const RodLayout& rod = model.rod(probe.rod.value());
-  if (probe.over == scenario::Reduce::None) return make_point_reader(probe, kind, rod, model);
-  return std::make_unique<ExtremeReader>(make_probed_field(probe, rod, model), rod, probe.over,
-                                         kind == QuantityKind::Position);
+  auto field = make_probed_field(probe, quantity, rod, model);
+  if (probe.over != scenario::Reduce::None) {
+    return std::make_unique<ExtremeReader>(std::move(field), rod, probe.over,
+                                           quantity.kind == QuantityKind::Position);
+  }
+  const double s = arc_length_of(*probe.at, rod);
+  SampleWeights weights = point_weights(probe, quantity.kind, *field, rod, s);
+  return std::make_unique<PointReader>(std::move(field), std::move(weights));
 }
 
 }  // namespace
@@ -247,7 +203,7 @@ Probe::Probe(const scenario::Probe& probe, const Model& model) : name_(probe.nam
                 "probe '" + probe.name + "': there is no quantity '" + probe.quantity + "'");
   }
   unit_ = quantity->unit;
-  reader_ = make_reader(probe, quantity->kind, model);
+  reader_ = make_reader(probe, *quantity, model);
 }
 
 std::vector<Probe> make_probes(const scenario::Scene& scene, const Model& model) {

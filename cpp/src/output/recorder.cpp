@@ -10,7 +10,7 @@ namespace der {
 namespace {
 
 bool is_finite(const Energies& e) {
-  const auto values = by_name(e);
+  const auto& values = e.values();
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 

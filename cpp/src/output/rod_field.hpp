@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <utility>
@@ -9,6 +10,13 @@
 #include "der/model/state.hpp"
 
 namespace der {
+
+/// Part of a sample in a value between samples.
+struct SampleWeight {
+  std::size_t sample = 0;
+  double weight = 0.0;
+};
+using SampleWeights = std::vector<SampleWeight>;
 
 /// A quantity along a rod, sampled where the discrete rod has it: at nodes, at the middles of
 /// edges, or, of bending, where it has a kink as well.
@@ -25,6 +33,9 @@ class RodField {
   /// The value of sample number `i`.
   [[nodiscard]] virtual double sample(std::size_t i, const Model& model,
                                       const State& state) const = 0;
+  /// The value at a place between samples, or beyond them: their weighted sum.
+  [[nodiscard]] virtual double interpolate(const SampleWeights& weights, const Model& model,
+                                           const State& state) const;
   /// False if values between the samples have no meaning.
   [[nodiscard]] virtual bool continuous() const { return true; }
   /// False if the quantity may have a kink or jump at sample number `i`.

@@ -148,10 +148,9 @@ void RunFile::Writer::truncate(hsize_t frames) {
 }
 
 void RunFile::Writer::add(const Frame& frame) {
-  const auto energies = by_name(frame.energies);
   const auto works = ledger(frame.work, frame.energies);
   frames_.push({frame.time, frame.step, frame.positions.data(), frame.velocities.data(),
-                energies.data(), works.data(), frame.probes.data()});
+                frame.energies.values().data(), works.data(), frame.probes.data()});
   ahead_of_checkpoint_ = true;
 }
 

@@ -1,10 +1,11 @@
 #include "output/run_format.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "der/output/run_arrays.hpp"
 #include "der/version.hpp"
 
 namespace der {
@@ -15,30 +16,20 @@ using hdf5::Handle;
 /// Room for any status, so that the last one is written over the first.
 constexpr std::size_t kStatusLength = 32;
 
-/// The groups of `Dataset`s, and what each holds: one value an item, but for shapes.
-struct DataGroup {
-  const char* name;
-  std::array<const char*, 5> columns;  // null beyond the last one
-  bool has_shapes;
-};
-constexpr std::array<DataGroup, 3> kDataGroups{{
-    {"modes", {"frequencies", "growth_rates"}, true},
-    {"buckling", {"load_factors", "rotations", "strains"}, true},
-    {"path", {"arc", "branch", "event", "factor", "unstable_directions"}, false},
-}};
+/// The array of a group of modes that has a vector for each node, not one value for each mode.
+constexpr const char* kShapes = "shapes";
 
 template <class T>
-void write_list(hid_t group, const std::string& name, const std::vector<T>& values,
-                const std::string& unit) {
-  write_array(group, name, Array<T>{{values.size()}, values}, unit);
+void write_rod_array(hid_t group, const std::string& name, const std::vector<T>& values) {
+  write_array(group, name, Array<T>{{values.size()}, values}, unit_of_array("rods/" + name));
 }
 
 void write_rod(hid_t rods, const RodLayout& rod) {
   const Handle group = hdf5::create_group(rods, rod.name);
-  write_list(group.id(), "nodes", rod.nodes, "");
-  write_list(group.id(), "arc_length", rod.arc_length, "m");
-  write_list(group.id(), "rest_turning_angle", rod.rest_turning_angle, "rad");
-  write_list(group.id(), "sphere_radius", rod.sphere_radius, "m");
+  write_rod_array(group.id(), "nodes", rod.nodes);
+  write_rod_array(group.id(), "arc_length", rod.arc_length);
+  write_rod_array(group.id(), "rest_turning_angle", rod.rest_turning_angle);
+  write_rod_array(group.id(), "sphere_radius", rod.sphere_radius);
   const bool is_angle = rod.curvature == scenario::CurvatureMeasure::Angle;
   hdf5::write_attribute(group.id(), "curvature", std::string(is_angle ? "angle" : "tangent"));
   hdf5::write_attribute(group.id(), "radius", rod.draw_radius);
@@ -140,18 +131,17 @@ void write_datasets(hid_t file, const std::vector<Dataset>& datasets) {
 
 std::vector<Dataset> read_datasets(hid_t file, hsize_t nodes, hsize_t dimension, hsize_t frames) {
   std::vector<Dataset> datasets;
-  for (const DataGroup& kind : kDataGroups) {
-    if (!hdf5::exists(file, kind.name)) continue;
-    const Handle group = hdf5::open_group(file, kind.name);
-    const hsize_t items = kind.has_shapes
-                              ? read_array<double>(group.id(), kind.columns.front()).values.size()
-                              : frames;
-    for (const char* column : kind.columns) {
-      if (column == nullptr) break;
-      datasets.push_back(read_dataset(group.id(), kind.name, column, {items}));
-    }
-    if (kind.has_shapes) {
-      datasets.push_back(read_dataset(group.id(), kind.name, "shapes", {items, nodes, dimension}));
+  for (const char* kind : {"modes", "buckling", "path"}) {
+    if (!hdf5::exists(file, kind)) continue;
+    const Handle group = hdf5::open_group(file, kind);
+    const std::vector<std::string> names = names_in_group(kind);
+    const bool has_shapes = std::find(names.begin(), names.end(), kShapes) != names.end();
+    const hsize_t items =
+        has_shapes ? read_array<double>(group.id(), names.front()).values.size() : frames;
+    for (const std::string& name : names) {
+      const std::vector<hsize_t> shape =
+          name == kShapes ? std::vector<hsize_t>{items, nodes, dimension} : std::vector{items};
+      datasets.push_back(read_dataset(group.id(), kind, name, shape));
     }
   }
   check_path(datasets);

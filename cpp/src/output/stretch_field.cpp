@@ -22,6 +22,8 @@ std::vector<Weighted> line_weights(const std::vector<double>& middles, Index fir
   return {{right - 1, 1.0 - share}, {right, share}};
 }
 
+/// The strain, times a stiffness [N] (1: the strain itself).
+///
 /// The tension in an edge of the chain is that of the loads beyond it as they are spread over the
 /// nodes. It is brought to that of the true loads beyond the edge's middle. From the middles it
 /// goes on linearly up to the next place where it may jump or have a kink: a part of the rod
@@ -256,9 +258,12 @@ class StretchField : public RodField {
 
 }  // namespace
 
-std::unique_ptr<RodField> make_stretch_field(double stiffness, const RodLayout& rod,
-                                             const Model& model) {
-  return StretchField::make(stiffness, rod, model);
+std::unique_ptr<RodField> make_strain_field(const RodLayout& rod, const Model& model) {
+  return StretchField::make(1.0, rod, model);
+}
+
+std::unique_ptr<RodField> make_tension_field(const RodLayout& rod, const Model& model) {
+  return StretchField::make(rod.EA, rod, model);
 }
 
 }  // namespace der

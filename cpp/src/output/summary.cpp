@@ -37,15 +37,13 @@ Json probes_json(const Recorder& recorder) {
 
 Json energies_json(const Energies& e) {
   Json energies = Json::object();
-  const auto values = by_name(e);
-  for (std::size_t i = 0; i < values.size(); ++i) energies[kEnergyNames[i]] = values[i];
+  for (const EnergyTermInfo& row : kEnergyTerms) energies[row.name] = e[row.term];
   return energies;
 }
 
 Json work_json(const Work& work, const Energies& now) {
   Json json;
-  const auto values = ledger(work, now);
-  for (std::size_t i = 0; i < values.size(); ++i) json[kLedgerNames[i]] = values[i];
+  for (const LedgerEntry& row : kLedger) json[row.name] = row.value(work, now);
   return json;
 }
 

@@ -1,3 +1,5 @@
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -78,6 +80,16 @@ void check_integrator(const TimeText& given, Time& time, Complaints& complaints)
   }
 }
 
+/// "curvature, moment, strain and tension".
+std::string quantities_that_jump() {
+  std::vector<std::string> names;
+  for (const Quantity& quantity : quantities()) {
+    if (can_jump(quantity.kind)) names.push_back(quantity.name);
+  }
+  const auto last = names.end() - 1;
+  return fmt::format("{} and {}", fmt::join(names.begin(), last, ", "), *last);
+}
+
 /// Where a probe can stand, by the kind of its quantity.
 class ProbeCheck {
  public:
@@ -117,10 +129,9 @@ class ProbeCheck {
   }
 
   void check_along(int rod, QuantityKind kind) {
-    if (probe_.side && kind != QuantityKind::Bend && kind != QuantityKind::Edge) {
-      complain(path_ / "side",
-               fmt::format("'{}' has no sides: only curvature, moment, strain and tension jump",
-                           probe_.quantity));
+    if (probe_.side && !can_jump(kind)) {
+      complain(path_ / "side", fmt::format("'{}' has no sides: only {} jump", probe_.quantity,
+                                           quantities_that_jump()));
     } else if (probe_.side && !probe_.at) {
       complain(path_ / "side", "a side is that of a place: it goes with 'at'");
     }

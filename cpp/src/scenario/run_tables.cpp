@@ -22,7 +22,7 @@ Format<std::string> quantity_format() {
   std::vector<Word> names;
   for (const Quantity& quantity : quantities()) {
     const std::string unit = quantity.unit.empty() ? "" : " [" + quantity.unit + "]";
-    names.push_back({quantity.name, quantity.doc + unit});
+    names.push_back({quantity.name, quantity.meaning + unit});
   }
   return one_of(names, {{"z", kNoSpatialRods}, {"vz", kNoSpatialRods}, {"twist", kNoSpatialRods}});
 }

@@ -113,14 +113,15 @@ void EnergyWatch::keep(const State& state) {
 void EnergyWatch::look(State& state) {
   configuration_of(model_, state, here_);
   const Energies now = energies(model_, here_, state.velocities);
+  const double kinetic = now[EnergyTerm::Kinetic];
   const Work& work = state.work;
   EnergyAudit& audit = state.audit;
   const double created = -numerical_loss(work, now) - audit.written;
   const double out_of_nothing = std::max(created, 0.0);
-  audit.exchanged =
-      std::max({audit.exchanged, now.kinetic - out_of_nothing, work.drag - out_of_nothing,
-                std::abs(work.loads), std::abs(work.supports)});
-  const double held = std::abs(work.start) + now.kinetic + now.elastic() + std::abs(now.gravity);
+  audit.exchanged = std::max({audit.exchanged, kinetic - out_of_nothing, work.drag - out_of_nothing,
+                              std::abs(work.loads), std::abs(work.supports)});
+  const double held =
+      std::abs(work.start) + kinetic + now.elastic() + std::abs(now[EnergyTerm::Gravity]);
   if (!(created > std::max(kRounding * held, rounding_))) return;
   audit.created = std::max(audit.created, created);
   if (audit.unreliable_from < 0.0 && is_doubtful(audit)) audit.unreliable_from = state.time;

@@ -104,13 +104,11 @@ StableStep StableStepBound::explain(const Configuration& here) {
     return result;
   }
   double largest = 0.0;
-  for (const auto& [term, name] :
-       {std::pair{EnergyTerm::Stretch, "stretch"}, std::pair{EnergyTerm::Bend, "bend"},
-        std::pair{EnergyTerm::Spring, "spring"}}) {
-    const double bound = term_bound(term, node, here);
+  for (const EnergyTermInfo& row : kEnergyTerms) {
+    const double bound = row.elastic ? term_bound(row.term, node, here) : 0.0;
     if (bound <= largest) continue;
     largest = bound;
-    result.limited_by = name;
+    result.limited_by = row.name;
   }
   double stiffest = -1.0;
   for (Index i = 0; i < pattern_.size; ++i) {

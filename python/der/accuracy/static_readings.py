@@ -13,10 +13,11 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from der._core import array_units
 from der.analyses import Path
 from der.result import Result
-from der.scene_loads import continuation_settings
 
+_UNITS = array_units()
 #: The factor is where the scene wants it, to this share of its range.
 _SAME_FACTOR = 1e-9
 
@@ -77,9 +78,9 @@ def _finals(result: Result) -> Iterator[Reading]:
         rates = zip(result.modes.frequencies, result.modes.growth_rates, strict=True)
         for number, (frequency, growth) in enumerate(rates, 1):
             if growth > 0.0:
-                yield _final(f"growth rate {number}", "1/s", growth)
+                yield _final(f"growth rate {number}", _UNITS["modes/growth_rates"], growth)
             else:
-                yield _final(f"frequency {number}", "Hz", frequency)
+                yield _final(f"frequency {number}", _UNITS["modes/frequencies"], frequency)
     if result.buckling is not None:
         for number, factor in enumerate(result.buckling.load_factors, 1):
             yield _final(f"load factor {number}", "", factor)
@@ -107,8 +108,8 @@ def _places(result: Result, path: Path) -> list[tuple[str, int]]:
         for number, row in enumerate(path.rows(event), 1)
     ]
     last = int(np.flatnonzero(path.branch == 0)[-1])
-    settings = continuation_settings(result.scenario.to_dict())
-    start, to = float(settings.get("from", 0.0)), float(settings.get("to", 1.0))
+    assert result.scenario.factor_range is not None
+    start, to = result.scenario.factor_range
     for what, factor in (("end", to), ("opposite limit", 2.0 * start - to)):
         if abs(path.factor[last] - factor) <= _SAME_FACTOR * abs(to - start):
             places.append((what, last))

@@ -9,14 +9,14 @@ from typing import Any, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-from der.analyses import DATA_UNITS
-from der.fields import FIELD_UNITS, rod_fields
+from der._core import array_units
+from der.fields import FIELDS, rod_fields
 from der.film import mode_shapes
 from der.progress import ProgressFunction
 from der.run_data import RunData
 
 _AXES = "xyz"
-_MODE_UNIT = DATA_UNITS["modes/shapes"]
+_UNITS = array_units()
 
 
 def write_csv(result: RunData, out: Path, progress: ProgressFunction) -> list[Path]:
@@ -43,22 +43,22 @@ def _write_nodes(result: RunData, file: TextIO, progress: ProgressFunction) -> N
             *_frame_titles(result),
             "rod",
             "node",
-            "s [m]",
-            *(f"{axis} [m]" for axis in _AXES[:dimension]),
-            *(f"v{axis} [m/s]" for axis in _AXES[:dimension]),
-            *(f"{name} [{unit}]" for name, unit in FIELD_UNITS.items()),
+            _title("s", _UNITS["rods/arc_length"]),
+            *(_title(axis, _UNITS["positions"]) for axis in _AXES[:dimension]),
+            *(_title(f"v{axis}", _UNITS["velocities"]) for axis in _AXES[:dimension]),
+            *(_title(name, quantity.unit) for name, quantity in FIELDS.items()),
         ]
     )
-    rods = [(fields, fields.named()) for fields in rod_fields(result)]
+    rods = rod_fields(result)
     count = len(result.times)
     for frame, start in enumerate(_frame_columns(result)):
-        for fields, named in rods:
+        for fields in rods:
             table = np.column_stack(
                 [
                     fields.rod.arc_lengths,
                     fields.positions[frame],
                     fields.velocities[frame],
-                    *(values[frame] for values in named.values()),
+                    *(values[frame] for values in fields.at_nodes.values()),
                 ]
             )
             rows = zip(fields.rod.nodes.tolist(), table.tolist(), strict=True)
@@ -68,9 +68,7 @@ def _write_nodes(result: RunData, file: TextIO, progress: ProgressFunction) -> N
 
 def _write_probes(result: RunData, file: TextIO) -> None:
     writer = csv.writer(file)
-    titles = [
-        f"{name} [{probe.unit}]" if probe.unit else name for name, probe in result.probes.items()
-    ]
+    titles = [_title(name, probe.unit) for name, probe in result.probes.items()]
     writer.writerow([*_frame_titles(result), *titles])
     columns: list[NDArray[np.float64]] = [np.asarray(probe) for probe in result.probes.values()]
     for frame, start in enumerate(_frame_columns(result)):
@@ -79,14 +77,16 @@ def _write_probes(result: RunData, file: TextIO) -> None:
 
 def _write_modes(result: RunData, file: TextIO) -> None:
     if result.modes is not None:
-        kind, values, unit = "frequency [Hz]", result.modes.frequencies, _MODE_UNIT
+        kind, values = _title("frequency", _UNITS["modes/frequencies"]), result.modes.frequencies
+        unit = _UNITS["modes/shapes"]
     else:
         assert result.buckling is not None
         # Buckling modes have no size: the largest displacement counts as 1.
         kind, values, unit = "load factor", result.buckling.load_factors, "1"
-    shapes = [f"d{axis} [{unit}]" for axis in _AXES[: result.positions.shape[2]]]
+    shapes = [_title(f"d{axis}", unit) for axis in _AXES[: result.positions.shape[2]]]
     writer = csv.writer(file)
-    writer.writerow(["mode", kind, "rod", "node", "s [m]", *shapes])
+    place = _title("s", _UNITS["rods/arc_length"])
+    writer.writerow(["mode", kind, "rod", "node", place, *shapes])
     for number, (shape, value) in enumerate(zip(mode_shapes(result), values, strict=True), 1):
         for rod in result.rods:
             rows = np.column_stack([rod.arc_lengths, shape[rod.nodes]]).tolist()
@@ -96,9 +96,13 @@ def _write_modes(result: RunData, file: TextIO) -> None:
             )
 
 
+def _title(name: str, unit: str) -> str:
+    return f"{name} [{unit}]" if unit else name
+
+
 def _frame_titles(result: RunData) -> list[str]:
     if result.path is None:
-        return ["frame", "time [s]"]
+        return ["frame", _title("time", _UNITS["time"])]
     return ["frame", "branch", "load factor"]
 
 

@@ -8,22 +8,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from der.analyses import DATA_UNITS
-from der.fields import FIELD_UNITS, rod_fields
+from der._core import array_units
+from der.fields import FIELDS, rod_fields
 from der.progress import ProgressFunction
 from der.run_data import RunData
 
-#: Unit of each array, of those of a rod by their last name; pure numbers have an empty one.
-_UNITS = {
-    "times": "s",
-    "steps": "",
-    "positions": "m",
-    "velocities": "m/s",
-    "nodes": "",
-    "arc_lengths": "m",
-    "radius": "m",
-    "sphere_radii": "m",
-    "edge_tension": "N",
+#: What arrays are called here whose names in a run file are others.
+_NAMES = {
+    "times": "time",
+    "steps": "step",
+    "nodes": "rods/nodes",
+    "arc_lengths": "rods/arc_length",
+    "radius": "rods/radius",
+    "sphere_radii": "rods/sphere_radius",
 }
 
 
@@ -39,27 +36,40 @@ def write_npz(result: RunData, out: Path, progress: ProgressFunction) -> list[Pa
         "positions": result.positions,
         "velocities": result.velocities,
     }
-    units = _UNITS | FIELD_UNITS
     for group, columns in (("energies", result.energies), ("work", result.work)):
         arrays |= {f"{group}/{name}": values for name, values in columns.items()}
-        units |= {f"{group}/{name}": "J" for name in columns}
-    for name, probe in result.probes.items():
-        arrays[f"probes/{name}"] = np.asarray(probe)
-        units[f"probes/{name}"] = probe.unit
+    arrays |= {f"probes/{name}": np.asarray(probe) for name, probe in result.probes.items()}
     arrays |= result.data
-    units |= {name: DATA_UNITS.get(name, "") for name in result.data}
     for fields in rod_fields(result):
-        prefix = f"rods/{fields.rod.name}"
-        arrays |= {
-            f"{prefix}/nodes": fields.rod.nodes,
-            f"{prefix}/arc_lengths": fields.rod.arc_lengths,
-            f"{prefix}/radius": np.array(fields.rod.radius),
-            f"{prefix}/sphere_radii": fields.rod.sphere_radii,
-            f"{prefix}/edge_tension": fields.edge_tension,
+        rod: dict[str, NDArray[Any]] = {
+            "nodes": fields.rod.nodes,
+            "arc_lengths": fields.rod.arc_lengths,
+            "radius": np.array(fields.rod.radius),
+            "sphere_radii": fields.rod.sphere_radii,
+            **{f"edge_{name}": values for name, values in fields.at_edges.items()},
+            **fields.at_nodes,
         }
-        arrays |= {f"{prefix}/{name}": values for name, values in fields.named().items()}
-    arrays |= {f"units/{name}": np.array(unit) for name, unit in units.items()}
+        arrays |= {f"rods/{fields.rod.name}/{name}": values for name, values in rod.items()}
+    arrays |= {f"units/{name}": np.array(unit) for name, unit in _units(result).items()}
     with out.open("wb") as file:
         np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
     progress(1.0)
     return [out]
+
+
+def _units(result: RunData) -> dict[str, str]:
+    """Return the unit of each array, of those of a rod by their last name."""
+    known = array_units()
+    shared = ("positions", "velocities")
+    grouped = (
+        f"{group}/{name}" for group in ("energies", "work") for name in getattr(result, group)
+    )
+    units = {name: known[name] for name in (*shared, *grouped)}
+    units |= {name: known.get(name, "") for name in result.data}
+    units |= {name: known[in_file] for name, in_file in _NAMES.items()}
+    units |= {f"probes/{name}": probe.unit for name, probe in result.probes.items()}
+    for name, quantity in FIELDS.items():
+        units[name] = quantity.unit
+        if quantity.kind == "edge":
+            units[f"edge_{name}"] = quantity.unit
+    return units

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from der.fields import RodFields, rod_fields
+from der.fields import FIELDS, RodFields, rod_fields
 from der.film import mode_shapes
 from der.progress import ProgressFunction
 from der.run_data import RunData
@@ -64,11 +64,10 @@ def write_vtk(result: RunData, out: Path, progress: ProgressFunction) -> list[Pa
 
 def _point_data(rods: list[RodFields], frame: int) -> PointData:
     data: PointData = {
-        "curvature": np.concatenate([fields.curvature[frame] for fields in rods]),
-        "tension": np.concatenate([fields.tension[frame] for fields in rods]),
+        name: np.concatenate([fields.at_nodes[name][frame] for fields in rods]) for name in FIELDS
     }
     # Rods in a plane do not twist: 0 [1/m], for programs that read it of rods in space as well.
-    data["twist"] = np.zeros_like(data["tension"])
+    data["twist"] = np.zeros(sum(len(fields.rod.nodes) for fields in rods))
     data["velocity"] = _in_space(np.vstack([fields.velocities[frame] for fields in rods]))
     data["radius"] = np.concatenate(
         [np.full(len(fields.rod.nodes), fields.rod.radius) for fields in rods]

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from der._core import springs
+from der.film import MODE_SIZE
 from der.plotting.lengths import label_positions
 from der.plotting.shapes import draw_shapes, limits
 from der.plotting.style import MUTED, PALETTE, axis_label
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_SIZE = 0.12  # largest displacement drawn, against the structure's size
 _SAME = 2e-3  # lines nearer than this, against the extent of the picture, are one
 _ROW = 1.6  # height of a panel [inch]
 _WIDTH = 7.2  # of the figure [inch]
@@ -44,7 +44,7 @@ def plot_modes(result: RunData) -> Figure:
         raise ValueError("the run has found no modes to draw")
     rest = result.positions[-1]
     low, high = limits(result.rods, [rest])
-    size = _SIZE * float(np.max(high - low))
+    size = MODE_SIZE * float(np.max(high - low))
     figure, panels = plt.subplots(
         len(labels),
         1,

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der._core import Rod, springs
-from der.fields import FIELD_UNITS
+from der.fields import FIELDS
 from der.film import Film, failure_text, make_film, mode_shapes, round_speed, speed_text
+from der.natural_sizes import natural_size
 from der.plotting.lengths import LengthScale
 from der.plotting.style import quantity_text
 from der.run_data import RunData
@@ -44,7 +45,6 @@ def make_payload(result: RunData) -> dict[str, Any]:
     symbols = any(loads["loads"]) or bool(found_springs)
     low, high, symbol = _limits(result.rods, positions, scale.metres, symbols)
     span = 0.0 if film.times is None else float(film.times[-1] - film.times[0])
-    noise = _noise(result.rods, span)
     notes = [failure_text(result), result.scenario.analysis if result.scenario.is_static else ""]
     if len(frames) < len(film.captions):
         notes.append(f"{len(frames)} of {len(film.captions)} saved frames")
@@ -68,7 +68,8 @@ def make_payload(result: RunData) -> dict[str, Any]:
         "start": len(frames) - 1 if result.scenario.analysis == "static" else 0,
         "speeds": _speeds(span),
         "fields": {
-            name: _field_range(name, rods, noise[name]) for name, rods in film.fields.items()
+            name: _field_range(FIELDS[name].unit, values, result.rods, span)
+            for name, values in film.fields.items()
         },
         "quantity": next(iter(film.fields), ""),
         "rods": [
@@ -120,34 +121,31 @@ def _speeds(span: float) -> list[tuple[float, str]]:
     return [(speed, speed_text(speed)) for speed in speeds]
 
 
-def _noise(rods: list[Rod], span: float) -> dict[str, float]:
-    """Return for each quantity how much of it may be rounding, by the size of the rods.
+def _noise(rods: list[Rod], unit: str, span: float) -> float:
+    """Return how much of a quantity may be rounding, by the size of the rods.
 
-    A curvature that turns the longest rod by a billionth, a strain of 1e-12, and a speed that takes
-    a rod a billionth of its length along in the whole run (`span` [s]).
+    A strain of 1e-12, a curvature that turns the longest rod by a billionth, a speed that takes a
+    rod a billionth of its length along in the whole run (`span` [s]).
     """
-    length = max(rod.length for rod in rods)
-    return {
-        "curvature": 1e-9 / length,
-        "tension": 1e-12 * max(rod.EA for rod in rods),
-        "speed": 1e-9 * length / span if span > 0.0 else 0.0,
-    }
+    share = 1e-12 if unit in ("", "N") else 1e-9
+    return share * natural_size(rods, unit, span)
 
 
-def _field_range(name: str, rods: list[Array], noise: float) -> dict[str, Any]:
+def _field_range(unit: str, fields: list[Array], rods: list[Rod], span: float) -> dict[str, Any]:
     """Return unit and range of a quantity; one that is constant gets a range around it.
 
-    What varies by no more than `noise` is constant, and what is no larger is 0.
+    What varies by no more than rounding may make is constant, and what is no larger is 0.
     """
-    low = min(float(values.min()) for values in rods)
-    high = max(float(values.max()) for values in rods)
+    noise = _noise(rods, unit, span)
+    low = min(float(values.min()) for values in fields)
+    high = max(float(values.max()) for values in fields)
     size = max(abs(low), abs(high))
     if size <= noise:
         low, high = -1.0, 1.0
     elif high - low <= max(1e-9 * size, noise):
         room = max(0.01 * size, noise)
         low, high = low - room, high + room
-    return {"unit": FIELD_UNITS[name], "low": low, "high": high}
+    return {"unit": unit, "low": low, "high": high}
 
 
 def _rod(rod: Rod, positions: Array, unit: float, fields: dict[str, Array]) -> dict[str, Any]:

@@ -238,6 +238,7 @@
   // What is drawn.
   const state = { frame: 0, chapter: 0, quantity: "", speed: 1, playing: false };
   const range = () => data.fields[state.quantity];
+  const title = (name, unit) => (unit ? `${name} [${unit}]` : name);
   const LIGHT = { ambient: 0.75, diffuse: 0.5, specular: 0.08, roughness: 0.8 };
 
   const colourOf = () =>
@@ -274,7 +275,7 @@
         cmax: range().high,
         showscale: true,
         colorbar: {
-          title: { text: `${state.quantity} [${range().unit}]`, side: "right" },
+          title: { text: title(state.quantity, range().unit), side: "right" },
           thickness: 14,
           len: 0.7,
           outlinewidth: 0,
@@ -287,7 +288,7 @@
   const tip = (rod, frame, i) => {
     const lines = [`${rod.name}, node ${i}`];
     for (const [name, field] of Object.entries(data.fields)) {
-      lines.push(`${name} ${valueOf(rod, frame, name, i).toPrecision(4)} ${field.unit}`);
+      lines.push(`${name} ${valueOf(rod, frame, name, i).toPrecision(4)} ${field.unit}`.trim());
     }
     return lines.join("<br>");
   };

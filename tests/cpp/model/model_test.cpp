@@ -167,7 +167,7 @@ TEST_CASE("held components start in their table's place at rest, free ones with 
   Vector velocities(6);
   velocities << 0.0, 0.0, 2.0, -1.0, 2.0, -1.0;
   CHECK(state.velocities == velocities);
-  CHECK(model.free_dofs == std::vector<Index>{2, 3, 4, 5});
+  CHECK(model.dofs.free() == std::vector<Index>{2, 3, 4, 5});
 }
 
 }  // namespace der::test

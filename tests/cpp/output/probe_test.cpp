@@ -234,14 +234,14 @@ output:
       if (names[i] == name) CHECK(read(3 * i) == doctest::Approx(value).epsilon(1e-12));
     }
   };
-  expect("kinetic_energy", e.kinetic);
-  expect("stretch_energy", e.stretch);
-  expect("bend_energy", e.bend);
+  expect("kinetic_energy", e[EnergyTerm::Kinetic]);
+  expect("stretch_energy", e[EnergyTerm::Stretch]);
+  expect("bend_energy", e[EnergyTerm::Bend]);
   expect("elastic_energy", e.elastic());
-  expect("gravity_energy", e.gravity);
+  expect("gravity_energy", e[EnergyTerm::Gravity]);
   expect("total_energy", e.total());
-  CHECK(e.kinetic > 0.0);
-  CHECK(e.bend > 0.0);
+  CHECK(e[EnergyTerm::Kinetic] > 0.0);
+  CHECK(e[EnergyTerm::Bend] > 0.0);
 }
 
 }  // namespace der::test

@@ -38,7 +38,7 @@ TEST_CASE("frames come at the start, every so many steps, and at the end") {
   CHECK(run.frames.positions.size() == 8 * 6);
   CHECK(run.frames.velocities.size() == 8 * 6);
   CHECK(run.frames.probes.size() == 8 * 4);
-  CHECK(run.frames.energies.size() == 8 * kEnergyNames.size());
+  CHECK(run.frames.energies.size() == 8 * kEnergyTerms.size());
   CHECK(run.outcome.counters.steps == 20);
 }
 
@@ -50,7 +50,7 @@ TEST_CASE("frames hold the state, probes and energies of their instant") {
   CHECK(std::equal(state.velocities.begin(), state.velocities.end(),
                    run.frames.velocities.end() - n));
   CHECK(run.frames.probes[4 * 7 + 1] == state.positions[3]);  // y_mid
-  CHECK(run.frames.energies.back() == energies(run.simulation.model(), state).gravity);
+  CHECK(run.frames.energies.back() == energies(run.simulation.model(), state)[EnergyTerm::Gravity]);
 }
 
 TEST_CASE("extremes are taken over every step, saved or not") {

@@ -126,11 +126,9 @@ void check_same(const ProbeSummary& a, const ProbeSummary& b) {
 }
 
 /// One energy at each frame, from memory.
-std::vector<double> energy_of(const Written& written, const std::string& name) {
-  const std::size_t column =
-      std::size_t(std::find(kEnergyNames.begin(), kEnergyNames.end(), name) - kEnergyNames.begin());
+std::vector<double> energy_of(const Written& written, EnergyTerm term) {
   std::vector<double> values;
-  for (std::size_t i = column; i < written.memory.energies.size(); i += kEnergyNames.size()) {
+  for (std::size_t i = row_of(term); i < written.memory.energies.size(); i += kEnergyTerms.size()) {
     values.push_back(written.memory.energies[i]);
   }
   return values;
@@ -151,8 +149,8 @@ TEST_CASE("a run file holds what a run keeps in memory") {
   CHECK(file.values("time") == written.memory.times);
   CHECK(file.values("positions") == written.memory.positions);
   CHECK(file.values("velocities") == written.memory.velocities);
-  for (const char* name : kEnergyNames) {
-    CHECK(file.values("energies/" + std::string(name)) == energy_of(written, name));
+  for (const EnergyTermInfo& row : kEnergyTerms) {
+    CHECK(file.values("energies/" + std::string(row.name)) == energy_of(written, row.term));
   }
   const auto angle = file.values("probes/angle");
   for (std::size_t i = 0; i < angle.size(); ++i)
@@ -294,7 +292,7 @@ TEST_CASE("a run that outgrows one chunk is written and read back whole") {
   run_to_file(path, scenario, false, written);
   const Reader file(path);
   CHECK(file.values("time") == written.memory.times);
-  CHECK(file.values("energies/bend") == energy_of(written, "bend"));
+  CHECK(file.values("energies/bend") == energy_of(written, EnergyTerm::Bend));
   CHECK(file.values("positions") == written.memory.positions);
 }
 

@@ -1,29 +1,49 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "der/catalog/energy_terms.hpp"
+
 namespace der {
+
+struct Model;
+struct RodLayout;
+class RodField;
 
 /// What a quantity belongs to, and so where a probe of it can stand.
 enum class QuantityKind {
-  Position,  ///< of the rod's points: any arc length
-  Velocity,  ///< of the rod's points: any arc length
+  Position,  ///< of the rod's points: known at nodes, read at any arc length
+  Velocity,  ///< of the rod's points: known at nodes, read at any arc length
   Turn,      ///< of the nodes that bend: inner nodes, and ends that are clamped
   Bend,      ///< of the rod's bending: any arc length, with two values where moments jump
-  Edge,      ///< of the edges: any arc length
+  Edge,      ///< of the edges: any arc length, with two values where forces jump
   Energy,    ///< of a rod or of the whole model: no place
 };
 
-/// One row of the table of quantities that probes can record.
+/// Whether a quantity has two values at the places where it jumps.
+constexpr bool can_jump(QuantityKind kind) {
+  return kind == QuantityKind::Bend || kind == QuantityKind::Edge;
+}
+
+/// Makes the reader of a quantity along a rod (output/rod_field.hpp).
+using RodFieldMaker = std::unique_ptr<RodField> (*)(const RodLayout& rod, const Model& model);
+
+/// One row of the table of quantities: probes, `Replay::along`, exports and views follow it.
 struct Quantity {
   std::string name;
   std::string unit;  ///< "" for a pure number
   QuantityKind kind;
-  std::string doc;
+  std::string meaning;
+  RodFieldMaker make_field = nullptr;  ///< of energies none
+  std::vector<EnergyTerm> energies;    ///< the terms that an energy adds up; else empty
+  bool is_component = false;  ///< of the position or velocity, which exports write as vectors
 };
 
+/// The table. It is written in output/quantities.cpp, where the makers are; this header is all that
+/// the reader of scenes knows of it.
 const std::vector<Quantity>& quantities();
 /// Null for an unknown name.
 const Quantity* find_quantity(std::string_view name);

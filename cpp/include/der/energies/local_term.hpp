@@ -2,14 +2,13 @@
 
 #include <Eigen/Core>
 
+#include "der/catalog/energy_terms.hpp"
+
 namespace der {
 
 /// How much of an element's energy a kernel must work out. Kernels take it as a template argument,
 /// so that a residual evaluation does not pay for a Hessian.
 enum class Derivatives { Energy, Gradient, Hessian };
-
-/// What an element's energy is booked under in reports.
-enum class EnergyTerm { Stretch, Bend, Spring, Load };
 
 /// Energy of one element [J] with its derivatives by the element's own N coordinates. The kernels
 /// fill the members up to the order asked for; of `hessian` only the lower triangle is set.

@@ -23,12 +23,9 @@ MomentPlace& place_of_moments(double s, RodLayout& rod);
 double carried_moment(const MomentPlace& place, const RodLayout& rod, const Model& model,
                       const State& state, double applied);
 
-/// Energies [J] of the cells under the moments of a rod.
-struct CellEnergies {
-  double bend = 0.0;
-  double spring = 0.0;  ///< besides that of the elements
-};
-CellEnergies cell_energies(const RodLayout& rod, const Model& model, const Configuration& here);
+/// Energies [J] of the cells under the moments of a rod: of bending, and of springs besides that of
+/// their elements.
+Energies cell_energies(const RodLayout& rod, const Model& model, const Configuration& here);
 
 /// Work [J] that the loads' moments do on the cells while the tables go from one set of values to
 /// another: with t = share (w + c M/EI) the edges turn by share w, and the rest of the tangent's

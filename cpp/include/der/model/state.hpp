@@ -6,6 +6,7 @@
 
 #include "der/core/types.hpp"
 #include "der/kinematics/configuration.hpp"
+#include "der/model/energies.hpp"
 #include "der/model/ramp.hpp"
 
 namespace der {
@@ -70,20 +71,7 @@ void evaluate_controls(const Model& model, const State& state, double time, Vect
 void configuration_of(const Model& model, const State& state, Configuration& here);
 Configuration configuration_of(const Model& model, const State& state);
 
-/// Energies [J] of a state.
-struct Energies {
-  double kinetic = 0.0;
-  double stretch = 0.0;
-  double bend = 0.0;
-  double spring = 0.0;   ///< of elastic supports
-  double gravity = 0.0;  ///< of the weight, zero at the origin
-  [[nodiscard]] double elastic() const { return stretch + bend + spring; }
-  [[nodiscard]] double total() const { return kinetic + elastic() + gravity; }
-};
-/// The energies as they are recorded.
-constexpr std::array<const char*, 5> kEnergyNames{"kinetic", "stretch", "bend", "spring",
-                                                  "gravity"};
-std::array<double, kEnergyNames.size()> by_name(const Energies& energies);
+/// Energies of a state.
 Energies energies(const Model& model, const State& state);
 /// As above; allocates nothing.
 Energies energies(const Model& model, const Configuration& here, const Vector& velocities);
@@ -98,9 +86,20 @@ void start_ledger(const Model& model, State& state);
 /// that went in. Negative where the scheme made energy.
 double numerical_loss(const Work& work, const Energies& now);
 
-/// The ledger as it is recorded: the works, with the numerical loss.
-constexpr std::array<const char*, 5> kLedgerNames{"loads", "supports", "drag", "numerical",
-                                                  "solver"};
-std::array<double, kLedgerNames.size()> ledger(const Work& work, const Energies& now);
+/// One row of the ledger as it is recorded.
+struct LedgerEntry {
+  const char* name;
+  double (*value)(const Work& work, const Energies& now);  ///< [J] since the start
+};
+/// The ledger as it is recorded: the works, with the numerical loss. Run files, summaries, exports
+/// and Python follow this table.
+inline constexpr std::array kLedger{
+    LedgerEntry{"loads", [](const Work& work, const Energies&) { return work.loads; }},
+    LedgerEntry{"supports", [](const Work& work, const Energies&) { return work.supports; }},
+    LedgerEntry{"drag", [](const Work& work, const Energies&) { return work.drag; }},
+    LedgerEntry{"numerical", &numerical_loss},
+    LedgerEntry{"solver", [](const Work& work, const Energies&) { return work.solver; }},
+};
+std::array<double, kLedger.size()> ledger(const Work& work, const Energies& now);
 
 }  // namespace der

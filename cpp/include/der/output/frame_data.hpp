@@ -14,8 +14,8 @@ struct FrameData {
   std::vector<std::int64_t> steps;
   std::vector<double> positions;   ///< frames x (nodes * dimension) [m]
   std::vector<double> velocities;  ///< frames x (nodes * dimension) [m/s]
-  std::vector<double> energies;    ///< frames x kEnergyNames [J]
-  std::vector<double> work;        ///< frames x kLedgerNames [J]
+  std::vector<double> energies;    ///< frames x kEnergyTerms [J]
+  std::vector<double> work;        ///< frames x kLedger [J]
   std::vector<double> probes;      ///< frames x probes
 };
 

@@ -1,0 +1,80 @@
+#include "der/catalog/quantities.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "output/bend_field.hpp"
+#include "output/motion_field.hpp"
+#include "output/stretch_field.hpp"
+
+namespace der {
+namespace {
+
+template <Vector State::* vector, int number>
+Quantity component(std::string name, std::string unit, QuantityKind kind, std::string meaning) {
+  const RodFieldMaker maker = [](const RodLayout& rod, const Model& model) {
+    return make_component_field(vector, number, rod, model);
+  };
+  return {std::move(name), std::move(unit), kind, std::move(meaning), maker, {}, true};
+}
+
+Quantity energy(std::string name, std::string meaning, std::vector<EnergyTerm> terms) {
+  return {std::move(name),    kEnergyUnit, QuantityKind::Energy,
+          std::move(meaning), nullptr,     std::move(terms)};
+}
+
+std::vector<Quantity> quantities_along_rods() {
+  using Kind = QuantityKind;
+  return {
+      component<&State::positions, 0>("x", "m", Kind::Position, "horizontal position"),
+      component<&State::positions, 1>("y", "m", Kind::Position, "vertical position"),
+      component<&State::velocities, 0>("vx", "m/s", Kind::Velocity, "horizontal velocity"),
+      component<&State::velocities, 1>("vy", "m/s", Kind::Velocity, "vertical velocity"),
+      {"speed", "m/s", Kind::Velocity, "magnitude of the velocity", make_speed_field},
+      {"turning_angle", "rad", Kind::Turn,
+       "angle from the edge before a node to the edge after it, positive counter-clockwise",
+       make_turning_angle_field},
+      {"curvature", "1/m", Kind::Bend, "turning angle per length", make_curvature_field},
+      {"moment", "N m", Kind::Bend, "bending moment, positive where it bends counter-clockwise",
+       make_moment_field},
+      {"strain", "", Kind::Edge, "elongation per rest length", make_strain_field},
+      {"tension", "N", Kind::Edge, "axial force, positive in tension", make_tension_field},
+  };
+}
+
+/// Each term by itself, what is stored elastically, and all together.
+std::vector<Quantity> energy_quantities() {
+  std::vector<Quantity> rows;
+  std::vector<EnergyTerm> elastic;
+  std::vector<EnergyTerm> all;
+  for (const EnergyTermInfo& row : kEnergyTerms) {
+    rows.push_back(energy(std::string(row.name) + "_energy", row.meaning, {row.term}));
+    if (row.elastic) elastic.push_back(row.term);
+    all.push_back(row.term);
+  }
+  rows.push_back(energy("elastic_energy", "energy stored in rods and spring supports", elastic));
+  rows.push_back(energy("total_energy", "kinetic, elastic and gravity energy together", all));
+  return rows;
+}
+
+std::vector<Quantity> all_quantities() {
+  std::vector<Quantity> rows = quantities_along_rods();
+  for (Quantity& row : energy_quantities()) rows.push_back(std::move(row));
+  return rows;
+}
+
+}  // namespace
+
+const std::vector<Quantity>& quantities() {
+  static const std::vector<Quantity> table = all_quantities();
+  return table;
+}
+
+const Quantity* find_quantity(std::string_view name) {
+  const auto& table = quantities();
+  const auto found = std::find_if(table.begin(), table.end(),
+                                  [&](const Quantity& quantity) { return quantity.name == name; });
+  return found == table.end() ? nullptr : &*found;
+}
+
+}  // namespace der

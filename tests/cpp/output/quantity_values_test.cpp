@@ -1,0 +1,157 @@
+// Every row of the table of quantities against a value worked out by hand, on one configuration in
+// which none of them is zero.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "der/catalog/quantities.hpp"
+#include "der/output/probe.hpp"
+#include "der/simulation.hpp"
+
+namespace der::test {
+namespace {
+
+// The rod, and its support by a spring at the end.
+constexpr int kEdges = 20;
+constexpr double kLength = 1.0;
+constexpr double kEA = 50.0;
+constexpr double kEI = 2.0;
+constexpr double kMassPerLength = 3.0;
+constexpr double kGravity = 9.81;
+constexpr double kSpringX = 40.0;
+constexpr double kSpringY = 60.0;
+
+// The configuration: a stretched polygon whose corners all turn by the same angle, in rigid motion.
+constexpr double kStrain = 0.03;
+constexpr double kTurn = 0.06;       // from edge to edge [rad]
+constexpr double kDirection = -0.4;  // of the first edge [rad]
+constexpr double kSpin = 0.7;        // [rad/s]
+constexpr int kNode = 7;             // where quantities along the rod are read
+
+const Vec2 kStart{0.2, -0.1};
+const Vec2 kDrift{0.3, -0.5};  // velocity of the start [m/s]
+
+const std::string kScene = R"(
+rods:
+  - name: arm
+    nodes: 21
+    from: [0, 0]
+    to: [1, 0]
+    cross_section: {stiffness: {EA: 50, EI: 2, mass_per_length: 3}}
+supports:
+  - {rod: arm, at: start, fix: [x, y]}
+  - {rod: arm, at: end, spring: {stiffness: [40, 60]}}
+loads:
+  - gravity: [0, -9.81]
+time: {duration: 0.1, step: 0.01}
+output: {probes: {p: {)";
+
+std::vector<Vec2> corners() {
+  std::vector<Vec2> points{kStart};
+  for (int edge = 0; edge < kEdges; ++edge) {
+    const double angle = kDirection + edge * kTurn;
+    const double length = (1.0 + kStrain) * kLength / kEdges;
+    points.emplace_back(points.back() + length * Vec2{std::cos(angle), std::sin(angle)});
+  }
+  return points;
+}
+
+Vec2 velocity_at(const Vec2& point) {
+  const Vec2 arm = point - kStart;
+  return kDrift + kSpin * Vec2{-arm.y(), arm.x()};
+}
+
+/// What each quantity is in this configuration.
+std::map<std::string, double> expected_values() {
+  const std::vector<Vec2> points = corners();
+  const double edge_length = kLength / kEdges;
+  const Vec2& here = points.at(kNode);
+  std::map<std::string, double> values{
+      {"x", here.x()},
+      {"y", here.y()},
+      {"vx", velocity_at(here).x()},
+      {"vy", velocity_at(here).y()},
+      {"speed", velocity_at(here).norm()},
+      {"turning_angle", kTurn},
+      {"curvature", kTurn / edge_length},
+      {"moment", kEI * kTurn / edge_length},
+      {"strain", kStrain},
+      {"tension", kEA * kStrain},
+  };
+  // Each edge is a uniform bar in rigid motion: Simpson's rule integrates the square of its
+  // velocity exactly. One that a support holds has its mass at its ends (model/mass.hpp).
+  const double bar = kMassPerLength * edge_length;
+  double kinetic = 0.0;
+  double gravity = 0.0;
+  for (std::size_t i = 0; i < kEdges; ++i) {
+    const Vec2 middle = 0.5 * (points[i] + points[i + 1]);
+    const double at_ends =
+        velocity_at(points[i]).squaredNorm() + velocity_at(points[i + 1]).squaredNorm();
+    const double at_middle = velocity_at(middle).squaredNorm();
+    kinetic += 0.5 * bar * (i == 0 ? at_ends / 2.0 : (at_ends + 4.0 * at_middle) / 6.0);
+    gravity += bar * kGravity * middle.y();
+  }
+  const double stretch = 0.5 * kEA * kStrain * kStrain * kLength;
+  const double bend = (kEdges - 1) * 0.5 * kEI / edge_length * kTurn * kTurn;
+  const Vec2 pulled = points.back() - Vec2{kLength, 0.0};  // from where the spring is slack
+  const double spring =
+      0.5 * (kSpringX * pulled.x() * pulled.x() + kSpringY * pulled.y() * pulled.y());
+  values["kinetic_energy"] = kinetic;
+  values["stretch_energy"] = stretch;
+  values["bend_energy"] = bend;
+  values["spring_energy"] = spring;
+  values["gravity_energy"] = gravity;
+  values["elastic_energy"] = stretch + bend + spring;
+  values["total_energy"] = kinetic + stretch + bend + spring + gravity;
+  return values;
+}
+
+/// The value that a probe reads in the configuration.
+double probe_value(const std::string& probe) {
+  Simulation simulation(Scenario::parse(kScene + probe + "}}}\n"));
+  const std::vector<Vec2> points = corners();
+  const RodLayout& rod = simulation.model().rods.at(0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Index dof = simulation.model().dof(rod.nodes[i], 0);
+    simulation.state().positions.segment<2>(dof) = points[i];
+    simulation.state().velocities.segment<2>(dof) = velocity_at(points[i]);
+  }
+  const auto probes = make_probes(simulation.scenario().scene(), simulation.model());
+  return probes.at(0).value(simulation.model(), simulation.state());
+}
+
+}  // namespace
+
+TEST_CASE("every quantity has the value worked out by hand") {
+  const std::map<std::string, double> expected = expected_values();
+  for (const Quantity& quantity : quantities()) {
+    CAPTURE(quantity.name);
+    const auto value = expected.find(quantity.name);
+    const bool is_known = value != expected.end() && value->second != 0.0;
+    CHECK_MESSAGE(is_known, "give expected_values() a value of this quantity, not zero");
+    if (!is_known) continue;
+    std::string probe = "quantity: " + quantity.name;
+    if (quantity.kind == QuantityKind::Energy) {
+      CHECK(probe_value(probe) == doctest::Approx(value->second).epsilon(1e-12));
+      probe += ", rod: arm";
+    } else {
+      probe += ", rod: arm, at: {node: " + std::to_string(kNode) + "}";
+    }
+    CHECK(probe_value(probe) == doctest::Approx(value->second).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("every quantity is made in one way") {
+  for (const Quantity& quantity : quantities()) {
+    CAPTURE(quantity.name);
+    const bool is_energy = quantity.kind == QuantityKind::Energy;
+    CHECK((quantity.make_field == nullptr) == is_energy);
+    CHECK(quantity.energies.empty() != is_energy);
+    CHECK(find_quantity(quantity.name) == &quantity);
+  }
+}
+
+}  // namespace der::test

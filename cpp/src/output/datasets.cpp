@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "der/scenario/scenario.hpp"
+
 namespace der {
 namespace {
 

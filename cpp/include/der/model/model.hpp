@@ -10,7 +10,7 @@
 #include "der/model/controls.hpp"
 #include "der/model/mass.hpp"
 #include "der/model/turns.hpp"
-#include "der/scenario/scenario.hpp"
+#include "der/scenario/curvature_measure.hpp"
 
 namespace der {
 

@@ -44,6 +44,7 @@ struct Amount {
   const char* key;
   Value Load::* member;
 };
+/// The amounts of a load that has one. A load with more joins them by std::tuple_cat.
 template <class Load, class Value>
 constexpr auto single_amount(const char* key, Value Load::* member) {
   return std::tuple{Amount<Load, Value>{key, member}};

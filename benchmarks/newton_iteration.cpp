@@ -10,6 +10,8 @@
 #include "der/assembly/assembler.hpp"
 #include "der/building/builder.hpp"
 #include "der/model/state.hpp"
+#include "der/scenario/load.hpp"
+#include "der/scenario/scenario.hpp"
 #include "der/solvers/banded_ldlt.hpp"
 #include "der/solvers/stage.hpp"
 

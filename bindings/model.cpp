@@ -11,6 +11,7 @@
 #include "der/core/index.hpp"
 #include "der/model/location.hpp"
 #include "der/scenario/reader.hpp"
+#include "der/scenario/scenario.hpp"
 
 namespace der::python {
 namespace {

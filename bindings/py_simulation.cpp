@@ -4,6 +4,7 @@
 
 #include "der/output/run_folder.hpp"
 #include "der/output/summary.hpp"
+#include "der/scenario/scenario.hpp"
 #include "heartbeat.hpp"
 #include "py_simulation.hpp"
 

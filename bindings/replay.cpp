@@ -11,6 +11,7 @@
 #include "bindings.hpp"
 #include "der/core/index.hpp"
 #include "der/model/location.hpp"
+#include "der/scenario/scenario.hpp"
 #include "der/supports/clamp.hpp"
 
 namespace der::python {

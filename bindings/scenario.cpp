@@ -12,6 +12,7 @@
 #include "bindings.hpp"
 #include "der/scenario/document.hpp"
 #include "der/scenario/reader.hpp"
+#include "der/scenario/scenario.hpp"
 #include "values.hpp"
 
 namespace der::python {

@@ -1,3 +1,4 @@
+#include "der/scenario/scenario.hpp"
 #include "py_simulation.hpp"
 
 #include <pybind11/stl.h>

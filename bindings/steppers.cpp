@@ -14,6 +14,8 @@ void bind_steppers(py::module_& module) {
       .def_readonly("implicit", &StepperInfo::implicit, "Solves equations in every step.")
       .def_readonly("keeps_angular_momentum", &StepperInfo::keeps_angular_momentum,
                     "In free flight, to the solver's tolerance.")
+      .def_readonly("step_cost", &StepperInfo::step_cost,
+                    "Cost of a step, against one of an implicit stepper of one stage.")
       .def_readonly("stability", &StepperInfo::stability, "In words.")
       .def_readonly("damping", &StepperInfo::damping, "Numerical damping, in words.")
       .def("__repr__", [](const StepperInfo& info) {

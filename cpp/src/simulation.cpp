@@ -9,7 +9,8 @@
 
 #include "der/building/builder.hpp"
 #include "der/core/error.hpp"
-#include "der/loads/loads.hpp"
+#include "der/loads/external_force.hpp"
+#include "der/scenario/scenario.hpp"
 
 namespace der {
 namespace {

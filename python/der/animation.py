@@ -31,7 +31,7 @@ _WIDTH = 7.2  # of the picture [inch]
 _HEIGHT = (2.2, 7.0)  # least and most [inch]
 _MARGINS = (0.75, 0.2, 0.68, 0.55)  # left, right, top, bottom [inch] with a title of one line
 _TITLE_LINE = 0.2  # that each further line takes [inch]
-_MOST_PICTURES = 20_000
+_MAX_FRAMES = 20_000
 _CENTISECONDS = 100.0  # a GIF counts time in them ...
 _SHORTEST = 2  # ... and viewers slow down what is shorter than so many
 _GIF_TONES = 64  # between white and each colour of a picture
@@ -155,9 +155,9 @@ def _cut_motion(film: Film, times: Array, fps: float, speed: float | None) -> _C
     speed = round_speed(span) if speed is None else speed
     step = speed / fps  # simulated seconds between pictures
     pictures = np.ceil(span / step * (1.0 - 1e-9)) + 1.0
-    if not pictures <= _MOST_PICTURES:
+    if not pictures <= _MAX_FRAMES:
         raise ValueError(
-            f"animations are limited to {_MOST_PICTURES:,} frames, and this one would have "
+            f"animations are limited to {_MAX_FRAMES:,} frames, and this one would have "
             f"{pictures:.3g}: use a larger --speed"
         )
     count = int(pictures)

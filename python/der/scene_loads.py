@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -60,38 +60,60 @@ def acting_loads(result: RunData, frame: int) -> ActingLoads:
     Along a continuation those that its factor varies are scaled by it. Forces from Python are not
     known to the scene and not among them.
     """
-    scene = result.scenario.to_dict()
-    rods = {rod.name: rod for rod in result.rods}
-    time = float(result.times[frame])
-    found = ActingLoads()
-    gravity: list[Array] = []
-    for number, load in enumerate(scene.get("loads") or []):
+    found = _Collected({rod.name: rod for rod in result.rods}, float(result.times[frame]))
+    for number, load in enumerate(result.scenario.to_dict().get("loads") or []):
         ((kind, content),) = load.items()
-        factor = _factor(result, frame, number)
-        if kind == "gravity":
-            gravity.append(factor * value_at(content, time))
-        elif kind in ("point_force", "moment"):
-            key, into = ("force", found.forces) if kind == "point_force" else (kind, found.moments)
-            value = factor * value_at(content[key], time)
-            rod = rods[content["rod"]]
-            into.extend(
-                PointLoad(rod.name, at, value)
-                for at in arc_lengths_of(content["at"], rod)
-                if np.any(value)
-            )
-        elif kind == "distributed_force":
-            rod = rods[content["rod"]]
-            value = factor * value_at(content["force"], time)
-            start, end = content.get("from", 0.0), content.get("to", rod.length)
-            if np.any(value):
-                found.lines.append(LineLoad(rod.name, float(start), float(end), value))
-    total = np.sum(gravity, axis=0) if gravity else None
-    return ActingLoads(
-        found.forces,
-        found.moments,
-        found.lines,
-        total if total is not None and np.any(total) else None,
-    )
+        collect = _COLLECTORS[kind]
+        if collect is not None:
+            collect(found, content, _factor(result, frame, number))
+    total = np.sum(found.gravity, axis=0) if found.gravity else np.zeros(2)
+    return ActingLoads(found.forces, found.moments, found.lines, total if total.any() else None)
+
+
+class _Collected:
+    """The loads that act at a time [s]."""
+
+    def __init__(self, rods: dict[str, Rod], time: float) -> None:
+        self._rods = rods
+        self._time = time
+        self.forces: list[PointLoad] = []
+        self.moments: list[PointLoad] = []
+        self.lines: list[LineLoad] = []
+        self.gravity: list[Array] = []
+
+    def add_gravity(self, acceleration: Any, factor: float) -> None:
+        self.gravity.append(factor * value_at(acceleration, self._time))
+
+    def add_force(self, load: dict[str, Any], factor: float) -> None:
+        self.forces += self._at_places(load, factor * value_at(load["force"], self._time))
+
+    def add_moment(self, load: dict[str, Any], factor: float) -> None:
+        self.moments += self._at_places(load, factor * value_at(load["moment"], self._time))
+
+    def add_line(self, load: dict[str, Any], factor: float) -> None:
+        value = factor * value_at(load["force"], self._time)
+        rod = self._rods[load["rod"]]
+        if np.any(value):
+            start, end = float(load.get("from", 0.0)), float(load.get("to", rod.length))
+            self.lines.append(LineLoad(rod.name, start, end, value))
+
+    def _at_places(self, load: dict[str, Any], value: Array) -> list[PointLoad]:
+        rod = self._rods[load["rod"]]
+        places = arc_lengths_of(load["at"], rod) if np.any(value) else []
+        return [PointLoad(rod.name, at, value) for at in places]
+
+
+#: Every kind of load with what collects it for a drawing; None: it has no symbol.
+_COLLECTORS: dict[str, Callable[[_Collected, Any, float], None] | None] = {
+    "gravity": _Collected.add_gravity,
+    "fluid": None,
+    "damping": None,
+    "point_force": _Collected.add_force,
+    "moment": _Collected.add_moment,
+    "distributed_force": _Collected.add_line,
+}
+#: The kinds that are not drawn.
+WITHOUT_SYMBOL = frozenset(kind for kind, collect in _COLLECTORS.items() if collect is None)
 
 
 def value_at(series: Any, time: float) -> Array:

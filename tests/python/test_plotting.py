@@ -1,5 +1,7 @@
 """Pictures: that what is drawn is what was computed, to scale and with its units."""
 
+from types import SimpleNamespace
+
 import der
 import matplotlib.pyplot as plt
 import numpy as np
@@ -7,6 +9,7 @@ import pytest
 from der.plotting import PALETTE, pick_frames, style, time_colours
 from der.plotting.lengths import LengthScale
 from der.plotting.shapes import outline
+from der.plotting.study import _looks
 from der.plotting.style import quantity_text, wrapped
 from der.scene_loads import acting_loads
 from matplotlib.collections import PatchCollection, PolyCollection
@@ -393,3 +396,18 @@ def test_shapes_of_a_path_have_their_load_factors(tube):
     labels = [text.get_text() for text in axes.get_legend().get_texts()]
     assert labels[0] == "load factor 0"
     assert labels[-1] == "load factor 1"
+
+
+def test_every_stepper_has_a_look_of_its_own_in_every_figure():
+    def row(stepper):
+        return SimpleNamespace(stepper=stepper)
+
+    names = [info.name for info in der.steppers()]
+    looks = {
+        name: (to_hex(colour), marker) for name, colour, marker in _looks([row(n) for n in names])
+    }
+    assert len(set(looks.values())) == len(names)
+    assert len({colour for colour, _ in looks.values()}) == len(names)
+    for name in names:  # alone in a figure, too
+        ((_, colour, marker),) = _looks([row(name)])
+        assert (to_hex(colour), marker) == looks[name]

@@ -22,6 +22,7 @@
 #include "der/output/run_folder.hpp"
 #include "der/output/start.hpp"
 #include "der/scenario/reader.hpp"
+#include "der/scenario/scenario.hpp"
 #include "der/simulation.hpp"
 
 namespace der::app {

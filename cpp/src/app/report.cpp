@@ -15,6 +15,7 @@
 #include "der/output/hints.hpp"
 #include "der/output/result_size.hpp"
 #include "der/output/summary.hpp"
+#include "der/scenario/scenario.hpp"
 
 namespace der::app {
 namespace {

@@ -11,6 +11,8 @@
 #include "der/loads/loads.hpp"
 #include "der/model/cross_section.hpp"
 #include "der/model/location.hpp"
+#include "der/scenario/load.hpp"
+#include "der/scenario/scenario.hpp"
 #include "der/supports/supports.hpp"
 
 namespace der {

@@ -60,6 +60,7 @@ StepperInfo bdf2() {
 StepperInfo tr_bdf2() {
   StepperInfo info;
   info.name = "tr_bdf2";
+  info.step_cost = 2.0;
   info.stability = kLStable;
   info.damping = "fast motion";
   return info;
@@ -71,6 +72,7 @@ StepperInfo sdirk4() {
   info.order = 4;
   // Stiff motion converges at order 2, so the factor is larger than 3/(2^4 - 1).
   info.error_factor = 0.7;
+  info.step_cost = 5.0;
   info.stability = kLStable;
   info.damping = "fast motion";
   return info;
@@ -82,6 +84,7 @@ StepperInfo sdirk5() {
   info.order = 5;
   // As for sdirk4.
   info.error_factor = 0.7;
+  info.step_cost = 5.0;
   info.stability = kLStable;
   info.damping = "fast motion";
   return info;
@@ -92,6 +95,7 @@ StepperInfo verlet() {
   info.name = "verlet";
   info.implicit = false;
   info.keeps_angular_momentum = true;
+  info.step_cost = 0.05;
   info.stability = "below the stretch and bend limit";
   info.damping = "none";
   return info;
@@ -105,6 +109,7 @@ StepperInfo explicit_euler() {
   info.keeps_angular_momentum = true;
   info.drag_limits_step = true;
   info.error_factor = 3.0;
+  info.step_cost = 0.05;
   info.stability = "below the stretch, bend and drag limit";
   info.damping = "none";
   return info;

@@ -1,6 +1,6 @@
 #include <utility>
 
-#include "der/loads/loads.hpp"
+#include "der/loads/dead_force.hpp"
 
 namespace der {
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "der/loads/dead_force.hpp"
 #include "der/loads/loads.hpp"
 
 namespace der {

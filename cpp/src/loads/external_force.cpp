@@ -1,4 +1,4 @@
-#include "der/loads/loads.hpp"
+#include "der/loads/external_force.hpp"
 
 namespace der {
 

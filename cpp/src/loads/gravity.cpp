@@ -1,4 +1,5 @@
 #include "der/loads/loads.hpp"
+#include "der/scenario/scenario.hpp"
 
 namespace der {
 

@@ -1,3 +1,4 @@
+#include "der/loads/dead_force.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/location.hpp"
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "der/output/run_arrays.hpp"
+#include "der/scenario/scenario.hpp"
 
 namespace der {
 namespace {

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "der/scenario/scenario.hpp"
+
 namespace der {
 namespace {
 

@@ -8,6 +8,7 @@
 #include "der/catalog/quantities.hpp"
 #include "der/core/error.hpp"
 #include "der/model/location.hpp"
+#include "der/scenario/scenario.hpp"
 #include "output/energy_reader.hpp"
 #include "output/rod_field.hpp"
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "der/core/error.hpp"
+#include "der/scenario/scenario.hpp"
 
 namespace der {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "der/building/builder.hpp"
 #include "der/core/error.hpp"
+#include "der/scenario/scenario.hpp"
 #include "output/rod_field.hpp"
 
 namespace der {

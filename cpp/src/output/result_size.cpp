@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "der/output/io_error.hpp"
+#include "der/scenario/scenario.hpp"
 
 namespace der {
 namespace {

@@ -1,6 +1,7 @@
 #include "der/output/run.hpp"
 
 #include "der/core/error.hpp"
+#include "der/scenario/scenario.hpp"
 
 namespace der {
 namespace {

@@ -1,4 +1,5 @@
 #include "output/run_format.hpp"
+#include "der/scenario/scenario.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -15,6 +15,7 @@
 #include "der/output/io_error.hpp"
 #include "der/output/run_folder.hpp"
 #include "der/output/saved_run.hpp"
+#include "der/scenario/scenario.hpp"
 
 namespace der {
 namespace {

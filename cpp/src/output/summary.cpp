@@ -10,6 +10,7 @@
 
 #include "der/output/datasets.hpp"
 #include "der/output/hints.hpp"
+#include "der/scenario/scenario.hpp"
 #include "der/steppers/fine_tables.hpp"
 #include "der/version.hpp"
 

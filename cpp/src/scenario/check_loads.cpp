@@ -1,61 +1,62 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
+#include "der/scenario/load.hpp"
 #include "scenario/checks.hpp"
 
 namespace der::scenario {
 namespace {
 
-/// The checks of one load; one function for each kind.
+/// Where a load acts: its rod, and the nodes at its place.
+struct Where {
+  int rod = -1;
+  std::vector<int> nodes{};  ///< none for a place between nodes
+};
+
+/// The checks of one load. Names, places and tables are those that its kind declares in load.hpp;
+/// `check_own` has what is particular to a kind.
 class LoadCheck {
  public:
   LoadCheck(CheckContext& context, int number) : context_(context), number_(number) {}
 
-  void operator()(const Gravity& /*load*/) { check_single<Gravity>("gravity"); }
+  template <class Kind>
+  void operator()(Kind& load) {
+    const Path here{"loads", number_, Kind::kKey};
+    check_tables(load, here);
+    Where where;
+    if constexpr (std::is_base_of_v<OnRod, Kind>) {
+      const auto rod = context_.find_rod(load.rod, here / "rod");
+      if (!rod) return;
+      where.rod = *rod;
+      check_place(load, here, where);
+    }
+    check_own(load, here, where);
+  }
 
-  void operator()(const Fluid& /*load*/) {
-    check_single<Fluid>("fluid");
-    const auto& rods = context_.scene.given_rods;
-    const bool spheres = std::any_of(rods.begin(), rods.end(),
-                                     [](const RodText& rod) { return !rod.spheres.empty(); });
-    if (!spheres && !context_.complaints.under({"rods"})) {
-      complain(path("fluid"),
-               "a fluid acts on spheres only, and no rod carries any: give a rod "
-               "'spheres', or use 'damping'");
+ private:
+  template <class Kind>
+  void check_tables(const Kind& load, const Path& here) {
+    if (context_.scene.is_dynamic()) return;
+    for_each_amount(load, [&](const char* key, const auto& amount) {
+      if constexpr (!std::is_same_v<std::decay_t<decltype(amount)>, Components>) {
+        if (amount.constant()) return;
+        complain(here / key, "a static analysis has no time: give a constant in place of a table");
+      }
+    });
+  }
+
+  void check_place(const OnRod& /*load*/, const Path& /*here*/, Where& /*where*/) {}
+  void check_place(AtPlace& load, const Path& here, Where& where) {
+    if (auto nodes = context_.nodes_at(where.rod, load.at, here / "at", false)) {
+      where.nodes = std::move(*nodes);
     }
   }
-
-  void operator()(const Damping& load) {
-    if (load.rod) context_.find_rod(*load.rod, path("damping") / "rod");
-  }
-
-  void operator()(PointForce& load) {
-    const Path here = path("point_force");
-    check_constant(load.force.constant(), here / "force");
-    const auto rod = context_.find_rod(load.rod, here / "rod");
-    if (!rod) return;
-    const auto nodes = context_.nodes_at(*rod, load.at, here / "at", false);
-    if (nodes && !nodes->empty()) check_acts(load, *rod, *nodes);
-  }
-
-  void operator()(Moment& load) {
-    const Path here = path("moment");
-    check_constant(load.moment.constant(), here / "moment");
-    const auto rod = context_.find_rod(load.rod, here / "rod");
-    if (!rod) return;
-    const auto nodes = context_.nodes_at(*rod, load.at, here / "at", false);
-    if (!nodes || nodes->empty()) return;
-    if (context_.is_clamped(*rod, nodes->front()))
-      warn_of_taken(path_text("moment"), load.rod, "angle");
-  }
-
-  void operator()(DistributedForce& load) {
-    const Path here = path("distributed_force");
-    check_constant(load.force.constant(), here / "force");
-    const auto rod = context_.find_rod(load.rod, here / "rod");
-    if (!rod) return;
-    const RestLine& line = *context_.lines[static_cast<std::size_t>(*rod)];
+  void check_place(OnPart& load, const Path& here, Where& where) {
+    const RestLine& line = *context_.lines[static_cast<std::size_t>(where.rod)];
     if (load.from >= line.length()) {
       complain(here / "from", fmt::format("must be less than the rod's length, {:.9g} m, got {} m",
                                           line.length(), load.from));
@@ -67,11 +68,38 @@ class LoadCheck {
     load.to = std::min(load.to, line.length());
   }
 
- private:
-  [[nodiscard]] Path path(const char* kind) const { return {"loads", number_, kind}; }
-  [[nodiscard]] std::string path_text(const char* kind) const {
-    return fmt::format("loads.{}.{}", number_, kind);
+  template <class Kind>
+  void check_own(const Kind& /*load*/, const Path& /*here*/, const Where& /*where*/) {}
+
+  void check_own(const Gravity& load, const Path& here, const Where& /*where*/) {
+    check_single(load, here);
   }
+
+  void check_own(const Fluid& load, const Path& here, const Where& /*where*/) {
+    check_single(load, here);
+    const auto& rods = context_.scene.given_rods;
+    const bool spheres = std::any_of(rods.begin(), rods.end(),
+                                     [](const RodText& rod) { return !rod.spheres.empty(); });
+    if (!spheres && !context_.complaints.under({"rods"})) {
+      complain(here,
+               "a fluid acts on spheres only, and no rod carries any: give a rod "
+               "'spheres', or use 'damping'");
+    }
+  }
+
+  void check_own(const Damping& load, const Path& here, const Where& /*where*/) {
+    if (load.rod) context_.find_rod(*load.rod, here / "rod");
+  }
+
+  void check_own(const PointForce& load, const Path& /*here*/, const Where& where) {
+    if (!where.nodes.empty()) check_acts(load, where.rod, where.nodes);
+  }
+
+  void check_own(const Moment& load, const Path& /*here*/, const Where& where) {
+    if (where.nodes.empty() || !context_.is_clamped(where.rod, where.nodes.front())) return;
+    warn_of_taken(fmt::format("loads.{}.moment", number_), load.rod, "angle");
+  }
+
   void complain(const Path& where, const std::string& message) {
     context_.complaints.add(where, message);
   }
@@ -88,7 +116,7 @@ class LoadCheck {
       });
       if (held) {
         const char* axis = name_of(axes[c]);
-        warn_of_taken(fmt::format("the {} component of {}", axis, path_text("point_force")),
+        warn_of_taken(fmt::format("the {} component of loads.{}.point_force", axis, number_),
                       load.rod, axis);
       }
     }
@@ -101,22 +129,17 @@ class LoadCheck {
                     what, rod, held));
   }
 
-  void check_constant(bool constant, const Path& where) {
-    if (constant || context_.scene.is_dynamic()) return;
-    complain(where, "a static analysis has no time: give a constant in place of a table");
-  }
-
   /// Two of a kind where one is meant are a slip.
   template <class Kind>
-  void check_single(const char* kind) {
+  void check_single(const Kind& /*load*/, const Path& here) {
     for (int i = 0; i < number_; ++i) {
       const Load& earlier = context_.scene.loads[static_cast<std::size_t>(i)];
       if (!std::holds_alternative<Kind>(earlier.what)) continue;
       if (context_.complaints.under({"loads", i})) continue;
-      complain(path(kind), fmt::format("'{}' is given twice{}", kind,
-                                       earlier.mark.line > 0
-                                           ? fmt::format(" (first in line {})", earlier.mark.line)
-                                           : std::string()));
+      complain(here, fmt::format("'{}' is given twice{}", Kind::kKey,
+                                 earlier.mark.line > 0
+                                     ? fmt::format(" (first in line {})", earlier.mark.line)
+                                     : std::string()));
       return;
     }
   }

@@ -5,6 +5,7 @@
 
 #include "der/catalog/quantities.hpp"
 #include "der/catalog/steppers.hpp"
+#include "der/scenario/load.hpp"
 #include "scenario/checks.hpp"
 
 namespace der::scenario {

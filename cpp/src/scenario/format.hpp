@@ -7,7 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "der/scenario/scenario.hpp"
+#include "der/scenario/location.hpp"
+#include "der/scenario/series.hpp"
 #include "scenario/complaints.hpp"
 #include "scenario/shape.hpp"
 

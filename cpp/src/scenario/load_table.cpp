@@ -1,14 +1,9 @@
-#include <limits>
-
+#include "der/scenario/load.hpp"
 #include "scenario/scene_text.hpp"
 #include "scenario/table.hpp"
 
 namespace der::scenario {
 namespace {
-
-struct DistributedForceText : DistributedForce {
-  DistributedForceText() { to = std::numeric_limits<double>::infinity(); }
-};
 
 constexpr auto assign_load = [](Load& load, auto&& what) {
   load.what = std::forward<decltype(what)>(what);
@@ -55,24 +50,23 @@ Format<Moment> moment_format() {
           .required("moment", &Moment::moment, series("N m"), "A constant, or a table over time."));
 }
 
-Format<DistributedForceText> distributed_force_format() {
-  return mapping(
-      Table<DistributedForceText>("distributed force",
-                                  "A force per rest length that keeps its "
-                                  "direction, on a part of a rod.")
-          .required("rod", &DistributedForce::rod, name(), "Name of the rod.")
-          .required("force", &DistributedForce::force, vector_series("N/m"),
-                    "A constant, or a table over time.")
-          .optional("from", &DistributedForce::from, number("m", not_negative()),
-                    "Arc length where the part starts.")
-          .optional("to", &DistributedForce::to, number("m", positive()),
-                    "Arc length where the part ends.", "the rod's length")
-          .check([](DistributedForceText& load, const Place& place, Complaints& complaints) {
-            if (load.from < load.to) return;
-            complaints.add(
-                place.at(*find_entry(*place.value->mapping(), "to")),
-                fmt::format("must be greater than 'from' ({} m), got {} m", load.from, load.to));
-          }));
+Format<DistributedForce> distributed_force_format() {
+  return mapping(Table<DistributedForce>("distributed force",
+                                         "A force per rest length that keeps its "
+                                         "direction, on a part of a rod.")
+                     .required("rod", &DistributedForce::rod, name(), "Name of the rod.")
+                     .required("force", &DistributedForce::force, vector_series("N/m"),
+                               "A constant, or a table over time.")
+                     .optional("from", &DistributedForce::from, number("m", not_negative()),
+                               "Arc length where the part starts.")
+                     .optional("to", &DistributedForce::to, number("m", positive()),
+                               "Arc length where the part ends.", "the rod's length")
+                     .check([](DistributedForce& load, const Place& place, Complaints& complaints) {
+                       if (load.from < load.to) return;
+                       complaints.add(place.at(*find_entry(*place.value->mapping(), "to")),
+                                      fmt::format("must be greater than 'from' ({} m), got {} m",
+                                                  load.from, load.to));
+                     }));
 }
 
 }  // namespace
@@ -81,14 +75,14 @@ Format<Load> load_format() {
   return mapping(
       Table<Load>("load", "Exactly one of these keys.")
           .kind(
-              "gravity", vector("m/s^2"),
+              Gravity::kKey, vector("m/s^2"),
               [](Load& load, Components&& g) { load.what = Gravity{std::move(g)}; },
               "Acceleration of gravity.")
-          .kind("fluid", fluid_format(), assign_load, "A viscous fluid around the spheres.")
-          .kind("damping", damping_format(), assign_load, "Linear damping along rods.")
-          .kind("point_force", point_force_format(), assign_load, "A force at a place.")
-          .kind("moment", moment_format(), assign_load, "A moment at a place.")
-          .kind("distributed_force", distributed_force_format(), assign_load,
+          .kind(Fluid::kKey, fluid_format(), assign_load, "A viscous fluid around the spheres.")
+          .kind(Damping::kKey, damping_format(), assign_load, "Linear damping along rods.")
+          .kind(PointForce::kKey, point_force_format(), assign_load, "A force at a place.")
+          .kind(Moment::kKey, moment_format(), assign_load, "A moment at a place.")
+          .kind(DistributedForce::kKey, distributed_force_format(), assign_load,
                 "A force per length on a part of a rod."));
 }
 

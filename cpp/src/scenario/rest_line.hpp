@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "der/scenario/scenario.hpp"
+#include "der/scenario/series.hpp"
 
 namespace der::scenario {
 

@@ -5,6 +5,7 @@
 #include "der/catalog/quantities.hpp"
 #include "der/catalog/steppers.hpp"
 #include "der/core/printable.hpp"
+#include "der/scenario/load.hpp"
 #include "scenario/scene_text.hpp"
 #include "scenario/table.hpp"
 

@@ -43,7 +43,7 @@ struct SceneText : Scene {
 
 Format<RodText> rod_format();
 Format<Support> support_format();
-/// A distributed force without `to` reaches to infinity until the checks know the rod.
+/// A part of a rod without `to` reaches to infinity until the checks know the rod.
 Format<Load> load_format();
 Format<TimeText> time_format();
 Format<Analysis> analysis_format();

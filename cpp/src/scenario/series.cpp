@@ -1,7 +1,7 @@
+#include "der/scenario/series.hpp"
+
 #include <algorithm>
 #include <cstddef>
-
-#include "der/scenario/scenario.hpp"
 
 namespace der::scenario {
 
@@ -13,6 +13,14 @@ double value_at(const Series& series, double t) {
   const auto i = static_cast<std::size_t>(after - times.begin());
   const double share = (t - times[i - 1]) / (times[i] - times[i - 1]);
   return series.values[i - 1] + share * (series.values[i] - series.values[i - 1]);
+}
+
+void set_to_zero(Components& components) { std::fill(components.begin(), components.end(), 0.0); }
+
+void set_to_zero(Series& series) { set_to_zero(series.values); }
+
+void set_to_zero(VectorSeries& series) {
+  for (Components& value : series.values) set_to_zero(value);
 }
 
 }  // namespace der::scenario

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "scenario/axis_stiffness.hpp"
 #include "scenario/scene_text.hpp"
 #include "scenario/suggestion.hpp"
 #include "scenario/table.hpp"
@@ -35,35 +36,10 @@ Format<PrescribeText> prescribe_format() {
                     "`clamp: true`."));
 }
 
-/// One number for both axes, or one for each.
-Format<Components> point_stiffness() {
-  const Format<double> both = number("N/m", positive());
-  const Format<Components> each = vector("N/m");
-  Shape shape{Shape::Kind::AnyOf};
-  shape.unit = both.shape.unit;
-  shape.parts = {both.shape, each.shape};
-  return {std::move(shape), [both, each](const Shape& /*self*/, const Place& place,
-                                         Complaints& complaints, Components& out) {
-            if (!place.value->sequence()) {
-              double stiffness = 0.0;
-              if (!both.read(place, complaints, stiffness)) return false;
-              out = {stiffness, stiffness};
-              return true;
-            }
-            if (!each.read(place, complaints, out)) return false;
-            const bool negative =
-                std::any_of(out.begin(), out.end(), [](double k) { return k < 0; });
-            const bool none = std::all_of(out.begin(), out.end(), [](double k) { return k == 0; });
-            if (negative) complaints.add(place, "a stiffness must not be negative");
-            if (none) complaints.add(place, "one of the stiffnesses must be greater than 0");
-            return !negative && !none;
-          }};
-}
-
 Format<Spring> spring_format() {
   return mapping(
       Table<Spring>("spring", "An elastic support.")
-          .optional("stiffness", &Spring::stiffness, point_stiffness(),
+          .optional("stiffness", &Spring::stiffness, axis_stiffness("N/m"),
                     "Force per displacement from the anchor: one number, or one each along x and "
                     "y, of which one may be 0.",
                     "none")

@@ -7,7 +7,7 @@
 #include "der/energies/element_energy.hpp"
 #include "der/energies/stretched_edges.hpp"
 #include "der/kinematics/planar_edge.hpp"
-#include "der/loads/loads.hpp"
+#include "der/loads/external_force.hpp"
 #include "der/statics/equilibrium_failure.hpp"
 #include "der/statics/modes.hpp"
 #include "der/statics/potential.hpp"

@@ -2,44 +2,27 @@
 
 #include "der/building/builder.hpp"
 #include "der/core/index.hpp"
+#include "der/scenario/load.hpp"
+#include "der/scenario/scenario.hpp"
 
 namespace der {
 namespace {
 
-void erase(scenario::Series& series) {
-  for (double& value : series.values) value = 0.0;
-}
-
-void erase(scenario::VectorSeries& series) {
-  for (auto& value : series.values) value.assign(value.size(), 0.0);
-}
-
-/// Sets a load to zero without taking it away, so that the model keeps its tables.
-struct EraseLoad {
-  void operator()(scenario::Gravity& load) const {
-    load.acceleration.assign(load.acceleration.size(), 0.0);
-  }
-  void operator()(scenario::Fluid& /*load*/) const {}  // buoyancy goes with gravity
-  void operator()(scenario::Damping& /*load*/) const {}
-  void operator()(scenario::PointForce& load) const { erase(load.force); }
-  void operator()(scenario::Moment& load) const { erase(load.moment); }
-  void operator()(scenario::DistributedForce& load) const { erase(load.force); }
-};
-
-void erase(scenario::Support& support) {
-  for (auto& prescribed : support.prescribe) erase(prescribed.displacement);
-  if (support.rotation) erase(*support.rotation);
+/// Keeps the supports where they are drawn, and the tables of the model.
+void hold_still(scenario::Support& support) {
+  for (auto& prescribed : support.prescribe) set_to_zero(prescribed.displacement);
+  if (support.rotation) set_to_zero(*support.rotation);
 }
 
 scenario::Scene without(scenario::Scene scene, scenario::Varied varied, std::optional<int> number) {
   const auto chosen = [&](std::size_t i) { return !number || at(*number) == i; };
   if (varied == scenario::Varied::Loads) {
     for (std::size_t i = 0; i < scene.loads.size(); ++i) {
-      if (chosen(i)) std::visit(EraseLoad{}, scene.loads[i].what);
+      if (chosen(i)) set_to_zero(scene.loads[i]);
     }
   } else {
     for (std::size_t i = 0; i < scene.supports.size(); ++i) {
-      if (chosen(i)) erase(scene.supports[i]);
+      if (chosen(i)) hold_still(scene.supports[i]);
     }
   }
   return scene;

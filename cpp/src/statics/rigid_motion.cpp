@@ -40,7 +40,7 @@ void mark_held_by_springs(const Model& model, int component, const std::vector<I
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if constexpr (HoldsElement<Kernel>::value) {
       for (std::size_t e = 0; e < list.size(); ++e) {
-        if (!Kernel::holds(list.constants[e], component)) continue;
+        if (Kernel::holding_stiffness(list.constants[e], component) == 0.0) continue;
         held[at(part[at(model.dofs.node_of(list.dofs[e].front()))])] = 1;
       }
     }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "der/loads/loads.hpp"
+#include "der/loads/external_force.hpp"
 #include "der/model/prescribed_motion.hpp"
 #include "der/steppers/work.hpp"
 

@@ -4,6 +4,9 @@
 
 #include <variant>
 
+#include "der/scenario/load.hpp"
+#include "der/scenario/scenario.hpp"
+
 namespace der {
 namespace {
 
@@ -14,27 +17,33 @@ struct Table {
   const std::vector<double>& times;
 };
 
+void add_tables(const scenario::Support& support, const std::string& path,
+                std::vector<Table>& tables) {
+  for (const scenario::Prescribed& motion : support.prescribe) {
+    const char* component = motion.component == Component::X ? "x" : "y";
+    tables.push_back({fmt::format("{}.prescribe.{}", path, component), motion.displacement.times});
+  }
+  if (support.rotation) tables.push_back({path + ".prescribe.angle", support.rotation->times});
+}
+
+template <class Load>
+void add_tables(const Load& load, const std::string& path, std::vector<Table>& tables) {
+  scenario::for_each_amount(load, [&](const char* key, const auto& amount) {
+    using Value = std::decay_t<decltype(amount)>;
+    if constexpr (!std::is_same_v<Value, scenario::Components>) {
+      tables.push_back({fmt::format("{}.{}.{}", path, Load::kKey, key), amount.times});
+    }
+  });
+}
+
 std::vector<Table> tables(const scenario::Scene& scene) {
   std::vector<Table> found;
   for (std::size_t i = 0; i < scene.supports.size(); ++i) {
-    const scenario::Support& support = scene.supports[i];
-    const std::string path = fmt::format("supports.{}.prescribe.", i);
-    for (const scenario::Prescribed& motion : support.prescribe) {
-      found.push_back(
-          {path + (motion.component == Component::X ? "x" : "y"), motion.displacement.times});
-    }
-    if (support.rotation) found.push_back({path + "angle", support.rotation->times});
+    add_tables(scene.supports[i], fmt::format("supports.{}", i), found);
   }
   for (std::size_t i = 0; i < scene.loads.size(); ++i) {
-    const auto& what = scene.loads[i].what;
-    const std::string path = fmt::format("loads.{}.", i);
-    if (const auto* point = std::get_if<scenario::PointForce>(&what)) {
-      found.push_back({path + "point_force.force", point->force.times});
-    } else if (const auto* moment = std::get_if<scenario::Moment>(&what)) {
-      found.push_back({path + "moment.moment", moment->moment.times});
-    } else if (const auto* distributed = std::get_if<scenario::DistributedForce>(&what)) {
-      found.push_back({path + "distributed_force.force", distributed->force.times});
-    }
+    std::visit([&](const auto& load) { add_tables(load, fmt::format("loads.{}", i), found); },
+               scene.loads[i].what);
   }
   return found;
 }

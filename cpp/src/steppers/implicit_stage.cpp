@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "der/assembly/discrete_gradient_assembler.hpp"
-#include "der/loads/loads.hpp"
+#include "der/loads/external_force.hpp"
 #include "der/model/prescribed_motion.hpp"
 #include "der/steppers/work.hpp"
 

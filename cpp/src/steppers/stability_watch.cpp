@@ -8,6 +8,7 @@
 
 #include "der/core/error.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "der/scenario/time.hpp"
 
 namespace der {
 namespace {

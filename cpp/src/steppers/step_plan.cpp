@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "der/core/error.hpp"
+#include "der/scenario/scenario.hpp"
 #include "der/steppers/stable_step.hpp"
 
 namespace der {

@@ -6,6 +6,7 @@
 #include "der/core/index.hpp"
 #include "der/energies/registry.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "der/scenario/support.hpp"
 
 namespace der {
 namespace {

@@ -9,6 +9,7 @@
 #include "der/kinematics/planar_edge.hpp"
 #include "der/model/location.hpp"
 #include "der/model/moment_place.hpp"
+#include "der/scenario/support.hpp"
 
 namespace der {
 namespace {

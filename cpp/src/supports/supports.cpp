@@ -4,6 +4,7 @@
 #include <array>
 
 #include "der/model/location.hpp"
+#include "der/scenario/support.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spring.hpp"
 

@@ -21,7 +21,7 @@ _SAME_PLACE = 1e-9
 def rods_that_cannot_be_refined(scenario: Scenario) -> dict[str, str]:
     """Return the rods whose number of nodes is part of the model, with the reason for each.
 
-    Spheres or point forces on every node are: more nodes would mean more of them. So are all rods
+    Spheres or loads on every node are: more nodes would mean more of them. So are all rods
     of a scene that starts from the last frame of a run, whose nodes they take over.
     """
     scene = scenario.to_dict()
@@ -34,8 +34,8 @@ def rods_that_cannot_be_refined(scenario: Scenario) -> dict[str, str]:
         if any(sphere["at"] == "all" for sphere in rod.get("spheres") or []):
             reasons[name] = "spheres at every node are part of the model"
         for kind, load in _loads(scene):
-            if kind == "point_force" and load["rod"] == name and load["at"] == "all":
-                reasons[name] = "a force at every node is part of the model"
+            if load.get("rod") == name and load.get("at") == "all":
+                reasons[name] = f"a {kind.replace('_', ' ')} at every node is part of the model"
     return reasons
 
 

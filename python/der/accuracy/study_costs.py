@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from der._core import steppers
 from der.accuracy.study_plan import Mesh, find_leading_rod
 from der.result import Result
 
@@ -12,14 +13,6 @@ _MEASURING_TIME = 0.3
 _MOST_REPEATS = 5
 #: The costliest run of the reference may take this many times what a configuration may.
 _REFERENCE_COST = 5.0
-#: Cost of a step, against one of another implicit stepper.
-_COST_OF_STEP = {
-    "tr_bdf2": 2.0,
-    "sdirk4": 5.0,
-    "sdirk5": 5.0,
-    "verlet": 0.05,
-    "explicit_euler": 0.05,
-}
 
 
 class StudyCosts:
@@ -113,4 +106,5 @@ def repeats(seconds: float) -> int:
 
 
 def _cost_of_step(stepper: str) -> float:
-    return _COST_OF_STEP.get(stepper, 1.0)
+    """Return the cost of a step as the catalog has it; 1 for a static scene, without a stepper."""
+    return next((info.step_cost for info in steppers() if info.name == stepper), 1.0)

@@ -10,15 +10,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
+from matplotlib.typing import ColorType
 
+from der._core import steppers
 from der.accuracy.study_row import StudyRow
-from der.plotting.style import FIGURE_TITLE, MUTED, PALETTE, axis_label, style, wrapped
+from der.plotting.style import FIGURE_TITLE, MUTED, axis_label, look, style, wrapped
 
 _WIDTH = 10.0  # of the figure [inch]
 _HEIGHT = 3.4  # of the panels of one probe [inch]
 _MARGIN = 0.08  # of logarithmic axes [decades]
-_COLOURS = (*PALETTE, "black", "#8c6d31", "#7f7f7f", "#5e3c99")  # as many as there are steppers
-_MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", "*", "h")
 
 
 def plot_study(title: str, probes: Sequence[Sequence[StudyRow]]) -> Figure:
@@ -113,13 +113,14 @@ def _draw_space(axes: Axes, rows: Sequence[StudyRow]) -> None:
     axes.set_xticks(elements, [str(n) for n in elements], minor=False)
 
 
-def _looks(rows: Sequence[StudyRow]) -> list[tuple[str, str, str]]:
-    """Return each stepper with a colour and a marker of its own."""
-    names = list(dict.fromkeys(row.stepper for row in rows))
-    return [
-        (name, _COLOURS[i % len(_COLOURS)], _MARKERS[i % len(_MARKERS)])
-        for i, name in enumerate(names)
-    ]
+def _looks(rows: Sequence[StudyRow]) -> list[tuple[str, ColorType, str]]:
+    """Return each stepper with its colour and its marker: the same in every figure.
+
+    They follow the order of the catalog. A static scene has no stepper, and one line.
+    """
+    catalog = [info.name for info in steppers()]
+    names = dict.fromkeys(row.stepper for row in rows)
+    return [(name, *look(catalog.index(name) if name else 0)) for name in names]
 
 
 def _frontier(rows: Sequence[StudyRow]) -> list[StudyRow]:

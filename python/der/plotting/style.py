@@ -10,12 +10,17 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from cycler import cycler
+from matplotlib.colors import to_rgb
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
 from matplotlib.typing import ColorType
 
 #: Colours of Okabe and Ito, told apart with every common form of colour blindness.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+
+#: Markers of lines that are told apart by more than their colour.
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", "*", "h")
+_DARKER = 0.55  # of the colours, each time that the palette begins anew
 
 #: What is not the result itself: supports, zero lines, reference shapes.
 MUTED = "#6b6b6b"
@@ -57,6 +62,13 @@ _SETTINGS: dict[Any, Any] = {
     "ytick.color": "#8a8a8a",
     "ytick.labelcolor": "black",
 }
+
+
+def look(index: int) -> tuple[ColorType, str]:
+    """Return a colour and a marker for number `index` of any number of things."""
+    share = _DARKER ** (index // len(PALETTE))
+    red, green, blue = to_rgb(PALETTE[index % len(PALETTE)])
+    return (share * red, share * green, share * blue), MARKERS[index % len(MARKERS)]
 
 
 @contextmanager

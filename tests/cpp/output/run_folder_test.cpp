@@ -12,6 +12,7 @@
 
 #include "der/output/io_error.hpp"
 #include "der/output/result_size.hpp"
+#include "der/scenario/scenario.hpp"
 #include "output/output_scenes.hpp"
 
 namespace der::test {

@@ -5,6 +5,8 @@
 #include <string>
 #include <variant>
 
+#include "der/scenario/load.hpp"
+#include "der/scenario/scenario.hpp"
 #include "scene_texts.hpp"
 
 namespace der {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "der/scenario/document.hpp"
+#include "der/scenario/scenario.hpp"
 #include "scene_texts.hpp"
 
 namespace der {

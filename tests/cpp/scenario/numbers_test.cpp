@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "der/scenario/document.hpp"
+#include "der/scenario/scenario.hpp"
 #include "scene_texts.hpp"
 
 namespace der {

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include "der/scenario/scenario.hpp"
 #include "scene_texts.hpp"
 
 namespace der {

@@ -10,6 +10,7 @@
 #include "der/building/builder.hpp"
 #include "der/catalog/linear_solvers.hpp"
 #include "der/core/error.hpp"
+#include "der/scenario/scenario.hpp"
 #include "der/simulation.hpp"
 #include "der/solvers/linear_solver.hpp"
 

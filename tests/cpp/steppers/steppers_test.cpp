@@ -12,6 +12,7 @@
 #include "der/kinematics/planar_edge.hpp"
 #include "der/simulation.hpp"
 #include "der/steppers/stable_step.hpp"
+#include "fitted_order.hpp"
 
 namespace der::test {
 namespace {
@@ -50,24 +51,6 @@ Vector final_positions(const std::string& integrator, int steps) {
                                          {"solver.step_tolerance", "1e-11"}}));
   for (int i = 0; i < steps; ++i) simulation.step();
   return simulation.state().positions;
-}
-
-/// Slope of log(error) against log(step) by least squares.
-double fitted_order(const std::vector<double>& steps, const std::vector<double>& errors) {
-  double sx = 0.0;
-  double sy = 0.0;
-  double sxx = 0.0;
-  double sxy = 0.0;
-  const auto n = static_cast<double>(steps.size());
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    const double x = std::log(steps[i]);
-    const double y = std::log(errors[i]);
-    sx += x;
-    sy += y;
-    sxx += x * x;
-    sxy += x * y;
-  }
-  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
 const char* const kFreeRod = R"(

@@ -1,9 +1,12 @@
 #pragma once
 
 #include "der/model/model.hpp"
-#include "der/scenario/scenario.hpp"
 
 namespace der {
+
+namespace scenario {
+struct Scene;
+}
 
 /// Turns a validated scene into a model: chooses the smallest model that can represent it, numbers
 /// nodes and degrees of freedom, lists elements, lumps masses and collects loads and supports.

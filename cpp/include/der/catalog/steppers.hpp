@@ -16,6 +16,7 @@ struct StepperInfo {
   /// Factor from the difference between an adaptive step done as a whole and in two halves to the
   /// error of the halves.
   double error_factor = 1.0;
+  double step_cost = 1.0;      ///< of a step, against one of an implicit stepper of one stage
   std::string_view stability;  ///< in words
   std::string_view damping;    ///< numerical damping, in words
 };

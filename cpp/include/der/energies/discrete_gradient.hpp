@@ -5,10 +5,10 @@
 #include "der/core/constants.hpp"
 #include "der/core/types.hpp"
 #include "der/energies/from_pivot.hpp"
+#include "der/energies/local_term.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/energies/planar_clamp.hpp"
 #include "der/energies/planar_moment.hpp"
-#include "der/energies/point_spring.hpp"
 #include "der/energies/rotational_spring.hpp"
 #include "der/energies/stretch.hpp"
 #include "der/kinematics/configuration.hpp"
@@ -24,14 +24,26 @@ namespace der {
 // element add up to nothing and turn nothing, and the momenta are kept too (Simo and Tarnow, ZAMP
 // 43, 1992). The quotients are worked out without cancellation.
 //
-// There is one overload of `discrete_gradient` for each kernel of registry.hpp: it sets `gradient`
-// [N] to D of the element at given values of the tables.
+// `discrete_gradient` sets `gradient` [N] to D of one element at given values of the tables. A
+// kernel whose energy is quadratic in the positions needs no overload; every other kernel of
+// registry.hpp has one. tests/cpp/energies/discrete_gradient_test.cpp fails for a kernel that lacks
+// it.
 
 template <class Kernel>
 struct KernelTag {};
 
 template <int N>
 using Local = Eigen::Matrix<double, N, 1>;
+
+/// The gradient at the middle: a discrete gradient of every quadratic energy.
+template <class Kernel>
+void discrete_gradient(KernelTag<Kernel> /*kernel*/, const typename Kernel::Constants& c,
+                       const Configuration& here, const Local<Kernel::kDofs>& start,
+                       const Local<Kernel::kDofs>& end, Local<Kernel::kDofs>& gradient) {
+  LocalTerm<Kernel::kDofs> middle;
+  Kernel::template evaluate<Derivatives::Gradient>(c, here, 0.5 * (start + end), middle);
+  gradient = middle.gradient;
+}
 
 /// How a planar vector turns from one value to another.
 struct Turn {
@@ -173,18 +185,6 @@ inline void discrete_gradient(KernelTag<PlanarMoment> /*kernel*/, const PlanarMo
                      discrete_direction_gradient(Turn(before, after), before, after);
   gradient.head<2>() = force;
   gradient.tail<2>() = -force;
-}
-
-template <int Nodes>
-void discrete_gradient(KernelTag<PointSpring<Nodes>> /*kernel*/,
-                       const typename PointSpring<Nodes>::Constants& c,
-                       const Configuration& /*here*/, const Local<2 * Nodes>& start,
-                       const Local<2 * Nodes>& end, Local<2 * Nodes>& gradient) {
-  const Local<2 * Nodes> middle = 0.5 * (start + end);
-  const Vec2 stretch =
-      Eigen::Map<const Eigen::Matrix<double, 2, Nodes>>(middle.data()) * c.weights - c.anchor;
-  const Vec2 force = c.stiffness.cwiseProduct(stretch);
-  for (int i = 0; i < Nodes; ++i) gradient.template segment<2>(2 * i) = c.weights[i] * force;
 }
 
 template <int Edges>

@@ -21,7 +21,10 @@ namespace der {
 ///   static void evaluate(const Constants&, const Configuration& here,
 ///                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out);
 /// and, if its energy changes with a translation of the element,
-///   static bool holds(const Constants&, int component);    against moving along x (0) or y (1)
+///   static double holding_stiffness(const Constants&, int component);    [N/m] against moving
+///   along
+///                                                        x (0) or y (1); 0: it does not hold there
+/// Statics then count it as a support.
 template <class Kernel>
 struct ElementList {
   using KernelType = Kernel;
@@ -39,6 +42,6 @@ struct ElementList {
 template <class Kernel, class = void>
 struct HoldsElement : std::false_type {};
 template <class Kernel>
-struct HoldsElement<Kernel, std::void_t<decltype(&Kernel::holds)>> : std::true_type {};
+struct HoldsElement<Kernel, std::void_t<decltype(&Kernel::holding_stiffness)>> : std::true_type {};
 
 }  // namespace der

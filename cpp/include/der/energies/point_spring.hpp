@@ -19,9 +19,10 @@ struct PointSpring {
     Eigen::Matrix<double, Nodes, 1> weights;
   };
 
-  /// Whether it holds the rod against moving along an axis: the energy of an element that holds
-  /// changes with a translation of the element.
-  static bool holds(const Constants& c, int component) { return c.stiffness[component] > 0.0; }
+  /// Of the rod against moving along an axis [N/m]; 0: it does not hold the rod there.
+  static double holding_stiffness(const Constants& c, int component) {
+    return c.stiffness[component];
+  }
 
   template <Derivatives D>
   static void evaluate(const Constants& c, const Configuration& /*here*/,

@@ -4,7 +4,7 @@
 
 #include "der/core/types.hpp"
 #include "der/model/ramp.hpp"
-#include "der/scenario/scenario.hpp"
+#include "der/scenario/series.hpp"
 
 namespace der {
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "der/scenario/scenario.hpp"
+#include "der/scenario/cross_section.hpp"
 
 namespace der {
 

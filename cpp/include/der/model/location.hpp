@@ -4,7 +4,7 @@
 
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
-#include "der/scenario/scenario.hpp"
+#include "der/scenario/location.hpp"
 
 namespace der {
 

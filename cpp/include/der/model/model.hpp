@@ -12,7 +12,7 @@
 #include "der/model/edge.hpp"
 #include "der/model/mass.hpp"
 #include "der/model/turns.hpp"
-#include "der/scenario/scenario.hpp"
+#include "der/scenario/curvature_measure.hpp"
 
 namespace der {
 

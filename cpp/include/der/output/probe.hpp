@@ -6,9 +6,13 @@
 
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
-#include "der/scenario/scenario.hpp"
 
 namespace der {
+
+namespace scenario {
+struct Probe;
+struct Scene;
+}  // namespace scenario
 
 /// Reads one scalar off a state; what it needs is worked out beforehand, so that reading allocates
 /// nothing.

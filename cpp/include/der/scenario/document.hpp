@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "der/scenario/scenario.hpp"
+#include "der/scenario/mark.hpp"
 
 namespace der::scenario {
 

@@ -7,13 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "der/scenario/scenario.hpp"
-
 namespace der {
 
 namespace scenario {
 class Document;  // the ordered tree of marked values that texts and dictionaries are read into
-}
+struct Scene;    // what a document means
+}  // namespace scenario
 
 /// One override, as in `--set rods.beam.nodes=101`: the key path and the new value as YAML text.
 using Override = std::pair<std::string, std::string>;

@@ -4,9 +4,13 @@
 
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
-#include "der/scenario/scenario.hpp"
+#include "der/scenario/analysis.hpp"
 
 namespace der {
+
+namespace scenario {
+struct Scene;
+}
 
 /// Loads and prescribed motions in proportion to one factor: 1 is the scene as written, 0 the scene
 /// without what varies. The one thing that changes a model after it was built.

@@ -3,9 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "der/scenario/scenario.hpp"
-
 namespace der {
+
+namespace scenario {
+struct Scene;
+}
 
 /// Warnings, in sentences, about the tables over time that have entries closer together than equal
 /// steps of `step` [s]: such steps go over kinks without seeing them, so that no stepper keeps its

@@ -5,11 +5,14 @@
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
-#include "der/scenario/scenario.hpp"
 #include "der/steppers/stable_step.hpp"
 #include "der/steppers/stepper.hpp"
 
 namespace der {
+
+namespace scenario {
+struct Time;
+}
 
 /// Keeps the equal steps of an explicit run stable on its way: compressed edges, and with the
 /// tangent measure bent ones, make a rod stiffer than it was at the start.

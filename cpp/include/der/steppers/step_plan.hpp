@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <utility>
 
-#include "der/scenario/scenario.hpp"
-
 namespace der {
+
+namespace scenario {
+struct Scene;
+}
 
 /// The time steps of a run, worked out from what the scene says and what the model bears at first.
 struct StepPlan {

@@ -4,9 +4,12 @@
 #include "der/energies/effective_edge.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
-#include "der/scenario/scenario.hpp"
 
 namespace der {
+
+namespace scenario {
+struct Support;
+}
 
 // A clamp holds a node and the tangent there. In the linear theory a chain with equal edges l,
 // moment M_i = EI phi_i / l at node i, carries every load exactly, but for its nodes lying at y -

@@ -1,9 +1,12 @@
 #pragma once
 
 #include "der/model/model.hpp"
-#include "der/scenario/scenario.hpp"
 
 namespace der {
+
+namespace scenario {
+struct Support;
+}
 
 // A spring against turning acts on the tangent at a place, of which the chain knows only the mean
 // directions of the edges beside it: sum w_i theta_i with the weights of a moment there

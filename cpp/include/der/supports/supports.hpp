@@ -4,9 +4,12 @@
 
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
-#include "der/scenario/scenario.hpp"
 
 namespace der {
+
+namespace scenario {
+struct Support;
+}
 
 /// Holds or moves the components that a support names, adds its spring, and enters its clamps into
 /// the rod's layout. Must run after the rods are laid out and before their elements are made.

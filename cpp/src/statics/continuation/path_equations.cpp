@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "der/loads/loads.hpp"
+#include "der/loads/external_force.hpp"
 #include "der/model/prescribed_motion.hpp"
 #include "der/model/turns.hpp"
 

@@ -33,8 +33,8 @@ double spring_travel(const Model& model, double load) {
         Kernel::template evaluate<Derivatives::Energy>(
             list.constants[e], {}, gather(list.dofs[e], model.initial_positions), drawn);
         for (int c = 0; c < model.dimension; ++c) {
-          if (!Kernel::holds(list.constants[e], c)) continue;
-          const double stiffness = list.constants[e].stiffness[c];
+          const double stiffness = Kernel::holding_stiffness(list.constants[e], c);
+          if (stiffness == 0.0) continue;
           farthest =
               std::max(farthest, load / stiffness + std::sqrt(2.0 * drawn.energy / stiffness));
         }

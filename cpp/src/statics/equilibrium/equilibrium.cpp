@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "der/loads/loads.hpp"
+#include "der/loads/external_force.hpp"
 #include "der/statics/potential.hpp"
 #include "der/statics/rigid_motion.hpp"
 #include "statics/equilibrium/dynamic_relaxation.hpp"

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+#include "der/scenario/series.hpp"
+
+namespace der {
+
+/// A force that keeps its direction and may follow a table over time. Its tables are entered into
+/// the model once, however many nodes share it.
+class DeadForce {
+ public:
+  DeadForce(const scenario::VectorSeries& force, Model& model);
+  /// Adds `weight` times the force to a node.
+  void act_on(Index node, double weight, Model& model) const;
+  /// The controls that hold its components in the plane [N], for what reads it off the model: of a
+  /// constant force the tables of one value that a path of loads scales with it.
+  [[nodiscard]] std::array<Index, 2> as_controls(Model& model) const;
+
+ private:
+  scenario::Components constant_;  // empty: it follows tables
+  std::vector<Index> controls_;    // one a component
+};
+
+}  // namespace der

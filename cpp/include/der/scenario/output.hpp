@@ -1,0 +1,31 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "der/scenario/location.hpp"
+#include "der/scenario/mark.hpp"
+
+namespace der::scenario {
+
+enum class Reduce { None, Min, Max };
+/// Which of the two values of a quantity that jumps: toward smaller arc lengths, or larger ones.
+enum class Side { Before, After };
+struct Probe {
+  std::string name;
+  std::string quantity;            ///< a name of the probe registry (x, vy, turning_angle, ...)
+  std::optional<std::string> rod;  ///< absent: the whole model (energies only)
+  std::optional<Location> at;
+  Reduce over = Reduce::None;  ///< with `over: rod`: the extreme along the rod
+  std::optional<Side> side;    ///< absent: after; quantities that jump only
+  Mark mark;
+};
+
+struct Output {
+  /// [s] between saved frames; always above 0 in a run over time.
+  double every = 0.0;
+  std::vector<Probe> probes;
+};
+
+}  // namespace der::scenario

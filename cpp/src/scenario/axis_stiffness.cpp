@@ -1,0 +1,31 @@
+#include "scenario/axis_stiffness.hpp"
+
+#include <algorithm>
+
+namespace der::scenario {
+
+Format<Components> axis_stiffness(const std::string& unit) {
+  const Format<double> both = number(unit, positive());
+  const Format<Components> each = vector(unit);
+  Shape shape{Shape::Kind::AnyOf};
+  shape.unit = both.shape.unit;
+  shape.parts = {both.shape, each.shape};
+  return {std::move(shape), [both, each](const Shape& /*self*/, const Place& place,
+                                         Complaints& complaints, Components& out) {
+            if (!place.value->sequence()) {
+              double stiffness = 0.0;
+              if (!both.read(place, complaints, stiffness)) return false;
+              out = {stiffness, stiffness};
+              return true;
+            }
+            if (!each.read(place, complaints, out)) return false;
+            const bool negative =
+                std::any_of(out.begin(), out.end(), [](double k) { return k < 0; });
+            const bool none = std::all_of(out.begin(), out.end(), [](double k) { return k == 0; });
+            if (negative) complaints.add(place, "a stiffness must not be negative");
+            if (none) complaints.add(place, "one of the stiffnesses must be greater than 0");
+            return !negative && !none;
+          }};
+}
+
+}  // namespace der::scenario

@@ -1,0 +1,117 @@
+"""Every kind of load of the schema, on its sample in tests/load_samples.yaml.
+
+What the package does with loads of all kinds has to reach a new one too: the warning of fine
+tables, the drawings, the refinement of meshes, the scene reference. A kind without a sample fails.
+"""
+
+import json
+from pathlib import Path
+
+import der
+import numpy as np
+import pytest
+from der.accuracy.refinement import with_elements
+from der.scene_loads import WITHOUT_SYMBOL, acting_loads
+from der.viewing.payload import make_payload
+
+ROOT = Path(__file__).parents[2]
+SCHEMA = json.loads(der.json_schema())["$defs"]
+KINDS = sorted(SCHEMA["load"]["properties"])
+SAMPLES = der.Scenario.load(ROOT / "tests/load_samples.yaml").to_dict()
+EVERY_KIND = pytest.mark.parametrize("kind", KINDS)
+
+
+def with_only(kind):
+    """Return the scene with none but the load of that kind."""
+    (load,) = (load for load in SAMPLES["loads"] if kind in load)
+    return {**SAMPLES, "loads": [load]}
+
+
+def properties(kind):
+    return SCHEMA.get(kind, {}).get("properties", {})
+
+
+def tip(scene):
+    """Return where the end of the rod comes to."""
+    result = der.run(scene)
+    return result.positions[-1, result.rods[0].nodes[-1]]
+
+
+@EVERY_KIND
+def test_sample_is_a_hard_one(kind):
+    """It follows a table and stands at a node wherever its kind lets it."""
+    ((_, load),) = with_only(kind)["loads"][0].items()
+    for key, value in properties(kind).items():
+        if "#/$defs/table" in json.dumps(value):
+            assert min(np.diff(load[key]["times"])) < SAMPLES["time"]["step"], key
+    assert load["at"] == {"node": 4} if "at" in properties(kind) else True
+    assert all(key in load for key in {"rod", "from", "to"} & set(properties(kind)))
+
+
+@EVERY_KIND
+def test_fine_tables_are_warned_of(kind):
+    warnings = der.run(with_only(kind)).summary["warnings"]
+    for key, value in properties(kind).items():
+        if "#/$defs/table" in json.dumps(value):
+            path = f"the table loads.0.{kind}.{key} has entries at 0 and 0.001 s"
+            assert any(warning.startswith(path) for warning in warnings)
+
+
+@EVERY_KIND
+def test_is_drawn_unless_it_has_no_symbol(kind):
+    result = der.run(with_only(kind))
+    last = len(result.times) - 1
+    acting = acting_loads(result, last)
+    found = [*acting.forces, *acting.moments, *acting.lines]
+    drawn = bool(found) or acting.gravity is not None
+    assert drawn == (kind not in WITHOUT_SYMBOL)
+    axes = result.plot("shapes").axes[0]
+    assert drawn == any((line.get_gid() or "").startswith("load") for line in axes.lines)
+    view = make_payload(result)
+    assert drawn == (bool(view["loads"][view["load_set"][-1]]) or "gravity" in view["note"])
+
+
+def test_view_draws_every_symbol():
+    """The page tells moments and lines apart; every other symbol is an arrow."""
+    kinds = {
+        load["kind"]
+        for kind in KINDS
+        for load in make_payload(der.run(with_only(kind)))["loads"][-1]
+    }
+    script = (ROOT / "python/der/viewing/view.js").read_text(encoding="utf-8")
+    assert all(f'load.kind === "{kind}"' in script for kind in kinds - {"force"})
+
+
+@EVERY_KIND
+def test_refinement_carries_its_effect(kind):
+    """The load moves the tip on a mesh of 32 elements as far as on one of 16.
+
+    The error is of second order in their length, (1/16)^2 times a factor of a few. A load that keeps
+    the number of its node, or that counts nodes, is off by half of its effect and more.
+    """
+    scenes = [{**SAMPLES, "loads": []}, with_only(kind)]
+    coarse, fine = (
+        np.subtract(*(tip(with_elements(der.Scenario.from_dict(s), n)) for s in scenes))
+        for n in (2, 4)
+    )
+    assert np.linalg.norm(coarse) > 1e-4
+    assert np.linalg.norm(fine - coarse) < 0.03 * np.linalg.norm(coarse)
+
+
+@EVERY_KIND
+def test_at_all_nodes_it_is_not_refined(kind):
+    if '"all"' not in json.dumps(properties(kind).get("at")):
+        return
+    scene = with_only(kind)
+    load = {**scene["loads"][0][kind], "at": "all"}
+    scenario = der.Scenario.from_dict({**scene, "loads": [{kind: load}]})
+    assert with_elements(scenario, 2).to_dict()["rods"] == scene["rods"]
+
+
+@EVERY_KIND
+def test_the_scene_reference_has_it(kind):
+    reference = (ROOT / "docs/scene_reference.md").read_text(encoding="utf-8")
+    section = reference.split('<a id="load"></a>')[1].split("<a id=")[0]
+    assert f"| `{kind}` |" in section
+    for key in properties(kind):
+        assert f"| `{key}` |" in reference.split(f'<a id="{kind.replace("_", "-")}"></a>')[1]

@@ -62,7 +62,7 @@ std::array<double, kEnergyNames.size()> by_name(const Energies& energies) {
 void forget_steps(State& state) {
   state.accelerations.setZero();
   state.last_step = 0.0;
-  state.history.clear();
+  state.memory = NoMemory{};
   state.next_step = 0.0;
   state.last_error = 0.0;
 }

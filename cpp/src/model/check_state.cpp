@@ -31,14 +31,18 @@ std::optional<Eigen::Index> entries(Extent extent, const Model& model) {
   return std::nullopt;
 }
 
+const char* counted_by(Extent extent) {
+  return extent == Extent::Dofs ? "degrees of freedom" : "turns at springs and clamps";
+}
+
 void check_sizes(const Model& model, const State& state) {
   for_each_value(state, [&](const auto& field, const auto& value) {
     if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Vector>) {
       const Eigen::Index wanted = entries(field.extent, model).value_or(value.size());
       demand(value.size() == wanted,
-             fmt::format("the state has {} entries in its {}, this simulation has {}: a state can "
-                         "only be restored into a simulation of the same rods and supports",
-                         value.size(), in_words(field.name), wanted));
+             fmt::format("the state has {} {} in its {}, this simulation has {}: a state can only "
+                         "be restored into a simulation of the same rods and supports",
+                         value.size(), counted_by(field.extent), in_words(field.name), wanted));
     }
   });
 }

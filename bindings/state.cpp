@@ -3,92 +3,134 @@
 #include <pybind11/stl.h>
 
 #include <cctype>
+#include <cstdint>
 #include <string>
-#include <vector>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <variant>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "der/model/fields.hpp"
 
 namespace der::python {
 namespace {
 
-/// Version of the layout of a dumped state; another one is refused.
-constexpr int kVersion = 1;
 constexpr const char* kKind = "der.State";
-
-Array to_array(const Vector& vector) { return Array(vector.size(), vector.data()); }
 
 [[noreturn]] void refuse(const std::string& why) {
   throw py::value_error("this is no saved state of this version of der: " + why +
                         ". Save it anew with save_state");
 }
 
-Vector to_vector(const py::handle& value) {
-  const auto array = py::array_t<double, py::array::c_style>::ensure(value);
-  if (!array || !py::isinstance<Array>(value) || array.ndim() != 1) {
+// A state goes into a pickle as the lists of its fields say: a struct is a dict by the names of its
+// fields, a Vector an array, a list a list of dicts, an alternative its name and its dict.
+
+template <class Value>
+py::object dump(const Value& value) {
+  if constexpr (std::is_arithmetic_v<Value>) {
+    return py::cast(value);
+  } else if constexpr (std::is_same_v<Value, Vector>) {
+    return Array(value.size(), value.data());
+  } else if constexpr (IsList<Value>::value) {
+    py::list items;
+    for (const auto& item : value) items.append(dump(item));
+    return std::move(items);
+  } else if constexpr (IsVariant<Value>::value) {
+    return std::visit(
+        [](const auto& held) -> py::object {
+          return py::make_tuple(std::decay_t<decltype(held)>::kName, dump(held));
+        },
+        value);
+  } else {
+    py::dict fields;
+    for_each_field(
+        value, [&](const auto& field, const auto& member) { fields[field.name] = dump(member); });
+    return std::move(fields);
+  }
+}
+
+template <class Container>
+Container cast_to(const py::handle& dumped, const std::string& name) {
+  if (!py::isinstance<Container>(dumped)) refuse("'" + name + "' is of another type");
+  return py::reinterpret_borrow<Container>(dumped);
+}
+
+Vector read_vector(const py::handle& dumped, const std::string& name) {
+  const auto array = py::array_t<double, py::array::c_style>::ensure(dumped);
+  if (!array || !py::isinstance<Array>(dumped) || array.ndim() != 1) {
     PyErr_Clear();
-    refuse("a vector must be an array of doubles of one dimension");
+    refuse("'" + name + "' must be an array of doubles of one dimension");
   }
   return Eigen::Map<const Vector>(array.data(), array.size());
 }
 
-// Both ways name every part of a state by a structured binding: one more part does not compile
-// until it is saved too.
+template <class Value>
+void read(const py::handle& dumped, const std::string& name, Value& value);
 
-py::tuple dump(const SavedState& saved) {
-  const auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
-               next_step, last_error, work, audit, ramps, turns] = saved.state;
-  py::list remembered;
-  for (const Vector& vector : history) remembered.append(to_array(vector));
-  py::list moved;
-  for (const auto& [control, start, end, from, to] : ramps) {
-    moved.append(py::make_tuple(control, start, end, from, to));
-  }
-  return py::make_tuple(kKind, kVersion, saved.dimension, time, step, to_array(positions),
-                        to_array(velocities), to_array(extra_force), to_array(accelerations),
-                        last_step, remembered, next_step, last_error, work.start, work.loads,
-                        work.supports, work.drag, work.solver, audit.exchanged, audit.created,
-                        audit.written, audit.folded_from, audit.folded_node, audit.unreliable_from,
-                        moved, to_array(turns));
+/// The alternative of that name; refused where there is none.
+template <class... T>
+void read_alternative(const py::tuple& dumped, const std::string& name, std::variant<T...>& value) {
+  if (dumped.size() != 2) refuse("'" + name + "' must be a name and its content");
+  const auto held = dumped[0].cast<std::string>();
+  const auto try_one = [&](auto fresh) {
+    if (held != decltype(fresh)::kName) return false;
+    read(dumped[1], name + "." + held, fresh);
+    value = std::move(fresh);
+    return true;
+  };
+  if (!(try_one(T{}) || ...)) refuse("'" + name + "' knows no '" + held + "'");
 }
 
-SavedState read(const py::tuple& dumped) {
-  SavedState saved;
-  auto& [time, step, positions, velocities, extra_force, accelerations, last_step, history,
-         next_step, last_error, work, audit, ramps, turns] = saved.state;
-  std::size_t next = 2;
-  const auto take = [&] { return dumped[next++]; };
-  const auto number = [&] { return take().cast<double>(); };
-  saved.dimension = take().cast<Index>();
-  time = number();
-  step = take().cast<std::int64_t>();
-  for (Vector* vector : {&positions, &velocities, &extra_force, &accelerations}) {
-    *vector = to_vector(take());
+template <class Struct>
+void read_fields(const py::dict& dumped, const std::string& name, Struct& value) {
+  for_each_field(value, [&](const auto& field, auto& member) {
+    const std::string path = name.empty() ? field.name : name + "." + field.name;
+    if (!dumped.contains(field.name)) refuse("'" + path + "' is missing");
+    read(dumped[field.name], path, member);
+  });
+  if (dumped.size() != std::tuple_size_v<decltype(Struct::fields())>) {
+    refuse((name.empty() ? "it" : "'" + name + "'") + std::string(" has a field too many"));
   }
-  last_step = number();
-  for (const py::handle& vector : take().cast<py::list>()) history.push_back(to_vector(vector));
-  next_step = number();
-  last_error = number();
-  for (double* part : {&work.start, &work.loads, &work.supports, &work.drag, &work.solver,
-                       &audit.exchanged, &audit.created, &audit.written, &audit.folded_from,
-                       &audit.folded_node, &audit.unreliable_from}) {
-    *part = number();
+}
+
+template <class Value>
+void read(const py::handle& dumped, const std::string& name, Value& value) {
+  if constexpr (std::is_arithmetic_v<Value>) {
+    try {
+      value = dumped.cast<Value>();
+    } catch (const py::cast_error&) {
+      refuse("'" + name + "' is of another type");
+    }
+  } else if constexpr (std::is_same_v<Value, Vector>) {
+    value = read_vector(dumped, name);
+  } else if constexpr (IsList<Value>::value) {
+    for (const py::handle& item : cast_to<py::list>(dumped, name)) {
+      read(item, name, value.emplace_back());
+    }
+  } else if constexpr (IsVariant<Value>::value) {
+    read_alternative(cast_to<py::tuple>(dumped, name), name, value);
+  } else {
+    read_fields(cast_to<py::dict>(dumped, name), name, value);
   }
-  for (const auto& ramp : take().cast<std::vector<py::tuple>>()) {
-    if (ramp.size() != 5) refuse("a support that moves has five numbers");
-    ramps.push_back({ramp[0].cast<Index>(), ramp[1].cast<double>(), ramp[2].cast<double>(),
-                     ramp[3].cast<double>(), ramp[4].cast<double>()});
-  }
-  turns = to_vector(take());
-  return saved;
+}
+
+py::tuple dump_state(const SavedState& saved) {
+  return py::make_tuple(kKind, kStateVersion, saved.dimension, dump(saved.state));
 }
 
 SavedState revive(const py::tuple& dumped) {
-  constexpr std::size_t kParts = 26;
   try {
-    if (dumped.size() != kParts || dumped[0].cast<std::string>() != kKind) refuse("other content");
-    if (dumped[1].cast<int>() != kVersion) refuse("another version");
-    SavedState saved = read(dumped);
+    if (dumped.size() < 2 || dumped[0].cast<std::string>() != kKind) refuse("other content");
+    if (const auto version = dumped[1].cast<std::int64_t>(); version != kStateVersion) {
+      refuse("it is of version " + std::to_string(version) + ", not " +
+             std::to_string(kStateVersion));
+    }
+    if (dumped.size() != 4) refuse("other content");
+    SavedState saved;
+    saved.dimension = dumped[2].cast<Index>();
+    read(dumped[3], "", saved.state);
     const Eigen::Index dofs = saved.state.positions.size();
     if (saved.dimension != 2 || dofs % saved.dimension != 0) refuse("another number of dimensions");
     if (saved.state.velocities.size() != dofs) refuse("as many velocities as positions are needed");
@@ -147,7 +189,7 @@ void bind_state(py::module_& module) {
             return read_only_view(saved.state.velocities, saved.dimension, self);
           },
           "Node velocities [m/s], shape (nodes, dim), read-only.")
-      .def(py::pickle(&dump, &revive))
+      .def(py::pickle(&dump_state, &revive))
       .def("__repr__", [](const SavedState& s) {
         return py::str("<der.State at t = {:.6g} s after {} steps, {} nodes>")
             .format(s.state.time, s.state.step, s.state.positions.size() / s.dimension);

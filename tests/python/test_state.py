@@ -230,23 +230,36 @@ def test_equal_steps_count_their_time_as_before(swing):
     assert simulation.time == 12 * 0.003
 
 
-PARTS = [
-    *("kind", "version", "dimension", "time", "step"),
-    *("positions", "velocities", "extra_force", "accelerations"),
-    *("last_step", "history", "next_step", "last_error"),
-    *("start", "loads", "supports", "drag", "solver"),
-    *("exchanged", "created", "written", "folded_from", "folded_node", "unreliable_from"),
-    *("ramps", "turns"),
-]
+HEAD = ("kind", "version", "dimension", "fields")
+
+
+def content_of(state):
+    """What a state puts into a pickle."""
+    return dict(zip(HEAD, state.__reduce_ex__(4)[2], strict=True))
+
+
+def revived(state, content):
+    """A state of other content, as a damaged file might have it."""
+    function, (cls,) = state.__reduce_ex__(4)[:2]
+    fresh = function(cls)
+    fresh.__setstate__(content)
+    return fresh
 
 
 def changed(state, **parts):
-    """The state with parts of its pickled content replaced, as a damaged file might."""
-    function, (cls,), content = state.__reduce_ex__(4)[:3]
-    values = dict(zip(PARTS, content, strict=True)) | parts
-    fresh = function(cls)
-    fresh.__setstate__(tuple(values.values()))
-    return fresh
+    """The state with parts of its pickled content replaced."""
+    content = content_of(state)
+    for name, value in parts.items():
+        (content if name in HEAD else content["fields"])[name] = value
+    return revived(state, tuple(content.values()))
+
+
+def ramp(**parts):
+    return {"control": 0, "start": 0.0, "end": 1.0, "from": 0.0, "to": 1.0} | parts
+
+
+def bdf2(size, **parts):
+    return ("bdf2", {"displacement": np.zeros(size), "velocities": np.zeros(size)} | parts)
 
 
 MALFORMED = {
@@ -254,7 +267,14 @@ MALFORMED = {
     "short velocities": {"velocities": np.zeros(4)},
     "short forces": {"extra_force": np.zeros(4)},
     "short accelerations": {"accelerations": np.zeros(4)},
-    "short history": {"history": [np.zeros(2), np.zeros(2)]},
+    "short memory": {"memory": bdf2(2)},
+    "half a memory": {"memory": ("bdf2", {"displacement": np.zeros(22)})},
+    "memory of more": {"memory": bdf2(22, accelerations=np.zeros(22))},
+    "memory of nan": {"memory": bdf2(22, velocities=np.full(22, math.nan))},
+    "unknown memory": {"memory": ("bdf3", {})},
+    "memory without a name": {"memory": {}},
+    "unknown field": {"momenta": np.zeros(22)},
+    "a number for a struct": {"work": 0.0},
     "short turns": {"turns": np.zeros(0)},
     "two dimensions": {"positions": np.zeros((11, 2))},
     "integers": {"velocities": np.zeros(22, dtype=int)},
@@ -266,11 +286,12 @@ MALFORMED = {
     "dimension": {"dimension": 0},
     "other kind": {"kind": "der.Model"},
     "other version": {"version": 99},
-    "control": {"ramps": [(17, 0.0, 1.0, 0.0, 1.0)]},
-    "negative control": {"ramps": [(-1, 0.0, 1.0, 0.0, 1.0)]},
-    "ramp without end": {"ramps": [(0, 0.0, math.nan, 0.0, 1.0)]},
-    "ramp of four": {"ramps": [(0, 0.0, 1.0, 0.0)]},
-    "backward ramp": {"ramps": [(0, 1.0, 0.5, 0.0, 1.0)]},
+    "control": {"ramps": [ramp(control=17)]},
+    "negative control": {"ramps": [ramp(control=-1)]},
+    "half a control": {"ramps": [ramp(control=0.5)]},
+    "ramp without end": {"ramps": [ramp(end=math.nan)]},
+    "ramp of four": {"ramps": [{"control": 0, "start": 0.0, "end": 1.0, "from": 0.0}]},
+    "backward ramp": {"ramps": [ramp(start=1.0, end=0.5)]},
     "turn": {"turns": np.array([math.nan])},
 }
 
@@ -292,10 +313,44 @@ def test_strided_arrays_are_read_as_they_are(moving):
     assert np.array_equal(changed(state, velocities=strided).velocities, state.velocities)
 
 
-def test_a_pickle_of_before_there_were_versions_is_refused(moving):
-    function, (cls,), content = moving.save_state().__reduce_ex__(4)[:3]
+def test_each_field_that_is_missing_is_named(moving):
+    state = moving.save_state()
+    content = content_of(state)
+    for name in content["fields"]:
+        rest = {key: value for key, value in content["fields"].items() if key != name}
+        with pytest.raises(ValueError, match=f"'{name}' is missing"):
+            revived(state, (*list(content.values())[:3], rest))
+
+
+def test_pickles_of_other_versions_are_refused_by_name(moving):
+    state = moving.save_state()
+    content = tuple(content_of(state).values())
+    for version in (content[1] - 1, content[1] + 1):
+        with pytest.raises(ValueError, match=f"it is of version {version}, not {content[1]}"):
+            revived(state, (content[0], version, *content[2:]))
+    # Version 1 had its parts one behind the other; before it there was no version.
+    with pytest.raises(ValueError, match="it is of version 1"):
+        revived(state, (content[0], 1, 2, 0.5, 3, *content))
     with pytest.raises(ValueError, match="no saved state of this version of der"):
-        function(cls).__setstate__(content[2:-1])
+        revived(state, (2, 0.5, 3))
+
+
+@pytest.mark.parametrize(
+    ("integrator", "memory"), [("bdf2", "bdf2"), ("verlet", "stability"), ("tr_bdf2", "none")]
+)
+def test_the_memory_of_a_stepper_is_saved_by_name(swing, integrator, memory):
+    step = "auto" if integrator == "verlet" else 0.002
+    swing["time"] = {"duration": 0.2, "integrator": integrator, "step": step}
+    simulation = der.Simulation(swing)
+    assert content_of(simulation.save_state())["fields"]["memory"][0] == "none"
+    simulation.step(3)
+    state = simulation.save_state()
+    assert content_of(state)["fields"]["memory"][0] == memory
+    again = der.Simulation(swing)
+    again.restore_state(pickle.loads(pickle.dumps(state)))
+    for each in (simulation, again):
+        each.step(20)
+    assert dumped(again) == dumped(simulation)
 
 
 def test_a_time_too_late_for_its_step_is_named(moving):

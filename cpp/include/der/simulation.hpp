@@ -5,10 +5,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "der/assembly/assembler.hpp"
 #include "der/assembly/pattern.hpp"
+#include "der/model/fields.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 #include "der/scenario/reader.hpp"
@@ -34,7 +36,16 @@ struct Counters {
   std::int64_t retried_steps = 0;   ///< equal steps that had to be done in smaller pieces
   std::int64_t rejected_steps = 0;  ///< adaptive steps that were too long for the tolerance
   std::int64_t most_pieces = 1;     ///< that `step: auto` would have done a step in
+
+  static constexpr auto fields() {
+    return std::make_tuple(field("steps", "", &Counters::steps),
+                           field("newton_iterations", "", &Counters::newton_iterations),
+                           field("retried_steps", "", &Counters::retried_steps),
+                           field("rejected_steps", "", &Counters::rejected_steps),
+                           field("most_pieces", "", &Counters::most_pieces));
+  }
 };
+static_assert(lists_all_members<Counters>());
 
 /// The lower triangle of a symmetric matrix over the free degrees of freedom, in compressed
 /// columns.

@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <type_traits>
 
 #include "der/core/error.hpp"
 #include "der/model/model.hpp"
@@ -17,35 +18,33 @@ void demand(bool fits, const std::string& problem) {
   throw Error("model_error", problem);
 }
 
-void check_sizes(const Model& model, const State& state) {
-  const auto check = [](Eigen::Index size, Index wanted, const char* what) {
-    demand(size == wanted,
-           fmt::format("the state has {} {}, this simulation has {}: a state can only be restored "
-                       "into a simulation of the same rods and supports",
-                       size, what, wanted));
-  };
-  const Index dofs = model.num_dofs();
-  check(state.positions.size(), dofs, "degrees of freedom");
-  check(state.velocities.size(), dofs, "velocities");
-  check(state.extra_force.size(), dofs, "extra forces");
-  check(state.accelerations.size(), dofs, "accelerations");
-  for (const Vector& vector : state.history) check(vector.size(), dofs, "values of the past");
-  check(state.turns.size(), static_cast<Index>(model.followed_edges.size()),
-        "turns at springs and clamps");
+std::string in_words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
 }
 
-void check_times(const State& state) {
-  const std::array<std::pair<double, const char*>, 4> values{{{state.time, "time"},
-                                                              {state.last_step, "last step"},
-                                                              {state.next_step, "next step"},
-                                                              {state.last_error, "last error"}}};
-  for (const auto& [value, what] : values) {
-    demand(std::isfinite(value) && value >= 0.0,
-           fmt::format("the {} of the state is {}: it must be a finite number, 0 or greater", what,
-                       value));
-  }
-  demand(state.step >= 0,
-         fmt::format("the state counts {} steps: it must be 0 or more", state.step));
+/// Entries that a model wants of a Vector; none where it does not say.
+std::optional<Eigen::Index> entries(Extent extent, const Model& model) {
+  if (extent == Extent::Dofs) return model.num_dofs();
+  if (extent == Extent::FollowedEdges)
+    return static_cast<Eigen::Index>(model.followed_edges.size());
+  return std::nullopt;
+}
+
+const char* counted_by(Extent extent) {
+  return extent == Extent::Dofs ? "degrees of freedom" : "turns at springs and clamps";
+}
+
+void check_sizes(const Model& model, const State& state) {
+  for_each_value(state, [&](const auto& field, const auto& value) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Vector>) {
+      const Eigen::Index wanted = entries(field.extent, model).value_or(value.size());
+      demand(value.size() == wanted,
+             fmt::format("the state has {} {} in its {}, this simulation has {}: a state can only "
+                         "be restored into a simulation of the same rods and supports",
+                         value.size(), counted_by(field.extent), in_words(field.name), wanted));
+    }
+  });
 }
 
 void check_ramps(const Model& model, const std::vector<Ramp>& ramps) {
@@ -56,23 +55,51 @@ void check_ramps(const Model& model, const std::vector<Ramp>& ramps) {
     demand(known,
            "the state moves a support that this scene does not prescribe: a state can only be "
            "restored into a simulation of the same rods and supports");
-    const std::array<double, 4> values{ramp.start, ramp.end, ramp.from, ramp.to};
-    demand(
-        std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }) &&
-            ramp.start <= ramp.end,
-        fmt::format("the state moves a support from {} to {} between t = {} and {} s: these must "
-                    "be finite numbers, the times in order",
-                    ramp.from, ramp.to, ramp.start, ramp.end));
+    demand(ramp.start <= ramp.end,
+           fmt::format("the state moves a support between t = {} and {} s: these must be in order",
+                       ramp.start, ramp.end));
   }
+}
+
+bool fits(double value, Values values) {
+  if (values == Values::Any) return true;
+  return std::isfinite(value) && (values == Values::Finite || value >= 0.0);
+}
+
+/// The first number of a field that does not fit; none: all do.
+template <class Number>
+std::optional<double> find_misfit(Number value, Values values) {
+  const auto number = static_cast<double>(value);
+  return fits(number, values) ? std::nullopt : std::optional(number);
+}
+
+std::optional<double> find_misfit(const Vector& vector, Values values) {
+  for (const double value : vector) {
+    if (!fits(value, values)) return value;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
+std::string find_wrong_value(const State& state) {
+  std::string problem;
+  for_each_value(state, [&](const auto& field, const auto& value) {
+    if (!problem.empty()) return;
+    const std::optional<double> wrong = find_misfit(value, field.values);
+    if (!wrong) return;
+    problem =
+        fmt::format("the {} of the state is {}: it must be a finite number{}", in_words(field.name),
+                    *wrong, field.values == Values::NotNegative ? ", 0 or greater" : "");
+  });
+  return problem;
+}
+
 void check_state(const Model& model, const State& state) {
   check_sizes(model, state);
-  check_times(state);
+  const std::string wrong = find_wrong_value(state);
+  demand(wrong.empty(), wrong);
   check_ramps(model, state.ramps);
-  demand(state.turns.allFinite(), "a turn of the state is not a finite number");
 }
 
 }  // namespace der

@@ -63,7 +63,7 @@ Energies energies(const Model& model, const Configuration& here, const Vector& v
 void forget_steps(State& state) {
   state.accelerations.setZero();
   state.last_step = 0.0;
-  state.history.clear();
+  state.memory = NoMemory{};
   state.next_step = 0.0;
   state.last_error = 0.0;
 }

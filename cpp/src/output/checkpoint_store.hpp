@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "der/output/checkpoint.hpp"
 #include "output/column.hpp"
@@ -11,14 +12,15 @@
 namespace der {
 
 /// The group /checkpoint of a run file. It has two slots that are written in turn, and `current`
-/// names the one that is whole: a process killed while it writes one leaves the other.
+/// names the one that is whole: a process killed while it writes one leaves the other. A slot has a
+/// dataset for each field of a checkpoint and of its state, by name.
 class CheckpointStore {
  public:
   static CheckpointStore create(hid_t file, hsize_t num_dofs, hsize_t num_probes);
   /// True if the file has checkpoints: a saved result has none.
   static bool is_in(hid_t file);
   /// Throws IoError where the group is not as `create` makes it for so many degrees of freedom and
-  /// probes.
+  /// probes, or of another version.
   static CheckpointStore open(hid_t file, hsize_t num_dofs, hsize_t num_probes);
 
   /// Writes the slot that is not current. Flush the file, then call `publish`, then flush again.
@@ -30,18 +32,19 @@ class CheckpointStore {
   [[nodiscard]] std::optional<Checkpoint> read() const;
 
  private:
-  struct Slot {
-    hdf5::Handle time, step, positions, velocities, extra_force, accelerations, last_step;
-    hdf5::Handle next_step, last_error, work;
-    hdf5::Handle audit, extremes, counters, wall_seconds;
-    Column<double> history;                // all vectors one behind the other
-    Column<std::int64_t> history_lengths;  // of each vector
-    Column<double> ramps;                  // five numbers each
-    Column<double> turns;
-    hdf5::Handle checksum;  // of all these numbers
+  /// The numbers of one field.
+  struct Dataset {
+    hdf5::Handle fixed;      // where there are always as many
+    Column<double> growing;  // where not
+    hdf5::Handle kind;       // of a variant: the number of its alternative
   };
-  static Slot create_slot(hid_t group, hsize_t num_dofs, hsize_t num_probes);
-  static Slot open_slot(hid_t group, hsize_t num_dofs, hsize_t num_probes);
+  struct Slot {
+    std::vector<Dataset> datasets;  // in the order of the fields
+    hdf5::Handle checksum;          // of all their numbers
+  };
+  /// A slot by `maker`, which creates datasets or opens them.
+  template <class Maker>
+  [[nodiscard]] Slot make_slot(const Maker& maker) const;
 
   std::array<Slot, 2> slots_;
   hdf5::Handle current_;

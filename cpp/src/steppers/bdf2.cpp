@@ -1,3 +1,5 @@
+#include <variant>
+
 #include "der/steppers/explicit_force.hpp"
 #include "der/steppers/implicit_stage.hpp"
 #include "steppers.hpp"
@@ -21,15 +23,15 @@ class Bdf2 final : public Stepper {
         velocities_(model.num_dofs()) {}
 
   StepReport step(State& state, double dt) override {
-    const bool has_past = state.history.size() == 2;
-    const double w = has_past ? dt / state.last_step : 0.0;
+    const auto* past = std::get_if<Bdf2Memory>(&state.memory);
+    const double w = past != nullptr ? dt / state.last_step : 0.0;
     const double before = w * w / (1.0 + 2.0 * w);
     const double h = dt * (1.0 + w) / (1.0 + 2.0 * w);
     // The factors of y and y_previous above differ by 1.
     past_velocities_ = state.velocities;
-    if (has_past) {
-      past_displacement_ = before * state.history[0];
-      past_velocities_ += before * (state.velocities - state.history[1]);
+    if (past != nullptr) {
+      past_displacement_ = before * past->displacement;
+      past_velocities_ += before * (state.velocities - past->velocities);
     } else {
       past_displacement_.setZero();
     }
@@ -47,9 +49,9 @@ class Bdf2 final : public Stepper {
 
     velocities_ = (stage_.displacement() - past_displacement_) / h;
     state.accelerations = (velocities_ - past_velocities_) / h;
-    state.history.resize(2);
-    state.history[0] = stage_.displacement();
-    state.history[1] = state.velocities;
+    auto& memory = hold<Bdf2Memory>(state.memory);
+    memory.displacement = stage_.displacement();
+    memory.velocities = state.velocities;
     stage_.book_and_finish(stage_.here.coordinates, velocities_, dt, 1.0, force_, state);
     return report;
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <variant>
 
 #include "der/core/error.hpp"
 #include "der/kinematics/planar_edge.hpp"
@@ -107,12 +108,12 @@ void StabilityWatch::check_start(const State& state) {
 
 void StabilityWatch::look(State& state, double step) {
   if (may_be_unstable(time_)) return;
-  const bool looked = state.history.size() == 1;
-  if (looked && !has_other_shape(model_, state.positions, state.history[0])) return;
+  const auto* last = std::get_if<StabilityMemory>(&state.memory);
+  const bool looked = last != nullptr;
+  if (looked && !has_other_shape(model_, state.positions, last->positions)) return;
   // What a program may have written there; the stepper says where.
   if (!state.positions.allFinite()) return;
-  state.history.resize(1);
-  state.history[0] = state.positions;
+  hold<StabilityMemory>(state.memory).positions = state.positions;
 
   const double stable = stable_step(state);
   if (time_.stepping == scenario::Stepping::Fixed) {

@@ -252,20 +252,35 @@ const std::vector<Mistake>& mistakes() {
            put_dataset(file, name, H5T_NATIVE_DOUBLE, {4, 4});
          }
        }},
-      {"checkpoint: history lengths of nothing",
+      {"checkpoint: a memory without its values",
        [](hid_t file) {
-         for (const char* name : {"checkpoint/0/history_lengths", "checkpoint/1/history_lengths"}) {
-           set_length(file, name, {3});
+         for (const char* name : {"checkpoint/0/memory_kind", "checkpoint/1/memory_kind"}) {
+           overwrite(file, name, H5T_NATIVE_INT64, std::int64_t{1});
+         }
+       }},
+      {"checkpoint: an unknown memory",
+       [](hid_t file) {
+         for (const char* name : {"checkpoint/0/memory_kind", "checkpoint/1/memory_kind"}) {
            overwrite(file, name, H5T_NATIVE_INT64, std::int64_t{1} << 40);
          }
        }},
-      {"checkpoint: a negative history length",
+      {"checkpoint: a negative memory",
        [](hid_t file) {
-         for (const char* name : {"checkpoint/0/history_lengths", "checkpoint/1/history_lengths"}) {
-           set_length(file, name, {1});
-           overwrite(file, name, H5T_NATIVE_INT64, std::int64_t{-4});
+         for (const char* name : {"checkpoint/0/memory_kind", "checkpoint/1/memory_kind"}) {
+           overwrite(file, name, H5T_NATIVE_INT64, std::int64_t{-1});
          }
        }},
+      {"checkpoint: values of no memory",
+       [](hid_t file) {
+         for (const char* name : {"checkpoint/0/memory", "checkpoint/1/memory"}) {
+           set_length(file, name, {3});
+         }
+       }},
+      {"checkpoint: version 50 numbers",
+       attribute("checkpoint", "version", H5T_NATIVE_INT64, {50})},
+      {"checkpoint: version of no state", attribute("checkpoint", "version", H5T_NATIVE_INT64, {})},
+      {"checkpoint: without a version",
+       [](hid_t file) { H5Adelete_by_name(file, "checkpoint", "version", H5P_DEFAULT); }},
       {"checkpoint: a part of a ramp",
        [](hid_t file) {
          for (const char* name : {"checkpoint/0/ramps", "checkpoint/1/ramps"}) {
@@ -373,6 +388,19 @@ TEST_CASE("the message tells an older file from a newer one") {
   CHECK(refusal([&] { read_run(path); }).find("install a newer der") != std::string::npos);
 }
 
+TEST_CASE("the message names the version of a checkpoint that is not ours") {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "results.h5";
+  write_run_file(path);
+  mend(path, [](hid_t file) { H5Adelete_by_name(file, "checkpoint", "version", H5P_DEFAULT); });
+  for (const std::string& message :
+       {refusal([&] { read_head(path); }), refusal([&] { resume(path); })}) {
+    CHECK(message.find("checkpoint is of version 1") != std::string::npos);
+    CHECK(message.find("run its scene again") != std::string::npos);
+  }
+  CHECK(refusal([&] { read_run(path); }).empty());  // the frames are as good as ever
+}
+
 TEST_CASE("numbers that no run has are refused although their checksums are right") {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "results.h5";
@@ -392,6 +420,10 @@ TEST_CASE("numbers that no run has are refused although their checksums are righ
            [&](State& state) { state.step = -3; },
            [&](State& state) { state.positions[0] = nan; },
            [&](State& state) { state.ramps = {{-1, 0.0, 1.0, 0.0, 1.0}}; },
+           [&](State& state) { state.accelerations[0] = nan; },
+           [&](State& state) {
+             state.memory = StabilityMemory{Vector::Constant(state.positions.size(), nan)};
+           },
        }) {
     written_by(spoil);
     CHECK_FALSE(refusal([&] { read_head(path); }).empty());

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <tuple>
+
 #include "der/core/types.hpp"
+#include "der/model/fields.hpp"
 
 namespace der {
 
@@ -18,6 +21,15 @@ struct Ramp {
     if (t <= start) return from;
     return from + (t - start) / (end - start) * (to - from);
   }
+
+  static constexpr auto fields() {
+    return std::make_tuple(field("control", "", &Ramp::control, Values::NotNegative),
+                           field("start", "s", &Ramp::start, Values::Finite),
+                           field("end", "s", &Ramp::end, Values::Finite),
+                           field("from", "", &Ramp::from, Values::Finite),
+                           field("to", "", &Ramp::to, Values::Finite));
+  }
 };
+static_assert(lists_all_members<Ramp>());
 
 }  // namespace der

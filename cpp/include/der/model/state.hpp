@@ -2,12 +2,16 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
+#include <tuple>
 #include <vector>
 
 #include "der/core/types.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/model/energies.hpp"
+#include "der/model/fields.hpp"
 #include "der/model/ramp.hpp"
+#include "der/model/stepper_memory.hpp"
 
 namespace der {
 
@@ -20,7 +24,14 @@ struct Work {
   double supports = 0.0;  ///< done by supports that move
   double drag = 0.0;      ///< taken by drag and linear damping
   double solver = 0.0;    ///< done by what the solver has left of the residual
+
+  static constexpr auto fields() {
+    return std::make_tuple(field("start", "J", &Work::start), field("loads", "J", &Work::loads),
+                           field("supports", "J", &Work::supports), field("drag", "J", &Work::drag),
+                           field("solver", "J", &Work::solver));
+  }
 };
+static_assert(lists_all_members<Work>());
 
 /// Energy that the time stepping creates, against what a run exchanges between kinds of energy, as
 /// `EnergyWatch` has seen it so far.
@@ -31,10 +42,25 @@ struct EnergyAudit {
   double folded_from = -1.0;  ///< [s] when a node first turned through half a turn; negative: never
   double folded_node = -1.0;  ///< its number
   double unreliable_from = -1.0;  ///< [s] when one of these first was too much; negative: never
+
+  static constexpr auto fields() {
+    return std::make_tuple(field("exchanged", "J", &EnergyAudit::exchanged),
+                           field("created", "J", &EnergyAudit::created),
+                           field("written", "J", &EnergyAudit::written),
+                           field("folded_from", "s", &EnergyAudit::folded_from),
+                           field("folded_node", "", &EnergyAudit::folded_node),
+                           field("unreliable_from", "s", &EnergyAudit::unreliable_from));
+  }
 };
+static_assert(lists_all_members<EnergyAudit>());
+
+/// Version of what a saved state means, in a checkpoint or a pickle; another one is refused. One
+/// more wherever a field keeps its name and means something else than before.
+constexpr std::int64_t kStateVersion = 2;
 
 /// Everything that changes in a run. A plain value: copy it to save it, assign it to go back, bit
-/// for bit. Vectors have one entry a degree of freedom.
+/// for bit. Vectors have one entry a degree of freedom. A new member is written here and in
+/// `fields`, and nowhere else.
 struct State {
   double time = 0.0;      ///< [s]
   std::int64_t step = 0;  ///< steps of the scene done
@@ -44,7 +70,7 @@ struct State {
   /// [m/s^2] as the stepper knows it: part of the method for some, a better first guess for others.
   Vector accelerations;
   double last_step = 0.0;  ///< [s] length of the last step; 0: no step yet, `accelerations` not set
-  std::vector<Vector> history;  ///< what a multi-step stepper remembers besides
+  StepperMemory memory;    ///< what the stepper remembers besides
   /// [s] that adaptive steps want to go on with, or what explicit ones are stable with; 0: not
   /// known.
   double next_step = 0.0;
@@ -55,7 +81,25 @@ struct State {
   /// [rad] by which the model's followed edges have turned since they were drawn, whole turns
   /// included, as of the last step or equilibrium.
   Vector turns;
+
+  static constexpr auto fields() {
+    return std::make_tuple(
+        field("time", "s", &State::time, Values::NotNegative),
+        field("step", "", &State::step, Values::NotNegative),
+        field("positions", "m", &State::positions, Values::Any, Extent::Dofs),
+        field("velocities", "m/s", &State::velocities, Values::Any, Extent::Dofs),
+        field("extra_force", "N", &State::extra_force, Values::Any, Extent::Dofs),
+        field("accelerations", "m/s^2", &State::accelerations, Values::Finite, Extent::Dofs),
+        field("last_step", "s", &State::last_step, Values::NotNegative),
+        field("memory", "", &State::memory),
+        field("next_step", "s", &State::next_step, Values::NotNegative),
+        field("last_error", "", &State::last_error, Values::NotNegative),
+        field("work", "J", &State::work), field("audit", "", &State::audit),
+        field("ramps", "", &State::ramps),
+        field("turns", "rad", &State::turns, Values::Finite, Extent::FollowedEdges));
+  }
 };
+static_assert(lists_all_members<State>());
 
 /// The state at time 0.
 State initial_state(const Model& model);
@@ -63,6 +107,9 @@ State initial_state(const Model& model);
 /// Throws Error if `state` cannot be one of the model: sizes, times, or supports that it moves.
 /// Positions, velocities and forces may be any numbers, as a program may have written them.
 void check_state(const Model& model, const State& state);
+
+/// What is wrong with the first number that no state can have, whatever the model; empty: none.
+std::string find_wrong_value(const State& state);
 
 /// Sets `controls` to what elements and supports follow besides the positions, at `time` [s] of a
 /// step that begins at `state`: the tables, the ramps in place of them, and the turns.

@@ -26,7 +26,7 @@ class StabilityWatch {
   /// `state`, the start of a run, unless the scene allows it.
   void check_start(const State& state);
   /// To be called before each piece of a step of length `step` [s]. Looks at the stable step
-  /// whenever the rod has got another shape since the last look (in `state.history`), and sets
+  /// whenever the rod has got another shape since the last look (in `state.memory`), and sets
   /// `state.next_step` to the length of the pieces that the step has to be done in. `step: auto`
   /// keeps them stable, and short against the change of shape. Throws DivergedError where the
   /// scene's own step is no longer stable, unless the scene allows it, and where a stable one would

@@ -37,7 +37,7 @@ StepReport check_turns(const Model& model, const State& state, const Vector& pos
 class Stepper {
  public:
   virtual ~Stepper() = default;
-  /// Tries one step of `dt` seconds from `state.time`; sets positions, velocities and history, and
+  /// Tries one step of `dt` seconds from `state.time`; sets positions, velocities and memory, and
   /// leaves time and count to the caller.
   virtual StepReport step(State& state, double dt) = 0;
 };

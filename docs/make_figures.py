@@ -149,7 +149,7 @@ def tolerance() -> Figure:
         axes.loglog(errors.keys(), errors.values(), marker=marker, color=colour, label=name)
     axes.set(xlabel="tolerance [-]", ylabel="largest error of the tip in time [m]")
     axes.invert_xaxis()
-    axes.legend()
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     return figure
 
 

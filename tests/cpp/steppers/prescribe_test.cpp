@@ -107,7 +107,8 @@ TEST_CASE("what a scene does not prescribe cannot be moved") {
   CHECK_THROWS_WITH_AS(arm.prescribe(0, "x", 0.1),
                        doctest::Contains("it prescribes y of support 0, x of support 1"), Error);
   CHECK_THROWS_WITH_AS(arm.prescribe(7, "x", 0.1), doctest::Contains("x of support 7"), Error);
-  CHECK_THROWS_WITH_AS(arm.prescribe(0, "y", std::nan("")), doctest::Contains("y must be finite, got nan"), Error);
+  CHECK_THROWS_WITH_AS(arm.prescribe(0, "y", std::nan("")),
+                       doctest::Contains("y must be finite, got nan"), Error);
   Simulation adaptive(make_arm({{"time.step", ""}, {"time.tolerance", "1e-3"}}));
   CHECK_THROWS_WITH_AS(adaptive.prescribe(0, "y", 0.1), doctest::Contains("time.step"), Error);
 }

@@ -86,8 +86,8 @@ def test_view_draws_every_symbol():
 def test_refinement_carries_its_effect(kind):
     """The load moves the tip on a mesh of 32 elements as far as on one of 16.
 
-    The error is of second order in their length, (1/16)^2 times a factor of a few. A load that keeps
-    the number of its node, or that counts nodes, is off by half of its effect and more.
+    The error is of second order in their length, (1/16)^2 times a factor of a few. A load that
+    keeps the number of its node, or that counts nodes, is off by half of its effect and more.
     """
     scenes = [{**SAMPLES, "loads": []}, with_only(kind)]
     coarse, fine = (

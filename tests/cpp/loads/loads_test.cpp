@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -77,8 +78,8 @@ TEST_CASE("loads: every kind has a key in the scene and a sample") {
   const Scenario scenario = samples();
   for (const auto& load : scenario.scene().loads) sampled.emplace_back(kind_of(load));
   for (auto* names : {&kinds, &keys, &sampled}) std::sort(names->begin(), names->end());
-  CHECK(keys == kinds);
-  CHECK(sampled == kinds);
+  CHECK(fmt::format("{}", fmt::join(keys, " ")) == fmt::format("{}", fmt::join(kinds, " ")));
+  CHECK(fmt::format("{}", fmt::join(sampled, " ")) == fmt::format("{}", fmt::join(kinds, " ")));
 }
 
 TEST_CASE("loads: the warning of fine tables looks at every table of every kind") {
@@ -122,7 +123,8 @@ TEST_CASE("loads: a static analysis refuses the tables of every kind") {
 }
 
 TEST_CASE("loads: set to zero, each kind leaves no force behind and keeps its tables") {
-  for (std::size_t i = 0; i < scenario::load_kinds().size(); ++i) {
+  const std::size_t count = samples().scene().loads.size();
+  for (std::size_t i = 0; i < count; ++i) {
     scenario::Scene scene = with_only(i);
     CAPTURE(kind_of(scene.loads[0]));
     const Model loaded = build_model(scene);

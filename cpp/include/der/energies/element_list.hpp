@@ -20,11 +20,9 @@ namespace der {
 ///   template <Derivatives D>
 ///   static void evaluate(const Constants&, const Configuration& here,
 ///                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out);
-/// and, if its energy changes with a translation of the element,
-///   static double holding_stiffness(const Constants&, int component);    [N/m] against moving
-///   along
-///                                                        x (0) or y (1); 0: it does not hold there
-/// Statics then count it as a support.
+/// and, if its energy changes with a translation of the element, so that statics count it as a
+/// support, the stiffness [N/m] against moving along x (0) or y (1), 0 where it does not hold:
+///   static double holding_stiffness(const Constants&, int component);
 template <class Kernel>
 struct ElementList {
   using KernelType = Kernel;

@@ -19,7 +19,7 @@ struct PointSpring {
     Eigen::Matrix<double, Nodes, 1> weights;
   };
 
-  /// Of the rod against moving along an axis [N/m]; 0: it does not hold the rod there.
+  /// Stiffness [N/m] against moving the rod along an axis; 0: the spring does not hold it there.
   static double holding_stiffness(const Constants& c, int component) {
     return c.stiffness[component];
   }

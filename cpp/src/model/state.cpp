@@ -8,6 +8,15 @@
 #include "der/model/prescribed_motion.hpp"
 
 namespace der {
+namespace {
+
+/// Zero at the origin [J].
+double gravity_energy(const Model& model, double load_factor, const Vector& positions) {
+  if (!model.load_variation) return -model.gravity_force.dot(positions);
+  return -model.load_variation->gravity_force.at(load_factor).dot(positions);
+}
+
+}  // namespace
 
 State initial_state(const Model& model) {
   State state;
@@ -24,22 +33,34 @@ State initial_state(const Model& model) {
 }
 
 void evaluate_controls(const Model& model, const State& state, double time, Vector& controls) {
-  model.controls.evaluate(time, controls);
+  if (model.load_variation) {
+    controls = model.load_variation->controls.at(state.load_factor);
+  } else {
+    model.controls.evaluate(time, controls);
+  }
   for (const Ramp& ramp : state.ramps) controls[ramp.control] = ramp.at(time);
   enter_turns(model, state.turns, controls);
+}
+
+double control_value(const Model& model, const State& state, Index control) {
+  for (const Ramp& ramp : state.ramps) {
+    if (ramp.control == control) return ramp.at(state.time);
+  }
+  if (!model.load_variation) return value_at(model.controls[control], state.time);
+  return model.load_variation->controls.at(state.load_factor)[control];
 }
 
 Energies energies(const Model& model, const State& state) {
   Vector controls;
   evaluate_controls(model, state, state.time, controls);
-  return energies(model, controls, state.positions, state.velocities);
+  return energies(model, state.load_factor, controls, state.positions, state.velocities);
 }
 
-Energies energies(const Model& model, const Vector& controls, const Vector& positions,
-                  const Vector& velocities) {
+Energies energies(const Model& model, double load_factor, const Vector& controls,
+                  const Vector& positions, const Vector& velocities) {
   Energies result;
   result.kinetic = model.mass.kinetic_energy(velocities);
-  result.gravity = -model.gravity_force.dot(positions);
+  result.gravity = gravity_energy(model, load_factor, positions);
   for_each_list(model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     const double energy = element_energy(list, controls, positions);

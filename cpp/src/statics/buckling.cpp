@@ -171,19 +171,18 @@ std::vector<BucklingMode> buckling_modes(const Model& model, LinearSolver& solve
 
 }  // namespace
 
-LinearBuckling linear_buckling(Model& model, const LoadPath& loads, const Assembler& assembler,
-                               LinearSolver& solver, const State& state, int count) {
+LinearBuckling linear_buckling(const Model& model, const Assembler& assembler, LinearSolver& solver,
+                               const State& state, int count) {
   const Vector& positions = state.positions;
-  const FactorGuard back_to_the_scene(loads, model);
+  const Vector no_extra = Vector::Zero(model.num_dofs());
   Stiffness stiffness(model, assembler, solver);
   Vector controls;
   Vector force;
   // Sets the stiffness at a load factor; returns the unbalanced force.
   const auto evaluate = [&](double factor) -> Vector {
-    loads.apply(factor, model);
-    model.controls.evaluate(0.0, controls);
+    controls = model.load_variation->controls.at(factor);
     enter_turns(model, state.turns, controls);
-    external_force(model, controls, Vector::Zero(model.num_dofs()), force);
+    external_force(model, factor, controls, no_extra, force);
     stiffness.evaluate(positions, controls);
     return (force - stiffness.gradient())(model.free_dofs);
   };

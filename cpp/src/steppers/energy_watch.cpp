@@ -90,9 +90,11 @@ void EnergyWatch::begin(const State& state) { keep(state); }
 void EnergyWatch::before_step(State& state) {
   if (state.positions == positions_ && state.velocities == velocities_) return;
   evaluate_controls(model_, state, state.time, controls_);
-  const double before = energies(model_, controls_, positions_, velocities_).total();
+  const double before =
+      energies(model_, state.load_factor, controls_, positions_, velocities_).total();
   state.audit.written +=
-      energies(model_, controls_, state.positions, state.velocities).total() - before;
+      energies(model_, state.load_factor, controls_, state.positions, state.velocities).total() -
+      before;
 }
 
 void EnergyWatch::after_step(State& state) {
@@ -115,7 +117,8 @@ void EnergyWatch::keep(const State& state) {
 
 void EnergyWatch::look(State& state) {
   evaluate_controls(model_, state, state.time, controls_);
-  const Energies now = energies(model_, controls_, state.positions, state.velocities);
+  const Energies now =
+      energies(model_, state.load_factor, controls_, state.positions, state.velocities);
   const Work& work = state.work;
   EnergyAudit& audit = state.audit;
   const double created = -numerical_loss(work, now) - audit.written;

@@ -48,7 +48,7 @@ void ExplicitForce::evaluate_works(const State& state, const Vector& positions, 
 
 void ExplicitForce::evaluate_loads(const State& state, const Vector& positions, double time) {
   evaluate_controls(model_, state, time, controls_);
-  external_force(model_, controls_, state.extra_force, force_);
+  external_force(model_, state.load_factor, controls_, state.extra_force, force_);
   positions_ = positions;
 }
 

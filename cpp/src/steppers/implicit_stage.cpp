@@ -35,7 +35,7 @@ void ImplicitStage::evaluate_controls(const State& state, double time, Vector& c
 
 StepReport ImplicitStage::solve(const State& state, double time) {
   evaluate_controls(state, time, equation.controls);
-  external_force(model_, equation.controls, state.extra_force, equation.force);
+  external_force(model_, state.load_factor, equation.controls, state.extra_force, equation.force);
   equation.origin = state.positions;
   const NewtonReport newton = newton_.solve(equation, positions);
   StepReport report;

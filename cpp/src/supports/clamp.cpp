@@ -51,7 +51,7 @@ double initial_tangent_angle(const RodLayout& rod, Index place, const Model& mod
 
 double tangent_angle(const Clamp& clamp, const Model& model, const State& state) {
   if (clamp.rotation < 0) return clamp.direction;
-  return clamp.direction + model.controls.value(clamp.rotation, state.time, state.ramps);
+  return clamp.direction + control_value(model, state, clamp.rotation);
 }
 
 void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod, Model& model) {
@@ -73,8 +73,7 @@ Link link_of(const RodLayout& rod, Index edge, const Model& model) {
 
 Vec2 link_end(const Link& link, bool last, const Model& model, const State& state) {
   const Pivot& pivot = last ? link.last : link.first;
-  const double turn =
-      pivot.rotation >= 0 ? model.controls.value(pivot.rotation, state.time, state.ramps) : 0.0;
+  const double turn = pivot.rotation >= 0 ? control_value(model, state, pivot.rotation) : 0.0;
   const std::size_t x = last ? 2 : 0;
   return Vec2(state.positions[link.dofs[x]], state.positions[link.dofs[x + 1]]) +
          pivot.offset(turn);

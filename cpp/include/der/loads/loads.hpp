@@ -38,8 +38,9 @@ class DeadForce {
   std::vector<Index> controls_;    // one a component
 };
 
-/// Sets `force` [N] to everything that does not depend on the motion: weight, dead loads, tables at
-/// the time of `controls`, and `extra` set from outside.
-void external_force(const Model& model, const Vector& controls, const Vector& extra, Vector& force);
+/// Sets `force` [N] to everything that does not depend on the motion: weight and dead loads at a
+/// load factor, tables at the time of `controls`, and `extra` set from outside.
+void external_force(const Model& model, double load_factor, const Vector& controls,
+                    const Vector& extra, Vector& force);
 
 }  // namespace der

@@ -2,12 +2,14 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "der/core/types.hpp"
 #include "der/energies/registry.hpp"
 #include "der/model/controls.hpp"
+#include "der/model/load_variation.hpp"
 #include "der/model/mass.hpp"
 #include "der/model/turns.hpp"
 #include "der/scenario/scenario.hpp"
@@ -128,7 +130,8 @@ struct ControlledForce {
   double weight = 1.0;
 };
 
-/// Everything that stays constant in a run. Degrees of freedom are numbered node by node
+/// Everything that stays constant in a run. It is const once it is built, so that simulations in
+/// several threads can share it. Degrees of freedom are numbered node by node
 /// (dof = dimension * node + component); `free_dofs` lists those that the solver finds.
 struct Model {
   std::string name;    ///< "planar"
@@ -145,6 +148,9 @@ struct Model {
   Vector gravity_force;  ///< [N] weight without buoyancy
   Vector dead_force;     ///< [N] every constant force but weight: buoyancy, constant loads
   Controls controls;     ///< tables over time that forces and supports follow
+  /// Of a scene that varies its loads: what a state of another load factor than 1 has in place of
+  /// `gravity_force`, `dead_force` and `controls`.
+  std::optional<LoadVariation> load_variation;
   std::vector<ControlledForce> controlled_forces;
 
   std::vector<HeldDof> held;

@@ -62,9 +62,12 @@ constexpr std::int64_t kStateVersion = 2;
 struct State {
   double time = 0.0;      ///< [s]
   std::int64_t step = 0;  ///< steps of the scene done
-  Vector positions;       ///< [m]
-  Vector velocities;      ///< [m/s]
-  Vector extra_force;     ///< [N] set from outside (a controller); constant during a step
+  /// Of the loads and motions that the scene varies, if it does (Model::load_variation); 1: as
+  /// written.
+  double load_factor = 1.0;
+  Vector positions;    ///< [m]
+  Vector velocities;   ///< [m/s]
+  Vector extra_force;  ///< [N] set from outside (a controller); constant during a step
   /// [m/s^2] as the stepper knows it: part of the method for some, a better first guess for others.
   Vector accelerations;
   double last_step = 0.0;  ///< [s] length of the last step; 0: no step yet, `accelerations` not set
@@ -84,6 +87,7 @@ struct State {
     return std::make_tuple(
         field("time", "s", &State::time, Values::NotNegative),
         field("step", "", &State::step, Values::NotNegative),
+        field("load_factor", "", &State::load_factor, Values::Finite),
         field("positions", "m", &State::positions, Values::Any, Extent::Dofs),
         field("velocities", "m/s", &State::velocities, Values::Any, Extent::Dofs),
         field("extra_force", "N", &State::extra_force, Values::Any, Extent::Dofs),
@@ -110,8 +114,11 @@ void check_state(const Model& model, const State& state);
 std::string find_wrong_value(const State& state);
 
 /// Sets `controls` to what elements and supports follow besides the positions, at `time` [s] of a
-/// step that begins at `state`: the tables, the ramps in place of them, and the turns.
+/// step that begins at `state`: the tables, or their values at the load factor, the ramps in place
+/// of them, and the turns.
 void evaluate_controls(const Model& model, const State& state, double time, Vector& controls);
+/// Value of one that is no turn, at the time of `state`.
+double control_value(const Model& model, const State& state, Index control);
 
 /// Energies [J] of a state.
 struct Energies {
@@ -128,9 +135,9 @@ constexpr std::array<const char*, 5> kEnergyNames{"kinetic", "stretch", "bend", 
                                                   "gravity"};
 std::array<double, kEnergyNames.size()> by_name(const Energies& energies);
 Energies energies(const Model& model, const State& state);
-/// As above under given values of the tables; allocates nothing.
-Energies energies(const Model& model, const Vector& controls, const Vector& positions,
-                  const Vector& velocities);
+/// As above under given controls and a given load factor; allocates nothing.
+Energies energies(const Model& model, double load_factor, const Vector& controls,
+                  const Vector& positions, const Vector& velocities);
 
 /// Forgets what steppers remember of the steps so far, for a motion that begins anew.
 void forget_steps(State& state);

@@ -19,17 +19,17 @@ constexpr double kLastStep = 1e-7;
 
 }  // namespace
 
-PathEquations::PathEquations(Model& model, const LoadPath& loads, const Assembler& assembler,
-                             LinearSolver& solver, const NewtonOptions& options, PathMetric metric,
-                             Vector positions)
+PathEquations::PathEquations(const Model& model, const Assembler& assembler, LinearSolver& solver,
+                             const NewtonOptions& options, PathMetric metric, Vector positions)
     : model_(model),
-      loads_(loads),
+      loads_(*model.load_variation),
       assembler_(assembler),
       options_(options),
       metric_(metric),
       stiffness_(model, assembler, solver),
       tension_(model, assembler),
-      positions_(std::move(positions)) {}
+      positions_(std::move(positions)),
+      no_extra_(Vector::Zero(model.num_dofs())) {}
 
 void PathEquations::set_metric(PathNode& first) {
   metric_.balance(first.tangent);
@@ -38,8 +38,7 @@ void PathEquations::set_metric(PathNode& first) {
 
 /// Sets the full positions, held degrees of freedom where the factor has them, and the controls.
 void PathEquations::place(const Vector& turns, const PathPosition& point) {
-  loads_.apply(point.factor, model_);
-  model_.controls.evaluate(0.0, controls_);
+  controls_ = loads_.controls.at(point.factor);
   enter_turns(model_, turns, controls_);
   apply_prescribed_motion(model_, controls_, positions_);
   positions_(model_.free_dofs) = point.x;
@@ -48,7 +47,7 @@ void PathEquations::place(const Vector& turns, const PathPosition& point) {
 /// Sets the residual and the stiffness at a point.
 void PathEquations::evaluate(const Vector& turns, const PathPosition& point) {
   place(turns, point);
-  external_force(model_, controls_, Vector::Zero(model_.num_dofs()), force_);
+  external_force(model_, point.factor, controls_, no_extra_, force_);
   stiffness_.evaluate(positions_, controls_);
   residual_ = (stiffness_.gradient() - force_)(model_.free_dofs);
   force_scale_ =
@@ -57,7 +56,7 @@ void PathEquations::evaluate(const Vector& turns, const PathPosition& point) {
 
 Vector PathEquations::residual_at(const Vector& turns, const PathPosition& point) {
   place(turns, point);
-  external_force(model_, controls_, Vector::Zero(model_.num_dofs()), force_);
+  external_force(model_, point.factor, controls_, no_extra_, force_);
   Vector gradient(model_.num_dofs());
   assembler_.gradient(positions_, controls_, gradient);
   return (gradient - force_)(model_.free_dofs);
@@ -66,7 +65,7 @@ Vector PathEquations::residual_at(const Vector& turns, const PathPosition& point
 /// Derivative of the residual with respect to the factor, by central differences. Forces and
 /// moments are linear in it, so that a long step is exact; a moving support needs a short one.
 Vector PathEquations::factor_derivative(const Vector& turns, const PathPosition& point) {
-  const double step = (loads_.is_linear() ? 1.0 : 1e-6) * std::abs(metric_.range());
+  const double step = (loads_.is_linear ? 1.0 : 1e-6) * std::abs(metric_.range());
   PathPosition forward = point;
   PathPosition backward = point;
   forward.factor += step;

@@ -31,7 +31,7 @@ constexpr double kUnbalanced = 1e-3;
 StaticLoads loads_of(const Model& model, const State& state) {
   StaticLoads loads;
   evaluate_controls(model, state, state.time, loads.controls);
-  external_force(model, loads.controls, state.extra_force, loads.force);
+  external_force(model, state.load_factor, loads.controls, state.extra_force, loads.force);
   return loads;
 }
 

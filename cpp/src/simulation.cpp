@@ -261,7 +261,7 @@ void Simulation::prescribe(std::size_t support, const std::string& component, do
   const bool steps = scenario_.scene().is_dynamic();
   for (const PrescribedControl& moved : model_.prescribed) {
     if (moved.support != support || moved.component != component) continue;
-    const double now = model_.controls.value(moved.control, state_.time, state_.ramps);
+    const double now = control_value(model_, state_, moved.control);
     const Ramp ramp{moved.control, state_.time, steps ? next_time() : state_.time, now, value};
     const auto known =
         std::find_if(state_.ramps.begin(), state_.ramps.end(),
@@ -276,7 +276,7 @@ void Simulation::prescribe(std::size_t support, const std::string& component, do
 
 double Simulation::prescribed(std::size_t support, const std::string& component) const {
   const PrescribedControl& found = check_prescribed(model_, support, component);
-  return model_.controls.value(found.control, state_.time, state_.ramps);
+  return control_value(model_, state_, found.control);
 }
 
 std::string Simulation::find_nonfinite() const {
@@ -332,44 +332,46 @@ std::vector<Mode> Simulation::modes(int count) {
 }
 
 LinearBuckling Simulation::buckling(int count) {
-  const LoadPath loads(scenario_.scene(), model_, scenario::Varied::Loads, std::nullopt);
-  const FactorGuard back_to_the_scene(loads, model_);
+  if (!std::holds_alternative<scenario::BucklingAnalysis>(scenario_.scene().analysis)) {
+    throw Error("model_error", "the scene asks for no buckling loads: write 'analysis: buckling'");
+  }
   State before;
   Undo undo(state_, before);
-  loads.apply(0.0, model_);
+  state_.load_factor = 0.0;
   equilibrium();
-  LinearBuckling result =
-      linear_buckling(model_, loads, assembler_, *solver_.solver, state_, count);
+  LinearBuckling result = linear_buckling(model_, assembler_, *solver_.solver, state_, count);
+  state_.load_factor = 1.0;
   undo.keep();
   return result;
 }
 
-std::vector<PathBranch> Simulation::follow(const scenario::ContinuationAnalysis& analysis) {
-  const LoadPath loads(scenario_.scene(), model_, analysis.vary, analysis.number);
-  if (!loads.varies()) {
+std::vector<PathBranch> Simulation::follow() {
+  const auto* analysis = std::get_if<scenario::ContinuationAnalysis>(&scenario_.scene().analysis);
+  if (analysis == nullptr) {
+    throw Error("model_error",
+                "the scene asks for no path of equilibria: write 'analysis: {continuation: {}}'");
+  }
+  if (!model_.load_variation->varies()) {
     throw Error("model_error", "nothing varies along the path: what it follows is zero");
   }
-  FactorGuard afterwards(loads, model_);
   State before;
   Undo undo(state_, before);
-  loads.apply(analysis.from, model_);
+  state_.load_factor = analysis->from;
   equilibrium();
   ContinuationOptions options;
   options.newton = stepper_options(scenario_.scene()).newton;
-  options.from = analysis.from;
-  options.to = analysis.to;
-  options.largest_step = analysis.step;
-  options.max_points = analysis.points;
-  options.branching = analysis.branches;
-  auto path = follow_path(model_, loads, assembler_, *solver_.solver, options, state_);
-  load_path_ = loads;
-  afterwards.leave_at(analysis.from);
+  options.from = analysis->from;
+  options.to = analysis->to;
+  options.largest_step = analysis->step;
+  options.max_points = analysis->points;
+  options.branching = analysis->branches;
+  auto path = follow_path(model_, assembler_, *solver_.solver, options, state_);
   undo.keep();
   return path;
 }
 
 void Simulation::show(const PathPoint& point, std::int64_t index) {
-  load_path_->apply(point.factor, model_);
+  state_.load_factor = point.factor;
   state_.positions = point.positions;
   state_.turns = point.turns;
   state_.step = index;
@@ -384,7 +386,7 @@ Simulation::Forces Simulation::forces() const {
   Forces now;
   now.gradient.resize(model_.num_dofs());
   configuration_of(model_, state_, now.here);
-  external_force(model_, now.here.controls, state_.extra_force, now.external);
+  external_force(model_, now.here, state_.extra_force, now.external);
   assembler_.gradient(now.here, now.gradient);
   return now;
 }

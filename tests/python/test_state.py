@@ -280,6 +280,8 @@ MALFORMED = {
     "integers": {"velocities": np.zeros(22, dtype=int)},
     "text": {"velocities": "none"},
     "no time": {"time": math.nan},
+    "loads that vary": {"load_factor": 0.5},
+    "no load factor": {"load_factor": math.nan},
     "endless": {"time": math.inf},
     "before the start": {"time": -1.0},
     "negative count": {"step": -5},

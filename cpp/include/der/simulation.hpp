@@ -18,7 +18,6 @@
 #include "der/solvers/newton.hpp"
 #include "der/statics/continuation.hpp"
 #include "der/statics/equilibrium.hpp"
-#include "der/statics/load_path.hpp"
 #include "der/statics/modes.hpp"
 #include "der/steppers/adaptive_stepper.hpp"
 #include "der/steppers/energy_watch.hpp"
@@ -101,13 +100,15 @@ class Simulation {
   /// (Error if not).
   [[nodiscard]] std::vector<Mode> modes(int count);
   /// Replaces the state by the equilibrium without loads, and returns its linear buckling modes
-  /// under the scene's loads. Throws NotConvergedError.
+  /// under the scene's loads. Throws NotConvergedError, and Error where that is not the scene's
+  /// analysis.
   LinearBuckling buckling(int count);
-  /// Follows the equilibria of the scene along a factor, from the equilibrium at its first value.
-  /// Leaves the state there. Throws NotConvergedError.
-  std::vector<PathBranch> follow(const scenario::ContinuationAnalysis& analysis);
-  /// Shows a point of a path that `follow` has found, number `index` of all: the state, and the
-  /// loads of the model, are those of the point.
+  /// Follows the equilibria of the scene along its load factor, from the equilibrium at the first
+  /// value. Leaves the state there. Throws NotConvergedError, and Error where the scene's analysis
+  /// is no continuation.
+  std::vector<PathBranch> follow();
+  /// Shows a point of a path that `follow` has found, number `index` of all: the state is that of
+  /// the point, at its load factor.
   void show(const PathPoint& point, std::int64_t index);
 
   /// Gradient [N] of the potential of elements and loads at the present state, over the free
@@ -164,7 +165,7 @@ class Simulation {
   [[nodiscard]] std::string describe_divergence(const StepReport& report, double dt);
 
   Scenario scenario_;
-  Model model_;
+  const Model model_;
   Pattern pattern_;
   LinearSolverChoice solver_;
   Assembler assembler_;
@@ -179,7 +180,6 @@ class Simulation {
   State state_;
   State before_step_;  // to go back to from a step that fails
   Counters counters_;
-  std::optional<LoadPath> load_path_;  // of the last continuation
 };
 
 }  // namespace der

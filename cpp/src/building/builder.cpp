@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "building/load_variation.hpp"
 #include "der/building/rod_elements.hpp"
 #include "der/core/constants.hpp"
 #include "der/core/error.hpp"
@@ -163,6 +164,7 @@ Model build_model(const scenario::Scene& scene) {
   model.damped = (model.damping.array() != 0.0).any();
   hold_dofs(model);
   for (const RodLayout& rod : model.rods) couple_masses(rod, model);
+  model.load_variation = load_variation(scene, model);
   return model;
 }
 

@@ -2,11 +2,15 @@
 
 namespace der {
 
-void external_force(const Model& model, const Vector& controls, const Vector& extra,
+void external_force(const Model& model, const Configuration& here, const Vector& extra,
                     Vector& force) {
-  force = model.gravity_force + model.dead_force + extra;
+  if (const auto& varied = model.load_variation) {
+    force = varied->gravity_force.at(here.load_factor) + varied->dead_force.at(here.load_factor) + extra;
+  } else {
+    force = model.gravity_force + model.dead_force + extra;
+  }
   for (const ControlledForce& f : model.controlled_forces) {
-    force[f.dof] += f.weight * controls[f.control];
+    force[f.dof] += f.weight * here.controls[f.control];
   }
 }
 

@@ -100,6 +100,10 @@ void check_state(const Model& model, const State& state) {
   const std::string wrong = find_wrong_value(state);
   demand(wrong.empty(), wrong);
   check_ramps(model, state.ramps);
+  demand(model.load_variation || state.load_factor == 1.0,
+         fmt::format("the state is one at the load factor {:g}, but this scene varies no loads: it "
+                     "can only be restored into a simulation of the same continuation",
+                     state.load_factor));
 }
 
 }  // namespace der

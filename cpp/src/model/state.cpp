@@ -10,6 +10,15 @@
 #include "der/model/prescribed_motion.hpp"
 
 namespace der {
+namespace {
+
+/// Zero at the origin [J].
+double gravity_energy(const Model& model, const Configuration& here) {
+  if (!model.load_variation) return -model.gravity_force.dot(here.coordinates);
+  return -model.load_variation->gravity_force.at(here.load_factor).dot(here.coordinates);
+}
+
+}  // namespace
 
 State initial_state(const Model& model) {
   State state;
@@ -26,13 +35,26 @@ State initial_state(const Model& model) {
 }
 
 void evaluate_controls(const Model& model, const State& state, double time, Vector& controls) {
-  model.controls.evaluate(time, controls);
+  if (model.load_variation) {
+    controls = model.load_variation->controls.at(state.load_factor);
+  } else {
+    model.controls.evaluate(time, controls);
+  }
   for (const Ramp& ramp : state.ramps) controls[ramp.control] = ramp.at(time);
   enter_turns(model, state.turns, controls);
 }
 
+double control_value(const Model& model, const State& state, Index control) {
+  for (const Ramp& ramp : state.ramps) {
+    if (ramp.control == control) return ramp.at(state.time);
+  }
+  if (!model.load_variation) return value_at(model.controls[control], state.time);
+  return model.load_variation->controls.at(state.load_factor)[control];
+}
+
 void configuration_of(const Model& model, const State& state, Configuration& here) {
   here.coordinates = state.positions;
+  here.load_factor = state.load_factor;
   evaluate_controls(model, state, state.time, here.controls);
 }
 
@@ -56,7 +78,7 @@ Energies energies(const Model& model, const Configuration& here, const Vector& v
     result += cell_energies(rod, model, here);
   }
   result[EnergyTerm::Kinetic] = model.mass.kinetic_energy(velocities);
-  result[EnergyTerm::Gravity] = -model.gravity_force.dot(here.coordinates);
+  result[EnergyTerm::Gravity] = gravity_energy(model, here);
   return result;
 }
 

@@ -13,18 +13,22 @@
 namespace der {
 namespace {
 
-/// What an energy is read from: the whole model, or a part of it. Its weight is not kept, as along
-/// a continuation the factor of the loads changes it.
+/// What an energy is read from: the whole model, or a part of it. Its weight is not kept, as it
+/// follows the load factor of the state.
 struct Part {
   Mass mass;
   std::vector<Index> dofs;
   ElementLists elements;
   std::vector<RodLayout> rods;
 
-  [[nodiscard]] double gravity_energy(const Model& model, const Vector& positions) const {
-    double energy = 0.0;
-    for (const Index dof : dofs) energy -= model.gravity_force[dof] * positions[dof];
-    return energy;
+  [[nodiscard]] double gravity_energy(const Model& model, const State& state) const {
+    const auto energy_in = [&](const auto& weight) {
+      double energy = 0.0;
+      for (const Index dof : dofs) energy -= weight[dof] * state.positions[dof];
+      return energy;
+    };
+    if (!model.load_variation) return energy_in(model.gravity_force);
+    return energy_in(model.load_variation->gravity_force.at(state.load_factor));
   }
 };
 
@@ -36,7 +40,7 @@ class EnergyReader : public ProbeReader {
   double value(const Model& model, const State& state) override {
     double energy = 0.0;
     if (reads(EnergyTerm::Kinetic)) energy += part_.mass.kinetic_energy(state.velocities);
-    if (reads(EnergyTerm::Gravity)) energy += part_.gravity_energy(model, state.positions);
+    if (reads(EnergyTerm::Gravity)) energy += part_.gravity_energy(model, state);
     if (reads_elastic()) energy += elastic(model, state);
     return energy;
   }

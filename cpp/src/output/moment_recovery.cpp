@@ -112,7 +112,7 @@ double MomentRecovery::carried(std::size_t number, const Model& model, const Sta
   const MomentPlace& place = rod_.moment_places[number];
   double applied = 0.0;
   for (const Index moment : place.moments) {
-    applied += model.controls.value(moment, state.time, state.ramps);
+    applied += control_value(model, state, moment);
   }
   return carried_moment(place, rod_, model, state, applied);
 }

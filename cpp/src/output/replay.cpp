@@ -16,15 +16,14 @@ Replay::Replay(Scenario scenario, std::vector<double> instants, bool on_path)
     : scenario_(std::move(scenario)),
       model_(build_model(scenario_.scene())),
       state_(initial_state(model_)),
-      instants_(std::move(instants)) {
+      instants_(std::move(instants)),
+      on_path_(on_path) {
   if (!on_path) return;
-  const auto* path = std::get_if<scenario::ContinuationAnalysis>(&scenario_.scene().analysis);
-  if (path == nullptr) {
+  if (!std::holds_alternative<scenario::ContinuationAnalysis>(scenario_.scene().analysis)) {
     throw Error("model_error",
                 "frames on a path are those of a continuation, which this scene does not ask for: "
                 "give the times of the frames");
   }
-  path_.emplace(scenario_.scene(), model_, path->vary, path->number);
 }
 
 void Replay::show(std::size_t frame) {
@@ -32,11 +31,7 @@ void Replay::show(std::size_t frame) {
     throw Error("model_error", fmt::format("there is no frame {}: the run has {}, counted from 0",
                                            frame, num_frames()));
   }
-  if (path_) {
-    path_->apply(instants_[frame], model_);
-  } else {
-    state_.time = instants_[frame];
-  }
+  (on_path_ ? state_.load_factor : state_.time) = instants_[frame];
 }
 
 RodSeries Replay::along(const std::string& rod, const std::string& quantity,

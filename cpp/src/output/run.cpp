@@ -46,8 +46,8 @@ struct Analyse {
     recorder.observe(simulation);
     return "completed";
   }
-  std::string operator()(const scenario::ContinuationAnalysis& analysis) const {
-    outcome.path = simulation.follow(analysis);
+  std::string operator()(const scenario::ContinuationAnalysis& /*analysis*/) const {
+    outcome.path = simulation.follow();
     std::int64_t index = 0;
     for (const PathBranch& branch : outcome.path) {
       for (const PathPoint& point : branch.points) {

@@ -30,7 +30,7 @@ Vec2 SpreadForces::value(std::size_t i, const Model& model, const State& state) 
   Vec2 value = -place.stiffness.cwiseProduct(point(i, state) - place.anchor);
   for (int c = 0; c < 2; ++c) {
     const Index control = place.force[at(c)];
-    if (control >= 0) value[c] += model.controls.value(control, state.time, state.ramps);
+    if (control >= 0) value[c] += control_value(model, state, control);
   }
   return value;
 }

@@ -239,7 +239,7 @@ class StretchField : public RodField {
     for (const auto& [number, amount] : loads.distributed) {
       for (int c = 0; c < 2; ++c) {
         const Index control = distributed_[number].force[at(c)];
-        excess[c] += amount * model.controls.value(control, state.time, state.ramps);
+        excess[c] += amount * control_value(model, state, control);
       }
     }
     return chain + effective.dot(excess) / (length * EA_);

@@ -157,18 +157,18 @@ std::vector<BucklingMode> buckling_modes(const Model& model, LinearSolver& solve
 
 }  // namespace
 
-LinearBuckling linear_buckling(Model& model, const LoadPath& loads, const Assembler& assembler,
-                               LinearSolver& solver, const State& state, int count) {
-  const FactorGuard back_to_the_scene(loads, model);
+LinearBuckling linear_buckling(const Model& model, const Assembler& assembler, LinearSolver& solver,
+                               const State& state, int count) {
+  const Vector no_extra = Vector::Zero(model.num_dofs());
   Stiffness stiffness(model, assembler, solver);
   Configuration here{state.positions, {}};
   Vector force;
   // Sets the stiffness at a load factor; returns the unbalanced force.
   const auto evaluate = [&](double factor) -> Vector {
-    loads.apply(factor, model);
-    model.controls.evaluate(0.0, here.controls);
+    here.load_factor = factor;
+    here.controls = model.load_variation->controls.at(factor);
     enter_turns(model, state.turns, here.controls);
-    external_force(model, here.controls, Vector::Zero(model.num_dofs()), force);
+    external_force(model, here, no_extra, force);
     stiffness.evaluate(here);
     return (force - stiffness.gradient())(model.dofs.free());
   };

@@ -46,9 +46,10 @@ void ExplicitForce::evaluate_works(const State& state, const Vector& positions, 
 }
 
 void ExplicitForce::evaluate_loads(const State& state, const Vector& positions, double time) {
-  evaluate_controls(model_, state, time, here_.controls);
-  external_force(model_, here_.controls, state.extra_force, force_);
   here_.coordinates = positions;
+  here_.load_factor = state.load_factor;
+  evaluate_controls(model_, state, time, here_.controls);
+  external_force(model_, here_, state.extra_force, force_);
 }
 
 void ExplicitForce::book(const Vector& velocities, const Vector& displacement, Work& work) const {

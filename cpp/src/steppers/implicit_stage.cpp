@@ -35,8 +35,9 @@ void ImplicitStage::evaluate_controls(const State& state, double time, Vector& c
 }
 
 StepReport ImplicitStage::solve(const State& state, double time) {
+  here.load_factor = state.load_factor;
   evaluate_controls(state, time, here.controls);
-  external_force(model_, here.controls, state.extra_force, equation.force);
+  external_force(model_, here, state.extra_force, equation.force);
   equation.origin = state.positions;
   problem_.pose(equation, here);
   const NewtonReport newton = newton_.solve(problem_);

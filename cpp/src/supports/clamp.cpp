@@ -52,7 +52,7 @@ double initial_tangent_angle(const RodLayout& rod, Index place, const Model& mod
 
 double tangent_angle(const Clamp& clamp, const Model& model, const State& state) {
   if (clamp.rotation < 0) return clamp.direction;
-  return clamp.direction + model.controls.value(clamp.rotation, state.time, state.ramps);
+  return clamp.direction + control_value(model, state, clamp.rotation);
 }
 
 void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod, Model& model) {
@@ -70,8 +70,7 @@ EffectiveEdge effective_edge(const RodLayout& rod, Index edge, const Model& mode
 Vec2 effective_end(const EffectiveEdge& effective, bool last, const Model& model,
                    const State& state) {
   const Pivot& pivot = last ? effective.last : effective.first;
-  const double turn =
-      pivot.rotation >= 0 ? model.controls.value(pivot.rotation, state.time, state.ramps) : 0.0;
+  const double turn = pivot.rotation >= 0 ? control_value(model, state, pivot.rotation) : 0.0;
   const std::size_t x = last ? 2 : 0;
   return Vec2(state.positions[effective.dofs[x]], state.positions[effective.dofs[x + 1]]) +
          pivot.offset(turn);

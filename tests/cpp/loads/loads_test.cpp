@@ -53,13 +53,15 @@ std::vector<std::string> keys_of_tables(std::string_view kind) {
 /// Largest force [N] of the model's loads at rest, or moment [N m] of an element, over time.
 double largest_force(const Model& model) {
   double largest = 0.0;
-  Vector controls;
+  Configuration here;
   Vector force;
   for (const double t : {0.0, 0.1, 0.2}) {
-    model.controls.evaluate(t, controls);
-    external_force(model, controls, Vector::Zero(model.num_dofs()), force);
+    model.controls.evaluate(t, here.controls);
+    external_force(model, here, Vector::Zero(model.num_dofs()), force);
     largest = std::max(largest, force.lpNorm<Eigen::Infinity>());
-    if (controls.size() > 0) largest = std::max(largest, controls.lpNorm<Eigen::Infinity>());
+    if (here.controls.size() > 0) {
+      largest = std::max(largest, here.controls.lpNorm<Eigen::Infinity>());
+    }
   }
   return largest;
 }

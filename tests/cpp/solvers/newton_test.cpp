@@ -9,9 +9,10 @@
 
 #include "der/building/builder.hpp"
 #include "der/core/error.hpp"
-#include "der/loads/loads.hpp"
+#include "der/loads/external_force.hpp"
 #include "der/simulation.hpp"
 #include "der/solvers/newton.hpp"
+#include "der/solvers/stage.hpp"
 
 namespace der::test {
 namespace {
@@ -49,16 +50,18 @@ std::vector<double> residuals_of_newton(const std::string& force, const std::str
   const Assembler assembler(model, linear.solver->layout());
   const State start = initial_state(model);
   Stage stage(model);
-  evaluate_controls(model, start, 0.0, stage.controls);
-  external_force(model, stage.controls, start.extra_force, stage.force);
+  Configuration here = configuration_of(model, start);
+  external_force(model, here, start.extra_force, stage.force);
+  StageProblem problem(model, assembler);
+  problem.pose(stage, here);
   std::vector<double> residuals{1.0};
   for (;;) {
     NewtonOptions options;
     options.step_tolerance = std::numeric_limits<double>::infinity();
     options.residual_tolerance = 0.999 * residuals.back();
-    Newton newton(model, assembler, *linear.solver, options);
-    Vector positions = start.positions;
-    const NewtonReport report = newton.solve(stage, positions);
+    Newton newton(model.dofs, *linear.solver, assembler.num_values(), options);
+    here.coordinates = start.positions;
+    const NewtonReport report = newton.solve(problem);
     REQUIRE(report.converged);
     const double residual = report.residual / report.force_scale;
     if (residual < 1e-11 || residual >= residuals.back()) return residuals;  // rounding

@@ -2,12 +2,16 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <future>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "der/building/builder.hpp"
 #include "der/core/constants.hpp"
 #include "der/core/error.hpp"
+#include "der/loads/external_force.hpp"
 #include "der/simulation.hpp"
-#include "der/statics/load_path.hpp"
 #include "statics/statics_scenes.hpp"
 
 namespace der::test {
@@ -21,13 +25,28 @@ loads:
   - point_force: {rod: rod, at: end, force: [3, 4]}
   - moment: {rod: rod, at: end, moment: 0.5}
   - distributed_force: {rod: rod, force: [0, 1]}
-analysis: static
 )";
 
-Vector controls_of(const Model& model) {
+/// The end of a scene that follows a path, by `keys` in YAML flow style.
+std::string continuation(const std::string& keys) {
+  return "analysis: {continuation: {" + keys + "}}\n";
+}
+
+Model model_of(const std::string& more) {
+  return build_model(Scenario::parse(straight_rod(11, more)).scene());
+}
+
+Vector controls_of(const Model& model, const State& state) {
   Vector controls;
-  model.controls.evaluate(0.0, controls);
+  evaluate_controls(model, state, 0.0, controls);
   return controls;
+}
+
+/// All that acts, without what the elements do [N].
+Vector force_on(const Model& model, const State& state) {
+  Vector force;
+  external_force(model, configuration_of(model, state), state.extra_force, force);
+  return force;
 }
 
 std::vector<std::size_t> rows(const PathBranch& branch, PathEvent event) {
@@ -40,73 +59,98 @@ std::vector<std::size_t> rows(const PathBranch& branch, PathEvent event) {
 
 }  // namespace
 
-TEST_CASE("a load path scales every load, and nothing else") {
-  const Scenario scenario = Scenario::parse(straight_rod(11, kAllKinds));
-  const Model whole = build_model(scenario.scene());
-  Model model = build_model(scenario.scene());
-  const LoadPath loads(scenario.scene(), model, scenario::Varied::Loads, std::nullopt);
-  CHECK(loads.varies());
-  CHECK(loads.is_linear());
-  loads.apply(0.25, model);
-  CHECK((model.gravity_force - 0.25 * whole.gravity_force).norm() < 1e-14);
-  CHECK((model.dead_force - 0.25 * whole.dead_force).norm() < 1e-14);
+TEST_CASE("a load factor scales every load, and nothing else") {
+  const Model whole = model_of(kAllKinds + kStatic);
+  const Model model = model_of(kAllKinds + continuation(""));
+  CHECK_FALSE(whole.load_variation);
+  REQUIRE(model.load_variation);
+  CHECK(model.load_variation->varies());
+  CHECK(model.load_variation->is_linear);
+  State state = initial_state(model);
+  CHECK((force_on(model, state) - force_on(whole, state)).norm() < 1e-14);
+  const double weight = energies(whole, state)[EnergyTerm::Gravity];
+  state.load_factor = 0.25;
+  CHECK((force_on(model, state) - 0.25 * force_on(whole, state)).norm() < 1e-14);
+  CHECK(energies(model, state)[EnergyTerm::Gravity] == doctest::Approx(0.25 * weight).epsilon(1e-14));
   // The clamp has the first two controls, its rotation and how far it has turned; the moment the
   // third.
-  CHECK(controls_of(model)[0] == doctest::Approx(0.3));
-  CHECK(controls_of(model)[2] == doctest::Approx(0.125));
+  CHECK(controls_of(model, state)[0] == doctest::Approx(0.3));
+  CHECK(controls_of(model, state)[2] == doctest::Approx(0.125));
+  CHECK(control_value(model, state, 2) == controls_of(model, state)[2]);
 }
 
-TEST_CASE("a load path of one load, and one of the supports") {
-  const Scenario scenario = Scenario::parse(straight_rod(11, kAllKinds));
-  const Model whole = build_model(scenario.scene());
-  Model model = build_model(scenario.scene());
-  LoadPath(scenario.scene(), model, scenario::Varied::Loads, 0).apply(0.0, model);
-  CHECK(model.gravity_force.norm() == 0.0);
-  CHECK(model.dead_force == whole.dead_force);
-  model = build_model(scenario.scene());
-  const LoadPath motion(scenario.scene(), model, scenario::Varied::Supports, std::nullopt);
-  CHECK_FALSE(motion.is_linear());
-  motion.apply(2.0, model);
-  CHECK(controls_of(model)[0] == doctest::Approx(0.6));
-  CHECK(controls_of(model)[2] == doctest::Approx(0.5));
-  CHECK(model.gravity_force == whole.gravity_force);
+TEST_CASE("a load factor of one load, and one of the supports") {
+  const Model whole = model_of(kAllKinds + kStatic);
+  const Model one = model_of(kAllKinds + continuation("vary: loads.0"));
+  State state = initial_state(whole);
+  state.load_factor = 0.0;
+  CHECK(energies(one, state)[EnergyTerm::Gravity] == 0.0);
+  CHECK((force_on(one, state) - (force_on(whole, state) - whole.gravity_force)).norm() < 1e-14);
+  const Model motion = model_of(kAllKinds + continuation("vary: supports"));
+  CHECK_FALSE(motion.load_variation->is_linear);
+  state.load_factor = 2.0;
+  CHECK(controls_of(motion, state)[0] == doctest::Approx(0.6));
+  CHECK(controls_of(motion, state)[2] == doctest::Approx(0.5));
+  CHECK(force_on(motion, state) == force_on(whole, state));
 }
 
-TEST_CASE("a guard puts the loads back when an exception passes") {
-  const Scenario scenario = Scenario::parse(straight_rod(11, kAllKinds));
-  const Model whole = build_model(scenario.scene());
-  Model model = build_model(scenario.scene());
-  const LoadPath loads(scenario.scene(), model, scenario::Varied::Loads, std::nullopt);
-  try {
-    const FactorGuard guard(loads, model);
-    loads.apply(0.0, model);
-    throw Error("test", "midway");
-  } catch (const Error&) {
-    CHECK((model.dead_force - whole.dead_force).norm() < 1e-14);
-    CHECK((controls_of(model) - controls_of(whole)).norm() < 1e-14);
-  }
-  {
-    FactorGuard guard(loads, model);
-    guard.leave_at(0.5);
-  }
-  CHECK((model.dead_force - 0.5 * whole.dead_force).norm() < 1e-14);
+TEST_CASE("a state of a load factor fits no scene without one") {
+  Simulation path(Scenario::parse(straight_rod(11, kAllKinds + continuation(""))));
+  Simulation plain(Scenario::parse(straight_rod(11, kAllKinds + kStatic)));
+  State state = plain.state();
+  path.restore(state);
+  state.load_factor = 0.5;
+  path.restore(state);
+  CHECK(path.state().load_factor == 0.5);
+  CHECK_THROWS_WITH_AS(plain.restore(state), doctest::Contains("varies no loads"), Error);
+}
+
+TEST_CASE("paths in two threads on one model are the same bits as alone") {
+  // By type no path can write to the model; by this no path writes to what hangs on it either.
+  const Scenario scenario = Scenario::parse(straight_rod(21, kPinned + kPush + continuation("")));
+  const Model model = build_model(scenario.scene());
+  const Pattern pattern = build_pattern(model);
+  const auto follow = [&](double to) {
+    const LinearSolverChoice solver = make_linear_solver(scenario.scene().solver.linear, pattern);
+    const Assembler assembler(model, solver.solver->layout());
+    ContinuationOptions options;
+    options.to = to;
+    options.branching = 1;
+    State start = initial_state(model);
+    start.load_factor = 0.0;
+    std::vector<PathPoint> points;
+    for (const PathBranch& branch : follow_path(model, assembler, *solver.solver, options, start)) {
+      points.insert(points.end(), branch.points.begin(), branch.points.end());
+    }
+    return points;
+  };
+  const auto alone = std::pair(follow(12.0), follow(-8.0));
+  auto first = std::async(std::launch::async, follow, 12.0);
+  auto second = std::async(std::launch::async, follow, -8.0);
+  const auto together = std::pair(first.get(), second.get());
+  const auto same = [](const std::vector<PathPoint>& a, const std::vector<PathPoint>& b) {
+    REQUIRE(a.size() == b.size());
+    CHECK(a.size() > 10);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      CHECK(a[i].factor == b[i].factor);
+      CHECK(a[i].positions == b[i].positions);
+    }
+  };
+  same(alone.first, together.first);
+  same(alone.second, together.second);
 }
 
 TEST_CASE("a continuation that finds no start leaves the loads of the scene") {
-  Simulation loose(Scenario::parse(straight_rod(11, kPush + kStatic)));
+  Simulation loose(Scenario::parse(straight_rod(11, kPush + continuation("from: 0.5"))));
   const Vector before = loose.gradient();
-  scenario::ContinuationAnalysis analysis;
-  analysis.from = 0.5;
-  CHECK_THROWS_AS(loose.follow(analysis), NotConvergedError);
+  CHECK_THROWS_AS(loose.follow(), NotConvergedError);
   CHECK(loose.gradient() == before);
 }
 
 TEST_CASE("a column bifurcates at its buckling load and is followed to both sides") {
-  Simulation simulation(Scenario::parse(straight_rod(21, kPinned + kPush + kStatic)));
-  scenario::ContinuationAnalysis analysis;
-  analysis.to = 12.0;
-  analysis.branches = 1;
-  const auto path = simulation.follow(analysis);
+  Simulation simulation(
+      Scenario::parse(straight_rod(21, kPinned + kPush + continuation("to: 12, branches: 1"))));
+  const auto path = simulation.follow();
   REQUIRE(path.size() == 3);
   const auto crossings = rows(path[0], PathEvent::Bifurcation);
   REQUIRE(crossings.size() == 1);
@@ -128,9 +172,9 @@ TEST_CASE("a column bifurcates at its buckling load and is followed to both side
 
 TEST_CASE("every point of a path is in balance under its loads") {
   Simulation simulation(Scenario::parse(
-      straight_rod(21, "supports:\n  - {rod: rod, at: start, clamp: true}\n" + kStatic +
+      straight_rod(21, "supports:\n  - {rod: rod, at: start, clamp: true}\n" + continuation("") +
                            "loads:\n  - point_force: {rod: rod, at: end, force: [0, -5]}\n")));
-  const auto path = simulation.follow({});
+  const auto path = simulation.follow();
   REQUIRE(path.size() == 1);
   double arc = -1.0;
   for (std::size_t i = 0; i < path[0].points.size(); ++i) {
@@ -144,9 +188,16 @@ TEST_CASE("every point of a path is in balance under its loads") {
 }
 
 TEST_CASE("a path of nothing that varies is refused") {
-  Simulation simulation(Scenario::parse(straight_rod(
-      11, kPinned + kStatic + "loads:\n  - point_force: {rod: rod, at: end, force: [0, 0]}\n")));
-  CHECK_THROWS_WITH_AS(simulation.follow({}), doctest::Contains("nothing varies"), Error);
+  Simulation simulation(Scenario::parse(
+      straight_rod(11, kPinned + continuation("") +
+                           "loads:\n  - point_force: {rod: rod, at: end, force: [0, 0]}\n")));
+  CHECK_THROWS_WITH_AS(simulation.follow(), doctest::Contains("nothing varies"), Error);
+}
+
+TEST_CASE("what the scene does not ask for is refused") {
+  Simulation plain(Scenario::parse(straight_rod(11, kPinned + kPush + kStatic)));
+  CHECK_THROWS_WITH_AS(plain.follow(), doctest::Contains("continuation"), Error);
+  CHECK_THROWS_WITH_AS(plain.buckling(1), doctest::Contains("buckling"), Error);
 }
 
 }  // namespace der::test

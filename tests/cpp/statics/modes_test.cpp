@@ -92,7 +92,7 @@ TEST_CASE("a rod that nothing holds has three rigid motions") {
 }
 
 TEST_CASE("buckling loads of a column, and shapes whose largest displacement is 1") {
-  Simulation simulation(Scenario::parse(straight_rod(41, kPinned + kPush + kStatic)));
+  Simulation simulation(Scenario::parse(straight_rod(41, kPinned + kPush + kBuckling)));
   const Vector before = simulation.gradient();
   const LinearBuckling buckling = simulation.buckling(3);
   const auto& modes = buckling.modes;
@@ -112,10 +112,10 @@ TEST_CASE("buckling loads of a column, and shapes whose largest displacement is 
 TEST_CASE("what never buckles has no buckling loads, what nothing holds is refused") {
   const std::string pull = "loads:\n  - point_force: {rod: rod, at: end, force: [1, 0]}\n";
   const LinearBuckling pulled =
-      Simulation(Scenario::parse(straight_rod(11, kPinned + pull + kStatic))).buckling(2);
+      Simulation(Scenario::parse(straight_rod(11, kPinned + pull + kBuckling))).buckling(2);
   CHECK(pulled.modes.empty());
   CHECK(pulled.rotation == 0.0);
-  Simulation loose(Scenario::parse(straight_rod(11, kPush + kStatic)));
+  Simulation loose(Scenario::parse(straight_rod(11, kPush + kBuckling)));
   const Vector before = loose.gradient();
   CHECK_THROWS_AS(loose.buckling(1), NotConvergedError);
   CHECK(loose.gradient() == before);
@@ -124,7 +124,7 @@ TEST_CASE("what never buckles has no buckling loads, what nothing holds is refus
 TEST_CASE("loads across a rod press nothing: no buckling loads, but a rotation") {
   const std::string across = "loads:\n  - point_force: {rod: rod, at: end, force: [0, -1]}\n";
   const std::string clamp = "supports:\n  - {rod: rod, at: start, clamp: true}\n";
-  Simulation simulation(Scenario::parse(straight_rod(41, clamp + across + kStatic)));
+  Simulation simulation(Scenario::parse(straight_rod(41, clamp + across + kBuckling)));
   const LinearBuckling bent = simulation.buckling(2);
   CHECK(bent.modes.empty());
   CHECK(bent.rotation == doctest::Approx(0.5).epsilon(1e-3));  // P L^2 / 2 EI
@@ -134,7 +134,7 @@ TEST_CASE("the size of the loads does not matter to their buckling") {
   for (const std::string force : {"1e-25", "1e-6", "1e16"}) {
     const std::string push =
         "loads:\n  - point_force: {rod: rod, at: end, force: [-" + force + ", 0]}\n";
-    Simulation simulation(Scenario::parse(straight_rod(11, kPinned + push + kStatic)));
+    Simulation simulation(Scenario::parse(straight_rod(11, kPinned + push + kBuckling)));
     const auto modes = simulation.buckling(9).modes;
     REQUIRE(modes.size() == 9);
     for (std::size_t i = 0; i < modes.size(); ++i) {

@@ -23,5 +23,6 @@ inline const std::string kPinned =
     "supports:\n  - {rod: rod, at: start, fix: [x, y]}\n  - {rod: rod, at: end, fix: [y]}\n";
 inline const std::string kPush = "loads:\n  - point_force: {rod: rod, at: end, force: [-1, 0]}\n";
 inline const std::string kStatic = "analysis: static\n";
+inline const std::string kBuckling = "analysis: buckling\n";
 
 }  // namespace der::test

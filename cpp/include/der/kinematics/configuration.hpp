@@ -11,6 +11,7 @@ namespace der {
 struct Configuration {
   Vector coordinates;  ///< one entry a degree of freedom: positions [m]
   Vector controls;     ///< values that elements and supports follow besides
+  double load_factor = 1.0;  ///< of what the scene varies (model/load_variation.hpp); 1: as written
 };
 
 }  // namespace der

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "der/core/types.hpp"
-#include "der/model/ramp.hpp"
 #include "der/scenario/series.hpp"
 
 namespace der {
@@ -16,14 +15,8 @@ class Controls {
   /// Adds a table and returns its number.
   Index add(scenario::Series series);
   [[nodiscard]] Index size() const { return static_cast<Index>(series_.size()); }
-  /// Replaces a table by a constant.
-  void set_constant(Index i, double value) {
-    series_[static_cast<std::size_t>(i)] = {{0.0}, {value}};
-  }
   /// Writes the value of every table at time `t` into `values`.
   void evaluate(double t, Vector& values) const;
-  /// Value of one of them, with `ramps` in place of the tables that they name.
-  [[nodiscard]] double value(Index i, double t, const std::vector<Ramp>& ramps) const;
   [[nodiscard]] const scenario::Series& operator[](Index i) const {
     return series_[static_cast<std::size_t>(i)];
   }

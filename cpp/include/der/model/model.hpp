@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "der/model/controls.hpp"
 #include "der/model/dof_map.hpp"
 #include "der/model/edge.hpp"
+#include "der/model/load_variation.hpp"
 #include "der/model/mass.hpp"
 #include "der/model/turns.hpp"
 #include "der/scenario/curvature_measure.hpp"
@@ -126,8 +128,8 @@ struct ControlledForce {
   double weight = 1.0;
 };
 
-/// Everything that stays constant in a run. Vectors have one entry a degree of freedom, in the
-/// order of `dofs`.
+/// Everything that stays constant in a run. It is const once it is built, so that simulations in
+/// several threads can share it. Vectors have one entry a degree of freedom, in the order of `dofs`.
 struct Model {
   std::string name;    ///< "planar"
   std::string reason;  ///< why this model, in words
@@ -144,6 +146,9 @@ struct Model {
   Vector gravity_force;  ///< [N] weight without buoyancy
   Vector dead_force;     ///< [N] every constant force but weight: buoyancy, constant loads
   Controls controls;     ///< tables over time that forces and supports follow
+  /// Of a scene that varies its loads: what a state of another load factor than 1 has in place of
+  /// `gravity_force`, `dead_force` and `controls`.
+  std::optional<LoadVariation> load_variation;
   std::vector<ControlledForce> controlled_forces;
 
   std::vector<HeldDof> held;

@@ -64,9 +64,12 @@ constexpr std::int64_t kStateVersion = 2;
 struct State {
   double time = 0.0;      ///< [s]
   std::int64_t step = 0;  ///< steps of the scene done
-  Vector positions;       ///< [m]
-  Vector velocities;      ///< [m/s]
-  Vector extra_force;     ///< [N] set from outside (a controller); constant during a step
+  /// Of the loads and motions that the scene varies, if it does (Model::load_variation); 1: as
+  /// written.
+  double load_factor = 1.0;
+  Vector positions;    ///< [m]
+  Vector velocities;   ///< [m/s]
+  Vector extra_force;  ///< [N] set from outside (a controller); constant during a step
   /// [m/s^2] as the stepper knows it: part of the method for some, a better first guess for others.
   Vector accelerations;
   double last_step = 0.0;  ///< [s] length of the last step; 0: no step yet, `accelerations` not set
@@ -86,6 +89,7 @@ struct State {
     return std::make_tuple(
         field("time", "s", &State::time, Values::NotNegative),
         field("step", "", &State::step, Values::NotNegative),
+        field("load_factor", "", &State::load_factor, Values::Finite),
         field("positions", "m", &State::positions, Values::Any, Extent::Dofs),
         field("velocities", "m/s", &State::velocities, Values::Any, Extent::Dofs),
         field("extra_force", "N", &State::extra_force, Values::Any, Extent::Dofs),
@@ -112,9 +116,12 @@ void check_state(const Model& model, const State& state);
 std::string find_wrong_value(const State& state);
 
 /// Sets `controls` to what elements and supports follow besides the positions, at `time` [s] of a
-/// step that begins at `state`: the tables, the ramps in place of them, and the turns.
+/// step that begins at `state`: the tables, or their values at the load factor, the ramps in place
+/// of them, and the turns.
 void evaluate_controls(const Model& model, const State& state, double time, Vector& controls);
-/// Where a state is. As above at its own time, without allocating where `here` has the sizes.
+/// Value of one that is no turn, at the time of `state`.
+double control_value(const Model& model, const State& state, Index control);
+/// Where a state is, at its own time, without allocating where `here` has the sizes.
 void configuration_of(const Model& model, const State& state, Configuration& here);
 Configuration configuration_of(const Model& model, const State& state);
 

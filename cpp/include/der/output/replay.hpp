@@ -8,7 +8,6 @@
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 #include "der/scenario/reader.hpp"
-#include "der/statics/load_path.hpp"
 
 namespace der {
 
@@ -33,9 +32,8 @@ class Replay {
 
   [[nodiscard]] std::size_t num_frames() const { return instants_.size(); }
   [[nodiscard]] const Scenario& scenario() const { return scenario_; }
-  /// With the loads and supports of the frame shown last.
   [[nodiscard]] const Model& model() const { return model_; }
-  /// Its time is that of the frame shown last.
+  /// Its time, or its load factor, is that of the frame shown last.
   [[nodiscard]] const State& state() const { return state_; }
 
   /// Puts loads and supports to a frame. Throws Error if there is no such frame.
@@ -51,10 +49,10 @@ class Replay {
 
  private:
   Scenario scenario_;
-  Model model_;
+  const Model model_;
   State state_;
   std::vector<double> instants_;
-  std::optional<LoadPath> path_;
+  bool on_path_;
 };
 
 }  // namespace der

@@ -8,7 +8,6 @@
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 #include "der/solvers/newton.hpp"
-#include "der/statics/load_path.hpp"
 #include "der/statics/stiffness.hpp"
 
 namespace der {
@@ -63,9 +62,8 @@ struct ContinuationOptions {
 ///
 /// A branch ends at the factor `to`, at the opposite limit 2 from - to, at its largest number of
 /// points, where it closes on itself or meets another one, or where no further point is found.
-/// `start` is an equilibrium at the factor `from`. Leaves the model at the factor of the last point
-/// computed.
-std::vector<PathBranch> follow_path(Model& model, const LoadPath& loads, const Assembler& assembler,
+/// `start` is an equilibrium at the factor `from`, and the model has a load variation.
+std::vector<PathBranch> follow_path(const Model& model, const Assembler& assembler,
                                     LinearSolver& solver, const ContinuationOptions& options,
                                     const State& start);
 

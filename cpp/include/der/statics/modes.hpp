@@ -8,7 +8,6 @@
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 #include "der/solvers/linear_solver.hpp"
-#include "der/statics/load_path.hpp"
 
 namespace der {
 
@@ -49,15 +48,15 @@ struct LinearBuckling {
 };
 
 /// Linear buckling: the lowest positive factors a of all loads at which (K0 + a K1) v = 0 has a
-/// solution. K0 is the stiffness of the unloaded equilibrium `positions`; K1 is the stiffness
+/// solution. K0 is the stiffness of the unloaded equilibrium `state`; K1 is the stiffness
 /// across the edges from the tensions that the loads cause to first order, the initial-stress
 /// stiffness of the classical theory. Moments are left out of K1: they would couple the turning of
 /// an edge with its stretching, which makes a straight beam buckle under a load across it of about
 /// sqrt(EA EI), where terms of second order in the displacement, left out too, cancel that.
 /// Found by bisection on the inertia of the sparse factorisation. No modes if the loads do not make
-/// it buckle. Throws NotConvergedError if the unloaded structure is not stable. Leaves the model at
-/// the scene's loads.
-LinearBuckling linear_buckling(Model& model, const LoadPath& loads, const Assembler& assembler,
-                               LinearSolver& solver, const State& state, int count);
+/// it buckle. Throws NotConvergedError if the unloaded structure is not stable. The model has a
+/// load variation, of all loads.
+LinearBuckling linear_buckling(const Model& model, const Assembler& assembler, LinearSolver& solver,
+                               const State& state, int count);
 
 }  // namespace der

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "der/model/turns.hpp"
-#include "der/statics/load_path.hpp"
 #include "statics/continuation/path_equations.hpp"
 #include "statics/continuation/path_events.hpp"
 #include "statics/continuation/path_metric.hpp"
@@ -47,12 +46,12 @@ PathMetric first_metric(const Model& model, double range) {
 }
 
 /// By how much a unit of the factor turns a clamp at most [rad].
-double largest_clamp_turn(const Model& model, const LoadPath& loads) {
+double largest_clamp_turn(const Model& model) {
   double largest = 0.0;
   for (const RodLayout& rod : model.rods) {
     for (const Clamp& clamp : rod.clamps) {
       if (clamp.rotation < 0) continue;
-      largest = std::max(largest, std::abs(loads.change_of(clamp.rotation)));
+      largest = std::max(largest, std::abs(model.load_variation->controls.change[clamp.rotation]));
     }
   }
   return largest;
@@ -61,13 +60,13 @@ double largest_clamp_turn(const Model& model, const LoadPath& loads) {
 /// Traces a path of equilibria and the branches that leave it.
 class PathTracer {
  public:
-  PathTracer(Model& model, const LoadPath& loads, const Assembler& assembler, LinearSolver& solver,
+  PathTracer(const Model& model, const Assembler& assembler, LinearSolver& solver,
              const ContinuationOptions& options, const Vector& positions)
       : model_(model),
         options_(options),
         range_(options.to - options.from),
-        largest_clamp_turn_(largest_clamp_turn(model, loads)),
-        equations_(model, loads, assembler, solver, options.newton, first_metric(model, range_),
+        largest_clamp_turn_(largest_clamp_turn(model)),
+        equations_(model, assembler, solver, options.newton, first_metric(model, range_),
                    positions),
         events_(equations_, options.largest_step) {}
 
@@ -329,7 +328,7 @@ class PathTracer {
     return std::nullopt;
   }
 
-  Model& model_;
+  const Model& model_;
   const ContinuationOptions& options_;
   double range_;
   double largest_clamp_turn_;  // by a unit of the factor [rad]
@@ -344,10 +343,10 @@ class PathTracer {
 
 namespace der {
 
-std::vector<PathBranch> follow_path(Model& model, const LoadPath& loads, const Assembler& assembler,
+std::vector<PathBranch> follow_path(const Model& model, const Assembler& assembler,
                                     LinearSolver& solver, const ContinuationOptions& options,
                                     const State& start) {
-  return statics::PathTracer(model, loads, assembler, solver, options, start.positions).run(start);
+  return statics::PathTracer(model, assembler, solver, options, start.positions).run(start);
 }
 
 }  // namespace der

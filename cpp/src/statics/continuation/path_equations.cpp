@@ -19,17 +19,17 @@ constexpr double kLastStep = 1e-7;
 
 }  // namespace
 
-PathEquations::PathEquations(Model& model, const LoadPath& loads, const Assembler& assembler,
-                             LinearSolver& solver, const NewtonOptions& options, PathMetric metric,
-                             Vector positions)
+PathEquations::PathEquations(const Model& model, const Assembler& assembler, LinearSolver& solver,
+                             const NewtonOptions& options, PathMetric metric, Vector positions)
     : model_(model),
-      loads_(loads),
+      loads_(*model.load_variation),
       assembler_(assembler),
       options_(options),
       metric_(metric),
       stiffness_(model, assembler, solver),
       tension_(model, assembler),
-      here_{std::move(positions), {}} {}
+      here_{std::move(positions)},
+      no_extra_(Vector::Zero(model.num_dofs())) {}
 
 void PathEquations::set_metric(PathNode& first) {
   metric_.balance(first.tangent);
@@ -38,8 +38,8 @@ void PathEquations::set_metric(PathNode& first) {
 
 /// Sets the full positions, held degrees of freedom where the factor has them, and the controls.
 void PathEquations::place(const Vector& turns, const PathPosition& point) {
-  loads_.apply(point.factor, model_);
-  model_.controls.evaluate(0.0, here_.controls);
+  here_.load_factor = point.factor;
+  here_.controls = loads_.controls.at(point.factor);
   enter_turns(model_, turns, here_.controls);
   apply_prescribed_motion(model_, here_.controls, here_.coordinates);
   here_.coordinates(model_.dofs.free()) = point.x;
@@ -48,7 +48,7 @@ void PathEquations::place(const Vector& turns, const PathPosition& point) {
 /// Sets the residual and the stiffness at a point.
 void PathEquations::evaluate(const Vector& turns, const PathPosition& point) {
   place(turns, point);
-  external_force(model_, here_.controls, Vector::Zero(model_.num_dofs()), force_);
+  external_force(model_, here_, no_extra_, force_);
   stiffness_.evaluate(here_);
   residual_ = (stiffness_.gradient() - force_)(model_.dofs.free());
   force_scale_ =
@@ -57,7 +57,7 @@ void PathEquations::evaluate(const Vector& turns, const PathPosition& point) {
 
 Vector PathEquations::residual_at(const Vector& turns, const PathPosition& point) {
   place(turns, point);
-  external_force(model_, here_.controls, Vector::Zero(model_.num_dofs()), force_);
+  external_force(model_, here_, no_extra_, force_);
   Vector gradient(model_.num_dofs());
   assembler_.gradient(here_, gradient);
   return (gradient - force_)(model_.dofs.free());
@@ -66,7 +66,7 @@ Vector PathEquations::residual_at(const Vector& turns, const PathPosition& point
 /// Derivative of the residual with respect to the factor, by central differences. Forces and
 /// moments are linear in it, so that a long step is exact; a moving support needs a short one.
 Vector PathEquations::factor_derivative(const Vector& turns, const PathPosition& point) {
-  const double step = (loads_.is_linear() ? 1.0 : 1e-6) * std::abs(metric_.range());
+  const double step = (loads_.is_linear ? 1.0 : 1e-6) * std::abs(metric_.range());
   PathPosition forward = point;
   PathPosition backward = point;
   forward.factor += step;

@@ -8,7 +8,6 @@
 #include "der/solvers/linear_solver.hpp"
 #include "der/solvers/newton.hpp"
 #include "der/solvers/predicted_tension.hpp"
-#include "der/statics/load_path.hpp"
 #include "der/statics/stiffness.hpp"
 #include "statics/continuation/path_metric.hpp"
 
@@ -29,9 +28,8 @@ struct PathNode {
 class PathEquations {
  public:
   /// `positions` give the values of held degrees of freedom that do not vary.
-  PathEquations(Model& model, const LoadPath& loads, const Assembler& assembler,
-                LinearSolver& solver, const NewtonOptions& options, PathMetric metric,
-                Vector positions);
+  PathEquations(const Model& model, const Assembler& assembler, LinearSolver& solver,
+                const NewtonOptions& options, PathMetric metric, Vector positions);
 
   [[nodiscard]] const PathMetric& metric() const { return metric_; }
 
@@ -67,14 +65,15 @@ class PathEquations {
   Vector factor_derivative(const Vector& turns, const PathPosition& point);
   PathPosition tangent(const Vector& turns, const PathPosition& point, Stability& stability);
 
-  Model& model_;
-  const LoadPath& loads_;
+  const Model& model_;
+  const LoadVariation& loads_;
   const Assembler& assembler_;
   NewtonOptions options_;
   PathMetric metric_;
   Stiffness stiffness_;
   PredictedTension tension_;
   Configuration here_;
+  Vector no_extra_;  // [N] what programs add to the loads: nothing
   Vector force_;
   Vector residual_;
   double force_scale_ = 0.0;

@@ -29,9 +29,9 @@ constexpr int kMaxSaddles = 30;
 constexpr double kUnbalanced = 1e-3;
 
 StaticLoads loads_of(const Model& model, const State& state) {
-  StaticLoads loads;
-  evaluate_controls(model, state, state.time, loads.controls);
-  external_force(model, loads.controls, state.extra_force, loads.force);
+  const Configuration here = configuration_of(model, state);
+  StaticLoads loads{here.controls, {}};
+  external_force(model, here, state.extra_force, loads.force);
   return loads;
 }
 

@@ -1,0 +1,70 @@
+#include "building/load_variation.hpp"
+
+#include <utility>
+#include <variant>
+
+#include "der/building/builder.hpp"
+#include "der/core/index.hpp"
+#include "der/scenario/load.hpp"
+#include "der/scenario/scenario.hpp"
+
+namespace der {
+namespace {
+
+/// Keeps the supports where they are drawn, and the tables of the model.
+void hold_still(scenario::Support& support) {
+  for (auto& prescribed : support.prescribe) set_to_zero(prescribed.displacement);
+  if (support.rotation) set_to_zero(*support.rotation);
+}
+
+/// What the load factor of a scene scales.
+struct Varying {
+  scenario::Varied what = scenario::Varied::Loads;
+  std::optional<int> number;  // of the one load or support; none: all
+};
+
+std::optional<Varying> varying(const scenario::Analysis& analysis) {
+  if (const auto* path = std::get_if<scenario::ContinuationAnalysis>(&analysis)) {
+    return Varying{path->vary, path->number};
+  }
+  if (std::holds_alternative<scenario::BucklingAnalysis>(analysis)) return Varying{};
+  return std::nullopt;
+}
+
+/// The scene at the factor 0, as one that knows no factor.
+scenario::Scene without(scenario::Scene scene, const Varying& varying) {
+  const auto chosen = [&](std::size_t i) { return !varying.number || at(*varying.number) == i; };
+  if (varying.what == scenario::Varied::Loads) {
+    for (std::size_t i = 0; i < scene.loads.size(); ++i) {
+      if (chosen(i)) set_to_zero(scene.loads[i]);
+    }
+  } else {
+    for (std::size_t i = 0; i < scene.supports.size(); ++i) {
+      if (chosen(i)) hold_still(scene.supports[i]);
+    }
+  }
+  scene.analysis = scenario::StaticAnalysis{};
+  return scene;
+}
+
+LinearInFactor between(const Vector& at_zero, const Vector& at_one) {
+  return {at_zero, at_one - at_zero};
+}
+
+}  // namespace
+
+std::optional<LoadVariation> load_variation(const scenario::Scene& scene, const Model& model) {
+  const auto what = varying(scene.analysis);
+  if (!what) return std::nullopt;
+  const Model unloaded = build_model(without(scene, *what));
+  Vector controls_at_zero;
+  Vector controls_at_one;
+  unloaded.controls.evaluate(0.0, controls_at_zero);
+  model.controls.evaluate(0.0, controls_at_one);
+  return LoadVariation{between(unloaded.gravity_force, model.gravity_force),
+                       between(unloaded.dead_force, model.dead_force),
+                       between(controls_at_zero, controls_at_one),
+                       what->what == scenario::Varied::Loads};
+}
+
+}  // namespace der

@@ -34,10 +34,10 @@ std::vector<SpringSupport> springs(const Scenario& scenario) {
     SpringSupport& spring = result.emplace_back();
     spring.rod = rod.name;
     spring.stiffness = support.spring->stiffness;
-    if (spring.stiffness.empty()) spring.stiffness.assign(at(model.dimension), 0.0);
+    if (spring.stiffness.empty()) spring.stiffness.assign(to_size(model.dimension), 0.0);
     spring.rotational_stiffness = support.spring->rotational_stiffness;
     for (const auto& [place, weight] : node_weights(rod, arc_length_of(support.at, rod))) {
-      spring.nodes.push_back(rod.nodes[at(place)]);
+      spring.nodes.push_back(rod.nodes[to_size(place)]);
       spring.weights.push_back(weight);
     }
   }

@@ -29,7 +29,7 @@ std::vector<std::string> held_components(Index node, const Model& model) {
   const std::array<const char*, 3> names{"x", "y", "z"};
   std::vector<std::string> result;
   for (int c = 0; c < model.dimension; ++c) {
-    if (!model.dofs.is_free(model.dof(node, c))) result.emplace_back(names[at(c)]);
+    if (!model.dofs.is_free(model.dof(node, c))) result.emplace_back(names[to_size(c)]);
   }
   return result;
 }
@@ -48,7 +48,7 @@ std::vector<HeldNode> held_nodes(Replay& replay, std::size_t frame) {
     if (!support.holds()) continue;
     const RodLayout& rod = replay.model().rod(support.rod);
     for (const Index place : nodes_at(support.at, rod)) {
-      const Index node = rod.nodes[at(place)];
+      const Index node = rod.nodes[to_size(place)];
       HeldNode held{rod.name, node, held_components(node, replay.model()), std::nullopt};
       if (support.clamp) held.tangent_angle = clamp_angle(rod, place, replay);
       result.push_back(held);

@@ -53,7 +53,8 @@ void bind_readers(ScenarioClass& cls) {
          },
          py::arg("path"), py::pos_only(),
          "Read and validate a scene file.\n\n"
-         "Keyword arguments replace values, as in `with_`. Raises SceneError with every complaint.")
+         "Keyword arguments replace values, as in `with_`. Raises SceneError with every "
+         "diagnostic.")
       .def_static(
           "parse",
           [](const py::str& text, const std::string& source, const py::kwargs& overrides) {

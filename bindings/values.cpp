@@ -15,7 +15,7 @@ namespace {
 /// Far beyond a rod of a million nodes that is drawn as a polyline; a dict that holds few lists
 /// many times over could fill any memory.
 constexpr std::size_t kMaxValues = 20'000'000;
-/// More complaints than these help nobody.
+/// More diagnostics than these help nobody.
 constexpr std::size_t kMaxRefused = 100;
 
 /// The text of a str; none where it holds half of a surrogate pair, which UTF-8 has no form for.

@@ -13,7 +13,7 @@ namespace py = pybind11;
 /// A Python value as a value of a scene document: None, bool, int, float, str, list, tuple, dict
 /// with str keys, and whatever turns into these by `tolist()` (scalars and arrays of NumPy). `path`
 /// is where it belongs, such as `rods.beam.nodes`; empty for a whole scene. Throws SceneError with
-/// a complaint for every part that is none of these, up to a hundred, and for values that are
+/// a diagnostic for every part that is none of these, up to a hundred, and for values that are
 /// nested without end.
 scenario::Value to_document_value(const py::handle& object, const std::string& path);
 

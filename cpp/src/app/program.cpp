@@ -35,7 +35,7 @@ ExitCode fail(ExitCode code, const std::string& message) {
   return code;
 }
 
-/// Every complaint on a line of its own, as compilers write them, so that editors can jump there.
+/// Every diagnostic on a line of its own, as compilers write them, so that editors can jump there.
 ExitCode fail(ExitCode code, const SceneError& error) {
   std::fputs((std::string(error.what()) + "\n").c_str(), stderr);
   return code;

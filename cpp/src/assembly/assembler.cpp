@@ -128,7 +128,7 @@ void Assembler::ScatterMaps::assemble(const Model& model, const Configuration& h
           const auto& dofs = list.dofs[e];
           Kernel::template evaluate<D>(list.constants[e], here, gather(dofs, here.coordinates),
                                        local);
-          for (int i = 0; i < n; ++i) gradient[dofs[at(i)]] += local.gradient[i];
+          for (int i = 0; i < n; ++i) gradient[dofs[to_size(i)]] += local.gradient[i];
           if constexpr (D == Derivatives::Hessian) {
             const Index* slot = map.slots[k].data();
             double* entries = values->data();

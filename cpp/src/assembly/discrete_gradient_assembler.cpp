@@ -7,7 +7,7 @@
 namespace der {
 
 DiscreteGradientAssembler::DiscreteGradientAssembler(const Model& model, const Assembler& assembler)
-    : start{Vector::Zero(model.num_dofs()), Vector::Zero(model.controls.size())},
+    : start{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       end(start),
       model_(model),
       assembler_(assembler),

@@ -30,13 +30,13 @@ Pattern compress(Entries entries, const Model& model) {
 
   Pattern pattern;
   pattern.size = model.num_free();
-  pattern.outer.assign(at(pattern.size) + 1, 0);
+  pattern.outer.assign(to_size(pattern.size) + 1, 0);
   for (const auto& [column, row] : entries) {
-    ++pattern.outer[at(column) + 1];
+    ++pattern.outer[to_size(column) + 1];
     pattern.inner.push_back(row);
     pattern.half_bandwidth = std::max(pattern.half_bandwidth, row - column);
   }
-  for (std::size_t j = 0; j < at(pattern.size); ++j) pattern.outer[j + 1] += pattern.outer[j];
+  for (std::size_t j = 0; j < to_size(pattern.size); ++j) pattern.outer[j + 1] += pattern.outer[j];
   return pattern;
 }
 
@@ -88,8 +88,8 @@ void MatrixLayout::shift_diagonal(double shift, Vector& values) const {
 Index MatrixLayout::slot(Index row, Index column) const {
   assert(row >= column);
   if (pattern_ == nullptr) return column * width_ + (row - column);
-  const auto begin = pattern_->inner.begin() + pattern_->outer[at(column)];
-  const auto end = pattern_->inner.begin() + pattern_->outer[at(column) + 1];
+  const auto begin = pattern_->inner.begin() + pattern_->outer[to_size(column)];
+  const auto end = pattern_->inner.begin() + pattern_->outer[to_size(column) + 1];
   const auto found = std::lower_bound(begin, end, row);
   assert(found != end && *found == row);
   return static_cast<Index>(found - pattern_->inner.begin());

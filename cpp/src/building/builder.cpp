@@ -56,9 +56,9 @@ RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, In
     const Index node = first_node + static_cast<Index>(i);
     layout.nodes.push_back(node);
     for (int c = 0; c < model.dimension; ++c) {
-      model.initial_positions[model.dof(node, c)] = rod.points[i][at(c)];
+      model.initial_positions[model.dof(node, c)] = rod.points[i][to_size(c)];
       if (!rod.initial_velocity.empty()) {
-        model.initial_velocities[model.dof(node, c)] = rod.initial_velocity[i][at(c)];
+        model.initial_velocities[model.dof(node, c)] = rod.initial_velocity[i][to_size(c)];
       }
     }
     if (i == 0) continue;
@@ -89,8 +89,8 @@ void lump_masses(const scenario::Rod& rod, RodLayout& layout, Model& model) {
   std::vector<double> sphere_density(layout.nodes.size(), 0.0);
   for (const auto& sphere : rod.spheres) {
     for (const Index place : nodes_at(sphere.at, layout)) {
-      layout.sphere_radius[at(place)] = sphere.radius;
-      sphere_density[at(place)] = sphere.density;
+      layout.sphere_radius[to_size(place)] = sphere.radius;
+      sphere_density[to_size(place)] = sphere.density;
     }
   }
   for (std::size_t i = 0; i < layout.nodes.size(); ++i) {
@@ -108,10 +108,10 @@ void couple_masses(const RodLayout& rod, Model& model) {
   if (rod.mass_per_length == 0.0) return;
   for (const Index first : {0, 1}) {
     for (Index edge = first; edge < rod.num_edges(); edge += 2) {
-      const double mass = rod.mass_per_length * rod.edge_length[at(edge)] / 6.0;
+      const double mass = rod.mass_per_length * rod.edge_length[to_size(edge)] / 6.0;
       for (int c = 0; c < model.dimension; ++c) {
-        const Index a = model.dof(rod.nodes[at(edge)], c);
-        const Index b = model.dof(rod.nodes[at(edge) + 1], c);
+        const Index a = model.dof(rod.nodes[to_size(edge)], c);
+        const Index b = model.dof(rod.nodes[to_size(edge) + 1], c);
         if (!model.dofs.is_free(a) || !model.dofs.is_free(b)) continue;
         model.mass.coupling.push_back({a, b, mass});
       }

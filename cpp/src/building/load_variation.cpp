@@ -33,7 +33,9 @@ std::optional<Varying> varying(const scenario::Analysis& analysis) {
 
 /// The scene at the factor 0, as one that knows no factor.
 scenario::Scene without(scenario::Scene scene, const Varying& varying) {
-  const auto chosen = [&](std::size_t i) { return !varying.number || at(*varying.number) == i; };
+  const auto chosen = [&](std::size_t i) {
+    return !varying.number || to_size(*varying.number) == i;
+  };
   if (varying.what == scenario::Varied::Loads) {
     for (std::size_t i = 0; i < scene.loads.size(); ++i) {
       if (chosen(i)) set_to_zero(scene.loads[i]);
@@ -59,8 +61,8 @@ std::optional<LoadVariation> load_variation(const scenario::Scene& scene, const 
   const Model unloaded = build_model(without(scene, *what));
   Vector controls_at_zero;
   Vector controls_at_one;
-  unloaded.controls.evaluate(0.0, controls_at_zero);
-  model.controls.evaluate(0.0, controls_at_one);
+  unloaded.tables.evaluate(0.0, controls_at_zero);
+  model.tables.evaluate(0.0, controls_at_one);
   return LoadVariation{between(unloaded.gravity_force, model.gravity_force),
                        between(unloaded.dead_force, model.dead_force),
                        between(controls_at_zero, controls_at_one),

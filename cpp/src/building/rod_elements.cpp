@@ -31,8 +31,8 @@ void add_stretch(const RodLayout& rod, Model& model) {
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     const EffectiveEdge effective = effective_edge(rod, edge, model);
     const double length =
-        effective.has_pivot() ? drawn(effective, model).norm() : rod.edge_length[at(edge)];
-    const double EA = rod.EA * (length / rod.edge_length[at(edge)]);
+        effective.has_pivot() ? drawn(effective, model).norm() : rod.edge_length[to_size(edge)];
+    const double EA = rod.EA * (length / rod.edge_length[to_size(edge)]);
     add_element<Stretch<2>>(effective.dofs, {EA, length}, effective.first, effective.last, model);
   }
 }
@@ -41,11 +41,11 @@ double rest_angle_between(const RodLayout& rod, Index place, const EffectiveEdge
                           const EffectiveEdge& after, const Model& model) {
   if (rod.natural_curvature.empty())
     return angle_between(drawn(before, model), drawn(after, model));
-  double angle = rod.natural_curvature[at(place)] * bend_length(rod, place);
+  double angle = rod.natural_curvature[to_size(place)] * bend_length(rod, place);
   // A free end lies on the curve, the nodes next to it l^2 kappa/12 beside it (supports/clamp.hpp).
   const auto end = [&](Index end_place, Index edge) {
     if (rod.clamp_at(end_place) != nullptr) return;
-    angle += rod.natural_curvature[at(end_place)] * rod.edge_length[at(edge)] / 12.0;
+    angle += rod.natural_curvature[to_size(end_place)] * rod.edge_length[to_size(edge)] / 12.0;
   };
   if (place == 1) end(0, 0);
   if (place == rod.num_edges() - 1) end(rod.num_edges(), rod.num_edges() - 1);
@@ -59,7 +59,7 @@ void add_bend(RodLayout& rod, Model& model) {
     const EffectiveEdge before = effective_edge(rod, i - 1, model);
     const EffectiveEdge after = effective_edge(rod, i, model);
     const double rest = rest_angle_between(rod, i, before, after, model);
-    rod.rest_turning_angle[at(i)] = rest;
+    rod.rest_turning_angle[to_size(i)] = rest;
     add_element<PlanarBend<Curvature>>({before.dofs[0], before.dofs[1], after.dofs[0],
                                         after.dofs[1], after.dofs[2], after.dofs[3]},
                                        {rod.EI / bend_length(rod, i), Curvature::of(rest).kappa},

@@ -5,22 +5,22 @@
 namespace der {
 namespace {
 
-std::string line_of(const std::string& source, const Diagnostic& complaint) {
+std::string line_of(const std::string& source, const Diagnostic& diagnostic) {
   std::string line = source;
-  if (complaint.line > 0) {
+  if (diagnostic.line > 0) {
     if (!line.empty()) line += ':';
-    line += std::to_string(complaint.line) + ':' + std::to_string(complaint.column);
+    line += std::to_string(diagnostic.line) + ':' + std::to_string(diagnostic.column);
   }
   if (!line.empty()) line += ": ";
-  if (!complaint.path.empty()) line += complaint.path + ": ";
-  return line + complaint.message;
+  if (!diagnostic.path.empty()) line += diagnostic.path + ": ";
+  return line + diagnostic.message;
 }
 
-std::string text_of(const std::string& source, const std::vector<Diagnostic>& complaints) {
+std::string text_of(const std::string& source, const std::vector<Diagnostic>& diagnostics) {
   std::string text;
-  for (const Diagnostic& complaint : complaints) {
+  for (const Diagnostic& diagnostic : diagnostics) {
     if (!text.empty()) text += '\n';
-    text += printable(line_of(source, complaint));
+    text += printable(line_of(source, diagnostic));
   }
   return text;
 }

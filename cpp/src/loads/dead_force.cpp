@@ -12,7 +12,7 @@ DeadForce::DeadForce(const scenario::VectorSeries& force, Model& model) {
   for (std::size_t c = 0; c < static_cast<std::size_t>(model.dimension); ++c) {
     scenario::Series series{force.times, {}};
     for (const auto& value : force.values) series.values.push_back(value[c]);
-    controls_.push_back(model.controls.add(std::move(series)));
+    controls_.push_back(model.tables.add(std::move(series)));
   }
 }
 
@@ -30,7 +30,7 @@ void DeadForce::act_on(Index node, double weight, Model& model) const {
 
 std::array<Index, 2> DeadForce::as_controls(Model& model) const {
   if (!controls_.empty()) return {controls_[0], controls_[1]};
-  return {model.controls.add({{0.0}, {constant_[0]}}), model.controls.add({{0.0}, {constant_[1]}})};
+  return {model.tables.add({{0.0}, {constant_[0]}}), model.tables.add({{0.0}, {constant_[1]}})};
 }
 
 }  // namespace der

@@ -20,7 +20,7 @@ bool is_clamped(const RodLayout& rod, double s) {
 
 void add_load(const scenario::Moment& load, const scenario::Scene& /*scene*/, Model& model) {
   RodLayout& rod = model.rod(load.rod);
-  const Index control = model.controls.add(load.moment);
+  const Index control = model.tables.add(load.moment);
   const double s = arc_length_of(load.at, rod);
   // The clamp takes it up; on the edges beside it, it would bend the rod by an error of order 1.
   if (is_clamped(rod, s)) return;

@@ -12,7 +12,7 @@ DofMap::DofMap(int dimension, Index num_nodes, std::vector<Index> edge_starts)
   if (!starts_.empty()) {
     blocks_.push_back({DofKind::Angle, num_positions(), static_cast<Index>(starts_.size()), 1.0});
   }
-  free_index_.assign(at(size()), 0);
+  free_index_.assign(to_size(size()), 0);
   number_free();
 }
 
@@ -23,11 +23,11 @@ Dof DofMap::operator[](Index dof) const {
 
 Index DofMap::node_of(Index dof) const {
   const Dof what = (*this)[dof];
-  return what.kind == DofKind::Position ? what.owner : starts_[at(what.owner)];
+  return what.kind == DofKind::Position ? what.owner : starts_[to_size(what.owner)];
 }
 
 void DofMap::hold(const std::vector<Index>& held) {
-  for (const Index dof : held) free_index_[at(dof)] = -1;
+  for (const Index dof : held) free_index_[to_size(dof)] = -1;
   number_free();
 }
 
@@ -43,7 +43,7 @@ void DofMap::number_free() {
   std::sort(free_.begin(), free_.end(), [this](Index a, Index b) {
     return std::make_tuple(node_of(a), a) < std::make_tuple(node_of(b), b);
   });
-  for (Index i = 0; i < num_free(); ++i) free_index_[at(free_[at(i)])] = i;
+  for (Index i = 0; i < num_free(); ++i) free_index_[to_size(free_[to_size(i)])] = i;
 }
 
 void DofMap::set_length(double length) {

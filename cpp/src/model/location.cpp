@@ -16,7 +16,7 @@ namespace {
 constexpr double kEndShare = 1.0 / 12.0;
 
 bool is_node(const RodLayout& rod, Index i, double s) {
-  return std::abs(rod.arc_length[at(i)] - s) <= rod.same_place();
+  return std::abs(rod.arc_length[to_size(i)] - s) <= rod.same_place();
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ double arc_length_of(const scenario::Location& location, const RodLayout& rod) {
       return location.arc_length;
     case Kind::Node: {
       const auto count = static_cast<Index>(rod.nodes.size());
-      return rod.arc_length[at(location.node < 0 ? location.node + count : location.node)];
+      return rod.arc_length[to_size(location.node < 0 ? location.node + count : location.node)];
     }
     case Kind::All:
       break;
@@ -48,7 +48,7 @@ Index node_at(const scenario::Location& location, const RodLayout& rod) {
   if (!is_node(rod, node, s)) {
     throw Error("model_error", "rod '" + rod.name + "': no node at arc length " +
                                    std::to_string(s) + " m; the nearest is at " +
-                                   std::to_string(rod.arc_length[at(node)]) + " m");
+                                   std::to_string(rod.arc_length[to_size(node)]) + " m");
   }
   return node;
 }
@@ -74,7 +74,7 @@ std::vector<Weighted> node_weights(const RodLayout& rod, double s) {
   for (Index i = first; i < first + stencil; ++i) {
     double weight = 1.0;
     for (Index j = first; j < first + stencil; ++j) {
-      if (j != i) weight *= (s - arc[at(j)]) / (arc[at(i)] - arc[at(j)]);
+      if (j != i) weight *= (s - arc[to_size(j)]) / (arc[to_size(i)] - arc[to_size(j)]);
     }
     weights.push_back({i, weight});
   }
@@ -84,10 +84,12 @@ std::vector<Weighted> node_weights(const RodLayout& rod, double s) {
 std::vector<Weighted> edge_weights(const RodLayout& rod, double s) {
   const auto& arc = rod.arc_length;
   const auto edges = static_cast<Index>(arc.size()) - 1;
-  const auto midpoint = [&](Index edge) { return 0.5 * (arc[at(edge)] + arc[at(edge + 1)]); };
+  const auto midpoint = [&](Index edge) {
+    return 0.5 * (arc[to_size(edge)] + arc[to_size(edge + 1)]);
+  };
   const auto beyond = [&](double distance, Index last, Index before) -> std::vector<Weighted> {
     if (edges == 1) return {{last, 1.0}};
-    const double share = kEndShare * distance / (0.5 * rod.edge_length[at(last)]);
+    const double share = kEndShare * distance / (0.5 * rod.edge_length[to_size(last)]);
     return {{last, 1.0 + share}, {before, -share}};
   };
   if (s <= midpoint(0)) return beyond(midpoint(0) - s, 0, 1);

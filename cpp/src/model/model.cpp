@@ -58,7 +58,7 @@ Index follow_edge(const RodLayout& rod, Index edge, Model& model) {
   const Vec2 drawn = along_edge(followed, model.initial_positions);
   const double direction = std::atan2(drawn.y(), drawn.x());
   // An entry of its own, which no table moves.
-  model.followed_edges.push_back({followed, direction, model.controls.add({{0.0}, {0.0}})});
+  model.followed_edges.push_back({followed, direction, model.tables.add({{0.0}, {0.0}})});
   return static_cast<Index>(model.followed_edges.size()) - 1;
 }
 

@@ -11,7 +11,7 @@ namespace der {
 namespace {
 
 double middle(const RodLayout& rod, Index edge) {
-  return 0.5 * (rod.arc_length[at(edge)] + rod.arc_length[at(edge + 1)]);
+  return 0.5 * (rod.arc_length[to_size(edge)] + rod.arc_length[to_size(edge + 1)]);
 }
 
 /// Distance [m] from the middle of the outermost edge to a place beyond it; 0 for places inside.
@@ -38,8 +38,8 @@ template <int Edges>
 double turn_of(Index element, const Model& model, const Vector& positions, double before) {
   using Kernel = RotationalSpring<Edges>;
   const auto& springs = model.elements->of<Kernel>();
-  return Kernel::turn(springs.constants[at(element)], before,
-                      gather(springs.dofs[at(element)], positions));
+  return Kernel::turn(springs.constants[to_size(element)], before,
+                      gather(springs.dofs[to_size(element)], positions));
 }
 
 /// Turn [rad] of the weighted directions from where the springs are slack, the first edge having
@@ -95,8 +95,9 @@ Energies cell_energies(const RodLayout& rod, const Model& model, const Configura
   Energies energies;
   if (rod.EI == 0.0) return energies;
   for (const MomentPlace& place : rod.moment_places) {
-    const double before =
-        place.followed >= 0 ? here.controls[model.followed_edges[at(place.followed)].turn] : 0.0;
+    const double before = place.followed >= 0
+                              ? here.controls[model.followed_edges[to_size(place.followed)].turn]
+                              : 0.0;
     const double turn = spring_turn(place, model, here.coordinates, before);
     const double moment = moment_of(place, rod, applied_moment(place, here.controls), turn);
     const double cell_turn = place.cell_length * moment / rod.EI;

@@ -27,7 +27,7 @@ State initial_state(const Model& model) {
   state.extra_force.setZero(model.num_dofs());
   state.accelerations.setZero(model.num_dofs());
   Vector controls;
-  model.controls.evaluate(0.0, controls);
+  model.tables.evaluate(0.0, controls);
   apply_prescribed_motion(model, controls, state.positions);
   state.turns.setZero(static_cast<Index>(model.followed_edges.size()));
   follow_turns(model, state.positions, state.turns);
@@ -38,7 +38,7 @@ void evaluate_controls(const Model& model, const State& state, double time, Vect
   if (model.load_variation) {
     controls = model.load_variation->controls.at(state.load_factor);
   } else {
-    model.controls.evaluate(time, controls);
+    model.tables.evaluate(time, controls);
   }
   for (const Ramp& ramp : state.ramps) controls[ramp.control] = ramp.at(time);
   enter_turns(model, state.turns, controls);
@@ -48,7 +48,7 @@ double control_value(const Model& model, const State& state, Index control) {
   for (const Ramp& ramp : state.ramps) {
     if (ramp.control == control) return ramp.at(state.time);
   }
-  if (!model.load_variation) return value_at(model.controls[control], state.time);
+  if (!model.load_variation) return value_at(model.tables[control], state.time);
   return model.load_variation->controls.at(state.load_factor)[control];
 }
 

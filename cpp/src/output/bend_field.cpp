@@ -71,7 +71,7 @@ class TurnField : public RodField {
  private:
   static std::vector<double> arc_lengths(const RodLayout& rod, const std::vector<Weighted>& nodes) {
     std::vector<double> result;
-    for (const auto& [node, factor] : nodes) result.push_back(rod.arc_length[at(node)]);
+    for (const auto& [node, factor] : nodes) result.push_back(rod.arc_length[to_size(node)]);
     return result;
   }
 
@@ -102,7 +102,7 @@ class BendField : public RodField {
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
     const auto& [edge, place, smooth] = samples_[i];
-    const auto& [first, last] = edges_[at(edge)];
+    const auto& [first, last] = edges_[to_size(edge)];
     const double share =
         (place.arc_length - first.arc_length) / (last.arc_length - first.arc_length);
     double value = recovery_.inside(edge, place, model, state) / per_moment_;
@@ -152,13 +152,13 @@ class BendField : public RodField {
         samples.push_back({edge, {s, before}, smooth});
       };
       const bool smooth = !recovery.has_kink_at(edge) && !recovery.jumps_at(edge);
-      add(rod.arc_length[at(edge)], false, smooth);
+      add(rod.arc_length[to_size(edge)], false, smooth);
       for (const auto& [s, jumps] : recovery.breaks(edge)) {
         add(s, true, false);
         if (jumps) add(s, false, false);
       }
       const bool end = edge + 1 == rod.num_edges();
-      if (end || recovery.jumps_at(edge + 1)) add(rod.arc_length[at(edge + 1)], true, false);
+      if (end || recovery.jumps_at(edge + 1)) add(rod.arc_length[to_size(edge + 1)], true, false);
     }
     return samples;
   }
@@ -175,9 +175,9 @@ class BendField : public RodField {
     Known result;
     result.last = last;
     result.effective = effective_edge(rod, edge, model);
-    result.arc_length = rod.arc_length[at(node)];
+    result.arc_length = rod.arc_length[to_size(node)];
     if (const Clamp* clamp = rod.clamp_at(node)) {
-      const double pivot = clamp_pivot_share() * rod.edge_length[at(edge)];
+      const double pivot = clamp_pivot_share() * rod.edge_length[to_size(edge)];
       result.arc_length += last ? -pivot : pivot;
       result.cell.emplace();
       if (last) {
@@ -192,7 +192,7 @@ class BendField : public RodField {
     } else if (node > 0 && node < rod.num_edges()) {
       result.cell = cell_at(rod, node, model);
       result.length = bend_length(rod, node);
-      result.rest_angle = rod.rest_turning_angle[at(node)];
+      result.rest_angle = rod.rest_turning_angle[to_size(node)];
     }
     result.natural_curvature = natural.at(result.arc_length);
     return result;

@@ -31,7 +31,7 @@ Index clamp_beyond(const RodLayout& rod, Index edge) {
 MomentRecovery::MomentRecovery(const RodLayout& rod, const Model& model)
     : rod_(rod),
       forces_(rod, model),
-      edges_(at(rod.num_edges())),
+      edges_(to_size(rod.num_edges())),
       kinks_(loaded_nodes(rod, model)) {
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     const Index start = clamp_before(rod, edge);
@@ -42,8 +42,8 @@ MomentRecovery::MomentRecovery(const RodLayout& rod, const Model& model)
 }
 
 MomentRecovery::Where MomentRecovery::where_is(double s, Index edge) const {
-  if (s <= rod_.arc_length[at(edge)] + rod_.same_place()) return Where::Before;
-  if (s >= rod_.arc_length[at(edge + 1)] - rod_.same_place()) return Where::Beyond;
+  if (s <= rod_.arc_length[to_size(edge)] + rod_.same_place()) return Where::Before;
+  if (s >= rod_.arc_length[to_size(edge + 1)] - rod_.same_place()) return Where::Beyond;
   return Where::Inside;
 }
 
@@ -60,7 +60,7 @@ void MomentRecovery::add_moments(Index edge, Index start, Index end) {
     MomentTerm term{p, place.arc_length, where == Where::Inside};
     for (Index i = 0; i < count; ++i) {
       const Index other = place.first_edge + i;
-      const double weight = place.weights[at(i)];
+      const double weight = place.weights[to_size(i)];
       if (other == edge) term.own = weight;
       if (from_before && other < std::max<Index>(start, 0)) continue;
       if (!from_before && end != kNone && other >= end) continue;
@@ -72,8 +72,8 @@ void MomentRecovery::add_moments(Index edge, Index start, Index end) {
         if (other > edge) term.last -= weight;
       }
     }
-    const bool in_span = (start == kNone || place.arc_length >= rod_.arc_length[at(start)]) &&
-                         (end == kNone || place.arc_length <= rod_.arc_length[at(end)]);
+    const bool in_span = (start == kNone || place.arc_length >= rod_.arc_length[to_size(start)]) &&
+                         (end == kNone || place.arc_length <= rod_.arc_length[to_size(end)]);
     const double beyond = from_before ? 0.0 : 1.0;
     if (in_span && where != Where::Inside) {
       const double factor = where == Where::Beyond ? beyond : beyond - 1.0;
@@ -87,7 +87,7 @@ void MomentRecovery::add_moments(Index edge, Index start, Index end) {
     constexpr double kRounding = 1e-12;
     if (term.inside || term.own != 0.0 || std::abs(term.first) > kRounding ||
         std::abs(term.last) > kRounding) {
-      edges_[at(edge)].moments.push_back(term);
+      edges_[to_size(edge)].moments.push_back(term);
     }
   }
 }
@@ -104,7 +104,7 @@ void MomentRecovery::add_forces(Index edge, Index start, Index end) {
           (start == kNone || node.place >= start) && (end == kNone || node.place <= end);
       if (before == from_before && in_span) term.nodes.push_back(node);
     }
-    edges_[at(edge)].forces.push_back(std::move(term));
+    edges_[to_size(edge)].forces.push_back(std::move(term));
   }
 }
 
@@ -119,7 +119,7 @@ double MomentRecovery::carried(std::size_t number, const Model& model, const Sta
 
 double MomentRecovery::smooth(Index edge, bool last, const Vec2& point, const Model& model,
                               const State& state) const {
-  const EdgeTerms& terms = edges_[at(edge)];
+  const EdgeTerms& terms = edges_[to_size(edge)];
   double moment = 0.0;
   // A moment is a couple at the nodes of its edge: a pivot between them sees the nearer one's force
   // taken by the clamp.
@@ -143,7 +143,7 @@ double MomentRecovery::smooth(Index edge, bool last, const Vec2& point, const Mo
 
 double MomentRecovery::inside(Index edge, const Place& place, const Model& model,
                               const State& state) const {
-  const EdgeTerms& terms = edges_[at(edge)];
+  const EdgeTerms& terms = edges_[to_size(edge)];
   const double s = place.arc_length;
   double moment = 0.0;
   for (const MomentTerm& term : terms.moments) {
@@ -160,7 +160,7 @@ double MomentRecovery::inside(Index edge, const Place& place, const Model& model
     const bool counts = term.sign > 0.0 ? there > s : there < s;
     if (!counts) continue;
     const Index end = term.sign > 0.0 ? edge : edge + 1;
-    const double share = (there - s) / (there - rod_.arc_length[at(end)]);
+    const double share = (there - s) / (there - rod_.arc_length[to_size(end)]);
     const Vec2 arm = share * (forces_.point(term.place, state) - forces_.node_point(end, state));
     moment += term.sign * cross(arm, forces_.value(term.place, model, state));
   }
@@ -176,10 +176,10 @@ double MomentRecovery::at_end(bool last, const Model& model, const State& state)
 
 std::vector<MomentRecovery::Break> MomentRecovery::breaks(Index edge) const {
   std::vector<Break> found;
-  for (const MomentTerm& term : edges_[at(edge)].moments) {
+  for (const MomentTerm& term : edges_[to_size(edge)].moments) {
     if (term.inside) found.push_back({term.arc_length, true});
   }
-  for (const ForceTerm& term : edges_[at(edge)].forces) {
+  for (const ForceTerm& term : edges_[to_size(edge)].forces) {
     if (term.where == Where::Inside) {
       found.push_back({forces_[term.place].place.arc_length, false});
     }
@@ -202,7 +202,7 @@ std::vector<MomentRecovery::Break> MomentRecovery::breaks(Index edge) const {
 bool MomentRecovery::jumps_at(Index node) const {
   if (node == 0 || node == rod_.num_edges()) return false;
   return rod_.clamp_at(node) != nullptr ||
-         rod_.moment_place_at(rod_.arc_length[at(node)]) != nullptr;
+         rod_.moment_place_at(rod_.arc_length[to_size(node)]) != nullptr;
 }
 
 }  // namespace der

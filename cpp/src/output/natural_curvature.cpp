@@ -22,9 +22,9 @@ NaturalCurvature::NaturalCurvature(const RodLayout& rod, const Model& model) {
     return;
   }
   for (Index i = 1; i < rod.num_edges(); ++i) {
-    const double before = rod.edge_length[der::at(i - 1)];
-    const double after = rod.edge_length[der::at(i)];
-    arc_length_.push_back(rod.arc_length[der::at(i)] + (after - before) / 3.0);
+    const double before = rod.edge_length[der::to_size(i - 1)];
+    const double after = rod.edge_length[der::to_size(i)];
+    arc_length_.push_back(rod.arc_length[der::to_size(i)] + (after - before) / 3.0);
     values_.push_back(angle_between(drawn_edge(rod, i - 1, model), drawn_edge(rod, i, model)) /
                       (0.5 * (before + after)));
   }

@@ -16,7 +16,7 @@ SpreadForces::SpreadForces(const RodLayout& rod, const Model& model) {
 }
 
 Vec2 SpreadForces::node_point(Index node, const State& state) const {
-  return state.positions.segment<2>(first_dofs_[at(node)]);
+  return state.positions.segment<2>(first_dofs_[to_size(node)]);
 }
 
 Vec2 SpreadForces::point(std::size_t i, const State& state) const {
@@ -29,7 +29,7 @@ Vec2 SpreadForces::value(std::size_t i, const Model& model, const State& state) 
   const ForcePlace& place = forces_[i].place;
   Vec2 value = -place.stiffness.cwiseProduct(point(i, state) - place.anchor);
   for (int c = 0; c < 2; ++c) {
-    const Index control = place.force[at(c)];
+    const Index control = place.force[to_size(c)];
     if (control >= 0) value[c] += control_value(model, state, control);
   }
   return value;

@@ -128,7 +128,7 @@ void apply_start(Simulation& simulation) {
   state.positions = last.positions;
   state.velocities = last.velocities;
   Vector controls;
-  model.controls.evaluate(state.time, controls);
+  model.tables.evaluate(state.time, controls);
   apply_prescribed_motion(model, controls,
                           state.positions);  // supports are where this scene has them
   take_over_turns(last, model, state);

@@ -17,8 +17,9 @@ std::vector<Weighted> line_weights(const std::vector<double>& middles, Index fir
                                    double s) {
   if (first == last) return {{first, 1.0}};
   Index right = first + 1;
-  while (right < last && middles[at(right)] < s) ++right;
-  const double share = (s - middles[at(right - 1)]) / (middles[at(right)] - middles[at(right - 1)]);
+  while (right < last && middles[to_size(right)] < s) ++right;
+  const double share =
+      (s - middles[to_size(right - 1)]) / (middles[to_size(right)] - middles[to_size(right - 1)]);
   return {{right - 1, 1.0 - share}, {right, share}};
 }
 
@@ -85,7 +86,8 @@ class StretchField : public RodField {
     Layout(const RodLayout& rod, const SpreadForces& forces, const Model& model)
         : rod_(rod), forces_(forces) {
       for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-        middles.push_back(0.5 * (rod.arc_length[at(edge)] + rod.arc_length[at(edge + 1)]));
+        middles.push_back(0.5 *
+                          (rod.arc_length[to_size(edge)] + rod.arc_length[to_size(edge + 1)]));
       }
       find_breaks(model);
       for (std::size_t part = 0; part + 1 < breaks_.size(); ++part) add_part(part);
@@ -99,7 +101,8 @@ class StretchField : public RodField {
       breaks_ = {0.0, rod_.rest_length()};
       const std::vector<bool> loaded = loaded_nodes(rod_, model);
       for (Index i = 1; i < rod_.num_edges(); ++i) {
-        if (loaded[at(i)] || rod_.clamp_at(i) != nullptr) breaks_.push_back(rod_.arc_length[at(i)]);
+        if (loaded[to_size(i)] || rod_.clamp_at(i) != nullptr)
+          breaks_.push_back(rod_.arc_length[to_size(i)]);
       }
       for (std::size_t f = 0; f < forces_.size(); ++f) {
         breaks_.push_back(forces_[f].place.arc_length);
@@ -127,9 +130,9 @@ class StretchField : public RodField {
     [[nodiscard]] std::size_t part_to_go_on_from(std::size_t part) const {
       const Index edge = std::max<Index>(0, first_middle(part) - 1);
       for (std::size_t before = part + 1; before-- > 0;) {
-        if (breaks_[before + 1] <= rod_.arc_length[at(edge)] + rod_.same_place()) break;
+        if (breaks_[before + 1] <= rod_.arc_length[to_size(edge)] + rod_.same_place()) break;
         if (has_middle(before)) {
-          if (breaks_[part] < rod_.arc_length[at(edge + 1)] - rod_.same_place()) return before;
+          if (breaks_[part] < rod_.arc_length[to_size(edge + 1)] - rod_.same_place()) return before;
           break;
         }
       }
@@ -169,7 +172,7 @@ class StretchField : public RodField {
       };
       add(start, false);
       for (Index edge = first_middle(part); edge < first_middle(part + 1); ++edge) {
-        if (middles[at(edge)] > start + rod_.same_place()) add(middles[at(edge)], true);
+        if (middles[to_size(edge)] > start + rod_.same_place()) add(middles[to_size(edge)], true);
       }
       add(end, false);
     }
@@ -187,12 +190,12 @@ class StretchField : public RodField {
         edge_length_(rod.edge_length),
         forces_(std::move(forces)),
         distributed_(rod.distributed_places),
-        loads_(at(rod.num_edges())),
+        loads_(to_size(rod.num_edges())),
         samples_(layout.samples) {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) {
       effective_.push_back(effective_edge(rod, edge, model));
       rest_length_.push_back(effective_.back().vector(model.initial_positions, 0.0, 0.0).norm());
-      add_loads(edge, layout.middles[at(edge)], rod);
+      add_loads(edge, layout.middles[to_size(edge)], rod);
     }
   }
 
@@ -203,7 +206,7 @@ class StretchField : public RodField {
   }
 
   void add_loads(Index edge, double middle, const RodLayout& rod) {
-    EdgeLoads& loads = loads_[at(edge)];
+    EdgeLoads& loads = loads_[to_size(edge)];
     for (std::size_t f = 0; f < forces_.size(); ++f) {
       const std::vector<Weighted>& nodes = forces_[f].nodes;
       if (nodes.front().place > edge || nodes.back().place <= edge) continue;
@@ -212,8 +215,8 @@ class StretchField : public RodField {
       loads.forces.push_back({f, amount});
     }
     for (std::size_t d = 0; d < distributed_.size(); ++d) {
-      const double s0 = rod.arc_length[at(edge)];
-      const double s1 = rod.arc_length[at(edge + 1)];
+      const double s0 = rod.arc_length[to_size(edge)];
+      const double s1 = rod.arc_length[to_size(edge + 1)];
       const double from = std::max(distributed_[d].from, s0);
       const double to = std::min(distributed_[d].to, s1);
       if (from >= to || to - from >= (s1 - s0) - rod.same_place()) continue;
@@ -223,14 +226,14 @@ class StretchField : public RodField {
   }
 
   [[nodiscard]] Vec2 direction(Index edge, const Model& model, const State& state) const {
-    return effective_vector(effective_[at(edge)], model, state).normalized();
+    return effective_vector(effective_[to_size(edge)], model, state).normalized();
   }
 
   [[nodiscard]] double middle_strain(Index edge, const Model& model, const State& state) const {
-    const Vec2 effective = effective_vector(effective_[at(edge)], model, state);
+    const Vec2 effective = effective_vector(effective_[to_size(edge)], model, state);
     const double length = effective.norm();
-    const double chain = (length - rest_length_[at(edge)]) / edge_length_[at(edge)];
-    const EdgeLoads& loads = loads_[at(edge)];
+    const double chain = (length - rest_length_[to_size(edge)]) / edge_length_[to_size(edge)];
+    const EdgeLoads& loads = loads_[to_size(edge)];
     if (loads.forces.empty() && loads.distributed.empty()) return chain;
     Vec2 excess = Vec2::Zero();
     for (const auto& [force, amount] : loads.forces) {
@@ -238,7 +241,7 @@ class StretchField : public RodField {
     }
     for (const auto& [number, amount] : loads.distributed) {
       for (int c = 0; c < 2; ++c) {
-        const Index control = distributed_[number].force[at(c)];
+        const Index control = distributed_[number].force[to_size(c)];
         excess[c] += amount * control_value(model, state, control);
       }
     }

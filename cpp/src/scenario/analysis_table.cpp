@@ -36,18 +36,18 @@ bool read_varied(const std::string& text, ContinuationAnalysis& out) {
   return true;
 }
 
-void check_continuation(ContinuationText& text, const Place& place, Complaints& complaints) {
+void check_continuation(ContinuationText& text, const Place& place, Diagnostics& diagnostics) {
   const Mapping& entries = *place.value->mapping();
   if (text.from == text.to) {
     const Entry* to = find_entry(entries, "to");
-    complaints.add(to ? place.at(*to) : place,
-                   fmt::format("must differ from 'from', but both are {}", text.to));
+    diagnostics.add(to ? place.at(*to) : place,
+                    fmt::format("must differ from 'from', but both are {}", text.to));
   }
   if (!read_varied(text.given_vary, text)) {
-    complaints.add(place.at(*find_entry(entries, "vary")),
-                   fmt::format("expected 'loads', 'supports', or one by its number, as 'loads.0', "
-                               "got '{}'",
-                               text.given_vary));
+    diagnostics.add(place.at(*find_entry(entries, "vary")),
+                    fmt::format("expected 'loads', 'supports', or one by its number, as 'loads.0', "
+                                "got '{}'",
+                                text.given_vary));
   }
 }
 
@@ -125,9 +125,9 @@ Format<Analysis> word_format() {
        ContinuationAnalysis{}}};
   Shape shape{Shape::Kind::Choice};
   for (const auto& [word, analysis] : options) shape.words.push_back(word);
-  return {std::move(shape),
-          [options](const Shape& self, const Place& place, Complaints& complaints, Analysis& out) {
-            const int chosen = read_word(self, expected(self), place, complaints);
+  return {std::move(shape), [options](const Shape& self, const Place& place,
+                                      Diagnostics& diagnostics, Analysis& out) {
+            const int chosen = read_word(self, expected(self), place, diagnostics);
             if (chosen >= 0) out = options[static_cast<std::size_t>(chosen)].second;
             return chosen >= 0;
           }};
@@ -141,8 +141,8 @@ Format<Analysis> analysis_format() {
   const Format<Analysis> table = table_format();
   shape.parts = {word.shape, table.shape};
   return {std::move(shape), [word, table](const Shape& /*self*/, const Place& place,
-                                          Complaints& complaints, Analysis& out) {
-            return (place.value->mapping() ? table : word).read(place, complaints, out);
+                                          Diagnostics& diagnostics, Analysis& out) {
+            return (place.value->mapping() ? table : word).read(place, diagnostics, out);
           }};
 }
 

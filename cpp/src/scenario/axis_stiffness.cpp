@@ -11,19 +11,19 @@ Format<Components> axis_stiffness(const std::string& unit) {
   shape.unit = both.shape.unit;
   shape.parts = {both.shape, each.shape};
   return {std::move(shape), [both, each](const Shape& /*self*/, const Place& place,
-                                         Complaints& complaints, Components& out) {
+                                         Diagnostics& diagnostics, Components& out) {
             if (!place.value->sequence()) {
               double stiffness = 0.0;
-              if (!both.read(place, complaints, stiffness)) return false;
+              if (!both.read(place, diagnostics, stiffness)) return false;
               out = {stiffness, stiffness};
               return true;
             }
-            if (!each.read(place, complaints, out)) return false;
+            if (!each.read(place, diagnostics, out)) return false;
             const bool negative =
                 std::any_of(out.begin(), out.end(), [](double k) { return k < 0; });
             const bool none = std::all_of(out.begin(), out.end(), [](double k) { return k == 0; });
-            if (negative) complaints.add(place, "a stiffness must not be negative");
-            if (none) complaints.add(place, "one of the stiffnesses must be greater than 0");
+            if (negative) diagnostics.add(place, "a stiffness must not be negative");
+            if (none) diagnostics.add(place, "one of the stiffnesses must be greater than 0");
             return !negative && !none;
           }};
 }

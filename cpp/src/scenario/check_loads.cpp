@@ -44,7 +44,7 @@ class LoadCheck {
     for_each_amount(load, [&](const char* key, const auto& amount) {
       if constexpr (!std::is_same_v<std::decay_t<decltype(amount)>, Components>) {
         if (amount.constant()) return;
-        complain(here / key, "a static analysis has no time: give a constant in place of a table");
+        report(here / key, "a static analysis has no time: give a constant in place of a table");
       }
     });
   }
@@ -58,12 +58,12 @@ class LoadCheck {
   void check_place(OnPart& load, const Path& here, Where& where) {
     const RestLine& line = *context_.lines[static_cast<std::size_t>(where.rod)];
     if (load.from >= line.length()) {
-      complain(here / "from", fmt::format("must be less than the rod's length, {:.9g} m, got {} m",
-                                          line.length(), load.from));
+      report(here / "from", fmt::format("must be less than the rod's length, {:.9g} m, got {} m",
+                                        line.length(), load.from));
     }
     if (std::isfinite(load.to) && load.to > line.length() + line.same_place()) {
-      complain(here / "to", fmt::format("arc length {} m lies beyond the rod's length, {:.9g} m",
-                                        load.to, line.length()));
+      report(here / "to", fmt::format("arc length {} m lies beyond the rod's length, {:.9g} m",
+                                      load.to, line.length()));
     }
     load.to = std::min(load.to, line.length());
   }
@@ -80,10 +80,10 @@ class LoadCheck {
     const auto& rods = context_.scene.given_rods;
     const bool spheres = std::any_of(rods.begin(), rods.end(),
                                      [](const RodText& rod) { return !rod.spheres.empty(); });
-    if (!spheres && !context_.complaints.under({"rods"})) {
-      complain(here,
-               "a fluid acts on spheres only, and no rod carries any: give a rod "
-               "'spheres', or use 'damping'");
+    if (!spheres && !context_.diagnostics.under({"rods"})) {
+      report(here,
+             "a fluid acts on spheres only, and no rod carries any: give a rod "
+             "'spheres', or use 'damping'");
     }
   }
 
@@ -100,8 +100,8 @@ class LoadCheck {
     warn_of_taken(fmt::format("loads.{}.moment", number_), load.rod, "angle");
   }
 
-  void complain(const Path& where, const std::string& message) {
-    context_.complaints.add(where, message);
+  void report(const Path& where, const std::string& message) {
+    context_.diagnostics.add(where, message);
   }
 
   /// A force on what supports hold goes into them.
@@ -135,11 +135,11 @@ class LoadCheck {
     for (int i = 0; i < number_; ++i) {
       const Load& earlier = context_.scene.loads[static_cast<std::size_t>(i)];
       if (!std::holds_alternative<Kind>(earlier.what)) continue;
-      if (context_.complaints.under({"loads", i})) continue;
-      complain(here, fmt::format("'{}' is given twice{}", Kind::kKey,
-                                 earlier.mark.line > 0
-                                     ? fmt::format(" (first in line {})", earlier.mark.line)
-                                     : std::string()));
+      if (context_.diagnostics.under({"loads", i})) continue;
+      report(here, fmt::format("'{}' is given twice{}", Kind::kKey,
+                               earlier.mark.line > 0
+                                   ? fmt::format(" (first in line {})", earlier.mark.line)
+                                   : std::string()));
       return;
     }
   }
@@ -153,7 +153,7 @@ class LoadCheck {
 void check_loads(CheckContext& context) {
   auto& loads = context.scene.loads;
   for (int i = 0; i < static_cast<int>(loads.size()); ++i) {
-    if (context.complaints.under({"loads", i})) continue;
+    if (context.diagnostics.under({"loads", i})) continue;
     std::visit(LoadCheck(context, i), loads[static_cast<std::size_t>(i)].what);
   }
 }

@@ -14,9 +14,9 @@ void check_name(CheckContext& context, int i) {
   const auto [first, is_new] = context.rods.emplace(name, i);
   if (is_new) return;
   const int line = context.scene.given_rods[static_cast<std::size_t>(first->second)].mark.line;
-  context.complaints.add(rod_path(i) / "name",
-                         fmt::format("there is already a rod '{}'{}", name,
-                                     line > 0 ? fmt::format(" (line {})", line) : std::string()));
+  context.diagnostics.add(rod_path(i) / "name",
+                          fmt::format("there is already a rod '{}'{}", name,
+                                      line > 0 ? fmt::format(" (line {})", line) : std::string()));
 }
 
 void place_evenly(RodText& rod) {
@@ -31,32 +31,32 @@ void place_evenly(RodText& rod) {
   rod.points.back() = rod.to;
 }
 
-bool finite_length(const RestLine& line, const Path& path, Complaints& complaints) {
+bool finite_length(const RestLine& line, const Path& path, Diagnostics& diagnostics) {
   if (std::isfinite(line.length())) return true;
-  complaints.add(path, "the rod is too long for double-precision numbers");
+  diagnostics.add(path, "the rod is too long for double-precision numbers");
   return false;
 }
 
 bool check_straight(const RodText& rod, const RestLine& line, const Path& path,
-                    Complaints& complaints) {
+                    Diagnostics& diagnostics) {
   if (rod.from == rod.to) {
-    complaints.add(path / "to", "must differ from 'from': the rod has no length");
+    diagnostics.add(path / "to", "must differ from 'from': the rod has no length");
     return false;
   }
-  return finite_length(line, path / "to", complaints);
+  return finite_length(line, path / "to", diagnostics);
 }
 
 /// No edge without length, no edge that runs straight back over the one before.
 bool check_polyline(const RodText& rod, const RestLine& line, const Path& path,
-                    Complaints& complaints) {
+                    Diagnostics& diagnostics) {
   const Path points = path / "points";
-  if (!finite_length(line, points, complaints)) return false;
-  const std::size_t before = complaints.size();
+  if (!finite_length(line, points, diagnostics)) return false;
+  const std::size_t before = diagnostics.size();
   double dx = 0.0;
   double dy = 0.0;
   for (int k = 1; k < line.num_nodes(); ++k) {
     if (line.arc_length(k) - line.arc_length(k - 1) <= line.same_place()) {
-      complaints.add(points / k, "coincides with the point before it: an edge needs a length");
+      diagnostics.add(points / k, "coincides with the point before it: an edge needs a length");
       continue;
     }
     const auto i = static_cast<std::size_t>(k);
@@ -66,21 +66,21 @@ bool check_polyline(const RodText& rod, const RestLine& line, const Path& path,
     const double cross = dx * ey - dy * ex;
     constexpr double straight_back = 1e-9;  // [rad] from a half turn
     if (dot < 0.0 && std::abs(cross) <= -dot * straight_back) {
-      complaints.add(points / (k - 1),
-                     "the rod turns straight back here, through 180 degrees: its "
-                     "side of bending is not defined");
+      diagnostics.add(points / (k - 1),
+                      "the rod turns straight back here, through 180 degrees: its "
+                      "side of bending is not defined");
     }
     dx = ex;
     dy = ey;
   }
-  return complaints.size() == before;
+  return diagnostics.size() == before;
 }
 
 /// The rod's nodes, as far as the keys that say where they are could be read.
 void check_geometry(CheckContext& context, int i) {
   const Path path = rod_path(i);
   for (const char* key : {"nodes", "from", "to", "points"}) {
-    if (context.complaints.under(path / key)) return;
+    if (context.diagnostics.under(path / key)) return;
   }
   RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
   const bool straight = rod.given_points.empty();
@@ -91,8 +91,8 @@ void check_geometry(CheckContext& context, int i) {
     rod.points = std::move(rod.given_points);
   }
   RestLine line(rod.points);
-  const bool fine = straight ? check_straight(rod, line, path, context.complaints)
-                             : check_polyline(rod, line, path, context.complaints);
+  const bool fine = straight ? check_straight(rod, line, path, context.diagnostics)
+                             : check_polyline(rod, line, path, context.diagnostics);
   if (fine) context.lines[static_cast<std::size_t>(i)] = std::move(line);
 }
 
@@ -108,19 +108,19 @@ std::string kind_name(const CrossSection& section) {
 
 void check_material(CheckContext& context, int i) {
   const Path path = rod_path(i);
-  if (context.complaints.under(path / "cross_section") ||
-      context.complaints.under(path / "material") || context.complaints.at(path)) {
+  if (context.diagnostics.under(path / "cross_section") ||
+      context.diagnostics.under(path / "material") || context.diagnostics.at(path)) {
     return;
   }
   const RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
   const bool direct = std::holds_alternative<Stiffness>(rod.cross_section);
   if (direct && rod.material) {
-    context.complaints.add(path / "material",
-                           "'material' and 'cross_section: {stiffness: ...}' exclude each other: "
-                           "the stiffnesses and the mass per length are given already");
+    context.diagnostics.add(path / "material",
+                            "'material' and 'cross_section: {stiffness: ...}' exclude each other: "
+                            "the stiffnesses and the mass per length are given already");
   } else if (!direct && !rod.material) {
-    context.complaints.add(path / "material",
-                           fmt::format("a rod with the cross-section '{}' needs the key 'material'",
+    context.diagnostics.add(
+        path / "material", fmt::format("a rod with the cross-section '{}' needs the key 'material'",
                                        kind_name(rod.cross_section)));
   }
 }
@@ -129,16 +129,16 @@ void check_material(CheckContext& context, int i) {
 bool one_for_each_node(CheckContext& context, std::size_t count, std::size_t nodes,
                        const Path& path) {
   if (count == nodes) return true;
-  context.complaints.add(path, fmt::format("needs one value for all nodes or one for each of the "
-                                           "{} nodes, got {}",
-                                           nodes, count));
+  context.diagnostics.add(path, fmt::format("needs one value for all nodes or one for each of the "
+                                            "{} nodes, got {}",
+                                            nodes, count));
   return false;
 }
 
 void check_velocity(CheckContext& context, int i) {
   const Path path = rod_path(i) / "initial_velocity";
   RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
-  if (context.complaints.under(path)) return;
+  if (context.diagnostics.under(path)) return;
   if (auto* constant = std::get_if<Components>(&rod.given_velocity)) {
     rod.initial_velocity.assign(rod.points.size(), *constant);
   } else if (auto* list = std::get_if<std::vector<Components>>(&rod.given_velocity);
@@ -150,7 +150,7 @@ void check_velocity(CheckContext& context, int i) {
 void check_natural_curvature(CheckContext& context, int i) {
   const Path path = rod_path(i) / "natural_curvature";
   const RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
-  if (context.complaints.under(path)) return;
+  if (context.diagnostics.under(path)) return;
   if (const auto* list = std::get_if<std::vector<double>>(&rod.natural_curvature)) {
     one_for_each_node(context, list->size(), rod.points.size(), path);
   }
@@ -161,7 +161,7 @@ void check_spheres(CheckContext& context, int i) {
   RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
   for (std::size_t k = 0; k < rod.spheres.size(); ++k) {
     const Path at = path / static_cast<int>(k) / "at";
-    if (!context.complaints.under(at)) context.nodes_at(i, rod.spheres[k].at, at, true);
+    if (!context.diagnostics.under(at)) context.nodes_at(i, rod.spheres[k].at, at, true);
   }
 }
 
@@ -202,7 +202,7 @@ void check_masses(CheckContext& context, int i) {
   if (nodes.size() > shown) numbers += fmt::format(", ... ({} in all)", nodes.size());
   const Path path = rod_path(i);
   const bool direct = std::holds_alternative<Stiffness>(rod.cross_section);
-  context.complaints.add(
+  context.diagnostics.add(
       direct ? path / "cross_section" / "stiffness" / "mass_per_length"
              : path / "material" / "density",
       fmt::format(
@@ -218,7 +218,7 @@ void check_bends(CheckContext& context, int i) {
   const bool curved = !std::holds_alternative<AsDrawn>(rod.natural_curvature);
   if (!curved || rod.points.size() > 2) return;
   if (context.is_clamped(i, 0) || context.is_clamped(i, 1)) return;
-  context.complaints.add(
+  context.diagnostics.add(
       rod_path(i) / "natural_curvature",
       "has no effect: a rod of 2 nodes without a clamp cannot bend; give it 3 or "
       "more nodes");
@@ -241,9 +241,9 @@ void check_rods(CheckContext& context) {
 }
 
 void check_free_nodes(CheckContext& context) {
-  if (context.complaints.under({"supports"})) return;
+  if (context.diagnostics.under({"supports"})) return;
   for (int i = 0; i < static_cast<int>(context.lines.size()); ++i) {
-    if (context.complaints.under(rod_path(i))) continue;
+    if (context.diagnostics.under(rod_path(i))) continue;
     check_bends(context, i);
     const bool vibrates = std::holds_alternative<ModesAnalysis>(context.scene.analysis);
     if (context.scene.is_dynamic() || vibrates) check_masses(context, i);

@@ -20,15 +20,15 @@ constexpr double kMaxFrames = 1e9;
 /// Frames of a run where the scene does not say how often to save.
 constexpr double kDefaultFrames = 1000.0;
 
-void check_every(SceneText& scene, Complaints& complaints) {
+void check_every(SceneText& scene, Diagnostics& diagnostics) {
   const Path path{"output", "every"};
   const Time& time = scene.time;
   const double frame_time = time.duration / kDefaultFrames;
   const auto& given = scene.given_output.given_every;
   scene.output.every = given.value_or(frame_time);
   if (time.duration / scene.output.every > kMaxFrames) {
-    complaints.add(path, fmt::format("makes more than {:g} frames out of the duration, {} s",
-                                     kMaxFrames, time.duration));
+    diagnostics.add(path, fmt::format("makes more than {:g} frames out of the duration, {} s",
+                                      kMaxFrames, time.duration));
     return;
   }
   if (time.stepping != Stepping::Fixed) return;
@@ -39,45 +39,48 @@ void check_every(SceneText& scene, Complaints& complaints) {
   const double steps = *given / time.step;
   constexpr double same = 1e-6;  // of a step
   if (steps < 1.0 - same) {
-    complaints.add(
+    diagnostics.add(
         path, fmt::format("must be at least the time step, {} s, got {} s", time.step, *given));
   } else if (std::abs(steps - std::round(steps)) > same) {
-    complaints.add(path, fmt::format("must be a whole multiple of the time step, {} s, but {} s is "
-                                     "{:.6g} steps: write {:.9g} or {:.9g}",
-                                     time.step, *given, steps, time.step * std::floor(steps),
-                                     time.step * std::ceil(steps)));
+    diagnostics.add(path,
+                    fmt::format("must be a whole multiple of the time step, {} s, but {} s is "
+                                "{:.6g} steps: write {:.9g} or {:.9g}",
+                                time.step, *given, steps, time.step * std::floor(steps),
+                                time.step * std::ceil(steps)));
   }
 }
 
-void check_fixed_step(const Time& time, Complaints& complaints) {
+void check_fixed_step(const Time& time, Diagnostics& diagnostics) {
   if (time.step > time.duration) {
-    complaints.add({"time", "step"}, fmt::format("must not be greater than the duration, {} s, got "
-                                                 "{} s",
-                                                 time.duration, time.step));
+    diagnostics.add({"time", "step"},
+                    fmt::format("must not be greater than the duration, {} s, got "
+                                "{} s",
+                                time.duration, time.step));
   }
   if (time.duration / time.step > kMostSteps) {
-    complaints.add({"time", "step"}, fmt::format("makes more than {:g} steps out of the duration, "
-                                                 "{} s",
-                                                 kMostSteps, time.duration));
+    diagnostics.add({"time", "step"}, fmt::format("makes more than {:g} steps out of the duration, "
+                                                  "{} s",
+                                                  kMostSteps, time.duration));
   }
 }
 
 /// What only makes sense for some integrators.
-void check_integrator(const TimeText& given, Time& time, Complaints& complaints) {
+void check_integrator(const TimeText& given, Time& time, Diagnostics& diagnostics) {
   if (given.given_spectral_radius) {
     time.spectral_radius = *given.given_spectral_radius;
     if (time.integrator != "generalized_alpha") {
-      complaints.add(
+      diagnostics.add(
           {"time", "spectral_radius"},
           fmt::format("only generalized_alpha has a spectral radius, not {}", time.integrator));
     }
   }
   const bool implicit = find_stepper(time.integrator).implicit;
   if (time.stepping == Stepping::Automatic && implicit) {
-    complaints.add({"time", "step"},
-                   fmt::format("'auto' is the largest stable step of an explicit integrator; {} is "
-                               "stable with any: give a step, or 'tolerance'",
-                               time.integrator));
+    diagnostics.add(
+        {"time", "step"},
+        fmt::format("'auto' is the largest stable step of an explicit integrator; {} is "
+                    "stable with any: give a step, or 'tolerance'",
+                    time.integrator));
   }
 }
 
@@ -98,43 +101,43 @@ class ProbeCheck {
       : context_(context),
         probe_(probe),
         path_{"output", "probes", probe.name},
-        supports_known_(!context.complaints.under({"supports"})) {}
+        supports_known_(!context.diagnostics.under({"supports"})) {}
 
   void run() {
     const QuantityKind kind = find_quantity(probe_.quantity)->kind;
     if (kind == QuantityKind::Energy) {
       check_energy();
     } else if (!probe_.rod) {
-      complain(path_, fmt::format("'{}' belongs to a rod: give 'rod'", probe_.quantity));
+      report(path_, fmt::format("'{}' belongs to a rod: give 'rod'", probe_.quantity));
     } else if (!probe_.at && probe_.over == Reduce::None) {
-      complain(path_, fmt::format("'{}' varies along the rod: give 'at', or 'over: rod' with "
-                                  "'reduce: min' or 'max'",
-                                  probe_.quantity));
+      report(path_, fmt::format("'{}' varies along the rod: give 'at', or 'over: rod' with "
+                                "'reduce: min' or 'max'",
+                                probe_.quantity));
     } else if (const auto rod = context_.find_rod(*probe_.rod, path_ / "rod")) {
       check_along(*rod, kind);
     }
   }
 
  private:
-  void complain(const Path& where, const std::string& message) {
-    context_.complaints.add(where, message);
+  void report(const Path& where, const std::string& message) {
+    context_.diagnostics.add(where, message);
   }
 
   void check_energy() {
     if (probe_.at || probe_.over != Reduce::None) {
-      complain(path_ / (probe_.at ? "at" : "over"),
-               fmt::format("'{}' is a sum over a rod or the whole model: it has no place",
-                           probe_.quantity));
+      report(path_ / (probe_.at ? "at" : "over"),
+             fmt::format("'{}' is a sum over a rod or the whole model: it has no place",
+                         probe_.quantity));
     }
     if (probe_.rod) context_.find_rod(*probe_.rod, path_ / "rod");
   }
 
   void check_along(int rod, QuantityKind kind) {
     if (probe_.side && !can_jump(kind)) {
-      complain(path_ / "side", fmt::format("'{}' has no sides: only {} jump", probe_.quantity,
-                                           quantities_that_jump()));
+      report(path_ / "side", fmt::format("'{}' has no sides: only {} jump", probe_.quantity,
+                                         quantities_that_jump()));
     } else if (probe_.side && !probe_.at) {
-      complain(path_ / "side", "a side is that of a place: it goes with 'at'");
+      report(path_ / "side", "a side is that of a place: it goes with 'at'");
     }
     if (kind == QuantityKind::Turn) {
       check_turn(rod);
@@ -150,9 +153,9 @@ class ProbeCheck {
     if (nodes > 2 || !does_not_bend(context_.scene.given_rods[static_cast<std::size_t>(rod)])) {
       return;
     }
-    complain(path_ / "quantity", fmt::format("a rod of 2 nodes without a stiffness against "
-                                             "bending, EI, has no '{}'",
-                                             probe_.quantity));
+    report(path_ / "quantity", fmt::format("a rod of 2 nodes without a stiffness against "
+                                           "bending, EI, has no '{}'",
+                                           probe_.quantity));
   }
 
   void check_turn(int rod) {
@@ -162,17 +165,17 @@ class ProbeCheck {
     };
     if (!probe_.at) {
       if (last < 2 && !bends(0) && !bends(last)) {
-        complain(path_ / "quantity", fmt::format("a rod of 2 nodes without a clamp does not bend: "
-                                                 "it has no '{}'",
-                                                 probe_.quantity));
+        report(path_ / "quantity", fmt::format("a rod of 2 nodes without a clamp does not bend: "
+                                               "it has no '{}'",
+                                               probe_.quantity));
       }
       return;
     }
     const auto nodes = context_.nodes_at(rod, *probe_.at, path_ / "at", true);
     if (nodes && !bends(nodes->front())) {
-      complain(path_ / "at", fmt::format("'{}' needs a node that bends: an inner node, or an end "
-                                         "that is clamped",
-                                         probe_.quantity));
+      report(path_ / "at", fmt::format("'{}' needs a node that bends: an inner node, or an end "
+                                       "that is clamped",
+                                       probe_.quantity));
     }
   }
 
@@ -185,16 +188,17 @@ class ProbeCheck {
 /// Whether what a continuation varies is there.
 void check_continuation(CheckContext& context) {
   const auto* continuation = std::get_if<ContinuationAnalysis>(&context.scene.analysis);
-  if (!continuation || context.complaints.under({"analysis"})) return;
+  if (!continuation || context.diagnostics.under({"analysis"})) return;
   const bool loads = continuation->vary == Varied::Loads;
   const char* const kind = loads ? "loads" : "supports";
-  if (context.complaints.under({kind})) return;
+  if (context.diagnostics.under({kind})) return;
   const std::size_t count = loads ? context.scene.loads.size() : context.scene.supports.size();
   const Path path{"analysis", "continuation", "vary"};
   if (continuation->number && static_cast<std::size_t>(*continuation->number) >= count) {
-    context.complaints.add(path, fmt::format("there is no {}.{}: the scene has {} of them, counted "
-                                             "from 0",
-                                             kind, *continuation->number, count));
+    context.diagnostics.add(path,
+                            fmt::format("there is no {}.{}: the scene has {} of them, counted "
+                                        "from 0",
+                                        kind, *continuation->number, count));
     return;
   }
   const auto moves = [](const Support& support) {
@@ -207,7 +211,7 @@ void check_continuation(CheckContext& context) {
     varies = varies || (chosen && moves(context.scene.supports[i]));
   }
   if (!varies) {
-    context.complaints.add(
+    context.diagnostics.add(
         path, loads
                   ? "the scene has no loads that could vary"
                   : "no such support has a prescribed motion that could vary: give it 'prescribe'");
@@ -220,16 +224,16 @@ void check_time(CheckContext& context) {
   SceneText& scene = context.scene;
   check_continuation(context);
   if (!scene.is_dynamic() && scene.start_from == "equilibrium") {
-    context.complaints.add(
+    context.diagnostics.add(
         {"start_from"},
         "an analysis looks for the equilibrium itself: name the folder of a run, or "
         "leave the key out");
   }
-  Complaints& complaints = context.complaints;
+  Diagnostics& diagnostics = context.diagnostics;
   scene.time = static_cast<const Time&>(scene.given_time);
   scene.output = static_cast<const Output&>(scene.given_output);
   if (!scene.is_dynamic()) return;
-  if (complaints.under({"time"}) || complaints.under({"analysis"})) return;
+  if (diagnostics.under({"time"}) || diagnostics.under({"analysis"})) return;
   const TimeText& given = scene.given_time;
   Time& time = scene.time;
   double longest = time.duration * kAdaptiveShare;  // that the smallest step is a share of
@@ -238,25 +242,25 @@ void check_time(CheckContext& context) {
     time.tolerance = *given.given_tolerance;
   } else if (const auto* step = std::get_if<double>(&*given.given_step)) {
     time.step = *step;
-    check_fixed_step(time, complaints);
+    check_fixed_step(time, diagnostics);
     longest = time.step;
   } else {
     time.stepping = Stepping::Automatic;
     longest = 0.0;  // the step is not known yet
   }
-  check_integrator(given, time, complaints);
+  check_integrator(given, time, diagnostics);
   time.minimum_step = given.given_minimum_step.value_or(longest * kMinimumStepShare);
   if (time.stepping == Stepping::Fixed && time.minimum_step > time.step) {
-    complaints.add({"time", "minimum_step"},
-                   fmt::format("must not be greater than the step, {} s, got {} s", time.step,
-                               time.minimum_step));
+    diagnostics.add({"time", "minimum_step"},
+                    fmt::format("must not be greater than the step, {} s, got {} s", time.step,
+                                time.minimum_step));
   }
-  if (!complaints.under({"output", "every"})) check_every(scene, complaints);
+  if (!diagnostics.under({"output", "every"})) check_every(scene, diagnostics);
 }
 
 void check_probes(CheckContext& context) {
   for (Probe& probe : context.scene.output.probes) {
-    if (context.complaints.under({"output", "probes", probe.name})) continue;
+    if (context.diagnostics.under({"output", "probes", probe.name})) continue;
     ProbeCheck(context, probe).run();
   }
 }

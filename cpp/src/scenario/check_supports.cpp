@@ -17,8 +17,8 @@ std::vector<Hold> held_by(const Support& support) {
 
 void check_constant(CheckContext& context, bool constant, const Path& path) {
   if (constant || context.scene.is_dynamic()) return;
-  context.complaints.add(path,
-                         "a static analysis has no time: give a constant in place of a table");
+  context.diagnostics.add(path,
+                          "a static analysis has no time: give a constant in place of a table");
 }
 
 /// A run over time begins with the drawn shape, where every prescribed motion is 0.
@@ -26,7 +26,7 @@ void check_start(CheckContext& context, const Series& motion, const Path& path) 
   if (!context.scene.is_dynamic() || !context.scene.start_from.empty()) return;
   const double start = value_at(motion, 0.0);
   if (start == 0.0) return;
-  context.complaints.add(
+  context.diagnostics.add(
       path,
       fmt::format("is {:g} at time 0, where the rods are as drawn: the run would begin with a "
                   "jump. Give a table that begins with 0, as {{times: [0, 1], values: [0, "
@@ -34,7 +34,7 @@ void check_start(CheckContext& context, const Series& motion, const Path& path) 
                   start, start));
 }
 
-/// Enters what a support holds of its nodes; complains once where another holds it already.
+/// Enters what a support holds of its nodes; reports once where another holds it already.
 void hold(CheckContext& context, int number, int rod, const std::vector<int>& nodes) {
   const Support& support = context.scene.supports[static_cast<std::size_t>(number)];
   const std::vector<Hold> held = held_by(support);
@@ -43,7 +43,7 @@ void hold(CheckContext& context, int number, int rod, const std::vector<int>& no
     for (const Hold component : held) {
       if (const std::optional<int> other = holding.holder(component)) {
         const int line = context.scene.supports[static_cast<std::size_t>(*other)].mark.line;
-        context.complaints.add(
+        context.diagnostics.add(
             {"supports", number},
             fmt::format("{} of node {} of rod '{}' is already held by support {}{}",
                         name_of(component), node, support.rod, *other,
@@ -57,7 +57,7 @@ void hold(CheckContext& context, int number, int rod, const std::vector<int>& no
 
 void check_support(CheckContext& context, int number) {
   const Path path{"supports", number};
-  if (context.complaints.under(path)) return;
+  if (context.diagnostics.under(path)) return;
   Support& support = context.scene.supports[static_cast<std::size_t>(number)];
   for (const Prescribed& motion : support.prescribe) {
     const Path key = path / "prescribe" / (motion.component == Component::X ? "x" : "y");
@@ -79,27 +79,27 @@ void check_support(CheckContext& context, int number) {
 void check_spring(CheckContext& context, int number) {
   const Path path{"supports", number};
   Support& support = context.scene.supports[static_cast<std::size_t>(number)];
-  if (!support.spring || context.complaints.under(path)) return;
+  if (!support.spring || context.diagnostics.under(path)) return;
   const std::optional<int> rod = context.find_rod(support.rod, path / "rod");
   if (!rod) return;
   const Path here = path / "spring";
   if (support.at.kind == Location::Kind::All) {
-    context.complaints.add(path / "at", "'all' is no single place: a spring holds one");
+    context.diagnostics.add(path / "at", "'all' is no single place: a spring holds one");
     return;
   }
   const bool turns = support.spring->rotational_stiffness > 0.0;
   if (turns && does_not_bend(context.scene.given_rods[static_cast<std::size_t>(*rod)])) {
-    context.complaints.add(here / "rotational_stiffness",
-                           "the rod has no stiffness against bending, EI: nothing turns it");
+    context.diagnostics.add(here / "rotational_stiffness",
+                            "the rod has no stiffness against bending, EI: nothing turns it");
   }
   const auto nodes = context.nodes_at(*rod, support.at, path / "at", false);
   if (!nodes || nodes->empty()) return;
   const HeldNode* held = context.held_at(*rod, nodes->front());
   if (!held) return;
-  const auto complain_if_held = [&](Hold component, const char* key) {
+  const auto report_if_held = [&](Hold component, const char* key) {
     const std::optional<int> holder = held->holder(component);
     if (!holder) return;
-    context.complaints.add(
+    context.diagnostics.add(
         here / key, fmt::format("{} of node {} of rod '{}' is held by support {}: a spring has no "
                                 "effect there",
                                 name_of(component), nodes->front(), support.rod, *holder));
@@ -107,9 +107,9 @@ void check_spring(CheckContext& context, int number) {
   const Components& stiffness = support.spring->stiffness;
   constexpr std::array axes{Hold::X, Hold::Y};
   for (std::size_t c = 0; c < std::min(axes.size(), stiffness.size()); ++c) {
-    if (stiffness[c] > 0.0) complain_if_held(axes[c], "stiffness");
+    if (stiffness[c] > 0.0) report_if_held(axes[c], "stiffness");
   }
-  if (turns) complain_if_held(Hold::Angle, "rotational_stiffness");
+  if (turns) report_if_held(Hold::Angle, "rotational_stiffness");
 }
 
 }  // namespace

@@ -73,8 +73,8 @@ std::optional<int> CheckContext::find_rod(const std::string& name, const Path& p
   }
   if (names.empty()) return std::nullopt;
   const std::string near = did_you_mean(name, names);
-  complaints.add(path, fmt::format("there is no rod '{}'{}", name,
-                                   near.empty() ? "; there is " + listed(names) : near));
+  diagnostics.add(path, fmt::format("there is no rod '{}'{}", name,
+                                    near.empty() ? "; there is " + listed(names) : near));
   return std::nullopt;
 }
 
@@ -97,18 +97,18 @@ std::optional<std::vector<int>> CheckContext::nodes_at(int rod, Location& at, co
       if (at.node < count && at.node >= -count) {
         return std::vector<int>{at.node < 0 ? at.node + count : at.node};
       }
-      complaints.add(path,
-                     fmt::format("the rod has no node {}: its nodes are 0 to {} (or, from the "
-                                 "end, -1 to -{})",
-                                 at.node, count - 1, count));
+      diagnostics.add(path,
+                      fmt::format("the rod has no node {}: its nodes are 0 to {} (or, from the "
+                                  "end, -1 to -{})",
+                                  at.node, count - 1, count));
       return std::nullopt;
     case Location::Kind::Middle:
       s = 0.5 * line.length();
       break;
     case Location::Kind::ArcLength:
       if (at.arc_length > line.length() + line.same_place()) {
-        complaints.add(path, fmt::format("arc length {} m lies beyond the rod's length, {:.9g} m",
-                                         at.arc_length, line.length()));
+        diagnostics.add(path, fmt::format("arc length {} m lies beyond the rod's length, {:.9g} m",
+                                          at.arc_length, line.length()));
         return std::nullopt;
       }
       at.arc_length = std::min(at.arc_length, line.length());
@@ -117,7 +117,7 @@ std::optional<std::vector<int>> CheckContext::nodes_at(int rod, Location& at, co
   }
   if (const std::optional<int> node = line.node_at(s)) return std::vector<int>{*node};
   if (!needs_node) return std::vector<int>{};
-  complaints.add(path, no_node_there(line, at, s));
+  diagnostics.add(path, no_node_there(line, at, s));
   return std::nullopt;
 }
 
@@ -126,15 +126,15 @@ bool does_not_bend(const RodText& rod) {
   return direct != nullptr && direct->EI == 0.0;
 }
 
-void check_scene(SceneText& scene, Complaints& complaints) {
-  CheckContext context{scene, complaints};
+void check_scene(SceneText& scene, Diagnostics& diagnostics) {
+  CheckContext context{scene, diagnostics};
   check_rods(context);
   check_supports(context);
   check_free_nodes(context);
   check_loads(context);
   check_time(context);
   check_probes(context);
-  if (complaints.size() == 0) warn_of_touching_rods(context);
+  if (diagnostics.size() == 0) warn_of_touching_rods(context);
 }
 
 }  // namespace der::scenario

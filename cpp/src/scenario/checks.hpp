@@ -11,7 +11,7 @@
 #include "scenario/scene_text.hpp"
 
 /// The checks that tie several keys of a scene together. Each skips what could not be read, so that
-/// one mistake does not cause a second complaint.
+/// one mistake does not cause a second diagnostic.
 namespace der::scenario {
 
 /// What supports can hold of a node: components, and the angle of the rod's tangent.
@@ -39,7 +39,7 @@ class HeldNode {
 /// Everything that the checks share.
 struct CheckContext {
   SceneText& scene;
-  Complaints& complaints;
+  Diagnostics& diagnostics;
   std::vector<std::optional<RestLine>> lines{};  ///< by rod; none where the rod has mistakes
   std::unordered_map<std::string, int> rods{};   ///< number of the rod with a name
   std::unordered_map<std::int64_t, HeldNode> held{};
@@ -51,7 +51,7 @@ struct CheckContext {
   [[nodiscard]] const HeldNode* held_at(int rod, int node) const;
   [[nodiscard]] bool is_clamped(int rod, int node) const;
 
-  /// The rod with this name, if its geometry is known; complains at `path` where there is none.
+  /// The rod with this name, if its geometry is known; reports at `path` where there is none.
   std::optional<int> find_rod(const std::string& name, const Path& path);
   /// The nodes that a location names, none for a place between nodes. Complains at `path` about a
   /// place that the rod does not have and, with `needs_node`, about one between nodes.

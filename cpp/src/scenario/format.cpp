@@ -27,10 +27,10 @@ struct Describe {
   std::string operator()(const Mapping& /*entries*/) const { return "a mapping"; }
 };
 
-bool check_range(const Shape& shape, double value, const Place& place, Complaints& complaints) {
+bool check_range(const Shape& shape, double value, const Place& place, Diagnostics& diagnostics) {
   if (shape.range.holds(value)) return true;
-  complaints.add(place, fmt::format("must be {}, got {}", bounds(shape.range),
-                                    std::visit(Describe{}, place.value->content)));
+  diagnostics.add(place, fmt::format("must be {}, got {}", bounds(shape.range),
+                                     std::visit(Describe{}, place.value->content)));
   return false;
 }
 
@@ -68,92 +68,93 @@ struct WholeOf {
   }
 };
 
-bool read_number(const Shape& shape, const Place& place, Complaints& complaints, double& out) {
+bool read_number(const Shape& shape, const Place& place, Diagnostics& diagnostics, double& out) {
   const Reading<double> reading = std::visit(RealOf{shape.unit}, place.value->content);
   if (!reading.value) {
-    complain_expected(expected(shape), place, complaints, reading.problem);
+    report_expected(expected(shape), place, diagnostics, reading.problem);
     return false;
   }
   out = *reading.value;
-  return check_range(shape, out, place, complaints);
+  return check_range(shape, out, place, diagnostics);
 }
 
-bool read_integer(const Shape& shape, const Place& place, Complaints& complaints, int& out) {
+bool read_integer(const Shape& shape, const Place& place, Diagnostics& diagnostics, int& out) {
   const Reading<std::int64_t> reading = std::visit(WholeOf{}, place.value->content);
   if (!reading.value) {
-    complain_expected(expected(shape), place, complaints, reading.problem);
+    report_expected(expected(shape), place, diagnostics, reading.problem);
     return false;
   }
   constexpr std::int64_t limit = std::numeric_limits<int>::max();
   if (*reading.value > limit || *reading.value < -limit) {
-    complain_expected(expected(shape), place, complaints, "it is too large");
+    report_expected(expected(shape), place, diagnostics, "it is too large");
     return false;
   }
   out = static_cast<int>(*reading.value);
-  return check_range(shape, out, place, complaints);
+  return check_range(shape, out, place, diagnostics);
 }
 
-bool read_boolean(const Shape& shape, const Place& place, Complaints& complaints, bool& out) {
+bool read_boolean(const Shape& shape, const Place& place, Diagnostics& diagnostics, bool& out) {
   if (const auto* typed = std::get_if<bool>(&place.value->content)) {
     out = *typed;
     return true;
   }
   const auto* plain = std::get_if<Plain>(&place.value->content);
   if (!plain || (plain->text != "true" && plain->text != "false")) {
-    complain_expected(expected(shape), place, complaints);
+    report_expected(expected(shape), place, diagnostics);
     return false;
   }
   out = plain->text == "true";
   return true;
 }
 
-bool read_text(const Shape& shape, const Place& place, Complaints& complaints, std::string& out) {
+bool read_text(const Shape& shape, const Place& place, Diagnostics& diagnostics, std::string& out) {
   const std::string* written = text_of(*place.value);
   const bool plain = std::holds_alternative<Plain>(place.value->content);
   if (!written ||
       (plain && (looks_like_number(*written) || *written == "true" || *written == "false"))) {
-    complain_expected(expected(shape), place, complaints, written ? "put it in quotes" : "");
+    report_expected(expected(shape), place, diagnostics, written ? "put it in quotes" : "");
     return false;
   }
   if (const std::optional<unsigned> code = control_character(*written)) {
-    complaints.add(place,
-                   fmt::format("the text holds the control character 0x{:02x}: remove it", *code));
+    diagnostics.add(place,
+                    fmt::format("the text holds the control character 0x{:02x}: remove it", *code));
     return false;
   }
   out = *written;
   return true;
 }
 
-bool read_name(const Shape& shape, const Place& place, Complaints& complaints, std::string& out) {
+bool read_name(const Shape& shape, const Place& place, Diagnostics& diagnostics, std::string& out) {
   const std::string* written = text_of(*place.value);
   if (!written || !is_name(*written)) {
-    complain_expected(expected(shape), place, complaints,
-                      written ? "names are made of letters, digits, '_' and '-' and do not start "
-                                "with a digit or '-'"
-                              : "");
+    report_expected(expected(shape), place, diagnostics,
+                    written ? "names are made of letters, digits, '_' and '-' and do not start "
+                              "with a digit or '-'"
+                            : "");
     return false;
   }
   out = *written;
   return true;
 }
 
-bool read_vector(const Shape& shape, const Place& place, Complaints& complaints, Components& out) {
+bool read_vector(const Shape& shape, const Place& place, Diagnostics& diagnostics,
+                 Components& out) {
   const Sequence* items = place.value->sequence();
   if (!items) {
     const std::string* written = text_of(*place.value);
     const bool unbracketed = written && written->find(',') != std::string::npos;
-    complain_expected(
-        expected(shape), place, complaints,
+    report_expected(
+        expected(shape), place, diagnostics,
         unbracketed ? fmt::format("write it in brackets: [{}]", shortened(*written)) : "");
     return false;
   }
   if (items->size() == 3) {
-    complaints.add(place, kNoSpatialRods);
+    diagnostics.add(place, kNoSpatialRods);
     return false;
   }
   if (items->size() != 2) {
-    complain_expected(expected(shape), place, complaints,
-                      items->size() == 1 ? "is a comma missing?" : "");
+    report_expected(expected(shape), place, diagnostics,
+                    items->size() == 1 ? "is a comma missing?" : "");
     return false;
   }
   Shape component{Shape::Kind::Number};
@@ -161,19 +162,20 @@ bool read_vector(const Shape& shape, const Place& place, Complaints& complaints,
   out.resize(2);
   bool fine = true;
   for (std::size_t i = 0; i < 2; ++i) {
-    fine = read_number(component, place.at(static_cast<int>(i), (*items)[i]), complaints, out[i]) &&
-           fine;
+    fine =
+        read_number(component, place.at(static_cast<int>(i), (*items)[i]), diagnostics, out[i]) &&
+        fine;
   }
   return fine;
 }
 
 }  // namespace
 
-void complain_expected(const std::string& what, const Place& place, Complaints& complaints,
-                       const std::string& hint) {
-  complaints.add(place, fmt::format("expected {}, got {}{}{}", what,
-                                    std::visit(Describe{}, place.value->content),
-                                    hint.empty() || hint.front() == ';' ? "" : ": ", hint));
+void report_expected(const std::string& what, const Place& place, Diagnostics& diagnostics,
+                     const std::string& hint) {
+  diagnostics.add(place, fmt::format("expected {}, got {}{}{}", what,
+                                     std::visit(Describe{}, place.value->content),
+                                     hint.empty() || hint.front() == ';' ? "" : ": ", hint));
 }
 
 const std::string* text_of(const Value& value) {
@@ -217,7 +219,7 @@ Format<Components> vector(std::string unit) {
 }
 
 int read_word(const Shape& shape, const std::string& what, const Place& place,
-              Complaints& complaints) {
+              Diagnostics& diagnostics) {
   const std::string* written = text_of(*place.value);
   const std::vector<std::string> names = names_of(shape.words);
   if (written) {
@@ -225,25 +227,25 @@ int read_word(const Shape& shape, const std::string& what, const Place& place,
     if (known != names.end()) return static_cast<int>(known - names.begin());
     for (const ReservedWord& word : shape.reserved) {
       if (word.name != *written) continue;
-      complaints.add(place, word.message);
+      diagnostics.add(place, word.message);
       return -1;
     }
   }
-  complain_expected(what, place, complaints, written ? did_you_mean(*written, names) : "");
+  report_expected(what, place, diagnostics, written ? did_you_mean(*written, names) : "");
   return -1;
 }
 
-bool is_list(const Shape& shape, const Place& place, Complaints& complaints) {
+bool is_list(const Shape& shape, const Place& place, Diagnostics& diagnostics) {
   const Sequence* items = place.value->sequence();
   if (!items) {
     const bool one_item = place.value->mapping() != nullptr;
-    complain_expected(expected(shape), place, complaints,
-                      one_item ? "start each item with '- '" : "");
+    report_expected(expected(shape), place, diagnostics,
+                    one_item ? "start each item with '- '" : "");
     return false;
   }
   if (items->size() < static_cast<std::size_t>(shape.min_items)) {
-    complaints.add(place, fmt::format("needs at least {} item{}, got {}", shape.min_items,
-                                      shape.min_items == 1 ? "" : "s", items->size()));
+    diagnostics.add(place, fmt::format("needs at least {} item{}, got {}", shape.min_items,
+                                       shape.min_items == 1 ? "" : "s", items->size()));
     return false;
   }
   return true;

@@ -9,7 +9,7 @@
 
 #include "der/scenario/location.hpp"
 #include "der/scenario/series.hpp"
-#include "scenario/complaints.hpp"
+#include "scenario/diagnostics.hpp"
 #include "scenario/shape.hpp"
 
 namespace der::scenario {
@@ -18,19 +18,19 @@ namespace der::scenario {
 template <class T>
 struct Format {
   Shape shape;
-  /// Reads and checks; complains and returns false where the text does not fit the shape.
-  std::function<bool(const Shape&, const Place&, Complaints&, T&)> read_shape;
+  /// Reads and checks; reports and returns false where the text does not fit the shape.
+  std::function<bool(const Shape&, const Place&, Diagnostics&, T&)> read_shape;
   /// A value as one would write it, for the defaults in the documentation; may be absent.
   std::function<std::string(const T&)> print{};
 
-  bool read(const Place& place, Complaints& complaints, T& out) const {
-    return read_shape(shape, place, complaints, out);
+  bool read(const Place& place, Diagnostics& diagnostics, T& out) const {
+    return read_shape(shape, place, diagnostics, out);
   }
 };
 
 /// "expected a number in m, got 'abc'" and, behind a colon, what to do.
-void complain_expected(const std::string& what, const Place& place, Complaints& complaints,
-                       const std::string& hint = {});
+void report_expected(const std::string& what, const Place& place, Diagnostics& diagnostics,
+                     const std::string& hint = {});
 
 /// The text of a scalar that is not typed, quoted or not; null for everything else.
 const std::string* text_of(const Value& value);
@@ -45,10 +45,10 @@ Format<std::string> name();
 Format<std::string> one_of(const std::vector<Word>& words, std::vector<ReservedWord> reserved = {});
 Format<Components> vector(std::string unit);
 
-/// Position among the shape's words of the one that is written; -1 after a complaint, which says
+/// Position among the shape's words of the one that is written; -1 after a diagnostic, which says
 /// that `what` was expected.
 int read_word(const Shape& shape, const std::string& what, const Place& place,
-              Complaints& complaints);
+              Diagnostics& diagnostics);
 
 /// One of some words, as the value that belongs to it.
 template <class E>
@@ -62,8 +62,8 @@ Format<E> choice(const std::vector<std::pair<Word, E>>& options,
   }
   shape.reserved = std::move(reserved);
   return {std::move(shape),
-          [values](const Shape& self, const Place& place, Complaints& complaints, E& out) {
-            const int chosen = read_word(self, expected(self), place, complaints);
+          [values](const Shape& self, const Place& place, Diagnostics& diagnostics, E& out) {
+            const int chosen = read_word(self, expected(self), place, diagnostics);
             if (chosen >= 0) out = values[static_cast<std::size_t>(chosen)];
             return chosen >= 0;
           },
@@ -76,7 +76,7 @@ Format<E> choice(const std::vector<std::pair<Word, E>>& options,
 }
 
 /// Complains and returns false unless the value is a list with enough items.
-bool is_list(const Shape& shape, const Place& place, Complaints& complaints);
+bool is_list(const Shape& shape, const Place& place, Diagnostics& diagnostics);
 
 /// In a long list of numbers the first mistakes are enough.
 inline constexpr int kMaxMistakesInNumbers = 10;
@@ -92,17 +92,17 @@ Format<std::vector<T>> list_of(Format<T> item, int min_items) {
       item.shape.kind == Shape::Kind::Number || item.shape.kind == Shape::Kind::Vector;
   return {std::move(shape),
           [item = std::move(item), numbers](const Shape& self, const Place& place,
-                                            Complaints& complaints, std::vector<T>& out) {
-            if (!is_list(self, place, complaints)) return false;
+                                            Diagnostics& diagnostics, std::vector<T>& out) {
+            if (!is_list(self, place, diagnostics)) return false;
             const Sequence& items = *place.value->sequence();
             out.assign(items.size(), T{});
             int mistakes = 0;
             for (std::size_t i = 0; i < items.size(); ++i) {
               const Place here = place.at(static_cast<int>(i), items[i]);
-              if (item.read(here, complaints, out[i])) continue;
+              if (item.read(here, diagnostics, out[i])) continue;
               if (++mistakes == kMaxMistakesInNumbers && numbers && i + 1 < items.size()) {
-                complaints.add(here,
-                               "the rest of this list is not checked before these are mended");
+                diagnostics.add(here,
+                                "the rest of this list is not checked before these are mended");
                 break;
               }
             }

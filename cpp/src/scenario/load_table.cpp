@@ -51,22 +51,23 @@ Format<Moment> moment_format() {
 }
 
 Format<DistributedForce> distributed_force_format() {
-  return mapping(Table<DistributedForce>("distributed force",
-                                         "A force per rest length that keeps its "
-                                         "direction, on a part of a rod.")
-                     .required("rod", &DistributedForce::rod, name(), "Name of the rod.")
-                     .required("force", &DistributedForce::force, vector_series("N/m"),
-                               "A constant, or a table over time.")
-                     .optional("from", &DistributedForce::from, number("m", not_negative()),
-                               "Arc length where the part starts.")
-                     .optional("to", &DistributedForce::to, number("m", positive()),
-                               "Arc length where the part ends.", "the rod's length")
-                     .check([](DistributedForce& load, const Place& place, Complaints& complaints) {
-                       if (load.from < load.to) return;
-                       complaints.add(place.at(*find_entry(*place.value->mapping(), "to")),
-                                      fmt::format("must be greater than 'from' ({} m), got {} m",
-                                                  load.from, load.to));
-                     }));
+  return mapping(
+      Table<DistributedForce>("distributed force",
+                              "A force per rest length that keeps its "
+                              "direction, on a part of a rod.")
+          .required("rod", &DistributedForce::rod, name(), "Name of the rod.")
+          .required("force", &DistributedForce::force, vector_series("N/m"),
+                    "A constant, or a table over time.")
+          .optional("from", &DistributedForce::from, number("m", not_negative()),
+                    "Arc length where the part starts.")
+          .optional("to", &DistributedForce::to, number("m", positive()),
+                    "Arc length where the part ends.", "the rod's length")
+          .check([](DistributedForce& load, const Place& place, Diagnostics& diagnostics) {
+            if (load.from < load.to) return;
+            diagnostics.add(
+                place.at(*find_entry(*place.value->mapping(), "to")),
+                fmt::format("must be greater than 'from' ({} m), got {} m", load.from, load.to));
+          }));
 }
 
 }  // namespace

@@ -18,27 +18,28 @@ Format<Location> location_of(const std::vector<std::pair<Word, Location::Kind>>&
   Shape shape{Shape::Kind::AnyOf};
   shape.unit = "m";
   shape.parts = {word.shape, arc_length.shape, node.shape};
-  return {std::move(shape), [word, kinds, arc_length, node](const Shape& self, const Place& place,
-                                                            Complaints& complaints, Location& out) {
+  return {std::move(shape),
+          [word, kinds, arc_length, node](const Shape& self, const Place& place,
+                                          Diagnostics& diagnostics, Location& out) {
             out.mark = place.value->mark;
             if (place.value->mapping()) {
               out.kind = Location::Kind::Node;
-              return node.read(place, complaints, out);
+              return node.read(place, diagnostics, out);
             }
             const std::string* written = text_of(*place.value);
             const bool is_word = written && !written->empty() &&
                                  std::isalpha(static_cast<unsigned char>(written->front())) != 0;
             if (is_word) {
-              const int chosen = read_word(word.shape, expected(self), place, complaints);
+              const int chosen = read_word(word.shape, expected(self), place, diagnostics);
               if (chosen >= 0) out.kind = kinds[static_cast<std::size_t>(chosen)];
               return chosen >= 0;
             }
             if (place.value->sequence()) {
-              complain_expected(expected(self), place, complaints);
+              report_expected(expected(self), place, diagnostics);
               return false;
             }
             out.kind = Location::Kind::ArcLength;
-            return arc_length.read(place, complaints, out.arc_length);
+            return arc_length.read(place, diagnostics, out.arc_length);
           }};
 }
 

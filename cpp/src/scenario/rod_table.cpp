@@ -20,12 +20,12 @@ Format<Tube> tube_format() {
           .required("inner_radius", &Tube::inner_radius, number("m", not_negative()),
                     "Radius of the hole.")
           .required("outer_radius", &Tube::outer_radius, number("m", positive()), "Outer radius.")
-          .check([](Tube& tube, const Place& place, Complaints& complaints) {
+          .check([](Tube& tube, const Place& place, Diagnostics& diagnostics) {
             if (tube.inner_radius < tube.outer_radius) return;
-            complaints.add(place.at(*find_entry(*place.value->mapping(), "inner_radius")),
-                           fmt::format("must be smaller than 'outer_radius', but {} m is not "
-                                       "smaller than {} m",
-                                       tube.inner_radius, tube.outer_radius));
+            diagnostics.add(place.at(*find_entry(*place.value->mapping(), "inner_radius")),
+                            fmt::format("must be smaller than 'outer_radius', but {} m is not "
+                                        "smaller than {} m",
+                                        tube.inner_radius, tube.outer_radius));
           }));
 }
 
@@ -85,11 +85,11 @@ Format<NaturalCurvature> natural_curvature_format() {
   shape.unit = constant.shape.unit;
   shape.parts = {constant.shape, list.shape};
   return {std::move(shape), [constant, list](const Shape& /*self*/, const Place& place,
-                                             Complaints& complaints, NaturalCurvature& out) {
+                                             Diagnostics& diagnostics, NaturalCurvature& out) {
             if (!place.value->sequence()) {
-              return constant.read(place, complaints, out.emplace<double>());
+              return constant.read(place, diagnostics, out.emplace<double>());
             }
-            return list.read(place, complaints, out.emplace<std::vector<double>>());
+            return list.read(place, diagnostics, out.emplace<std::vector<double>>());
           }};
 }
 
@@ -100,12 +100,12 @@ Format<Velocities> velocities_format() {
   shape.unit = one.shape.unit;
   shape.parts = {one.shape, list.shape};
   return {std::move(shape), [one, list](const Shape& /*self*/, const Place& place,
-                                        Complaints& complaints, Velocities& out) {
+                                        Diagnostics& diagnostics, Velocities& out) {
             const Sequence* items = place.value->sequence();
             if (items && !items->empty() && items->front().sequence()) {
-              return list.read(place, complaints, out.emplace<std::vector<Components>>());
+              return list.read(place, diagnostics, out.emplace<std::vector<Components>>());
             }
-            return one.read(place, complaints, out.emplace<Components>());
+            return one.read(place, diagnostics, out.emplace<Components>());
           }};
 }
 

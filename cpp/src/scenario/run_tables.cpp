@@ -66,30 +66,30 @@ Format<std::vector<Probe>> probes_format() {
   const auto table = std::make_shared<const Table<ProbeText>>(probe_table());
   Shape shape{Shape::Kind::NamedTables};
   shape.table = std::shared_ptr<const TableInfo>(table, &table->info());
-  return {std::move(shape), [table](const Shape& self, const Place& place, Complaints& complaints,
+  return {std::move(shape), [table](const Shape& self, const Place& place, Diagnostics& diagnostics,
                                     std::vector<Probe>& out) {
             const Mapping* entries = place.value->mapping();
             if (!entries) {
-              complain_expected(expected(self), place, complaints);
+              report_expected(expected(self), place, diagnostics);
               return false;
             }
-            const std::size_t before = complaints.size();
+            const std::size_t before = diagnostics.size();
             std::unordered_set<std::string_view> names;
             for (const Entry& entry : *entries) {
               if (!names.insert(entry.key).second) {
-                complaints.add_key(place, entry.key, entry.mark,
-                                   fmt::format("duplicate probe '{}'", shortened(entry.key)));
+                diagnostics.add_key(place, entry.key, entry.mark,
+                                    fmt::format("duplicate probe '{}'", shortened(entry.key)));
               } else if (!is_name(entry.key)) {
-                complaints.add_key(place, entry.key, entry.mark,
-                                   "names are made of letters, digits, '_' and '-' and do not "
-                                   "start with a digit or '-'");
+                diagnostics.add_key(place, entry.key, entry.mark,
+                                    "names are made of letters, digits, '_' and '-' and do not "
+                                    "start with a digit or '-'");
               }
               ProbeText probe;
-              table->read(place.at(entry), complaints, probe);
+              table->read(place.at(entry), diagnostics, probe);
               probe.name = entry.key;
               out.push_back(static_cast<Probe&&>(probe));
             }
-            return complaints.size() == before;
+            return diagnostics.size() == before;
           }};
 }
 
@@ -102,14 +102,14 @@ Format<std::variant<double, AutomaticStep>> step_format() {
   shape.unit = fixed.shape.unit;
   shape.parts = {fixed.shape, automatic.shape};
   return {std::move(shape),
-          [fixed](const Shape& /*self*/, const Place& place, Complaints& complaints,
+          [fixed](const Shape& /*self*/, const Place& place, Diagnostics& diagnostics,
                   std::variant<double, AutomaticStep>& out) {
             const std::string* word = text_of(*place.value);
             if (word && *word == "auto") {
               out = AutomaticStep{};
               return true;
             }
-            return fixed.read(place, complaints, out.emplace<double>());
+            return fixed.read(place, diagnostics, out.emplace<double>());
           }};
 }
 

@@ -12,18 +12,18 @@ namespace {
 using scenario::Document;
 
 scenario::Scene read_scene(const Document& document) {
-  scenario::Complaints complaints(document);
+  scenario::Diagnostics diagnostics(document);
   scenario::SceneText text;
   if (document.root().mapping()) {
-    scenario::scene_format().read({&document.root()}, complaints, text);
-    scenario::check_scene(text, complaints);
+    scenario::scene_format().read({&document.root()}, diagnostics, text);
+    scenario::check_scene(text, diagnostics);
   } else {
-    complaints.add(scenario::Place{&document.root()},
-                   document.root().is_null()
-                       ? "the scene is empty: it needs at least 'rods' and 'time' or 'analysis'"
-                       : "a scene is a mapping of keys such as 'rods' and 'time'");
+    diagnostics.add(scenario::Place{&document.root()},
+                    document.root().is_null()
+                        ? "the scene is empty: it needs at least 'rods' and 'time' or 'analysis'"
+                        : "a scene is a mapping of keys such as 'rods' and 'time'");
   }
-  complaints.throw_if_any();
+  diagnostics.throw_if_any();
   for (scenario::RodText& rod : text.given_rods) {
     text.rods.push_back(static_cast<scenario::Rod&&>(rod));
   }

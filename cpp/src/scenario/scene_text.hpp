@@ -54,6 +54,6 @@ Format<OutputText> output_format();
 const Format<SceneText>& scene_format();
 
 /// What the tables cannot see: everything that ties several keys together. Completes the scene.
-void check_scene(SceneText& scene, Complaints& complaints);
+void check_scene(SceneText& scene, Diagnostics& diagnostics);
 
 }  // namespace der::scenario

@@ -5,20 +5,20 @@ namespace {
 
 /// Times that increase, and a value for each.
 template <class Table>
-void check_table(const Table& table, const Place& place, Complaints& complaints) {
+void check_table(const Table& table, const Place& place, Diagnostics& diagnostics) {
   const Mapping& entries = *place.value->mapping();
   const Place times = place.at(*find_entry(entries, "times"));
   for (std::size_t i = 1; i < table.times.size(); ++i) {
     if (table.times[i] > table.times[i - 1]) continue;
-    complaints.add(times.at(static_cast<int>(i), (*times.value->sequence())[i]),
-                   fmt::format("times must increase, but {} s follows {} s", table.times[i],
-                               table.times[i - 1]));
+    diagnostics.add(times.at(static_cast<int>(i), (*times.value->sequence())[i]),
+                    fmt::format("times must increase, but {} s follows {} s", table.times[i],
+                                table.times[i - 1]));
     return;
   }
   if (table.times.size() != table.values.size()) {
-    complaints.add(place.at(*find_entry(entries, "values")),
-                   fmt::format("a table needs one value for each of its {} times, got {}",
-                               table.times.size(), table.values.size()));
+    diagnostics.add(place.at(*find_entry(entries, "values")),
+                    fmt::format("a table needs one value for each of its {} times, got {}",
+                                table.times.size(), table.values.size()));
   }
 }
 
@@ -37,14 +37,14 @@ Format<Result> constant_or_table(const Format<Constant>& constant, const std::st
   shape.unit = constant.shape.unit;
   shape.parts = {constant.shape, table.shape};
   return {std::move(shape), [constant, table](const Shape& self, const Place& place,
-                                              Complaints& complaints, Result& out) {
-            if (place.value->mapping()) return table.read(place, complaints, out);
+                                              Diagnostics& diagnostics, Result& out) {
+            if (place.value->mapping()) return table.read(place, diagnostics, out);
             if (place.value->sequence() && constant.shape.kind == Shape::Kind::Number) {
-              complain_expected(expected(self), place, complaints);
+              report_expected(expected(self), place, diagnostics);
               return false;
             }
             Constant value{};
-            if (!constant.read(place, complaints, value)) return false;
+            if (!constant.read(place, diagnostics, value)) return false;
             out.times = {0.0};
             out.values = {std::move(value)};
             return true;

@@ -49,12 +49,12 @@ Format<Spring> spring_format() {
           .optional("rotational_stiffness", &Spring::rotational_stiffness,
                     number("N m/rad", positive()),
                     "Moment per angle between the rod's tangent and its drawn direction.", "none")
-          .check([](Spring& spring, const Place& place, Complaints& complaints) {
+          .check([](Spring& spring, const Place& place, Diagnostics& diagnostics) {
             if (spring.stiffness.empty() && spring.rotational_stiffness == 0.0) {
-              complaints.add(place, "give 'stiffness', 'rotational_stiffness' or both");
+              diagnostics.add(place, "give 'stiffness', 'rotational_stiffness' or both");
             } else if (spring.stiffness.empty() && !spring.anchor.empty()) {
-              complaints.add(place.at(*find_entry(*place.value->mapping(), "anchor")),
-                             "only a spring with a 'stiffness' pulls to an anchor");
+              diagnostics.add(place.at(*find_entry(*place.value->mapping(), "anchor")),
+                              "only a spring with a 'stiffness' pulls to an anchor");
             }
           }));
 }
@@ -88,9 +88,9 @@ std::string contradiction(const SupportText& support) {
   return {};
 }
 
-void check_support(SupportText& support, const Place& place, Complaints& complaints) {
+void check_support(SupportText& support, const Place& place, Diagnostics& diagnostics) {
   const std::string problem = contradiction(support);
-  if (!problem.empty()) complaints.add(place, problem);
+  if (!problem.empty()) diagnostics.add(place, problem);
 }
 
 Support completed(SupportText text) {
@@ -120,9 +120,9 @@ Format<Support> support_format() {
   Shape shape = as_written.shape;
   return {std::move(shape),
           [as_written = std::move(as_written)](const Shape& /*self*/, const Place& place,
-                                               Complaints& complaints, Support& out) {
+                                               Diagnostics& diagnostics, Support& out) {
             SupportText text;
-            const bool fine = as_written.read(place, complaints, text);
+            const bool fine = as_written.read(place, diagnostics, text);
             out = completed(std::move(text));
             return fine;
           }};

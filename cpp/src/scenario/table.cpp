@@ -12,30 +12,29 @@ namespace {
 /// Reads the entries of one mapping and remembers which keys were there.
 class KeyReader {
  public:
-  KeyReader(const TableInfo& table, const Place& place, Complaints& complaints)
+  KeyReader(const TableInfo& table, const Place& place, Diagnostics& diagnostics)
       : table_(table),
         noun_(with_article(table.name)),
         place_(place),
-        complaints_(complaints),
+        diagnostics_(diagnostics),
         seen_(table.fields.size()) {}
 
   void read_entries(const std::function<bool(int, const Place&)>& read) {
     for (const Entry& entry : *place_.value->mapping()) {
       const int field = table_.find(entry.key);
       if (field < 0) {
-        complain(entry, unknown_key(entry.key));
+        report(entry, unknown_key(entry.key));
         continue;
       }
       const Entry*& first = seen_[static_cast<std::size_t>(field)];
       if (first) {
-        complain(entry,
-                 fmt::format("duplicate key '{}'{}", shortened(entry.key), line_of_first(*first)));
+        report(entry,
+               fmt::format("duplicate key '{}'{}", shortened(entry.key), line_of_first(*first)));
         continue;
       }
       first = &entry;
       if (entry.value.is_null()) {
-        complain(entry,
-                 fmt::format("'{}' has no value: give it one, or remove the key", entry.key));
+        report(entry, fmt::format("'{}' has no value: give it one, or remove the key", entry.key));
         continue;
       }
       read(field, place_.at(entry));
@@ -44,7 +43,7 @@ class KeyReader {
 
   void check_required() {
     for (std::size_t i = 0; i < seen_.size(); ++i) {
-      if (table_.fields[i].required && !seen_[i]) complain_missing(table_.fields[i].key, {});
+      if (table_.fields[i].required && !seen_[i]) report_missing(table_.fields[i].key, {});
     }
   }
 
@@ -56,26 +55,26 @@ class KeyReader {
     const Mapping& entries = *place_.value->mapping();
     if (!table_.one_key || entries.size() == 1) return;
     if (entries.empty()) {
-      complaints_.add(
+      diagnostics_.add(
           place_, fmt::format("{} needs one of the keys {}", noun_, listed(table_.keys(), " or ")));
       return;
     }
     std::vector<std::string> given;
     for (const Entry& entry : entries) given.push_back(entry.key);
-    complaints_.add(place_,
-                    fmt::format("{} has one key, which says what it is, but here are {}: {} (is "
-                                "a list dash '- ' missing, or the indentation wrong?)",
-                                noun_, entries.size(), listed(given)));
+    diagnostics_.add(place_,
+                     fmt::format("{} has one key, which says what it is, but here are {}: {} (is "
+                                 "a list dash '- ' missing, or the indentation wrong?)",
+                                 noun_, entries.size(), listed(given)));
   }
 
  private:
-  void complain(const Entry& entry, std::string message) {
-    complaints_.add_key(place_, entry.key, entry.mark, std::move(message));
+  void report(const Entry& entry, std::string message) {
+    diagnostics_.add_key(place_, entry.key, entry.mark, std::move(message));
   }
 
-  void complain_missing(const std::string& key, const std::string& why) {
-    complaints_.add_key(place_, key, place_.value->mark,
-                        fmt::format("{} needs the key '{}'{}", noun_, key, why));
+  void report_missing(const std::string& key, const std::string& why) {
+    diagnostics_.add_key(place_, key, place_.value->mark,
+                         fmt::format("{} needs the key '{}'{}", noun_, key, why));
   }
 
   [[nodiscard]] std::string unknown_key(const std::string& key) const {
@@ -122,45 +121,45 @@ class KeyReader {
                                       [&](const std::string& key) { return seen(key) != nullptr; });
       if (given == branch.end()) continue;
       if (chosen) {
-        complain(*seen(*given), fmt::format("{} exclude{} {}: give {}", listed(branch),
-                                            branch.size() == 1 ? "s" : "", listed(*chosen),
-                                            described(alternatives)));
+        report(*seen(*given), fmt::format("{} exclude{} {}: give {}", listed(branch),
+                                          branch.size() == 1 ? "s" : "", listed(*chosen),
+                                          described(alternatives)));
         return;
       }
       chosen = &branch;
     }
     if (chosen) {
       for (const std::string& key : *chosen) {
-        if (!seen(key)) complain_missing(key, ", as " + listed(*chosen) + " go together");
+        if (!seen(key)) report_missing(key, ", as " + listed(*chosen) + " go together");
       }
     } else if (alternatives.required) {
-      complaints_.add_key(place_, alternatives.branches.front().front(), place_.value->mark,
-                          fmt::format("{} needs {}", noun_, described(alternatives)));
+      diagnostics_.add_key(place_, alternatives.branches.front().front(), place_.value->mark,
+                           fmt::format("{} needs {}", noun_, described(alternatives)));
     }
   }
 
   const TableInfo& table_;
   std::string noun_;  // "a rod"
   const Place& place_;
-  Complaints& complaints_;
+  Diagnostics& diagnostics_;
   std::vector<const Entry*> seen_;  // by field
 };
 
 }  // namespace
 
-bool read_keys(const TableInfo& table, const Place& place, Complaints& complaints,
+bool read_keys(const TableInfo& table, const Place& place, Diagnostics& diagnostics,
                const std::function<bool(int, const Place&)>& read) {
-  const std::size_t before = complaints.size();
+  const std::size_t before = diagnostics.size();
   if (!place.value->mapping()) {
-    complain_expected(expected_mapping(table), place, complaints);
+    report_expected(expected_mapping(table), place, diagnostics);
     return false;
   }
-  KeyReader reader(table, place, complaints);
+  KeyReader reader(table, place, diagnostics);
   reader.read_entries(read);
   reader.check_required();
   reader.check_alternatives();
-  if (complaints.size() == before) reader.check_one_key();
-  return complaints.size() == before;
+  if (diagnostics.size() == before) reader.check_one_key();
+  return diagnostics.size() == before;
 }
 
 }  // namespace der::scenario

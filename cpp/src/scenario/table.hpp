@@ -13,8 +13,8 @@
 namespace der::scenario {
 
 /// Checks the keys of a mapping against its table (unknown, duplicate, missing, excluding each
-/// other) and has each known one read once, by its position in the table. False after complaints.
-bool read_keys(const TableInfo& table, const Place& place, Complaints& complaints,
+/// other) and has each known one read once, by its position in the table. False after diagnostics.
+bool read_keys(const TableInfo& table, const Place& place, Diagnostics& diagnostics,
                const std::function<bool(int, const Place&)>& read);
 
 template <class S, class = void>
@@ -28,7 +28,7 @@ struct HasMark<S, std::void_t<decltype(std::declval<S&>().mark)>> : std::true_ty
 template <class S>
 class Table {
  public:
-  using Check = std::function<void(S&, const Place&, Complaints&)>;
+  using Check = std::function<void(S&, const Place&, Diagnostics&)>;
 
   Table(std::string name, std::string doc) {
     info_.name = std::move(name);
@@ -88,14 +88,14 @@ class Table {
 
   [[nodiscard]] const TableInfo& info() const { return info_; }
 
-  bool read(const Place& place, Complaints& complaints, S& out) const {
-    const std::size_t before = complaints.size();
+  bool read(const Place& place, Diagnostics& diagnostics, S& out) const {
+    const std::size_t before = diagnostics.size();
     if constexpr (HasMark<S>::value) out.mark = place.value->mark;
-    const bool fine = read_keys(info_, place, complaints, [&](int field, const Place& value) {
-      return readers_[static_cast<std::size_t>(field)](value, complaints, out);
+    const bool fine = read_keys(info_, place, diagnostics, [&](int field, const Place& value) {
+      return readers_[static_cast<std::size_t>(field)](value, diagnostics, out);
     });
-    if (fine && check_) check_(out, place, complaints);
-    return complaints.size() == before;
+    if (fine && check_) check_(out, place, diagnostics);
+    return diagnostics.size() == before;
   }
 
  private:
@@ -110,9 +110,9 @@ class Table {
   Table& field(FieldInfo info, Format<T> format, Assign set) {
     info_.fields.push_back(std::move(info));
     readers_.push_back(
-        [format = std::move(format), set](const Place& place, Complaints& complaints, S& out) {
+        [format = std::move(format), set](const Place& place, Diagnostics& diagnostics, S& out) {
           T value{};
-          const bool fine = format.read(place, complaints, value);
+          const bool fine = format.read(place, diagnostics, value);
           set(out, std::move(value));  // what could be read is still good for other checks
           return fine;
         });
@@ -120,7 +120,7 @@ class Table {
   }
 
   TableInfo info_;
-  std::vector<std::function<bool(const Place&, Complaints&, S&)>> readers_;
+  std::vector<std::function<bool(const Place&, Diagnostics&, S&)>> readers_;
   Check check_;
 };
 
@@ -131,8 +131,8 @@ Format<S> mapping(Table<S> table) {
   Shape shape{Shape::Kind::Table};
   shape.table = std::shared_ptr<const TableInfo>(shared, &shared->info());
   return {std::move(shape),
-          [shared](const Shape& /*self*/, const Place& place, Complaints& complaints, S& out) {
-            return shared->read(place, complaints, out);
+          [shared](const Shape& /*self*/, const Place& place, Diagnostics& diagnostics, S& out) {
+            return shared->read(place, diagnostics, out);
           }};
 }
 

@@ -17,7 +17,7 @@ Inertia factorize_band(Index size, Index run_time_width, double* band, double* s
   const Index stride = width + 1;
   // The column at hand: a copy, in registers where its length is known, as the compiler would have
   // to read the column again after every write to those behind it.
-  std::array<double, at(kWidth)> registers;
+  std::array<double, to_size(kWidth)> registers;
   double* const entries = kWidth > 0 ? registers.data() : scratch;
   Inertia inertia;
   for (Index j = 0; j < size; ++j) {

@@ -35,9 +35,9 @@ void MassSolver::prepare(double t) {
 void MassSolver::solve(double t, Vector& b) {
   if (t != prepared_for_) prepare(t);
   if (solver_) {
-    for (Index i = 0; i < free_.size(); ++i) free_[i] = b[model_.dofs.free()[at(i)]];
+    for (Index i = 0; i < free_.size(); ++i) free_[i] = b[model_.dofs.free()[to_size(i)]];
     solver_->solve(free_);
-    for (Index i = 0; i < free_.size(); ++i) b[model_.dofs.free()[at(i)]] = free_[i];
+    for (Index i = 0; i < free_.size(); ++i) b[model_.dofs.free()[to_size(i)]] = free_[i];
   } else {
     b.array() /= diagonal_.array();
   }

@@ -65,8 +65,8 @@ Vector initial_stress_stiffness(const Model& model, const MatrixLayout& layout,
     slope << -edge.turn, edge.turn;
     for (int column = 0; column < 4; ++column) {
       for (int row = column; row < 4; ++row) {
-        const Index slot = layout.slot_or_spare(model.dofs.free_index(edge.dofs[at(row)]),
-                                                model.dofs.free_index(edge.dofs[at(column)]));
+        const Index slot = layout.slot_or_spare(model.dofs.free_index(edge.dofs[to_size(row)]),
+                                                model.dofs.free_index(edge.dofs[to_size(column)]));
         values[slot] += edge.tension * edge.length * slope[row] * slope[column];
       }
     }

@@ -226,7 +226,7 @@ class ModeSearch {
   /// How many of the `count` lowest the inertia counts below the highest one but are not there.
   Index missing_below_highest(Index count, double shift, const Noise& noise) {
     constexpr double kSame = 1e-9;
-    const auto last = std::min(shapes_.size(), at(count)) - 1;
+    const auto last = std::min(shapes_.size(), to_size(count)) - 1;
     const double highest = shapes_[last].square;
     const double cut = highest - kSame * (highest - shift) - noise.square;
     const auto found = std::count_if(shapes_.begin(), shapes_.end(),
@@ -241,7 +241,7 @@ class ModeSearch {
     const auto size = static_cast<Eigen::Index>(noise.near_zero);
     if (size < 2) return;
     const auto at_zero = [&](Eigen::Index i) -> Shape& {
-      return shapes_[at(noise.below) + static_cast<std::size_t>(i)];
+      return shapes_[to_size(noise.below) + static_cast<std::size_t>(i)];
     };
     const auto energy = [&](const Vector& v) { return second_variation(model_, here_, v); };
     Eigen::MatrixXd stiffness(size, size);
@@ -296,7 +296,7 @@ std::vector<Mode> vibration_modes(const Model& model, const Assembler& assembler
   const Noise noise = matrix_noise(stiffness, model);
   auto shapes = ModeSearch(model, stiffness, here)
                     .lowest(std::max(wanted, noise.below + noise.near_zero), noise);
-  shapes.resize(at(wanted));
+  shapes.resize(to_size(wanted));
 
   std::vector<Mode> modes;
   for (Shape& shape : shapes) {

@@ -24,8 +24,8 @@ constexpr double kSliver = 1e-9;
 
 std::vector<double> table_entries(const Model& model) {
   std::vector<double> times;
-  for (Index i = 0; i < model.controls.size(); ++i) {
-    const auto& series = model.controls[i].times;
+  for (Index i = 0; i < model.tables.size(); ++i) {
+    const auto& series = model.tables[i].times;
     times.insert(times.end(), series.begin(), series.end());
   }
   std::sort(times.begin(), times.end());

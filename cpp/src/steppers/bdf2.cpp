@@ -43,7 +43,7 @@ class Bdf2 final : public Stepper {
     equation.velocity_reference = past_displacement_;
     stage_.here.coordinates =
         state.positions + dt * (state.velocities + 0.5 * dt * state.accelerations);
-    stage_.place_held_at(state, state.time + dt, stage_.here.coordinates);
+    stage_.apply_prescribed_motion_at(state, state.time + dt, stage_.here.coordinates);
     const StepReport report = stage_.solve(state, state.time + dt);
     if (report.outcome != StepOutcome::Done) return report;
 
@@ -52,7 +52,7 @@ class Bdf2 final : public Stepper {
     auto& memory = hold<Bdf2Memory>(state.memory);
     memory.displacement = stage_.displacement();
     memory.velocities = state.velocities;
-    stage_.book_and_finish(stage_.here.coordinates, velocities_, dt, 1.0, force_, state);
+    stage_.accumulate_and_finish(stage_.here.coordinates, velocities_, dt, 1.0, force_, state);
     return report;
   }
 

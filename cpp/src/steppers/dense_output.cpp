@@ -28,7 +28,7 @@ DenseOutput::DenseOutput(const Model& model, const Assembler& assembler)
     : model_(model),
       force_(model, assembler),
       velocities_(Vector::Zero(model.num_dofs())),
-      controls_(Vector::Zero(model.controls.size())),
+      controls_(Vector::Zero(model.tables.size())),
       before_{Vector::Zero(model.num_dofs()), controls_},
       after_(before_) {}
 
@@ -72,7 +72,7 @@ Work DenseOutput::powers(const State& where, const State& start, const State& en
     power.supports += drag;
   }
   force_.evaluate_works(start, where.positions, where.time);
-  force_.book(velocities_, velocities_, power);
+  force_.accumulate(velocities_, velocities_, power);
   return power;
 }
 

@@ -32,16 +32,16 @@ class EnergyMomentum final : public Stepper {
     evaluate_controls(model_, state, state.time + dt, gradient_.end.controls);
 
     positions_ = state.positions + dt * (state.velocities + half * state.accelerations);
-    stage_.place_held_at(state, state.time + dt, positions_);
+    stage_.apply_prescribed_motion_at(state, state.time + dt, positions_);
     stage_.here.coordinates = 0.5 * (state.positions + positions_);
     const StepReport report = stage_.solve(state, state.time + half);
     if (report.outcome != StepOutcome::Done) return report;
 
     positions_ = state.positions + 2.0 * stage_.displacement();
     velocities_ = (2.0 / half) * stage_.displacement() - state.velocities;
-    stage_.place_held_at(state, state.time + dt, positions_);
+    stage_.apply_prescribed_motion_at(state, state.time + dt, positions_);
     state.accelerations = (velocities_ - state.velocities) / dt;
-    stage_.book_and_finish(positions_, velocities_, dt, state);
+    stage_.accumulate_and_finish(positions_, velocities_, dt, state);
     return report;
   }
 

@@ -78,7 +78,7 @@ std::string times_text(double share) {
 EnergyWatch::EnergyWatch(const Model& model)
     : model_(model),
       rounding_(strain_energy(model, kRoundingStrain)),
-      here_{Vector::Zero(model.num_dofs()), Vector::Zero(model.controls.size())},
+      here_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       positions_(Vector::Zero(model.num_dofs())),
       velocities_(Vector::Zero(model.num_dofs())) {}
 

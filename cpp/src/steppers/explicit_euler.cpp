@@ -22,12 +22,12 @@ class ExplicitEuler final : public Stepper {
     force_.acceleration(state, state.positions, state.velocities, state.time, 0.0, acceleration_);
     velocities_ = state.velocities + dt * acceleration_;
     positions_ = state.positions + dt * velocities_;
-    force_.place_held_at(state, state.time + dt, positions_);
+    force_.apply_prescribed_motion_at(state, state.time + dt, positions_);
     const StepReport report = force_.check(state, positions_);
     if (report.outcome != StepOutcome::Done) return report;
 
     displacement_ = positions_ - state.positions;
-    force_.book(state.velocities, displacement_, state.work);
+    force_.accumulate(state.velocities, displacement_, state.work);
     finisher_.finish(positions_, velocities_, dt, state);
     return report;
   }

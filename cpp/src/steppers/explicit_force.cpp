@@ -25,7 +25,7 @@ ExplicitForce::ExplicitForce(const Model& model, const Assembler& assembler)
       assembler_(assembler),
       supports_move_(any_support_moves(model)),
       mass_(model),
-      here_{Vector::Zero(model.num_dofs()), Vector::Zero(model.controls.size())},
+      here_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       scratch_controls_(here_.controls),
       force_(Vector::Zero(model.num_dofs())),
       gradient_(Vector::Zero(model.num_dofs())) {}
@@ -52,7 +52,8 @@ void ExplicitForce::evaluate_loads(const State& state, const Vector& positions, 
   external_force(model_, here_, state.extra_force, force_);
 }
 
-void ExplicitForce::book(const Vector& velocities, const Vector& displacement, Work& work) const {
+void ExplicitForce::accumulate(const Vector& velocities, const Vector& displacement,
+                               Work& work) const {
   work.loads +=
       displacement.dot(force_ - model_.gravity_force) + moment_work(model_, here_, displacement);
   work.drag += displacement.dot(model_.damping.cwiseProduct(velocities));
@@ -63,7 +64,7 @@ void ExplicitForce::book(const Vector& velocities, const Vector& displacement, W
   }
 }
 
-void ExplicitForce::place_held_at(const State& state, double time, Vector& positions) {
+void ExplicitForce::apply_prescribed_motion_at(const State& state, double time, Vector& positions) {
   evaluate_controls(model_, state, time, scratch_controls_);
   apply_prescribed_motion(model_, scratch_controls_, positions);
 }

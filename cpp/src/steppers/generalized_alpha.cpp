@@ -44,18 +44,18 @@ class GeneralizedAlpha final : public Stepper {
                                   (beta_ / gamma_) * dt * (v + kept * dt * (1.0 - gamma_) * a);
 
     positions_ = q + dt * (v + 0.5 * dt * a);
-    stage_.place_held_at(state, state.time + dt, positions_);
+    stage_.apply_prescribed_motion_at(state, state.time + dt, positions_);
     stage_.here.coordinates = kept * positions_ + alpha_f_ * q;
     const StepReport report = stage_.solve(state, state.time + kept * dt);
     if (report.outcome != StepOutcome::Done) return report;
 
     positions_ = q + stage_.displacement() / kept;
-    stage_.place_held_at(state, state.time + dt, positions_);
+    stage_.apply_prescribed_motion_at(state, state.time + dt, positions_);
     accelerations_ =
         (stage_.displacement() / kept - dt * v) / (beta_ * dt * dt) - ((0.5 - beta_) / beta_) * a;
     velocities_ = v + dt * ((1.0 - gamma_) * a + gamma_ * accelerations_);
     state.accelerations = accelerations_;
-    stage_.book_and_finish(positions_, velocities_, dt, kept, force_, state);
+    stage_.accumulate_and_finish(positions_, velocities_, dt, kept, force_, state);
     return report;
   }
 

@@ -12,16 +12,16 @@ namespace der {
 ImplicitStage::ImplicitStage(const Model& model, const Assembler& assembler, LinearSolver& solver,
                              const NewtonOptions& options)
     : equation(model),
-      here{Vector::Zero(model.num_dofs()), Vector::Zero(model.controls.size())},
+      here{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       model_(model),
       problem_(model, assembler),
       newton_(model.dofs, solver, assembler.num_values(), options),
       finisher_(model),
-      held_controls_(Vector::Zero(model.controls.size())),
-      start_controls_(Vector::Zero(model.controls.size())),
+      held_controls_(Vector::Zero(model.tables.size())),
+      start_controls_(Vector::Zero(model.tables.size())),
       displacement_(Vector::Zero(model.num_dofs())) {}
 
-void ImplicitStage::place_held_at(const State& state, double time, Vector& where) {
+void ImplicitStage::apply_prescribed_motion_at(const State& state, double time, Vector& where) {
   evaluate_controls(state, time, held_controls_);
   apply_prescribed_motion(model_, held_controls_, where);
 }
@@ -54,12 +54,12 @@ StepReport ImplicitStage::solve(const State& state, double time) {
   return report;
 }
 
-void ImplicitStage::book(const Vector& displacement, Work& work) const {
-  book_forces(displacement, work);
-  book_solver(displacement, work);
+void ImplicitStage::accumulate(const Vector& displacement, Work& work) const {
+  accumulate_forces(displacement, work);
+  accumulate_solver(displacement, work);
 }
 
-void ImplicitStage::book_forces(const Vector& displacement, Work& work) const {
+void ImplicitStage::accumulate_forces(const Vector& displacement, Work& work) const {
   const Vector& moved = newton_.displacement();
   work.loads += displacement.dot(equation.force - model_.gravity_force) + moments(displacement);
   if (model_.damped) {
@@ -84,32 +84,32 @@ double ImplicitStage::moments(const Vector& displacement) const {
   return equation.discrete_gradient->moment_work(here, displacement);
 }
 
-void ImplicitStage::book_solver(const Vector& displacement, Work& work) const {
+void ImplicitStage::accumulate_solver(const Vector& displacement, Work& work) const {
   const Vector& residual = newton_.residual();
   for (const Index dof : model_.dofs.free()) work.solver += displacement[dof] * residual[dof];
 }
 
-void ImplicitStage::book_and_finish(const Vector& new_positions,
-                                    const Eigen::Ref<const Vector>& new_velocities, double dt,
-                                    State& state) {
+void ImplicitStage::accumulate_and_finish(const Vector& new_positions,
+                                          const Eigen::Ref<const Vector>& new_velocities, double dt,
+                                          State& state) {
   displacement_ = new_positions - state.positions;
-  book(displacement_, state.work);
+  accumulate(displacement_, state.work);
   finisher_.finish(new_positions, new_velocities, dt, state);
 }
 
-void ImplicitStage::book_and_finish(const Vector& new_positions,
-                                    const Eigen::Ref<const Vector>& new_velocities, double dt,
-                                    double place, ExplicitForce& at_start, State& state) {
+void ImplicitStage::accumulate_and_finish(const Vector& new_positions,
+                                          const Eigen::Ref<const Vector>& new_velocities, double dt,
+                                          double place, ExplicitForce& at_start, State& state) {
   // The rule with points at 0 and `place` that is exact for a power linear in time.
   const double late = 0.5 / place;
   displacement_ = (1.0 - late) * (new_positions - state.positions);
   at_start.evaluate_works(state, state.positions, state.time);
-  at_start.book(state.velocities, displacement_, state.work);
+  at_start.accumulate(state.velocities, displacement_, state.work);
   displacement_ = late * (new_positions - state.positions);
-  book_forces(displacement_, state.work);
+  accumulate_forces(displacement_, state.work);
   // All that the solver leaves is left in stages: none of it at the start.
   displacement_ = new_positions - state.positions;
-  book_solver(displacement_, state.work);
+  accumulate_solver(displacement_, state.work);
   finisher_.finish(new_positions, new_velocities, dt, state);
 }
 

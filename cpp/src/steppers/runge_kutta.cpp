@@ -38,7 +38,7 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
     stage_.equation.velocity_factor = 1.0 / g;
     stage_.end_step_at(state.time + dt);
     end_positions_ = state.positions;
-    stage_.place_held_at(state, state.time + dt, end_positions_);
+    stage_.apply_prescribed_motion_at(state, state.time + dt, end_positions_);
     work_ = state.work;
 
     StepReport report;
@@ -58,7 +58,7 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
       velocities_.col(i) = (stage_.displacement() - past_displacement_) * (1.0 / g);
       accelerations_.col(i) = (velocities_.col(i) - past_velocities_) * (1.0 / g);
       set_displacement(i, state, dt);
-      stage_.book(displacement_, work_);
+      stage_.accumulate(displacement_, work_);
     }
     finish(state, dt);
     return report;
@@ -72,12 +72,12 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
     velocities_.col(0) = state.velocities;
     accelerations_.col(0) = past_velocities_;
     set_displacement(0, state, dt);
-    start_force_->book(state.velocities, displacement_, work_);
+    start_force_->accumulate(state.velocities, displacement_, work_);
   }
 
   /// Sets what a stage contributes to the motion of the step; its works count likewise.
   void set_displacement(Index i, const State& state, double dt) {
-    stage_displacement(model_, state.positions, end_positions_, tableau_.weights[at(i)], dt,
+    stage_displacement(model_, state.positions, end_positions_, tableau_.weights[to_size(i)], dt,
                        velocities_.col(i), displacement_);
   }
 
@@ -87,7 +87,7 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
     past_displacement_.setZero();
     past_velocities_ = state.velocities;
     for (Index j = 0; j < i; ++j) {
-      const double weight = dt * tableau_.below[at(i)][at(j)];
+      const double weight = dt * tableau_.below[to_size(i)][to_size(j)];
       past_displacement_ += weight * velocities_.col(j);
       past_velocities_ += weight * accelerations_.col(j);
     }
@@ -98,7 +98,7 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
     } else {
       stage_.here.coordinates += g * g * accelerations_.col(i - 1);
     }
-    stage_.place_held_at(state, time, stage_.here.coordinates);
+    stage_.apply_prescribed_motion_at(state, time, stage_.here.coordinates);
     for (const HeldDof& held : model_.held) {
       // So that the stage's velocity is that of the motion over the step.
       past_displacement_[held.dof] =
@@ -121,7 +121,7 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
     displacement_.setZero();
     past_velocities_ = state.velocities;
     for (Index i = 0; i <= last; ++i) {
-      const double weight = dt * tableau_.weights[at(i)];
+      const double weight = dt * tableau_.weights[to_size(i)];
       displacement_ += weight * velocities_.col(i);
       past_velocities_ += weight * accelerations_.col(i);
     }

@@ -76,7 +76,7 @@ StabilityWatch::StabilityWatch(const Model& model, const StepperInfo& stepper,
     : model_(model),
       time_(time),
       bound_(model, stepper.drag_limits_step),
-      here_{Vector::Zero(model.num_dofs()), Vector::Zero(model.controls.size())} {}
+      here_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())} {}
 
 double StabilityWatch::stable_step(const State& state) {
   configuration_of(model_, state, here_);

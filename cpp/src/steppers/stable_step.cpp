@@ -57,13 +57,13 @@ void StableStepBound::find_blocks() {
       block.slots.fill(layout_.num_values());  // the spare one, for entries that are not there
     }
     const Index place = 2 * model_.dofs[row_dof].component + model_.dofs[column_dof].component;
-    block.slots[at(place)] = slot;
-    block.scale[at(place)] = inverse_root_mass_[row_dof] * inverse_root_mass_[column_dof];
+    block.slots[to_size(place)] = slot;
+    block.scale[to_size(place)] = inverse_root_mass_[row_dof] * inverse_root_mass_[column_dof];
   };
   for (Index column = 0; column < pattern_.size; ++column) {
-    for (Index k = pattern_.outer[at(column)]; k < pattern_.outer[at(column + 1)]; ++k) {
-      const Index row_dof = model_.dofs.free()[at(pattern_.inner[at(k)])];
-      const Index column_dof = model_.dofs.free()[at(column)];
+    for (Index k = pattern_.outer[to_size(column)]; k < pattern_.outer[to_size(column + 1)]; ++k) {
+      const Index row_dof = model_.dofs.free()[to_size(pattern_.inner[to_size(k)])];
+      const Index column_dof = model_.dofs.free()[to_size(column)];
       add(row_dof, column_dof, k);
       // Of a block on the diagonal the pattern has the lower half.
       if (model_.dofs.node_of(row_dof) == model_.dofs.node_of(column_dof))
@@ -112,7 +112,7 @@ StableStep StableStepBound::explain(const Configuration& here) {
   }
   double stiffest = -1.0;
   for (Index i = 0; i < pattern_.size; ++i) {
-    const Index dof = model_.dofs.free()[at(i)];
+    const Index dof = model_.dofs.free()[to_size(i)];
     if (model_.dofs.node_of(dof) != node) continue;
     const double stiffness = std::abs(values_[layout_.slot(i, i)]);
     if (stiffness <= stiffest) continue;
@@ -122,7 +122,7 @@ StableStep StableStepBound::explain(const Configuration& here) {
   return result;
 }
 
-/// The sum over a node's blocks from the elements booked under one term [1/s^2].
+/// The sum over a node's blocks from the elements counted under one term [1/s^2].
 double StableStepBound::term_bound(EnergyTerm term, Index node, const Configuration& here) const {
   std::map<Index, Mat2> blocks;  // by the other node
   const DofMap& map = model_.dofs;
@@ -138,8 +138,8 @@ double StableStepBound::term_bound(EnergyTerm term, Index node, const Configurat
                                                       gather(dofs, here.coordinates), local);
       for (int i = 0; i < Kernel::kDofs; ++i) {
         for (int j = 0; j < Kernel::kDofs; ++j) {
-          const Index row = dofs[at(i)];
-          const Index column = dofs[at(j)];
+          const Index row = dofs[to_size(i)];
+          const Index column = dofs[to_size(j)];
           if (!is_here(row) || !map.is_free(column)) continue;
           Mat2& block = blocks.try_emplace(map.node_of(column), Mat2::Zero()).first->second;
           block(map[row].component, map[column].component) +=
@@ -158,7 +158,7 @@ double StableStepBound::term_bound(EnergyTerm term, Index node, const Configurat
 
 StableStep stable_step(const Model& model, const Vector& positions, bool drag_limits_step) {
   Configuration here{positions, {}};
-  model.controls.evaluate(0.0, here.controls);
+  model.tables.evaluate(0.0, here.controls);
   return StableStepBound(model, drag_limits_step).explain(here);
 }
 

@@ -7,7 +7,7 @@ namespace der {
 
 StepFinisher::StepFinisher(const Model& model)
     : model_(model),
-      start_{Vector::Zero(model.num_dofs()), Vector::Zero(model.controls.size())},
+      start_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       end_(start_) {}
 
 void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector>& velocities,

@@ -80,7 +80,7 @@ double SupportMotion::time_of(double strips, const State& state) const {
                      [index = control](const Ramp& other) { return other.control == index; });
     const double limit = strips * strip;
     earliest = std::min(earliest, ramp == state.ramps.end()
-                                      ? time_of_limit(model_.controls[control], limit, state.time)
+                                      ? time_of_limit(model_.tables[control], limit, state.time)
                                       : time_of_limit(*ramp, limit, state.time));
   }
   return earliest - state.time;

@@ -11,12 +11,12 @@ constexpr double kRootOfTwo = 1.41421356237309505;
 }  // namespace
 
 double Tableau::time(Index stage) const {
-  const auto& row = below[at(stage)];
+  const auto& row = below[to_size(stage)];
   return std::accumulate(row.begin(), row.end(), is_implicit(stage) ? diagonal : 0.0);
 }
 
 bool Tableau::stiffly_accurate() const {
-  const auto last = at(stages - 1);
+  const auto last = to_size(stages - 1);
   return weights[last] == diagonal &&
          std::equal(below[last].begin(), below[last].begin() + (stages - 1), weights.begin());
 }

@@ -23,17 +23,17 @@ class Verlet final : public Stepper {
   StepReport step(State& state, double dt) override {
     const double half = 0.5 * dt;
     positions_ = state.positions + half * state.velocities;
-    force_.place_held_at(state, state.time + half, positions_);
+    force_.apply_prescribed_motion_at(state, state.time + half, positions_);
     force_.acceleration(state, positions_, state.velocities, state.time + half, half,
                         acceleration_);
     positions_ = state.positions + dt * (state.velocities + half * acceleration_);
-    force_.place_held_at(state, state.time + dt, positions_);
+    force_.apply_prescribed_motion_at(state, state.time + dt, positions_);
     const StepReport report = force_.check(state, positions_);
     if (report.outcome != StepOutcome::Done) return report;
 
     displacement_ = positions_ - state.positions;
     mean_velocities_ = displacement_ / dt;
-    force_.book(mean_velocities_, displacement_, state.work);
+    force_.accumulate(mean_velocities_, displacement_, state.work);
     velocities_ = state.velocities + dt * acceleration_;
     finisher_.finish(positions_, velocities_, dt, state);
     return report;

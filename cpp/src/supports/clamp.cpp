@@ -36,7 +36,7 @@ double side_of(const Clamp& clamp, Index edge) { return edge == clamp.place ? 1.
 Pivot pivot_at(const RodLayout& rod, Index place, Index edge) {
   const Clamp* clamp = rod.clamp_at(place);
   if (clamp == nullptr) return {};
-  return {side_of(*clamp, edge) * kPivotShare * rod.edge_length[at(edge)], clamp->direction,
+  return {side_of(*clamp, edge) * kPivotShare * rod.edge_length[to_size(edge)], clamp->direction,
           clamp->rotation};
 }
 
@@ -46,7 +46,7 @@ double initial_tangent_angle(const RodLayout& rod, Index place, const Model& mod
   const double curvature = initial_curvature(rod, place, model);
   const bool leaves = place < rod.num_edges();
   const Index edge = leaves ? place : place - 1;
-  const double half = 0.5 * rod.edge_length[at(edge)];
+  const double half = 0.5 * rod.edge_length[to_size(edge)];
   return direction(drawn_edge(rod, edge, model)) + (leaves ? -curvature : curvature) * half;
 }
 
@@ -57,7 +57,7 @@ double tangent_angle(const Clamp& clamp, const Model& model, const State& state)
 
 void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod, Model& model) {
   if (rod.EI == 0.0 || rod.clamp_at(place) != nullptr) return;
-  const Index rotation = support.rotation ? model.controls.add(*support.rotation) : -1;
+  const Index rotation = support.rotation ? model.tables.add(*support.rotation) : -1;
   const Index beside = std::min(place, rod.num_edges() - 1);
   const Index followed = support.rotation ? follow_edge(rod, beside, model) : -1;
   rod.clamps.push_back({place, initial_tangent_angle(rod, place, model), rotation, followed});
@@ -83,13 +83,14 @@ Vec2 effective_vector(const EffectiveEdge& effective, const Model& model, const 
 
 double bend_length(const RodLayout& rod, Index place) {
   double length = rod.voronoi_length(place);
-  if (rod.clamp_at(place - 1) != nullptr) length -= kNextCellLoss * rod.edge_length[at(place - 1)];
-  if (rod.clamp_at(place + 1) != nullptr) length -= kNextCellLoss * rod.edge_length[at(place)];
+  if (rod.clamp_at(place - 1) != nullptr)
+    length -= kNextCellLoss * rod.edge_length[to_size(place - 1)];
+  if (rod.clamp_at(place + 1) != nullptr) length -= kNextCellLoss * rod.edge_length[to_size(place)];
   return length;
 }
 
 double clamp_cell_length(const RodLayout& rod, Index edge) {
-  return kCellShare * rod.edge_length[at(edge)];
+  return kCellShare * rod.edge_length[to_size(edge)];
 }
 
 double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, const Model& model) {
@@ -101,8 +102,8 @@ double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, co
     return side * angle_between(tangent, effective);
   }
   const Index next = clamp.place + (side > 0.0 ? 1 : -1);
-  const double at_pivot = (1.0 - kPivotShare) * rod.natural_curvature[at(clamp.place)] +
-                          kPivotShare * rod.natural_curvature[at(next)];
+  const double at_pivot = (1.0 - kPivotShare) * rod.natural_curvature[to_size(clamp.place)] +
+                          kPivotShare * rod.natural_curvature[to_size(next)];
   return at_pivot * clamp_cell_length(rod, edge);
 }
 
@@ -113,7 +114,7 @@ void add_clamp_cells(const Clamp& clamp, RodLayout& rod, Model& model) {
     if (edge < 0 || edge >= rod.num_edges()) continue;
     const EffectiveEdge effective = effective_edge(rod, edge, model);
     const double rest = clamp_rest_angle(rod, clamp, edge, model);
-    rod.rest_turning_angle[at(clamp.place)] += rest;
+    rod.rest_turning_angle[to_size(clamp.place)] += rest;
     const auto add = [&](auto measure) {
       using Measure = decltype(measure);
       auto& list = model.elements->of<FromPivot<PlanarClamp<Measure>>>();

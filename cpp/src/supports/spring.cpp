@@ -15,7 +15,7 @@ namespace der {
 namespace {
 
 Vec2 drawn_node(const RodLayout& rod, Index place, const Model& model) {
-  return model.initial_positions.segment<2>(model.dof(rod.nodes[at(place)], 0));
+  return model.initial_positions.segment<2>(model.dof(rod.nodes[to_size(place)], 0));
 }
 
 Vec2 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
@@ -23,7 +23,7 @@ Vec2 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
 }
 
 double middle(const RodLayout& rod, Index edge) {
-  return 0.5 * (rod.arc_length[at(edge)] + rod.arc_length[at(edge + 1)]);
+  return 0.5 * (rod.arc_length[to_size(edge)] + rod.arc_length[to_size(edge + 1)]);
 }
 
 template <int Nodes>
@@ -34,8 +34,8 @@ void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s,
   typename Kernel::Constants constants;
   constants.stiffness = Eigen::Map<const Vec2>(spring.stiffness.data());
   for (int i = 0; i < Nodes; ++i) {
-    const auto& [place, weight] = weights[at(i)];
-    for (int c = 0; c < 2; ++c) dofs[at(2 * i + c)] = model.dof(rod.nodes[at(place)], c);
+    const auto& [place, weight] = weights[to_size(i)];
+    for (int c = 0; c < 2; ++c) dofs[to_size(2 * i + c)] = model.dof(rod.nodes[to_size(place)], c);
     constants.weights[i] = weight;
     constants.anchor += weight * drawn_node(rod, place, model);
   }
@@ -68,10 +68,10 @@ double rest_turn(const RodLayout& rod, const MomentPlace& place, const Model& mo
   if (beyond == 0.0) return tangent;
   const bool start = s < middle(rod, 0);
   const Index end = start ? 0 : rod.num_edges();
-  const double outer = rod.edge_length[at(start ? 0 : rod.num_edges() - 1)];
+  const double outer = rod.edge_length[to_size(start ? 0 : rod.num_edges() - 1)];
   const double share = single ? 0.0 : -std::min(place.weights[0], place.weights[1]);
   const double cell = single ? beyond : beyond - share * spacing - (1.0 + share) * outer / 12.0;
-  return tangent + (start ? cell : -cell) * rod.natural_curvature[at(end)];
+  return tangent + (start ? cell : -cell) * rod.natural_curvature[to_size(end)];
 }
 
 /// Returns the number of the element in its list.
@@ -81,13 +81,13 @@ Index add_element(const RodLayout& rod, MomentPlace& place, Model& model) {
   std::array<Index, Kernel::kDofs> dofs{};
   for (Index i = 0; i <= Edges; ++i) {
     for (int c = 0; c < 2; ++c) {
-      dofs[at(2 * i + c)] = model.dof(rod.nodes[at(place.first_edge + i)], c);
+      dofs[to_size(2 * i + c)] = model.dof(rod.nodes[to_size(place.first_edge + i)], c);
     }
   }
   typename Kernel::Constants constants;
   constants.stiffness = place.stiffness * place.series_share(rod.EI);
   place.followed = follow_edge(rod, place.first_edge, model);
-  const FollowedEdge& first = model.followed_edges[at(place.followed)];
+  const FollowedEdge& first = model.followed_edges[to_size(place.followed)];
   constants.direction = first.direction;
   constants.turn = first.turn;
   constants.rest = rest_turn(rod, place, model);

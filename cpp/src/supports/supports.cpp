@@ -28,7 +28,7 @@ void add_support(const scenario::Support& support, std::size_t number, Model& mo
   for (const Index place : nodes_at(support.at, rod)) {
     const Index node = rod.nodes[static_cast<std::size_t>(place)];
     for (const auto& [component, displacement] : support.prescribe) {
-      const Index control = model.controls.add(displacement);
+      const Index control = model.tables.add(displacement);
       hold(model, model.dof(node, static_cast<int>(component)), control);
       model.prescribed.push_back(
           {number, kComponentNames[static_cast<std::size_t>(component)], control});

@@ -54,10 +54,10 @@ Derivatives2 sum_of_kernels(const Model& model, const Configuration& here) {
       Kernel::template evaluate<Derivatives::Hessian>(list.constants[e], here,
                                                       gather(dofs, here.coordinates), local);
       for (Index i = 0; i < Kernel::kDofs; ++i) {
-        sum.gradient[dofs[at(i)]] += local.gradient[i];
+        sum.gradient[dofs[to_size(i)]] += local.gradient[i];
         for (Index j = 0; j <= i; ++j) {
-          sum.hessian(dofs[at(i)], dofs[at(j)]) += local.hessian(i, j);
-          if (i != j) sum.hessian(dofs[at(j)], dofs[at(i)]) += local.hessian(i, j);
+          sum.hessian(dofs[to_size(i)], dofs[to_size(j)]) += local.hessian(i, j);
+          if (i != j) sum.hessian(dofs[to_size(j)], dofs[to_size(i)]) += local.hessian(i, j);
         }
       }
     }
@@ -103,9 +103,10 @@ TEST_CASE("a chain gives the gradient and the Hessian of its elements") {
       CHECK((gradient - expected.gradient).lpNorm<Eigen::Infinity>() <= rounding);
       double worst = 0.0;
       for (Index j = 0; j < pattern.size; ++j) {
-        for (Index k = pattern.outer[at(j)]; k < pattern.outer[at(j) + 1]; ++k) {
-          const Index i = pattern.inner[at(k)];
-          const double entry = expected.hessian(model.dofs.free()[at(i)], model.dofs.free()[at(j)]);
+        for (Index k = pattern.outer[to_size(j)]; k < pattern.outer[to_size(j) + 1]; ++k) {
+          const Index i = pattern.inner[to_size(k)];
+          const double entry =
+              expected.hessian(model.dofs.free()[to_size(i)], model.dofs.free()[to_size(j)]);
           worst = std::max(worst, std::abs(values[layout.slot(i, j)] - entry));
         }
       }

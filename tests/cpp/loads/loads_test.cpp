@@ -56,7 +56,7 @@ double largest_force(const Model& model) {
   Configuration here;
   Vector force;
   for (const double t : {0.0, 0.1, 0.2}) {
-    model.controls.evaluate(t, here.controls);
+    model.tables.evaluate(t, here.controls);
     external_force(model, here, Vector::Zero(model.num_dofs()), force);
     largest = std::max(largest, force.lpNorm<Eigen::Infinity>());
     if (here.controls.size() > 0) {
@@ -133,7 +133,7 @@ TEST_CASE("loads: set to zero, each kind leaves no force behind and keeps its ta
     set_to_zero(scene.loads[0]);
     const Model unloaded = build_model(scene);
     CHECK(largest_force(unloaded) == 0.0);
-    CHECK(unloaded.controls.size() == loaded.controls.size());
+    CHECK(unloaded.tables.size() == loaded.tables.size());
     CHECK(unloaded.damped == loaded.damped);
   }
 }

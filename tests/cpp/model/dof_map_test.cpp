@@ -36,7 +36,7 @@ TEST_CASE("free degrees of freedom are eliminated node by node, angles after the
   CHECK(map.num_free() == 7);
   CHECK_FALSE(map.is_free(10));
   CHECK(map.free_index(1) == -1);
-  for (Index i = 0; i < map.num_free(); ++i) CHECK(map.free_index(map.free()[at(i)]) == i);
+  for (Index i = 0; i < map.num_free(); ++i) CHECK(map.free_index(map.free()[to_size(i)]) == i);
 }
 
 TEST_CASE("norms count a radian as the model's length") {

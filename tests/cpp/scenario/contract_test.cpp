@@ -15,8 +15,8 @@ namespace {
 using scenario::Component;
 using scenario::Location;
 using test::beam;
-using test::complaints;
 using test::contains;
+using test::diagnostics;
 
 const std::string kTubeScene = R"(title: Simply supported aluminium tube, 2 kN at 0.75 m
 rods:
@@ -172,19 +172,19 @@ TEST_CASE("places: an arc length within rounding of the end is the end") {
   const scenario::Scene scene =
       beam({{"loads", "[{point_force: {rod: beam, at: 1.0000000001, force: [0, 1]}}]"}}).scene();
   CHECK(std::get<scenario::PointForce>(scene.loads[0].what).at.arc_length == 1.0);
-  CHECK(contains(complaints({{"loads",
-                              "[{point_force: {rod: beam, at: 1.00000001, force: [0, "
-                              "1]}}]"}}),
+  CHECK(contains(diagnostics({{"loads",
+                               "[{point_force: {rod: beam, at: 1.00000001, force: [0, "
+                               "1]}}]"}}),
                  "lies beyond the rod's length"));
 }
 
 TEST_CASE("places: a point force may act between nodes, or on all of them, a support may not") {
-  CHECK(complaints({{"loads",
-                     "[{point_force: {rod: beam, at: 0.123, force: [0, 1]}}, "
-                     "{point_force: {rod: beam, at: all, force: [0, 1]}}, "
-                     "{moment: {rod: beam, at: 0.777, moment: 1}}]"}})
+  CHECK(diagnostics({{"loads",
+                      "[{point_force: {rod: beam, at: 0.123, force: [0, 1]}}, "
+                      "{point_force: {rod: beam, at: all, force: [0, 1]}}, "
+                      "{moment: {rod: beam, at: 0.777, moment: 1}}]"}})
             .empty());
-  CHECK(contains(complaints({{"supports", "[{rod: beam, at: 0.123, fix: [x]}]"}}),
+  CHECK(contains(diagnostics({{"supports", "[{rod: beam, at: 0.123, fix: [x]}]"}}),
                  "the nearest is {node: 1} at 0.1 m"));
 }
 
@@ -196,9 +196,9 @@ TEST_CASE("rods: a polyline's rest length is its length as drawn") {
   CHECK(beam(polyline).scene().rods[0].points.size() == 3);
   auto with_support = polyline;
   with_support.push_back({"supports", "[{rod: beam, at: 3, fix: [x]}]"});
-  CHECK(complaints(with_support).empty());
+  CHECK(diagnostics(with_support).empty());
   with_support.back().second = "[{rod: beam, at: middle, fix: [x]}]";
-  CHECK(contains(complaints(with_support), "the nearest is {node: 1} at 3 m"));
+  CHECK(contains(diagnostics(with_support), "the nearest is {node: 1} at 3 m"));
 }
 
 TEST_CASE("rods: natural curvature and initial velocity, for all nodes or for each") {
@@ -217,11 +217,11 @@ TEST_CASE("rods: natural curvature and initial velocity, for all nodes or for ea
                                  .rods[0];
   CHECK(std::get<std::vector<double>>(each.natural_curvature) == std::vector<double>{0, 1, 2});
   CHECK(each.initial_velocity[2] == scenario::Components{0.0, 3.0});
-  CHECK(contains(complaints({{"rods.beam.nodes", "2"}, {"rods.beam.natural_curvature", "1"}}),
+  CHECK(contains(diagnostics({{"rods.beam.nodes", "2"}, {"rods.beam.natural_curvature", "1"}}),
                  "cannot bend"));
-  CHECK(complaints({{"rods.beam.nodes", "2"},
-                    {"rods.beam.natural_curvature", "1"},
-                    {"supports", "[{rod: beam, at: start, clamp: true}]"}})
+  CHECK(diagnostics({{"rods.beam.nodes", "2"},
+                     {"rods.beam.natural_curvature", "1"},
+                     {"supports", "[{rod: beam, at: start, clamp: true}]"}})
             .empty());
 }
 
@@ -263,7 +263,7 @@ TEST_CASE("masses: spheres and supports make up for a rod without density") {
                                        {"rods.beam.material.density", "0"}};
   const auto with = [&](std::vector<Override> more) {
     more.insert(more.begin(), massless.begin(), massless.end());
-    return complaints(more);
+    return diagnostics(more);
   };
   CHECK(contains(with({}), "nodes 0, 1, 2 have none"));
   CHECK(with({{"rods.beam.spheres", "[{at: all, radius: 0.1, density: 1}]"}}).empty());
@@ -286,18 +286,18 @@ TEST_CASE("masses: spheres and supports make up for a rod without density") {
 
 TEST_CASE("probes: turning angles stand where the rod bends, curvature and moment anywhere") {
   const std::string at_start = "{a: {rod: beam, at: start, quantity: turning_angle}}";
-  CHECK(contains(complaints({{"output.probes", at_start}}), "an end that is clamped"));
-  CHECK(complaints(
+  CHECK(contains(diagnostics({{"output.probes", at_start}}), "an end that is clamped"));
+  CHECK(diagnostics(
             {{"output.probes", at_start}, {"supports", "[{rod: beam, at: start, clamp: true}]"}})
             .empty());
-  CHECK(complaints({{"output.probes",
-                     "{a: {rod: beam, at: start, quantity: moment}, b: {rod: beam, at: 0.123, "
-                     "quantity: curvature, side: before}}"}})
+  CHECK(diagnostics({{"output.probes",
+                      "{a: {rod: beam, at: start, quantity: moment}, b: {rod: beam, at: 0.123, "
+                      "quantity: curvature, side: before}}"}})
             .empty());
-  CHECK(complaints({{"output.probes",
-                     "{a: {rod: beam, at: 0.123, quantity: tension}, b: {rod: "
-                     "beam, at: 0.321, quantity: speed}, c: {quantity: "
-                     "total_energy}, d: {rod: beam, quantity: bend_energy}}"}})
+  CHECK(diagnostics({{"output.probes",
+                      "{a: {rod: beam, at: 0.123, quantity: tension}, b: {rod: "
+                      "beam, at: 0.321, quantity: speed}, c: {quantity: "
+                      "total_energy}, d: {rod: beam, quantity: bend_energy}}"}})
             .empty());
 }
 
@@ -309,8 +309,8 @@ TEST_CASE("output: the time between frames is a whole number of steps") {
   CHECK(every("1", "0.01") == doctest::Approx(0.01).epsilon(1e-14));
   CHECK(every("10", "1e-5") == doctest::Approx(0.01).epsilon(1e-14));
   CHECK(every("10", "0.003") == doctest::Approx(0.009).epsilon(1e-14));
-  CHECK(complaints({{"time.step", "1e-5"}, {"output.every", "0.1"}}).empty());
-  CHECK(contains(complaints({{"output.every", "0.025"}}), "write 0.02 or 0.03"));
+  CHECK(diagnostics({{"time.step", "1e-5"}, {"output.every", "0.1"}}).empty());
+  CHECK(contains(diagnostics({{"output.every", "0.025"}}), "write 0.02 or 0.03"));
 }
 
 TEST_CASE("solver: settings and their defaults") {
@@ -329,12 +329,12 @@ TEST_CASE("solver: settings and their defaults") {
   CHECK(chosen.max_iterations == 9);
 }
 
-TEST_CASE("one mistake causes one complaint") {
+TEST_CASE("one mistake causes one diagnostic") {
   // The rod cannot be laid out: nothing that refers to it is blamed, but its own keys still are.
-  const std::string said = complaints({{"rods.beam.nodes", "many"},
-                                       {"rods.beam.material", ""},
-                                       {"supports", "[{rod: beam, at: 0.33, fix: [x]}]"},
-                                       {"loads", "[{moment: {rod: beam, at: 7, moment: 1}}]"}});
+  const std::string said = diagnostics({{"rods.beam.nodes", "many"},
+                                        {"rods.beam.material", ""},
+                                        {"supports", "[{rod: beam, at: 0.33, fix: [x]}]"},
+                                        {"loads", "[{moment: {rod: beam, at: 7, moment: 1}}]"}});
   CHECK(contains(said, "expected a whole number, got 'many'"));
   CHECK(contains(said, "needs the key 'material'"));
   CHECK_FALSE(contains(said, "supports"));

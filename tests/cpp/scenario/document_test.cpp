@@ -17,8 +17,8 @@ using scenario::make_mapping;
 using scenario::make_scalar;
 using scenario::make_sequence;
 using scenario::Value;
-using test::complaints;
 using test::contains;
+using test::diagnostics;
 
 bool same(const Value& a, const Value& b);
 
@@ -77,7 +77,7 @@ TEST_CASE("documents: a scene built by hand is the scene of the text") {
   CHECK(again.to_yaml() == scene.to_yaml());
 }
 
-TEST_CASE("documents: complaints about a dictionary have a path, but no line") {
+TEST_CASE("documents: diagnostics about a dictionary have a path, but no line") {
   const Value root = mapping({{"rods", make_sequence({make_scalar(3)})},
                               {"time", mapping({{"duration", make_scalar("1")}})}});
   try {
@@ -113,7 +113,7 @@ TEST_CASE("documents: aliases cannot fill the memory") {
     text += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [";
     for (int k = 0; k < 10; ++k) text += before + (k < 9 ? ", " : "]\n");
   }
-  const auto said = complaints(text);
+  const auto said = diagnostics(text);
   REQUIRE(said.size() == 1);
   CHECK(contains(said[0].message, "the aliases of this scene stand for more than"));
 }
@@ -121,13 +121,13 @@ TEST_CASE("documents: aliases cannot fill the memory") {
 TEST_CASE("documents: a long text behind many aliases counts for its length") {
   std::string text = "a: &a " + std::string(100'000, 'x') + "\nb: [";
   for (int i = 0; i < 1000; ++i) text += "*a, ";
-  const auto said = complaints(text + "]\n");
+  const auto said = diagnostics(text + "]\n");
   REQUIRE(said.size() == 1);
   CHECK(contains(said[0].message, "the aliases of this scene stand for more than"));
 }
 
 TEST_CASE("documents: deep nesting ends in an error, not in a crash") {
-  const auto said = complaints("a: " + std::string(100'000, '['));
+  const auto said = diagnostics("a: " + std::string(100'000, '['));
   REQUIRE(said.size() == 1);
   CHECK(contains(said[0].message, "values nested in more than 100 levels"));
   // By aliases, each of which is one level deeper than the one before.
@@ -136,7 +136,7 @@ TEST_CASE("documents: deep nesting ends in an error, not in a crash") {
     const std::string number = std::to_string(i);
     text += "a" + number + ": &a" + number + " [*a" + std::to_string(i - 1) + "]\n";
   }
-  const auto aliased = complaints(text);
+  const auto aliased = diagnostics(text);
   REQUIRE(aliased.size() == 1);
   CHECK(aliased[0].line == 99);  // a98: the scene, 99 lists and x
   CHECK(contains(aliased[0].message, "values nested in more than 100 levels"));
@@ -154,18 +154,18 @@ TEST_CASE("documents: anchors inside anchors stand for what they hold") {
 }
 
 TEST_CASE("documents: what is quoted from a scene is one line without control characters") {
-  const auto said = complaints("\"k\\e[31m\\n\\x9b\": 1\n" + test::kRod + test::kTime);
+  const auto said = diagnostics("\"k\\e[31m\\n\\x9b\": 1\n" + test::kRod + test::kTime);
   REQUIRE(said.size() == 1);
   CHECK(contains(said[0].message, "has no key 'k\\x1b[31m\\n\\x9b'"));
   CHECK(said[0].path == "k\\x1b[31m\\n\\x9b");
-  CHECK(contains(complaints({{"title", "\"\\e]0;x\""}}),
+  CHECK(contains(diagnostics({{"title", "\"\\e]0;x\""}}),
                  "the text holds the control character 0x1b"));
-  CHECK(complaints({{"title", "\"two\\nlines\\tTr\u00e4ger\""}}).empty());
+  CHECK(diagnostics({{"title", "\"two\\nlines\\tTr\u00e4ger\""}}).empty());
 }
 
 TEST_CASE("documents: quotes that are closed, and quotes that are not") {
   const auto syntax_error = [](const std::string& title) {
-    const auto said = complaints("title: " + title + "\n" + test::kRod + test::kTime);
+    const auto said = diagnostics("title: " + title + "\n" + test::kRod + test::kTime);
     return !said.empty() && contains(said[0].message, "not valid YAML");
   };
   for (const char* closed : {"'it''s'", "\"a \\\" b\"", "\"a\n  b\"", "&t 'x'", "it's", "5 \"",
@@ -180,11 +180,11 @@ TEST_CASE("documents: quotes that are closed, and quotes that are not") {
 }
 
 TEST_CASE("documents: control characters are refused, a byte order mark is not") {
-  CHECK(complaints("\xef\xbb\xbf" + test::kRod + test::kTime).empty());
+  CHECK(diagnostics("\xef\xbb\xbf" + test::kRod + test::kTime).empty());
   std::string text = test::kRod + "time: {duration: 1, step: 0.01}";
   text += '\x04';  // yaml-cpp takes it for the end of the file
   text += "\nnonsense: 1\n";
-  const auto said = complaints(text);
+  const auto said = diagnostics(text);
   REQUIRE(said.size() == 1);
   CHECK(said[0].line == 8);
   CHECK(said[0].column == 32);
@@ -193,13 +193,13 @@ TEST_CASE("documents: control characters are refused, a byte order mark is not")
 
 TEST_CASE("documents: text that is not UTF-8 is refused where it stands") {
   const auto said_of = [](const std::string& title) {
-    return complaints(test::kRod + test::kTime + "title: x" + title + "\n");
+    return diagnostics(test::kRod + test::kTime + "title: x" + title + "\n");
   };
   // The ends of each row of table 3-7 of the Unicode standard, and what lies just outside.
   for (const char* good : {"\xc2\x80", "\xdf\xbf", "\xe0\xa0\x80", "\xed\x9f\xbf", "\xee\x80\x80",
                            "\xef\xbf\xbd", "\xf0\x90\x80\x80", "\xf4\x8f\xbf\xbd"}) {
     CAPTURE(good);
-    for (const auto& complaint : said_of(good)) CHECK_FALSE(contains(complaint.message, "UTF-8"));
+    for (const auto& diagnostic : said_of(good)) CHECK_FALSE(contains(diagnostic.message, "UTF-8"));
   }
   for (const char* bad :
        {"\x80", "\xc1\xbf", "\xc2", "\xc2x", "\xe0\x9f\xbf", "\xe2\x82", "\xed\xa0\x80",
@@ -217,8 +217,8 @@ TEST_CASE("documents: lines end as on any system") {
   std::string text;
   for (const char c : test::kRod + test::kTime)
     text += c == '\n' ? std::string("\r\n") : std::string(1, c);
-  CHECK(complaints(text).empty());
-  const auto said = complaints(text + "x: 1\r\n");
+  CHECK(diagnostics(text).empty());
+  const auto said = diagnostics(text + "x: 1\r\n");
   REQUIRE(said.size() == 1);
   CHECK(said[0].line == 9);
 }

@@ -1,5 +1,5 @@
 // Each file of tests/malformed says in its head what the reader has to say about it:
-// `# expect: LINE: a part of the message`, once for each complaint.
+// `# expect: LINE: a part of the message`, once for each diagnostic.
 
 #include <doctest/doctest.h>
 
@@ -33,7 +33,7 @@ std::vector<Expectation> expectations_in(const std::filesystem::path& file) {
   return expectations;
 }
 
-std::vector<Diagnostic> complaints_about(const std::filesystem::path& file) {
+std::vector<Diagnostic> diagnostics_about(const std::filesystem::path& file) {
   try {
     Scenario::load(file);
   } catch (const SceneError& error) {
@@ -42,9 +42,9 @@ std::vector<Diagnostic> complaints_about(const std::filesystem::path& file) {
   return {};
 }
 
-bool is_met(const Expectation& expectation, const Diagnostic& complaint) {
-  const std::string text = complaint.path + ": " + complaint.message;
-  return complaint.line == expectation.line && text.find(expectation.part) != std::string::npos;
+bool is_met(const Expectation& expectation, const Diagnostic& diagnostic) {
+  const std::string text = diagnostic.path + ": " + diagnostic.message;
+  return diagnostic.line == expectation.line && text.find(expectation.part) != std::string::npos;
 }
 
 std::vector<std::filesystem::path> malformed_files() {
@@ -56,18 +56,18 @@ std::vector<std::filesystem::path> malformed_files() {
   return files;
 }
 
-TEST_CASE("malformed scenes: each complaint has the right line and a helpful message") {
+TEST_CASE("malformed scenes: each diagnostic has the right line and a helpful message") {
   const auto files = malformed_files();
   CHECK(files.size() >= 30);
   for (const auto& file : files) {
     CAPTURE(file.filename().string());
     std::vector<Expectation> expected = expectations_in(file);
     CHECK_FALSE(expected.empty());
-    for (const Diagnostic& complaint : complaints_about(file)) {
+    for (const Diagnostic& diagnostic : diagnostics_about(file)) {
       const auto met = std::find_if(expected.begin(), expected.end(),
-                                    [&](const Expectation& e) { return is_met(e, complaint); });
-      CHECK_MESSAGE(met != expected.end(), "not expected: ", complaint.line, ": ", complaint.path,
-                    ": ", complaint.message);
+                                    [&](const Expectation& e) { return is_met(e, diagnostic); });
+      CHECK_MESSAGE(met != expected.end(), "not expected: ", diagnostic.line, ": ", diagnostic.path,
+                    ": ", diagnostic.message);
       if (met != expected.end()) expected.erase(met);
     }
     for (const Expectation& missed : expected) {
@@ -76,7 +76,7 @@ TEST_CASE("malformed scenes: each complaint has the right line and a helpful mes
   }
 }
 
-TEST_CASE("malformed scenes: complaints come in the order of the text, with file and column") {
+TEST_CASE("malformed scenes: diagnostics come in the order of the text, with file and column") {
   const std::string file = DER_SOURCE_DIR "/tests/malformed/everything_at_once.yaml";
   try {
     Scenario::load(file);

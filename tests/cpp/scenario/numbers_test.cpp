@@ -15,8 +15,8 @@ namespace der {
 namespace {
 
 using test::beam;
-using test::complaints;
 using test::contains;
+using test::diagnostics;
 
 /// The value that a number in the text is read as.
 double read(const std::string& text) {
@@ -77,7 +77,7 @@ TEST_CASE("numbers: what other readers would take differently is refused with a 
   };
   for (const auto& [text, hint] : refused) {
     CAPTURE(text);
-    const std::string said = complaints({{"rods.beam.to", "[" + text + ", 0]"}});
+    const std::string said = diagnostics({{"rods.beam.to", "[" + text + ", 0]"}});
     CAPTURE(said);
     CHECK(contains(said, "rods.beam.to.0: "));
     CHECK(contains(said, hint));
@@ -85,7 +85,7 @@ TEST_CASE("numbers: what other readers would take differently is refused with a 
 }
 
 TEST_CASE("numbers: angles in degrees are converted in the hint") {
-  const std::string said = complaints(
+  const std::string said = diagnostics(
       {{"supports", "[{rod: beam, at: start, clamp: true, prescribe: {angle: 180 deg}}]"}});
   CHECK(contains(said, "write the value in rad without a unit: 3.14159265359"));
 }
@@ -100,7 +100,7 @@ TEST_CASE("numbers: whole numbers") {
   };
   for (const auto& [text, hint] : refused) {
     CAPTURE(text);
-    const std::string said = complaints({{"rods.beam.nodes", text}});
+    const std::string said = diagnostics({{"rods.beam.nodes", text}});
     CAPTURE(said);
     CHECK(contains(said, hint));
   }

@@ -7,8 +7,8 @@ namespace der {
 namespace {
 
 using test::beam;
-using test::complaints;
 using test::contains;
+using test::diagnostics;
 
 TEST_CASE("overrides: by key, by name and by number") {
   const Scenario scene = beam({{"rods.beam.nodes", "21"}, {"rods.0.to.0", "2"}});
@@ -37,28 +37,29 @@ TEST_CASE("overrides: an empty value removes") {
 }
 
 TEST_CASE("overrides: what they make is validated, under its path") {
-  CHECK(complaints({{"rods.beam.nodes", "1"}}) ==
+  CHECK(diagnostics({{"rods.beam.nodes", "1"}}) ==
         "beam: rods.beam.nodes: must be between 2 and 1000000, got '1'");
-  CHECK(contains(complaints({{"tme.step", "1"}}), "did you mean 'time'?"));
-  CHECK(contains(complaints({{"rods.beam.nods", "5"}}), "did you mean 'nodes'?"));
+  CHECK(contains(diagnostics({{"tme.step", "1"}}), "did you mean 'time'?"));
+  CHECK(contains(diagnostics({{"rods.beam.nods", "5"}}), "did you mean 'nodes'?"));
 }
 
 TEST_CASE("overrides: a path that leads nowhere says where it ends") {
-  CHECK(complaints({{"rods.baem.nodes", "5"}}) ==
+  CHECK(diagnostics({{"rods.baem.nodes", "5"}}) ==
         "beam: rods.baem.nodes: 'rods' has no item 'baem'; did you mean 'beam'?");
-  CHECK(contains(complaints({{"rods.arm.nodes", "5"}}), "'rods' has no item 'arm'; it has 'beam'"));
   CHECK(
-      contains(complaints({{"rods.1.nodes", "5"}}), "'rods' has the items 0 to 0, but no item 1"));
-  CHECK(contains(complaints({{"loads.0.gravity", "[0, 1]"}}), "the scene has no 'loads'"));
-  CHECK(contains(complaints({{"rods.beam.nodes.x", "5"}}), "'rods.beam.nodes' is a single value"));
-  CHECK(contains(complaints({{"suports", ""}}), "the scene has no 'suports'"));
-  CHECK(contains(complaints({{"a..b", "1"}}), "joined by single dots"));
-  CHECK(contains(complaints({{"", "1"}}), "joined by single dots"));
-  CHECK(contains(complaints({{"title", "[1"}}), "the value '[1' cannot be read"));
+      contains(diagnostics({{"rods.arm.nodes", "5"}}), "'rods' has no item 'arm'; it has 'beam'"));
+  CHECK(
+      contains(diagnostics({{"rods.1.nodes", "5"}}), "'rods' has the items 0 to 0, but no item 1"));
+  CHECK(contains(diagnostics({{"loads.0.gravity", "[0, 1]"}}), "the scene has no 'loads'"));
+  CHECK(contains(diagnostics({{"rods.beam.nodes.x", "5"}}), "'rods.beam.nodes' is a single value"));
+  CHECK(contains(diagnostics({{"suports", ""}}), "the scene has no 'suports'"));
+  CHECK(contains(diagnostics({{"a..b", "1"}}), "joined by single dots"));
+  CHECK(contains(diagnostics({{"", "1"}}), "joined by single dots"));
+  CHECK(contains(diagnostics({{"title", "[1"}}), "the value '[1' cannot be read"));
 }
 
 TEST_CASE("overrides: all that lead nowhere are reported together") {
-  const std::string said = complaints({{"rods.x.nodes", "5"}, {"loads.0", "1"}, {"title", "]"}});
+  const std::string said = diagnostics({{"rods.x.nodes", "5"}, {"loads.0", "1"}, {"title", "]"}});
   CHECK(contains(said, "rods.x.nodes"));
   CHECK(contains(said, "loads.0"));
   CHECK(contains(said, "title"));

@@ -24,7 +24,7 @@ inline Scenario beam(const std::vector<Override>& overrides = {}) {
 }
 
 /// What is said about a scene; empty for a sound one.
-inline std::vector<Diagnostic> complaints(const std::string& text) {
+inline std::vector<Diagnostic> diagnostics(const std::string& text) {
   try {
     Scenario::parse(text);
   } catch (const SceneError& error) {
@@ -34,7 +34,7 @@ inline std::vector<Diagnostic> complaints(const std::string& text) {
 }
 
 /// What is said about the beam with some values replaced, all lines together.
-inline std::string complaints(const std::vector<Override>& overrides) {
+inline std::string diagnostics(const std::vector<Override>& overrides) {
   try {
     beam(overrides);
   } catch (const SceneError& error) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "der/building/builder.hpp"
+#include "der/scenario/scenario.hpp"
 #include "der/core/constants.hpp"
 #include "der/core/error.hpp"
 #include "der/loads/external_force.hpp"

@@ -35,7 +35,7 @@ struct Condition {
 Eigen::MatrixXd matrix(const Tableau& tableau) {
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(tableau.stages, tableau.stages);
   for (Index i = 0; i < tableau.stages; ++i) {
-    for (Index j = 0; j < i; ++j) a(i, j) = tableau.below[at(i)][at(j)];
+    for (Index j = 0; j < i; ++j) a(i, j) = tableau.below[to_size(i)][to_size(j)];
     if (tableau.is_implicit(i)) a(i, i) = tableau.diagonal;
   }
   return a;

@@ -20,7 +20,7 @@ class Error : public std::runtime_error {
   std::string status_;
 };
 
-/// One complaint about a scene: 1-based line and column in the text (0 when the scene did not come
+/// One diagnostic about a scene: 1-based line and column in the text (0 when the scene did not come
 /// from a text), the key path (`rods.beam.nodes`) and a sentence.
 struct Diagnostic {
   int line = 0;
@@ -29,8 +29,8 @@ struct Diagnostic {
   std::string message;
 };
 
-/// A scene that cannot be run as written. Holds every complaint found, in the order of the text, as
-/// `printable` texts.
+/// A scene that cannot be run as written. Holds every diagnostic found, in the order of the text,
+/// as `printable` texts.
 class SceneError : public Error {
  public:
   /// `source` is the file name, or empty for a dictionary.

@@ -15,7 +15,7 @@ namespace der {
 ///
 /// A `Kernel` is a struct with
 ///   static constexpr int kDofs;              number of coordinates of the stencil
-///   static constexpr EnergyTerm kTerm;       what its energy is booked under
+///   static constexpr EnergyTerm kTerm;       what its energy is counted under
 ///   struct Constants;                        of one element, fixed during a run
 ///   template <Derivatives D>
 ///   static void evaluate(const Constants&, const Configuration& here,

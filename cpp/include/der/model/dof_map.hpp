@@ -68,7 +68,7 @@ class DofMap {
   [[nodiscard]] const std::vector<Index>& free() const { return free_; }
   [[nodiscard]] Index num_free() const { return static_cast<Index>(free_.size()); }
   /// Place in the order of elimination; -1: held.
-  [[nodiscard]] Index free_index(Index dof) const { return free_index_[at(dof)]; }
+  [[nodiscard]] Index free_index(Index dof) const { return free_index_[to_size(dof)]; }
   [[nodiscard]] bool is_free(Index dof) const { return free_index(dof) >= 0; }
 
   /// States the length [m] against which motions are small, and that a radian counts as: that of

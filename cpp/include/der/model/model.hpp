@@ -8,11 +8,11 @@
 
 #include "der/core/hidden.hpp"
 #include "der/core/types.hpp"
-#include "der/model/controls.hpp"
 #include "der/model/dof_map.hpp"
 #include "der/model/edge.hpp"
 #include "der/model/load_variation.hpp"
 #include "der/model/mass.hpp"
+#include "der/model/time_tables.hpp"
 #include "der/model/turns.hpp"
 #include "der/scenario/curvature_measure.hpp"
 
@@ -129,7 +129,8 @@ struct ControlledForce {
 };
 
 /// Everything that stays constant in a run. It is const once it is built, so that simulations in
-/// several threads can share it. Vectors have one entry a degree of freedom, in the order of `dofs`.
+/// several threads can share it. Vectors have one entry a degree of freedom, in the order of
+/// `dofs`.
 struct Model {
   std::string name;    ///< "planar"
   std::string reason;  ///< why this model, in words
@@ -145,7 +146,7 @@ struct Model {
   bool damped = false;   ///< whether any of that is there
   Vector gravity_force;  ///< [N] weight without buoyancy
   Vector dead_force;     ///< [N] every constant force but weight: buoyancy, constant loads
-  Controls controls;     ///< tables over time that forces and supports follow
+  TimeTables tables;     ///< tables over time that forces and supports follow
   /// Of a scene that varies its loads: what a state of another load factor than 1 has in place of
   /// `gravity_force`, `dead_force` and `controls`.
   std::optional<LoadVariation> load_variation;

@@ -21,7 +21,7 @@ using Override = std::pair<std::string, std::string>;
 /// (`with`), saved (`to_yaml`) and named in messages (`source`). Immutable; copies are cheap.
 class Scenario {
  public:
-  /// Reads and validates a file. Throws SceneError with every complaint found.
+  /// Reads and validates a file. Throws SceneError with every diagnostic found.
   static Scenario load(const std::filesystem::path& file,
                        const std::vector<Override>& overrides = {});
   /// Reads and validates a text; `source` names it in messages.

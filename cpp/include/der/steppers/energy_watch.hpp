@@ -30,7 +30,7 @@ class EnergyWatch {
 
   /// To be called where the state is what the watch is to take as given: at a start.
   void begin(const State& state);
-  /// To be called before each step: books what a program has written since the last one.
+  /// To be called before each step: accumulates what a program has written since the last one.
   void before_step(State& state);
   /// To be called after each step: enters a node that has folded over in it. Allocates nothing.
   void after_step(State& state);

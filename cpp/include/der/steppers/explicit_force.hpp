@@ -21,13 +21,13 @@ class ExplicitForce {
   /// one over the step under the damping of the mean velocity.
   void acceleration(const State& state, const Vector& positions, const Vector& velocities,
                     double time, double damping_time, Vector& acceleration);
-  /// Evaluates at `time` what `book` needs, which is less than the acceleration does.
+  /// Evaluates at `time` what `accumulate` needs, which is less than the acceleration does.
   void evaluate_works(const State& state, const Vector& positions, double time);
-  /// Books what the forces evaluated last do along `displacement` [m], with the damping of
+  /// Adds up what the forces evaluated last do along `displacement` [m], with the damping of
   /// `velocities` [m/s]. Along a velocity in place of the displacement: powers [W].
-  void book(const Vector& velocities, const Vector& displacement, Work& work) const;
+  void accumulate(const Vector& velocities, const Vector& displacement, Work& work) const;
   /// Puts held degrees of freedom of `positions` where the tables have them at `time`.
-  void place_held_at(const State& state, double time, Vector& positions);
+  void apply_prescribed_motion_at(const State& state, double time, Vector& positions);
   /// Not done where a value is no longer a number, an edge is stretched beyond reason, or one whose
   /// whole turns count has turned too far from where it is in `state`.
   [[nodiscard]] StepReport check(const State& state, const Vector& positions) const;

@@ -31,30 +31,32 @@ class ImplicitStage {
   /// stages beyond.
   void end_step_at(double time) { step_end_ = time; }
   /// Puts the held degrees of freedom of `where` to where the tables have them at `time`.
-  void place_held_at(const State& state, double time, Vector& where);
+  void apply_prescribed_motion_at(const State& state, double time, Vector& where);
   /// Solves with tables and external forces at `time`.
   StepReport solve(const State& state, double time);
   /// Of the stage solved last, from the start of the step [m].
   [[nodiscard]] const Vector& displacement() const { return newton_.displacement(); }
-  /// Books what the forces of the stage solved last do along `displacement` [m].
-  void book(const Vector& displacement, Work& work) const;
+  /// Adds up what the forces of the stage solved last do along `displacement` [m].
+  void accumulate(const Vector& displacement, Work& work) const;
   /// Completes a done step: positions, velocities and the works that do not depend on the stepper.
   void finish(const Vector& new_positions, const Eigen::Ref<const Vector>& new_velocities,
               double dt, State& state) {
     finisher_.finish(new_positions, new_velocities, dt, state);
   }
-  /// As above for a stepper of one stage, which is booked along the step's displacement.
-  void book_and_finish(const Vector& new_positions, const Eigen::Ref<const Vector>& new_velocities,
-                       double dt, State& state);
+  /// As above for a stepper of one stage, whose works are taken along the step's displacement.
+  void accumulate_and_finish(const Vector& new_positions,
+                             const Eigen::Ref<const Vector>& new_velocities, double dt,
+                             State& state);
   /// As above for a stage at the fraction `place`, at least one half, of the step: the forces at
   /// the start of the step count besides, so that works are right to second order.
-  void book_and_finish(const Vector& new_positions, const Eigen::Ref<const Vector>& new_velocities,
-                       double dt, double place, ExplicitForce& at_start, State& state);
+  void accumulate_and_finish(const Vector& new_positions,
+                             const Eigen::Ref<const Vector>& new_velocities, double dt,
+                             double place, ExplicitForce& at_start, State& state);
 
  private:
   void evaluate_controls(const State& state, double time, Vector& controls);
-  void book_forces(const Vector& displacement, Work& work) const;
-  void book_solver(const Vector& displacement, Work& work) const;
+  void accumulate_forces(const Vector& displacement, Work& work) const;
+  void accumulate_solver(const Vector& displacement, Work& work) const;
   /// Work [J] of the moments.
   [[nodiscard]] double moments(const Vector& displacement) const;
 
@@ -62,7 +64,7 @@ class ImplicitStage {
   StageProblem problem_;
   Newton newton_;
   StepFinisher finisher_;
-  Vector held_controls_;  // those of `here` are the solved stage's until it is booked
+  Vector held_controls_;  // those of `here` are the solved stage's until it is accumulated
   Vector start_controls_;
   Vector displacement_;
   double step_end_ = std::numeric_limits<double>::infinity();

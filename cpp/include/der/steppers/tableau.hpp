@@ -17,8 +17,9 @@ struct Tableau {
   /// Whether the first stage is explicit: the slope at the start of the step.
   bool explicit_first = false;
   double diagonal = 0.0;  ///< a_ii of implicit stages
-  std::array<std::array<double, at(kMaxStages - 1)>, at(kMaxStages)> below{};  ///< a_ij, j < i
-  std::array<double, at(kMaxStages)> weights{};                                ///< b_i
+  std::array<std::array<double, to_size(kMaxStages - 1)>, to_size(kMaxStages)>
+      below{};                                        ///< a_ij, j < i
+  std::array<double, to_size(kMaxStages)> weights{};  ///< b_i
 
   [[nodiscard]] bool is_implicit(Index stage) const { return stage > 0 || !explicit_first; }
   /// c_i: when the stage is, from the start of the step, over its length.

@@ -37,7 +37,7 @@ bool polish(const Model& model, const Vector& force, const Stability& stability,
     length = next;
     if (length > kLongestStep * model.size) break;
     for (Index k = 0; k < model.num_free(); ++k)
-      here.coordinates[model.dofs.free()[at(k)]] += step[k];
+      here.coordinates[model.dofs.free()[to_size(k)]] += step[k];
     stiffness.evaluate(here);
   }
   return length <= kAccepted * model.size;

@@ -35,14 +35,14 @@ struct Segment {
 using Path = std::vector<Segment>;
 Path operator/(Path path, Segment next);
 
-/// More complaints than these help nobody, and a text with a million mistakes is read no further.
-inline constexpr std::size_t kMaxComplaints = 100;
+/// More diagnostics than these help nobody, and a text with a million mistakes is read no further.
+inline constexpr std::size_t kMaxDiagnostics = 100;
 
-/// Collects everything that is wrong with a document. The complaint after the last that is kept
+/// Collects everything that is wrong with a document. The diagnostic after the last that is kept
 /// throws SceneError with those before it.
-class Complaints {
+class Diagnostics {
  public:
-  explicit Complaints(const Document& document) : document_(document) {}
+  explicit Diagnostics(const Document& document) : document_(document) {}
 
   /// About a value.
   void add(const Place& place, std::string message);
@@ -60,7 +60,7 @@ class Complaints {
   void throw_if_any() const;
 
  private:
-  struct Complaint {
+  struct Found {
     Path path;
     Diagnostic diagnostic;
   };
@@ -70,7 +70,7 @@ class Complaints {
   [[nodiscard]] std::string written(const Path& path) const;
 
   const Document& document_;
-  std::vector<Complaint> found_;
+  std::vector<Found> found_;
 };
 
 }  // namespace der::scenario

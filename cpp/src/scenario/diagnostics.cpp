@@ -1,4 +1,4 @@
-#include "scenario/complaints.hpp"
+#include "scenario/diagnostics.hpp"
 
 #include <algorithm>
 #include <tuple>
@@ -49,16 +49,16 @@ Path operator/(Path path, Segment next) {
   return path;
 }
 
-void Complaints::add(const Place& place, std::string message) {
+void Diagnostics::add(const Place& place, std::string message) {
   record(path_to(place), place.value->mark, std::move(message));
 }
 
-void Complaints::add_key(const Place& mapping, std::string_view key, const Mark& mark,
-                         std::string message) {
+void Diagnostics::add_key(const Place& mapping, std::string_view key, const Mark& mark,
+                          std::string message) {
   record(path_to(mapping) / std::string(key), mark, std::move(message));
 }
 
-void Complaints::add(const Path& path, std::string message) {
+void Diagnostics::add(const Path& path, std::string message) {
   const Value* value = &document_.root();
   for (const Segment& segment : path) {
     const Value* next = child(*value, segment);
@@ -68,33 +68,33 @@ void Complaints::add(const Path& path, std::string message) {
   record(path, value->mark, std::move(message));
 }
 
-bool Complaints::under(const Path& path) const {
-  return std::any_of(found_.begin(), found_.end(), [&](const Complaint& complaint) {
-    return complaint.path.size() >= path.size() &&
-           std::equal(path.begin(), path.end(), complaint.path.begin());
+bool Diagnostics::under(const Path& path) const {
+  return std::any_of(found_.begin(), found_.end(), [&](const Found& found) {
+    return found.path.size() >= path.size() &&
+           std::equal(path.begin(), path.end(), found.path.begin());
   });
 }
 
-bool Complaints::at(const Path& path) const {
+bool Diagnostics::at(const Path& path) const {
   return std::any_of(found_.begin(), found_.end(),
-                     [&](const Complaint& complaint) { return complaint.path == path; });
+                     [&](const Found& found) { return found.path == path; });
 }
 
-void Complaints::throw_if_any() const {
+void Diagnostics::throw_if_any() const {
   if (!found_.empty()) throw SceneError(document_.source(), diagnostics());
 }
 
-std::vector<Diagnostic> Complaints::diagnostics() const {
+std::vector<Diagnostic> Diagnostics::diagnostics() const {
   std::vector<Diagnostic> diagnostics;
-  for (const Complaint& complaint : found_) diagnostics.push_back(complaint.diagnostic);
+  for (const Found& found : found_) diagnostics.push_back(found.diagnostic);
   std::stable_sort(diagnostics.begin(), diagnostics.end(), [](const auto& a, const auto& b) {
     return std::tie(a.line, a.column) < std::tie(b.line, b.column);
   });
   return diagnostics;
 }
 
-void Complaints::record(Path path, const Mark& mark, std::string message) {
-  if (found_.size() == kMaxComplaints) {
+void Diagnostics::record(Path path, const Mark& mark, std::string message) {
+  if (found_.size() == kMaxDiagnostics) {
     std::vector<Diagnostic> first = diagnostics();
     first.push_back({0, 0, "", "there is more wrong than that; mend these first"});
     throw SceneError(document_.source(), std::move(first));
@@ -104,7 +104,7 @@ void Complaints::record(Path path, const Mark& mark, std::string message) {
       {std::move(path), {mark.line, mark.column, std::move(text), std::move(message)}});
 }
 
-std::string Complaints::written(const Path& path) const {
+std::string Diagnostics::written(const Path& path) const {
   std::string text;
   const Value* value = &document_.root();
   for (const Segment& segment : path) {

@@ -1,15 +1,15 @@
-#include "der/model/controls.hpp"
+#include "der/model/time_tables.hpp"
 
 #include <utility>
 
 namespace der {
 
-Index Controls::add(scenario::Series series) {
+Index TimeTables::add(scenario::Series series) {
   series_.push_back(std::move(series));
   return size() - 1;
 }
 
-void Controls::evaluate(double t, Vector& values) const {
+void TimeTables::evaluate(double t, Vector& values) const {
   values.resize(size());
   for (Index i = 0; i < size(); ++i) values[i] = value_at((*this)[i], t);
 }

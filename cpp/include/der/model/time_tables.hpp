@@ -10,7 +10,7 @@ namespace der {
 /// The time tables of a model. Forces, supports and actuators name a table by its number; a stepper
 /// evaluates all of them once for each stage time (`evaluate_controls` in model/state.hpp, which
 /// adds what the state has in place of them).
-class Controls {
+class TimeTables {
  public:
   /// Adds a table and returns its number.
   Index add(scenario::Series series);

@@ -186,25 +186,30 @@ def tutorial_control() -> Figure:
 def data_flow() -> Figure:
     """Draw what flows from where to where: the picture of docs/architecture.md."""
     boxes = {
-        "scene": (0, 1, "scene.yaml\nor dict"),
-        "scenario": (1, 1, "Scenario"),
-        "model": (2, 1, "Model\n(constant)"),
-        "state": (3, 2, "State"),
-        "assembler": (3, 1, "Assembler"),
-        "newton": (3, 0, "Newton,\nLinearSolver"),
-        "stepper": (4, 1, "Stepper"),
-        "recorder": (4, 2, "Recorder"),
-        "folder": (5, 1.45, "run folder"),
-        "result": (5, 2.3, "der.Result"),
-        "plots": (6, 2.3, "plots,\nexports"),
+        "scene": (0, 1, "scene.yaml or dict\nconfigs/"),
+        "scenario": (1, 1, "Scenario\nscenario/"),
+        "model": (2, 1, "Model (constant)\nmodel/, building/"),
+        "kernels": (2, -0.35, "kernels: E, grad E, Hessian\nenergies/, kinematics/"),
+        "state": (3, 2, "State\nmodel/state.hpp"),
+        "assembler": (3.3, 0.3, "Assembler\nassembly/"),
+        "newton": (4.6, -0.35, "Newton, LinearSolver\nsolvers/"),
+        "stepper": (4.2, 1, "Stepper\nsteppers/"),
+        "statics": (5.6, 0.3, "equilibria, paths, modes\nstatics/"),
+        "recorder": (4.2, 2, "Recorder\noutput/"),
+        "folder": (5.5, 1.35, "run folder\noutput/"),
+        "result": (5.5, 2.3, "der.Result\npython/der/"),
+        "plots": (6.7, 2.3, "plots, exports\npython/der/"),
     }
     arrows = [
         ("scene", "scenario"),
         ("scenario", "model"),
         ("model", "state"),
         ("model", "assembler"),
-        ("assembler", "stepper"),
+        ("kernels", "assembler"),
+        ("assembler", "newton"),
         ("newton", "stepper"),
+        ("newton", "statics"),
+        ("statics", "recorder"),
         ("stepper", "state"),
         ("state", "recorder"),
         ("recorder", "folder"),
@@ -212,7 +217,7 @@ def data_flow() -> Figure:
         ("folder", "result"),
         ("result", "plots"),
     ]
-    figure, axes = plt.subplots(figsize=(9, 3.2), layout="constrained")
+    figure, axes = plt.subplots(figsize=(11, 4.2), layout="constrained")
     drawn = {}
     for name, (x, y, label) in boxes.items():
         drawn[name] = axes.text(
@@ -237,7 +242,7 @@ def data_flow() -> Figure:
                 "shrinkB": 3,
             },
         )
-    axes.set(xlim=(-0.5, 6.5), ylim=(-0.5, 2.8))
+    axes.set(xlim=(-0.5, 7.2), ylim=(-0.95, 2.7))
     axes.axis("off")
     return figure
 

@@ -59,6 +59,18 @@ double DofMap::largest_motion(const Vector& displacement) const {
   });
 }
 
+Index DofMap::most_moved(const Vector& displacement) const {
+  Index most = 0;
+  std::int64_t largest = -1;
+  for (Index dof = 0; dof < size(); ++dof) {
+    const std::int64_t here = magnitude_bits(motion_of(dof, displacement[dof]));
+    if (here <= largest) continue;
+    largest = here;
+    most = dof;
+  }
+  return most;
+}
+
 double DofMap::largest_force(const Vector& force) const {
   return largest_over(blocks_, [&](const DofBlock& block) {
     return largest_magnitude(block.count, force.data() + block.first) / block.length;

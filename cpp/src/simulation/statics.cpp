@@ -42,9 +42,9 @@ std::vector<Mode> Simulation::modes(int count) {
   const Forces now = forces();
   Stiffness stiffness(model_, assembler_, *solver_.solver);
   stiffness.evaluate(now.here);
-  const double unbalanced = now.unbalanced(model_).lpNorm<Eigen::Infinity>();
+  const double unbalanced = model_.dofs.largest_free_force(now.gradient - now.external);
   const double acting =
-      std::max(now.gradient.lpNorm<Eigen::Infinity>(), now.external.lpNorm<Eigen::Infinity>());
+      std::max(model_.dofs.largest_force(now.gradient), model_.dofs.largest_force(now.external));
   if (unbalanced > kBalanced * acting + stiffness.rounding() * model_.size) {
     throw Error("model_error",
                 fmt::format("vibration modes are those of an equilibrium, but {:.3g} N are not in "

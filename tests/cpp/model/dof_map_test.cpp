@@ -47,6 +47,7 @@ TEST_CASE("norms count a radian as the model's length") {
   values[9] = 1.0;   // rad, or N m
   CHECK(map.largest_motion(values) == 4.0);
   CHECK(map.largest_force(values) == 3.0);
+  CHECK(map.most_moved(values) == 9);
   values[10] = -16.0;
   CHECK(map.largest_force(values) == 4.0);
   CHECK(map.force_of(10, values[10]) == 4.0);

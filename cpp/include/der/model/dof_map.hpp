@@ -75,6 +75,10 @@ class DofMap {
   /// the model.
   void set_length(double length);
   [[nodiscard]] double length() const { return length_; }
+  /// Magnitude [m] that a motion of one degree of freedom counts as.
+  [[nodiscard]] double motion_of(Index dof, double motion) const {
+    return std::abs(motion) * (dof < num_positions() ? 1.0 : length_);
+  }
   /// Magnitude [N] that a force or moment on one degree of freedom counts as.
   [[nodiscard]] double force_of(Index dof, double force) const {
     return std::abs(force) / (dof < num_positions() ? 1.0 : length_);
@@ -84,6 +88,8 @@ class DofMap {
   /// Largest motion [m] among displacements of all degrees of freedom: angles count times the
   /// length. Not a number where one of them is not.
   [[nodiscard]] double largest_motion(const Vector& displacement) const;
+  /// The degree of freedom with the largest motion; the first that is not a number.
+  [[nodiscard]] Index most_moved(const Vector& displacement) const;
   /// Largest force [N] among those on all degrees of freedom: moments count over the length.
   [[nodiscard]] double largest_force(const Vector& force) const;
   /// As above, of free degrees of freedom alone.

@@ -58,7 +58,7 @@ class AdaptiveStepper {
   [[nodiscard]] double first_step(const State& state) const;
   [[nodiscard]] double next_stop(double time, double horizon) const;
   StepReport attempt(State& state, double length);
-  void measure(const State& state, AdaptiveReport& report) const;
+  void measure(const State& state, AdaptiveReport& report);
 
   const Model& model_;
   Stepper& stepper_;
@@ -70,7 +70,8 @@ class AdaptiveStepper {
   SupportMotion support_motion_;
   State start_;  // of the last step
   State middle_;
-  State whole_;  // at the end of the step done as a whole
+  State whole_;        // at the end of the step done as a whole
+  Vector difference_;  // of positions after the two halves [m]
   DenseOutput dense_;
 };
 

@@ -52,7 +52,11 @@ void PathEquations::evaluate(const Vector& turns, const PathPosition& point) {
   stiffness_.evaluate(here_);
   residual_ = (stiffness_.gradient() - force_)(model_.dofs.free());
   force_scale_ =
-      std::max(stiffness_.gradient().lpNorm<Eigen::Infinity>(), force_.lpNorm<Eigen::Infinity>());
+      std::max(model_.dofs.largest_force(stiffness_.gradient()), model_.dofs.largest_force(force_));
+}
+
+double PathEquations::unbalanced() const {
+  return model_.dofs.largest_free_force(stiffness_.gradient() - force_);
 }
 
 Vector PathEquations::residual_at(const Vector& turns, const PathPosition& point) {
@@ -111,9 +115,9 @@ std::optional<PathPosition> PathEquations::solve_on_plane(const Vector& turns,
     stiffness_.solve(across);
     const double miss = metric_.dot(normal, difference(guess, base)) - step;
     const double range2 = metric_.range() * metric_.range();
-    const double slope = metric_.weight() * normal.x.dot(across) + normal.factor / range2;
+    const double slope = metric_.dot(normal.x, across) + normal.factor / range2;
     PathPosition change;
-    change.factor = (-miss - metric_.weight() * normal.x.dot(along)) / slope;
+    change.factor = (-miss - metric_.dot(normal.x, along)) / slope;
     change.x = along + change.factor * across;
     const double length = metric_.norm(change);
     if (!std::isfinite(length) || length > 10.0 * std::max(step, 1e-3)) return std::nullopt;
@@ -121,7 +125,7 @@ std::optional<PathPosition> PathEquations::solve_on_plane(const Vector& turns,
     evaluate(turns, guess);
     const double allowed =
         std::max(options_.residual_tolerance * force_scale_, stiffness_.rounding() * model_.size);
-    if (length < kLastStep && residual_.lpNorm<Eigen::Infinity>() <= allowed) return guess;
+    if (length < kLastStep && unbalanced() <= allowed) return guess;
     tension_.use(here_, over_all_dofs(model_, change.x), stiffness_.values());
   }
   return std::nullopt;

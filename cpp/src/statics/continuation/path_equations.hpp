@@ -61,6 +61,7 @@ class PathEquations {
  private:
   void place(const Vector& turns, const PathPosition& point);
   void evaluate(const Vector& turns, const PathPosition& point);
+  [[nodiscard]] double unbalanced() const;  // [N], at the point evaluated last
   Vector residual_at(const Vector& turns, const PathPosition& point);
   Vector factor_derivative(const Vector& turns, const PathPosition& point);
   PathPosition tangent(const Vector& turns, const PathPosition& point, Stability& stability);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "der/core/types.hpp"
+#include "der/model/dof_map.hpp"
 
 namespace der::statics {
 
@@ -28,14 +29,25 @@ inline void reverse(PathPosition& direction) {
   direction.factor = -direction.factor;
 }
 
-/// The metric of arc length: <a, b> = weight a.x b.x + a.factor b.factor / range^2.
+/// The metric of arc length: <a, b> = weight a.x b.x + a.factor b.factor / range^2, angles in x
+/// counting as the lengths that the map of degrees of freedom gives them.
 class PathMetric {
  public:
   /// `weight` [1/m^2] makes the displacements dimensionless, `range` the factor.
-  PathMetric(double weight, double range) : weight_(weight), range_(range) {}
+  PathMetric(const DofMap& dofs, double weight, double range)
+      : squared_lengths_(dofs.num_free()), weight_(weight), range_(range) {
+    for (Index i = 0; i < dofs.num_free(); ++i) {
+      const double length = dofs.motion_of(dofs.free()[to_size(i)], 1.0);
+      squared_lengths_[i] = length * length;
+    }
+  }
 
   [[nodiscard]] double dot(const PathPosition& a, const PathPosition& b) const {
-    return weight_ * a.x.dot(b.x) + a.factor * b.factor / (range_ * range_);
+    return dot(a.x, b.x) + a.factor * b.factor / (range_ * range_);
+  }
+  /// The part of two displacements of the free degrees of freedom.
+  [[nodiscard]] double dot(const Vector& a, const Vector& b) const {
+    return weight_ * a.dot(squared_lengths_.cwiseProduct(b));
   }
   [[nodiscard]] double norm(const PathPosition& a) const { return std::sqrt(dot(a, a)); }
   [[nodiscard]] double distance(const PathPosition& a, const PathPosition& b) const {
@@ -47,7 +59,6 @@ class PathMetric {
     a.factor /= length;
     return a;
   }
-  [[nodiscard]] double weight() const { return weight_; }
   [[nodiscard]] double range() const { return range_; }
 
   /// Makes displacements count as much as the factor does along a unit tangent, within bounds.
@@ -60,6 +71,7 @@ class PathMetric {
   }
 
  private:
+  Vector squared_lengths_;  // [m^2] of the free degrees of freedom, for a unit of each
   double weight_;
   double range_;
 };

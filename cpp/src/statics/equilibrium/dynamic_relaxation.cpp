@@ -25,8 +25,8 @@ constexpr double kTryNewton = 0.1;
 double first_time_step(const Model& model, const StaticLoads& loads, Stiffness& stiffness,
                        const Shape& shape) {
   stiffness.evaluate(loads.at(model, shape));
-  const double acting = std::max(loads.force.lpNorm<Eigen::Infinity>(),
-                                 stiffness.gradient().lpNorm<Eigen::Infinity>());
+  const double acting = std::max(model.dofs.largest_force(loads.force),
+                                 model.dofs.largest_force(stiffness.gradient()));
   return std::sqrt(model.size / acting);
 }
 

@@ -32,7 +32,7 @@ bool polish(const Model& model, const Vector& force, const Stability& stability,
   for (int i = 0; i < kMaxSteps; ++i) {
     step = (force - stiffness.gradient())(model.dofs.free());
     const bool solved = solve_for_step(stiffness, stability, step);
-    const double next = solved ? step.lpNorm<Eigen::Infinity>() : length;
+    const double next = solved ? model.dofs.largest_motion(over_all_dofs(model, step)) : length;
     if (!(next < 0.5 * length)) break;
     length = next;
     if (length > kLongestStep * model.size) break;

@@ -90,9 +90,9 @@ class NotConvergedError(DerError):
     """Newton's method found no solution, even with the smallest allowed time step.
 
     In statics, no equilibrium was found; ``status`` says why: ``not_held`` (a load moves the
-    structure as a rigid body), ``unbounded`` (it moves on without end), ``collapsed`` (a part is
-    pressed to a point), ``folded`` (folded back on itself: too coarse a mesh), ``too_fine`` (a mesh
-    beyond double precision) or ``not_converged``.
+    structure as a rigid body), ``unbounded`` (it moves without end), ``collapsed`` (a part is
+    compressed to zero length), ``folded`` (folded back on itself: too coarse a mesh), ``too_fine``
+    (too many nodes for double precision) or ``not_converged``.
     """
 
     def __init__(self, message: str, status: str = "not_converged") -> None:

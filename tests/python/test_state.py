@@ -333,7 +333,7 @@ def test_pickles_of_other_versions_are_refused_by_name(moving):
     # Version 1 had its parts one behind the other; before it there was no version.
     with pytest.raises(ValueError, match="it is of version 1"):
         revived(state, (content[0], 1, 2, 0.5, 3, *content))
-    with pytest.raises(ValueError, match="no saved state of this version of der"):
+    with pytest.raises(ValueError, match="not a saved state of this version of der"):
         revived(state, (2, 0.5, 3))
 
 

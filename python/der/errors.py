@@ -50,11 +50,11 @@ class DerError(RuntimeError):
 
 
 class DerWarning(UserWarning):
-    """What can be run as it is, but is most likely not what was meant."""
+    """A warning: der can run this, but it is probably not intended."""
 
 
 class UnreliableResultWarning(DerWarning):
-    """The time stepping has created energy that is no longer small against what the run exchanges.
+    """The integrator has created energy that is not small against the energy exchanged in the run.
 
     The run goes on: the message says since when the result is unreliable, and what to try.
     """

@@ -42,7 +42,7 @@ FIELDS = _exported()
 
 @dataclass(frozen=True, eq=False)
 class RodFields:
-    """What varies along one rod, at every frame.
+    """The quantities along one rod, at every frame.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a result looks like from frame to frame, whatever the analysis: for animations and views."""
+"""The frames of a result, whatever the analysis, as animations and views show them."""
 
 from __future__ import annotations
 

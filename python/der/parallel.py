@@ -20,7 +20,7 @@ from der.progress import ProgressFunction
 from der.result import Result
 from der.simulation import Simulation
 
-#: Status of a run that was broken off.
+#: Status of a run that was cancelled.
 TOO_LONG = "too_long"
 
 Key = TypeVar("Key", bound=Hashable)

@@ -23,7 +23,7 @@ from der.probe_series import ProbeSeries
 
 @dataclass(frozen=True, eq=False)
 class RunData:
-    """What a run recorded: its saved frames, probes and summary.
+    """The recorded data of a run: its saved frames, probes and summary.
 
     Whatever reads a run takes this: drawings, exports, the run folder. `Result` adds ways to call
     these.
@@ -95,7 +95,7 @@ class RunData:
 
     @cached_property
     def model(self) -> Model:
-        """What stayed constant in the run."""
+        """The data that stay constant in the run."""
         return Model(self.scenario)
 
     @property

@@ -1,4 +1,4 @@
-"""What throws leaves the state as it was; what is restored fits, or is refused."""
+"""A call that raises leaves the state as it was; a state that does not fit is not restored."""
 
 import copy
 import math
@@ -75,7 +75,7 @@ def nothing(simulation):
     pass
 
 
-# Of each public call the ways in which it can fail: what makes it fail, and the call.
+# The ways in which each public call can fail: the preparation that makes it fail, and the call.
 FAILURES = {
     "step": [
         (far, lambda s: s.step()),
@@ -234,7 +234,7 @@ HEAD = ("kind", "version", "dimension", "fields")
 
 
 def content_of(state):
-    """What a state puts into a pickle."""
+    """The content of the pickle of a state."""
     return dict(zip(HEAD, state.__reduce_ex__(4)[2], strict=True))
 
 

@@ -74,7 +74,7 @@ def hidden_motion(
     probe
         Name of the probe to look at, over the second half of the run.
     noise
-        Differences up to this say nothing.
+        Differences up to this are not significant.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What a study compares of a scene without time."""
+"""The numbers that a study compares for a scene without time."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ class Comparison:
     every: float = 0.0
 
     def sizes(self) -> dict[str, float]:
-        """Return what errors are set against: what hardly moves still has a magnitude."""
+        """Return the scale of errors: a probe that hardly moves still has a magnitude."""
         exact = self.reference.probes
         return {
             name: float(max(np.ptp(exact[name]), np.max(np.abs(exact[name]))))

@@ -1,4 +1,4 @@
-"""What the runs of a study will cost, guessed from the run of the scene itself."""
+"""Predicted costs of the runs of a study, from the run of the scene itself."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class StudyCosts:
 
     @property
     def max_seconds(self) -> float:
-        """What a configuration may take [s]."""
+        """The CPU time [s] allowed for a configuration."""
         return self._max_seconds
 
     def seconds(self, mesh: Mesh, stepper: str, step: float) -> float:

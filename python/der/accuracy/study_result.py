@@ -1,4 +1,4 @@
-"""What a study of cost against error has found."""
+"""The result of a study of cost against error."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _USEFUL = 0.2
 
 @dataclass(frozen=True)
 class Study:
-    """What `der.study` has found: cost against error.
+    """The result of `der.study`: cost against error.
 
     Attributes
     ----------
@@ -94,7 +94,7 @@ class Study:
         return lines
 
     def is_exact(self, probe: str) -> bool:
-        """Whether no configuration that came to its end has an error that is more than rounding."""
+        """Whether no completed configuration has an error larger than rounding."""
         errors = [row.claimed_error for row in self.of(probe) if row.completed]
         return bool(errors) and max(errors) <= self._noise(probe)
 

@@ -12,7 +12,7 @@ from der.accuracy.verified_value import VerifiedValue
 
 @dataclass(frozen=True)
 class Verification:
-    """What `der.verify` found out about a scene.
+    """The result of `der.verify` for a scene.
 
     Attributes
     ----------

@@ -36,7 +36,7 @@ Key = tuple[Axis, int]
 
 @dataclass
 class VerificationRuns:
-    """What was run.
+    """The runs of a verification, and notes on them.
 
     Attributes
     ----------

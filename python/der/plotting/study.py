@@ -1,4 +1,4 @@
-"""The picture of a study: what an error costs, and where it comes from."""
+"""The picture of a study: cost against error, and the sources of the error."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def _looks(rows: Sequence[StudyRow]) -> list[tuple[str, ColorType, str]]:
 
 
 def _frontier(rows: Sequence[StudyRow]) -> list[StudyRow]:
-    """Return the rows that no cheaper one is as accurate as, cheapest first."""
+    """Return the rows on the Pareto front of cost and error, cheapest first."""
     best: list[StudyRow] = []
     for row in sorted(rows, key=lambda row: (row.cpu_seconds, row.claimed_error)):
         if not best or row.claimed_error < best[-1].claimed_error:

@@ -138,7 +138,7 @@ void bind_recording(py::module_& module) {
                              "Node velocities [m/s], shape (frames, nodes, dim).")
       .def_property_readonly("energies", &energy_columns, "Energies [J] by name, shape (frames,).")
       .def_property_readonly("work", &work_columns,
-                             "The energy at the start and the works done since [J] by name, "
+                             "Works done and energy lost since the start [J] by name, "
                              "shape (frames,).")
       .def_property_readonly("probes", &probe_columns, "Probes by name, shape (frames,).")
       .def_property_readonly(

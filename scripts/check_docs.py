@@ -2,7 +2,7 @@
 
 Usage: ``python scripts/check_docs.py [PAGE...]`` (default: all pages). The blocks of a page run one
 after the other in a temporary folder that holds links to the folders of the checkout; pages run
-side by side. What happens to a block:
+side by side. A block is treated as follows:
 
 - ``sh``: run by bash with the environment's programs first on the PATH;
 - ``python``: run in one interpreter for the page, so that later blocks know the names of earlier

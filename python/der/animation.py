@@ -63,7 +63,7 @@ def animate(
     Parameters
     ----------
     result
-        What ``der.run`` or ``der.open_run`` returned.
+        A result of ``der.run`` or ``der.open_run``.
     path
         File to write; its ending tells the format: ``.gif``, or ``.mp4``, which requires the
         package imageio-ffmpeg.

@@ -23,7 +23,7 @@ class Diagnostic:
     path
         The key path, such as ``rods.beam.nodes``.
     message
-        What is wrong and, where one is near, the key that was meant.
+        A sentence that says what is wrong and, if one is close, suggests the intended key.
     """
 
     line: int
@@ -40,7 +40,7 @@ class DerError(RuntimeError):
     status
         Short machine-readable name, the same as ``status`` in ``summary.json``.
     result
-        What a failed run had recorded up to its last good step; None outside of runs.
+        The data that a failed run recorded up to its last good step; None outside of runs.
     """
 
     def __init__(self, message: str, status: str = "error") -> None:

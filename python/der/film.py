@@ -40,9 +40,9 @@ class Film:
     Attributes
     ----------
     positions
-        Of all nodes [m], shape (frames, nodes, dim).
+        Positions of all nodes [m], shape (frames, nodes, dim).
     captions
-        What to write beside each frame; empty where `times` say it all.
+        The text beside each frame; empty if `times` are enough.
     chapters
         Parts of the film, in order, without gaps; at least one.
     times

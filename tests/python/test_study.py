@@ -275,7 +275,7 @@ def test_runs_that_would_take_too_long_are_skipped_by_name(sagging):
     found = der.study(sagging, nodes=[11], steps=[0.01], steppers=["tr_bdf2"], max_seconds=1e-9)
     assert [row.status for row in found.rows] == ["skipped"]
     assert any("tr_bdf2: skipped" in note for note in found.notes)
-    assert found.advice() == ["sag: no configuration of this study comes near: refine more"]
+    assert found.advice() == ["sag: no configuration of this study is close enough: refine more"]
     found.plot()  # with nothing to draw
 
 

@@ -82,7 +82,7 @@ class ErrorEstimate:
     expected_order
         Order that the method has for smooth solutions.
     verdict
-        What was found out; see `Verdict`.
+        See `Verdict`.
     """
 
     correction: float

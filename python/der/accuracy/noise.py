@@ -22,7 +22,7 @@ def noise_floor(model: Model, unit: str, step: float, largest: float) -> float:
     model
         Its rods give the natural sizes: length L, bending moment EI/L, and so on.
     unit
-        Of the probe.
+        Unit of the probe.
     step
         Shortest time step [s]; infinite for a static scene.
     largest

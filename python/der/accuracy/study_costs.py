@@ -23,9 +23,9 @@ class StudyCosts:
     base
         The run of the scene as written.
     cpu_seconds
-        What it took [s]: the unit of weights, in which it weighs 1.
+        CPU time of the scene itself [s]: the unit of weights.
     max_seconds
-        What a configuration may take [s].
+        CPU time allowed for a configuration [s].
     """
 
     def __init__(self, base: Result, cpu_seconds: float, max_seconds: float) -> None:
@@ -81,7 +81,7 @@ class StudyCosts:
         steps
             Longest first [s].
         nodes
-            Of the finest mesh of the reference.
+            Number of nodes of the finest mesh of the reference.
         """
         kept = list(steps)
         per_step = self._seconds_per_step * nodes * self._base.scenario.duration

@@ -53,13 +53,13 @@ def reference_tasks(
     meshes
         Scenes by any key.
     stepper
-        Of the references; None for static scenes.
+        Stepper of the references; None for static scenes.
     step
-        Of the coarsest level [s]; two more halve it.
+        Step of the coarsest level [s]; two more levels halve it.
     every
         Between frames [s].
     cost_per_node
-        Of the coarsest level, over the number of nodes, in the unit of `Task.weight`.
+        Cost of the coarsest level, over the number of nodes, in the unit of `Task.weight`.
     """
     tasks = {}
     for mesh, scenario in meshes.items():

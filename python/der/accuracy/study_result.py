@@ -35,7 +35,7 @@ class Study:
         By probe, what errors are set against: what it goes through in the reference, largest less
         smallest value, or its largest magnitude if that is more.
     notes
-        What the reader should know: what could not be varied, what was skipped.
+        Notes for the reader, such as what could not be varied and what was skipped.
     noise
         By probe, what rounding leaves: an error of this or less is none.
     """
@@ -90,7 +90,9 @@ class Study:
             if not wanted and self.is_exact(probe):
                 lines.append(f"{probe}: exact in every configuration")
             elif not wanted:
-                lines.append(f"{probe}: no configuration of this study comes near: refine more")
+                lines.append(
+                    f"{probe}: no configuration of this study is close enough: refine more"
+                )
         return lines
 
     def is_exact(self, probe: str) -> bool:

@@ -35,7 +35,7 @@ class VerifiedValue:
         Bar of the rest: Newton's tolerance, measured with a tolerance a thousand times tighter, and
         rounding.
     solver_correction
-        What the tighter tolerance changed.
+        Change of the value under the tighter tolerance.
     negligible
         Parts of the error up to this are exempt from the order check.
     """

@@ -24,14 +24,14 @@ _MARGIN = 0.08  # of logarithmic axes [decades]
 def plot_study(title: str, probes: Sequence[Sequence[StudyRow]]) -> Figure:
     """Draw, for each probe, cost against error, error in time against the step, and in space.
 
-    The grey band holds errors below that of the reference, of which nothing is known. Of the
-    configurations of a stepper only those are joined that nothing cheaper is as good as; the others
-    are small dots. A static scene has no panel for time.
+    The grey band holds errors below that of the reference, which cannot be measured. Lines
+    trace the Pareto front of each stepper; other configurations are small dots. A static scene has
+    no panel for time.
 
     Parameters
     ----------
     title
-        Of the figure.
+        Title of the figure.
     probes
         For each probe its rows, one for each configuration.
 

@@ -36,7 +36,7 @@ class Table:
     Attributes
     ----------
     caption
-        What the table shows.
+        A description of the table.
     columns
         Heads of the columns.
     align
@@ -58,11 +58,11 @@ class Picture:
     Attributes
     ----------
     name
-        Of the file, without its ending.
+        Name of the file, without its ending.
     title
         A few words, such as ``Figure 3``; what it answers may follow in brackets.
     caption
-        What is to be seen.
+        A description of the picture.
     alt
         For those who cannot see it.
     draw

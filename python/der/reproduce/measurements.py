@@ -123,7 +123,7 @@ class Measurements:
     runs
         Results by name.
     bars
-        What `der.verify` says of the scenes of some of them.
+        Error bars by `der.verify` for the scenes of some of them.
     speeds_by_nodes, speeds_by_step
         Speed of the middle sphere after 50 s [m/s], downward, by number of nodes or step [s], and
         density of the fluid [kg/m^3].

@@ -1,4 +1,4 @@
-"""What an error costs in der, Exudyn, MuJoCo and PyElastica: a swinging rod, in one run.
+"""Cost against error in der, Exudyn, MuJoCo and PyElastica: a swinging rod, in one run.
 
     pip install .[peers]
     python benchmarks/peers.py [--peers der exudyn ...] [--quick] [--csv FILE] [--plot FILE]

@@ -1,4 +1,4 @@
-"""What a loop of `simulation.step()` in Python costs over the same steps in one C++ call.
+"""Overhead of a loop of `simulation.step()` in Python over the same steps in one C++ call.
 
     python benchmarks/python_overhead.py [SCENE]
 

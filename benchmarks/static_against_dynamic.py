@@ -1,10 +1,10 @@
-"""What one static solve costs, against letting the beam come to rest in a run over time.
+"""Cost of one static solve, against a run over time in which the beam comes to rest.
 
     python benchmarks/static_against_dynamic.py
 
 The tube of configs/simply_supported.yaml at 2 kN and 20 kN: the answer with the error bars of
-`der.verify`, the time of a static solve from the drawn shape, and the time of runs over time until
-the deflection stays within the error bar of the static one. A run with implicit Euler's method and
+`der.verify`, the time of a static solve from the undeformed shape, and that of runs until the
+deflection stays within the error bar of the static one. A run with implicit Euler's method and
 a long step is itself a kind of static solver. The line `as a run` is what a person does who wants
 to see motion: steps of 1 ms, and a damping that stops the beam soon. Times are the best of several,
 in CPU time, without building the model.
@@ -101,7 +101,7 @@ def report(label: str, name: str) -> float:
 
 
 def timed(words: str, scene: der.Scenario, target: float, error: float) -> dict[str, float]:
-    """Print what a run to rest costs; its CPU seconds by its name, or nothing if there is none."""
+    """Print the cost of a run to rest; return its CPU seconds by its name, or nothing if none."""
     found = time_of_run(scene, target, error)
     if found is None:
         print(f"  {words:22s}   not at rest after {MOST_STEPS} steps")

@@ -15,7 +15,7 @@ inline Array live_view(Vector& data, Index columns, py::handle owner) {
   return Array({data.size() / columns, Eigen::Index{columns}}, data.data(), owner);
 }
 
-/// As above, but read-only.
+/// A read-only (rows x columns) array over memory that `owner` keeps alive.
 inline Array read_only_view(const Vector& data, Index columns, py::handle owner) {
   Array view({data.size() / columns, Eigen::Index{columns}}, data.data(), owner);
   view.attr("setflags")(false);

@@ -53,7 +53,7 @@ void ForceFunctions::apply(const Model& model, State& state, py::handle owner) {
     sum_ += as_nodal_force(force, function, model);
   }
   if (!sum_.allFinite()) {
-    throw py::value_error("a force function returned a value that is no finite number at t = " +
+    throw py::value_error("a force function returned a value that is not finite at t = " +
                           py::str(py::float_(state.time)).cast<std::string>() + " s");
   }
   without_ = state.extra_force;

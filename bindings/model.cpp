@@ -108,7 +108,7 @@ void bind_spring(py::module_& module) {
 void bind_model(py::module_& module) {
   bind_rod(module);
   bind_spring(module);
-  py::class_<Model>(module, "Model", "What stays constant in a run.")
+  py::class_<Model>(module, "Model", "The data that stay constant in a run.")
       .def(py::init([](const Scenario& scenario) { return build_model(scenario.scene()); }),
            py::arg("scenario"), "Raises SceneError or DerError where no model can be built.")
       .def_readonly("name", &Model::name, "Name of the model, such as planar.")

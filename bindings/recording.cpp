@@ -116,7 +116,7 @@ std::unique_ptr<RunRecording> record(const py::object& self,
 
 void bind_recording(py::module_& module) {
   py::class_<Recording>(module, "Recording",
-                        "What a run recorded, as the engine hands it over; der.Result is made of "
+                        "The recorded data of a run, from the engine; der.Result is made of "
                         "it.")
       .def_property_readonly(
           "times",
@@ -138,15 +138,15 @@ void bind_recording(py::module_& module) {
                              "Node velocities [m/s], shape (frames, nodes, dim).")
       .def_property_readonly("energies", &energy_columns, "Energies [J] by name, shape (frames,).")
       .def_property_readonly("work", &work_columns,
-                             "What has gone in and out of the energy since the start [J] by name, "
+                             "Works done and energy lost since the start [J] by name, "
                              "shape (frames,).")
       .def_property_readonly("probes", &probe_columns, "Probes by name, shape (frames,).")
       .def_property_readonly(
           "data", &analysis_data,
-          "What an analysis found besides, by name; `array_units` has the units.")
+          "Further results of an analysis, by name; `array_units` has the units.")
       .def_property_readonly("probe_units", &probe_units, "SI units of the probes by name.");
   py::class_<RunRecording, Recording>(module, "RunRecording",
-                                      "What a run that has just been done recorded.")
+                                      "The recorded data of a run that has just ended.")
       .def_property_readonly(
           "status", [](const RunRecording& r) { return r.outcome.status; }, "How the run ended.")
       .def_property_readonly(

@@ -25,14 +25,14 @@ struct Recording {
   Index dimension = 0;
 };
 
-/// What a run that has just been done recorded, and how it ended.
+/// The recorded data of a run that has just ended, and how it ended.
 struct RunRecording : Recording {
   RunOutcome outcome;
   std::string doubt;  ///< why its result is unreliable; empty: it is not
   std::string summary_json;
 };
 
-/// What the file of a run holds.
+/// The content of a run file.
 struct FileRecording : Recording {
   std::string status;
   std::string scene;

@@ -34,7 +34,7 @@ std::vector<std::string> held_components(Index node, const Model& model) {
   return result;
 }
 
-/// That of the drawing where the rod has no stiffness that would take the clamp's moment.
+/// The initial angle of the clamp where the rod has no bending stiffness to carry its moment.
 double clamp_angle(const RodLayout& rod, Index place, const Replay& replay) {
   const Clamp* clamp = rod.clamp_at(place);
   return clamp == nullptr ? initial_tangent_angle(rod, place, replay.model())

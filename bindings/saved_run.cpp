@@ -102,7 +102,7 @@ void save(const std::filesystem::path& folder, const Scenario& scenario, const M
 }  // namespace
 
 void bind_saved_run(py::module_& module) {
-  py::class_<FileRecording, Recording>(module, "FileRecording", "What the file of a run holds.")
+  py::class_<FileRecording, Recording>(module, "FileRecording", "The content of a run file.")
       .def_readonly("status", &FileRecording::status,
                     "How the run ended; `running` while it goes on and after a kill.")
       .def_readonly("scene", &FileRecording::scene, "YAML text of the scene as run.");

@@ -116,7 +116,7 @@ void bind_facts(ScenarioClass& cls) {
             for (const std::string& warning : s.scene().warnings) warnings.append(warning);
             return py::tuple(warnings);
           },
-          "What can be run as it is, but is most likely not what was meant: sentences.")
+          "Warnings: parts of the scene that can be run but are probably not intended.")
       .def("to_yaml", &Scenario::to_yaml,
            "Return the scene as YAML text that reads back to the same scene.")
       .def(

@@ -20,7 +20,7 @@ namespace {
 constexpr const char* kKind = "der.State";
 
 [[noreturn]] void refuse(const std::string& why) {
-  throw py::value_error("this is no saved state of this version of der: " + why +
+  throw py::value_error("this is not a saved state of this version of der: " + why +
                         ". Save it anew with save_state");
 }
 
@@ -150,7 +150,7 @@ void bind_energies(py::module_& module) {
   }
   energies
       .def_property_readonly("elastic", &Energies::elastic,
-                             "What is stored in rods and spring supports [J].")
+                             "Energy stored in rods and spring supports [J].")
       .def_property_readonly("total", &Energies::total, "The sum of all [J].")
       .def("__repr__", [](const Energies& e) {
         std::string terms;

@@ -95,7 +95,7 @@ class Converter {
     std::optional<std::string> written = utf8_of(object);
     if (written) return scenario::make_scalar(std::move(*written));
     return refuse(path, "the text " + py::repr(object).cast<std::string>() +
-                            " holds half of a surrogate pair, which is no character");
+                            " holds half of a surrogate pair, which is not a character");
   }
 
   scenario::Value whole(const py::handle& object, const std::string& path) {

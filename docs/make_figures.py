@@ -48,7 +48,7 @@ SWING: dict[str, Any] = {
 
 TUBE = ("simply_supported.yaml", "deflection", "loads.0.point_force.force.1")
 ARM = ("cantilever.yaml", "tip_y", "loads.0.point_force.force.1")
-# What is drawn, its scene, probe and path of the load, the load, and the continuum's value: from
+# Name, scene, probe and path of the load, the load, and the value of the continuum: from
 # tests/validation/references/values.json.
 REFERENCES = [
     ("tube, 2 kN", *TUBE, -2000, -0.03771401492),
@@ -142,7 +142,7 @@ def tolerance() -> Figure:
     )
     for name, marker, colour in looks:
         errors = {}
-        # Of order 1, six digits would take a million steps.
+        # With a method of order 1, six digits would take a million steps.
         for value in asked[:3] if name == "implicit_euler" else asked:
             off = tips(tolerance=value, integrator=name) - exact
             errors[value] = np.linalg.norm(off, axis=1).max()
@@ -345,7 +345,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         symbols,
     )
 }
-# What writes its file itself, with its ending.
+# Figures whose function writes the file itself, with the ending of the file.
 FILES: dict[str, tuple[str, Callable[[Path], None]]] = {
     "swinging": (".gif", swinging),
     "view": (".png", view),

@@ -60,7 +60,7 @@ def import_graph() -> Graph:
     graph: Graph = {}
     for module, file in modules.items():
         for name in imported_names(file):
-            # What is imported from a module may be a module itself.
+            # A name that is imported from a module may be a module itself.
             target = name if name in modules else name.rpartition(".")[0]
             if target in modules and target != module:
                 graph.setdefault(module, set()).add(target)

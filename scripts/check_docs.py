@@ -2,7 +2,7 @@
 
 Usage: ``python scripts/check_docs.py [PAGE...]`` (default: all pages). The blocks of a page run one
 after the other in a temporary folder that holds links to the folders of the checkout; pages run
-side by side. What happens to a block:
+side by side. A block is treated as follows:
 
 - ``sh``: run by bash with the environment's programs first on the PATH;
 - ``python``: run in one interpreter for the page, so that later blocks know the names of earlier
@@ -34,7 +34,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parent.parent
 TIMEOUT_SECONDS = 600
 LANGUAGES = ("sh", "python", "yaml")
-# What a page may name, as seen from the root of the checkout.
+# The folders that a page may refer to, relative to the root of the checkout.
 LINKED = ("benchmarks", "configs", "docs", "tests")
 FENCE = re.compile(
     r"^(?P<indent> *)```(?P<language>\w+)[^\n]*\n(?P<code>.*?)^ *```\s*$",
@@ -44,7 +44,7 @@ MARK = re.compile(r"<!-- (?P<word>no-test|exit-code)(?:: (?P<value>[^>]*?))? -->
 SAVED_AS = re.compile(r"[Ss]ave (?:this|it) as `([\w.-]+)`[^`]*\Z")
 TOP_KEY = re.compile(r"^(\w+):", flags=re.MULTILINE)
 
-# What parts of scenes are tried on: their keys replace those of this scene.
+# The scene in which examples of parts of scenes are checked: their keys replace its own.
 BASE_SCENE = {
     "title": "title: A small cantilever\n",
     "rods": """rods:

@@ -22,7 +22,7 @@ from swing.problem import Config, Path2D
 
 
 class _Simulator(elastica.BaseSystemCollection, elastica.Constraints, elastica.Forcing):
-    """What PyElastica is asked to work out: systems, what holds them, and forces."""
+    """The simulation as PyElastica needs it: systems, constraints and forces."""
 
 
 def run(config: Config) -> tuple[float, Path2D]:

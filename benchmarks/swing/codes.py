@@ -12,7 +12,7 @@ from swing.problem import Config, Path2D
 
 
 class Adapter(Protocol):
-    """What a module ``code_*.py`` offers; ``limit`` only where a code solves another continuum."""
+    """Interface of a module ``code_*.py``; ``limit`` only if a code solves another continuum."""
 
     def run(self, config: Config) -> tuple[float, Path2D]:
         """Run one configuration; return CPU seconds of the time loop and the path of the tip."""

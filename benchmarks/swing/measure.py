@@ -31,7 +31,7 @@ LONG = 2.0
 
 @dataclass(frozen=True)
 class Point:
-    """What one configuration of a code came to."""
+    """The cost and the error of one configuration of a code."""
 
     code: str  # title of the code
     config: Config

@@ -1,4 +1,4 @@
-"""The swing: its numbers, the exact motion of the tip, and what a run of a code hands back."""
+"""The swing: its numbers, the exact motion of the tip, and the result of a run of a code."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ GRAVITY = 9.81  # [m/s^2], downwards (-y)
 AREA = math.pi * RADIUS**2  # [m^2]
 SECOND_MOMENT = math.pi / 4.0 * RADIUS**4  # [m^4]
 
-#: The tip is looked at 100 times after the start, every hundredth of a second.
+#: The tip is compared 100 times after the start, every hundredth of a second.
 FRAMES = 100
 FRAME_TIME = 0.01  # [s]
 
 REFERENCES = Path(__file__).resolve().parents[2] / "tests/validation/references/values.json"
 
-#: What is varied: names and values as an adapter understands them. All have ``elements``, and
-#: ``steps``, the number of time steps from one frame to the next.
+#: The varied parameters: names and values as an adapter understands them. All have ``elements``,
+#: and ``steps``, the number of time steps from one frame to the next.
 Config: TypeAlias = Mapping[str, str | int | float | bool]
 
 #: Tip positions x, y [m] at all frames and the start, shape (FRAMES + 1, 2).

@@ -1,4 +1,4 @@
-"""What was measured, as text: cheapest configurations, tables, CSV."""
+"""The measurements as text: cheapest configurations, tables, CSV."""
 
 from __future__ import annotations
 

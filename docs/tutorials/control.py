@@ -35,7 +35,7 @@ ARM: dict[str, Any] = {
             "material": {"youngs_modulus": 3e7, "density": 1000},
         }
     ],
-    # What is prescribed makes the clamp a motor: the program turns it.
+    # The prescribed angle makes the clamp a motor: the program turns it.
     "supports": [
         {"rod": "arm", "at": "start", "clamp": True, "prescribe": {"angle": 0}},
     ],
@@ -72,7 +72,7 @@ class PI:
 
 @dataclass(frozen=True)
 class Track:
-    """What a run did, one value for each step."""
+    """The recorded motion of a run, one value for each step."""
 
     times: NDArray[np.float64]  # s
     heights: NDArray[np.float64]  # m

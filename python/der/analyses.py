@@ -1,4 +1,4 @@
-"""What analyses find besides shapes: vibration modes, buckling modes, paths of equilibria."""
+"""Results of analyses besides shapes: vibration modes, buckling modes, paths of equilibria."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Modes:
 
 @dataclass(frozen=True, eq=False)
 class BucklingModes:
-    """Linear buckling, and what tells whether it applies.
+    """Linear buckling, with measures of whether it applies.
 
     Attributes
     ----------
@@ -47,7 +47,7 @@ class BucklingModes:
     rotations
         Largest rotation [rad] of an edge that the loads have caused at each factor, by linear
         theory, shape (modes,). Where it is not small, the structure bends before it buckles and
-        the factor may be far off: follow the path with `der.continuation`.
+        the factor may be inaccurate: follow the path with `der.continuation`.
     strains
         Largest strain of an edge likewise, shape (modes,).
     """

@@ -63,7 +63,7 @@ def animate(
     Parameters
     ----------
     result
-        What ``der.run`` or ``der.open_run`` returned.
+        A result of ``der.run`` or ``der.open_run``.
     path
         File to write; its ending tells the format: ``.gif``, or ``.mp4``, which requires the
         package imageio-ffmpeg.
@@ -186,7 +186,7 @@ def _draw(result: RunData, cut: _Cut, progress: ProgressFunction | None) -> Iter
         assert figure is not None
         canvas: Any = FigureCanvasAgg(figure)  # matplotlib leaves its methods without types
         canvas.draw()
-        # What does not change is drawn once.
+        # The parts that do not change are drawn once.
         background = canvas.copy_from_bbox(figure.bbox)
         fixed = set(axes.get_children())
         elastic = springs(result.scenario)

@@ -23,7 +23,7 @@ class Diagnostic:
     path
         The key path, such as ``rods.beam.nodes``.
     message
-        What is wrong and, where one is near, the key that was meant.
+        A sentence that says what is wrong and, if one is close, suggests the intended key.
     """
 
     line: int
@@ -40,7 +40,7 @@ class DerError(RuntimeError):
     status
         Short machine-readable name, the same as ``status`` in ``summary.json``.
     result
-        What a failed run had recorded up to its last good step; None outside of runs.
+        The data that a failed run recorded up to its last good step; None outside of runs.
     """
 
     def __init__(self, message: str, status: str = "error") -> None:
@@ -50,11 +50,11 @@ class DerError(RuntimeError):
 
 
 class DerWarning(UserWarning):
-    """What can be run as it is, but is most likely not what was meant."""
+    """A warning: der can run this, but it is probably not intended."""
 
 
 class UnreliableResultWarning(DerWarning):
-    """The time stepping has created energy that is no longer small against what the run exchanges.
+    """The integrator has created energy that is not small against the energy exchanged in the run.
 
     The run goes on: the message says since when the result is unreliable, and what to try.
     """
@@ -90,9 +90,9 @@ class NotConvergedError(DerError):
     """Newton's method found no solution, even with the smallest allowed time step.
 
     In statics, no equilibrium was found; ``status`` says why: ``not_held`` (a load moves the
-    structure as a rigid body), ``unbounded`` (it moves on without end), ``collapsed`` (a part is
-    pressed to a point), ``folded`` (folded back on itself: too coarse a mesh), ``too_fine`` (a mesh
-    beyond double precision) or ``not_converged``.
+    structure as a rigid body), ``unbounded`` (it moves without end), ``collapsed`` (a part is
+    compressed to zero length), ``folded`` (folded back on itself: too coarse a mesh), ``too_fine``
+    (too many nodes for double precision) or ``not_converged``.
     """
 
     def __init__(self, message: str, status: str = "not_converged") -> None:

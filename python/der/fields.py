@@ -42,14 +42,14 @@ FIELDS = _exported()
 
 @dataclass(frozen=True, eq=False)
 class RodFields:
-    """What varies along one rod, at every frame.
+    """The quantities along one rod, at every frame.
 
     Attributes
     ----------
     rod
         The rod.
     positions, velocities
-        Of its nodes [m], [m/s], shape (frames, nodes of the rod, dim).
+        Positions [m] and velocities [m/s] of its nodes, shape (frames, nodes of the rod, dim).
     at_nodes
         Each quantity of `FIELDS` by name, in its SI unit, shape (frames, nodes of the rod), as its
         probes have it; where it jumps at a node, the value after it. Without bending stiffness

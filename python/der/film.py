@@ -1,4 +1,4 @@
-"""What a result looks like from frame to frame, whatever the analysis: for animations and views."""
+"""The frames of a result, whatever the analysis, as animations and views show them."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ class Film:
     Attributes
     ----------
     positions
-        Of all nodes [m], shape (frames, nodes, dim).
+        Positions of all nodes [m], shape (frames, nodes, dim).
     captions
-        What to write beside each frame; empty where `times` say it all.
+        The text beside each frame; empty if `times` are enough.
     chapters
         Parts of the film, in order, without gaps; at least one.
     times

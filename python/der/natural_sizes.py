@@ -16,7 +16,7 @@ def natural_size(rods: Sequence[Rod], unit: str, time: float) -> float:
         The longest gives the length L and the curvature 1/L; the stiffest the moment, and the
         energy, EI/L and the axial force EA. Angles and strains have the size 1.
     unit
-        Of the quantities, in SI.
+        SI unit of the quantities.
     time
         Within which a length is travelled, for velocities [s].
     """

@@ -1,4 +1,4 @@
-"""Output files and folders of a command line: looked at before the work, not after it."""
+"""Output files and folders of a command line: checked before the work, not after it."""
 
 from __future__ import annotations
 

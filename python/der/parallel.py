@@ -20,7 +20,7 @@ from der.progress import ProgressFunction
 from der.result import Result
 from der.simulation import Simulation
 
-#: Status of a run that was broken off.
+#: Status of a run that was cancelled.
 TOO_LONG = "too_long"
 
 Key = TypeVar("Key", bound=Hashable)
@@ -33,16 +33,16 @@ class Task:
     Attributes
     ----------
     scenarios
-        What to run; the second is run if the first fails, and so on.
+        The scenarios to try: the second is run if the first fails, and so on.
     weight
-        What it will cost, in any unit: the costly ones are started first.
+        Predicted cost, in any unit: the costly tasks are started first.
     repeats
         How many times to run it, to measure its cost.
     keep_motion
         Whether positions and velocities are wanted, which take most of the memory; without them
         those of the result are empty.
     max_seconds
-        CPU time after which a run is broken off and counts as failed, with the status ``too_long``.
+        CPU time after which a run is cancelled and counts as failed, with the status ``too_long``.
     start
         Positions of the nodes to start from [m], shape (nodes, dim); None: as the scene says.
     """
@@ -62,7 +62,7 @@ class Outcome:
     Attributes
     ----------
     result
-        What it recorded; of a failed run up to its last good step, None if it did not start.
+        The recorded data, of a failed run up to its last good step; None if it did not start.
     error
         Why it failed; None if it did not.
     cpu_seconds
@@ -114,7 +114,7 @@ class Workers:
         Parameters
         ----------
         weight
-            Of the tasks that are run next.
+            Weight of the tasks that are run next.
         later
             A guess of what will be announced after them; it holds until the next call.
         """
@@ -127,7 +127,7 @@ class Workers:
         Parameters
         ----------
         tasks
-            What to run. All of it is to be announced with `expect` first, or the progress is ahead
+            The tasks to run. All must be announced with `expect` first, or the progress is ahead
             of the work; a task of weight 0 needs no announcement.
         jobs
             In place of that of the constructor: 1 to measure costs undisturbed.

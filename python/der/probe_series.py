@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 
 class ProbeSeries(np.ndarray[Any, np.dtype[np.float64]]):
-    """A probe at the saved times: an array, shape (frames,), that knows its unit.
+    """A probe at the saved times: an array, shape (frames,), with its unit.
 
     Slices keep the unit; whatever is computed from it is a plain array, since its unit is another.
 

@@ -27,7 +27,7 @@ class ProgressLine:
         self._label = ""
 
     def label(self, text: str) -> None:
-        """Name what goes on, beside the percentage."""
+        """Show the name of the current stage beside the percentage."""
         self._label = f"  {text}"
 
     def __call__(self, done: float) -> None:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Result(RunData):
-    """What a run recorded, with ways to draw it, write it and view it."""
+    """The recorded data of a run, with methods to draw, write and view them."""
 
     def plot(
         self,

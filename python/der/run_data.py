@@ -23,7 +23,7 @@ from der.probe_series import ProbeSeries
 
 @dataclass(frozen=True, eq=False)
 class RunData:
-    """What a run recorded: its saved frames, probes and summary.
+    """The recorded data of a run: its saved frames, probes and summary.
 
     Whatever reads a run takes this: drawings, exports, the run folder. `Result` adds ways to call
     these.
@@ -44,13 +44,13 @@ class RunData:
         Energies [J] by name (``kinetic``, ``stretch``, ``bend``, ``spring``, ``gravity``), each of
         shape (frames,).
     work
-        What has gone in and out of the energy since the start [J] by name, each of shape (frames,):
+        Works done and energy lost since the start [J] by name, each of shape (frames,):
         work of the ``loads`` (but for weight), of moving ``supports`` and of the ``solver``'s
         residual went in; ``drag`` and the ``numerical`` loss of the time stepping went out.
     probes
         Probes by name, each an array of shape (frames,) with its ``unit`` and ``summary``.
     summary
-        What ``summary.json`` of a run folder says: status, model, solver, costs, probes.
+        The content of ``summary.json`` of a run folder: status, model, solver, costs, probes.
     data
         Arrays that an analysis found besides, by name, as in ``results.h5``; `modes`, `buckling`
         and `path` make objects of them.
@@ -95,7 +95,7 @@ class RunData:
 
     @cached_property
     def model(self) -> Model:
-        """What stayed constant in the run."""
+        """The data that stay constant in the run."""
         return Model(self.scenario)
 
     @property

@@ -1,4 +1,4 @@
-"""What acts on the rods at a frame, in numbers and arc lengths, for drawings."""
+"""The loads on the rods at a frame, in numbers and arc lengths, for drawings."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ class _Collected:
         return [PointLoad(rod.name, at, value) for at in places]
 
 
-#: Every kind of load with what collects it for a drawing; None: it has no symbol.
+#: Every kind of load with the function that collects it for a drawing; None: it has no symbol.
 _COLLECTORS: dict[str, Callable[[_Collected, Any, float], None] | None] = {
     "gravity": _Collected.add_gravity,
     "fluid": None,

@@ -29,7 +29,7 @@ def name(page):
 
 
 def anchors(page):
-    """What a link may name after its #: headings as GitHub numbers them, and explicit ids."""
+    """The valid anchors of a page: headings as GitHub numbers them, and explicit ids."""
     text = FENCED.sub("", page.read_text(encoding="utf-8"))
     found = set(re.findall(r'<a id="([^"]+)">', text))
     for heading in re.findall(r"^#+ (.+)$", text, flags=re.MULTILINE):

@@ -29,7 +29,7 @@ def result(spheres):
 
 
 def lines_of(axes):
-    """What is drawn with a line; the symbols of supports and loads are not."""
+    """The artists that are drawn as lines; the symbols of supports and loads are not."""
     return [line for line in axes.lines if line.get_linestyle() != "None"]
 
 

@@ -1,4 +1,4 @@
-"""What der reproduce is made of: its content in HTML and Markdown, exact solutions, its folder.
+"""The parts of der reproduce: its content in HTML and Markdown, exact solutions, its folder.
 
 The whole command is run by tests/validation/test_reproduction.py.
 """

@@ -337,7 +337,7 @@ def test_a_callback_can_move_supports(turning):
         simulation.prescribe(0, y=simulation.time)
 
     result = turning.run(rise)
-    # What is set after a step is reached at the end of the next one.
+    # A value that is set after a step is reached at the end of the next one.
     assert result.positions[-1, 0, 1] == pytest.approx(result.times[-1] - turning.time_step)
 
 

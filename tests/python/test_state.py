@@ -1,4 +1,4 @@
-"""What throws leaves the state as it was; what is restored fits, or is refused."""
+"""A call that raises leaves the state as it was; a state that does not fit is not restored."""
 
 import copy
 import math
@@ -75,7 +75,7 @@ def nothing(simulation):
     pass
 
 
-# Of each public call the ways in which it can fail: what makes it fail, and the call.
+# The ways in which each public call can fail: the preparation that makes it fail, and the call.
 FAILURES = {
     "step": [
         (far, lambda s: s.step()),
@@ -234,7 +234,7 @@ HEAD = ("kind", "version", "dimension", "fields")
 
 
 def content_of(state):
-    """What a state puts into a pickle."""
+    """The content of the pickle of a state."""
     return dict(zip(HEAD, state.__reduce_ex__(4)[2], strict=True))
 
 
@@ -333,7 +333,7 @@ def test_pickles_of_other_versions_are_refused_by_name(moving):
     # Version 1 had its parts one behind the other; before it there was no version.
     with pytest.raises(ValueError, match="it is of version 1"):
         revived(state, (content[0], 1, 2, 0.5, 3, *content))
-    with pytest.raises(ValueError, match="no saved state of this version of der"):
+    with pytest.raises(ValueError, match="not a saved state of this version of der"):
         revived(state, (2, 0.5, 3))
 
 

@@ -275,7 +275,7 @@ def test_runs_that_would_take_too_long_are_skipped_by_name(sagging):
     found = der.study(sagging, nodes=[11], steps=[0.01], steppers=["tr_bdf2"], max_seconds=1e-9)
     assert [row.status for row in found.rows] == ["skipped"]
     assert any("tr_bdf2: skipped" in note for note in found.notes)
-    assert found.advice() == ["sag: no configuration of this study comes near: refine more"]
+    assert found.advice() == ["sag: no configuration of this study is close enough: refine more"]
     found.plot()  # with nothing to draw
 
 
@@ -342,7 +342,7 @@ def test_default_steps_reach_the_frames_of_the_scene(sagging):
 
 
 def test_errors_are_those_at_the_frames_of_an_advised_run(sagging):
-    """What is claimed holds at every frame that a run of the configuration can save."""
+    """The claimed errors hold at every frame that a run of the configuration can save."""
     sagging["time"] |= {"duration": 0.31, "step": 0.004}  # 0.31 s is not a multiple of 20 ms
     sagging["output"]["every"] = 0.02
     steps = [0.02, 0.015, 0.01, 0.005]
@@ -377,7 +377,7 @@ def test_default_meshes_leave_out_what_the_scene_cannot_take(tube):
     assert [mesh.nodes for mesh in meshes] == [21, 41, 81]
 
 
-# What the numbers say.
+# Conclusions from the numbers.
 
 
 def row(nodes, cpu_seconds, error, space=0.0, time=0.0, reference=1e-9):

@@ -174,7 +174,7 @@ def test_parabola_top():
 
 def test_extremes_between_few_frames_are_found_from_all_steps():
     """A sine of period 1 in steps of 1/32, of which every third is a frame: the highest step is up
-    to (pi/32)^2 / 2 = 4.8e-3 below the top. What the parabola leaves is of third order."""
+    to (pi/32)^2 / 2 = 4.8e-3 below the top. The error of the parabola is of third order."""
     raw, found = [], []
     for start in np.linspace(0.0, 1 / 32, 9):
         steps = start + np.arange(33) / 32

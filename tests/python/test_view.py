@@ -483,7 +483,7 @@ def test_browser_draws_loads_and_supports(browser, tube, tmp_path):
 
 
 def labels(browser):
-    """What stands in the scene besides ticks: text by text where it is on the screen [pixels]."""
+    """Places on the screen [pixels] of the texts in the scene besides ticks, by text."""
     return browser.execute_script(
         "const found = {};"
         "for (const one of document.querySelectorAll('#scene .annotation-text, #scene text')) {"

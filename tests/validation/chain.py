@@ -31,7 +31,7 @@ class Chain:
     force: Array  # (nodes, 2), at load 1
 
     def gradient(self, x: Array) -> Array:
-        """Of the elastic energy, shape (..., dofs); `x` of shape (..., nodes, 2), or complex."""
+        """Gradient of the elastic energy, shape (..., dofs), at `x` (..., nodes, 2), or complex."""
         rest = np.diff(self.points, axis=0)
         rest_length = np.hypot(*rest.T)
         edge = np.diff(x, axis=-2)

@@ -1,4 +1,4 @@
-"""What the validation tests share: reference numbers, scenes of configs/, fitted orders."""
+"""Shared parts of the validation tests: reference numbers, scenes of configs/, fitted orders."""
 
 import json
 from collections.abc import Callable, Sequence

@@ -42,7 +42,7 @@ def test_the_error_follows_the_tolerance_in_a_straight_line(exact, fitted_order)
 
 @pytest.mark.parametrize("integrator", IMPLICIT)
 def test_errors_of_every_implicit_stepper_follow_the_tolerance(exact, integrator):
-    """The estimate of sdirk4 reckons with order 2, in stiff parts: elsewhere errors fall faster."""
+    """The estimate of sdirk4 assumes order 2 in stiff parts: in other parts errors fall faster."""
     asked = TOLERANCES[:3] if integrator == "implicit_euler" else TOLERANCES  # it takes too long
     errors = [error(der.run(swing(tolerance=t, integrator=integrator)), exact) for t in asked]
     assert all(e <= t for e, t in zip(errors, asked, strict=True))

@@ -1,7 +1,7 @@
 """The energy ledger: what goes in, what goes out, and what the time stepping makes of it.
 
 References: `CrossCheck` below, which integrates powers over recorded positions and velocities with
-formulas of its own and knows nothing of the steppers; exact works of constant forces.
+formulas of its own, independent of the steppers; exact works of constant forces.
 """
 
 import copy
@@ -109,7 +109,7 @@ class CrossCheck:
         return np.where(self.times[1:] < KINK + 1e-9, *SPEEDS)
 
     def supports(self):
-        """What the rod, drag and inertia take, the slope of the energy by a complex step."""
+        """Work of the supports on rod, drag and inertia, the gradient by a complex step."""
         moved = self.x.astype(complex)
         moved[:, 0, 1] += 1e-30j
         reaction = self.potential(moved).imag / 1e-30

@@ -46,7 +46,7 @@ SOFT_ARMS = [(21, 1e4, 0.05), (41, 1e4, 0.05), (41, 2e4, 0.025), (81, 5e4, 0.05)
 @pytest.mark.parametrize("integrator", EXPLICIT)
 @pytest.mark.parametrize(("nodes", "modulus", "radius"), SOFT_ARMS)
 def test_automatic_steps_follow_the_stable_step(nodes, modulus, radius, integrator, curvature):
-    """With the limit of the start alone, these make up to a thousand times the energy at hand."""
+    """With the limit of the start alone, these create up to a thousand times their energy."""
     scene = soft_arm(nodes, modulus, radius, curvature, integrator=integrator)
     result = der.run(scene)
     assert energy_made(result) < (0.02 if integrator == "verlet" else 0.05)
@@ -187,7 +187,7 @@ def squeezed(tmp_path, factor, **time):
 
 
 def test_the_first_step_is_judged_where_the_run_starts(tmp_path):
-    """A rod pressed to 0.6 of its length bends more stiffly than as it is drawn."""
+    """A rod compressed to 0.6 of its length bends more stiffly than the undeformed one."""
     drawn = der.Simulation(soft_arm(21, 5e4)).time_step
     step = 0.05 / np.ceil(0.05 / drawn)
     with pytest.raises(der.DerError, match="above the stable step of verlet"):

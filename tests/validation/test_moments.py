@@ -69,13 +69,13 @@ def pinned(s, a=None, turning=None, P=1.0, M=1.0):
 
 
 def slope(s, a):
-    """Of a pinned beam at s under a unit force down at a > s."""
+    """Slope of a pinned beam at s under a unit force down at a > s."""
     b = 1 - a
     return -b * (1 - b**2 - 3 * s**2) / 6
 
 
 def with_spring(place, a, k, M):
-    """What spring and load of M together turn a pinned beam with there, and how far it turns."""
+    """Moment of spring and load M together on a pinned beam, and the rotation, at `place`."""
     X = (M - k * slope(place, a)) / (1 + k * (place**3 + (1 - place) ** 3) / 3)
     return X, (M - X) / k
 

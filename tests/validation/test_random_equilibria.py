@@ -51,9 +51,9 @@ def test_nearly_all_are_found(outcomes, record_property):
 
 
 def thrust_on_its_only_clamp(scene):
-    """What dead forces press the clamp of a cantilever with, over EA; 0 for any other scene.
+    """Compression of the clamp of a cantilever by dead forces, over EA; 0 for any other scene.
 
-    An edge bears EA at the most, at a strain of -1. Beyond that there is no equilibrium.
+    An edge can carry at most EA, at a strain of -1. Beyond that there is no equilibrium.
     """
     if scene["supports"] != [{"rod": "rod", "at": "start", "clamp": True}]:
         return 0.0

@@ -64,7 +64,7 @@ VERIFIED = {
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """What the command of docs/reproduce.md writes."""
+    """The folder that the command of docs/reproduce.md writes."""
     page = (ROOT / "docs/reproduce.md").read_text(encoding="utf-8")
     program, *arguments = shlex.split(re.findall(r"^```sh\n(.*?)^```", page, re.S | re.M)[0])
     assert program == "der"

@@ -36,7 +36,7 @@ def deflection(n, supports, loads, at):
 
 
 def check_second_order(found, exact, fitted_order):
-    """Order 2, and no error of order 2 that is worth mentioning against the answer."""
+    """Order 2, and an error of order 2 that is negligible against the answer."""
     errors = np.abs(np.array(found) / exact - 1)
     assert errors[-1] < 2e-3
     if errors.max() > 1e-6:  # else it is exact but for the large deflection and the stretching
@@ -142,7 +142,7 @@ def test_two_springs_at_one_place_add_up():
 
 @pytest.mark.parametrize("end", ["start", "end"])
 def test_a_naturally_curved_rod_keeps_the_direction_of_its_spring(fitted_order, end):
-    """Nothing is stressed: an arc that starts in the drawn direction, however soft the spring."""
+    """Nothing is stressed: an arc that starts in the initial direction, however soft the spring."""
     errors = []
     for n in SIZES:
         scene = straight(n, "free-free", 1e9)

@@ -96,7 +96,7 @@ std::string model_lines(const Simulation& simulation, const Style& style) {
 
 std::string stability_text(const Stability& stability, const Style& style) {
   if (stability.unstable_directions > 0) {
-    return style.warning(fmt::format("UNSTABLE in {}: a small push would move it on",
+    return style.warning(fmt::format("UNSTABLE in {}: a small disturbance would move it away",
                                      format_count(stability.unstable_directions, "direction")));
   }
   if (stability.unknown_directions > 0) {

@@ -32,7 +32,7 @@ std::array<Index, N*(N + 1) / 2> element_slots(const std::array<Index, N>& dofs,
   return slots;
 }
 
-/// Which of the `size` elements of a kind no chain assembles.
+/// The elements, of the `size` of a kind, that no chain assembles.
 template <class Kernel>
 std::vector<std::size_t> loose_elements(std::size_t size, const std::vector<PlanarChain>& chains) {
   std::vector<bool> in_chain(size, false);

@@ -11,13 +11,13 @@
 namespace der {
 namespace {
 
-/// Keeps the supports where they are drawn, and the tables of the model.
+/// Sets the prescribed motions of a support to zero, but keeps their tables in the model.
 void hold_still(scenario::Support& support) {
   for (auto& prescribed : support.prescribe) set_to_zero(prescribed.displacement);
   if (support.rotation) set_to_zero(*support.rotation);
 }
 
-/// What the load factor of a scene scales.
+/// The quantities that the load factor of a scene scales.
 struct Varying {
   scenario::Varied what = scenario::Varied::Loads;
   std::optional<int> number;  // of the one load or support; none: all
@@ -31,7 +31,7 @@ std::optional<Varying> varying(const scenario::Analysis& analysis) {
   return std::nullopt;
 }
 
-/// The scene at the factor 0, as one that knows no factor.
+/// The scene at the factor 0, as a scene without a load factor.
 scenario::Scene without(scenario::Scene scene, const Varying& varying) {
   const auto chosen = [&](std::size_t i) {
     return !varying.number || to_size(*varying.number) == i;

@@ -11,8 +11,8 @@ struct Scene;
 
 namespace der {
 
-/// What varies with the load factor in `model`, which was built from `scene`: one load or
-/// prescribed motion, or all. None where the scene's analysis knows no factor.
+/// The dependence on the load factor of `model`, which was built from `scene`: of one load or
+/// prescribed motion, or of all. None if the analysis of the scene has no load factor.
 std::optional<LoadVariation> load_variation(const scenario::Scene& scene, const Model& model);
 
 }  // namespace der

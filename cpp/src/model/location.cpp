@@ -10,9 +10,9 @@
 namespace der {
 namespace {
 
-/// Of a moment at the very end, what the last edge takes beyond all of it and the edge before takes
-/// back: turns the last edge by l kappa/12 more, which brings the end from the chain's place beside
-/// the curve onto it (supports/clamp.hpp).
+/// Of a moment at an end, the last edge takes this share in excess of the whole, and the edge
+/// before it takes the negative of this share. That turns the last edge by l kappa/12 more, which
+/// moves the end of the chain onto the curve (supports/clamp.hpp).
 constexpr double kEndShare = 1.0 / 12.0;
 
 bool is_node(const RodLayout& rod, Index i, double s) {

@@ -55,7 +55,7 @@ double moment_of(const MomentPlace& place, const RodLayout& rod, double applied,
   return place.series_share(rod.EI) * (applied - place.stiffness * turn);
 }
 
-/// What the cells hold with the edges as they were where the springs are slack [J].
+/// Elastic energy [J] of the cells under the applied moments, with the springs slack.
 double stored_by_loads(const Model& model, const Vector& controls) {
   double energy = 0.0;
   for (const RodLayout& rod : model.rods) {

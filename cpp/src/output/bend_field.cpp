@@ -213,7 +213,7 @@ class BendField : public RodField {
            recovery_.smooth(edge, known.last, point, model, state) / per_moment_;
   }
 
-  /// What the chain has.
+  /// Moment or curvature of the chain at this turning angle.
   [[nodiscard]] double chain(const Known& known, double angle) const {
     if (!moment_) return (angle - known.rest_angle) / known.length + known.natural_curvature;
     const double rest_kappa = Measure::of(known.rest_angle).kappa;

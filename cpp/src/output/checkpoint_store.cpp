@@ -78,7 +78,7 @@ constexpr bool is_of_integers() {
   }
 }
 
-/// What the numbers of a field are stored as.
+/// The type that the numbers of a field are stored as.
 template <class Value>
 using StoredAs = std::conditional_t<is_of_integers<Value>(), std::int64_t, double>;
 
@@ -199,12 +199,12 @@ std::uint64_t checksum_of(const Checkpoint& checkpoint) {
   return sum.value();
 }
 
-/// Throws IoError for a state that no run comes to.
+/// Throws IoError for a state that no run can reach.
 void check_state(const State& state) {
   const std::string wrong = find_wrong_value(state);
-  if (!wrong.empty()) throw IoError("the checkpoint is of no run: " + wrong);
+  if (!wrong.empty()) throw IoError("the checkpoint is not valid: " + wrong);
   if (!state.positions.allFinite() || !state.velocities.allFinite()) {
-    throw IoError("the checkpoint holds what is not a finite number");
+    throw IoError("the checkpoint holds a value that is not finite");
   }
 }
 

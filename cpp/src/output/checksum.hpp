@@ -9,7 +9,7 @@ namespace der {
 /// Checksum of a row of 64-bit words: the sum modulo 2^64 of each, its upper half folded onto its
 /// lower, times a power of an odd number. A word that changes changes the sum, always; more than
 /// one do but by an accident of 1 in 2^32 or less. In numpy it is one line (docs/results.md).
-/// HDF5's own checksums cover whole chunks, which would have to be written anew with every frame: a
+/// HDF5's own checksums cover whole chunks, which would have to be rewritten with every frame: a
 /// process killed meanwhile would lose the frames before it too.
 class Checksum {
  public:

@@ -13,7 +13,7 @@
 namespace der {
 namespace {
 
-/// What an energy is read from: the whole model, or a part of it. Its weight is not kept, as it
+/// The part of a model whose energy is read, or the whole model. Its weight is not kept, as it
 /// follows the load factor of the state.
 struct Part {
   Mass mass;

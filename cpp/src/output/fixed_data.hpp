@@ -8,8 +8,8 @@
 
 namespace der {
 
-/// What is written into a run file once: datasets with a unit and the checksum of their bytes, both
-/// attributes. Reading throws IoError where type or checksum is another one.
+/// Data that are written into a run file once: datasets with two attributes, the unit and the
+/// checksum of their bytes. Reading throws IoError if type or checksum do not match.
 
 /// A list of numbers and its dimensions, the last one fastest.
 template <class T>

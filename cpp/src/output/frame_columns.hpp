@@ -12,7 +12,7 @@
 
 namespace der {
 
-/// What a frame is made of.
+/// Sizes and names of the parts of a frame.
 struct FrameLayout {
   hsize_t nodes = 0;
   hsize_t dimension = 0;
@@ -42,8 +42,8 @@ class FrameColumns {
   /// Opens those of a file, whatever their size, with the probes in alphabetical order. Throws
   /// IoError where they do not fit together.
   static FrameColumns open(hid_t file);
-  /// As above, with the probes in the order of a layout. Throws IoError where it is of other nodes
-  /// or probes.
+  /// Opens the columns with the probes in the order of `layout`. Throws IoError too if the file has
+  /// other nodes or probes.
   static FrameColumns open(hid_t file, const FrameLayout& layout);
 
   [[nodiscard]] const FrameLayout& layout() const { return layout_; }

@@ -27,7 +27,7 @@ herr_t keep_cause(unsigned depth, const H5E_error2_t* entry, void* text) {
   return 0;
 }
 
-/// What stands between `before` and the next quote; empty if it is not there.
+/// The text between `before` and the next quote; empty if `before` does not occur.
 std::string quoted_after(const std::string& text, const std::string& before) {
   const auto found = text.find(before);
   if (found == std::string::npos) return "";
@@ -128,7 +128,7 @@ bool is_plain(hid_t dataset) {
          H5Pget_nfilters(creation.id()) == 0 && H5Pget_external_count(creation.id()) == 0;
 }
 
-/// A link to another file is none of ours.
+/// A link to another file is not accepted.
 void check_link(hid_t parent, const std::string& name) {
   H5L_info_t info;
   check(H5Lget_info(parent, name.c_str(), &info, H5P_DEFAULT), "find '" + name + "'");

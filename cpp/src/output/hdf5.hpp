@@ -128,9 +128,9 @@ Handle create_growing(hid_t parent, const std::string& name, hid_t type,
 /// Opens a dataset that lies in this file and nowhere else. Throws IoError for one that is stored
 /// otherwise than der does, in other files or behind filters.
 Handle open_dataset(hid_t parent, const std::string& name);
-/// As above, and throws IoError where it is of another type.
+/// Opens a dataset likewise; throws IoError if it is of another type.
 Handle open_dataset(hid_t parent, const std::string& name, hid_t type);
-/// As above, and throws IoError where it has other dimensions.
+/// Opens a dataset likewise; throws IoError if it has another type or other dimensions.
 Handle open_dataset(hid_t parent, const std::string& name, hid_t type,
                     const std::vector<hsize_t>& dimensions);
 std::vector<hsize_t> dimensions_of(hid_t dataset);

@@ -9,9 +9,9 @@
 namespace der {
 namespace {
 
-/// Steps that nobody expects of a run with a tolerance.
+/// More steps than users expect of a run with a tolerance.
 constexpr std::int64_t kManySteps = 20'000;
-/// The longest step against the mean one, from where on the motion itself has changed.
+/// Ratio of the longest step to the mean one, from which on the motion itself has changed.
 constexpr double kGrownRough = 10.0;
 
 }  // namespace
@@ -24,18 +24,18 @@ std::vector<std::string> hints(const Simulation& simulation) {
   const double longest = simulation.longest_step();
   if (longest < kGrownRough * mean) {
     return {fmt::format(
-        "time.tolerance: {:g} took {} steps of about {:.2g} s. It is the error that all steps of "
-        "the whole duration of {:g} s may add together, so that a longer run takes shorter steps: "
-        "a larger tolerance takes fewer, and so does 'integrator: sdirk5'",
+        "time.tolerance: {:g} took {} steps of about {:.2g} s. It limits the error that all steps "
+        "of the whole duration of {:g} s add up to, so that a longer run takes shorter steps. For "
+        "fewer steps, choose a larger tolerance or 'integrator: sdirk5'",
         time.tolerance, steps, mean, time.duration)};
   }
   return {fmt::format(
       "time.tolerance: {:g} took {} steps: up to {:.2g} s long at first, {:.2g} s in the mean. The "
-      "motion has grown rough: it hands energy on to ever faster waves, and a tolerance follows "
-      "them all. Where errors grow with the motion, as in chaos, no step length makes the end "
-      "right; 'der verify' tells. Fewer steps take a larger tolerance, a shorter duration, damping "
-      "under loads, or equal steps (time.step) of tr_bdf2, which damps the waves that it does not "
-      "follow",
+      "motion has grown rough: energy passes to ever faster waves, and adaptive steps resolve "
+      "them all. Where errors grow exponentially, as in chaos, no step length makes the end right; "
+      "'der verify' shows it. For fewer steps, choose a larger tolerance, a shorter duration, "
+      "damping under loads, or equal steps (time.step) of tr_bdf2, which damps the waves that it "
+      "does not resolve",
       time.tolerance, steps, longest, mean)};
 }
 

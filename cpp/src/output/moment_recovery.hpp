@@ -19,8 +19,8 @@ namespace der {
 /// shape. That is of order 0 for moments and of order 1 for forces; without it curvature and moment
 /// would be wrong next to each load.
 ///
-/// Along an edge the moment is a straight line, `smooth` at both its ends, and what the loads that
-/// stand inside the edge make of it, `inside`.
+/// Along an edge the moment is the sum of a straight line, given by `smooth` at both its ends, and
+/// of a correction for the loads inside the edge, `inside`.
 class MomentRecovery {
  public:
   MomentRecovery(const RodLayout& rod, const Model& model);
@@ -36,11 +36,11 @@ class MomentRecovery {
     bool jumps = false;
   };
 
-  /// What is added to the chain's moment [N m] at a point of an edge, at its first end (`last`
-  /// false) or its last one, to have the straight line.
+  /// Difference [N m] between the straight line and the chain's moment at a point of an edge: at
+  /// its first end (`last` false) or its last one.
   [[nodiscard]] double smooth(Index edge, bool last, const Vec2& point, const Model& model,
                               const State& state) const;
-  /// What is added to the straight line at a place of an edge [N m].
+  /// Correction [N m] of the straight line at a place of an edge.
   [[nodiscard]] double inside(Index edge, const Place& place, const Model& model,
                               const State& state) const;
   /// Moment [N m] in the rod at its start or its end, which are not clamped.

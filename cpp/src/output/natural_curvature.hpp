@@ -6,9 +6,9 @@
 
 namespace der {
 
-/// Curvature [1/m] of a rod where no moment acts, at any arc length: what the scene gives at the
-/// nodes, or what the drawn shape has, linear between the places where it is known and beyond them.
-/// The turning angle of two drawn edges over their mean length is the curvature a third of their
+/// Curvature [1/m] of a rod where no moment acts, at any arc length: the values of the
+/// scene at the nodes, or those of the initial shape, interpolated and extrapolated linearly.
+/// The turning angle of two initial edges over their mean length is the curvature a third of their
 /// difference beside their node.
 class NaturalCurvature {
  public:

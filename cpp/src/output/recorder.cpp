@@ -108,7 +108,7 @@ void Recorder::restore(const Checkpoint& checkpoint, Simulation& simulation) {
   }
   energies_ = der::energies(simulation.model(), checkpoint.state);
   seen_time_ = checkpoint.state.time;
-  // Of the earlier part only the regular frames are kept, so any other one is not saved yet.
+  // Only the regular frames of the earlier part are kept, so any other one is not saved yet.
   saved_time_.reset();
   if (simulation.plan().is_frame(checkpoint.state.time)) {
     saved_time_ = seen_time_;

@@ -14,7 +14,7 @@
 namespace der {
 namespace {
 
-/// What a file takes besides frames: its directory, and two checkpoints of six vectors.
+/// The size of a file without frames: its directory, and two checkpoints of six vectors.
 constexpr double kDirectoryBytes = 30e3;
 constexpr double kCheckpointVectors = 12.0;
 

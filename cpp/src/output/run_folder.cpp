@@ -70,7 +70,7 @@ bool is_there(const fs::path& file) {
   return fs::exists(fs::symlink_status(file, error));
 }
 
-/// What a run that was killed while it began may have left.
+/// Whether a file may have been left by a run that was killed while it started.
 bool is_left_over(const RunFolder& folder, const fs::path& file) {
   return file == RunLock::file_in(folder.path()) || file == temporary_name(folder.results());
 }

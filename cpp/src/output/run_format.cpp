@@ -64,12 +64,12 @@ Dataset read_dataset(hid_t group, const std::string& group_name, const std::stri
           std::move(array.values)};
 }
 
-/// Throws IoError where numbers that count or number things do not.
+/// Throws IoError unless all values are whole numbers from 0 to `largest`.
 void check_whole(const Dataset& dataset, double largest) {
   for (const double value : dataset.values) {
     const bool in_range = value >= 0.0 && value <= largest;
     if (!in_range || value != std::floor(value)) {
-      throw IoError("'" + dataset.name + "' holds what is no whole number in its range");
+      throw IoError("'" + dataset.name + "' holds a value that is not a whole number in its range");
     }
   }
 }
@@ -83,7 +83,7 @@ void check_path(const std::vector<Dataset>& datasets) {
   }
 }
 
-/// The format's number, or 0 if the file is none of ours.
+/// The format's number, or 0 if it is not a run file.
 std::int64_t format_of(hid_t file) {
   if (!hdf5::has_attribute(file, "format_version")) return 0;
   return hdf5::read_integer_attribute(file, "format_version");

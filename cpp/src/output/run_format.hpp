@@ -14,7 +14,7 @@
 
 namespace der {
 
-/// What a run file holds besides frames and checkpoints (layout: docs/results.md).
+/// The parts of a run file besides frames and checkpoints (layout: docs/results.md).
 
 /// Version of the layout; readers refuse what they do not know.
 constexpr std::int64_t kFormatVersion = 4;

@@ -31,7 +31,7 @@ std::string names_of(const std::vector<SavedRod>& rods) {
   return names;
 }
 
-/// What is different about a rod in words; empty if nothing is.
+/// Describes how a rod differs; empty if it does not.
 std::string difference(const SavedRod& there, const RodLayout& here) {
   if (there.nodes.size() != here.nodes.size()) {
     return fmt::format("rod '{}' has {} nodes there and {} here", here.name, there.nodes.size(),
@@ -74,7 +74,8 @@ std::string difference(const std::vector<SavedRod>& there, const std::vector<Rod
                      here.size());
 }
 
-/// Whole turns go on where that run followed the same edges; else they count from the drawn shape.
+/// Takes over whole turns if that run followed the same edges; else they count from the initial
+/// shape.
 void take_over_turns(const LastFrame& last, const Model& model, State& state) {
   if (last.turns.size() == state.turns.size()) {
     const Model there = build_model(Scenario::parse(last.scene).scene());

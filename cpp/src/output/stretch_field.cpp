@@ -26,10 +26,10 @@ std::vector<Weighted> line_weights(const std::vector<double>& middles, Index fir
 /// The strain, times a stiffness [N] (1: the strain itself).
 ///
 /// The tension in an edge of the chain is that of the loads beyond it as they are spread over the
-/// nodes. It is brought to that of the true loads beyond the edge's middle. From the middles it
-/// goes on linearly up to the next place where it may jump or have a kink: a part of the rod
-/// between two such places knows its own middles only. A part without any is within an edge, and
-/// goes on from the part beside it by the jump that the force between them makes.
+/// nodes. It is corrected to that of the true loads beyond the edge's middle. From the middles it
+/// is continued linearly up to the next place where it may jump or have a kink: a part of the rod
+/// between two such places uses its own middles only. A part without any lies within one edge; its
+/// values follow from the part beside it by the jump that the force between them causes.
 class StretchField : public RodField {
  public:
   static std::unique_ptr<RodField> make(double stiffness, const RodLayout& rod,
@@ -58,7 +58,7 @@ class StretchField : public RodField {
   [[nodiscard]] bool smooth_at(std::size_t i) const override { return samples_[i].smooth; }
 
  private:
-  /// What a force makes of the strain on its other side.
+  /// The jump of the strain at a point force.
   struct Jump {
     std::size_t force = 0;
     double sign = 1.0;

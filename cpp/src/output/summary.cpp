@@ -106,18 +106,20 @@ void add_analysis(const Simulation& simulation, const RunOutcome& outcome, const
 std::vector<std::string> buckling_warnings(const LinearBuckling& buckling) {
   if (buckling.modes.empty() && buckling.reversed) {
     return {
-        "no positive load factor is critical, as the loads pull where they would have to press; "
-        "reversed, they make it buckle. If they are meant to press, turn their signs round"};
+        "no positive load factor is critical: the loads cause tension where buckling needs "
+        "compression; with reversed signs they make the structure buckle. If they are meant to "
+        "compress it, reverse their signs"};
   }
   if (buckling.modes.empty() && buckling.rotation <= buckling.strain) {
     return {
-        "no load factor is critical: the loads press no part of the structure, nor would they with "
-        "their signs turned round. Linear buckling needs a load along a rod"};
+        "no load factor is critical: the loads compress no part of the structure, nor would they "
+        "with reversed signs. Linear buckling needs a load along a rod"};
   }
   if (buckling.modes.empty()) {
     return {
-        "the loads bend the structure, and press no part of it until it buckles: linear buckling "
-        "sees nothing else. Whether the bent structure snaps, analysis: continuation tells"};
+        "the loads bend the structure, but compress no part of it to first order, and linear "
+        "buckling considers nothing else. To see whether the bent structure snaps through, use "
+        "'analysis: continuation'"};
   }
   const double factor = buckling.modes.front().load_factor;
   const double rotation = factor * buckling.rotation;

@@ -8,7 +8,7 @@
 namespace der::scenario {
 namespace {
 
-/// Of the shortest edge at hand: places closer than this are meant to be one.
+/// Nodes closer than this fraction of the shortest edge beside them are at the same place.
 constexpr double kSamePlace = 1e-6;
 /// More of these warnings help nobody.
 constexpr std::size_t kMostWarnings = 5;
@@ -18,7 +18,7 @@ struct Node {
   int number;
   bool is_end;
   double x, y;
-  double along;  ///< [m] on a line that is askew to all that people draw, by which they are sorted
+  double along;      ///< [m] coordinate along an oblique line, by which nodes are sorted
   double tolerance;  ///< [m]
 };
 

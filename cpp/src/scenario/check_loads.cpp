@@ -104,7 +104,7 @@ class LoadCheck {
     context_.diagnostics.add(where, message);
   }
 
-  /// A force on what supports hold goes into them.
+  /// Warns of a force on a held component: the support takes it.
   void check_acts(const PointForce& load, int rod, const std::vector<int>& nodes) {
     constexpr std::array axes{Hold::X, Hold::Y};
     for (std::size_t c = 0; c < axes.size(); ++c) {
@@ -129,7 +129,7 @@ class LoadCheck {
                     what, rod, held));
   }
 
-  /// Two of a kind where one is meant are a slip.
+  /// Reports a second load of a kind that a scene can have only once.
   template <class Kind>
   void check_single(const Kind& /*load*/, const Path& here) {
     for (int i = 0; i < number_; ++i) {

@@ -125,7 +125,7 @@ void check_material(CheckContext& context, int i) {
   }
 }
 
-/// Complains where a list that goes with the nodes has another length.
+/// Reports a list with one entry for each node that has another length.
 bool one_for_each_node(CheckContext& context, std::size_t count, std::size_t nodes,
                        const Path& path) {
   if (count == nodes) return true;

@@ -13,7 +13,8 @@ namespace {
 
 /// Ten halvings of a step that fails.
 constexpr double kMinimumStepShare = 1.0 / 1024.0;
-/// Of the duration: with that, 1e-12 of it for adaptive steps, a thousand times its rounding.
+/// The longest step of adaptive steps for this purpose, as a fraction of the duration. The smallest
+/// step is then 1e-12 of the duration, a thousand times its rounding error.
 constexpr double kAdaptiveShare = 1e-9;
 /// The smallest frame takes 200 bytes: these fill any disk.
 constexpr double kMaxFrames = 1e9;
@@ -64,7 +65,7 @@ void check_fixed_step(const Time& time, Diagnostics& diagnostics) {
   }
 }
 
-/// What only makes sense for some integrators.
+/// Checks the keys that only some integrators have.
 void check_integrator(const TimeText& given, Time& time, Diagnostics& diagnostics) {
   if (given.given_spectral_radius) {
     time.spectral_radius = *given.given_spectral_radius;

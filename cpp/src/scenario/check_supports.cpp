@@ -21,7 +21,7 @@ void check_constant(CheckContext& context, bool constant, const Path& path) {
                           "a static analysis has no time: give a constant in place of a table");
 }
 
-/// A run over time begins with the drawn shape, where every prescribed motion is 0.
+/// A run over time begins with the initial shape, where every prescribed motion is 0.
 void check_start(CheckContext& context, const Series& motion, const Path& path) {
   if (!context.scene.is_dynamic() || !context.scene.start_from.empty()) return;
   const double start = value_at(motion, 0.0);
@@ -75,7 +75,7 @@ void check_support(CheckContext& context, int number) {
   if (nodes && support.holds()) hold(context, number, *rod, *nodes);
 }
 
-/// A spring on what is held anyway, or on what takes no moment, is a slip.
+/// Reports a spring on a held component, or against turning of a rod that does not bend.
 void check_spring(CheckContext& context, int number) {
   const Path path{"supports", number};
   Support& support = context.scene.supports[static_cast<std::size_t>(number)];
@@ -84,7 +84,7 @@ void check_spring(CheckContext& context, int number) {
   if (!rod) return;
   const Path here = path / "spring";
   if (support.at.kind == Location::Kind::All) {
-    context.diagnostics.add(path / "at", "'all' is no single place: a spring holds one");
+    context.diagnostics.add(path / "at", "'all' is not a single place, and a spring holds one");
     return;
   }
   const bool turns = support.spring->rotational_stiffness > 0.0;

@@ -14,16 +14,16 @@
 /// one mistake does not cause a second diagnostic.
 namespace der::scenario {
 
-/// What supports can hold of a node: components, and the angle of the rod's tangent.
+/// The components of a node that supports can hold: of its position, and the angle of the tangent.
 enum class Hold { X, Y, Z, Angle };
 inline constexpr std::array kHolds{Hold::X, Hold::Y, Hold::Z, Hold::Angle};
 
-/// A component as what is held.
+/// The `Hold` of a component of the position.
 Hold hold_of(Component component);
 /// "x", or "the angle".
 const char* name_of(Hold hold);
 
-/// What supports hold of a node.
+/// The components of a node that supports hold.
 class HeldNode {
  public:
   /// Number of the support that holds it; none: no support does.
@@ -53,8 +53,8 @@ struct CheckContext {
 
   /// The rod with this name, if its geometry is known; reports at `path` where there is none.
   std::optional<int> find_rod(const std::string& name, const Path& path);
-  /// The nodes that a location names, none for a place between nodes. Complains at `path` about a
-  /// place that the rod does not have and, with `needs_node`, about one between nodes.
+  /// The nodes that a location names, none for a place between nodes. Reports at `path` a
+  /// place that the rod does not have and, with `needs_node`, one between nodes.
   std::optional<std::vector<int>> nodes_at(int rod, Location& at, const Path& path,
                                            bool needs_node);
 };

@@ -65,7 +65,7 @@ class Diagnostics {
     Diagnostic diagnostic;
   };
   void record(Path path, const Mark& mark, std::string message);
-  /// What was found, sorted by line.
+  /// All diagnostics, sorted by line.
   [[nodiscard]] std::vector<Diagnostic> diagnostics() const;
   [[nodiscard]] std::string written(const Path& path) const;
 

@@ -75,7 +75,7 @@ Format<E> choice(const std::vector<std::pair<Word, E>>& options,
           }};
 }
 
-/// Complains and returns false unless the value is a list with enough items.
+/// Reports and returns false unless the value is a list with enough items.
 bool is_list(const Shape& shape, const Place& place, Diagnostics& diagnostics);
 
 /// In a long list of numbers the first mistakes are enough.
@@ -118,7 +118,7 @@ Format<VectorSeries> vector_series(const std::string& unit);
 Format<Location> location();
 Format<Location> single_location(const std::string& why_not_all);
 
-/// What is said wherever a third dimension shows up.
+/// The message about every value that has a third dimension.
 inline constexpr const char* kNoSpatialRods =
     "spatial rods are not available in this version: the scene has to lie in the x-y plane";
 

@@ -45,7 +45,7 @@ Format<Moment> moment_format() {
       Table<Moment>("moment", "A moment about z, positive counter-clockwise.")
           .required("rod", &Moment::rod, name(), "Name of the rod.")
           .required("at", &Moment::at,
-                    single_location("'all' is no single place: a moment acts at one"),
+                    single_location("'all' is not a single place, and a moment acts at one"),
                     "Where; any arc length.")
           .required("moment", &Moment::moment, series("N m"), "A constant, or a table over time."));
 }

@@ -21,7 +21,7 @@ struct Reading {
 /// `unit` is the unit of the key, for the hint.
 Reading<double> read_real(std::string_view text, std::string_view unit);
 
-/// As above for whole numbers; `2.0` and `1e2` are refused with a hint.
+/// Reads a whole number; `2.0` and `1e2` are refused with a hint.
 Reading<std::int64_t> read_whole(std::string_view text);
 
 /// Whether a text would be read as a number, or only just not (`010`, `.inf`).

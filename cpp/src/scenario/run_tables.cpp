@@ -42,7 +42,7 @@ Table<ProbeText> probe_table() {
                 "Name of the rod; energies of the whole model go "
                 "without it.")
       .optional("at", &Probe::at,
-                single_location("'all' is no single place: for the extreme along the rod write "
+                single_location("'all' is not a single place: for the extreme along the rod write "
                                 "'over: rod' and 'reduce: min' or 'max'"),
                 "Where along the rod.")
       .optional("over", &ProbeText::over_rod, over_format(),

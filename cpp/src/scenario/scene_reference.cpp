@@ -47,7 +47,7 @@ std::string code_list(const std::vector<std::string>& words, const std::string& 
   return text;
 }
 
-/// What may be written, in a cell of a table.
+/// The allowed values of a key, as the text of a table cell.
 std::string value_text(const Shape& shape) {
   const std::string range = scenario::bounds(shape.range);
   switch (shape.kind) {

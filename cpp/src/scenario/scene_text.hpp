@@ -7,7 +7,7 @@
 #include "der/scenario/scenario.hpp"
 #include "scenario/format.hpp"
 
-/// What the tables read a text into, where the text has more ways to say a thing than the scene.
+/// The types that the tables read a text into, where the text has more forms than the scene.
 namespace der::scenario {
 
 /// One vector for all nodes, or one for each.
@@ -53,7 +53,8 @@ Format<OutputText> output_format();
 /// The whole scene: the root of all tables.
 const Format<SceneText>& scene_format();
 
-/// What the tables cannot see: everything that ties several keys together. Completes the scene.
+/// Checks the conditions that involve several keys, which the tables cannot see, and completes the
+/// scene.
 void check_scene(SceneText& scene, Diagnostics& diagnostics);
 
 }  // namespace der::scenario

@@ -38,7 +38,7 @@ struct ReservedWord {
 
 struct TableInfo;
 
-/// What may be written for a key. Messages, JSON Schema and scene reference are all made from it.
+/// The allowed values of a key. Messages, JSON Schema and scene reference are all made from it.
 struct Shape {
   enum class Kind {
     Number,
@@ -115,7 +115,7 @@ std::string bounds(const Range& range);
 /// The names of a shape's words.
 std::vector<std::string> names_of(const std::vector<Word>& words);
 
-/// What a name is made of, as a regular expression and in words.
+/// The allowed form of a name, as a regular expression.
 inline constexpr const char* kNamePattern = "^[A-Za-z_][A-Za-z0-9_-]*$";
 bool is_name(std::string_view text);
 

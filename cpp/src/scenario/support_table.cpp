@@ -59,7 +59,7 @@ Format<Spring> spring_format() {
           }));
 }
 
-/// What is wrong with the keys of one support together; "" if nothing.
+/// Describes a contradiction between the keys of one support; "" if there is none.
 std::string contradiction(const SupportText& support) {
   const bool moves = support.motion.x || support.motion.y || support.motion.angle;
   if (support.clamp && !support.fix.empty()) {

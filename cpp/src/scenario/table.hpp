@@ -70,12 +70,12 @@ class Table {
     info_.alternatives.push_back({std::move(branches), true});
     return *this;
   }
-  /// As above, or none.
+  /// At most one of the branches has to be given, with all its keys.
   Table& at_most_one(std::vector<std::vector<std::string>> branches) {
     info_.alternatives.push_back({std::move(branches), false});
     return *this;
   }
-  /// What ties the keys of one mapping together; called only when each of them is fine.
+  /// Adds a check of several keys of one mapping; called only if each of them is valid.
   Table& check(Check check) {
     check_ = std::move(check);
     return *this;

@@ -70,7 +70,8 @@ std::string key_text(const std::string& key) { return safe_unquoted(key) ? key :
 struct FlowWriter {
   std::string operator()(std::monostate) const { return "null"; }
   std::string operator()(const Plain& plain) const {
-    // What is neither a number nor a safe word can only be a text, which quotes do not change.
+    // A value that is neither a number nor a safe word can only be a text, which quotes do not
+    // change.
     const bool bare = safe_unquoted(plain.text) || looks_like_number(plain.text);
     return bare ? plain.text : in_quotes(plain.text);
   }

@@ -15,7 +15,7 @@ template <Index kWidth>
 Inertia factorize_band(Index size, Index run_time_width, double* band, double* scratch) {
   const Index width = kWidth > 0 ? kWidth : run_time_width;
   const Index stride = width + 1;
-  // The column at hand: a copy, in registers where its length is known, as the compiler would have
+  // The current column: a copy, in registers where its length is known, as the compiler would have
   // to read the column again after every write to those behind it.
   std::array<double, to_size(kWidth)> registers;
   double* const entries = kWidth > 0 ? registers.data() : scratch;

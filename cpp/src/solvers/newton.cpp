@@ -104,7 +104,7 @@ NewtonReport Newton::iterate(NewtonProblem& problem, Mode mode) {
   return report;
 }
 
-/// Factorises the matrix at hand, shifted where it is not positive definite. False: its entries are
+/// Factorises the current matrix, shifted where it is not positive definite. False: its entries are
 /// not numbers.
 bool Newton::factorize_positive(NewtonReport& report) {
   Inertia inertia = solver_.factorize(values_);
@@ -180,7 +180,7 @@ void Newton::measure(const NewtonProblem& problem, NewtonReport& report) const {
   report.force_scale = problem.acting_force();
 }
 
-/// The free degree of freedom with the largest residual, or the first whose residual is no number.
+/// The free degree of freedom with the largest residual, or the first whose residual is not finite.
 Index Newton::worst_dof() const {
   Index worst = -1;
   double largest = -1.0;

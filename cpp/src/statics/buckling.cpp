@@ -16,7 +16,7 @@
 namespace der {
 namespace {
 
-/// An edge of the unloaded shape, as its stretch element sees it, and what the loads do to it.
+/// An edge of the unloaded shape, as its stretch element sees it, and the effect of the loads.
 struct LoadedEdge {
   std::array<Index, 4> dofs{};
   Vec2 turn;              ///< gradient of its direction angle by its vector [1/m]
@@ -127,7 +127,7 @@ std::vector<BucklingMode> buckling_modes(const Model& model, LinearSolver& solve
   Pencil pencil(solver, k0, unit * k1);
   const Index available = std::min<Index>(count, pencil.critical_below(kMost));
   std::vector<BucklingMode> modes;
-  std::vector<Vector> same;  // shapes of the factor at hand
+  std::vector<Vector> same;  // shapes of the current factor
   double low = kLeast;
   double before = 0.0;
   for (Index i = 0; i < available; ++i) {
@@ -142,7 +142,7 @@ std::vector<BucklingMode> buckling_modes(const Model& model, LinearSolver& solve
       released -= edge.tension * edge.length * turned * turned;
     }
     const double exact = second_variation(model, here, shape) / released;
-    // Where K1 is much the larger of the two, its rounding makes critical factors that are none.
+    // Where K1 is much larger than K0, its rounding errors cause spurious critical factors.
     if (!(std::abs(exact / (unit * factor) - 1.0) < 0.5)) break;
     Eigen::Index main = 0;
     shape.cwiseAbs().maxCoeff(&main);

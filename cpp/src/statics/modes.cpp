@@ -86,7 +86,7 @@ Eigen::MatrixXd dense(const Operation& operation) {
   return 0.5 * (matrix + matrix.transpose());
 }
 
-/// Of a small model: with M = L L^T, the eigenvectors of L^T (K - shift M)^-1 L are L^T v.
+/// Modes of a small model: with M = L L^T, the eigenvectors of L^T (K - shift M)^-1 L are L^T v.
 Eigen::MatrixXd dense_vectors(const ShiftInvert& inverse, const MassProduct& mass, Index count) {
   const Eigen::LLT<Eigen::MatrixXd> factor(dense(mass));
   const Eigen::MatrixXd L = factor.matrixL();
@@ -102,15 +102,15 @@ struct Shape {
   Vector vector;        ///< all degrees of freedom
 };
 
-/// What rounding in the matrix K does to the squares w^2 of K v = w^2 M v.
+/// The effect of rounding in the matrix K on the squares w^2 of K v = w^2 M v.
 struct Noise {
-  /// [1/s^2] it moves them by up to this, and mixes shapes that are not further apart.
+  /// [1/s^2] It shifts them by up to this, and mixes shapes whose squares are not further apart.
   double square = 0.0;
   Index below = 0;      ///< number of squares below -square: unstable directions
   Index near_zero = 0;  ///< number of those between -square and square
-  /// [1/s^2] What it leaves in the square of a shape near zero, of the shapes that are not: they
-  /// come in with the share of the noise in their own square, and by the sum over many rounding
-  /// errors, not by the largest.
+  /// [1/s^2] The error in the square of a shape near zero from the shapes that are not near zero.
+  /// These enter with the ratio of the noise to their own square, and through the sum of many
+  /// rounding errors, not through the largest.
   double left = 0.0;
 };
 
@@ -184,7 +184,7 @@ class ModeSearch {
   }
 
  private:
-  /// Lanczos' method sees one shape of a repeated square, and others only by rounding.
+  /// Lanczos' method finds one shape of a repeated square, and others only through rounding.
   Eigen::MatrixXd pass_vectors(Index count, double shift, int pass) {
     constexpr int kRestarts = 1000;
     constexpr double kTolerance = 1e-12;
@@ -199,7 +199,7 @@ class ModeSearch {
     const Index basis = std::min(size, std::max<Index>(2 * wanted + 1, 20));
     Spectra::SymGEigsShiftSolver<ShiftInvert, MassProduct, Spectra::GEigsMode::ShiftInvert> solver(
         inverse, mass, wanted, basis, shift);
-    // Another start each time: of a repeated square, a start holds only one shape.
+    // Each pass has another start vector, which contains only one shape of a repeated square.
     const Vector start = unstructured_vector((pass + 1) * size).tail(size);
     solver.init(start.data());
     solver.compute(Spectra::SortRule::LargestMagn, kRestarts, kTolerance,
@@ -223,7 +223,7 @@ class ModeSearch {
     sort();
   }
 
-  /// How many of the `count` lowest the inertia counts below the highest one but are not there.
+  /// Number of shapes that are missing among the `count` lowest, by the inertia.
   Index missing_below_highest(Index count, double shift, const Noise& noise) {
     constexpr double kSame = 1e-9;
     const auto last = std::min(shapes_.size(), to_size(count)) - 1;
@@ -235,8 +235,9 @@ class ModeSearch {
     return std::min(there, count) - static_cast<Index>(found);
   }
 
-  /// Of shapes whose squares are near zero the matrix gives any mixture: rigid motions and a bar on
-  /// a soft spring, say. The energies of the elements know better.
+  /// The matrix gives arbitrary mixtures of shapes whose squares are near zero, such as rigid
+  /// motions and a bar on a soft spring. The energies of the elements are accurate enough to
+  /// separate them.
   void unmix(const Noise& noise) {
     const auto size = static_cast<Eigen::Index>(noise.near_zero);
     if (size < 2) return;

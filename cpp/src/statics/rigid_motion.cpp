@@ -12,7 +12,7 @@
 namespace der {
 namespace {
 
-/// Nodes that hang together through elements: for each node the first of its part.
+/// Nodes that are connected by elements: for each node the first of its part.
 std::vector<Index> connected_parts(const Model& model) {
   std::vector<Index> parent(to_size(model.num_nodes));
   std::iota(parent.begin(), parent.end(), 0);

@@ -16,12 +16,13 @@ namespace {
 /// Rounding errors of the largest entry that assembling and factorising leave in an eigenvalue.
 constexpr double kRoundings = 8.0;
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-/// More directions in doubt than this are not looked at one by one.
+/// Doubtful directions are examined one by one only up to this number.
 constexpr Index kMostDoubtful = 40;
-/// What is as flat as this against the next stiffer direction is neutral, if rounding hides its
-/// sign.
+/// If rounding hides the sign of a curvature, the direction is neutral where the error of the
+/// curvature is at most this fraction of the curvature of the next stiffer direction.
 constexpr double kFlat = 1e-3;
-/// Of the energy that a residual can still free, the share that may be missing in a curvature.
+/// Error of a curvature, as a multiple of the energy that the residual of its direction can still
+/// release.
 constexpr double kErrorShare = 4.0;
 
 }  // namespace
@@ -73,7 +74,7 @@ void Stiffness::judge_doubtful(Stability& stability) {
     return;
   }
   const SoftSpace space = softest_space(count);
-  // What is flat against the first direction beyond is neutral.
+  // A direction is neutral if it is flat compared with the stiffest of this space.
   const double flat = kFlat * space.curvatures[space.curvatures.size() - 1];
   stability.unstable_directions = 0;
   for (Index i = 0; i < count; ++i) {
@@ -143,8 +144,9 @@ SoftDirection Stiffness::soft_direction(Vector free) const {
 }
 
 /// Block iteration on the residuals (Knyazev, SIAM J. Sci. Comput. 23, 2001, without its third
-/// block): every step minimises the second variation over the present directions and the residuals
-/// that the factorised matrix has answered. All that counts is taken element by element.
+/// block): every step minimises the second variation over the present directions and the
+/// preconditioned residuals. Second variations and residuals are summed element by element, which
+/// keeps their digits.
 Stiffness::SoftSpace Stiffness::softest_space(Index count) {
   constexpr int kIterations = 30;
   constexpr double kSettled = 1e-3;

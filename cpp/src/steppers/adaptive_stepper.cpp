@@ -7,7 +7,7 @@
 namespace der {
 namespace {
 
-// Of the controller.
+// Parameters of the step size controller.
 constexpr double kSafety = 0.9;
 constexpr double kProportional = 0.4;
 constexpr double kIntegral = 0.7;
@@ -15,8 +15,8 @@ constexpr double kLeastFactor = 0.2;
 constexpr double kGreatestFactor = 2.0;
 /// After a step that did not converge.
 constexpr double kRetryFactor = 0.25;
-/// Differences below this share of the positions say nothing: what Newton's method leaves of them,
-/// and their rounding.
+/// Differences below this fraction of the positions are not significant: they come from rounding
+/// and from the tolerance of Newton's method.
 constexpr double kRounding = 1e-14;
 /// If the remainder would be shorter than this fraction of the step, the step is extended to the
 /// end.
@@ -58,7 +58,7 @@ AdaptiveReport AdaptiveStepper::advance(State& state, double horizon) {
   while (true) {
     wanted = std::min({std::max(wanted, options_.minimum_step), options_.largest_step, longest});
     const double left = stop - start_.time;
-    // No sliver is left for the next step.
+    // This avoids a very short last step.
     const bool last = wanted >= left * (1.0 - kSliver);
     const double length = last ? left : std::min(wanted, 0.5 * left);
     report.tried = length;
@@ -120,8 +120,8 @@ void AdaptiveStepper::measure(const State& state, AdaptiveReport& report) {
   report.at_rounding = difference <= kRounding * model_.dofs.largest_motion(state.positions);
 }
 
-/// What the motion takes to cover the tolerated error; from rest a little of the duration. A step
-/// that is too long is rejected, which costs little.
+/// The time in which the motion covers a distance of the tolerance; from rest a small fraction of
+/// the duration. A step that is too long is rejected, which costs little.
 double AdaptiveStepper::first_step(const State& state) const {
   const double distance = options_.tolerance * model_.size;
   const double speed = model_.dofs.largest_motion(state.velocities);

@@ -107,7 +107,7 @@ void ImplicitStage::accumulate_and_finish(const Vector& new_positions,
   at_start.accumulate(state.velocities, displacement_, state.work);
   displacement_ = late * (new_positions - state.positions);
   accumulate_forces(displacement_, state.work);
-  // All that the solver leaves is left in stages: none of it at the start.
+  // The solver leaves a residual in stages only, none at the start of the step.
   displacement_ = new_positions - state.positions;
   accumulate_solver(displacement_, state.work);
   finisher_.finish(new_positions, new_velocities, dt, state);

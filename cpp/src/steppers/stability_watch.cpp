@@ -14,18 +14,19 @@
 namespace der {
 namespace {
 
-/// Change of an edge, of its own length or as an angle [rad], that makes another shape, with a
-/// stable step of its own.
+/// Change of an edge, over its length or as an angle [rad], beyond which the stable step is
+/// evaluated again.
 constexpr double kOtherShape = 0.03;
 /// No step of `step: auto` changes an edge's length, or an angle [rad], by more than this.
 constexpr double kLargestChange = 0.03;
-/// The share of the stable step that pieces of a step take. What makes them necessary is motion as
-/// fast as the fastest that the rod has, and steps near the stable one do not resolve that: its
-/// energy is off by as much as there is.
+/// The fraction of the stable step that pieces of a step take. Pieces are needed where the motion
+/// is as fast as the fastest vibration of the rod. Steps near the stable one do not resolve it: the
+/// error of its energy is as large as the energy.
 constexpr double kPieceMargin = 0.45;
 /// Pieces get shorter when this share is exceeded: less than the margin of a whole step.
 constexpr double kLeastMargin = 0.6;
-/// Of a step, the piece below which it is given up, unless the scene says another.
+/// The run fails if pieces become shorter than this fraction of a step, unless the scene sets
+/// another limit.
 constexpr double kLeastPiece = 1e-5;
 /// A step longer than the stable one by no more than this share is the stable one.
 constexpr double kRounding = 1e-9;
@@ -40,8 +41,8 @@ bool may_be_unstable(const scenario::Time& time) {
   return time.allow_unstable && time.stepping == scenario::Stepping::Fixed;
 }
 
-/// How fast the shape changes [1/s]: the largest rate of stretch of an edge, or of turn of one edge
-/// against the one before it in its rod.
+/// Rate of change of the shape [1/s]: the largest strain rate of an edge, or rate of the angle
+/// between an edge and the one before it in its rod.
 double rate_of_change(const Model& model, const State& state) {
   double largest = 0.0;
   double turn_before = 0.0;
@@ -58,8 +59,7 @@ double rate_of_change(const Model& model, const State& state) {
   return largest;
 }
 
-/// Whether an edge is another one than it was at the positions `before`; where the whole rod is
-/// does not count.
+/// Whether an edge has changed since the positions `before`; rigid translation does not count.
 bool has_other_shape(const Model& model, const Vector& positions, const Vector& before) {
   for (const Edge& edge : model.edges) {
     const Vec2 then = along_edge(edge, before);
@@ -111,7 +111,7 @@ void StabilityWatch::look(State& state, double step) {
   const auto* last = std::get_if<StabilityMemory>(&state.memory);
   const bool looked = last != nullptr;
   if (looked && !has_other_shape(model_, state.positions, last->positions)) return;
-  // What a program may have written there; the stepper says where.
+  // A program may have written these; the stepper reports where.
   if (!state.positions.allFinite()) return;
   hold<StabilityMemory>(state.memory).positions = state.positions;
 
@@ -131,8 +131,8 @@ void StabilityWatch::look(State& state, double step) {
   const double fewest = whole ? 1.0 : std::ceil(step / (kPieceMargin * longest));
   const double pieces = looked ? std::round(step / state.next_step) : 1.0;
   const bool is_stable = pieces == 1.0 ? whole : bears(state.next_step, kLeastMargin);
-  // A longer piece may do later on; a shorter one is taken only when it must be, since steps that
-  // change all the time cost Verlet's scheme its grip on the energy.
+  // Fewer pieces are taken as soon as they suffice, more of them only if the present ones are no
+  // longer stable: frequent changes of the step spoil the energy conservation of Verlet's scheme.
   if (looked && is_stable && fewest >= pieces) return;
   state.next_step = step / fewest;
 }

@@ -65,7 +65,7 @@ void StableStepBound::find_blocks() {
       const Index row_dof = model_.dofs.free()[to_size(pattern_.inner[to_size(k)])];
       const Index column_dof = model_.dofs.free()[to_size(column)];
       add(row_dof, column_dof, k);
-      // Of a block on the diagonal the pattern has the lower half.
+      // The pattern has only the lower half of a block on the diagonal.
       if (model_.dofs.node_of(row_dof) == model_.dofs.node_of(column_dof))
         add(column_dof, row_dof, k);
     }

@@ -13,14 +13,14 @@
 namespace der {
 namespace {
 
-/// Two times closer than this share of the time between frames, or of a step, are one.
+/// Times closer than this fraction of the time between frames, or of a step, are equal.
 constexpr double kSameFrame = 1e-9;
 
 /// Frames that an adaptive step may hold: a run can be interrupted, and its frames are counted,
 /// between steps alone.
 constexpr double kFramesOfAStep = 10'000.0;
 
-/// Times are counted in steps to this.
+/// The rounding error of a time that is counted in steps, in steps.
 double rounding(double steps) {
   return std::max(kSameFrame, 4.0 * std::numeric_limits<double>::epsilon() * steps);
 }

@@ -49,8 +49,8 @@ double beyond_middle(const RodLayout& rod, double s) {
   return std::max({0.0, middle(rod, 0) - s, s - middle(rod, rod.num_edges() - 1)});
 }
 
-/// Turn [rad] of the weighted directions, from the first edge as drawn, at which the tangent has
-/// the direction of the drawn shape and no moment acts.
+/// Turn [rad] of the weighted directions, from the initial direction of the first edge, at which
+/// the tangent has the direction of the drawn shape and no moment acts.
 double rest_turn(const RodLayout& rod, const MomentPlace& place, const Model& model) {
   const double s = place.arc_length;
   const bool single = place.weights.size() == 1;

@@ -39,7 +39,7 @@ def cross_check_halvings(cpu_seconds: float) -> int:
     Parameters
     ----------
     cpu_seconds
-        What the finest level costs [s].
+        Cost of the finest level [s].
     """
     affordable = _BUDGET / (_COST * max(cpu_seconds, 1e-6))
     return min(max(0, math.floor(math.log2(affordable))), _MOST_HALVINGS)
@@ -74,7 +74,7 @@ def hidden_motion(
     probe
         Name of the probe to look at, over the second half of the run.
     noise
-        Differences up to this say nothing.
+        Differences up to this are not significant.
 
     Returns
     -------

@@ -9,8 +9,8 @@ and the formal one. Where the values go to and fro, the bar is three times their
 M. Hoekstra, J. Comput. Phys. 262, 2014, 104-130).
 
 A value may converge and yet show no order on three levels: two errors of opposite sign are enough.
-Its changes still shrink, and three times their range holds the truth. Such a value is called
-settled and not flagged.
+Its changes still shrink, and three times their range contains the exact value. Such a value is
+called settled and not flagged.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal
 
-#: What was found out about a sequence:
+#: The verdict on a sequence:
 #:
 #: - ``converged``: at the expected order or faster;
 #: - ``exact``: refining changes nothing beyond rounding;
@@ -29,9 +29,9 @@ from typing import Literal
 #: - ``settled``: the changes shrink by as much as order 1 would have it, but not as expected;
 #: - ``slow``: the changes shrink by less, at less than three quarters of the expected order;
 #: - ``diverging``: the changes grow;
-#: - ``oscillating``: the value goes to and fro, and the changes hardly shrink;
+#: - ``oscillating``: the value oscillates, and the changes hardly shrink;
 #: - ``damped``: the stepper's own damping hides a motion;
-#: - ``contradicted``: another stepper with much smaller steps comes to another value;
+#: - ``contradicted``: another stepper with much smaller steps gives another value;
 #: - ``failed``: a finer run failed;
 #: - ``other branch``: a finer run ends in the mirror image of the shape, another solution;
 #: - ``unmatched``: not all meshes find it, such as a fold of a path.
@@ -74,7 +74,7 @@ class ErrorEstimate:
     Attributes
     ----------
     correction
-        Richardson's: what is to be added to the value to come to the limit of the sequence.
+        Richardson's correction: added to the value it gives the limit of the sequence.
     error_bar
         The error is at most this large, with 95 % confidence; infinite if it is not known.
     order
@@ -82,7 +82,7 @@ class ErrorEstimate:
     expected_order
         Order that the method has for smooth solutions.
     verdict
-        What was found out; see `Verdict`.
+        See `Verdict`.
     """
 
     correction: float
@@ -120,7 +120,7 @@ def estimate_error(
     order
         Expected order of convergence.
     noise
-        Differences up to this say nothing: rounding, and Newton's tolerance.
+        Differences up to this are not significant: rounding, and Newton's tolerance.
     ratio
         How many times finer each level is than the one before.
 
@@ -184,13 +184,13 @@ def on_one_branch(estimate: ErrorEstimate, mirrored: bool, largest: float) -> Er
 
 
 def unknown_error(verdict: Verdict, order: float) -> ErrorEstimate:
-    """Return an estimate that says nothing but why it does not."""
+    """Return an estimate without an error bar, with the reason."""
     return ErrorEstimate(0.0, math.inf, None, order, verdict)
 
 
 @dataclass(frozen=True)
 class _Trend:
-    """Where the last three values of a sequence lead to."""
+    """The extrapolated limit of the last three values of a sequence."""
 
     limit: float
     order: float | None

@@ -36,9 +36,9 @@ def numbered_as(reference: Readings, found: Readings, model: Model) -> Readings:
     Parameters
     ----------
     reference
-        Of the mesh whose numbers hold.
+        The events of the mesh whose numbers hold.
     found
-        Of another mesh.
+        The events of another mesh.
     model
         Its sizes tell what is rounding.
     """

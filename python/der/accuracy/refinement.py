@@ -61,7 +61,7 @@ def with_elements(scenario: Scenario, factor: Fraction | int) -> Scenario:
     scenario
         The scene.
     factor
-        Of the number of elements; less than 1 makes the mesh coarser.
+        Factor of the number of elements; less than 1 makes the mesh coarser.
 
     Raises
     ------

@@ -114,7 +114,7 @@ def resample_list(values: Array, elements: int) -> Array:
     values
         One value for each node, shape (nodes,) or (nodes, dim).
     elements
-        Of the new mesh.
+        Number of elements of the new mesh.
     """
     from scipy.interpolate import PchipInterpolator
 

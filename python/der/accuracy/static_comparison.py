@@ -1,4 +1,4 @@
-"""What a study compares of a scene without time."""
+"""The numbers that a study compares for a scene without time."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class StaticComparison:
     Parameters
     ----------
     meshes
-        What was found, by the name of the mesh, coarsest first; the reference is made of the last
+        The results, by the name of the mesh, coarsest first; the reference is made of the last
         ones.
     reference_meshes
         How many these are.
@@ -26,9 +26,9 @@ class StaticComparison:
     Attributes
     ----------
     units
-        Of the numbers that are compared, by their label.
+        Units of the numbers that are compared, by their label.
     notes
-        What the meshes do not agree on.
+        Remarks on numbers that differ between meshes.
 
     Raises
     ------

@@ -51,12 +51,12 @@ class Reading:
 
     @property
     def label(self) -> str:
-        """What it is called: ``tip_y``, or ``tip_y, fold 1``."""
+        """Its label: ``tip_y``, or ``tip_y, fold 1``."""
         return self.probe if self.what == "final" else f"{self.probe}, {self.what}"
 
     @property
     def kind(self) -> str:
-        """What it is counted with: ``fold``; of a number that is not on a path, its own name."""
+        """The kind that it is counted with: ``fold``; its own name if it is not on a path."""
         return self.probe if self.what == "final" else self.what.rstrip(" 0123456789")
 
 

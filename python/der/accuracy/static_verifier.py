@@ -1,4 +1,4 @@
-"""What the runs of a verification say about a scene without time."""
+"""The evaluation of the runs of a verification for a scene without time."""
 
 from __future__ import annotations
 

@@ -58,17 +58,17 @@ def study(
 
     The error of a probe is its largest difference to a reference over the frames that the scene
     saves, as far as the step of a configuration reaches them. The reference is extrapolated from
-    finer meshes and smaller steps, and states its own error. Of modes the frequencies are compared
-    as well, of buckling the load factors; of a path of equilibria the factor and the probes at its
-    folds and bifurcations, and the probes where it ends.
+    finer meshes and smaller steps, and states its own error. The frequencies of modes and
+    the load factors of buckling are compared as well. Of a path of equilibria, the study compares
+    the factor and the probes at folds and bifurcations, and the probes at the end.
 
     Parameters
     ----------
     scenario
         A scenario, the path of a scene file, or a dict with the keys of a scene file.
     nodes
-        Of the first rod whose mesh can be varied; those of other rods follow in proportion. Without
-        it, about half, once, twice and four times the scene's elements.
+        Nodes of the first rod whose mesh can be varied; those of other rods follow in proportion.
+        Without it, about half, once, twice and four times the scene's elements.
     steps
         Time steps [s]. Without them, four times to an eighth of the scene's step, or if its step is
         explicit, ``auto`` or set by a tolerance, a fiftieth to a 1600th of the duration, rounded to
@@ -79,8 +79,8 @@ def study(
     max_seconds
         Configurations that would take longer are skipped.
     jobs
-        Runs at once for the reference; as many as the machine has cores, unless given. What is
-        measured runs alone.
+        Runs at once for the reference; as many as the machine has cores, unless given. Runs
+        whose cost is measured run one at a time.
     progress
         Told now and then how much is done, from 0 to 1.
 

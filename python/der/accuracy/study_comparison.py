@@ -40,7 +40,7 @@ class Comparison:
     Attributes
     ----------
     units
-        Of what is compared, by name.
+        Units of the compared probes or numbers, by name.
     on_mesh
         For each mesh of the study, what it gives with time converged.
     reference
@@ -58,7 +58,7 @@ class Comparison:
     every: float = 0.0
 
     def sizes(self) -> dict[str, float]:
-        """Return what errors are set against: what hardly moves still has a magnitude."""
+        """Return the scale of errors: a probe that hardly moves still has a magnitude."""
         exact = self.reference.probes
         return {
             name: float(max(np.ptp(exact[name]), np.max(np.abs(exact[name]))))
@@ -127,11 +127,11 @@ def compare_over_time(
     Parameters
     ----------
     outcomes
-        Of the runs of the reference, by mesh and level.
+        Outcomes of the runs of the reference, by mesh and level.
     meshes
         How many meshes the study has; the further ones are of the reference only.
     units
-        Of the probes that are compared, by name.
+        Units of the probes that are compared, by name.
     every
         Between frames of the reference [s].
     """
@@ -158,11 +158,11 @@ def compare_static(
     Parameters
     ----------
     outcomes
-        Of the runs of the reference, by mesh and level.
+        Outcomes of the runs of the reference, by mesh and level.
     meshes
         How many meshes the study has; the further ones are of the reference only.
     names
-        Of all meshes, for the notes.
+        Names of all meshes, for the notes.
     left_out
         Probes that are not compared.
     """

@@ -1,4 +1,4 @@
-"""What the runs of a study will cost, guessed from the run of the scene itself."""
+"""Predicted costs of the runs of a study, from the run of the scene itself."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ class StudyCosts:
     base
         The run of the scene as written.
     cpu_seconds
-        What it took [s]: the unit of weights, in which it weighs 1.
+        CPU time of the scene itself [s]: the unit of weights.
     max_seconds
-        What a configuration may take [s].
+        CPU time allowed for a configuration [s].
     """
 
     def __init__(self, base: Result, cpu_seconds: float, max_seconds: float) -> None:
@@ -39,7 +39,7 @@ class StudyCosts:
 
     @property
     def max_seconds(self) -> float:
-        """What a configuration may take [s]."""
+        """The CPU time [s] allowed for a configuration."""
         return self._max_seconds
 
     def seconds(self, mesh: Mesh, stepper: str, step: float) -> float:
@@ -81,7 +81,7 @@ class StudyCosts:
         steps
             Longest first [s].
         nodes
-            Of the finest mesh of the reference.
+            Number of nodes of the finest mesh of the reference.
         """
         kept = list(steps)
         per_step = self._seconds_per_step * nodes * self._base.scenario.duration

@@ -1,4 +1,4 @@
-"""What the reader of a study should know, in words."""
+"""Notes for the reader of a study."""
 
 from __future__ import annotations
 

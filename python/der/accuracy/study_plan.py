@@ -35,7 +35,7 @@ class Mesh:
     Attributes
     ----------
     nodes
-        Of the rod that gives meshes their name.
+        Nodes of the rod that gives meshes their name.
     scenario
         The scene with this mesh.
     """

@@ -1,4 +1,4 @@
-"""What the runs of a study are compared with: extrapolated in time on each mesh, and in space."""
+"""The reference of a study: extrapolated in time on each mesh, and in space."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ Array = NDArray[np.float64]
 #: Stepper of references: second order with a small error, and stable in the hardest scenes.
 REFERENCE_STEPPER = "tr_bdf2"
 _TIME_LEVELS = 3
-#: Newton's tolerances of references, far below the errors that are looked at.
+#: Newton's tolerances of references, far below the errors that are measured.
 _TIGHT = {"solver.residual_tolerance": 1e-12, "solver.step_tolerance": 1e-13}
 
 
 @dataclass(frozen=True)
 class Reference:
-    """Probes over time, and how far they are off.
+    """Probes over time, and their errors.
 
     Attributes
     ----------
@@ -53,13 +53,13 @@ def reference_tasks(
     meshes
         Scenes by any key.
     stepper
-        Of the references; None for static scenes.
+        Stepper of the references; None for static scenes.
     step
-        Of the coarsest level [s]; two more halve it.
+        Step of the coarsest level [s]; two more levels halve it.
     every
         Between frames [s].
     cost_per_node
-        Of the coarsest level, over the number of nodes, in the unit of `Task.weight`.
+        Cost of the coarsest level, over the number of nodes, in the unit of `Task.weight`.
     """
     tasks = {}
     for mesh, scenario in meshes.items():

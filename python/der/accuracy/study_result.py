@@ -1,4 +1,4 @@
-"""What a study of cost against error has found."""
+"""The result of a study of cost against error."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _USEFUL = 0.2
 
 @dataclass(frozen=True)
 class Study:
-    """What `der.study` has found: cost against error.
+    """The result of `der.study`: cost against error.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class Study:
         By probe, what errors are set against: what it goes through in the reference, largest less
         smallest value, or its largest magnitude if that is more.
     notes
-        What the reader should know: what could not be varied, what was skipped.
+        Notes for the reader, such as what could not be varied and what was skipped.
     noise
         By probe, what rounding leaves: an error of this or less is none.
     """
@@ -90,11 +90,13 @@ class Study:
             if not wanted and self.is_exact(probe):
                 lines.append(f"{probe}: exact in every configuration")
             elif not wanted:
-                lines.append(f"{probe}: no configuration of this study comes near: refine more")
+                lines.append(
+                    f"{probe}: no configuration of this study is close enough: refine more"
+                )
         return lines
 
     def is_exact(self, probe: str) -> bool:
-        """Whether no configuration that came to its end has an error that is more than rounding."""
+        """Whether no completed configuration has an error larger than rounding."""
         errors = [row.claimed_error for row in self.of(probe) if row.completed]
         return bool(errors) and max(errors) <= self._noise(probe)
 

@@ -53,7 +53,7 @@ class StudyRow:
 
     @property
     def completed(self) -> bool:
-        """Whether the run came to its end, so that there is an error and a cost."""
+        """Whether the run was completed, so that there is an error and a cost."""
         return not math.isnan(self.error)
 
     @property

@@ -27,7 +27,7 @@ class StaticRuns:
     meshes
         The meshes to try.
     costs
-        What they will cost.
+        Predicted costs of the runs.
     """
 
     def __init__(self, meshes: Sequence[Mesh], costs: StudyCosts) -> None:
@@ -43,7 +43,7 @@ class StaticRuns:
 
     @property
     def weight(self) -> float:
-        """What all of them will cost, in the unit of `Task.weight`."""
+        """The predicted cost of all of them, in the unit of `Task.weight`."""
         return total_weight(self._tasks.values())
 
     def run(self, workers: Workers) -> list[Trial]:
@@ -69,7 +69,7 @@ class DynamicRuns:
     every
         The interval [s] whose multiples the reference has.
     costs
-        What they will cost.
+        Predicted costs of the runs.
     """
 
     def __init__(
@@ -100,7 +100,7 @@ class DynamicRuns:
 
     @property
     def weight(self) -> float:
-        """What all of them will cost, in the unit of `Task.weight`."""
+        """The predicted cost of all of them, in the unit of `Task.weight`."""
         likely = [(*key, step) for key, steps in self._likely_stable.items() for step in steps]
         return sum(self._weight(*configuration) for configuration in (*self._planned, *likely))
 

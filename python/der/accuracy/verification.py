@@ -12,21 +12,21 @@ from der.accuracy.verified_value import VerifiedValue
 
 @dataclass(frozen=True)
 class Verification:
-    """What `der.verify` found out about a scene.
+    """The result of `der.verify` for a scene.
 
     Attributes
     ----------
     scenario
-        What was verified; with default probes if it had none.
+        The scene that was verified; with default probes if it had none.
     values
         Every probe's final value, and in a run over time its extremes; of a path of equilibria, the
         factor and every probe at each event.
     meshes
-        What was run in space, coarsest first, such as ``51 nodes``; one entry if not refined.
+        The meshes that were run, coarsest first, such as ``51 nodes``; one entry if not refined.
     steps
-        What was run in time, such as ``0.01 s``; empty for a static scene.
+        The steps that were run, such as ``0.01 s``; empty for a static scene.
     notes
-        What the reader should know: what could not be refined, which run failed.
+        Notes for the reader, such as what could not be refined and which run failed.
     cpu_seconds
         CPU time of all runs [s].
     """

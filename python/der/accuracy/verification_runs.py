@@ -36,7 +36,7 @@ Key = tuple[Axis, int]
 
 @dataclass
 class VerificationRuns:
-    """What was run.
+    """The runs of a verification, and notes on them.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class VerificationRuns:
     meshes, steps, notes
         As in `Verification`.
     cpu_seconds
-        Of all runs [s].
+        CPU time of all runs [s].
     """
 
     base: Result
@@ -184,7 +184,7 @@ class Runner:
     Attributes
     ----------
     runs
-        What was run.
+        The runs so far, which are extended.
     """
 
     def __init__(self, runs: VerificationRuns, workers: Workers) -> None:
@@ -307,7 +307,7 @@ class Runner:
             if distance(base, found) < 0.5 * distance(base, apart[level]):
                 self.runs.space[level] = found
                 self.runs.notes.append(
-                    f"the run with {self.runs.meshes[level]} came to another equilibrium; it was "
+                    f"the run with {self.runs.meshes[level]} reached another equilibrium; it was "
                     "started again from the shape of the scene's own mesh, whose branch it follows"
                 )
 
@@ -318,7 +318,7 @@ class Runner:
     def _run(self, tasks: Mapping[Key, Task], report: bool = True, later: float = 0.0) -> bool:
         """Run tasks and keep the results of those that succeed; tell whether all did.
 
-        What will be run `later` counts in the progress already.
+        Tasks that will be run `later` count in the progress already.
         """
         self._workers.expect(total_weight(tasks.values()), later)
         outcomes = self._workers.run(tasks)

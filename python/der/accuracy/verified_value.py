@@ -8,7 +8,7 @@ from typing import Any
 
 from der.accuracy.error_bars import ErrorEstimate
 
-#: What a thousand times tighter Newton tolerance changes, is off by at most this times the change.
+#: Error from Newton's tolerance: at most this times the change under a 1000 times tighter one.
 SOLVER_FACTOR = 2.0
 #: A part of the error smaller than this fraction of the whole is exempt from the order check.
 _COUNTS = 0.1
@@ -35,7 +35,7 @@ class VerifiedValue:
         Bar of the rest: Newton's tolerance, measured with a tolerance a thousand times tighter, and
         rounding.
     solver_correction
-        What the tighter tolerance changed.
+        Change of the value under the tighter tolerance.
     negligible
         Parts of the error up to this are exempt from the order check.
     """
@@ -53,12 +53,12 @@ class VerifiedValue:
 
     @property
     def label(self) -> str:
-        """What it is called in the table: ``tip_y``, or ``tip_y, min``."""
+        """Its label in the table: ``tip_y``, or ``tip_y, min``."""
         return self.probe if self.what == "final" else f"{self.probe}, {self.what}"
 
     @property
     def error_bar(self) -> float:
-        """The whole error bar: the truth is within value -bar .. +bar with 95 % confidence.
+        """The whole error bar: the exact value is within value -bar .. +bar with 95 % confidence.
 
         The truth is that of the rod as a continuum and of exact time; errors of space, time and
         solver add up.
@@ -67,7 +67,7 @@ class VerifiedValue:
 
     @property
     def extrapolated(self) -> float:
-        """Best guess of the truth: Richardson's extrapolation in space and time.
+        """Best estimate of the exact value: Richardson's extrapolation in space and time.
 
         NaN where a part of the error is unknown.
         """
@@ -102,7 +102,7 @@ class VerifiedValue:
 
     @property
     def verdict(self) -> str:
-        """``converged``, or what is to be known of it and where, such as ``slow in time``."""
+        """``converged``, or the verdicts on its errors, such as ``slow in time``."""
         found = [
             f"{part.verdict} in {where}"
             for where, part in self._parts_that_count

@@ -26,7 +26,7 @@ from der.simulation import SceneLike, as_scenario
 #: Where the cross-check run contradicts, the error is at most this times the difference to it.
 _CROSS_CHECK_FACTOR = 1.25
 #: Errors smaller than this fraction of the range of the probe in the run are exempt from the order
-#: check: seven digits are more than anyone looks at.
+#: check: seven digits are more than anyone needs.
 _NEGLIGIBLE = 1e-7
 #: A contradiction by less than this times the noise is none.
 _LITTLE_NOISE = 10.0
@@ -158,7 +158,7 @@ def _notes_on_damping(runs: VerificationRuns, evaluated: list[_Evaluation]) -> l
 
 
 class _Evaluation:
-    """What the runs say about one probe over time."""
+    """The evaluation of the runs for one probe over time."""
 
     def __init__(
         self,

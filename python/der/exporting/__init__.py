@@ -27,7 +27,7 @@ def export(
     Parameters
     ----------
     result
-        What ``der.run`` or ``der.open_run`` returned.
+        A result of ``der.run`` or ``der.open_run``.
     format
         ``csv``: two tables, of all nodes and of the probes. ``npz``: every array, for NumPy.
         ``vtk``: one file for each frame and a ``.pvd`` that ParaView opens as a series over time;

@@ -13,7 +13,7 @@ from der.fields import FIELDS, rod_fields
 from der.progress import ProgressFunction
 from der.run_data import RunData
 
-#: What arrays are called here whose names in a run file are others.
+#: Names of the arrays that have another name in a run file.
 _NAMES = {
     "times": "time",
     "steps": "step",

@@ -1,7 +1,7 @@
 """VTK: one file for each frame and a ``.pvd`` that ParaView opens as a series over time.
 
 Written with pyevtk, which needs nothing but NumPy; VTK's own package would be a hundred times its
-size, and meshio knows no series over time.
+size, and meshio does not write series over time.
 """
 
 from __future__ import annotations

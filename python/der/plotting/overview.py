@@ -55,7 +55,7 @@ def plot(
     Parameters
     ----------
     result
-        What ``der.run`` or ``der.open_run`` returned.
+        A result of ``der.run`` or ``der.open_run``.
     what
         ``"shapes"``, ``"probes"``, or both: ``"overview"``.
     times

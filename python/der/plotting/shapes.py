@@ -87,7 +87,7 @@ def draw_shapes(
     positions
         Positions of all nodes [m], shape (nodes, dim); the view is along z.
     colour, linestyle
-        Of the centre line; thickness and spheres are a pale tone of the colour.
+        Style of the centre line; thickness and spheres are a pale tone of the colour.
     label
         For the legend.
     """

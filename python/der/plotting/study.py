@@ -1,4 +1,4 @@
-"""The picture of a study: what an error costs, and where it comes from."""
+"""The picture of a study: cost against error, and the sources of the error."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ _MARGIN = 0.08  # of logarithmic axes [decades]
 def plot_study(title: str, probes: Sequence[Sequence[StudyRow]]) -> Figure:
     """Draw, for each probe, cost against error, error in time against the step, and in space.
 
-    The grey band holds errors below that of the reference, of which nothing is known. Of the
-    configurations of a stepper only those are joined that nothing cheaper is as good as; the others
-    are small dots. A static scene has no panel for time.
+    The grey band holds errors below that of the reference, which cannot be measured. Lines
+    trace the Pareto front of each stepper; other configurations are small dots. A static scene has
+    no panel for time.
 
     Parameters
     ----------
     title
-        Of the figure.
+        Title of the figure.
     probes
         For each probe its rows, one for each configuration.
 
@@ -124,7 +124,7 @@ def _looks(rows: Sequence[StudyRow]) -> list[tuple[str, ColorType, str]]:
 
 
 def _frontier(rows: Sequence[StudyRow]) -> list[StudyRow]:
-    """Return the rows that no cheaper one is as accurate as, cheapest first."""
+    """Return the rows on the Pareto front of cost and error, cheapest first."""
     best: list[StudyRow] = []
     for row in sorted(rows, key=lambda row: (row.cpu_seconds, row.claimed_error)):
         if not best or row.claimed_error < best[-1].claimed_error:

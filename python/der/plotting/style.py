@@ -15,14 +15,14 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import text_to_path
 from matplotlib.typing import ColorType
 
-#: Colours of Okabe and Ito, told apart with every common form of colour blindness.
+#: Colours of Okabe and Ito, distinguishable with every common form of colour blindness.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 
-#: Markers of lines that are told apart by more than their colour.
+#: Markers of lines that must be distinguishable by more than their colour.
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", "*", "h")
 _DARKER = 0.55  # of the colours, each time that the palette begins anew
 
-#: What is not the result itself: supports, zero lines, reference shapes.
+#: Parts that are not the result itself: supports, zero lines, reference shapes.
 MUTED = "#6b6b6b"
 
 #: Loads: forces, moments, gravity.

@@ -1,4 +1,4 @@
-"""The course report that the project began with: run anew, and compared number by number."""
+"""The course report that the project started from: run again, and compared number by number."""
 
 from der.reproduce.reproducing import reproduce
 

@@ -60,7 +60,7 @@ def euler_bernoulli_deflection(tube: Tube, load: float) -> float:
 
 @dataclass(frozen=True)
 class Deflection:
-    """Of the continuum [m], downward: the largest one, and that at half the rest length."""
+    """Deflections of the continuum [m], downward: the largest, and that at half the rest length."""
 
     largest: float
     middle: float

@@ -1,4 +1,4 @@
-"""What a written report is made of; how it looks in HTML and in Markdown is said elsewhere.
+"""The parts of a written report; `html` and `markdown` define how they look.
 
 Texts may hold `code` in backticks and are plain otherwise: what HTML or Markdown would take for a
 sign of theirs is made safe by whoever writes it.
@@ -36,7 +36,7 @@ class Table:
     Attributes
     ----------
     caption
-        What the table shows.
+        A description of the table.
     columns
         Heads of the columns.
     align
@@ -58,11 +58,11 @@ class Picture:
     Attributes
     ----------
     name
-        Of the file, without its ending.
+        Name of the file, without its ending.
     title
         A few words, such as ``Figure 3``; what it answers may follow in brackets.
     caption
-        What is to be seen.
+        A description of the picture.
     alt
         For those who cannot see it.
     draw
@@ -93,7 +93,7 @@ class Section:
 
     @property
     def anchor(self) -> str:
-        """What a link to the section names, made as GitHub makes it of a heading."""
+        """The anchor of links to the section, made from its title as GitHub makes it."""
         kept = "".join(c for c in self.title.lower() if c.isalnum() or c in " -_")
         return kept.replace(" ", "-")
 

@@ -6,7 +6,7 @@ the middle one large and the others of a tenth of an edge. With displacements u_
     m_i u_i'' = -dE/du_i - (rho_s - rho_f) V_i g - 6 pi mu R_i u_i',        V_i = 4/3 pi R_i^3
     E = sum over edges  EA/2 (|e|/l - 1)^2 l  +  sum over inner nodes  EI/2 (2 tan(phi/2))^2 / l
 
-with phi the turning angle. What stands here is worked out from these lines alone, in terms of edge
+with phi the turning angle. This module is derived from these equations alone, in terms of edge
 angles: the torque dE/dphi of an inner node turns its two edges against each other, and turning an
 edge by a force f across it takes the torque |e| f. Time is left to SciPy's Radau, an implicit
 Runge-Kutta method of order 5 (Hairer and Wanner, Solving Ordinary Differential Equations II).
@@ -207,7 +207,7 @@ def fall(chain: FallingChain, times: Array, tolerance: float = 1e-8) -> Fall:
     Parameters
     ----------
     chain
-        What falls.
+        The chain that falls.
     times
         When to look at it [s], ascending.
     tolerance

@@ -21,7 +21,7 @@ def to_html(document: Document, pictures: Mapping[str, bytes]) -> str:
     Parameters
     ----------
     document
-        What to write.
+        The document to write.
     pictures
         The PNG of each picture by `Picture.name`.
     """

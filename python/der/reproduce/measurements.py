@@ -29,7 +29,7 @@ Key = Hashable
 WATER = 1000.0
 #: With and without buoyancy [kg/m^3].
 DENSITIES = (0.0, WATER)
-#: What is varied: nodes, steps [s], loads [N].
+#: The varied parameters: nodes, steps [s], loads [N].
 NODES = (3, 5, 7, 9, 11, 15, 21, 31, 51, 101)
 STEPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 LOADS = (20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0, 20000.0)
@@ -116,14 +116,14 @@ class Speed:
 
 @dataclass(frozen=True)
 class Measurements:
-    """What was run and solved.
+    """The runs and solutions behind the report.
 
     Attributes
     ----------
     runs
         Results by name.
     bars
-        What `der.verify` says of the scenes of some of them.
+        Error bars by `der.verify` for the scenes of some of them.
     speeds_by_nodes, speeds_by_step
         Speed of the middle sphere after 50 s [m/s], downward, by number of nodes or step [s], and
         density of the fluid [kg/m^3].

@@ -36,11 +36,11 @@ class Quantity:
     key
         Short and unique.
     name, unit
-        What it is, and its SI unit.
+        Name of the quantity, and its SI unit.
     claim
-        What the report says; a text where that is no number.
+        The value of the report; a text if that is not a number.
     ours
-        What der gives; None for a formula that the report evaluates.
+        The value of der; None for a formula that the report evaluates.
     error_bar
         Error bar of `ours`; None where there is none, as for a wall time.
     exact
@@ -304,7 +304,7 @@ def _schemes(m: Measurements) -> list[Quantity]:
             None,
             None,
             f"After {int(unstable.summary['steps'])} steps an edge is a hundred times too long, "
-            "and the run ends with an error. What goes on from there says nothing about the rod.",
+            "and the run ends with an error. The motion from there on says nothing about the rod.",
             command_of("three_unstable"),
             digits=2,
         ),

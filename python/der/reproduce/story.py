@@ -1,4 +1,4 @@
-"""What the reproduction says: its sections, figures and captions."""
+"""The text of the reproduction: its sections, figures and captions."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ def view(result: RunData, path: str | os.PathLike[str], *, open: bool = False) -
     Parameters
     ----------
     result
-        What ``der.run`` or ``der.open_run`` returned.
+        A result of ``der.run`` or ``der.open_run``.
     path
         File to write.
     open

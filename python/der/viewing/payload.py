@@ -1,4 +1,4 @@
-"""What a view shows, as numbers and texts for its script."""
+"""The content of a view, as numbers and texts for its script."""
 
 from __future__ import annotations
 
@@ -134,7 +134,7 @@ def _noise(rods: list[Rod], unit: str, span: float) -> float:
 def _field_range(unit: str, fields: list[Array], rods: list[Rod], span: float) -> dict[str, Any]:
     """Return unit and range of a quantity; one that is constant gets a range around it.
 
-    What varies by no more than rounding may make is constant, and what is no larger is 0.
+    A quantity that varies by no more than rounding is constant; one that is no larger is 0.
     """
     noise = _noise(rods, unit, span)
     low = min(float(values.min()) for values in fields)

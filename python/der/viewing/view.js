@@ -235,7 +235,7 @@
     return [add(point, [0, 1.6 * size, 0]), [0, 1, 0]];
   };
 
-  // What is drawn.
+  // The state of the view.
   const state = { frame: 0, chapter: 0, quantity: "", speed: 1, playing: false };
   const range = () => data.fields[state.quantity];
   const title = (name, unit) => (unit ? `${name} [${unit}]` : name);

@@ -1,4 +1,4 @@
-"""What a case of the audit is: a scene, and true values for what ``der verify`` says about it."""
+"""A case of the audit: a scene, and true values to check the results of ``der verify``."""
 
 from __future__ import annotations
 

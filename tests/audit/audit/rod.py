@@ -35,7 +35,7 @@ class NoSolutionError(RuntimeError):
 
 @dataclasses.dataclass
 class Place:
-    """What acts at one arc length; all in SI units, displacements from the drawn place."""
+    """Loads and supports at one arc length; in SI units, displacements from the initial place."""
 
     force: tuple[float, float] = (0.0, 0.0)
     moment: float = 0.0

@@ -1,4 +1,4 @@
-"""What ``der verify`` says about a case, value by value, against the truth."""
+"""The results of ``der verify`` for a case, value by value, against the true values."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Row:
 
 @dataclasses.dataclass
 class Outcome:
-    """What became of one case."""
+    """The outcome of one case."""
 
     name: str
     kind: str
@@ -154,7 +154,7 @@ def _accepted(scene: dict[str, Any]) -> tuple[der.Scenario | None, list[str]]:
 
 
 def _final(scene: der.Scenario) -> dict[str, Any]:
-    """What a run of the scene ends with: which of several solutions it is on."""
+    """The final shape and tension of a run, which show which of several solutions it reached."""
     if "time" in scene.to_dict():
         return {}
     result = der.equilibrium(scene)

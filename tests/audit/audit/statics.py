@@ -151,7 +151,7 @@ def load(rng: Random, drawing: Drawing, scene: dict[str, Any]) -> None:
         else:
             at = float(rng.uniform(0.02, 0.98) * L)
             u = drawing.u(at)
-            # What happens within one element of the scene is not what a mesh can tell.
+            # A mesh cannot resolve two places within one element of the scene.
             element = last / (drawing.nodes - 1)
             if any(abs(u - other) < element for other in rod.places if 0 < other < last):
                 continue

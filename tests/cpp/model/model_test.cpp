@@ -15,7 +15,7 @@ namespace der::test {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-/// Of a few operations on numbers up to 1; doctest takes 1e-5 by itself.
+/// Rounding error of a few operations on numbers up to 1; doctest's own tolerance is 1e-5.
 constexpr double kRounding = 1e-14;
 
 Model model_of(const std::string& rod, const std::string& rest = "") {

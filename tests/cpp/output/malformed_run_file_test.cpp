@@ -312,7 +312,7 @@ void put_bytes(const fs::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// What is read of a file, in one text; throws IoError.
+/// All data of a run file, as one text; throws IoError.
 std::string all_of(const fs::path& path) {
   std::string text;
   const auto add = [&](const auto& values) {
@@ -373,7 +373,7 @@ TEST_CASE("run files of wrong content are refused and named") {
     mend(path, mistake.make);
     const std::string message = refusal([&] { all_of(path); });
     CHECK(message.find(path.string()) != std::string::npos);
-    // What a resumed run does not need to look at, it may take.
+    // A resumed run may accept damaged data that it does not read.
     refusal([&] { resume(path); });
   }
 }

@@ -64,7 +64,7 @@ Vec2 velocity_at(const Vec2& point) {
   return kDrift + kSpin * Vec2{-arm.y(), arm.x()};
 }
 
-/// What each quantity is in this configuration.
+/// The value of each quantity in this configuration.
 std::map<std::string, double> expected_values() {
   const std::vector<Vec2> points = corners();
   const double edge_length = kLength / kEdges;

@@ -1,4 +1,4 @@
-// What is recorded when: frames, extremes of probes, ends of runs.
+// Tests of the recorded data: frames, extremes of probes, ends of runs.
 #include "der/output/recorder.hpp"
 
 #include <doctest/doctest.h>

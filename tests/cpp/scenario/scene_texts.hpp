@@ -23,7 +23,7 @@ inline Scenario beam(const std::vector<Override>& overrides = {}) {
   return Scenario::parse(kRod + kTime, "beam", overrides);
 }
 
-/// What is said about a scene; empty for a sound one.
+/// The diagnostics of a scene; empty for a valid one.
 inline std::vector<Diagnostic> diagnostics(const std::string& text) {
   try {
     Scenario::parse(text);
@@ -33,7 +33,7 @@ inline std::vector<Diagnostic> diagnostics(const std::string& text) {
   return {};
 }
 
-/// What is said about the beam with some values replaced, all lines together.
+/// The diagnostics of the beam with some values replaced, as one text.
 inline std::string diagnostics(const std::vector<Override>& overrides) {
   try {
     beam(overrides);

@@ -1,5 +1,4 @@
-// What happens when a step is hard: line search, indefinite matrices, retries, and failures that
-// say where and when.
+// Difficult steps: line search, indefinite matrices, retries, and failures that say where and when.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -74,7 +73,7 @@ std::vector<double> residuals_of_newton(const std::string& force, const std::str
 TEST_CASE("an indefinite stiffness leads away from the straight rod, to a stable shape") {
   Simulation simulation(Scenario::parse(kPressed));
   while (!simulation.finished()) simulation.step();
-  // Pulled through: the rod has turned round and hangs behind the clamp along the force.
+  // Pulled through: the rod has reversed and hangs behind the clamp along the force.
   const Vector& x = simulation.state().positions;
   CHECK(x[x.size() - 2] < -0.8);
   CHECK(simulation.equilibrium().stability.unstable_directions == 0);

@@ -126,8 +126,7 @@ TEST_CASE("the forces balance: the residual on held nodes is the reaction") {
   CHECK(report.residual <= 1e-9 * report.force_scale);
   CHECK(report.force_scale == doctest::Approx(10.0).epsilon(1e-6));
 
-  // What the elements pull at the clamped node with, the support has to hold: the load turned
-  // round.
+  // The gradient at the clamped node is the reaction of the support, which balances the load.
   const Model& model = simulation.model();
   Vector gradient(model.num_dofs());
   const Pattern pattern = build_pattern(model);

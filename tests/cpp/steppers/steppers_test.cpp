@@ -63,7 +63,7 @@ rods:
 time: {duration: 1, step: 0.001, integrator: implicit_euler}
 )";
 
-/// Of M^-1 K at the state of a simulation [1/s^2].
+/// The largest eigenvalue of M^-1 K at the state of a simulation [1/s^2].
 double largest_eigenvalue(const Simulation& simulation) {
   const auto dense = [](const SymmetricMatrix& sparse) {
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(sparse.pattern.size, sparse.pattern.size);

@@ -106,8 +106,8 @@ _CONDITIONS = {
 
 
 def _end_rows(at: float, force: float, grow: float, turn: float) -> dict[str, Array]:
-    """What an end can hold, for the four solutions exp(-a s), exp(-a (1 - s)), cos b s and
-    sin b s of v_ssss - force v_ss = omega^2 v; a = `grow`, b = `turn`.
+    """Value, slope, moment and shear at an end, for the four solutions exp(-a s), exp(-a (1 - s)),
+    cos b s and sin b s of v_ssss - force v_ss = omega^2 v; a = `grow`, b = `turn`.
     """
     left, right = np.exp(-grow * at), np.exp(-grow * (1.0 - at))
     c, s = np.cos(turn * at), np.sin(turn * at)

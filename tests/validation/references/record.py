@@ -1,4 +1,4 @@
-"""What a reference number is: value, error bar, unit, and how it was made."""
+"""A reference number: value, error bar, unit, and how it was made."""
 
 from __future__ import annotations
 

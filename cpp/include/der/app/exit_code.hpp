@@ -2,7 +2,7 @@
 
 namespace der::app {
 
-/// What der_run tells the shell; listed in `der_run --help` and docs/results.md.
+/// The exit codes of der_run; listed in `der_run --help` and docs/results.md.
 enum class ExitCode : int {
   Completed = 0,
   SceneError = 1,

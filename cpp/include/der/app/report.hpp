@@ -15,7 +15,7 @@ namespace der::app {
 std::string run_report(const Simulation& simulation, const Recorder& recorder,
                        const RunOutcome& outcome, const RunFolder& folder, const Style& style);
 
-/// What --check prints for a scene that is valid.
+/// The text that --check prints for a valid scene.
 std::string check_report(const Simulation& simulation, const Style& style);
 
 }  // namespace der::app

@@ -26,7 +26,7 @@ class Assembler {
 
   /// Sets `gradient` (all degrees of freedom) [N] of the potential energy of all elements.
   void gradient(const Configuration& here, Vector& gradient) const;
-  /// As above, and sets `values` to the Hessian [N/m].
+  /// Sets `gradient` likewise, and `values` to the Hessian [N/m].
   void gradient_and_hessian(const Configuration& here, Vector& gradient, Vector& values) const;
   /// Adds `factor` times the mass matrix; its couplings are the model's or none.
   void add_mass(const Mass& mass, double factor, Vector& values) const;

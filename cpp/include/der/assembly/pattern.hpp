@@ -19,7 +19,7 @@ struct Pattern {
   [[nodiscard]] Index nonzeros() const { return static_cast<Index>(inner.size()); }
 };
 Pattern build_pattern(const Model& model);
-/// As above, of the mass matrix alone.
+/// The pattern of the mass matrix alone.
 Pattern build_mass_pattern(const Model& model);
 
 /// Where the entry (row, column), row >= column, of the lower triangle lies in a solver's array of
@@ -31,8 +31,8 @@ class MatrixLayout {
   static MatrixLayout band(Index size, Index half_bandwidth);
 
   [[nodiscard]] Index slot(Index row, Index column) const;
-  /// As above in either order; `num_values()`, a slot that no solver reads, where one is negative:
-  /// a held degree of freedom.
+  /// The slot of an entry given by its two indices in either order. A negative index is a held
+  /// degree of freedom; its slot is `num_values()`, which no solver reads.
   [[nodiscard]] Index slot_or_spare(Index i, Index j) const;
   [[nodiscard]] Index num_values() const { return num_values_; }
   /// Adds `shift` to every entry of the diagonal.

@@ -16,8 +16,8 @@ namespace der {
 /// A run of plain planar stretch elements, each beginning where the one before ends, with the bend
 /// elements between them: nearly all of a rod. Taken together they cost less than one by one, since
 /// an edge's length, direction and their derivatives are worked out once and not for each element
-/// that it belongs to, and each entry of the matrix is written once. What is summed is what the
-/// kernels Stretch<2> and PlanarBend give, to rounding.
+/// that it belongs to, and each entry of the matrix is written once. The sums equal those of the
+/// kernels Stretch<2> and PlanarBend to rounding.
 class PlanarChain {
  public:
   /// All runs of a model that are at least two edges long.
@@ -28,7 +28,7 @@ class PlanarChain {
     std::size_t first = 0;
     std::size_t count = 0;
   };
-  /// Those of a kind that it assembles.
+  /// The elements of one kernel that the chain assembles.
   template <class Kernel>
   [[nodiscard]] Range elements_of() const {
     if constexpr (std::is_same_v<Kernel, Stretch<2>>) return edges_;
@@ -41,7 +41,7 @@ class PlanarChain {
 
   /// Adds to `gradient` (all degrees of freedom).
   void add_gradient(const Model& model, const Configuration& here, Vector& gradient) const;
-  /// As above, and to the matrix's `values`.
+  /// Adds to `gradient` likewise, and the Hessian to the matrix's `values`.
   void add_gradient_and_hessian(const Model& model, const Configuration& here, Vector& gradient,
                                 double* values) const;
 

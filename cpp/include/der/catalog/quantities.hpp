@@ -13,7 +13,7 @@ struct Model;
 struct RodLayout;
 class RodField;
 
-/// What a quantity belongs to, and so where a probe of it can stand.
+/// The object that a quantity belongs to; it determines where a probe of it can be placed.
 enum class QuantityKind {
   Position,  ///< of the rod's points: known at nodes, read at any arc length
   Velocity,  ///< of the rod's points: known at nodes, read at any arc length

@@ -11,8 +11,8 @@ namespace der {
 using CountMask = Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>;
 constexpr std::int64_t kCounts = 0x7fff'ffff'ffff'ffff;
 
-/// |x| as the integer of the same bits: these integers have the order of the magnitudes, with all
-/// that is not a number above infinity. Compilers vectorize their maximum, but not that of doubles.
+/// |x| as the integer of the same bits: these integers have the order of the magnitudes, with
+/// NaN above infinity. Compilers vectorize their maximum, but not that of doubles.
 inline std::int64_t magnitude_bits(double x) {
   std::int64_t bits = 0;
   std::memcpy(&bits, &x, sizeof bits);
@@ -26,11 +26,11 @@ inline double magnitude_of(std::int64_t bits) {
   return x;
 }
 
-/// Largest |x_i| of `size` values; not a number if one of them is not.
+/// Largest |x_i| of `size` values; NaN if one of them is NaN.
 double largest_magnitude(Index size, const double* x);
-/// As above, of those that count.
+/// Largest |x_i| of the values that count.
 double largest_magnitude(Index size, const double* x, const std::int64_t* counts);
-/// As above, of a whole vector.
+/// Largest |x_i| of a vector.
 inline double largest_magnitude(const Vector& x) {
   return largest_magnitude(static_cast<Index>(x.size()), x.data());
 }

@@ -6,7 +6,7 @@
 
 namespace der {
 
-/// What the mechanics needs to know of a cross-section and its material.
+/// The properties of a cross-section and its material that enter the mechanics.
 struct SectionProperties {
   double EA = 0.0;               ///< [N]
   double EI = 0.0;               ///< bending in the plane [N m^2]

@@ -16,14 +16,14 @@ enum class DofKind {
   Angle,     ///< the angle of an edge's material frame [rad]
 };
 
-/// What a degree of freedom is.
+/// Identifies a degree of freedom: a component of a node's position, or the angle of an edge.
 struct Dof {
   DofKind kind = DofKind::Position;
   Index owner = 0;    ///< the node, or the edge
   int component = 0;  ///< of a position: 0 x, 1 y, 2 z
 };
 
-/// Degrees of freedom of one kind, which lie one behind the other in storage.
+/// Degrees of freedom of one kind, which are contiguous in storage.
 struct DofBlock {
   DofKind kind = DofKind::Position;
   Index first = 0;
@@ -31,7 +31,7 @@ struct DofBlock {
   double length = 1.0;  ///< [m] that a unit of it counts as where degrees of freedom are compared
 };
 
-/// The largest of `value(block)`; not a number where one of them is not.
+/// The largest of `value(block)`; NaN if one of them is NaN.
 template <class Value>
 double largest_over(const std::vector<DofBlock>& blocks, const Value& value) {
   std::int64_t largest = 0;
@@ -42,8 +42,8 @@ double largest_over(const std::vector<DofBlock>& blocks, const Value& value) {
 /// The only place that knows how degrees of freedom are numbered: what each one is, where it is
 /// stored, in which order the solver eliminates it, and what it counts for in a norm.
 ///
-/// Stored are the positions of all nodes, one behind the other, then the angles of all edges, so
-/// that either is one contiguous view. Those that the solver finds, the free ones, are eliminated
+/// The positions of all nodes are stored first, then the angles of all edges, so that each of the
+/// two is one contiguous view. Those that the solver finds, the free ones, are eliminated
 /// node by node, an angle after the node at which its edge begins: that makes the matrix a band.
 class DofMap {
  public:
@@ -57,12 +57,12 @@ class DofMap {
     return dimension_ * node + component;
   }
   [[nodiscard]] Index angle(Index edge) const { return num_positions() + edge; }
-  /// What a degree of freedom is.
+  /// The kind, owner and component of a degree of freedom.
   [[nodiscard]] Dof operator[](Index dof) const;
   /// Its node, or the node at which its edge begins.
   [[nodiscard]] Index node_of(Index dof) const;
 
-  /// Leaves the `held` ones to the supports and numbers the others anew.
+  /// Marks the `held` ones as prescribed by supports and renumbers the free ones.
   void hold(const std::vector<Index>& held);
   /// All free ones, in the order of elimination.
   [[nodiscard]] const std::vector<Index>& free() const { return free_; }
@@ -71,8 +71,7 @@ class DofMap {
   [[nodiscard]] Index free_index(Index dof) const { return free_index_[to_size(dof)]; }
   [[nodiscard]] bool is_free(Index dof) const { return free_index(dof) >= 0; }
 
-  /// States the length [m] against which motions are small, and that a radian counts as: that of
-  /// the model.
+  /// Sets the characteristic length [m] of the model, which a radian counts as.
   void set_length(double length);
   [[nodiscard]] double length() const { return length_; }
   /// Magnitude [m] that a motion of one degree of freedom counts as.
@@ -86,13 +85,13 @@ class DofMap {
   [[nodiscard]] const std::vector<DofBlock>& blocks() const { return blocks_; }
 
   /// Largest motion [m] among displacements of all degrees of freedom: angles count times the
-  /// length. Not a number where one of them is not.
+  /// length. NaN if one of them is NaN.
   [[nodiscard]] double largest_motion(const Vector& displacement) const;
   /// The degree of freedom with the largest motion; the first that is not a number.
   [[nodiscard]] Index most_moved(const Vector& displacement) const;
   /// Largest force [N] among those on all degrees of freedom: moments count over the length.
   [[nodiscard]] double largest_force(const Vector& force) const;
-  /// As above, of free degrees of freedom alone.
+  /// Largest force [N] among those on free degrees of freedom alone.
   [[nodiscard]] double largest_free_force(const Vector& force) const;
 
  private:

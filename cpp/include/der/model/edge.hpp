@@ -4,8 +4,8 @@
 
 namespace der {
 
-/// An edge of the graph of nodes: between which of a field's entries it lies, a field having the
-/// components of each node one behind the other, such as positions, displacements and velocities.
+/// An edge of the graph of nodes, given by the entries of a field at its two nodes. A field, such
+/// as positions, displacements or velocities, stores the components of one node after another.
 struct Edge {
   Index first = 0;                  ///< first component of the node where it begins
   Index last = 0;                   ///< first component of the node where it ends

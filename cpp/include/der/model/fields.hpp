@@ -12,7 +12,7 @@
 
 namespace der {
 
-// What is saved of a run is visited by lists of its fields: a struct names its own in
+// All saved data of a run are visited through lists of fields: a struct names its own in
 // `static constexpr auto fields()`, once, and checkpoints, checksums, pickles, checks and tests go
 // through that list. A field is a number, a Vector, a struct with fields of its own, a std::vector
 // of such (a list), or a std::variant of such (an alternative).
@@ -25,7 +25,7 @@ enum class Extent {
   Probes,         ///< one a probe
 };
 
-/// Which numbers a run can come to, or a program can write.
+/// The range of numbers that a run can reach, or a program can write.
 enum class Values {
   Any,
   Finite,

@@ -20,7 +20,7 @@ double arc_length_of(const scenario::Location& location, const RodLayout& rod);
 /// Position in RodLayout::nodes of the node at `location`. The reader has checked that there is
 /// one.
 Index node_at(const scenario::Location& location, const RodLayout& rod);
-/// As above; every node for Kind::All.
+/// Positions in RodLayout::nodes of the nodes at `location`: every node for Kind::All, else one.
 std::vector<Index> nodes_at(const scenario::Location& location, const RodLayout& rod);
 
 /// Weights of the cubic Lagrange polynomial through the (up to) four nodes nearest to arc length

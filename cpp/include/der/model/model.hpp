@@ -81,7 +81,7 @@ struct RodLayout {
   double EI = 0.0;                  ///< [N m^2]
   double mass_per_length = 0.0;     ///< [kg/m] without spheres
   scenario::CurvatureMeasure curvature = scenario::CurvatureMeasure::Angle;
-  /// Natural curvature at each node [1/m]; empty: stress-free as drawn.
+  /// Natural curvature at each node [1/m]; empty: the initial shape is stress-free.
   std::vector<double> natural_curvature;
   /// Natural turning angle at each node that bends [rad], at clamped ones of the clamp's cells; 0
   /// at free ends.
@@ -108,7 +108,7 @@ struct RodLayout {
   [[nodiscard]] const MomentPlace* moment_place_at(double s) const;
 };
 
-/// A degree of freedom that the solver does not find: it keeps its initial value, plus a control.
+/// A prescribed degree of freedom: its value is the initial one plus a control.
 struct HeldDof {
   Index dof = 0;
   Index displacement = -1;  ///< control that holds the displacement [m]; -1: none
@@ -147,8 +147,8 @@ struct Model {
   Vector gravity_force;  ///< [N] weight without buoyancy
   Vector dead_force;     ///< [N] every constant force but weight: buoyancy, constant loads
   TimeTables tables;     ///< tables over time that forces and supports follow
-  /// Of a scene that varies its loads: what a state of another load factor than 1 has in place of
-  /// `gravity_force`, `dead_force` and `controls`.
+  /// If the scene varies its loads or motions: their dependence on the load factor. It replaces
+  /// `gravity_force`, `dead_force` and `tables` for states whose factor is not 1.
   std::optional<LoadVariation> load_variation;
   std::vector<ControlledForce> controlled_forces;
 

@@ -7,8 +7,8 @@
 
 namespace der {
 
-/// What a control follows in place of its table once a program has set it: from one value to
-/// another, linear between two times, constant before and after.
+/// A function of time that replaces the table of a control once a program has set it: linear
+/// between two values at two times, constant before and after.
 struct Ramp {
   Index control = 0;
   double start = 0.0;  ///< [s]

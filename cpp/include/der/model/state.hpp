@@ -17,13 +17,13 @@ namespace der {
 
 struct Model;
 
-/// What has gone in and out of a run's energy since its start [J] (docs/energy.md).
+/// The energy at the start of a run, and the works done since [J] (docs/energy.md).
 struct Work {
   double start = 0.0;     ///< energy at the start, of all kinds
   double loads = 0.0;     ///< done by forces and moments but for weight
   double supports = 0.0;  ///< done by supports that move
   double drag = 0.0;      ///< taken by drag and linear damping
-  double solver = 0.0;    ///< done by what the solver has left of the residual
+  double solver = 0.0;    ///< done by the residual forces that the solver leaves
 
   static constexpr auto fields() {
     return std::make_tuple(field("start", "J", &Work::start), field("loads", "J", &Work::loads),
@@ -33,11 +33,11 @@ struct Work {
 };
 static_assert(lists_all_members<Work>());
 
-/// Energy that the time stepping creates, against what a run exchanges between kinds of energy, as
-/// `EnergyWatch` has seen it so far.
+/// Energy that the time integrator has created, and energy that the run has exchanged, as far as
+/// `EnergyWatch` has checked.
 struct EnergyAudit {
-  double exchanged = 0.0;     ///< [J] the most at an instant
-  double created = 0.0;       ///< [J] the most at an instant
+  double exchanged = 0.0;     ///< [J] largest value so far
+  double created = 0.0;       ///< [J] largest value so far
   double written = 0.0;       ///< [J] put in by a program that wrote positions or velocities
   double folded_from = -1.0;  ///< [s] when a node first turned through half a turn; negative: never
   double folded_node = -1.0;  ///< its number
@@ -54,8 +54,8 @@ struct EnergyAudit {
 };
 static_assert(lists_all_members<EnergyAudit>());
 
-/// Version of what a saved state means, in a checkpoint or a pickle; another one is refused. One
-/// more wherever a field keeps its name and means something else than before.
+/// Version of saved states, in checkpoints and pickles; states of another version are refused.
+/// Increase it when a field keeps its name but changes its meaning.
 constexpr std::int64_t kStateVersion = 2;
 
 /// Everything that changes in a run. A plain value: copy it to save it, assign it to go back, bit
@@ -64,7 +64,7 @@ constexpr std::int64_t kStateVersion = 2;
 struct State {
   double time = 0.0;      ///< [s]
   std::int64_t step = 0;  ///< steps of the scene done
-  /// Of the loads and motions that the scene varies, if it does (Model::load_variation); 1: as
+  /// Factor of the loads and motions that the scene varies, if any (Model::load_variation); 1: as
   /// written.
   double load_factor = 1.0;
   Vector positions;    ///< [m]
@@ -74,15 +74,15 @@ struct State {
   Vector accelerations;
   double last_step = 0.0;  ///< [s] length of the last step; 0: no step yet, `accelerations` not set
   StepperMemory memory;    ///< what the stepper remembers besides
-  /// [s] that adaptive steps want to go on with, or what explicit ones are stable with; 0: not
-  /// known.
+  /// [s] proposed length of the next step, or of the pieces of explicit steps: by the error
+  /// control, or by the stability limit; 0: not known.
   double next_step = 0.0;
   double last_error = 0.0;  ///< of the last adaptive step, over what it was allowed
   Work work;
   EnergyAudit audit;
   std::vector<Ramp> ramps;  ///< controls that a program has set, in place of their tables
-  /// [rad] by which the model's followed edges have turned since they were drawn, whole turns
-  /// included, as of the last step or equilibrium.
+  /// Rotations [rad] of the model's followed edges from the initial shape, whole turns included, at
+  /// the last step or equilibrium.
   Vector turns;
 
   static constexpr auto fields() {
@@ -112,32 +112,35 @@ State initial_state(const Model& model);
 /// Positions, velocities and forces may be any numbers, as a program may have written them.
 void check_state(const Model& model, const State& state);
 
-/// What is wrong with the first number that no state can have, whatever the model; empty: none.
+/// Describes the first number that is invalid in any state, whatever the model; empty if there is
+/// none.
 std::string find_wrong_value(const State& state);
 
 /// Sets `controls` to what elements and supports follow besides the positions, at `time` [s] of a
 /// step that begins at `state`: the tables, or their values at the load factor, the ramps in place
 /// of them, and the turns.
 void evaluate_controls(const Model& model, const State& state, double time, Vector& controls);
-/// Value of one that is no turn, at the time of `state`.
+/// Value of a control that is not a turn, at the time of `state`.
 double control_value(const Model& model, const State& state, Index control);
-/// Where a state is, at its own time, without allocating where `here` has the sizes.
+/// Sets `here` to the configuration of a state at its own time; allocates nothing if the sizes of
+/// `here` are right already.
 void configuration_of(const Model& model, const State& state, Configuration& here);
 Configuration configuration_of(const Model& model, const State& state);
 
 /// Energies of a state.
 Energies energies(const Model& model, const State& state);
-/// As above; allocates nothing.
+/// Energies at a configuration with these velocities; allocates nothing.
 Energies energies(const Model& model, const Configuration& here, const Vector& velocities);
 
-/// Forgets what steppers remember of the steps so far, for a motion that begins anew.
+/// Discards what steppers remember of the steps so far; for a new motion.
 void forget_steps(State& state);
 
 /// Starts a new ledger and audit: nothing has gone in or out yet.
 void start_ledger(const Model& model, State& state);
 
-/// Energy [J] that the time stepping itself has taken since the start: what is missing of the work
-/// that went in. Negative where the scheme made energy.
+/// Energy [J] that the time integrator has dissipated since the start: the energy at the start and
+/// the works done on the system, less the present energy. Negative if the integrator created
+/// energy.
 double numerical_loss(const Work& work, const Energies& now);
 
 /// One row of the ledger as it is recorded.

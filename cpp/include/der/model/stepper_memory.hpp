@@ -27,7 +27,7 @@ struct Bdf2Memory {
   }
 };
 
-/// Of explicit steps: the shape of which the stable step is known.
+/// Memory of explicit steppers: the shape for which the stable step was last evaluated.
 struct StabilityMemory {
   Vector positions;  ///< [m]
 
@@ -41,7 +41,7 @@ struct StabilityMemory {
 static_assert(lists_all_members<NoMemory>() && lists_all_members<Bdf2Memory>() &&
               lists_all_members<StabilityMemory>());
 
-/// What a stepper remembers of the steps so far, besides what every state has. Files hold the
+/// Data that a stepper keeps of the previous steps, besides what every state has. Files hold the
 /// number of an alternative here: append new ones.
 using StepperMemory = std::variant<NoMemory, Bdf2Memory, StabilityMemory>;
 

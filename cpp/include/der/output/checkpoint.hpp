@@ -26,7 +26,7 @@ struct ProbeSummary {
 };
 static_assert(lists_all_members<ProbeSummary>());
 
-/// All it takes to go on with a run as if it had never stopped, bit for bit.
+/// All data needed to continue a run bit for bit as if it had never stopped.
 struct Checkpoint {
   State state;
   std::vector<ProbeSummary> extremes;  ///< one a probe

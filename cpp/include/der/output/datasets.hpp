@@ -17,7 +17,7 @@ struct Dataset {
   std::vector<double> values;  ///< last dimension fastest
 };
 
-/// What an analysis found besides shapes and probes (docs/results.md): modes, buckling modes, or
+/// Results of an analysis besides shapes and probes (docs/results.md): modes, buckling modes, or
 /// the columns of a path. Empty for dynamic and static runs.
 std::vector<Dataset> datasets(const Simulation& simulation, const RunOutcome& outcome);
 

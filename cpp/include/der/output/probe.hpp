@@ -28,15 +28,13 @@ class ProbeReader {
 /// A scalar read off a state, as the scene's `output.probes` name it, with order 2 in the element
 /// length or better wherever the solution is smooth:
 /// - positions and velocities between nodes by the cubic through the four nearest nodes (the
-/// weights
-///   that also spread a point force, see location.hpp);
+///   weights that also spread a point force, see location.hpp);
 /// - strain and tension, which belong to the middles of the edges, linearly between those and
-/// beyond
-///   the outermost ones;
+///   beyond the outermost ones;
 /// - turning angles at the nodes that bend;
-/// - curvature and moment linearly between nodes, with the kinks and jumps that loads make there
-///   (output/moment_recovery.hpp); at a clamp they are carried on from its cells to the node, so
-///   that the moment is the clamp's reaction;
+/// - curvature and moment linearly between nodes, with the kinks and jumps that loads cause
+///   there (output/moment_recovery.hpp); at a clamp they are extrapolated from its cells to the
+///   node, so that the moment is the clamp's reaction;
 /// - an extreme over a rod is that of the parabola through the three samples around the extreme
 ///   one, where there is no kink; not for the turning angle, a sum over a cell;
 /// - the energies of a rod count a node that rods share in each of them.

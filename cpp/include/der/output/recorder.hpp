@@ -32,9 +32,9 @@ class Recorder {
   /// been done and its values are finite.
   void finish(const Simulation& simulation);
 
-  /// Puts the simulation and itself back to a checkpoint, to go on from there in place of a start.
+  /// Resets the simulation and the recorder to a checkpoint, to continue from there.
   void restore(const Checkpoint& checkpoint, Simulation& simulation);
-  /// What it takes to go on from the instant that was seen last.
+  /// A checkpoint of the instant that was observed last.
   [[nodiscard]] Checkpoint checkpoint(const Simulation& simulation) const;
 
   [[nodiscard]] const std::vector<Probe>& probes() const { return probes_; }

@@ -6,14 +6,14 @@
 
 namespace der {
 
-/// Frames of a whole run over time; 1 for the other analyses, but that a continuation saves one for
-/// each point of its path, however many these will be.
+/// Number of frames of a whole run over time; 1 for the other analyses. A continuation saves one
+/// for each point of its path, whose number is not known beforehand.
 double expected_frames(const Simulation& simulation);
 
-/// About how many bytes the result file of a frame more takes.
+/// Approximate size [bytes] of one more frame in the result file.
 double bytes_per_frame(const Simulation& simulation);
 
-/// About how many bytes the result file will have.
+/// Approximate size [bytes] of the result file.
 double expected_bytes(const Simulation& simulation);
 
 /// Throws IoError, which says what to change, where the disk has less room than a result file of

@@ -21,7 +21,7 @@ struct RunOutcome {
   double time = 0.0;          ///< [s] that the simulation has reached
   Counters counters;          ///< earlier parts of a resumed run included
   double wall_seconds = 0.0;  ///< earlier parts of a resumed run included
-  /// Of an analysis about an equilibrium, if that was found.
+  /// Report of the equilibrium search; set if the analysis needs an equilibrium and it was found.
   std::optional<EquilibriumReport> equilibrium;
   std::vector<Mode> modes;       ///< of a modes analysis
   LinearBuckling buckling;       ///< of a buckling analysis
@@ -34,7 +34,7 @@ struct RunOutcome {
 /// Runs a simulation from its present state to the end of the scene, or does the scene's analysis,
 /// feeding the recorder: one frame with the equilibrium, or one for each point of a path. Numerical
 /// failures end the run and are reported in the outcome, with everything up to the last good step
-/// recorded; other errors (of a sink, of the callback) are thrown on.
+/// recorded; other errors (of a sink, of the callback) propagate.
 RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& after_step = {});
 
 }  // namespace der

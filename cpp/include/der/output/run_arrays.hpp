@@ -12,7 +12,7 @@ struct RunArray {
   std::string unit;  ///< "" for a pure number
 };
 
-/// Every array of a run file but probes, which bring their units along, and checkpoints. Files,
+/// Every array of a run file but probes, which have units of their own, and checkpoints. Files,
 /// exports and Python take names and units from here.
 const std::vector<RunArray>& run_arrays();
 /// Null for an unknown name.

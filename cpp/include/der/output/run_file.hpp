@@ -20,8 +20,8 @@ class RunFile : public FrameSink {
   /// Starts a new file, which takes the place of one that is there when its head is whole.
   static std::unique_ptr<RunFile> create(const std::filesystem::path& path,
                                          const Simulation& simulation, const Recorder& recorder);
-  /// Opens the file of an interrupted run of the same scene to go on with it: frames behind the
-  /// checkpoint are dropped, `recorder` and `simulation` are put back to it.
+  /// Opens the file of an interrupted run of the same scene to continue it: frames after the
+  /// checkpoint are dropped, `recorder` and `simulation` are reset to it.
   static std::unique_ptr<RunFile> resume(const std::filesystem::path& path, Simulation& simulation,
                                          Recorder& recorder);
   /// Writes what has gathered; the status stays "running" unless `finish` was called.

@@ -13,10 +13,10 @@
 
 namespace der {
 
-/// Run files that are there (layout: docs/results.md). All of these look at type, extent and
-/// checksum of what they read, and throw IoError, which names the file and what is wrong with it.
+/// Reading of run files (layout: docs/results.md). All functions check type, extent and checksum of
+/// the data that they read, and throw IoError, which names the file and the error.
 
-/// What the head of a run file says.
+/// The head of a run file.
 struct RunFileHead {
   std::string der_version;
   std::string status;     ///< "running" while it is written, and after a kill
@@ -34,7 +34,7 @@ struct SavedRod {
   std::vector<double> arc_length;  ///< rest arc length of each node [m]
 };
 
-/// The last whole frame of a run file, and whose it is.
+/// The last complete frame of a run file, with its scene and rods.
 struct LastFrame {
   Vector positions;   ///< [m]
   Vector velocities;  ///< [m/s]
@@ -56,7 +56,7 @@ struct SavedRun {
 };
 /// Reads every whole frame; the run may still go on. The probes are in alphabetical order.
 SavedRun read_run(const std::filesystem::path& path);
-/// Writes a run file without checkpoints, which cannot be resumed. `run.scene` is not looked at.
+/// Writes a run file without checkpoints, which cannot be resumed. `run.scene` is ignored.
 void write_run(const std::filesystem::path& path, const Scenario& scenario, const Model& model,
                const SavedRun& run);
 

@@ -16,13 +16,11 @@ struct UsedSolver {
 };
 UsedSolver used_solver(const Simulation& simulation);
 
-/// Why the result is unreliable where the time stepping has created energy worth mentioning; empty
-/// if it has not.
+/// Why the result is unreliable, if the time stepping has created too much energy; else empty.
 std::string created_energy_warning(const Simulation& simulation);
 
-/// What makes a completed run doubtful, in sentences: the scene's own warnings, or that the time
-/// stepping has created energy worth mentioning, its equal steps are longer than a table is fine,
-/// or linear buckling was asked about a structure that bends before it buckles.
+/// Reasons to doubt a completed run, in sentences: the scene's own warnings; created energy; equal
+/// steps that are too long to resolve a table; a structure to which linear buckling does not apply.
 std::vector<std::string> warnings(const Simulation& simulation, const RunOutcome& outcome);
 
 /// The summary of an ended run as JSON text (keys: docs/results.md). Values that the run did not

@@ -26,7 +26,7 @@ struct BucklingAnalysis {
   static constexpr const char* kName = "buckling";
   int count = 3;
 };
-/// What a continuation scales: what acts, or what moves.
+/// The quantities that a continuation scales: loads, or prescribed motions of supports.
 enum class Varied { Loads, Supports };
 /// The path of equilibria as a factor of loads or prescribed motions changes.
 struct ContinuationAnalysis {
@@ -39,7 +39,7 @@ struct ContinuationAnalysis {
   int points = 500;           ///< largest number of points of a branch
   int branches = 0;           ///< how many bifurcations deep other branches are followed
 };
-/// What is done with the scene.
+/// The analysis that the scene asks for.
 using Analysis = std::variant<DynamicAnalysis, StaticAnalysis, ModesAnalysis, BucklingAnalysis,
                               ContinuationAnalysis>;
 

@@ -72,7 +72,7 @@ class Document {
   /// Reads YAML. Anchors and aliases are resolved; tags, merge keys and further documents are
   /// errors. Throws SceneError.
   static Document parse(std::string_view text, const std::string& source);
-  /// As above, from a file. Throws UnreadableSceneError where there is none to read.
+  /// Parses a file. Throws SceneError, or UnreadableSceneError if the file cannot be read.
   static Document load(const std::filesystem::path& file);
 
   [[nodiscard]] const Value& root() const noexcept { return root_; }

@@ -10,7 +10,8 @@
 namespace der::scenario {
 
 enum class Reduce { None, Min, Max };
-/// Which of the two values of a quantity that jumps: toward smaller arc lengths, or larger ones.
+/// Selects one of the two values of a quantity that jumps: that on the side of smaller arc
+/// lengths, or of larger ones.
 enum class Side { Before, After };
 struct Probe {
   std::string name;

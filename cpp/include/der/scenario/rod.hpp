@@ -21,7 +21,7 @@ struct Sphere {
   double density = 0.0;  ///< [kg/m^3]
 };
 
-/// The rod is stress-free in the shape in which it is drawn.
+/// The rod is stress-free in its initial shape.
 struct AsDrawn {};
 /// Signed natural curvature [1/m], positive counter-clockwise: one value, or one for each node.
 using NaturalCurvature = std::variant<AsDrawn, double, std::vector<double>>;

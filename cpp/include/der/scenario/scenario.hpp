@@ -38,11 +38,11 @@ struct Scene {
   std::vector<Support> supports;
   std::vector<Load> loads;
   Time time;  ///< of a dynamic analysis
-  /// "equilibrium", or the folder of a run whose last frame is the start; empty: as drawn.
+  /// "equilibrium", or the folder of a run whose last frame is the start; empty: undeformed.
   std::string start_from;
   Solver solver;
   Output output;
-  /// What can be run as it is, but is most likely not what was meant: sentences.
+  /// Warnings about parts of the scene that can be run but are probably not intended: sentences.
   std::vector<std::string> warnings;
 
   [[nodiscard]] bool is_dynamic() const {

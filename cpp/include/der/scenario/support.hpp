@@ -18,10 +18,11 @@ struct Prescribed {
   Series displacement;
 };
 
-/// An elastic support: pulls a place of a rod to an anchor, or its tangent to the drawn direction.
+/// An elastic support: pulls a place of a rod to an anchor, or its tangent to the initial
+/// direction.
 struct Spring {
   Components stiffness;               ///< [N/m] along each axis; empty: none
-  Components anchor;                  ///< [m]; empty: where the place is as drawn
+  Components anchor;                  ///< [m]; empty: the initial position of the place
   double rotational_stiffness = 0.0;  ///< [N m/rad]; 0: none
 };
 

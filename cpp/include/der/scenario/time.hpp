@@ -8,7 +8,7 @@ namespace der::scenario {
 enum class Stepping {
   Fixed,      ///< `step: 0.01`
   Automatic,  ///< `step: auto`: what an explicit integrator can take
-  Adaptive,   ///< `tolerance: 1e-3`: as the error demands
+  Adaptive,   ///< `tolerance: 1e-3`: by error control
 };
 
 /// More steps than anyone can wait for.

@@ -10,8 +10,8 @@
 
 namespace der {
 
-/// What a factorisation A = L D L^T tells about A: by Sylvester's law the signs of the pivots D are
-/// the signs of the eigenvalues.
+/// The inertia of A from a factorisation A = L D L^T: by Sylvester's law of inertia D has as many
+/// negative entries as A has negative eigenvalues.
 struct Inertia {
   bool factorised = false;    ///< false: a pivot vanished or was not a number
   Index negative_pivots = 0;  ///< number of negative eigenvalues

@@ -10,7 +10,7 @@
 namespace der {
 
 /// Solves (M + t C) x = b, M the mass matrix, C the model's diagonal damping, over the free degrees
-/// of freedom: a division where no masses are coupled. Factorises anew when `t` changes.
+/// of freedom: a division where no masses are coupled. Factorises again when `t` changes.
 class MassSolver {
  public:
   explicit MassSolver(const Model& model);

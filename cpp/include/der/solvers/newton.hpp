@@ -39,7 +39,8 @@ class Newton {
 
   /// Solves from the problem's guess, at which its solution is again if not converged.
   NewtonReport solve(NewtonProblem& problem);
-  /// As above with the line search only: slower, but it does not jump to another valley.
+  /// Solves likewise with the line search only: slower, but it does not jump to the basin of
+  /// another minimum.
   NewtonReport solve_downhill(NewtonProblem& problem);
 
   /// The displacement at the last iterate [m], known to its own rounding.

@@ -31,7 +31,7 @@ class NewtonProblem {
 
   /// Sets the left side of the equations at the solution, over all degrees of freedom.
   virtual void residual(Vector& residual) = 0;
-  /// As above, and its derivative in the layout of the linear solver.
+  /// Sets `residual` likewise, and `values` to its derivative in the layout of the linear solver.
   virtual void system(Vector& residual, Vector& values) = 0;
   /// May improve the derivative just evaluated after a full `step` (all degrees of freedom) that
   /// led here.

@@ -8,7 +8,7 @@
 namespace der {
 
 /// Lets a Newton step take the stiffness across the edges from the tension that the step before
-/// predicted to first order, in place of the tension at hand. The latter holds what the
+/// predicted to first order, in place of the current tension. The latter holds what the
 /// second-order stretch of a turning step has falsely put into the edges, EA theta^2/2, which
 /// freezes the next step or makes its matrix indefinite; at the solution the two are the same (the
 /// mixed-integration-point Newton of Magisano, Leonetti and Garcea, Comput. Methods Appl. Mech.
@@ -24,7 +24,7 @@ class PredictedTension {
  private:
   const Model& model_;
   const Assembler& assembler_;
-  Vector excess_;  // of each edge's predicted tension over that at hand [N]
+  Vector excess_;  // of each edge's predicted tension over the current one [N]
 };
 
 }  // namespace der

@@ -56,9 +56,9 @@ struct ContinuationOptions {
 /// a fold where the factor turns, else a bifurcation. From there other branches start along the
 /// null vector of the stiffness, to both sides.
 ///
-/// No path is traced twice: a branch ends at a bifurcation of another one behind which all is
-/// traced or will be, and none starts where its first point lies on one that is complete. An event
-/// belongs to the branch that meets it first.
+/// No path is traced twice. A branch ends at a bifurcation of another branch if everything beyond
+/// it has been traced or will be. No branch starts where its first point lies on a complete one. An
+/// event belongs to the branch that meets it first.
 ///
 /// A branch ends at the factor `to`, at the opposite limit 2 from - to, at its largest number of
 /// points, where it closes on itself or meets another one, or where no further point is found.

@@ -12,9 +12,9 @@ enum class EquilibriumFailure {
   NotHeld,          ///< a load moves a part as a rigid body; the detail names the part
   DriftsAway,       ///< the structure moves away without end
   TurnsWithoutEnd,  ///< a moment turns the rod without end
-  Collapsed,        ///< an edge is pressed to a point, or a guided edge is turned inside out
+  Collapsed,        ///< an edge is compressed to zero length, or a guided edge is turned inside out
   FoldedByLoad,     ///< an edge is folded back on the one before it
-  FoldedByClamp,    ///< a clamp that turns does not take the rod along
+  FoldedByClamp,    ///< the rod does not follow a clamp that turns
   LostInRoundoff,   ///< round-off hides the shape
 };
 
@@ -28,10 +28,10 @@ struct FailedSearch {
 /// "unbounded", "collapsed", "folded" or "too_fine".
 const char* status_of(EquilibriumFailure cause);
 
-/// What is wrong, as a sentence without its full stop.
+/// A sentence that says why the search failed, without its full stop.
 std::string message_of(const FailedSearch& failed);
 
-/// What the user can try next, in whole sentences.
+/// Advice on what to try next, in whole sentences.
 const char* advice_for(EquilibriumFailure cause);
 
 }  // namespace der

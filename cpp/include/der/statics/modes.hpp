@@ -34,15 +34,16 @@ struct BucklingMode {
   Vector shape;              ///< all degrees of freedom, the largest displacement 1
 };
 
-/// What linear buckling finds, and what tells whether it applies: it takes the shape without loads
-/// for the one that buckles, so its factors are good where the loads have hardly changed it there.
+/// The result of linear buckling, with measures of whether the theory applies. It assumes that the
+/// prebuckling shape is the unloaded one, so its factors are accurate only if the loads have hardly
+/// deformed the structure when it buckles.
 struct LinearBuckling {
   std::vector<BucklingMode> modes;
   /// Largest rotation [rad] and strain of an edge in the linear response to the scene's loads, that
   /// is for each unit of the load factor.
   double rotation = 0.0;
   double strain = 0.0;
-  /// Whether the loads make it buckle if their signs are turned round; sought where there are no
+  /// Whether the loads would make it buckle with reversed signs; checked only if there are no
   /// modes.
   bool reversed = false;
 };

@@ -21,7 +21,7 @@ double potential_change(const Model& model, const Vector& force, const Configura
 /// unloaded elements give 0.
 double second_variation(const Model& model, const Configuration& here, const Vector& direction);
 
-/// The same, with |d|' |K| |d| summed likewise: some epsilons of that is what rounding may leave.
+/// The same, with |d|' |K| |d| summed likewise: rounding errors are a few epsilons of that sum.
 struct SummedVariation {
   double value = 0.0;
   double terms = 0.0;

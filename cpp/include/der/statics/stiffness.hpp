@@ -8,13 +8,13 @@
 
 namespace der {
 
-/// How the potential curves around an equilibrium.
+/// Stability of an equilibrium, from the curvature of the potential.
 struct Stability {
   Index unstable_directions = 0;  ///< independent directions in which it falls
   /// Directions in which it is flat to rounding: rigid motions that nothing holds, or a critical
   /// load.
   Index neutral_directions = 0;
-  /// Directions of which rounding hides whether it rises or falls: the mesh is too fine.
+  /// Directions in which rounding hides the sign of the curvature: the mesh is too fine.
   Index unknown_directions = 0;
   /// Directions that the assembled stiffness leaves in doubt, so that they were judged element by
   /// element.
@@ -57,7 +57,7 @@ class Stiffness {
   /// solution is reached.
   bool solve_by_elements(Vector& b);
 
-  /// Eigenvalues [N/m] smaller than this cannot be told from zero in the assembled matrix.
+  /// Eigenvalues [N/m] smaller than this cannot be distinguished from zero in the assembled matrix.
   [[nodiscard]] double rounding() const;
   /// Counts eigenvalues by the signs of the pivots of two factorisations, shifted by the rounding
   /// error to either side. Those between are judged by second variations, which keep their digits:

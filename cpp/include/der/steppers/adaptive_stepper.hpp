@@ -18,7 +18,7 @@ struct AdaptiveOptions {
   double largest_step = 0.0;  ///< [s] that is tried; infinite: any
 };
 
-/// What the attempts at one adaptive step cost.
+/// The cost of all attempts at one adaptive step.
 struct AdaptiveReport {
   StepReport last;            ///< of the last attempt; done if the step was accepted
   double tried = 0.0;         ///< [s] length of the last attempt
@@ -28,14 +28,14 @@ struct AdaptiveReport {
   bool at_rounding = false;   ///< whether that error is no more than the rounding of positions
 };
 
-/// Steps of a length that keeps the error in time where it is wanted.
+/// Adaptive steps to a requested tolerance of the error in time.
 ///
 /// Each step is done once as a whole and once in two halves, which are kept. The difference over
 /// 2^p - 1, p the stepper's order, is the error of the halves (Hairer, Norsett and Wanner, Solving
 /// Ordinary Differential Equations I, section II.4); `StepperInfo::error_factor` takes about three
-/// times as much, since errors grow on in the motion. A step may add `tolerance * size` times its
-/// share of the duration, so that the sum of all estimates stays below `tolerance * size` and the
-/// error follows the tolerance in proportion. The next length comes from a
+/// times as much, since errors grow further in the motion. A step may add `tolerance * size` times
+/// its share of the duration, so that the sum of all estimates stays below `tolerance * size` and
+/// the error follows the tolerance in proportion. The next length comes from a
 /// proportional-integral controller (Gustafsson, ACM Trans. Math. Softw. 17, 1991). Entries of
 /// tables over time, where forces have kinks, are hit exactly.
 class AdaptiveStepper {

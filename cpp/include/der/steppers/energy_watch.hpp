@@ -9,26 +9,26 @@
 
 namespace der {
 
-/// Sees to it that no run ends on energy that its time stepping has made of nothing.
+/// Detects runs whose time integrator creates energy.
 ///
-/// What counts is the energy created as a share of what the run exchanges: the largest kinetic
-/// energy, or work of loads, supports or drag, less what was created by then. From a twentieth on
-/// the result is marked as unreliable, from a half on the motion is another one than the scene's.
-/// (Of right runs none in configs/, with any stepper, creates as much as 1/200; of wrong ones none
-/// as little as 1/4.) A look costs a fifteenth of an implicit step and half of an explicit one, so
-/// that only every sixteenth is looked at, of explicit ones every sixty-fourth. What a program
-/// writes into the state between two steps is told apart.
+/// The measure is the ratio of the energy created to the energy exchanged in the run. The latter is
+/// the largest kinetic energy, or work of loads, supports or drag, less what was created by then.
+/// From 1/20 on the result is marked as unreliable; from 1/2 on the run has failed. (No correct run
+/// in configs/, with any stepper, creates as much as 1/200; no wrong one as little as 1/4.) A check
+/// costs a fifteenth of an implicit step and half of an explicit one, so only every sixteenth
+/// implicit step and every sixty-fourth explicit one is checked. Energy that a program adds by
+/// writing into the state between two steps is counted separately.
 ///
 /// A node that turns through half a turn is another reason for doubt: the turning angle, and with
 /// it the bending energy of a rod with a natural shape or a moment, jumps there by a whole turn.
 class EnergyWatch {
  public:
-  /// Implicit steps between two looks.
+  /// Number of implicit steps from one check to the next.
   static constexpr std::int64_t kStride = 16;
 
   explicit EnergyWatch(const Model& model);
 
-  /// To be called where the state is what the watch is to take as given: at a start.
+  /// To be called at the start of a motion, whose energy is the reference.
   void begin(const State& state);
   /// To be called before each step: accumulates what a program has written since the last one.
   void before_step(State& state);

@@ -10,8 +10,9 @@
 
 namespace der {
 
-/// The forces at a given state, and what every explicit stepper shares besides: the acceleration,
-/// the motion of held degrees of freedom, and the check that the motion has not blown up.
+/// The forces at a given state, and the other parts that all explicit steppers share: the
+/// acceleration, the motion of held degrees of freedom, and the check that the motion has not blown
+/// up.
 class ExplicitForce {
  public:
   ExplicitForce(const Model& model, const Assembler& assembler);

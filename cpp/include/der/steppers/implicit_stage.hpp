@@ -13,7 +13,7 @@
 
 namespace der {
 
-/// What every implicit stepper shares: the equation of one stage, its solver, its unknown
+/// The part that all implicit steppers share: the equation of one stage, its solver, its unknown
 /// positions.
 class ImplicitStage {
  public:
@@ -27,14 +27,14 @@ class ImplicitStage {
   /// the solution, with the controls of the stage.
   Configuration here;
 
-  /// Tells where the step at hand ends [s]: tables that have a kink there go on without it in
-  /// stages beyond.
+  /// Sets the end of the current step [s]. Stages beyond it extrapolate tables that have a kink
+  /// there.
   void end_step_at(double time) { step_end_ = time; }
   /// Puts the held degrees of freedom of `where` to where the tables have them at `time`.
   void apply_prescribed_motion_at(const State& state, double time, Vector& where);
   /// Solves with tables and external forces at `time`.
   StepReport solve(const State& state, double time);
-  /// Of the stage solved last, from the start of the step [m].
+  /// Displacement of the stage solved last, from the start of the step [m].
   [[nodiscard]] const Vector& displacement() const { return newton_.displacement(); }
   /// Adds up what the forces of the stage solved last do along `displacement` [m].
   void accumulate(const Vector& displacement, Work& work) const;
@@ -43,12 +43,13 @@ class ImplicitStage {
               double dt, State& state) {
     finisher_.finish(new_positions, new_velocities, dt, state);
   }
-  /// As above for a stepper of one stage, whose works are taken along the step's displacement.
+  /// Accumulates the works along the displacement of the step and finishes it; for steppers of one
+  /// stage.
   void accumulate_and_finish(const Vector& new_positions,
                              const Eigen::Ref<const Vector>& new_velocities, double dt,
                              State& state);
-  /// As above for a stage at the fraction `place`, at least one half, of the step: the forces at
-  /// the start of the step count besides, so that works are right to second order.
+  /// Does the same for a stage at the fraction `place` of the step, at least one half. The forces
+  /// at the start of the step enter as well, so that works are second-order accurate.
   void accumulate_and_finish(const Vector& new_positions,
                              const Eigen::Ref<const Vector>& new_velocities, double dt,
                              double place, ExplicitForce& at_start, State& state);

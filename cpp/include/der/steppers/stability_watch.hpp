@@ -14,7 +14,7 @@ namespace scenario {
 struct Time;
 }
 
-/// Keeps the equal steps of an explicit run stable on its way: compressed edges, and with the
+/// Keeps the steps of an explicit run stable: compressed edges, and with the
 /// tangent measure bent ones, make a rod stiffer than it was at the start.
 class StabilityWatch {
  public:
@@ -25,8 +25,8 @@ class StabilityWatch {
   /// Throws Error ("unstable_step") if the scene's own step, or its smallest one, is too long for
   /// `state`, the start of a run, unless the scene allows it.
   void check_start(const State& state);
-  /// To be called before each piece of a step of length `step` [s]. Looks at the stable step
-  /// whenever the rod has got another shape since the last look (in `state.memory`), and sets
+  /// To be called before each piece of a step of length `step` [s]. Evaluates the stable step
+  /// whenever the shape has changed since the last time (in `state.memory`), and sets
   /// `state.next_step` to the length of the pieces that the step has to be done in. `step: auto`
   /// keeps them stable, and short against the change of shape. Throws DivergedError where the
   /// scene's own step is no longer stable, unless the scene allows it, and where a stable one would

@@ -13,7 +13,7 @@
 namespace der {
 
 /// The share of the stable step that `step: auto` takes and that messages suggest: a rod that is
-/// compressed or bent gets stiffer between two looks at it.
+/// compressed or bent gets stiffer between two evaluations.
 constexpr double kStepMargin = 0.9;
 
 /// The largest step of the explicit steppers, and what sets it.
@@ -28,8 +28,8 @@ struct StableStep {
 /// polynomial inside the unit circle), under Verlet's, which takes damping implicitly, while
 /// dt w <= 2. w^2 is bounded by the theorem of Gershgorin for the 2 x 2 blocks of
 /// D^-1/2 K D^-1/2 (Feingold and Varga, Pacific J. Math. 12, 1962), D a diagonal below the mass:
-/// the largest sum of the spectral norms of a node's blocks. So the step is safe, the same however
-/// the rod is turned, and on an even chain close to the true limit.
+/// the largest sum of the spectral norms of a node's blocks. So the step is safe, invariant
+/// under rotation, and on a uniform chain close to the true limit.
 class StableStepBound {
  public:
   StableStepBound(const Model& model, bool drag_limits_step);

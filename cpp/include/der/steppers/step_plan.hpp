@@ -28,7 +28,7 @@ struct StepPlan {
   [[nodiscard]] std::pair<std::int64_t, std::int64_t> frames_between(double from, double to) const;
 };
 
-/// `stable_step` [s] is that of the drawn shape, infinite for implicit steppers. Throws Error
+/// `stable_step` [s] is that of the initial shape, infinite for implicit steppers. Throws Error
 /// ("too_many_steps") where it makes more steps of the duration than anyone can wait for.
 StepPlan plan_steps(const scenario::Scene& scene, double stable_step);
 

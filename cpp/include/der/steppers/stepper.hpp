@@ -20,7 +20,7 @@ enum class StepOutcome {
   TooInaccurate,  ///< of adaptive steps: solved, but with too large an error in time
 };
 
-/// What one attempted step did. If not done, the state is untouched and `failure` says why.
+/// The result of one attempted step. If not done, the state is unchanged and `failure` says why.
 struct StepReport {
   StepOutcome outcome = StepOutcome::Done;
   int newton_iterations = 0;
@@ -42,7 +42,7 @@ class Stepper {
   virtual StepReport step(State& state, double dt) = 0;
 };
 
-/// What a stepper can be told.
+/// Settings of a stepper.
 struct StepperOptions {
   NewtonOptions newton;
   /// For generalized_alpha: spectral radius at infinite frequency (0: full damping, 1: none;

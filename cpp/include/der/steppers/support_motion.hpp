@@ -8,9 +8,9 @@
 
 namespace der {
 
-/// Watches how far supports move within a step. A clamp that turns once round in a step ends it
-/// where it began, and its rod would not notice; an end that is moved far off leaves its edge
-/// crushed, or turned round. What supports do is known beforehand, so steps are cut to the length
+/// Watches how far supports move within a step. A clamp that turns by a whole turn in a step ends
+/// it where it began, without an effect on its rod; an end that is moved far off leaves its edge
+/// crushed, or reversed. The motion of supports is known beforehand, so steps are cut to the length
 /// in which the shape can follow.
 class SupportMotion {
  public:

@@ -19,7 +19,7 @@ struct Support;
 // that starts from the node, and an error of order l^2). docs/mechanics.md derives it.
 
 /// Angle [rad] of the tangent at a node of the initial shape: that of the circle through the node's
-/// neighbourhood, so that a clamp on a drawn arc holds the arc's tangent and not the chord's.
+/// neighbourhood, so that a clamp on an arc holds the arc's tangent and not the chord's.
 double initial_tangent_angle(const RodLayout& rod, Index place, const Model& model);
 
 /// Angle [rad] from the x axis at which a clamp holds the tangent in a state.

@@ -40,7 +40,7 @@ class PathEquations {
   PathNode node_at(const Vector& turns, const PathPosition& point);
 
   /// Newton's method on the plane normal to `normal` through `base + step * normal`, from `guess`.
-  /// Nothing if it does not converge; `iterations` are those that it took.
+  /// Returns nothing if it does not converge; sets `iterations` to the number of iterations.
   std::optional<PathPosition> solve_on_plane(const Vector& turns, const PathPosition& base,
                                              const PathPosition& normal, double step,
                                              PathPosition guess, int& iterations);

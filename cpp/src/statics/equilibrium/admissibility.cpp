@@ -22,7 +22,7 @@ constexpr double kAligned = 1e-9;
 /// Turning angle [rad] at a node beyond which the rod is folded.
 constexpr double kFolded = 3.0;
 
-/// How far [m] springs let the structure move under `load` [N], counted from the drawn shape.
+/// How far [m] springs let the structure move under `load` [N], counted from the initial shape.
 double spring_travel(const Model& model, double load) {
   double farthest = 0.0;
   for_each_list(*model.elements, [&](const auto& list) {

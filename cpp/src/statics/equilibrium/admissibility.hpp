@@ -19,7 +19,7 @@ class PlanarAdmissibility {
 
   void measure_drift_from(Vector origin) { origin_ = std::move(origin); }
 
-  /// What rules the shape out: it has drifted away, or collapsed. Nothing if it is admissible.
+  /// The reason why the shape is not admissible: it has drifted away, or collapsed. None if it is.
   [[nodiscard]] std::optional<FailedSearch> check(const Configuration& here) const;
 
  private:

@@ -3,7 +3,7 @@
 namespace der {
 namespace {
 
-/// What users read about a failure. An empty message stands for the detail of the search.
+/// The texts about a failure. An empty message means that the detail of the search is shown.
 struct FailureInfo {
   const char* status;
   const char* message;
@@ -31,11 +31,11 @@ FailureInfo info(EquilibriumFailure cause) {
     case EquilibriumFailure::DriftsAway:
       return {"unbounded", "the structure moves away: nothing holds it", kHold};
     case EquilibriumFailure::TurnsWithoutEnd:
-      return {"unbounded", "a moment turns the rod on and on", kHold};
+      return {"unbounded", "a moment turns the rod without end", kHold};
     case EquilibriumFailure::Collapsed:
       return {"collapsed",
-              "every way that was tried presses a part of a rod together to a point, past which it "
-              "is no rod: the load may be too great for its stiffness against shortening, EA",
+              "every method that was tried compresses a part of a rod to zero length: the load may "
+              "be too great for its axial stiffness, EA",
               "Is the load, or the cross-section, the one that was meant? If so, a start from a "
               "bent shape may find an equilibrium."};
     case EquilibriumFailure::FoldedByLoad:
@@ -44,10 +44,11 @@ FailureInfo info(EquilibriumFailure cause) {
               "coarse for this load",
               kRefine};
     case EquilibriumFailure::FoldedByClamp:
-      return {"folded",
-              "a clamp that turns does not take the rod along: a node folds over on the way, the "
-              "mesh is too coarse for the bend there",
-              kRefine};
+      return {
+          "folded",
+          "the rod does not follow a clamp that turns: a node folds over on the way, the mesh is "
+          "too coarse for the bend there",
+          kRefine};
     case EquilibriumFailure::LostInRoundoff:
       return {"too_fine",
               "the forces balance to their rounding error, and that hides the shape: the mesh is "

@@ -27,7 +27,7 @@ void for_each_turning_clamp(const Model& model, const Use& use) {
   }
 }
 
-/// The controls with all clamps as drawn.
+/// The controls with all clamps at their initial angles.
 Vector drawn_controls(const Model& model, Vector controls) {
   for_each_turning_clamp(model, [&](const Clamp& clamp) { controls[clamp.rotation] = 0.0; });
   return controls;

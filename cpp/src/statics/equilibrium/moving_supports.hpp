@@ -16,8 +16,8 @@ using Equilibrate = std::function<void(const StaticLoads& loads, Shape& shape)>;
 /// Moves the supports to where `loads` has them. Where that would fold or crush the edges beside
 /// them at once, they move in steps, and the shape is equilibrated after each one: first in tiny
 /// steps that double, so that a rod under compression buckles near its first buckling load and is
-/// not compressed into a high buckling mode, whose folds it would keep. A clamp that turns by more
-/// than a step takes the rod along: in one step it would be known up to whole turns only.
+/// not compressed into a high buckling mode, whose folds it would keep. The rod follows a clamp
+/// that turns by more than a step; in one step its rotation would be known up to whole turns only.
 /// Returns the whole turns of the rods before the clamps turned (`planar_whole_turns`), or nothing
 /// if no clamp turns.
 std::vector<double> move_supports(const Model& model, const StaticLoads& loads,

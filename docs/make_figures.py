@@ -19,6 +19,7 @@ import der
 import matplotlib.pyplot as plt
 import numpy as np
 from der.plotting import PALETTE, style
+from der.plotting.style import look
 from tutorials import beam_study, control, falling_rod
 
 if TYPE_CHECKING:
@@ -137,10 +138,8 @@ def tolerance() -> Figure:
     exact = tips(step=5e-5, integrator="sdirk4")  # half the step moves it by 2e-10 m
     figure, axes = new_axes()
     axes.loglog(asked, asked, color="0.6", linestyle="--", label="requested tolerance")
-    looks = zip(
-        names, ("o", "s", "h", "^", "D", "v", "P", "X"), (*PALETTE, "black", "#5e3c99"), strict=True
-    )
-    for name, marker, colour in looks:
+    for index, name in enumerate(names):
+        colour, marker = look(index)
         errors = {}
         # With a method of order 1, six digits would take a million steps.
         for value in asked[:3] if name == "implicit_euler" else asked:

@@ -46,6 +46,14 @@ StepperInfo generalized_alpha() {
   return info;
 }
 
+StepperInfo newmark() {
+  StepperInfo info;
+  info.name = "newmark";
+  info.stability = kAStable;
+  info.damping = "none";
+  return info;
+}
+
 StepperInfo bdf2() {
   StepperInfo info;
   info.name = "bdf2";
@@ -119,9 +127,12 @@ StepperInfo explicit_euler() {
 
 const std::vector<StepperInfo>& stepper_registry() {
   static const std::vector<StepperInfo> registry{
-      implicit_euler(), implicit_midpoint(), energy_momentum(), generalized_alpha(),
-      bdf2(),           tr_bdf2(),           sdirk4(),          sdirk5(),
-      verlet(),         explicit_euler(),
+      implicit_euler(),  implicit_midpoint(),
+      energy_momentum(), generalized_alpha(),
+      newmark(),         bdf2(),
+      tr_bdf2(),         sdirk4(),
+      sdirk5(),          verlet(),
+      explicit_euler(),
   };
   return registry;
 }

@@ -5,19 +5,36 @@
 namespace der {
 namespace {
 
-/// Chung and Hulbert's generalized-alpha method (J. Appl. Mech. 60, 1993): second order, A-stable;
-/// motion far above the step's frequency shrinks by the spectral radius r in each step, slow motion
-/// is hardly damped. Forces are evaluated at the intermediate state
-///   y = (1 - af) q' + af q, which is the unknown, with af = r/(1 + r), am = (2 r - 1)/(1 + r).
-class GeneralizedAlpha final : public Stepper {
+/// The weights of the start of the step in the equation of motion: am of its accelerations, af of
+/// its positions and velocities. They single out one method of the family.
+struct AlphaWeights {
+  double accelerations = 0.0;
+  double positions = 0.0;
+};
+
+/// Newmark's average acceleration (J. Eng. Mech. Div. ASCE 85, 1959; Hughes, The Finite Element
+/// Method, ch. 9), beta = 1/4 and gamma = 1/2: the equation of motion holds at the end of the step.
+/// No motion is damped.
+constexpr AlphaWeights kNewmark{0.0, 0.0};
+
+/// Chung and Hulbert's generalized-alpha method (J. Appl. Mech. 60, 1993): motion far above the
+/// step's frequency shrinks by the spectral radius r in each step, slow motion is hardly damped.
+AlphaWeights chung_hulbert(double r) { return {(2.0 * r - 1.0) / (1.0 + r), r / (1.0 + r)}; }
+
+/// The family of methods
+///   M ((1 - am) a' + am a) = F(y), y = (1 - af) q' + af q, likewise the velocity and the time,
+///   q' = q + dt v + dt^2 ((1/2 - beta) a + beta a'), v' = v + dt ((1 - gamma) a + gamma a'),
+/// with Chung and Hulbert's gamma and beta, which make it of second order and A-stable. The unknown
+/// is y.
+class AlphaMethod final : public Stepper {
  public:
-  GeneralizedAlpha(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                   const StepperOptions& options)
-      : alpha_m_((2.0 * options.spectral_radius - 1.0) / (1.0 + options.spectral_radius)),
-        alpha_f_(options.spectral_radius / (1.0 + options.spectral_radius)),
+  AlphaMethod(const AlphaWeights& weights, const Model& model, const Assembler& assembler,
+              LinearSolver& solver, const NewtonOptions& options)
+      : alpha_m_(weights.accelerations),
+        alpha_f_(weights.positions),
         gamma_(0.5 - alpha_m_ + alpha_f_),
         beta_(0.25 * (1.0 - alpha_m_ + alpha_f_) * (1.0 - alpha_m_ + alpha_f_)),
-        stage_(model, assembler, solver, options.newton),
+        stage_(model, assembler, solver, options),
         force_(model, assembler),
         positions_(model.num_dofs()),
         velocities_(model.num_dofs()),
@@ -76,7 +93,13 @@ class GeneralizedAlpha final : public Stepper {
 std::unique_ptr<Stepper> make_generalized_alpha(const Model& model, const Assembler& assembler,
                                                 LinearSolver& solver,
                                                 const StepperOptions& options) {
-  return std::make_unique<GeneralizedAlpha>(model, assembler, solver, options);
+  return std::make_unique<AlphaMethod>(chung_hulbert(options.spectral_radius), model, assembler,
+                                       solver, options.newton);
+}
+
+std::unique_ptr<Stepper> make_newmark(const Model& model, const Assembler& assembler,
+                                      LinearSolver& solver, const StepperOptions& options) {
+  return std::make_unique<AlphaMethod>(kNewmark, model, assembler, solver, options.newton);
 }
 
 }  // namespace der

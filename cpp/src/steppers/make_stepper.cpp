@@ -19,6 +19,7 @@ constexpr Maker kMakers[] = {
     {"implicit_midpoint", make_runge_kutta<kImplicitMidpoint>},
     {"energy_momentum", make_energy_momentum},
     {"generalized_alpha", make_generalized_alpha},
+    {"newmark", make_newmark},
     {"bdf2", make_bdf2},
     {"tr_bdf2", make_runge_kutta<kTrBdf2>},
     {"sdirk4", make_runge_kutta<kSdirk4>},

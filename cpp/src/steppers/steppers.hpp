@@ -7,7 +7,7 @@
 
 namespace der {
 
-// One maker for each stepper's file; `make_stepper.cpp` lists them.
+// The makers of the steppers; `make_stepper.cpp` lists them.
 
 /// Maker of diagonally implicit Runge-Kutta methods; the .cpp instantiates it for each tableau.
 template <const Tableau& tableau>
@@ -17,6 +17,8 @@ std::unique_ptr<Stepper> make_energy_momentum(const Model&, const Assembler&, Li
                                               const StepperOptions&);
 std::unique_ptr<Stepper> make_generalized_alpha(const Model&, const Assembler&, LinearSolver&,
                                                 const StepperOptions&);
+std::unique_ptr<Stepper> make_newmark(const Model&, const Assembler&, LinearSolver&,
+                                      const StepperOptions&);
 std::unique_ptr<Stepper> make_bdf2(const Model&, const Assembler&, LinearSolver&,
                                    const StepperOptions&);
 std::unique_ptr<Stepper> make_verlet(const Model&, const Assembler&, LinearSolver&,

@@ -19,7 +19,7 @@ from matplotlib.typing import ColorType
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 
 #: Markers of lines that must be distinguishable by more than their colour.
-MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", "*", "h")
+MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", "*", "h", ">", "p", "d")
 _DARKER = 0.55  # of the colours, each time that the palette begins anew
 
 #: Parts that are not the result itself: supports, zero lines, reference shapes.

@@ -35,6 +35,16 @@ class LineLoad:
 
 
 @dataclass(frozen=True, eq=False)
+class FoundationPart:
+    """An elastic foundation [N/m^2], shape (dim,), of a rod between two arc lengths [m]."""
+
+    rod: str
+    start: float
+    end: float
+    stiffness: Array
+
+
+@dataclass(frozen=True, eq=False)
 class ActingLoads:
     """The loads at one frame; those that are zero are left out.
 
@@ -46,12 +56,15 @@ class ActingLoads:
         Along parts of rods.
     gravity
         Acceleration [m/s^2], shape (dim,); None without.
+    foundations
+        Elastic ones, of parts of rods.
     """
 
     forces: list[PointLoad] = field(default_factory=list)
     moments: list[PointLoad] = field(default_factory=list)
     lines: list[LineLoad] = field(default_factory=list)
     gravity: Array | None = None
+    foundations: list[FoundationPart] = field(default_factory=list)
 
 
 def acting_loads(result: RunData, frame: int) -> ActingLoads:
@@ -67,7 +80,8 @@ def acting_loads(result: RunData, frame: int) -> ActingLoads:
         if collect is not None:
             collect(found, content, _factor(result, frame, number))
     total = np.sum(found.gravity, axis=0) if found.gravity else np.zeros(2)
-    return ActingLoads(found.forces, found.moments, found.lines, total if total.any() else None)
+    gravity = total if total.any() else None
+    return ActingLoads(found.forces, found.moments, found.lines, gravity, found.foundations)
 
 
 class _Collected:
@@ -80,6 +94,7 @@ class _Collected:
         self.moments: list[PointLoad] = []
         self.lines: list[LineLoad] = []
         self.gravity: list[Array] = []
+        self.foundations: list[FoundationPart] = []
 
     def add_gravity(self, acceleration: Any, factor: float) -> None:
         self.gravity.append(factor * value_at(acceleration, self._time))
@@ -92,10 +107,16 @@ class _Collected:
 
     def add_line(self, load: dict[str, Any], factor: float) -> None:
         value = factor * value_at(load["force"], self._time)
-        rod = self._rods[load["rod"]]
         if np.any(value):
-            start, end = float(load.get("from", 0.0)), float(load.get("to", rod.length))
-            self.lines.append(LineLoad(rod.name, start, end, value))
+            self.lines.append(LineLoad(load["rod"], *self._part(load), value))
+
+    def add_foundation(self, load: dict[str, Any], _factor: float) -> None:
+        stiffness = np.broadcast_to(np.asarray(load["stiffness"], dtype=np.float64), (2,))
+        self.foundations.append(FoundationPart(load["rod"], *self._part(load), stiffness))
+
+    def _part(self, load: dict[str, Any]) -> tuple[float, float]:
+        length = self._rods[load["rod"]].length
+        return float(load.get("from", 0.0)), float(load.get("to", length))
 
     def _at_places(self, load: dict[str, Any], value: Array) -> list[PointLoad]:
         rod = self._rods[load["rod"]]
@@ -111,6 +132,7 @@ _COLLECTORS: dict[str, Callable[[_Collected, Any, float], None] | None] = {
     "point_force": _Collected.add_force,
     "moment": _Collected.add_moment,
     "distributed_force": _Collected.add_line,
+    "foundation": _Collected.add_foundation,
 }
 #: The kinds that are not drawn.
 WITHOUT_SYMBOL = frozenset(kind for kind, collect in _COLLECTORS.items() if collect is None)
@@ -149,6 +171,17 @@ def place_on(rod: Rod, positions: Array, at: float) -> Array:
     """Return the point [m], shape (dim,), at an arc length of a rod in the shape `positions`."""
     line = positions[rod.nodes]
     return np.array([np.interp(at, rod.arc_lengths, column) for column in line.T])
+
+
+def ground_direction(part: FoundationPart, rod: Rod, positions: Array) -> Array:
+    """Return the unit vector, shape (2,), from a rod to the ground of its foundation.
+
+    It is down, or to the left where the springs across the rod act along x.
+    """
+    chord = place_on(rod, positions, part.end) - place_on(rod, positions, part.start)
+    across = np.abs(chord[1::-1]) + 1e-9 * rod.length  # an axis is across where the other is along
+    axis = int(np.argmax(np.where(part.stiffness > 0.0, across, 0.0)))
+    return np.asarray(-np.eye(2)[axis])
 
 
 def _factor(result: RunData, frame: int, number: int) -> float:

@@ -62,7 +62,7 @@ def test_is_drawn_unless_it_has_no_symbol(kind):
     result = der.run(with_only(kind))
     last = len(result.times) - 1
     acting = acting_loads(result, last)
-    found = [*acting.forces, *acting.moments, *acting.lines]
+    found = [*acting.forces, *acting.moments, *acting.lines, *acting.foundations]
     drawn = bool(found) or acting.gravity is not None
     assert drawn == (kind not in WITHOUT_SYMBOL)
     axes = result.plot("shapes").axes[0]

@@ -6,6 +6,7 @@
 
 #include "der/core/index.hpp"
 #include "der/supports/clamp.hpp"
+#include "output/foundation_parts.hpp"
 #include "output/spread_forces.hpp"
 
 namespace der {
@@ -78,6 +79,7 @@ class StretchField : public RodField {
   struct EdgeLoads {
     std::vector<Excess> forces;
     std::vector<Excess> distributed;  // amounts [m]
+    std::vector<FoundationPart> foundations;
   };
 
   /// The parts of the rod and the samples along them.
@@ -111,6 +113,9 @@ class StretchField : public RodField {
       for (const DistributedPlace& place : rod_.distributed_places) {
         breaks_.push_back(place.from);
         breaks_.push_back(place.to);
+      }
+      for (const double s : foundation_jumps(rod_, foundation_parts(rod_, model))) {
+        breaks_.push_back(s);
       }
       std::sort(breaks_.begin(), breaks_.end());
       const auto same = [&](double a, double b) { return b - a <= rod_.same_place(); };
@@ -197,6 +202,9 @@ class StretchField : public RodField {
       rest_length_.push_back(effective_.back().vector(model.initial_positions, 0.0, 0.0).norm());
       add_loads(edge, layout.middles[to_size(edge)], rod);
     }
+    for (const FoundationPart& part : foundation_parts(rod, model)) {
+      if (part.is_cut()) loads_[to_size(part.edge)].foundations.push_back(part);
+    }
   }
 
   static std::vector<double> arc_lengths(const std::vector<Sample>& samples) {
@@ -234,7 +242,9 @@ class StretchField : public RodField {
     const double length = effective.norm();
     const double chain = (length - rest_length_[to_size(edge)]) / edge_length_[to_size(edge)];
     const EdgeLoads& loads = loads_[to_size(edge)];
-    if (loads.forces.empty() && loads.distributed.empty()) return chain;
+    if (loads.forces.empty() && loads.distributed.empty() && loads.foundations.empty()) {
+      return chain;
+    }
     Vec2 excess = Vec2::Zero();
     for (const auto& [force, amount] : loads.forces) {
       excess += amount * forces_.value(force, model, state);
@@ -244,6 +254,9 @@ class StretchField : public RodField {
         const Index control = distributed_[number].force[to_size(c)];
         excess[c] += amount * control_value(model, state, control);
       }
+    }
+    for (const FoundationPart& part : loads.foundations) {
+      excess += part.excess_beyond_middle(edge_length_[to_size(edge)], state);
     }
     return chain + effective.dot(excess) / (length * EA_);
   }

@@ -10,22 +10,25 @@ Format<Components> axis_stiffness(const std::string& unit) {
   Shape shape{Shape::Kind::AnyOf};
   shape.unit = both.shape.unit;
   shape.parts = {both.shape, each.shape};
-  return {std::move(shape), [both, each](const Shape& /*self*/, const Place& place,
-                                         Diagnostics& diagnostics, Components& out) {
-            if (!place.value->sequence()) {
-              double stiffness = 0.0;
-              if (!both.read(place, diagnostics, stiffness)) return false;
-              out = {stiffness, stiffness};
-              return true;
-            }
-            if (!each.read(place, diagnostics, out)) return false;
-            const bool negative =
-                std::any_of(out.begin(), out.end(), [](double k) { return k < 0; });
-            const bool none = std::all_of(out.begin(), out.end(), [](double k) { return k == 0; });
-            if (negative) diagnostics.add(place, "a stiffness must not be negative");
-            if (none) diagnostics.add(place, "one of the stiffnesses must be greater than 0");
-            return !negative && !none;
-          }};
+  return {
+      std::move(shape), [both, each](const Shape& /*self*/, const Place& place,
+                                     Diagnostics& diagnostics, Components& out) {
+        if (!place.value->sequence()) {
+          double stiffness = 0.0;
+          if (!both.read(place, diagnostics, stiffness)) return false;
+          out = {stiffness, stiffness};
+          return true;
+        }
+        if (!each.read(place, diagnostics, out)) return false;
+        const bool negative = std::any_of(out.begin(), out.end(), [](double k) { return k < 0; });
+        const bool none = std::all_of(out.begin(), out.end(), [](double k) { return k == 0; });
+        if (negative)
+          diagnostics.add(place,
+                          "a stiffness must not be negative: write 0 for an axis without one");
+        if (none)
+          diagnostics.add(place, "one of the stiffnesses must be greater than 0, as in [0, 50]");
+        return !negative && !none;
+      }};
 }
 
 }  // namespace der::scenario

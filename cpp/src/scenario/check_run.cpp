@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
+#include <variant>
 
 #include "der/catalog/quantities.hpp"
 #include "der/catalog/steppers.hpp"
@@ -202,19 +204,25 @@ void check_continuation(CheckContext& context) {
                                         kind, *continuation->number, count));
     return;
   }
+  const auto has_amounts = [](const Load& load) {
+    return std::visit(
+        [](const auto& what) { return HasAmounts<std::decay_t<decltype(what)>>::value; },
+        load.what);
+  };
   const auto moves = [](const Support& support) {
     return !support.prescribe.empty() || support.rotation.has_value();
   };
-  bool varies = loads && count > 0;
-  for (std::size_t i = 0; !loads && i < count; ++i) {
+  bool varies = false;
+  for (std::size_t i = 0; i < count; ++i) {
     const bool chosen =
         !continuation->number || static_cast<std::size_t>(*continuation->number) == i;
-    varies = varies || (chosen && moves(context.scene.supports[i]));
+    varies = varies || (chosen && (loads ? has_amounts(context.scene.loads[i])
+                                         : moves(context.scene.supports[i])));
   }
   if (!varies) {
     context.diagnostics.add(
         path, loads
-                  ? "the scene has no loads that could vary"
+                  ? "no such load could vary: add a force, a moment or gravity"
                   : "no such support has a prescribed motion that could vary: give it 'prescribe'");
   }
 }

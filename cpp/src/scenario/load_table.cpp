@@ -1,4 +1,5 @@
 #include "der/scenario/load.hpp"
+#include "scenario/axis_stiffness.hpp"
 #include "scenario/scene_text.hpp"
 #include "scenario/table.hpp"
 
@@ -50,24 +51,39 @@ Format<Moment> moment_format() {
           .required("moment", &Moment::moment, series("N m"), "A constant, or a table over time."));
 }
 
+/// Where the part of a rod lies on which a load acts: the last keys of its table.
+template <class OnPartOfRod>
+Table<OnPartOfRod> with_part(Table<OnPartOfRod> table) {
+  return std::move(table
+                       .optional("from", &OnPartOfRod::from, number("m", not_negative()),
+                                 "Arc length where the part starts.")
+                       .optional("to", &OnPartOfRod::to, number("m", positive()),
+                                 "Arc length where the part ends.", "the rod's length")
+                       .check([](OnPartOfRod& load, const Place& place, Diagnostics& diagnostics) {
+                         if (load.from < load.to) return;
+                         diagnostics.add(place.at(*find_entry(*place.value->mapping(), "to")),
+                                         fmt::format("must be greater than 'from' ({} m), got {} m",
+                                                     load.from, load.to));
+                       }));
+}
+
 Format<DistributedForce> distributed_force_format() {
-  return mapping(
-      Table<DistributedForce>("distributed force",
-                              "A force per rest length that keeps its "
-                              "direction, on a part of a rod.")
-          .required("rod", &DistributedForce::rod, name(), "Name of the rod.")
-          .required("force", &DistributedForce::force, vector_series("N/m"),
-                    "A constant, or a table over time.")
-          .optional("from", &DistributedForce::from, number("m", not_negative()),
-                    "Arc length where the part starts.")
-          .optional("to", &DistributedForce::to, number("m", positive()),
-                    "Arc length where the part ends.", "the rod's length")
-          .check([](DistributedForce& load, const Place& place, Diagnostics& diagnostics) {
-            if (load.from < load.to) return;
-            diagnostics.add(
-                place.at(*find_entry(*place.value->mapping(), "to")),
-                fmt::format("must be greater than 'from' ({} m), got {} m", load.from, load.to));
-          }));
+  return mapping(with_part(Table<DistributedForce>("distributed force",
+                                                   "A force per rest length that keeps its "
+                                                   "direction, on a part of a rod.")
+                               .required("rod", &DistributedForce::rod, name(), "Name of the rod.")
+                               .required("force", &DistributedForce::force, vector_series("N/m"),
+                                         "A constant, or a table over time.")));
+}
+
+Format<Foundation> foundation_format() {
+  return mapping(with_part(
+      Table<Foundation>("foundation",
+                        "Springs along a part of a rod that pull every point to where it is drawn.")
+          .required("rod", &Foundation::rod, name(), "Name of the rod.")
+          .required("stiffness", &Foundation::stiffness, axis_stiffness("N/m^2"),
+                    "Force per rest length and displacement: of both axes, or one along each; at "
+                    "least one greater than 0.")));
 }
 
 }  // namespace
@@ -84,7 +100,10 @@ Format<Load> load_format() {
           .kind(PointForce::kKey, point_force_format(), assign_load, "A force at a place.")
           .kind(Moment::kKey, moment_format(), assign_load, "A moment at a place.")
           .kind(DistributedForce::kKey, distributed_force_format(), assign_load,
-                "A force per length on a part of a rod."));
+                "A force per length on a part of a rod.")
+          .kind(Foundation::kKey, foundation_format(), assign_load,
+                "An elastic foundation of a part of a rod. It holds the rod as supports do: a path "
+                "of loads leaves it as it is."));
 }
 
 }  // namespace der::scenario

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from der._core import Rod
 from der.plotting.style import LOAD, quantity_text
-from der.scene_loads import ActingLoads, LineLoad, PointLoad, place_on
+from der.plotting.supports import FOUNDATION_HEIGHT, draw_foundation
+from der.scene_loads import ActingLoads, LineLoad, PointLoad, ground_direction, place_on
 
 Array = NDArray[np.float64]
 
@@ -63,6 +64,8 @@ def draw_loads(
     for line in loads.lines:
         text = quantity_text(float(np.linalg.norm(line.value)), "N/m")
         _draw_line(axes, by_name[line.rod], line, positions, label(text))
+    for part in loads.foundations:
+        draw_foundation(axes, by_name[part.rod], part, positions)
     for moment in loads.moments:
         text = quantity_text(abs(float(moment.value)), "N m")
         _draw_moment(axes, by_name[moment.rod], moment, positions, label(text))
@@ -94,6 +97,11 @@ def room_for_loads(
         outer = -(_LINE_FORCE + _TEXT) * line.value[:2] / np.linalg.norm(line.value[:2])
         middle = place_on(rod, positions, 0.5 * (line.start + line.end))[:2]
         corners.append(middle + metres_per_point * outer)
+    for part in loads.foundations:
+        rod = by_name[part.rod]
+        ground = metres_per_point * FOUNDATION_HEIGHT * ground_direction(part, rod, positions)
+        ends = [place_on(rod, positions, at)[:2] for at in (part.start, part.end)]
+        corners.append(np.array(ends) + ground)
     for moment in loads.moments:
         point = place_on(by_name[moment.rod], positions, moment.at)[:2]
         around = np.array([[-_MOMENT, -_MOMENT], [_MOMENT, _MOMENT + 0.5 * _TEXT]])

@@ -12,9 +12,14 @@ from numpy.typing import NDArray
 
 from der._core import HeldNode, Rod, SpringSupport
 from der.plotting.style import MUTED
+from der.scene_loads import FoundationPart, ground_direction, place_on
 
 #: Length on paper [points] of one unit of the paths below.
 _UNIT = 9.0
+#: Height of the springs of a foundation [points], their ground included.
+FOUNDATION_HEIGHT = 12.0
+#: Springs of a foundation of a whole rod.
+_FOUNDATION_SPRINGS = 15
 
 
 def _strokes(*lines: Sequence[tuple[float, float]]) -> Path:
@@ -39,6 +44,7 @@ _ZIGZAG = [(0.3 * (-1) ** k, -0.45 - 0.2 * k) for k in range(5)]
 _SPRING = _strokes(
     [(0.0, 0.0), (0.0, -0.35), *_ZIGZAG, (0.0, -1.35), (0.0, -1.65)], *_hatching(-1.65)
 )
+_FOUNDATION = _SPRING.transformed(Affine2D().scale(FOUNDATION_HEIGHT / (1.95 * _UNIT)))
 _TURNS = np.linspace(0.0, 4.5 * np.pi, 60)
 _SPIRAL = _strokes(
     [(0.055 * t * np.cos(t), 0.055 * t * np.sin(t)) for t in _TURNS],
@@ -107,6 +113,31 @@ def draw_springs(
                 _draw_symbol(axes, symbol, angle, place, f"spring-{spring.rod}-{number}")
 
 
+def draw_foundation(
+    axes: Axes, rod: Rod, part: FoundationPart, positions: NDArray[np.float64]
+) -> None:
+    """Draw an elastic foundation as a row of springs to the ground.
+
+    Parameters
+    ----------
+    axes
+        Where to draw.
+    rod
+        The rod that it holds.
+    part
+        The foundation, from ``der.scene_loads.acting_loads(result, frame).foundations``.
+    positions
+        Positions of all nodes [m], shape (nodes, 2).
+    """
+    down = ground_direction(part, rod, positions)
+    angle = float(np.arctan2(down[0], -down[1]))
+    count = max(2, round(_FOUNDATION_SPRINGS * (part.end - part.start) / rod.length))
+    for number, at in enumerate(np.linspace(part.start, part.end, count)):
+        place = place_on(rod, positions, float(at))
+        gid = f"load-{rod.name}-foundation-{number}"
+        _draw_symbol(axes, _FOUNDATION, angle, place, gid)
+
+
 def _draw_symbol(
     axes: Axes, symbol: Path, angle: float, place: NDArray[np.float64], gid: str
 ) -> None:
@@ -117,7 +148,7 @@ def _draw_symbol(
         marker=path,
         # Matplotlib scales a path until its farthest coordinate reaches half the marker size.
         markersize=2.0 * _UNIT * float(np.abs(path.vertices).max()),
-        markerfacecolor="none" if symbol in (_SPRING, _SPIRAL) else "white",
+        markerfacecolor="none" if symbol in (_SPRING, _SPIRAL, _FOUNDATION) else "white",
         markeredgecolor=MUTED,
         markeredgewidth=0.9,
         linestyle="none",

@@ -15,7 +15,7 @@ from der.natural_sizes import natural_size
 from der.plotting.lengths import LengthScale
 from der.plotting.style import quantity_text
 from der.run_data import RunData
-from der.scene_loads import ActingLoads
+from der.scene_loads import ActingLoads, ground_direction
 
 Array = NDArray[np.float64]
 
@@ -25,6 +25,8 @@ _BUDGET = 4_000_000
 _SYMBOL = 0.035
 #: Arrows of a distributed force.
 _LINE_ARROWS = 9
+#: Springs of an elastic foundation of a whole rod.
+_FOUNDATION_SPRINGS = 15
 #: Speeds on offer, against the one that suits the run.
 _SPEEDS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 
@@ -193,11 +195,12 @@ def _loads(result: RunData, film: Film, frames: NDArray[np.int64]) -> dict[str, 
     """Return the different sets of loads that there are, and which of them acts at each frame.
 
     A load has a ``kind``, its rod, the ``share`` of the edge after a ``place``, a unit vector
-    ``along`` (of moments the axis) and a ``text``. Modes are shown without loads, and gravity
-    stands in the page's note.
+    ``along`` (of moments the axis, of foundations to the ground) and a ``text``. Modes are shown
+    with foundations alone, and gravity stands in the page's note.
     """
     if mode_shapes(result).size:
-        return {"loads": [[]], "load_set": [0] * len(frames)}
+        held = ActingLoads(foundations=film.loads(result, 0).foundations)
+        return {"loads": [_load_symbols(result, held)], "load_set": [0] * len(frames)}
     sets: list[list[dict[str, Any]]] = []
     chosen = []
     known: dict[int, int] = {}  # of frames of the result
@@ -247,6 +250,12 @@ def _load_symbols(result: RunData, loads: ActingLoads) -> list[dict[str, Any]]:
         for number, at in enumerate(np.linspace(line.start, line.end, _LINE_ARROWS)):
             text = amount(line.value, "N/m") if number == _LINE_ARROWS // 2 else ""
             found.append(symbol("line", line.rod, float(at), line.value, text))
+    for part in loads.foundations:
+        own = rods[part.rod][1]
+        down = ground_direction(part, own, result.model.initial_positions)
+        count = max(2, round(_FOUNDATION_SPRINGS * (part.end - part.start) / own.length))
+        for at in np.linspace(part.start, part.end, count):
+            found.append(symbol("foundation", part.rod, float(at), down, ""))
     return found
 
 

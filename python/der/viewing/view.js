@@ -323,8 +323,15 @@
       [0, 0, 0],
     );
   };
+  const loadsAt = (frame, isKind) => data.loads[data.load_set[frame]].filter(isKind);
+  const isFoundation = (load) => load.kind === "foundation";
+  const loadPlace = (load, line) => {
+    const [from, to] = [line[load.place], line[load.place + 1]];
+    return add(from, scale(load.share, sub(to, from)));
+  };
   const SPRING = 3; // length of a spring, and where the spiral ends, in symbols
   const SPIRAL = 1.4;
+  const FOUNDATION = 1; // length of the springs of a foundation, in symbols
 
   const supports = (frame) => {
     const mesh = newMesh();
@@ -332,16 +339,19 @@
     for (const support of data.supports) {
       addSupport(mesh, support, lineOf(rods[support.rod], frame), frame);
     }
+    const ground = (place, distance, along, width) => {
+      const u = scale(width * size, across(along));
+      const v = scale(width * size, unit(cross(along, u), [0, 0, 1]));
+      const thick = scale(0.08 * size, along);
+      addBox(mesh, add(add(place, scale(distance * size, along)), thick), u, v, thick);
+    };
     for (const spring of data.springs) {
       const place = springPlace(spring, frame);
-      const ground = (distance, along, width) => {
-        const u = scale(width * size, across(along));
-        const v = scale(width * size, unit(cross(along, u), [0, 0, 1]));
-        const thick = scale(0.08 * size, along);
-        addBox(mesh, add(add(place, scale(distance * size, along)), thick), u, v, thick);
-      };
-      for (const along of spring.along) ground(SPRING, along, 0.8);
-      if (spring.turns) ground(SPIRAL, [1, 0, 0], 0.4);
+      for (const along of spring.along) ground(place, SPRING, along, 0.8);
+      if (spring.turns) ground(place, SPIRAL, [1, 0, 0], 0.4);
+    }
+    for (const load of loadsAt(frame, isFoundation)) {
+      ground(loadPlace(load, lineOf(rods[load.rod], frame)), FOUNDATION, load.along, 0.4);
     }
     const look = { color: SUPPORT, flatshading: true, lighting: LIGHT, hoverinfo: "skip" };
     return { type: "mesh3d", ...plain(mesh), ...look };
@@ -357,16 +367,18 @@
       for (const list of [path.x, path.y, path.z]) list.push(null); // the pen is lifted
     };
     const size = data.symbol;
+    const zigzag = (place, along, length) => {
+      const side = scale((length / 6) * size, across(along));
+      const shares = [0, 0, 1, -1, 1, -1, 1, -1, 0, 0];
+      const pitch = (length * size) / (shares.length - 1);
+      draw(shares.map((share, k) => add(place, add(scale(pitch * k, along), scale(share, side)))));
+    };
+    for (const load of loadsAt(frame, isFoundation)) {
+      zigzag(loadPlace(load, lineOf(rods[load.rod], frame)), load.along, FOUNDATION);
+    }
     for (const spring of data.springs) {
       const place = springPlace(spring, frame);
-      for (const along of spring.along) {
-        const side = scale(0.5 * size, across(along));
-        const zigzag = [0, 0, 1, -1, 1, -1, 1, -1, 0, 0];
-        const pitch = (SPRING * size) / (zigzag.length - 1);
-        draw(
-          zigzag.map((share, k) => add(place, add(scale(pitch * k, along), scale(share, side)))),
-        );
-      }
+      for (const along of spring.along) zigzag(place, along, SPRING);
       if (spring.turns) {
         const turns = Array.from({ length: 49 }, (_, k) => k / 48);
         draw(
@@ -385,10 +397,9 @@
   const loads = (frame) => {
     const mesh = newMesh();
     const labels = [];
-    for (const load of data.loads[data.load_set[frame]]) {
+    for (const load of loadsAt(frame, (one) => !isFoundation(one))) {
       const line = lineOf(rods[load.rod], frame);
-      const [from, to] = [line[load.place], line[load.place + 1]];
-      const point = add(from, scale(load.share, sub(to, from)));
+      const point = loadPlace(load, line);
       const [place, away] =
         load.kind === "moment"
           ? addMoment(mesh, load.along, point, data.symbol)

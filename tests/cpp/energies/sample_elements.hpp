@@ -46,6 +46,15 @@ inline PlanarMoment::Constants sample_constants(const PlanarMoment&, Random& ran
   return {uniform(random, 0.1, 1.0), 0};
 }
 
+inline Foundation::Constants sample_constants(const Foundation&, Random& random) {
+  Foundation::Constants c;
+  c.stiffness << uniform(random, 0.5, 5.0), uniform(random, 0.0, 5.0);
+  for (double& coordinate : c.drawn) coordinate = uniform(random, -1.0, 1.0);
+  const double shared = uniform(random, 0.0, 0.2);
+  c.lengths << uniform(random, 0.2, 0.5), shared, shared, uniform(random, 0.2, 0.5);
+  return c;
+}
+
 template <int Nodes>
 typename PointSpring<Nodes>::Constants sample_constants(const PointSpring<Nodes>&, Random& random) {
   typename PointSpring<Nodes>::Constants c;

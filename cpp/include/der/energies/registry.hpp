@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "der/energies/element_list.hpp"
+#include "der/energies/foundation.hpp"
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/energies/planar_clamp.hpp"
@@ -26,6 +27,7 @@ struct ElementLists {
                            ElementList<FromPivot<PlanarClamp<AngleCurvature>>>,    //
                            ElementList<FromPivot<PlanarClamp<TangentCurvature>>>,  //
                            ElementList<PlanarMoment>,                              //
+                           ElementList<Foundation>,                                //
                            ElementList<PointSpring<1>>,                            //
                            ElementList<PointSpring<2>>,                            //
                            ElementList<PointSpring<3>>,                            //

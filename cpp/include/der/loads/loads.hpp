@@ -22,6 +22,7 @@ void add_load(const scenario::Damping& load, const scenario::Scene& scene, Model
 void add_load(const scenario::PointForce& load, const scenario::Scene& scene, Model& model);
 void add_load(const scenario::Moment& load, const scenario::Scene& scene, Model& model);
 void add_load(const scenario::DistributedForce& load, const scenario::Scene& scene, Model& model);
+void add_load(const scenario::Foundation& load, const scenario::Scene& scene, Model& model);
 
 /// Sum of all gravity entries [m/s^2]; zero without one.
 Vector total_gravity(const scenario::Scene& scene);

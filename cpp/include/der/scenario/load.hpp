@@ -84,8 +84,16 @@ struct DistributedForce : OnPart {
   static constexpr auto kAmounts = single_amount("force", &DistributedForce::force);
 };
 
+/// An elastic (Winkler) foundation: springs along a part that pull every point to where it is
+/// drawn. It holds the rod as a support does: a path of loads leaves it as it is.
+struct Foundation : OnPart {
+  static constexpr const char* kKey = "foundation";
+  Components stiffness;  ///< [N/m^2] along x and y, per unit rest length
+};
+
 /// Every kind of load.
-using AnyLoad = std::variant<Gravity, Fluid, Damping, PointForce, Moment, DistributedForce>;
+using AnyLoad =
+    std::variant<Gravity, Fluid, Damping, PointForce, Moment, DistributedForce, Foundation>;
 
 struct Load {
   AnyLoad what;

@@ -61,7 +61,7 @@ void restore(PySimulation& simulation, const SavedState& saved) {
 }
 
 void bind_reports(py::module_& module) {
-  py::class_<Counters>(module, "Counters", "What a simulation has cost so far.")
+  py::class_<Counters>(module, "Counters", "Cost of a simulation so far.")
       .def_readonly("steps", &Counters::steps, "Time steps done.")
       .def_readonly("newton_iterations", &Counters::newton_iterations, "Newton iterations done.")
       .def_readonly("retried_steps", &Counters::retried_steps,
@@ -132,7 +132,8 @@ void bind_arrays(PySimulationClass& cls) {
           "extra_force", &state_view<&State::extra_force>,
           "Forces on the nodes [N], shape (nodes, dim): a live, writable view, zero at the "
           "start.\n\n"
-          "What is written acts, constant within a step, in every step until something else is "
+          "A force written here acts, constant within a step, in every step until something else "
+          "is "
           "written.\nForces of `add_force` come on top of it.")
       .def_property_readonly(
           "node_masses",
@@ -188,7 +189,7 @@ void bind_progress(PySimulationClass& cls) {
           "Whether the scene's duration is reached. `step` goes on beyond it.")
       .def_property_readonly(
           "counters", [](const PySimulation& s) { return s.engine().counters(); },
-          "What the simulation has cost so far.");
+          "Cost of the simulation so far.");
 }
 
 void bind_facts(PySimulationClass& cls) {
@@ -197,7 +198,7 @@ void bind_facts(PySimulationClass& cls) {
          "The scenario it was made from.")
       .def_property_readonly(
           "model", [](const PySimulation& s) -> const Model& { return s.engine().model(); },
-          "What stays constant: the chosen model and why, rods, degrees of freedom.")
+          "Everything that stays constant: the chosen model and why, rods, degrees of freedom.")
       .def_property_readonly(
           "integrator",
           [](const PySimulation& s) { return std::string(s.engine().integrator().name); },

@@ -28,7 +28,7 @@
 
 namespace der {
 
-/// What a run has cost so far.
+/// The cost of a run so far.
 struct Counters {
   std::int64_t steps = 0;
   std::int64_t newton_iterations = 0;
@@ -74,7 +74,7 @@ class Simulation {
   /// Enters the energy that the integrator has created by now into the state's audit; steps do so
   /// now and then.
   void audit_energy() { energy_watch_.look(state_); }
-  /// What to try where the time stepping is not good enough.
+  /// Advice where the time stepping is not good enough.
   [[nodiscard]] std::string advice_on_steps() const;
   /// Throws Error ("unstable_step") if the scene's step is too long for an explicit integrator at
   /// the present state, the start of a run.
@@ -150,7 +150,7 @@ class Simulation {
   /// written it, in words; empty if there is none.
   [[nodiscard]] std::string find_nonfinite() const;
   void check_finite_state() const;
-  /// What acts at the present state.
+  /// The forces at the present state.
   struct Forces {
     Configuration here;
     Vector external;  ///< [N]

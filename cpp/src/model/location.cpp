@@ -10,7 +10,7 @@
 namespace der {
 namespace {
 
-/// Of a moment at an end, the last edge takes this share in excess of the whole, and the edge
+/// The last edge takes this share of a moment at an end in excess of the whole, and the edge
 /// before it takes the negative of this share. That turns the last edge by l kappa/12 more, which
 /// moves the end of the chain onto the curve (supports/clamp.hpp).
 constexpr double kEndShare = 1.0 / 12.0;

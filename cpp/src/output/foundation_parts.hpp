@@ -9,7 +9,7 @@
 
 namespace der {
 
-/// What lies of an elastic foundation under one edge.
+/// The part of an elastic foundation under one edge.
 struct FoundationPart {
   Index edge = 0;
   double start = 0.0, end = 1.0;  ///< shares of the edge
@@ -23,7 +23,7 @@ struct FoundationPart {
   [[nodiscard]] Vec2 excess_beyond_middle(double edge_length, const State& state) const;
 };
 
-/// Of one rod, edge by edge.
+/// The parts under one rod, edge by edge.
 std::vector<FoundationPart> foundation_parts(const RodLayout& rod, const Model& model);
 
 /// Arc lengths [m] at which the stiffness of a rod's foundation jumps.

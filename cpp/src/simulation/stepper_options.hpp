@@ -5,7 +5,7 @@
 
 namespace der {
 
-/// What a scene asks of its stepper, and of Newton's method.
+/// The settings of a scene for its stepper and for Newton's method.
 StepperOptions stepper_options(const scenario::Scene& scene);
 
 }  // namespace der

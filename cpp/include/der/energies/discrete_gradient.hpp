@@ -174,8 +174,8 @@ void discrete_gradient(KernelTag<FromPivot<Kernel>> /*kernel*/,
   discrete_gradient(KernelTag<Kernel>{}, c.element, here, start, end, gradient);
 }
 
-/// Of the potential followed through whole turns, not of the kernel's energy, which is known up to
-/// its period.
+/// It is that of the potential followed through whole turns, not of the kernel's energy, known up
+/// to its period.
 inline void discrete_gradient(KernelTag<PlanarMoment> /*kernel*/, const PlanarMoment::Constants& c,
                               const Configuration& here, const Local<4>& start, const Local<4>& end,
                               Local<4>& gradient) {

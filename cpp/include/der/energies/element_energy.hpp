@@ -34,7 +34,7 @@ double element_energy(const ElementList<Kernel>& list, const Configuration& here
   return total;
 }
 
-/// As above, at its own.
+/// Energy [J] of all elements of one kind at a configuration.
 template <class Kernel>
 double element_energy(const ElementList<Kernel>& list, const Configuration& here) {
   return element_energy(list, here, here.coordinates);

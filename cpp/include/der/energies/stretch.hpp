@@ -8,7 +8,7 @@
 
 namespace der {
 
-/// What a stretched edge answers with.
+/// Force and stiffness of a stretched edge.
 struct StretchResponse {
   double extension = 0.0;  ///< [m]
   double tension = 0.0;    ///< [N]

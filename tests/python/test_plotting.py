@@ -12,6 +12,7 @@ from der.plotting.shapes import outline
 from der.plotting.study import _looks
 from der.plotting.style import quantity_text, wrapped
 from der.scene_loads import acting_loads
+from der.viewing.payload import make_payload
 from matplotlib.collections import PatchCollection, PolyCollection
 from matplotlib.colors import to_hex
 from matplotlib.textpath import text_to_path
@@ -237,6 +238,29 @@ def test_arrows_point_where_forces_do(tube):
     box = axes.get_window_extent()
     (text,) = axes.texts
     assert text.get_window_extent().x1 < box.x1 + 5
+
+
+@pytest.mark.parametrize(
+    ("analysis", "panels"), [("static", 1), ({"modes": {"count": 2}}, 2)], ids=["static", "modes"]
+)
+def test_foundations_are_drawn_below_their_part(tube, analysis, panels):
+    """Modes, which are drawn without loads, have them too: they are supports."""
+    tube.pop("time", None)
+    part = {"rod": "beam", "stiffness": [0, 1e3], "from": 0.2, "to": 0.6}
+    result = der.run({**tube, "loads": [{"foundation": part}], "analysis": analysis})
+    figure = result.plot("shapes")
+    found = [
+        line
+        for axes in figure.axes
+        for line in axes.lines
+        if "foundation" in (line.get_gid() or "")
+    ]
+    assert len(found) == 6 * panels  # 15 springs on a whole rod
+    places = [float(line.get_xdata()[0]) for line in found]
+    assert (min(places), max(places)) == pytest.approx((0.2, 0.6), abs=1e-3)
+    assert all(line.get_marker().vertices[:, 1].max() < 1e-9 for line in found)
+    symbols = make_payload(result)["loads"][0]
+    assert [symbol["along"] for symbol in symbols] == [[0.0, -1.0, 0.0]] * 6
 
 
 def test_loads_follow_time_and_load_factor(tube):

@@ -15,7 +15,7 @@ from der.film import MODE_SIZE
 from der.plotting.lengths import label_positions
 from der.plotting.shapes import draw_shapes, limits
 from der.plotting.style import MUTED, PALETTE, axis_label
-from der.plotting.supports import draw_foundation, draw_springs, draw_supports
+from der.plotting.supports import draw_foundations, draw_springs, draw_supports
 from der.scene_loads import acting_loads
 
 if TYPE_CHECKING:
@@ -69,9 +69,7 @@ def _draw_mode(axes: Axes, result: RunData, rest: Array, shape: Array, label: st
         axes.plot(line[:, 0], line[:, 1], color=PALETTE[0], zorder=4)
     draw_supports(axes, result.rods, result.held_nodes(0), rest)
     draw_springs(axes, result.rods, springs(result.scenario), rest)
-    by_name = {rod.name: rod for rod in result.rods}
-    for part in acting_loads(result, 0).foundations:
-        draw_foundation(axes, by_name[part.rod], part, rest)
+    draw_foundations(axes, result.rods, acting_loads(result, 0).foundations, rest)
     axes.set_aspect("equal", adjustable="datalim")
     axes.text(1.01, 0.5, f"{label},\nnot to scale", transform=axes.transAxes, va="center")
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from der._core import Rod
 from der.plotting.style import LOAD, quantity_text
-from der.plotting.supports import FOUNDATION_HEIGHT, draw_foundation
+from der.plotting.supports import FOUNDATION_HEIGHT, draw_foundations
 from der.scene_loads import ActingLoads, LineLoad, PointLoad, ground_direction, place_on
 
 Array = NDArray[np.float64]
@@ -64,8 +64,7 @@ def draw_loads(
     for line in loads.lines:
         text = quantity_text(float(np.linalg.norm(line.value)), "N/m")
         _draw_line(axes, by_name[line.rod], line, positions, label(text))
-    for part in loads.foundations:
-        draw_foundation(axes, by_name[part.rod], part, positions)
+    draw_foundations(axes, by_name.values(), loads.foundations, positions)
     for moment in loads.moments:
         text = quantity_text(abs(float(moment.value)), "N m")
         _draw_moment(axes, by_name[moment.rod], moment, positions, label(text))

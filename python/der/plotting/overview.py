@@ -28,7 +28,7 @@ from der.plotting.style import (
     time_text,
     wrapped,
 )
-from der.plotting.supports import draw_springs, draw_supports
+from der.plotting.supports import draw_foundations, draw_springs, draw_supports
 from der.run_data import RunData
 from der.scene_loads import acting_loads
 
@@ -183,6 +183,7 @@ def _plot_path_shapes(result: RunData) -> Figure:
             label = None
     draw_supports(axes, result.rods, result.held_nodes(0), result.positions[0])
     draw_springs(axes, result.rods, springs(result.scenario), result.positions[0])
+    draw_foundations(axes, result.rods, acting_loads(result, 0).foundations, result.positions[0])
     _finish_shape_panel(axes)
     return figure
 

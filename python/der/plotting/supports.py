@@ -113,29 +113,35 @@ def draw_springs(
                 _draw_symbol(axes, symbol, angle, place, f"spring-{spring.rod}-{number}")
 
 
-def draw_foundation(
-    axes: Axes, rod: Rod, part: FoundationPart, positions: NDArray[np.float64]
+def draw_foundations(
+    axes: Axes,
+    rods: Iterable[Rod],
+    parts: Iterable[FoundationPart],
+    positions: NDArray[np.float64],
 ) -> None:
-    """Draw an elastic foundation as a row of springs to the ground.
+    """Draw each elastic foundation as a row of springs to the ground.
 
     Parameters
     ----------
     axes
         Where to draw.
-    rod
-        The rod that it holds.
-    part
-        The foundation, from ``der.scene_loads.acting_loads(result, frame).foundations``.
+    rods
+        The rods.
+    parts
+        From ``der.scene_loads.acting_loads(result, frame).foundations``.
     positions
         Positions of all nodes [m], shape (nodes, 2).
     """
-    down = ground_direction(part, rod, positions)
-    angle = float(np.arctan2(down[0], -down[1]))
-    count = max(2, round(_FOUNDATION_SPRINGS * (part.end - part.start) / rod.length))
-    for number, at in enumerate(np.linspace(part.start, part.end, count)):
-        place = place_on(rod, positions, float(at))
-        gid = f"load-{rod.name}-foundation-{number}"
-        _draw_symbol(axes, _FOUNDATION, angle, place, gid)
+    by_name = {rod.name: rod for rod in rods}
+    for part in parts:
+        rod = by_name[part.rod]
+        down = ground_direction(part, rod, positions)
+        angle = float(np.arctan2(down[0], -down[1]))
+        count = max(2, round(_FOUNDATION_SPRINGS * (part.end - part.start) / rod.length))
+        for number, at in enumerate(np.linspace(part.start, part.end, count)):
+            place = place_on(rod, positions, float(at))
+            gid = f"load-{rod.name}-foundation-{number}"
+            _draw_symbol(axes, _FOUNDATION, angle, place, gid)
 
 
 def _draw_symbol(

@@ -23,7 +23,7 @@ inline constexpr std::array kEnergyTerms{
     EnergyTermInfo{EnergyTerm::Kinetic, "kinetic", false, "energy of motion"},
     EnergyTermInfo{EnergyTerm::Stretch, "stretch", true, "energy of stretching"},
     EnergyTermInfo{EnergyTerm::Bend, "bend", true, "energy of bending"},
-    EnergyTermInfo{EnergyTerm::Spring, "spring", true, "energy of spring supports"},
+    EnergyTermInfo{EnergyTerm::Spring, "spring", true, "energy of springs and foundations"},
     EnergyTermInfo{EnergyTerm::Gravity, "gravity", false,
                    "potential energy of the weight, zero at the origin"},
 };

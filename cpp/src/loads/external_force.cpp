@@ -5,7 +5,8 @@ namespace der {
 void external_force(const Model& model, const Configuration& here, const Vector& extra,
                     Vector& force) {
   if (const auto& varied = model.load_variation) {
-    force = varied->gravity_force.at(here.load_factor) + varied->dead_force.at(here.load_factor) + extra;
+    force = varied->gravity_force.at(here.load_factor) + varied->dead_force.at(here.load_factor) +
+            extra;
   } else {
     force = model.gravity_force + model.dead_force + extra;
   }

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "der/building/builder.hpp"
-#include "der/scenario/scenario.hpp"
 #include "der/core/constants.hpp"
 #include "der/core/error.hpp"
 #include "der/loads/external_force.hpp"
+#include "der/scenario/scenario.hpp"
 #include "der/simulation.hpp"
 #include "statics/statics_scenes.hpp"
 
@@ -72,7 +72,8 @@ TEST_CASE("a load factor scales every load, and nothing else") {
   const double weight = energies(whole, state)[EnergyTerm::Gravity];
   state.load_factor = 0.25;
   CHECK((force_on(model, state) - 0.25 * force_on(whole, state)).norm() < 1e-14);
-  CHECK(energies(model, state)[EnergyTerm::Gravity] == doctest::Approx(0.25 * weight).epsilon(1e-14));
+  CHECK(energies(model, state)[EnergyTerm::Gravity] ==
+        doctest::Approx(0.25 * weight).epsilon(1e-14));
   // The clamp has the first two controls, its rotation and how far it has turned; the moment the
   // third.
   CHECK(controls_of(model, state)[0] == doctest::Approx(0.3));

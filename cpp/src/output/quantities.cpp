@@ -18,9 +18,14 @@ Quantity component(std::string name, std::string unit, QuantityKind kind, std::s
   return {std::move(name), std::move(unit), kind, std::move(meaning), maker, {}, true};
 }
 
+Quantity field(std::string name, std::string unit, QuantityKind kind, std::string meaning,
+               RodFieldMaker maker) {
+  return {std::move(name), std::move(unit), kind, std::move(meaning), maker, {}, false};
+}
+
 Quantity energy(std::string name, std::string meaning, std::vector<EnergyTerm> terms) {
-  return {std::move(name),    kEnergyUnit, QuantityKind::Energy,
-          std::move(meaning), nullptr,     std::move(terms)};
+  return {std::move(name),  kEnergyUnit, QuantityKind::Energy, std::move(meaning), nullptr,
+          std::move(terms), false};
 }
 
 std::vector<Quantity> quantities_along_rods() {
@@ -30,15 +35,15 @@ std::vector<Quantity> quantities_along_rods() {
       component<&State::positions, 1>("y", "m", Kind::Position, "vertical position"),
       component<&State::velocities, 0>("vx", "m/s", Kind::Velocity, "horizontal velocity"),
       component<&State::velocities, 1>("vy", "m/s", Kind::Velocity, "vertical velocity"),
-      {"speed", "m/s", Kind::Velocity, "magnitude of the velocity", make_speed_field},
-      {"turning_angle", "rad", Kind::Turn,
-       "angle from the edge before a node to the edge after it, positive counter-clockwise",
-       make_turning_angle_field},
-      {"curvature", "1/m", Kind::Bend, "turning angle per length", make_curvature_field},
-      {"moment", "N m", Kind::Bend, "bending moment, positive where it bends counter-clockwise",
-       make_moment_field},
-      {"strain", "", Kind::Edge, "elongation per rest length", make_strain_field},
-      {"tension", "N", Kind::Edge, "axial force, positive in tension", make_tension_field},
+      field("speed", "m/s", Kind::Velocity, "magnitude of the velocity", make_speed_field),
+      field("turning_angle", "rad", Kind::Turn,
+            "angle from the edge before a node to the edge after it, positive counter-clockwise",
+            make_turning_angle_field),
+      field("curvature", "1/m", Kind::Bend, "turning angle per length", make_curvature_field),
+      field("moment", "N m", Kind::Bend,
+            "bending moment, positive where it bends counter-clockwise", make_moment_field),
+      field("strain", "", Kind::Edge, "elongation per rest length", make_strain_field),
+      field("tension", "N", Kind::Edge, "axial force, positive in tension", make_tension_field),
   };
 }
 
@@ -52,7 +57,8 @@ std::vector<Quantity> energy_quantities() {
     if (row.elastic) elastic.push_back(row.term);
     all.push_back(row.term);
   }
-  rows.push_back(energy("elastic_energy", "energy stored in rods and spring supports", elastic));
+  rows.push_back(
+      energy("elastic_energy", "energy stored in rods, springs and foundations", elastic));
   rows.push_back(energy("total_energy", "kinetic, elastic and gravity energy together", all));
   return rows;
 }

@@ -13,6 +13,7 @@
 #include "der/scenario/document.hpp"
 #include "der/scenario/reader.hpp"
 #include "der/scenario/scenario.hpp"
+#include "der/scenario/series.hpp"
 #include "values.hpp"
 
 namespace der::python {
@@ -138,6 +139,15 @@ void bind_scenario(py::module_& module) {
                     "Made by `load`, `parse` or `from_dict`.");
   bind_readers(cls);
   bind_facts(cls);
+  module.def(
+      "table_value",
+      [](std::vector<double> times, std::vector<double> values, double time) {
+        return scenario::value_at({std::move(times), std::move(values)}, time);
+      },
+      py::arg("times"), py::arg("values"), py::arg("time"),
+      "Return the value of a table over time at `time` [s]: linear between entries, constant "
+      "beyond "
+      "both ends.");
   module.def("json_schema", &json_schema,
              "Return the JSON Schema of a scene file, as text, for editors.");
   module.def("scene_reference", &scene_reference,

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from der._core import Rod
+from der._core import Rod, table_value
 from der.run_data import RunData
 
 Array = NDArray[np.float64]
@@ -153,7 +153,7 @@ def value_at(series: Any, time: float) -> Array:
         return np.asarray(series, dtype=np.float64)
     values = np.array(series["values"], dtype=np.float64)
     columns = values.reshape(len(values), -1).T
-    found = np.array([np.interp(time, series["times"], column) for column in columns])
+    found = np.array([table_value(series["times"], column, time) for column in columns])
     return found.reshape(values.shape[1:])
 
 

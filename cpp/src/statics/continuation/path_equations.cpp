@@ -25,10 +25,10 @@ PathEquations::PathEquations(const Model& model, const Assembler& assembler, Lin
       loads_(*model.load_variation),
       assembler_(assembler),
       options_(options),
-      metric_(metric),
+      metric_(std::move(metric)),
       stiffness_(model, assembler, solver),
       tension_(model, assembler),
-      here_{std::move(positions)},
+      here_{std::move(positions), {}},
       no_extra_(Vector::Zero(model.num_dofs())) {}
 
 void PathEquations::set_metric(PathNode& first) {

@@ -121,6 +121,7 @@ void couple_masses(const RodLayout& rod, Model& model) {
 
 void lay_out_rods(const scenario::Scene& scene, Model& model) {
   Index first_node = 0;
+  double size = 0.0;
   for (const auto& rod : scene.rods) {
     const SectionProperties section = section_properties(rod.cross_section, rod.material);
     RodLayout layout = lay_out(rod, section, first_node, model);
@@ -128,9 +129,10 @@ void lay_out_rods(const scenario::Scene& scene, Model& model) {
     set_natural_curvature(rod, layout);
     lump_masses(rod, layout, model);
     first_node += static_cast<Index>(rod.points.size());
-    model.size = std::max(model.size, layout.rest_length());
+    size = std::max(size, layout.rest_length());
     model.rods.push_back(std::move(layout));
   }
+  model.dofs.set_length(size);
 }
 
 void hold_dofs(Model& model) {
@@ -140,7 +142,6 @@ void hold_dofs(Model& model) {
     model.initial_velocities[support.dof] = 0.0;
   }
   model.dofs.hold(held);
-  model.dofs.set_length(model.size);
   if (model.num_free() == 0) {
     throw Error("model_error", "every node is held by a support: there is nothing to find");
   }

@@ -45,7 +45,7 @@ std::vector<Mode> Simulation::modes(int count) {
   const double unbalanced = model_.dofs.largest_free_force(now.gradient - now.external);
   const double acting =
       std::max(model_.dofs.largest_force(now.gradient), model_.dofs.largest_force(now.external));
-  if (unbalanced > kBalanced * acting + stiffness.rounding() * model_.size) {
+  if (unbalanced > kBalanced * acting + stiffness.rounding() * model_.size()) {
     throw Error("model_error",
                 fmt::format("vibration modes are those of an equilibrium, but {:.3g} N are not in "
                             "balance here: call equilibrium() first",

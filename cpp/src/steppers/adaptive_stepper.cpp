@@ -113,17 +113,18 @@ StepReport AdaptiveStepper::attempt(State& state, double length) {
 /// Compares the two halves that led to `state` with the whole step.
 void AdaptiveStepper::measure(const State& state, AdaptiveReport& report) {
   difference_ = whole_.positions - state.positions;
-  report.last.worst_dof = model_.dofs.most_moved(difference_);
-  const double difference = model_.dofs.largest_motion(difference_);
+  const Index worst = model_.dofs.most_moved(difference_);
+  const double difference = model_.dofs.motion_of(worst, difference_[worst]);
+  report.last.worst_dof = worst;
   const double share = report.tried / options_.duration;
-  report.error = error_factor_ * difference / (options_.tolerance * model_.size * share);
+  report.error = error_factor_ * difference / (options_.tolerance * model_.size() * share);
   report.at_rounding = difference <= kRounding * model_.dofs.largest_motion(state.positions);
 }
 
 /// The time in which the motion covers a distance of the tolerance; from rest a small fraction of
 /// the duration. A step that is too long is rejected, which costs little.
 double AdaptiveStepper::first_step(const State& state) const {
-  const double distance = options_.tolerance * model_.size;
+  const double distance = options_.tolerance * model_.size();
   const double speed = model_.dofs.largest_motion(state.velocities);
   const double longest = options_.duration / 100.0;
   return speed > 0.0 ? std::min(longest, distance / speed) : 1e-2 * longest;

@@ -117,7 +117,7 @@ TEST_CASE("all linear solvers lead to the same motion, to 1e-10, on every scene"
       }
       const Vector& positions = simulation.state().positions;
       if (expected.size() == 0) expected = positions;
-      CHECK((positions - expected).lpNorm<Eigen::Infinity>() < 1e-10 * simulation.model().size);
+      CHECK((positions - expected).lpNorm<Eigen::Infinity>() < 1e-10 * simulation.model().size());
     }
     ++scenes;
   }

@@ -159,11 +159,10 @@ struct Model {
   std::vector<FollowedEdge> followed_edges;
   Hidden<ElementLists> elements;
 
-  /// The largest extent of the initial shape [m]: the length against which steps are small.
-  double size = 0.0;
-
   [[nodiscard]] Index num_dofs() const { return dofs.size(); }
   [[nodiscard]] Index num_free() const { return dofs.num_free(); }
+  /// The largest extent of the initial shape [m]: the length against which steps are small.
+  [[nodiscard]] double size() const { return dofs.length(); }
   [[nodiscard]] Index dof(Index node, int component) const {
     return dofs.position(node, component);
   }

@@ -42,7 +42,7 @@ constexpr double kFirstStep = 0.2;
 
 /// Metric in which a displacement of all nodes by the model's size counts as the whole range.
 PathMetric first_metric(const Model& model, double range) {
-  return {model.dofs, 1.0 / (model.num_nodes * model.size * model.size), range};
+  return {model.dofs, 1.0 / (model.num_nodes * model.size() * model.size()), range};
 }
 
 /// By how much a unit of the factor turns a clamp at most [rad].

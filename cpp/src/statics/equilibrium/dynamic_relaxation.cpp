@@ -27,7 +27,7 @@ double first_time_step(const Model& model, const StaticLoads& loads, Stiffness& 
   stiffness.evaluate(loads.at(model, shape));
   const double acting = std::max(model.dofs.largest_force(loads.force),
                                  model.dofs.largest_force(stiffness.gradient()));
-  return std::sqrt(model.size / acting);
+  return std::sqrt(model.size() / acting);
 }
 
 }  // namespace

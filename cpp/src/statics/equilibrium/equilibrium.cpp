@@ -86,7 +86,7 @@ class EquilibriumSearch {
   }
 
   /// Inverse of the first pseudo-time step [N/m].
-  [[nodiscard]] double inverse_step() const { return newton_.force_scale() / model_.size; }
+  [[nodiscard]] double inverse_step() const { return newton_.force_scale() / model_.size(); }
 
   /// Newton's method, then pseudo-transient continuation from where it started.
   std::optional<FailedSearch> find_near(const StaticLoads& loads, Shape& shape) {

@@ -14,7 +14,7 @@ bool step_loads(const Model& model, const StaticLoads& loads, double force_scale
                 PseudoTransient& continuation, Shape& shape) {
   Shape now = shape;
   for (double share = kFirstShare; share <= 1.0; share *= 2.0) {
-    const double inverse_step = share * force_scale / model.size;
+    const double inverse_step = share * force_scale / model.size();
     if (continuation.run(scaled(model, loads, share), inverse_step, now).failed) return false;
   }
   shape = std::move(now);

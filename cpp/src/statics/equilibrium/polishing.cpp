@@ -35,12 +35,12 @@ bool polish(const Model& model, const Vector& force, const Stability& stability,
     const double next = solved ? model.dofs.largest_motion(over_all_dofs(model, step)) : length;
     if (!(next < 0.5 * length)) break;
     length = next;
-    if (length > kLongestStep * model.size) break;
+    if (length > kLongestStep * model.size()) break;
     for (Index k = 0; k < model.num_free(); ++k)
       here.coordinates[model.dofs.free()[to_size(k)]] += step[k];
     stiffness.evaluate(here);
   }
-  return length <= kAccepted * model.size;
+  return length <= kAccepted * model.size();
 }
 
 }  // namespace der::statics

@@ -43,7 +43,7 @@ PseudoTransient::PseudoTransient(const Model& model, StaticNewton& newton)
 PseudoTransient::Result PseudoTransient::run(const StaticLoads& loads, double inverse_step,
                                              Shape& shape, double decay) {
   const double largest =
-      kLargestInverseStep * std::max(inverse_step, newton_.force_scale() / model_.size);
+      kLargestInverseStep * std::max(inverse_step, newton_.force_scale() / model_.size());
   turning_.reset();
   double change_for_newton = kTryNewton;
   Result result;

@@ -62,7 +62,7 @@ StaticNewton::LastStep StaticNewton::balance_nearby(const StaticLoads& loads, Sh
 }
 
 double StaticNewton::energy_resolution() const {
-  return kEnergyResolution * force_scale_ * model_.size;
+  return kEnergyResolution * force_scale_ * model_.size();
 }
 
 }  // namespace der::statics

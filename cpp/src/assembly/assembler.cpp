@@ -8,6 +8,7 @@
 #include "der/assembly/planar_chain.hpp"
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
+#include "der/energies/elements_of.hpp"
 #include "der/energies/registry.hpp"
 #include "der/kinematics/planar_edge.hpp"
 
@@ -37,7 +38,7 @@ template <class Kernel>
 std::vector<std::size_t> loose_elements(std::size_t size, const std::vector<PlanarChain>& chains) {
   std::vector<bool> in_chain(size, false);
   for (const PlanarChain& chain : chains) {
-    const auto [first, count] = chain.elements_of<Kernel>();
+    const auto [first, count] = chain.range_of<Kernel>();
     std::fill_n(in_chain.begin() + static_cast<std::ptrdiff_t>(first), count, true);
   }
   std::vector<std::size_t> loose;
@@ -99,7 +100,7 @@ Assembler::Assembler(const Model& model, const MatrixLayout& layout)
         }
       },
       kKinds);
-  for (const auto& dofs : model.elements->of<Stretch<2>>().dofs) {
+  for (const auto& dofs : elements_of<Stretch<2>>(*model.elements).dofs) {
     maps->edges.push_back(element_slots(dofs, slot_of));
   }
   maps_ = std::move(maps);
@@ -164,7 +165,7 @@ void Assembler::add_mass(const Mass& mass, double factor, Vector& values) const 
 
 void Assembler::add_tension_stiffness(const Configuration& here, const Vector& tension,
                                       Vector& values) const {
-  const auto& edges = model_.elements->of<Stretch<2>>();
+  const auto& edges = elements_of<Stretch<2>>(*model_.elements);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const Vec2 e = Stretch<2>::edge(gather(edges.dofs[i], here.coordinates));
     const double length = e.norm();

@@ -2,6 +2,7 @@
 
 #include "der/energies/discrete_gradient.hpp"
 #include "der/energies/element_energy.hpp"
+#include "der/energies/elements_of.hpp"
 #include "der/energies/registry.hpp"
 
 namespace der {
@@ -12,7 +13,7 @@ DiscreteGradientAssembler::DiscreteGradientAssembler(const Model& model, const A
       model_(model),
       assembler_(assembler),
       at_middle_(Vector::Zero(model.num_dofs())),
-      excess_(Vector::Zero(static_cast<Index>(model.elements->of<Stretch<2>>().size()))) {}
+      excess_(Vector::Zero(static_cast<Index>(elements_of<Stretch<2>>(*model.elements).size()))) {}
 
 template <class Kernel>
 void DiscreteGradientAssembler::evaluate(const ElementList<Kernel>& list, std::size_t element,
@@ -53,7 +54,7 @@ void DiscreteGradientAssembler::gradient_and_hessian(const Configuration& middle
   assembler_.gradient_and_hessian(middle, at_middle_, values);
   // The force over the mean edge vector is EA/l (1 - 2 l/(l0 + l1)), at the middle
   // EA/l (1 - l/l_middle).
-  const auto& edges = model_.elements->of<Stretch<2>>();
+  const auto& edges = elements_of<Stretch<2>>(*model_.elements);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const auto length = [&dofs = edges.dofs[i]](const Configuration& there) {
       return Stretch<2>::edge(gather(dofs, there.coordinates)).norm();

@@ -5,6 +5,9 @@
 
 #include "der/core/index.hpp"
 #include "der/core/processor.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/planar_bend.hpp"
+#include "der/energies/stretch.hpp"
 
 namespace der {
 namespace {
@@ -93,8 +96,8 @@ struct Run {
 template <class Curvature>
 std::vector<Run> find_runs(const Model& model) {
   std::vector<Run> runs;
-  const auto& edges = model.elements->of<Stretch<2>>();
-  const auto& bends = model.elements->of<PlanarBend<Curvature>>();
+  const auto& edges = elements_of<Stretch<2>>(*model.elements);
+  const auto& bends = elements_of<PlanarBend<Curvature>>(*model.elements);
   const auto starts = bends_by_start(bends);
   for (std::size_t first = 0; first < edges.size();) {
     const auto bend = starts.find(edges.dofs[first][0]);
@@ -125,7 +128,7 @@ std::vector<PlanarChain> PlanarChain::find(const Model& model, const MatrixLayou
 }
 
 void PlanarChain::map_nodes(const Model& model, const MatrixLayout& layout) {
-  first_dof_ = model.elements->of<Stretch<2>>().dofs[edges_.first][0];
+  first_dof_ = elements_of<Stretch<2>>(*model.elements).dofs[edges_.first][0];
   const Index end = first_dof_ + 2 * static_cast<Index>(edges_.count + 1);
   for (Index dof = first_dof_; dof < end; dof += 2) {
     NodeSlots& slots = slots_.emplace_back();
@@ -158,9 +161,10 @@ void PlanarChain::add(const Model& model, const Configuration& here, Vector& gra
 template <Derivatives D, class Curvature>
 void PlanarChain::add_measured(const Model& model, const Configuration& here, Vector& gradient,
                                double* values) const {
-  const auto* edge_constants = model.elements->of<Stretch<2>>().constants.data() + edges_.first;
+  const auto* edge_constants =
+      elements_of<Stretch<2>>(*model.elements).constants.data() + edges_.first;
   const auto* bend_constants =
-      model.elements->of<PlanarBend<Curvature>>().constants.data() + bends_.first;
+      elements_of<PlanarBend<Curvature>>(*model.elements).constants.data() + bends_.first;
   const double* x = here.coordinates.data() + first_dof_;
   double* g = gradient.data() + first_dof_;
 

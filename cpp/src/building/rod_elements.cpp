@@ -1,7 +1,10 @@
 #include "der/building/rod_elements.hpp"
 
 #include "der/core/index.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/from_pivot.hpp"
+#include "der/energies/planar_bend.hpp"
+#include "der/energies/stretch.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spring.hpp"
@@ -16,9 +19,9 @@ void add_element(const std::array<Index, Kernel::kDofs>& dofs,
                  const typename Kernel::Constants& constants, const Pivot& first, const Pivot& last,
                  Model& model) {
   if (first.distance == 0.0 && last.distance == 0.0) {
-    model.elements->of<Kernel>().add(dofs, constants);
+    elements_of<Kernel>(*model.elements).add(dofs, constants);
   } else {
-    model.elements->of<FromPivot<Kernel>>().add(dofs, {constants, first, last});
+    elements_of<FromPivot<Kernel>>(*model.elements).add(dofs, {constants, first, last});
   }
 }
 

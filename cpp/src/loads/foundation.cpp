@@ -2,7 +2,8 @@
 
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/foundation.hpp"
 #include "der/loads/loads.hpp"
 
 namespace der {
@@ -25,7 +26,7 @@ Eigen::Matrix2d shape_products(double a, double b, double s0, double s1) {
 // mean: the linear interpolation has the displacement of the curve up to order 4.
 void add_load(const scenario::Foundation& load, const scenario::Scene& /*scene*/, Model& model) {
   const RodLayout& rod = model.rod(load.rod);
-  auto& elements = model.elements->of<Foundation>();
+  auto& elements = elements_of<Foundation>(*model.elements);
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     const double s0 = rod.arc_length[to_size(edge)];
     const double s1 = rod.arc_length[to_size(edge + 1)];

@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "der/energies/registry.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/planar_moment.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/location.hpp"
 #include "der/model/moment_place.hpp"
@@ -26,7 +27,7 @@ void add_load(const scenario::Moment& load, const scenario::Scene& /*scene*/, Mo
   if (is_clamped(rod, s)) return;
   MomentPlace& place = place_of_moments(s, rod);
   place.moments.push_back(control);
-  auto& moments = model.elements->of<PlanarMoment>();
+  auto& moments = elements_of<PlanarMoment>(*model.elements);
   for (std::size_t i = 0; i < place.weights.size(); ++i) {
     moments.add(rod.edge_dofs(place.first_edge + static_cast<Index>(i), model),
                 {place.series_share(rod.EI) * place.weights[i], control});

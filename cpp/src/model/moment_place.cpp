@@ -4,7 +4,8 @@
 
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/rotational_spring.hpp"
 #include "der/model/location.hpp"
 
 namespace der {
@@ -37,7 +38,7 @@ double applied_moment(const MomentPlace& place, const Vector& controls) {
 template <int Edges>
 double turn_of(Index element, const Model& model, const Vector& positions, double before) {
   using Kernel = RotationalSpring<Edges>;
-  const auto& springs = model.elements->of<Kernel>();
+  const auto& springs = elements_of<Kernel>(*model.elements);
   return Kernel::turn(springs.constants[to_size(element)], before,
                       gather(springs.dofs[to_size(element)], positions));
 }

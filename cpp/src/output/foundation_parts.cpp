@@ -5,7 +5,8 @@
 
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/foundation.hpp"
 
 namespace der {
 
@@ -26,7 +27,7 @@ Vec2 FoundationPart::excess_beyond_middle(double edge_length, const State& state
 }
 
 std::vector<FoundationPart> foundation_parts(const RodLayout& rod, const Model& model) {
-  const auto& elements = model.elements->of<Foundation>();
+  const auto& elements = elements_of<Foundation>(*model.elements);
   std::vector<FoundationPart> found;
   if (elements.size() == 0) return found;
   std::unordered_map<Index, Index> edge_from;  // the edge that begins at a degree of freedom

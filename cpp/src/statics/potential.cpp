@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "der/energies/element_energy.hpp"
+#include "der/energies/elements_of.hpp"
 #include "der/energies/registry.hpp"
 #include "der/kinematics/planar_edge.hpp"
 
@@ -131,8 +132,8 @@ double largest_turning_angle(const Model& model, const Vector& positions) {
       largest = std::max(largest, std::abs(angle_between(before, after)));
     }
   };
-  look(model.elements->of<PlanarBend<AngleCurvature>>());
-  look(model.elements->of<PlanarBend<TangentCurvature>>());
+  look(elements_of<PlanarBend<AngleCurvature>>(*model.elements));
+  look(elements_of<PlanarBend<TangentCurvature>>(*model.elements));
   return largest;
 }
 

@@ -9,7 +9,9 @@
 
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/from_pivot.hpp"
+#include "der/energies/planar_bend.hpp"
 
 namespace der {
 namespace {
@@ -55,9 +57,10 @@ Index folded_node_of(const ElementList<Kernel>& bends, const Model& model, const
 /// The first node whose turning angle has gone through half a turn; -1 if there is none.
 Index folded_node(const Model& model, const Vector& before, const Vector& after) {
   using Bend = PlanarBend<AngleCurvature>;
-  const Index node = folded_node_of(model.elements->of<Bend>(), model, before, after);
-  return node >= 0 ? node
-                   : folded_node_of(model.elements->of<FromPivot<Bend>>(), model, before, after);
+  const Index node = folded_node_of(elements_of<Bend>(*model.elements), model, before, after);
+  return node >= 0
+             ? node
+             : folded_node_of(elements_of<FromPivot<Bend>>(*model.elements), model, before, after);
 }
 
 std::string created_text(const EnergyAudit& audit, const std::string& times) {

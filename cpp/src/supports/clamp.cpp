@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "der/core/index.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/from_pivot.hpp"
+#include "der/energies/planar_clamp.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/scenario/support.hpp"
 
@@ -117,7 +119,7 @@ void add_clamp_cells(const Clamp& clamp, RodLayout& rod, Model& model) {
     rod.rest_turning_angle[to_size(clamp.place)] += rest;
     const auto add = [&](auto measure) {
       using Measure = decltype(measure);
-      auto& list = model.elements->of<FromPivot<PlanarClamp<Measure>>>();
+      auto& list = elements_of<FromPivot<PlanarClamp<Measure>>>(*model.elements);
       list.add(effective.dofs, {{rod.EI / clamp_cell_length(rod, edge), Measure::of(rest).kappa,
                                  clamp.direction, side_of(clamp, edge), clamp.rotation},
                                 effective.first,

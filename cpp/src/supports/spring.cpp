@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "der/core/index.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/point_spring.hpp"
+#include "der/energies/rotational_spring.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/model/location.hpp"
 #include "der/model/moment_place.hpp"
@@ -40,7 +42,7 @@ void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s,
     constants.anchor += weight * drawn_node(rod, place, model);
   }
   if (!spring.anchor.empty()) constants.anchor = Eigen::Map<const Vec2>(spring.anchor.data());
-  model.elements->of<Kernel>().add(dofs, constants);
+  elements_of<Kernel>(*model.elements).add(dofs, constants);
   rod.force_places.push_back({s, {-1, -1}, constants.stiffness, constants.anchor});
 }
 
@@ -92,7 +94,7 @@ Index add_element(const RodLayout& rod, MomentPlace& place, Model& model) {
   constants.turn = first.turn;
   constants.rest = rest_turn(rod, place, model);
   for (std::size_t i = 0; i < Edges; ++i) constants.weights[i] = place.weights[i];
-  auto& springs = model.elements->of<Kernel>();
+  auto& springs = elements_of<Kernel>(*model.elements);
   springs.add(dofs, constants);
   return static_cast<Index>(springs.size()) - 1;
 }

@@ -74,11 +74,11 @@ TEST_CASE("chains are found where edges follow one another") {
   // Edges next to a clamp start from its pivot and are no plain stretch elements; the one edge that
   // the clamps of the stub leave is no chain.
   REQUIRE(chains.size() == 2);
-  CHECK(chains[0].elements_of<Stretch<2>>().count == 10);
-  CHECK(chains[0].elements_of<PlanarBend<AngleCurvature>>().count == 9);
-  CHECK(chains[0].elements_of<PlanarBend<TangentCurvature>>().count == 0);
-  CHECK(chains[1].elements_of<Stretch<2>>().count == 6);
-  CHECK(chains[1].elements_of<PlanarBend<TangentCurvature>>().count == 5);
+  CHECK(chains[0].range_of<Stretch<2>>().count == 10);
+  CHECK(chains[0].range_of<PlanarBend<AngleCurvature>>().count == 9);
+  CHECK(chains[0].range_of<PlanarBend<TangentCurvature>>().count == 0);
+  CHECK(chains[1].range_of<Stretch<2>>().count == 6);
+  CHECK(chains[1].range_of<PlanarBend<TangentCurvature>>().count == 5);
 }
 
 TEST_CASE("a chain gives the gradient and the Hessian of its elements") {

@@ -5,7 +5,11 @@
 #include <string>
 
 #include "der/building/builder.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/from_pivot.hpp"
+#include "der/energies/planar_bend.hpp"
+#include "der/energies/planar_clamp.hpp"
+#include "der/energies/stretch.hpp"
 #include "der/model/location.hpp"
 #include "der/model/state.hpp"
 #include "der/scenario/reader.hpp"
@@ -113,7 +117,7 @@ TEST_CASE("a clamp inside a rod takes over the bending of its node") {
   const Model free = model_of(rod);
   const Model clamped = model_of(rod, "supports:\n  - {rod: rod, at: middle, clamp: true}\n");
   const auto count = [](const Model& model, auto kernel) {
-    return model.elements->of<decltype(kernel)>().size();
+    return elements_of<decltype(kernel)>(*model.elements).size();
   };
   CHECK(count(free, PlanarBend<AngleCurvature>{}) == 9);
   // Node 5 has none, nodes 4 and 6 bend against an edge that starts from a pivot.
@@ -127,7 +131,7 @@ TEST_CASE("a cable has no bending elements") {
   const Model model = model_of(
       "    nodes: 11\n    from: [0, 0]\n    to: [1, 0]\n"
       "    cross_section: {stiffness: {EA: 1e3, EI: 0, mass_per_length: 1}}\n");
-  CHECK(model.elements->of<PlanarBend<AngleCurvature>>().size() == 0);
+  CHECK(elements_of<PlanarBend<AngleCurvature>>(*model.elements).size() == 0);
 }
 
 TEST_CASE("a distributed force sums to its length and stands at its middle") {

@@ -4,7 +4,9 @@
 
 #include "der/assembly/pattern.hpp"
 #include "der/building/builder.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/point_spring.hpp"
+#include "der/energies/rotational_spring.hpp"
 #include "der/scenario/reader.hpp"
 #include "der/simulation.hpp"
 #include "der/statics/rigid_motion.hpp"
@@ -33,7 +35,7 @@ Model model_with(const std::string& supports) {
 
 template <class Kernel>
 std::size_t count(const Model& model) {
-  return model.elements->of<Kernel>().size();
+  return elements_of<Kernel>(*model.elements).size();
 }
 
 }  // namespace

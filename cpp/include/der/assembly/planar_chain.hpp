@@ -7,7 +7,8 @@
 #include "der/assembly/pattern.hpp"
 #include "der/core/types.hpp"
 #include "der/energies/local_term.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/planar_bend.hpp"
+#include "der/energies/stretch.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 
@@ -30,7 +31,7 @@ class PlanarChain {
   };
   /// The elements of one kernel that the chain assembles.
   template <class Kernel>
-  [[nodiscard]] Range elements_of() const {
+  [[nodiscard]] Range range_of() const {
     if constexpr (std::is_same_v<Kernel, Stretch<2>>) return edges_;
     if constexpr (std::is_same_v<Kernel, PlanarBend<AngleCurvature>>)
       return tangent_ ? Range{} : bends_;

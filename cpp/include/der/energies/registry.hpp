@@ -35,16 +35,6 @@ struct ElementLists {
                            ElementList<RotationalSpring<1>>,                       //
                            ElementList<RotationalSpring<2>>>;
   Lists lists;
-
-  /// The elements of one kind.
-  template <class Kernel>
-  [[nodiscard]] ElementList<Kernel>& of() {
-    return std::get<ElementList<Kernel>>(lists);
-  }
-  template <class Kernel>
-  [[nodiscard]] const ElementList<Kernel>& of() const {
-    return std::get<ElementList<Kernel>>(lists);
-  }
 };
 
 /// Calls `f(list)` for each kind of element.

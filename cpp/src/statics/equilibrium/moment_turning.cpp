@@ -5,7 +5,8 @@
 
 #include "der/core/constants.hpp"
 #include "der/energies/element_energy.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/planar_moment.hpp"
 #include "der/kinematics/planar_edge.hpp"
 
 namespace der::statics {
@@ -25,7 +26,7 @@ double rotational_compliance(const Model& model) {
 }
 
 const ElementList<PlanarMoment>& moments_of(const Model& model) {
-  return model.elements->of<PlanarMoment>();
+  return elements_of<PlanarMoment>(*model.elements);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "statics/equilibrium/static_loads.hpp"
 
-#include "der/energies/registry.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/planar_moment.hpp"
 #include "der/statics/potential.hpp"
 
 namespace der::statics {
@@ -8,7 +9,7 @@ namespace der::statics {
 StaticLoads scaled(const Model& model, const StaticLoads& loads, double share) {
   StaticLoads result = loads;
   result.force = share * loads.force;
-  for (const auto& moment : model.elements->of<PlanarMoment>().constants) {
+  for (const auto& moment : elements_of<PlanarMoment>(*model.elements).constants) {
     result.controls[moment.moment] = share * loads.controls[moment.moment];
   }
   return result;

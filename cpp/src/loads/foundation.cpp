@@ -1,21 +1,23 @@
-#include <algorithm>
-
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/registry.hpp"
 #include "der/loads/loads.hpp"
+#include "der/model/location.hpp"
 
 namespace der {
 namespace {
 
-/// Integrals over [a, b] of the products of the shape functions of an edge from s0 to s1 [m]. The
-/// functions are linear: Simpson's rule has no error.
-Eigen::Matrix2d shape_products(double a, double b, double s0, double s1) {
+/// Integrals over a part of an edge of the products of its shape functions [m]. The functions are
+/// linear: Simpson's rule has no error.
+Eigen::Matrix2d shape_products(const EdgePart& part, const RodLayout& rod) {
+  const double s0 = rod.arc_length[to_size(part.edge)];
+  const double s1 = rod.arc_length[to_size(part.edge + 1)];
   const auto at = [&](double s) {
     const double share = (s - s0) / (s1 - s0);
     const Vec2 shapes{1.0 - share, share};
     return Eigen::Matrix2d(shapes * shapes.transpose());
   };
+  const auto& [edge, a, b] = part;
   return (b - a) / 6.0 * (at(a) + 4.0 * at(0.5 * (a + b)) + at(b));
 }
 
@@ -26,19 +28,16 @@ Eigen::Matrix2d shape_products(double a, double b, double s0, double s1) {
 void add_load(const scenario::Foundation& load, const scenario::Scene& /*scene*/, Model& model) {
   const RodLayout& rod = model.rod(load.rod);
   auto& elements = model.elements->of<Foundation>();
-  for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-    const double s0 = rod.arc_length[to_size(edge)];
-    const double s1 = rod.arc_length[to_size(edge + 1)];
-    const double a = std::max(load.from, s0);
-    const double b = std::min(load.to, s1);
-    if (a >= b) continue;
-    const auto dofs = rod.edge_dofs(edge, model);
+  for (const EdgePart& part : edge_parts(rod, load.from, load.to)) {
+    const double s0 = rod.arc_length[to_size(part.edge)];
+    const double s1 = rod.arc_length[to_size(part.edge + 1)];
+    const auto dofs = rod.edge_dofs(part.edge, model);
     Foundation::Constants constants;
     constants.stiffness = Eigen::Map<const Vec2>(load.stiffness.data());
     constants.drawn = gather(dofs, model.initial_positions);
-    constants.start = (a - s0) / (s1 - s0);
-    constants.end = (b - s0) / (s1 - s0);
-    constants.lengths = shape_products(a, b, s0, s1);
+    constants.start = (part.from - s0) / (s1 - s0);
+    constants.end = (part.to - s0) / (s1 - s0);
+    constants.lengths = shape_products(part, rod);
     elements.add(dofs, constants);
   }
 }

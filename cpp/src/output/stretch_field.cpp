@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "der/core/index.hpp"
+#include "der/model/location.hpp"
 #include "der/supports/clamp.hpp"
 #include "output/foundation_parts.hpp"
 #include "output/spread_forces.hpp"
@@ -88,8 +89,7 @@ class StretchField : public RodField {
     Layout(const RodLayout& rod, const SpreadForces& forces, const Model& model)
         : rod_(rod), forces_(forces) {
       for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-        middles.push_back(0.5 *
-                          (rod.arc_length[to_size(edge)] + rod.arc_length[to_size(edge + 1)]));
+        middles.push_back(rod.edge_middle(edge));
       }
       find_breaks(model);
       for (std::size_t part = 0; part + 1 < breaks_.size(); ++part) add_part(part);
@@ -200,8 +200,9 @@ class StretchField : public RodField {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) {
       effective_.push_back(effective_edge(rod, edge, model));
       rest_length_.push_back(effective_.back().vector(model.initial_positions, 0.0, 0.0).norm());
-      add_loads(edge, layout.middles[to_size(edge)], rod);
+      add_forces(edge, rod);
     }
+    add_distributed(rod);
     for (const FoundationPart& part : foundation_parts(rod, model)) {
       if (part.is_cut()) loads_[to_size(part.edge)].foundations.push_back(part);
     }
@@ -213,23 +214,25 @@ class StretchField : public RodField {
     return result;
   }
 
-  void add_loads(Index edge, double middle, const RodLayout& rod) {
-    EdgeLoads& loads = loads_[to_size(edge)];
+  void add_forces(Index edge, const RodLayout& rod) {
+    const double middle = rod.edge_middle(edge);
     for (std::size_t f = 0; f < forces_.size(); ++f) {
       const std::vector<Weighted>& nodes = forces_[f].nodes;
       if (nodes.front().place > edge || nodes.back().place <= edge) continue;
       double amount = forces_[f].place.arc_length > middle + rod.same_place() ? 1.0 : 0.0;
       for (const auto& [node, weight] : nodes) amount -= node > edge ? weight : 0.0;
-      loads.forces.push_back({f, amount});
+      loads_[to_size(edge)].forces.push_back({f, amount});
     }
+  }
+  void add_distributed(const RodLayout& rod) {
     for (std::size_t d = 0; d < distributed_.size(); ++d) {
-      const double s0 = rod.arc_length[to_size(edge)];
-      const double s1 = rod.arc_length[to_size(edge + 1)];
-      const double from = std::max(distributed_[d].from, s0);
-      const double to = std::min(distributed_[d].to, s1);
-      if (from >= to || to - from >= (s1 - s0) - rod.same_place()) continue;
-      const double beyond = std::max(0.0, to - std::max(from, middle));
-      loads.distributed.push_back({d, beyond - DistributedPlace::share_of_end(from, to, s0, s1)});
+      for (const EdgePart& part : edge_parts(rod, distributed_[d].from, distributed_[d].to)) {
+        if (!is_cut(part, rod)) continue;
+        const double beyond =
+            std::max(0.0, part.to - std::max(part.from, rod.edge_middle(part.edge)));
+        loads_[to_size(part.edge)].distributed.push_back(
+            {d, beyond - length_at_last_end(part, rod)});
+      }
     }
   }
 

@@ -26,20 +26,18 @@ Eigen::Matrix2d shape_products(const EdgePart& part, const RodLayout& rod) {
 // Nodes lie beside the curve by l^2/12 of its curvature, and edges as far on its other side in the
 // mean: the linear interpolation has the displacement of the curve up to order 4.
 void add_load(const scenario::Foundation& load, const scenario::Scene& /*scene*/, Model& model) {
-  const RodLayout& rod = model.rod(load.rod);
+  RodLayout& rod = model.rod(load.rod);
+  const Eigen::Map<const Vec2> stiffness(load.stiffness.data());
   auto& elements = model.elements->of<Foundation>();
   for (const EdgePart& part : edge_parts(rod, load.from, load.to)) {
-    const double s0 = rod.arc_length[to_size(part.edge)];
-    const double s1 = rod.arc_length[to_size(part.edge + 1)];
     const auto dofs = rod.edge_dofs(part.edge, model);
     Foundation::Constants constants;
-    constants.stiffness = Eigen::Map<const Vec2>(load.stiffness.data());
+    constants.stiffness = stiffness;
     constants.drawn = gather(dofs, model.initial_positions);
-    constants.start = (part.from - s0) / (s1 - s0);
-    constants.end = (part.to - s0) / (s1 - s0);
     constants.lengths = shape_products(part, rod);
     elements.add(dofs, constants);
   }
+  rod.foundation_places.push_back({load.from, load.to, stiffness});
 }
 
 }  // namespace der

@@ -7,7 +7,7 @@
 #include "der/core/index.hpp"
 #include "der/model/location.hpp"
 #include "der/supports/clamp.hpp"
-#include "output/foundation_parts.hpp"
+#include "output/edge_excess.hpp"
 #include "output/spread_forces.hpp"
 
 namespace der {
@@ -72,17 +72,6 @@ class StretchField : public RodField {
     std::vector<Jump> jumps;
     bool smooth = true;
   };
-  /// A load beyond the middle of an edge, less what the chain has beyond the edge.
-  struct Excess {
-    std::size_t load = 0;
-    double amount = 0.0;
-  };
-  struct EdgeLoads {
-    std::vector<Excess> forces;
-    std::vector<Excess> distributed;  // amounts [m]
-    std::vector<FoundationPart> foundations;
-  };
-
   /// The parts of the rod and the samples along them.
   class Layout {
    public:
@@ -114,8 +103,9 @@ class StretchField : public RodField {
         breaks_.push_back(place.from);
         breaks_.push_back(place.to);
       }
-      for (const double s : foundation_jumps(rod_, foundation_parts(rod_, model))) {
-        breaks_.push_back(s);
+      for (const FoundationPlace& place : rod_.foundation_places) {
+        breaks_.push_back(place.from);
+        breaks_.push_back(place.to);
       }
       std::sort(breaks_.begin(), breaks_.end());
       const auto same = [&](double a, double b) { return b - a <= rod_.same_place(); };
@@ -194,17 +184,11 @@ class StretchField : public RodField {
         EA_(rod.EA),
         edge_length_(rod.edge_length),
         forces_(std::move(forces)),
-        distributed_(rod.distributed_places),
-        loads_(to_size(rod.num_edges())),
+        excess_(rod, forces_),
         samples_(layout.samples) {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) {
       effective_.push_back(effective_edge(rod, edge, model));
       rest_length_.push_back(effective_.back().vector(model.initial_positions, 0.0, 0.0).norm());
-      add_forces(edge, rod);
-    }
-    add_distributed(rod);
-    for (const FoundationPart& part : foundation_parts(rod, model)) {
-      if (part.is_cut()) loads_[to_size(part.edge)].foundations.push_back(part);
     }
   }
 
@@ -212,28 +196,6 @@ class StretchField : public RodField {
     std::vector<double> result;
     for (const Sample& sample : samples) result.push_back(sample.arc_length);
     return result;
-  }
-
-  void add_forces(Index edge, const RodLayout& rod) {
-    const double middle = rod.edge_middle(edge);
-    for (std::size_t f = 0; f < forces_.size(); ++f) {
-      const std::vector<Weighted>& nodes = forces_[f].nodes;
-      if (nodes.front().place > edge || nodes.back().place <= edge) continue;
-      double amount = forces_[f].place.arc_length > middle + rod.same_place() ? 1.0 : 0.0;
-      for (const auto& [node, weight] : nodes) amount -= node > edge ? weight : 0.0;
-      loads_[to_size(edge)].forces.push_back({f, amount});
-    }
-  }
-  void add_distributed(const RodLayout& rod) {
-    for (std::size_t d = 0; d < distributed_.size(); ++d) {
-      for (const EdgePart& part : edge_parts(rod, distributed_[d].from, distributed_[d].to)) {
-        if (!is_cut(part, rod)) continue;
-        const double beyond =
-            std::max(0.0, part.to - std::max(part.from, rod.edge_middle(part.edge)));
-        loads_[to_size(part.edge)].distributed.push_back(
-            {d, beyond - length_at_last_end(part, rod)});
-      }
-    }
   }
 
   [[nodiscard]] Vec2 direction(Index edge, const Model& model, const State& state) const {
@@ -244,24 +206,8 @@ class StretchField : public RodField {
     const Vec2 effective = effective_vector(effective_[to_size(edge)], model, state);
     const double length = effective.norm();
     const double chain = (length - rest_length_[to_size(edge)]) / edge_length_[to_size(edge)];
-    const EdgeLoads& loads = loads_[to_size(edge)];
-    if (loads.forces.empty() && loads.distributed.empty() && loads.foundations.empty()) {
-      return chain;
-    }
-    Vec2 excess = Vec2::Zero();
-    for (const auto& [force, amount] : loads.forces) {
-      excess += amount * forces_.value(force, model, state);
-    }
-    for (const auto& [number, amount] : loads.distributed) {
-      for (int c = 0; c < 2; ++c) {
-        const Index control = distributed_[number].force[to_size(c)];
-        excess[c] += amount * control_value(model, state, control);
-      }
-    }
-    for (const FoundationPart& part : loads.foundations) {
-      excess += part.excess_beyond_middle(edge_length_[to_size(edge)], state);
-    }
-    return chain + effective.dot(excess) / (length * EA_);
+    if (excess_.none(edge)) return chain;
+    return chain + effective.dot(excess_.force(edge, forces_, model, state)) / (length * EA_);
   }
 
   double stiffness_;
@@ -270,8 +216,7 @@ class StretchField : public RodField {
   std::vector<double> rest_length_;  // of the effective edges
   std::vector<EffectiveEdge> effective_;
   SpreadForces forces_;
-  std::vector<DistributedPlace> distributed_;
-  std::vector<EdgeLoads> loads_;
+  EdgeExcess excess_;
   std::vector<Sample> samples_;
 };
 

@@ -64,6 +64,12 @@ struct DistributedPlace {
   std::array<Index, 2> force{-1, -1};  ///< controls of the load [N/m]
 };
 
+/// A part of a rod under which there is an elastic foundation.
+struct FoundationPlace {
+  double from = 0.0, to = 0.0;    ///< rest arc length [m]
+  Vec2 stiffness = Vec2::Zero();  ///< [N/m^2] along x and y
+};
+
 /// Where the nodes and edges of one rod are in the model, and what is known of it for probes and
 /// drawings. Only the builder assumes that a rod is a chain; everybody else reads these lists.
 struct RodLayout {
@@ -84,6 +90,7 @@ struct RodLayout {
   std::vector<MomentPlace> moment_places;  ///< no two at the same place
   std::vector<ForcePlace> force_places;    ///< of forces at single places
   std::vector<DistributedPlace> distributed_places;
+  std::vector<FoundationPlace> foundation_places;
   double draw_radius = 0.0;           ///< half the height of the section [m]; 0 if not known
   std::vector<double> sphere_radius;  ///< per node [m]; 0: no sphere
 

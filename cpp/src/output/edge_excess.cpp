@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "der/core/index.hpp"
+#include "output/line_loads.hpp"
 
 namespace der {
 
@@ -58,8 +59,7 @@ Vec2 EdgeExcess::force(Index edge, const SpreadForces& forces, const Model& mode
     sum += amount * forces.value(force, model, state);
   }
   for (const auto& [number, amount] : loads.distributed) {
-    const std::array<Index, 2>& force = rod_.distributed_places[number].force;
-    for (int c = 0; c < 2; ++c) sum[c] += amount * control_value(model, state, force[to_size(c)]);
+    sum += amount * force_per_length(rod_.distributed_places[number], model, state);
   }
   for (const CutFoundation& foundation : loads.foundations) {
     sum += foundation_force(edge, foundation, model, state);
@@ -69,12 +69,8 @@ Vec2 EdgeExcess::force(Index edge, const SpreadForces& forces, const Model& mode
 
 Vec2 EdgeExcess::foundation_force(Index edge, const CutFoundation& foundation, const Model& model,
                                   const State& state) const {
-  const auto displacement = [&](Index node) -> Vec2 {
-    const Index dof = model.dof(rod_.nodes[to_size(node)], 0);
-    return state.positions.segment<2>(dof) - model.initial_positions.segment<2>(dof);
-  };
-  const Vec2 first = displacement(edge);
-  const Vec2 change = displacement(edge + 1) - first;
+  const Vec2 first = node_displacement(rod_, edge, model, state);
+  const Vec2 change = node_displacement(rod_, edge + 1, model, state) - first;
   // Integrals from `a` to `b` of the displacement, and of its product with the shape function of
   // the edge's end.
   const auto all = [&](double a, double b) -> Vec2 {

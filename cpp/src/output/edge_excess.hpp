@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "der/core/types.hpp"
-#include "der/model/location.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 #include "output/spread_forces.hpp"

@@ -1,8 +1,11 @@
-"""Strain and tension beside the forces that make them jump, against statics by hand."""
+"""Strain and tension beside the loads that give them jumps and kinks, against statics by hand."""
+
+from itertools import pairwise
 
 import der
 import numpy as np
 import pytest
+from scenes import Scene, straight, tip_force
 
 SCENE = """
 title: Axial forces
@@ -75,6 +78,101 @@ def test_tension_of_a_bent_rod_is_of_order_2_beside_a_jump(fitted_order):
     for name in ("before", "after", "near", "least", "greatest"):
         exact = (4.0 * fine[name] - coarse[name]) / 3.0
         assert fitted_order(sizes, [values[name] - exact for values in found]) > 1.9, name
+
+
+def line_load(kind: str, amount: list[float], start: float, end: float) -> Scene:
+    """A load along a part of the rod; `kind` names its key of `amount`."""
+    load = {"distributed_force": "force", "foundation": "stiffness"}[kind]
+    return {kind: {"rod": "rod", load: amount, "from": start, "to": end}}
+
+
+# Parts that begin and end in the outer half of an edge: outermost edges, inner ones, beside a node.
+PARTS = [
+    [(0.004, 1.0)],
+    [(0.0, 0.996)],
+    [(0.01, 0.02)],
+    [(0.981, 0.992)],
+    [(0.003, 0.021), (0.011, 0.995), (0.015, 1.0)],
+    [(0.13, 0.14), (0.19, 0.206), (0.0, 0.163)],
+]
+
+
+@pytest.mark.parametrize("edges", [1, 2, 3, 10, 23])
+@pytest.mark.parametrize("parts", PARTS)
+@pytest.mark.parametrize("held", ["start", "end"])
+def test_distributed_forces_that_begin_and_end_anywhere(held, parts, edges):
+    """Tension is the force between a place and the free end: exact on every mesh."""
+    forces = [100.0 * (-0.6) ** i for i in range(len(parts))]
+    scene = straight(edges, "free-free", 1e4)
+    scene["rods"][0]["cross_section"]["stiffness"]["EI"] = 100.0  # does not buckle
+    scene["supports"] = [{"rod": "rod", "at": held, "clamp": True}]
+    scene["loads"] = [
+        line_load("distributed_force", [q, 0.0], *part)
+        for q, part in zip(forces, parts, strict=True)
+    ]
+    result = der.run(scene)
+    for quantity, stiffness in {"tension": 1.0, "strain": 1e4}.items():
+        places, found = result.along("rod", quantity)
+        expected = np.zeros(len(places))
+        for q, (a, b) in zip(forces, parts, strict=True):
+            beyond = b - np.clip(places, a, b)
+            expected += q * (beyond if held == "start" else beyond - (b - a))
+        assert stiffness * found[-1] == pytest.approx(expected, abs=1e-6)
+
+
+def pulled_bar(places: np.ndarray, parts: list[tuple[float, float, float]]) -> np.ndarray:
+    """Tension of a free bar on springs (stiffness, from, to) that 1 N pulls at its end, EA = 100.
+
+    (u, N)' = (N/EA, k u), with k constant between the borders of the parts.
+    """
+    EA = 100.0
+    stops = np.unique([0.0, 1.0, *places, *(s for part in parts for s in part[1:])])
+    transfers = {0.0: np.eye(2)}
+    for before, s in pairwise(stops):
+        k = sum(stiffness for stiffness, a, b in parts if a <= before < b)
+        r, h = np.sqrt(k / EA), s - before
+        step = (
+            [[np.cosh(r * h), np.sinh(r * h) / (EA * r)], [EA * r * np.sinh(r * h), np.cosh(r * h)]]
+            if k
+            else [[1.0, h / EA], [0.0, 1.0]]
+        )
+        transfers[s] = step @ transfers[before]
+    start = 1.0 / transfers[1.0][1, 0]
+    return np.array([start * transfers[s][1, 0] for s in places])
+
+
+@pytest.mark.parametrize("border", [0.1, 0.25, 0.45])
+def test_foundations_that_begin_and_end_within_the_outermost_edges(fitted_order, border):
+    """Borders at the same part of the edge on every mesh: u'' = k u/EA by hand on each of them."""
+    sizes = [1 / n for n in (20, 40, 80)]
+    errors = []
+    for h in sizes:
+        parts = [
+            (500.0, border * h, 1.0),
+            (300.0, 0.0, 1.0 - border * h),
+            (900.0, 1.0 - 0.3 * h, 1.0 - 0.05 * h),
+        ]
+        scene = straight(round(1 / h), "free-free", 100.0)
+        scene["loads"] = [line_load("foundation", [k, k], a, b) for k, a, b in parts]
+        scene["loads"] += tip_force(1e-3, 0.0)
+        places, tension = der.run(scene).along("rod", "tension")
+        errors.append(np.abs(1e3 * tension[-1] - pulled_bar(places, parts)).max())
+    # Lines through two middles are continued by half an edge at most: N'' 1/2 h/2 3h/2.
+    assert errors[-1] < 3 / 8 * sizes[-1] ** 2 * sum(k for k, _, _ in parts) / 100.0
+    assert fitted_order(sizes, errors) > 1.9
+
+
+@pytest.mark.parametrize("border", [0.1, 0.25, 0.45])
+def test_a_free_end_of_a_bent_rod_beyond_its_distributed_force(fitted_order, border):
+    """Nothing acts beyond the force, which ends before the middle of the last edge: no tension."""
+    sizes = [1 / n for n in (20, 40, 80)]
+    errors = []
+    for h in sizes:
+        scene = straight(round(1 / h), "clamped-free", 1e3)
+        scene["loads"] = [line_load("distributed_force", [30.0, -20.0], 0.0, 1.0 - border * h)]
+        places, tension = der.run(scene).along("rod", "tension")
+        errors.append(np.abs(tension[-1][places >= 1.0 - border * h - 1e-9]).max())
+    assert fitted_order(sizes, errors) > 1.9
 
 
 def test_extreme_of_a_position_within_the_outermost_edge():

@@ -1,7 +1,7 @@
-#include <algorithm>
-
+#include "der/core/index.hpp"
 #include "der/loads/dead_force.hpp"
 #include "der/loads/loads.hpp"
+#include "der/model/location.hpp"
 
 namespace der {
 
@@ -10,15 +10,10 @@ void add_load(const scenario::DistributedForce& load, const scenario::Scene& /*s
               Model& model) {
   RodLayout& rod = model.rod(load.rod);
   const DeadForce force(load.force, model);
-  for (std::size_t i = 0; i + 1 < rod.nodes.size(); ++i) {
-    const double s0 = rod.arc_length[i];
-    const double s1 = rod.arc_length[i + 1];
-    const double a = std::max(load.from, s0);
-    const double b = std::min(load.to, s1);
-    if (a >= b) continue;
-    const double right = DistributedPlace::share_of_end(a, b, s0, s1);
-    force.act_on(rod.nodes[i], (b - a) - right, model);
-    force.act_on(rod.nodes[i + 1], right, model);
+  for (const EdgePart& part : edge_parts(rod, load.from, load.to)) {
+    const double at_last = length_at_last_end(part, rod);
+    force.act_on(rod.nodes[to_size(part.edge)], (part.to - part.from) - at_last, model);
+    force.act_on(rod.nodes[to_size(part.edge + 1)], at_last, model);
   }
   rod.distributed_places.push_back({load.from, load.to, force.as_controls(model)});
 }

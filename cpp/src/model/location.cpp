@@ -21,6 +21,32 @@ bool is_node(const RodLayout& rod, Index i, double s) {
 
 }  // namespace
 
+std::vector<EdgePart> edge_parts(const RodLayout& rod, double from, double to) {
+  std::vector<EdgePart> parts;
+  for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+    const double a = std::max(from, rod.arc_length[to_size(edge)]);
+    const double b = std::min(to, rod.arc_length[to_size(edge + 1)]);
+    if (a < b) parts.push_back({edge, a, b});
+  }
+  return parts;
+}
+
+bool is_cut(const EdgePart& part, const RodLayout& rod) {
+  const double s0 = rod.arc_length[to_size(part.edge)];
+  const double s1 = rod.arc_length[to_size(part.edge + 1)];
+  return part.to - part.from < (s1 - s0) - rod.same_place();
+}
+
+double length_at_last_end(const EdgePart& part, const RodLayout& rod) {
+  const double s0 = rod.arc_length[to_size(part.edge)];
+  const double s1 = rod.arc_length[to_size(part.edge + 1)];
+  return (part.to - part.from) * (0.5 * (part.from + part.to) - s0) / (s1 - s0);
+}
+
+double beyond_outer_middle(const RodLayout& rod, double s) {
+  return std::max({0.0, rod.edge_middle(0) - s, s - rod.edge_middle(rod.num_edges() - 1)});
+}
+
 double arc_length_of(const scenario::Location& location, const RodLayout& rod) {
   using Kind = scenario::Location::Kind;
   switch (location.kind) {
@@ -82,21 +108,19 @@ std::vector<Weighted> node_weights(const RodLayout& rod, double s) {
 }
 
 std::vector<Weighted> edge_weights(const RodLayout& rod, double s) {
-  const auto& arc = rod.arc_length;
-  const auto edges = static_cast<Index>(arc.size()) - 1;
-  const auto midpoint = [&](Index edge) {
-    return 0.5 * (arc[to_size(edge)] + arc[to_size(edge + 1)]);
-  };
+  const Index edges = rod.num_edges();
   const auto beyond = [&](double distance, Index last, Index before) -> std::vector<Weighted> {
     if (edges == 1) return {{last, 1.0}};
     const double share = kEndShare * distance / (0.5 * rod.edge_length[to_size(last)]);
     return {{last, 1.0 + share}, {before, -share}};
   };
-  if (s <= midpoint(0)) return beyond(midpoint(0) - s, 0, 1);
-  if (s >= midpoint(edges - 1)) return beyond(s - midpoint(edges - 1), edges - 1, edges - 2);
+  if (s <= rod.edge_middle(0)) return beyond(rod.edge_middle(0) - s, 0, 1);
+  if (s >= rod.edge_middle(edges - 1))
+    return beyond(s - rod.edge_middle(edges - 1), edges - 1, edges - 2);
   Index right = 1;
-  while (midpoint(right) < s) ++right;
-  const double share = (s - midpoint(right - 1)) / (midpoint(right) - midpoint(right - 1));
+  while (rod.edge_middle(right) < s) ++right;
+  const double share =
+      (s - rod.edge_middle(right - 1)) / (rod.edge_middle(right) - rod.edge_middle(right - 1));
   return {{right - 1, 1.0 - share}, {right, share}};
 }
 

@@ -10,6 +10,11 @@
 
 namespace der {
 
+double RodLayout::edge_middle(Index edge) const {
+  const auto i = static_cast<std::size_t>(edge);
+  return 0.5 * (arc_length[i] + arc_length[i + 1]);
+}
+
 double RodLayout::voronoi_length(Index node) const {
   const auto i = static_cast<std::size_t>(node);
   const double before = node > 0 ? edge_length[i - 1] : 0.0;

@@ -11,19 +11,10 @@
 namespace der {
 namespace {
 
-double middle(const RodLayout& rod, Index edge) {
-  return 0.5 * (rod.arc_length[to_size(edge)] + rod.arc_length[to_size(edge + 1)]);
-}
-
-/// Distance [m] from the middle of the outermost edge to a place beyond it; 0 for places inside.
-double beyond_middle(const RodLayout& rod, double s) {
-  return std::max({0.0, middle(rod, 0) - s, s - middle(rod, rod.num_edges() - 1)});
-}
-
 double cell_length(const RodLayout& rod, const MomentPlace& place) {
-  const double beyond = beyond_middle(rod, place.arc_length);
+  const double beyond = beyond_outer_middle(rod, place.arc_length);
   if (place.weights.size() == 1) return 2.0 / 3.0 * beyond;
-  const double spacing = middle(rod, place.first_edge + 1) - middle(rod, place.first_edge);
+  const double spacing = rod.edge_middle(place.first_edge + 1) - rod.edge_middle(place.first_edge);
   if (beyond == 0.0) return place.weights[0] * place.weights[1] * spacing;
   const double share = -std::min(place.weights[0], place.weights[1]);
   return beyond - share * (2.0 + share) * spacing;

@@ -24,10 +24,6 @@ Vec2 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
   return drawn_node(rod, edge + 1, model) - drawn_node(rod, edge, model);
 }
 
-double middle(const RodLayout& rod, Index edge) {
-  return 0.5 * (rod.arc_length[to_size(edge)] + rod.arc_length[to_size(edge + 1)]);
-}
-
 template <int Nodes>
 void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s,
                       const std::vector<Weighted>& weights, Model& model) {
@@ -46,11 +42,6 @@ void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s,
   rod.force_places.push_back({s, {-1, -1}, constants.stiffness, constants.anchor});
 }
 
-/// Distance [m] from the middle of the outermost edge to a place beyond it; 0 for places inside.
-double beyond_middle(const RodLayout& rod, double s) {
-  return std::max({0.0, middle(rod, 0) - s, s - middle(rod, rod.num_edges() - 1)});
-}
-
 /// Turn [rad] of the weighted directions, from the initial direction of the first edge, at which
 /// the tangent has the direction of the drawn shape and no moment acts.
 double rest_turn(const RodLayout& rod, const MomentPlace& place, const Model& model) {
@@ -63,12 +54,12 @@ double rest_turn(const RodLayout& rod, const MomentPlace& place, const Model& mo
 
   // The drawn tangent, and what the natural curvature makes of the cell. The nodes lie on the drawn
   // curve, but beside the free one, but for the end (supports/clamp.hpp).
-  const double first_middle = middle(rod, place.first_edge);
-  const double spacing = single ? 1.0 : middle(rod, place.first_edge + 1) - first_middle;
+  const double first_middle = rod.edge_middle(place.first_edge);
+  const double spacing = single ? 1.0 : rod.edge_middle(place.first_edge + 1) - first_middle;
   const double tangent = (s - first_middle) / spacing * bend;
-  const double beyond = beyond_middle(rod, s);
+  const double beyond = beyond_outer_middle(rod, s);
   if (beyond == 0.0) return tangent;
-  const bool start = s < middle(rod, 0);
+  const bool start = s < rod.edge_middle(0);
   const Index end = start ? 0 : rod.num_edges();
   const double outer = rod.edge_length[to_size(start ? 0 : rod.num_edges() - 1)];
   const double share = single ? 0.0 : -std::min(place.weights[0], place.weights[1]);

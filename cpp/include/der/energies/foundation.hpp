@@ -18,7 +18,6 @@ struct Foundation {
     Vec2 stiffness = Vec2::Zero();                      ///< [N/m^2] along x and y
     Eigen::Vector4d drawn = Eigen::Vector4d::Zero();    ///< positions without force [m]
     Eigen::Matrix2d lengths = Eigen::Matrix2d::Zero();  ///< L, symmetric [m]
-    double start = 0.0, end = 1.0;                      ///< the part, as shares of the edge
   };
 
   /// Stiffness [N/m] against moving the edge along an axis; 0: the foundation does not hold it

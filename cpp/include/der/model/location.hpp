@@ -14,6 +14,23 @@ struct Weighted {
   double weight = 0.0;
 };
 
+/// The part of an edge from one rest arc length [m] to another.
+struct EdgePart {
+  Index edge = 0;
+  double from = 0.0, to = 0.0;
+};
+
+/// The parts of a rod's edges that lie between two rest arc lengths [m].
+std::vector<EdgePart> edge_parts(const RodLayout& rod, double from, double to);
+/// Whether the part is less than its edge.
+bool is_cut(const EdgePart& part, const RodLayout& rod);
+/// What the last end of the edge takes of a uniform load on the part, as a length [m]: the integral
+/// of (s - s0)/(s1 - s0) over it, the consistent load of linear interpolation.
+double length_at_last_end(const EdgePart& part, const RodLayout& rod);
+
+/// Distance [m] from the middle of the outermost edge to a place beyond it; 0 for places inside.
+double beyond_outer_middle(const RodLayout& rod, double s);
+
 /// Rest arc length [m] that a location names (not for Kind::All).
 double arc_length_of(const scenario::Location& location, const RodLayout& rod);
 

@@ -62,12 +62,12 @@ struct ForcePlace {
 struct DistributedPlace {
   double from = 0.0, to = 0.0;         ///< rest arc length [m]
   std::array<Index, 2> force{-1, -1};  ///< controls of the load [N/m]
+};
 
-  /// Consistent load of the linear interpolation along an edge from s0 to s1: what its end s1 takes
-  /// of its part from `a` to `b`, as a length [m], the integral of (s - s0)/(s1 - s0).
-  static double share_of_end(double a, double b, double s0, double s1) {
-    return (b - a) * (0.5 * (a + b) - s0) / (s1 - s0);
-  }
+/// A part of a rod under which there is an elastic foundation.
+struct FoundationPlace {
+  double from = 0.0, to = 0.0;    ///< rest arc length [m]
+  Vec2 stiffness = Vec2::Zero();  ///< [N/m^2] along x and y
 };
 
 /// Where the nodes and edges of one rod are in the model, and what is known of it for probes and
@@ -90,6 +90,7 @@ struct RodLayout {
   std::vector<MomentPlace> moment_places;  ///< no two at the same place
   std::vector<ForcePlace> force_places;    ///< of forces at single places
   std::vector<DistributedPlace> distributed_places;
+  std::vector<FoundationPlace> foundation_places;
   double draw_radius = 0.0;           ///< half the height of the section [m]; 0 if not known
   std::vector<double> sphere_radius;  ///< per node [m]; 0: no sphere
 
@@ -97,6 +98,8 @@ struct RodLayout {
   /// Two arc lengths [m] closer than this are the same place.
   [[nodiscard]] double same_place() const { return 1e-9 * rest_length(); }
   [[nodiscard]] Index num_edges() const { return static_cast<Index>(nodes.size()) - 1; }
+  /// Rest arc length [m] of the middle of an edge.
+  [[nodiscard]] double edge_middle(Index edge) const;
   /// Voronoi length [m]: the rod's part that is nearer to this node than to another.
   [[nodiscard]] double voronoi_length(Index node) const;
   [[nodiscard]] Edge edge(Index number, const Model& model) const;

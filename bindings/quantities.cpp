@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "der/catalog/run_status.hpp"
 #include "der/output/datasets.hpp"
 #include "der/output/run_arrays.hpp"
 
@@ -62,6 +63,8 @@ void bind_quantities(py::module_& module) {
   module.def("quantities", [] { return quantities(); }, "Every quantity that probes record.");
   module.def("array_units", &array_units,
              "SI unit of every array of a run file, by its name: `positions`, `energies/bend`.");
+  module.def("ended_as_asked", &run_status::ended_as_asked, py::arg("status"),
+             "Return whether a run of that status is finished, or was stopped by its caller.");
   module.def("path_events", &path_events,
              "Names of the numbers in the array `path/event` of a run file.");
 }

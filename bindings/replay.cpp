@@ -5,12 +5,15 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "der/core/index.hpp"
 #include "der/model/location.hpp"
+#include "der/scenario/load.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/supports/clamp.hpp"
 
@@ -55,6 +58,21 @@ std::vector<HeldNode> held_nodes(Replay& replay, std::size_t frame) {
     }
   }
   return result;
+}
+
+/// The arc lengths [m] of a load: its places, or the two ends of its part; none without a place.
+std::vector<double> load_arc_lengths(const Replay& replay, std::size_t number) {
+  const auto arc_lengths = [&](const auto& load) -> std::vector<double> {
+    using Kind = std::decay_t<decltype(load)>;
+    if constexpr (std::is_base_of_v<scenario::AtPlace, Kind>) {
+      return arc_lengths_of(load.at, replay.model().rod(load.rod));
+    } else if constexpr (std::is_base_of_v<scenario::OnPart, Kind>) {
+      return {load.from, load.to};
+    } else {
+      return {};
+    }
+  };
+  return std::visit(arc_lengths, replay.scenario().scene().loads.at(number).what);
 }
 
 std::vector<HeldNode> held_nodes_at(const Scenario& scenario, double time) {
@@ -128,7 +146,12 @@ void bind_replay(py::module_& module) {
            "ValueError for another\nshape.")
       .def("held_nodes", &held_nodes, py::arg("frame"),
            "Return every node that a support of the scene holds, with the angle of clamps at a "
-           "frame.\n\nRaises DerError if there is no such frame.");
+           "frame.\n\nRaises DerError if there is no such frame.")
+      .def(
+          "load_arc_lengths", &load_arc_lengths, py::arg("number"),
+          "Return the arc lengths [m] of a load of the scene, counted from 0: those of its places, "
+          "or\nthe two ends of its part; none for a load without a place.\n\nRaises IndexError if "
+          "there is no such load.");
 }
 
 }  // namespace der::python

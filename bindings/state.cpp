@@ -150,7 +150,7 @@ void bind_energies(py::module_& module) {
   }
   energies
       .def_property_readonly("elastic", &Energies::elastic,
-                             "Energy stored in rods and spring supports [J].")
+                             "Energy stored in rods, springs and foundations [J].")
       .def_property_readonly("total", &Energies::total, "The sum of all [J].")
       .def("__repr__", [](const Energies& e) {
         std::string terms;

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from der._core import ended_as_asked
 from der.fields import FIELDS, is_motion, rod_fields
 from der.run_data import RunData
 from der.scene_loads import ActingLoads, acting_loads
@@ -71,7 +72,7 @@ def failure_text(result: RunData) -> str:
 
     A run that did not fail may still be unreliable: ``unreliable from t = 1.2 s on``.
     """
-    if result.status in ("completed", "static_converged", "stopped"):
+    if ended_as_asked(result.status):
         since = result.unreliable_from
         return "" if since is None else f"unreliable from t = {since:.4g} s on"
     words = result.status.replace("_", " ")
@@ -155,7 +156,7 @@ def _equilibrium(result: RunData) -> Film:
         for name, rods in _fields(result, np.array([last])).items()
     }
     chapter = Chapter(result.scenario.title, 0, 1)
-    found = "equilibrium" if result.status == "static_converged" else result.status
+    found = "equilibrium" if ended_as_asked(result.status) else result.status
     captions = ["undeformed", found]
     return Film(positions, captions, [chapter], None, np.array([last, last]), fields)
 

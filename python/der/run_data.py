@@ -151,3 +151,11 @@ class RunData:
         there is no such frame.
         """
         return self._replay.held_nodes(frame)
+
+    def load_arc_lengths(self, number: int) -> list[float]:
+        """Return the arc lengths [m] of a load of the scene, counted from 0.
+
+        They are those of its places, or the two ends of its part; a load without a place has none.
+        Raises `IndexError` if there is no such load.
+        """
+        return self._replay.load_arc_lengths(number)

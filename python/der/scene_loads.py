@@ -73,22 +73,31 @@ def acting_loads(result: RunData, frame: int) -> ActingLoads:
     Along a continuation those that its factor varies are scaled by it. Forces from Python are not
     known to the scene and not among them.
     """
-    found = _Collected({rod.name: rod for rod in result.rods}, float(result.times[frame]))
+    found = _Collected(float(result.times[frame]))
     for number, load in enumerate(result.scenario.to_dict().get("loads") or []):
         ((kind, content),) = load.items()
         collect = _COLLECTORS[kind]
         if collect is not None:
-            collect(found, content, _factor(result, frame, number))
+            arc_lengths = result.load_arc_lengths(number)
+            collect(found, _SceneLoad(content, _factor(result, frame, number), arc_lengths))
     total = np.sum(found.gravity, axis=0) if found.gravity else np.zeros(2)
     gravity = total if total.any() else None
     return ActingLoads(found.forces, found.moments, found.lines, gravity, found.foundations)
 
 
+@dataclass(frozen=True)
+class _SceneLoad:
+    """A load as the scene has it, its factor, and its places [m], or the ends of its part."""
+
+    content: Any
+    factor: float
+    arc_lengths: list[float]
+
+
 class _Collected:
     """The loads that act at a time [s]."""
 
-    def __init__(self, rods: dict[str, Rod], time: float) -> None:
-        self._rods = rods
+    def __init__(self, time: float) -> None:
         self._time = time
         self.forces: list[PointLoad] = []
         self.moments: list[PointLoad] = []
@@ -96,36 +105,37 @@ class _Collected:
         self.gravity: list[Array] = []
         self.foundations: list[FoundationPart] = []
 
-    def add_gravity(self, acceleration: Any, factor: float) -> None:
-        self.gravity.append(factor * value_at(acceleration, self._time))
+    def add_gravity(self, load: _SceneLoad) -> None:
+        self.gravity.append(load.factor * value_at(load.content, self._time))
 
-    def add_force(self, load: dict[str, Any], factor: float) -> None:
-        self.forces += self._at_places(load, factor * value_at(load["force"], self._time))
+    def add_force(self, load: _SceneLoad) -> None:
+        self.forces += self._at_places(load, "force")
 
-    def add_moment(self, load: dict[str, Any], factor: float) -> None:
-        self.moments += self._at_places(load, factor * value_at(load["moment"], self._time))
+    def add_moment(self, load: _SceneLoad) -> None:
+        self.moments += self._at_places(load, "moment")
 
-    def add_line(self, load: dict[str, Any], factor: float) -> None:
-        value = factor * value_at(load["force"], self._time)
+    def add_line(self, load: _SceneLoad) -> None:
+        value = self._value(load, "force")
         if np.any(value):
-            self.lines.append(LineLoad(load["rod"], *self._part(load), value))
+            start, end = load.arc_lengths
+            self.lines.append(LineLoad(load.content["rod"], start, end, value))
 
-    def add_foundation(self, load: dict[str, Any], _factor: float) -> None:
-        stiffness = np.broadcast_to(np.asarray(load["stiffness"], dtype=np.float64), (2,))
-        self.foundations.append(FoundationPart(load["rod"], *self._part(load), stiffness))
+    def add_foundation(self, load: _SceneLoad) -> None:
+        start, end = load.arc_lengths
+        stiffness = np.broadcast_to(np.asarray(load.content["stiffness"], dtype=np.float64), (2,))
+        self.foundations.append(FoundationPart(load.content["rod"], start, end, stiffness))
 
-    def _part(self, load: dict[str, Any]) -> tuple[float, float]:
-        length = self._rods[load["rod"]].length
-        return float(load.get("from", 0.0)), float(load.get("to", length))
+    def _at_places(self, load: _SceneLoad, amount: str) -> list[PointLoad]:
+        value = self._value(load, amount)
+        places = load.arc_lengths if np.any(value) else []
+        return [PointLoad(load.content["rod"], at, value) for at in places]
 
-    def _at_places(self, load: dict[str, Any], value: Array) -> list[PointLoad]:
-        rod = self._rods[load["rod"]]
-        places = arc_lengths_of(load["at"], rod) if np.any(value) else []
-        return [PointLoad(rod.name, at, value) for at in places]
+    def _value(self, load: _SceneLoad, amount: str) -> Array:
+        return np.asarray(load.factor * value_at(load.content[amount], self._time))
 
 
 #: Every kind of load with the function that collects it for a drawing; None: it has no symbol.
-_COLLECTORS: dict[str, Callable[[_Collected, Any, float], None] | None] = {
+_COLLECTORS: dict[str, Callable[[_Collected, _SceneLoad], None] | None] = {
     "gravity": _Collected.add_gravity,
     "fluid": None,
     "damping": None,
@@ -155,16 +165,6 @@ def value_at(series: Any, time: float) -> Array:
     columns = values.reshape(len(values), -1).T
     found = np.array([table_value(series["times"], column, time) for column in columns])
     return found.reshape(values.shape[1:])
-
-
-def arc_lengths_of(at: Any, rod: Rod) -> list[float]:
-    """Return the arc lengths [m] that an ``at`` of a scene file names; several for ``all``."""
-    if isinstance(at, Mapping):
-        return [float(rod.arc_lengths[at["node"]])]
-    if at == "all":
-        return [float(s) for s in rod.arc_lengths]
-    places = {"start": 0.0, "middle": 0.5 * rod.length, "end": rod.length}
-    return [float(places.get(at, at)) if isinstance(at, str) else float(at)]
 
 
 def place_on(rod: Rod, positions: Array, at: float) -> Array:

@@ -1,7 +1,7 @@
 """Every kind of load of the schema, on its sample in tests/load_samples.yaml.
 
-What the package does with loads of all kinds has to reach a new one too: the warning of fine
-tables, the drawings, the refinement of meshes, the scene reference. A kind without a sample fails.
+A new kind must have all that the package does for the others: the warning of fine tables, the
+drawings, the refinement of meshes, the scene reference. A kind without a sample fails.
 """
 
 import json
@@ -69,6 +69,29 @@ def test_is_drawn_unless_it_has_no_symbol(kind):
     assert drawn == any((line.get_gid() or "").startswith("load") for line in axes.lines)
     view = make_payload(result)
     assert drawn == (bool(view["loads"][view["load_set"][-1]]) or "gravity" in view["note"])
+
+
+@pytest.mark.parametrize(
+    ("at", "arc_lengths"),
+    [
+        ("start", [0.0]),
+        ("middle", [0.6]),
+        ("end", [1.2]),
+        ({"node": -2}, [0.9]),
+        (0.7, [0.7]),
+        ("all", [0.0, 0.3, 0.6, 0.9, 1.2]),
+    ],
+)
+def test_loads_are_drawn_where_they_act(at, arc_lengths):
+    """On a rod of 1.2 m with four elements."""
+    rod = {**SAMPLES["rods"][0], "from": [0, 0], "to": [1.2, 0], "nodes": 5}
+    del rod["points"]
+    force = {"point_force": {"rod": "rod", "at": at, "force": [1, 0]}}
+    part = {"distributed_force": {"rod": "rod", "from": 0.2, "force": [1, 0]}}
+    scene = {**SAMPLES, "rods": [rod], "supports": [], "loads": [force, part]}
+    acting = acting_loads(der.run(scene), 0)
+    assert [load.at for load in acting.forces] == pytest.approx(arc_lengths)
+    assert [(load.start, load.end) for load in acting.lines] == [(0.2, pytest.approx(1.2))]
 
 
 def test_view_draws_every_symbol():

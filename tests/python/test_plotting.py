@@ -1,11 +1,13 @@
 """Pictures: that what is drawn is what was computed, to scale and with its units."""
 
+import dataclasses
 from types import SimpleNamespace
 
 import der
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
+from der.film import failure_text
 from der.plotting import PALETTE, pick_frames, style, time_colours
 from der.plotting.lengths import LengthScale
 from der.plotting.shapes import outline
@@ -359,6 +361,22 @@ def test_pictures_say_that_a_run_failed(unstable):
     title = result.plot("shapes").axes[0].get_title(loc="left")
     assert title == f"Three spheres in a fluid (diverged at t = {result.times[-1]:g} s)"
     assert result.plot(title="Mine").axes[0].get_title(loc="left") == "Mine"
+
+
+@pytest.mark.parametrize(
+    ("status", "text"),
+    [
+        ("completed", ""),
+        ("static_converged", ""),
+        ("stopped", ""),
+        ("running", "running at t = 1 s"),
+        ("not_converged", "not converged at t = 1 s"),
+    ],
+)
+def test_titles_tell_how_a_run_failed(result, status, text):
+    """A run that was stopped as its caller asked did not fail; one that was killed is not over."""
+    assert result.times[-1] == 1.0
+    assert failure_text(dataclasses.replace(result, summary={"status": status})) == text
 
 
 def test_no_probes_to_plot(spheres):

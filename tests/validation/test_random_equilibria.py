@@ -1,6 +1,6 @@
 """Two hundred random scenes: each ends in a stable equilibrium, or in a failure with a name.
 
-What is found is judged here again: the gradient, and the eigenvalues of the dense Hessian.
+Each equilibrium is judged here again, by its gradient and the eigenvalues of the dense Hessian.
 """
 
 import der

@@ -15,6 +15,7 @@
 #include "der/app/progress.hpp"
 #include "der/app/report.hpp"
 #include "der/app/terminal.hpp"
+#include "der/catalog/run_status.hpp"
 #include "der/core/error.hpp"
 #include "der/core/printable.hpp"
 #include "der/output/io_error.hpp"
@@ -78,7 +79,7 @@ ExitCode run_scene(const Options& options, Simulation& simulation) {
 /// True if the run is at its end already, which is said.
 bool is_finished(const Options& options, const Scenario& scenario) {
   const RunFileHead head = check_resumable(RunFolder(options.out), scenario);
-  if (head.status != "completed" && head.status != "static_converged") return false;
+  if (!run_status::is_finished(head.status)) return false;
   if (!options.quiet) {
     print("the run in '" + printable(options.out.string()) + "' is finished already (" +
           head.status + "): nothing to resume\n");

@@ -68,6 +68,11 @@ double arc_length_of(const scenario::Location& location, const RodLayout& rod) {
   throw Error("model_error", "rod '" + rod.name + "': 'all' does not name one place");
 }
 
+std::vector<double> arc_lengths_of(const scenario::Location& location, const RodLayout& rod) {
+  if (location.kind == scenario::Location::Kind::All) return rod.arc_length;
+  return {arc_length_of(location, rod)};
+}
+
 Index node_at(const scenario::Location& location, const RodLayout& rod) {
   const double s = arc_length_of(location, rod);
   const Index node = nearest_node(rod.arc_length, s);

@@ -1,5 +1,6 @@
 #include "der/output/run.hpp"
 
+#include "der/catalog/run_status.hpp"
 #include "der/core/error.hpp"
 #include "der/scenario/scenario.hpp"
 
@@ -13,10 +14,10 @@ std::string advance(Simulation& simulation, Recorder& recorder, const StepCallba
     recorder.observe(simulation);
     if (after_step && !after_step(simulation) && !simulation.finished()) {
       if (simulation.state().step >= EnergyWatch::kStride) simulation.audit_energy();
-      return "stopped";
+      return run_status::kStopped;
     }
   }
-  return "completed";
+  return run_status::kCompleted;
 }
 
 /// Does one kind of analysis, puts its results into the outcome and its shapes into the recorder.
@@ -33,18 +34,18 @@ struct Analyse {
   std::string operator()(const scenario::StaticAnalysis& analysis) const {
     outcome.equilibrium = simulation.equilibrium(analysis.leave_saddles);
     recorder.observe(simulation);
-    return "static_converged";
+    return run_status::kStaticConverged;
   }
   std::string operator()(const scenario::ModesAnalysis& analysis) const {
     outcome.equilibrium = simulation.equilibrium();
     recorder.observe(simulation);
     outcome.modes = simulation.modes(analysis.count);
-    return "completed";
+    return run_status::kCompleted;
   }
   std::string operator()(const scenario::BucklingAnalysis& analysis) const {
     outcome.buckling = simulation.buckling(analysis.count);
     recorder.observe(simulation);
-    return "completed";
+    return run_status::kCompleted;
   }
   std::string operator()(const scenario::ContinuationAnalysis& /*analysis*/) const {
     outcome.path = simulation.follow();
@@ -57,7 +58,7 @@ struct Analyse {
         for (const ProbeSummary& probe : recorder.summaries()) probes.push_back(probe.final);
       }
     }
-    return "completed";
+    return run_status::kCompleted;
   }
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "der/catalog/run_status.hpp"
 #include "der/output/io_error.hpp"
 #include "der/output/pacer.hpp"
 #include "der/output/recorder.hpp"
@@ -125,7 +126,7 @@ void RunFile::Writer::go_on(Simulation& simulation, Recorder& recorder) {
   const auto checkpoint = checkpoints_.read();
   if (!checkpoint) throw IoError("it holds no checkpoint to resume from");
   truncate(frames_up_to(checkpoint->state.time, simulation.plan()));
-  set_status("running");
+  set_status(run_status::kRunning);
   recorder.restore(*checkpoint, simulation);
 }
 

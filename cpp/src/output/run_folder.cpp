@@ -7,6 +7,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "der/catalog/run_status.hpp"
 #include "der/output/io_error.hpp"
 #include "der/output/result_size.hpp"
 #include "der/output/summary.hpp"
@@ -18,10 +19,6 @@ namespace der {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool is_finished(const std::string& status) {
-  return status == "completed" || status == "static_converged";
-}
 
 /// The first line in which two texts differ, in words.
 std::string first_difference(const std::string& was, const std::string& is) {
@@ -149,12 +146,12 @@ RunFileHead resumable_head(const RunFolder& folder, const Scenario& scenario) {
                       ". Resume it with its own " + folder.scene().string() +
                       ", or run the new scene without --resume");
   }
-  if (is_finished(head.status)) return head;
+  if (run_status::is_finished(head.status)) return head;
   if (head.der_version != version) {
     throw ResumeError("the run was started by der " + head.der_version + " and this is " + version +
                       ", which need not give the same numbers; run it again without --resume");
   }
-  if (head.status != "running" && head.status != "stopped") {
+  if (head.status != run_status::kRunning && head.status != run_status::kStopped) {
     throw ResumeError("the run ended as '" + head.status + "' at t = " + std::to_string(head.time) +
                       " s and would do so again; change the scene and "
                       "run it without --resume");
@@ -191,7 +188,7 @@ RunOutcome resume_in_folder(const RunFolder& folder, Simulation& simulation, Rec
                             const StepCallback& after_step) {
   const RunLock lock(folder.path());
   // Another program may have gone on with it since it was looked at.
-  if (is_finished(resumable_head(folder, simulation.scenario()).status)) {
+  if (run_status::is_finished(resumable_head(folder, simulation.scenario()).status)) {
     throw ResumeError("the run in '" + folder.path().string() + "' is finished already");
   }
   const auto file = RunFile::resume(folder.results(), simulation, recorder);

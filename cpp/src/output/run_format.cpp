@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "der/catalog/run_status.hpp"
 #include "der/output/run_arrays.hpp"
 #include "der/version.hpp"
 
@@ -95,7 +96,7 @@ void write_head(hid_t file, const Scenario& scenario, const Model& model) {
   const scenario::Scene& scene = scenario.scene();
   hdf5::write_attribute(file, "format_version", kFormatVersion);
   hdf5::write_attribute(file, "der_version", std::string(version));
-  write_status(file, "running");
+  write_status(file, run_status::kRunning);
   hdf5::write_attribute(file, "title", scene.title);
   hdf5::write_attribute(file, "analysis", std::string(scene.analysis_name()));
   hdf5::write_attribute(file, "model", model.name);

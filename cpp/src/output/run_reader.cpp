@@ -1,6 +1,7 @@
 #include <optional>
 #include <utility>
 
+#include "der/catalog/run_status.hpp"
 #include "der/output/io_error.hpp"
 #include "der/output/saved_run.hpp"
 #include "output/checkpoint_store.hpp"
@@ -88,7 +89,7 @@ SavedRun read_run(hid_t file) {
   run.probe_units = probe_units(file, layout.probe_names);
   run.frames = columns.read(0, columns.size());
   // A run that goes on or was killed may have them in part.
-  if (run.status != "running") {
+  if (run.status != run_status::kRunning) {
     run.data = read_datasets(file, layout.nodes, layout.dimension, columns.size());
   }
   check_nodes(read_rods(file), layout.nodes);

@@ -28,7 +28,8 @@ bool read_varied(const std::string& text, ContinuationAnalysis& out) {
   out.vary = kind == "loads" ? Varied::Loads : Varied::Supports;
   if (dot == std::string::npos) return true;
   const std::string digits = text.substr(dot + 1);
-  if (digits.empty() || digits.size() > 6 ||
+  const bool leading_zero = digits.size() > 1 && digits.front() == '0';
+  if (digits.empty() || digits.size() > 6 || leading_zero ||
       digits.find_first_not_of("0123456789") != std::string::npos) {
     return false;
   }

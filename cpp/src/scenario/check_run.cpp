@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <type_traits>
 #include <variant>
+#include <vector>
 
 #include "der/catalog/quantities.hpp"
 #include "der/catalog/steppers.hpp"
@@ -188,6 +190,23 @@ class ProbeCheck {
   bool supports_known_;  // otherwise nobody knows which ends are clamped
 };
 
+bool has_amounts(const Load& load) {
+  return std::visit(
+      [](const auto& what) { return HasAmounts<std::decay_t<decltype(what)>>::value; }, load.what);
+}
+
+bool moves(const Support& support) {
+  return !support.prescribe.empty() || support.rotation.has_value();
+}
+
+/// The item that a path varies, "loads.0 (foundation)", or the scene if it varies all.
+std::string item_in_words(const Scene& scene, const ContinuationAnalysis& path) {
+  if (!path.number) return "the scene";
+  if (path.vary == Varied::Supports) return fmt::format("supports.{}", *path.number);
+  const Load& load = scene.loads[static_cast<std::size_t>(*path.number)];
+  return fmt::format("loads.{} ({})", *path.number, load_kinds()[load.what.index()]);
+}
+
 /// Whether what a continuation varies is there.
 void check_continuation(CheckContext& context) {
   const auto* continuation = std::get_if<ContinuationAnalysis>(&context.scene.analysis);
@@ -204,27 +223,18 @@ void check_continuation(CheckContext& context) {
                                         kind, *continuation->number, count));
     return;
   }
-  const auto has_amounts = [](const Load& load) {
-    return std::visit(
-        [](const auto& what) { return HasAmounts<std::decay_t<decltype(what)>>::value; },
-        load.what);
-  };
-  const auto moves = [](const Support& support) {
-    return !support.prescribe.empty() || support.rotation.has_value();
-  };
-  bool varies = false;
+  std::vector<std::string> others;
   for (std::size_t i = 0; i < count; ++i) {
-    const bool chosen =
-        !continuation->number || static_cast<std::size_t>(*continuation->number) == i;
-    varies = varies || (chosen && (loads ? has_amounts(context.scene.loads[i])
-                                         : moves(context.scene.supports[i])));
+    if (!(loads ? has_amounts(context.scene.loads[i]) : moves(context.scene.supports[i]))) continue;
+    if (!continuation->number || static_cast<std::size_t>(*continuation->number) == i) return;
+    others.push_back(fmt::format("{}.{}", kind, i));
   }
-  if (!varies) {
-    context.diagnostics.add(
-        path, loads
-                  ? "no such load could vary: add a force, a moment or gravity"
-                  : "no such support has a prescribed motion that could vary: give it 'prescribe'");
-  }
+  const std::string hint = !others.empty() ? fmt::format("write {}", fmt::join(others, " or "))
+                           : loads         ? "add a force, a moment or gravity"
+                                           : "give a support 'prescribe'";
+  context.diagnostics.add(path, fmt::format("{} has no {} that the load factor could scale: {}",
+                                            item_in_words(context.scene, *continuation),
+                                            loads ? "force or moment" : "prescribed motion", hint));
 }
 
 }  // namespace

@@ -75,7 +75,10 @@ std::vector<PathBranch> Simulation::follow() {
                 "the scene asks for no path of equilibria: write 'analysis: {continuation: {}}'");
   }
   if (!model_.load_variation->varies()) {
-    throw Error("model_error", "nothing varies along the path: what it follows is zero");
+    throw Error("model_error",
+                "nothing varies along the path: the forces, moments and motions that its load "
+                "factor scales are "
+                "all zero");
   }
   State before;
   Undo undo(state_, before);

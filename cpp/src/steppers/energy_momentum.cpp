@@ -1,5 +1,6 @@
 #include "der/assembly/discrete_gradient_assembler.hpp"
 #include "der/steppers/implicit_stage.hpp"
+#include "step_guess.hpp"
 #include "steppers.hpp"
 
 namespace der {
@@ -15,6 +16,7 @@ class EnergyMomentum final : public Stepper {
   EnergyMomentum(const Model& model, const Assembler& assembler, LinearSolver& solver,
                  const StepperOptions& options)
       : model_(model),
+        guess_(model),
         stage_(model, assembler, solver, options.newton),
         gradient_(model, assembler),
         positions_(model.num_dofs()),
@@ -31,7 +33,7 @@ class EnergyMomentum final : public Stepper {
     configuration_of(model_, state, gradient_.start);
     evaluate_controls(model_, state, state.time + dt, gradient_.end.controls);
 
-    positions_ = state.positions + dt * (state.velocities + half * state.accelerations);
+    guess_.evaluate(state, dt, positions_);
     stage_.apply_prescribed_motion_at(state, state.time + dt, positions_);
     stage_.here.coordinates = 0.5 * (state.positions + positions_);
     const StepReport report = stage_.solve(state, state.time + half);
@@ -47,6 +49,7 @@ class EnergyMomentum final : public Stepper {
 
  private:
   const Model& model_;
+  StepGuess guess_;
   ImplicitStage stage_;
   DiscreteGradientAssembler gradient_;
   Vector positions_;

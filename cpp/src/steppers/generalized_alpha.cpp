@@ -1,5 +1,6 @@
 #include "der/steppers/explicit_force.hpp"
 #include "der/steppers/implicit_stage.hpp"
+#include "step_guess.hpp"
 #include "steppers.hpp"
 
 namespace der {
@@ -34,6 +35,7 @@ class AlphaMethod final : public Stepper {
         alpha_f_(weights.positions),
         gamma_(0.5 - alpha_m_ + alpha_f_),
         beta_(0.25 * (1.0 - alpha_m_ + alpha_f_) * (1.0 - alpha_m_ + alpha_f_)),
+        guess_(model),
         stage_(model, assembler, solver, options),
         force_(model, assembler),
         positions_(model.num_dofs()),
@@ -60,7 +62,7 @@ class AlphaMethod final : public Stepper {
     equation.velocity_reference = kept * dt * (v + dt * (0.5 - beta_) * a) -
                                   (beta_ / gamma_) * dt * (v + kept * dt * (1.0 - gamma_) * a);
 
-    positions_ = q + dt * (v + 0.5 * dt * a);
+    guess_.evaluate(state, dt, positions_);
     stage_.apply_prescribed_motion_at(state, state.time + dt, positions_);
     stage_.here.coordinates = kept * positions_ + alpha_f_ * q;
     const StepReport report = stage_.solve(state, state.time + kept * dt);
@@ -81,6 +83,7 @@ class AlphaMethod final : public Stepper {
   double alpha_f_;
   double gamma_;
   double beta_;
+  StepGuess guess_;
   ImplicitStage stage_;
   ExplicitForce force_;
   Vector positions_;

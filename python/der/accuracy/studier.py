@@ -59,7 +59,7 @@ def study(
     The error of a probe is its largest difference to a reference over the frames that the scene
     saves, as far as the step of a configuration reaches them. The reference is extrapolated from
     finer meshes and smaller steps, and states its own error. The frequencies of modes and
-    the load factors of buckling are compared as well. Of a path of equilibria, the study compares
+    the load factors of buckling are compared as well. On a path of equilibria, the study compares
     the factor and the probes at folds and bifurcations, and the probes at the end.
 
     Parameters

@@ -4,6 +4,6 @@ Each module is named as its command, its docstring is the command's help (the fi
 ``der --help``), and it has
 
 - ``add_arguments(parser)``: adds the arguments to an ``argparse.ArgumentParser``,
-- ``execute(arguments) -> int``: does the work and returns the exit code. What it needs that takes
-  long to load it imports inside.
+- ``execute(arguments) -> int``: does the work and returns the exit code. It imports
+  inside it the modules that take long to load.
 """

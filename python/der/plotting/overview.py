@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from der._core import springs
+from der._core import ended_as_asked, springs
 from der.film import title_of
 from der.plotting.analyses import plot_modes, plot_path
 from der.plotting.lengths import label_positions
@@ -200,7 +200,7 @@ def _plot_static(result: RunData, what: What, names: list[str]) -> Figure:
         figure, panels = _figure(heights)
         axes = panels.pop(0)
         draw_shapes(axes, result.rods, shapes[0], MUTED, "undeformed", "--")
-        label = "equilibrium" if result.status == "static_converged" else "where it ended"
+        label = "equilibrium" if ended_as_asked(result.status) else "where it ended"
         _draw_shape_panel(axes, result, [equilibrium], [label], last)
     if panels:
         _write_values(panels[0], result, names)

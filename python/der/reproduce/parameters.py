@@ -19,8 +19,8 @@ def parameters_table() -> Table:
     """Return the parameters, a column for each problem, read from its scene."""
     trees = [Scenario.load(scene_file(name)).to_dict() for name in _SCENES]
     return Table(
-        caption="What was run. Problem 2 is shown for 21 nodes; with another number the small "
-        "spheres have a tenth of an edge for their radius. The explicit scheme takes steps of "
+        caption="Parameters of the runs. Problem 2 is shown for 21 nodes; with another number the "
+        "small spheres have a tenth of an edge for their radius. The explicit scheme takes steps of "
         "0.00001 s, and 0.0001 s where it blows up.",
         columns=["Parameter", "Unit", "Problem 1", "Problem 2", "Problem 3"],
         align=["left", "left", "right", "right", "right"],

@@ -28,7 +28,7 @@ def write_story(m: Measurements, rows: Sequence[Quantity]) -> Document:
     Parameters
     ----------
     m
-        What was measured.
+        The measured data.
     rows
         The comparison.
     """
@@ -262,8 +262,8 @@ def _many_nodes(m: Measurements) -> Section:
                 14,
                 "twenty_one_over_three",
                 figures.twenty_one_over_three,
-                "Velocity with 21 nodes over that with 3. What differs in the end is buoyancy, "
-                "hardly the number of nodes.",
+                "Velocity with 21 nodes over that with 3. The difference in the end comes from "
+                "buoyancy, hardly from the number of nodes.",
                 "Velocities over 50 s: 21 nodes with buoyancy end close to 3 nodes, without "
                 "buoyancy faster.",
             ),

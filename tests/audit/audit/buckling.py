@@ -63,6 +63,14 @@ def buckling(rng: Random) -> Case:
         force = (press * along).tolist()
         scene["loads"].append({"point_force": {"rod": "rod", "at": at, "force": force}})
 
+    if rng.random() < 0.3:
+        # Equal along both axes, as for springs; of the whole rod or of a part.
+        k = unit / L**2 * power(rng, 0, 3)
+        lo, hi = (0.0, L) if rng.random() < 0.5 else np.sort(rng.uniform(0, L, 2)).tolist()
+        rod.foundations.append((lo, hi, (k, k)))
+        part = {"rod": "rod", "from": lo, "to": hi, "stiffness": k}
+        scene["loads"].append({"foundation": part})
+
     def truths(_: dict[str, Any]) -> Mapping[Label, Truth]:
         rough, fine = (factors(rod, degree)[:count] for degree in (16, 22))
         if len(rough) != len(fine):

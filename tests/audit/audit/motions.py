@@ -18,6 +18,7 @@ STEPPERS = (
     "tr_bdf2",
     "implicit_midpoint",
     "generalized_alpha",
+    "newmark",
     "bdf2",
     "sdirk4",
     "sdirk5",
@@ -30,6 +31,7 @@ ENERGIES = (
     "elastic_energy",
     "bend_energy",
     "stretch_energy",
+    "spring_energy",
     "gravity_energy",
     "total_energy",
 )
@@ -89,6 +91,13 @@ def motion(rng: Random) -> Case:
         q = rng.uniform(-3, 3, 2)
         system.line = (float(q[0]), float(q[1]))
         loads.append({"distributed_force": {"rod": "rod", "force": (out @ q * F / L).tolist()}})
+    if hold != "spin" and rng.random() < 0.3:
+        k = 10.0 ** rng.uniform(0, 3, 2)
+        k[rng.random(2) < 0.2] = 0.0
+        if k.any():
+            system.foundation = out.T @ np.diag(k) @ out
+            stiffness = (k * F / L**2).tolist()
+            loads.append({"foundation": {"rod": "rod", "stiffness": stiffness}})
     if rng.random() < 0.5 or not (loads or rod.get("initial_velocity")):
         _force(rng, system, duration, loads, out, T, F)
     if hold != "spin" and rng.random() < 0.4:

@@ -36,7 +36,8 @@ class Motion:
     """A straight uniform rod along x, dimensionless, and what acts on it.
 
     ``hold`` is ``clamp``, ``pin`` or ``free`` (at the start); ``spin`` a constant rate at which the
-    clamp turns; ``force(t)`` acts at the end.
+    clamp turns; ``force(t)`` acts at the end. ``foundation`` is the stiffness matrix under the rod,
+    zero where the clamp turns.
     """
 
     EA: float
@@ -48,6 +49,7 @@ class Motion:
     kinks: tuple[float, ...] = ()
     end_mass: float = 0.0
     damping: float = 0.0
+    foundation: Array = dataclasses.field(default_factory=lambda: np.zeros((2, 2)))
     spin: float = 0.0
     velocity: tuple[float, float] = (0.0, 0.0)
     rate: float = 0.0  # of rotation about the start, at the start
@@ -82,6 +84,7 @@ class Ritz:
         z = self.free
         self.mass = z.T @ both @ z
         self.drag = motion.damping * z.T @ np.kron(np.eye(2), bar) @ z
+        self.bedding = z.T @ np.kron(motion.foundation, bar) @ z  # pulls to z = 0, the drawn shape
         self.coriolis = 2 * motion.spin * z.T @ turn @ z
         self.whole_mass = both
         self.end = end[0]
@@ -128,6 +131,7 @@ class Ritz:
         moment, tension = kappa - self.motion.kappa, self.motion.EA * (g - 1)
         t_i = np.stack([u[0] / g, u[1] / g, zero, zero])
         gradient = np.einsum("ap,apn,p->n", tension * t_i + moment * k_i, self.slopes, self.w)
+        gradient += self.bedding @ z
         if not hessian:
             return gradient, np.empty(0)
         k_ij = 2 * num * G_i[:, None] * G_i[None] / G**3
@@ -146,7 +150,7 @@ class Ritz:
         half = np.einsum("abp,bpn,p->apn", second, self.slopes, self.w)
         n = self.slopes.shape[2]
         matrix = self.slopes.reshape(-1, n).T @ half.reshape(-1, n)
-        return gradient, matrix
+        return gradient, matrix + self.bedding
 
     def load(self, t: float, z: Array) -> tuple[Array, Array]:
         """Generalised force, and its derivative, centrifugal forces of a turning clamp included."""
@@ -263,9 +267,10 @@ class Ritz:
         _, g, kappa = self.strains(z)
         stretch = float(self.w @ (g - 1) ** 2) * m.EA / 2
         bend = float(self.w @ (kappa - m.kappa) ** 2) / 2
-        if name in ("stretch_energy", "bend_energy", "elastic_energy"):
-            parts = {"stretch_energy": stretch, "bend_energy": bend}
-            return parts.get(name, stretch + bend)
+        spring = float(z @ self.bedding @ z) / 2
+        if name in ("stretch_energy", "bend_energy", "spring_energy", "elastic_energy"):
+            parts = {"stretch_energy": stretch, "bend_energy": bend, "spring_energy": spring}
+            return parts.get(name, stretch + bend + spring)
         center = [self.sum @ whole[: self.n], self.sum @ whole[self.n :]]
         end = [self.end @ whole[: self.n], self.end @ whole[self.n :]]
         here = turn @ (np.array(center) + m.end_mass * np.array(end))
@@ -273,4 +278,4 @@ class Ritz:
         if name == "gravity_energy":
             return weight
         assert name == "total_energy"
-        return stretch + bend + weight + self.read(t, z, v, "kinetic_energy", s)
+        return stretch + bend + spring + weight + self.read(t, z, v, "kinetic_energy", s)

@@ -5,7 +5,8 @@ Nothing here is shared with ``der``: no nodes, no turning angles, no energies. T
 
     r' = (1 + T/EA) t,  T = n . t,   theta' = kappa_0 + M/EI,   n' = -q,   M' = -(r' x n)_z,
 
-the equations of the energy ``1/2 EA (|r'| - 1)^2 + 1/2 EI (theta' - kappa_0)^2`` per rest length
+the equations of the energy ``1/2 EA (|r'| - 1)^2 + 1/2 EI (theta' - kappa_0)^2`` per rest length;
+``q`` includes the pull ``k (r_0 - r)`` of foundations to the drawn shape
 (S. S. Antman, Nonlinear Problems of Elasticity, 2nd ed., chapter 4, without shear). Pieces end
 where something acts; in each, the unknowns are polynomials through Chebyshev-Lobatto points that
 satisfy the equations at Gauss-Legendre points. Lengths are in units of the rod's, forces in
@@ -66,6 +67,9 @@ class Rod:
     line_loads: list[tuple[float, float, tuple[float, float]]] = dataclasses.field(
         default_factory=list
     )
+    foundations: list[tuple[float, float, tuple[float, float]]] = dataclasses.field(
+        default_factory=list
+    )
     gravity: tuple[float, float] = (0.0, 0.0)
     places: dict[float, Place] = dataclasses.field(default_factory=dict)
 
@@ -123,7 +127,7 @@ class Mesh:
     def __init__(self, rod: Rod, degree: int, longest: float = 0.25):
         self.rod = rod
         ends = {float(k) for k in rod.knots} | set(rod.places)
-        ends |= {u for load in rod.line_loads for u in load[:2]}
+        ends |= {u for load in (*rod.line_loads, *rod.foundations) for u in load[:2]}
         ends_sorted = sorted(ends)
         span = rod.knots[-1] - rod.knots[0]
         merged = [ends_sorted[0]]
@@ -149,7 +153,7 @@ class Mesh:
         self.half = half
         self.u_gauss = mid[:, None] + half[:, None] * gauss
         self.u_nodes = mid[:, None] + half[:, None] * self.nodes
-        _, _, drawn, speed = rod.curve(self.u_gauss)
+        position, _, drawn, speed = rod.curve(self.u_gauss)
         self.length = float((speed * half[:, None] * self.quadrature).sum())
         self.L, self.F = self.length, rod.EI / self.length**2
         self.metric = speed * half[:, None] / self.L  # d(s/L)/dxi
@@ -163,6 +167,11 @@ class Mesh:
             self.q_dead[inside] += np.array(q) * self.L / self.F
         weight = rod.mass_per_length * np.array(rod.gravity)
         self.q_dead += weight * self.L / self.F
+        self.position_drawn = position / self.L
+        self.bedding = np.zeros((*self.u_gauss.shape, 2))  # stiffness of foundations
+        for lo, hi, k in rod.foundations:
+            inside = (self.u_gauss > lo) & (self.u_gauss < hi)
+            self.bedding[inside] += np.array(k) * self.L**2 / self.F
         self._index()
         self._held, self._constants = self._conditions()
 
@@ -211,8 +220,9 @@ class Mesh:
         residual[..., X] = slope[..., X] - h * long * c
         residual[..., Y] = slope[..., Y] - h * long * s
         residual[..., THETA] = slope[..., THETA] - h * (rest + g[..., M])
-        residual[..., NX] = slope[..., NX] + h * t * self.q_dead[..., 0]
-        residual[..., NY] = slope[..., NY] + h * t * self.q_dead[..., 1]
+        pull = self.bedding * (self.position_drawn - g[..., :2])
+        residual[..., NX] = slope[..., NX] + h * (t * self.q_dead[..., 0] + pull[..., 0])
+        residual[..., NY] = slope[..., NY] + h * (t * self.q_dead[..., 1] + pull[..., 1])
         residual[..., M] = slope[..., M] + h * long * shear
 
         a = np.zeros((*g.shape, 6))
@@ -223,6 +233,7 @@ class Mesh:
         a[..., Y, THETA] = -h * (e * shear * s + long * c)
         a[..., Y, NX], a[..., Y, NY] = -h * e * c * s, -h * e * s * s
         a[..., THETA, M] = -h
+        a[..., NX, X], a[..., NY, Y] = -h * self.bedding[..., 0], -h * self.bedding[..., 1]
         a[..., M, THETA] = h * (e * shear * shear - long * tension)
         a[..., M, NX] = h * (e * c * shear - long * s)
         a[..., M, NY] = h * (e * s * shear + long * c)
@@ -482,7 +493,10 @@ class Mesh:
         return sum(self.energy(state, part, weight_factor) for part in everything)
 
     def _spring_energy(self, state: Array) -> float:
-        total = 0.0
+        g = np.einsum("ik,nkv->niv", self.at_gauss, state)
+        moved = self.bedding * (g[..., :2] - self.position_drawn) ** 2
+        weight = self.metric * self.quadrature
+        total = float((weight[..., None] * moved).sum() / 2 * self.F * self.L)
         for i, place in self._places():
             x, y, theta, *_ = self.read(state, self.breaks[i])
             position, *_ = self.rod.curve(np.array([self.breaks[i]]))

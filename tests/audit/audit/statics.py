@@ -133,14 +133,14 @@ def hold(rng: Random, drawing: Drawing, scene: dict[str, Any]) -> None:
 
 
 def load(rng: Random, drawing: Drawing, scene: dict[str, Any]) -> None:
-    """Loads: forces and moments anywhere, distributed forces, gravity with spheres."""
+    """Loads: forces and moments anywhere, distributed forces, foundations, gravity with spheres."""
     rod, L = drawing.rod, drawing.length
     unit = rod.EI / L**2
     last = float(drawing.node_u[-1])
     # Mostly large deflections; sometimes tiny ones, sometimes loads far beyond buckling.
     size = float(rng.choice([1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1e-4, 5.0]))
     for _ in range(int(rng.integers(1, 4))):
-        kind = rng.choice(["force", "force", "moment", "moment", "line", "gravity"])
+        kind = rng.choice(["force", "force", "moment", "moment", "line", "gravity", "foundation"])
         at: Any
         where = rng.random()
         if where < 0.35:
@@ -172,13 +172,16 @@ def load(rng: Random, drawing: Drawing, scene: dict[str, Any]) -> None:
         elif kind == "line":
             force = rng.uniform(-5, 5, 2) * unit / L * size
             entry = {"distributed_force": {"rod": "rod", "force": force.tolist()}}
-            lo, hi = 0.0, last
-            # Where a curve is refined, so are its parts: whole rods only.
-            if drawing.straight and rng.random() < 0.5:
-                lo, hi = np.sort(rng.uniform(0, L, 2))
-                lo, hi = float(lo), float(hi)
-                entry["distributed_force"] |= {"from": lo, "to": hi}
+            lo, hi = _part(rng, drawing, entry["distributed_force"])
             rod.line_loads.append((lo, hi, (float(force[0]), float(force[1]))))
+        elif kind == "foundation":
+            k = unit / L**2 * 10.0 ** rng.uniform(0, 4, 2)
+            k[rng.random(2) < 0.2] = 0.0
+            if not k.any():
+                continue
+            entry = {"foundation": {"rod": "rod", "stiffness": k.tolist()}}
+            lo, hi = _part(rng, drawing, entry["foundation"])
+            rod.foundations.append((lo, hi, (float(k[0]), float(k[1]))))
         else:
             if any(rod.gravity):
                 continue
@@ -188,6 +191,18 @@ def load(rng: Random, drawing: Drawing, scene: dict[str, Any]) -> None:
             if rng.random() < 0.4:
                 _sphere(rng, drawing)
         scene["loads"].append(entry)
+
+
+def _part(rng: Random, drawing: Drawing, entry: dict[str, Any]) -> tuple[float, float]:
+    """Choose the whole rod or a part of it for a load, and write the part into its entry.
+
+    A curve is taken whole: where it is refined, its parts move.
+    """
+    if not drawing.straight or rng.random() < 0.5:
+        return 0.0, float(drawing.node_u[-1])
+    lo, hi = np.sort(rng.uniform(0, drawing.length, 2))
+    entry |= {"from": float(lo), "to": float(hi)}
+    return float(lo), float(hi)
 
 
 def _sphere(rng: Random, drawing: Drawing) -> None:

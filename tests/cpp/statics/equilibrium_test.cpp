@@ -204,6 +204,32 @@ TEST_CASE("beyond double precision no shape is given that is none") {
   CHECK(outcome("1e16", "201").rfind("too_fine: ", 0) == 0);
 }
 
+TEST_CASE("what holds a rod too weakly for double precision is named, not the mesh") {
+  const auto outcome = [](const std::string& supports, const std::string& loads) {
+    std::string text = scene(supports, "[0, -1e-12]");
+    return failure(text.replace(text.find("analysis"), 0, loads));
+  };
+  const auto holds = [](const std::string& message, const std::string& part) {
+    return message.find(part) != std::string::npos;
+  };
+  const auto foundation = [](const std::string& stiffness) {
+    return "  - foundation: {rod: rod, stiffness: " + stiffness + "}\n";
+  };
+  const std::string moved = outcome("", foundation("[1, 1e-30]"));
+  CHECK(moved.rfind("not_held: ", 0) == 0);
+  CHECK(holds(
+      moved, "springs or foundations alone hold rod 'rod' against moving along y, with 1e-30 N/m"));
+  const std::string pinned = "  - {rod: rod, at: start, fix: [x, y]}\n";
+  const std::string turned = outcome(pinned, foundation("1e-30"));
+  CHECK(turned.rfind("not_held: ", 0) == 0);
+  CHECK(holds(turned, "against turning"));
+  const std::string spring = "  - {rod: rod, at: middle, spring: {stiffness: [1, 1e-30]}}\n";
+  CHECK(holds(outcome(spring, foundation("[1, 1e-30]")), "against moving along y, with 2e-30 N/m"));
+  // Another part that is held well is not blamed, and a foundation that can be resolved is enough.
+  CHECK(outcome(kClamp, foundation("1e-30")) == "stable");
+  CHECK(outcome("", foundation("1e-3")) == "stable");
+}
+
 TEST_CASE("a clamp that turns takes the rod along, beyond half a turn too") {
   // At the other end, which slides, a stiff spring holds the drawn direction: from there to here
   // the rod turns by the whole angle, but for the half cells at the ends.

@@ -34,6 +34,9 @@ double beyond_outer_middle(const RodLayout& rod, double s);
 /// Rest arc length [m] that a location names (not for Kind::All).
 double arc_length_of(const scenario::Location& location, const RodLayout& rod);
 
+/// Rest arc lengths [m] that a location names: those of every node for Kind::All, else one.
+std::vector<double> arc_lengths_of(const scenario::Location& location, const RodLayout& rod);
+
 /// Position in RodLayout::nodes of the node at `location`. The reader has checked that there is
 /// one.
 Index node_at(const scenario::Location& location, const RodLayout& rod);

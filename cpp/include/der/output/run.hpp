@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "der/catalog/run_status.hpp"
 #include "der/output/recorder.hpp"
 #include "der/simulation.hpp"
 #include "der/statics/equilibrium.hpp"
@@ -14,7 +15,7 @@ namespace der {
 /// Called after every step; return false to stop the run early (status "stopped").
 using StepCallback = std::function<bool(const Simulation&)>;
 
-/// How a run ended. `status` is "completed", "static_converged", "stopped" or the failure's name.
+/// How a run ended. `status` is one of catalog/run_status.hpp or that of the error.
 struct RunOutcome {
   std::string status;
   std::string message;        ///< of the failure, empty otherwise
@@ -27,7 +28,7 @@ struct RunOutcome {
   LinearBuckling buckling;       ///< of a buckling analysis
   std::vector<PathBranch> path;  ///< of a continuation, and the probes of each of its points
   std::vector<std::vector<double>> path_probes;
-  [[nodiscard]] bool ok() const { return status == "completed" || status == "static_converged"; }
+  [[nodiscard]] bool ok() const { return run_status::is_finished(status); }
   [[nodiscard]] bool failed() const { return !message.empty(); }
 };
 

@@ -25,8 +25,8 @@ class NewtonProblem {
   virtual void begin(Vector& displacement) = 0;
   /// As `begin`, back from wherever the solution is now to the guess remembered.
   virtual void begin_again(Vector& displacement) = 0;
-  /// The solution is at another displacement now, in its free components. What the equations need
-  /// of a new point is prepared here.
+  /// The solution is at another displacement now, in its free components. The problem
+  /// prepares here whatever the equations need at a new point.
   virtual void solution_changed(const Vector& displacement) = 0;
 
   /// Sets the left side of the equations at the solution, over all degrees of freedom.

@@ -10,6 +10,7 @@ enum class EquilibriumFailure {
   StepsUsedUp,      ///< the pseudo-time steps ran out before the forces were in balance
   OnlySaddles,      ///< every equilibrium found is unstable
   NotHeld,          ///< a load moves a part as a rigid body; the detail names the part
+  HeldTooWeakly,    ///< round-off hides what holds a part; the detail names the part
   DriftsAway,       ///< the structure moves away without end
   TurnsWithoutEnd,  ///< a moment turns the rod without end
   Collapsed,        ///< an edge is compressed to zero length, or a guided edge is turned inside out

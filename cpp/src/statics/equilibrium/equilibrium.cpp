@@ -41,6 +41,11 @@ bool is_unbounded(const FailedSearch& failed) {
          failed.cause == EquilibriumFailure::TurnsWithoutEnd;
 }
 
+bool may_come_from_rounding(EquilibriumFailure cause) {
+  return cause == EquilibriumFailure::LostInRoundoff || cause == EquilibriumFailure::NewtonFailed ||
+         cause == EquilibriumFailure::StepsUsedUp;
+}
+
 /// Tries the methods in their order, and keeps count of what they did.
 class EquilibriumSearch {
  public:
@@ -57,6 +62,7 @@ class EquilibriumSearch {
   EquilibriumReport run(State& state) {
     Shape shape{state.positions, state.turns};
     report_.failed = search(shape);
+    if (report_.failed) blame_weak_holding(state, *report_.failed);
     report_.newton_iterations = newton_.iterations();
     report_.relaxations = continuation_.steps() + relaxation_steps_;
     report_.force_scale = newton_.force_scale();
@@ -83,6 +89,15 @@ class EquilibriumSearch {
       return FailedSearch{EquilibriumFailure::FoldedByClamp, {}};
     }
     return std::nullopt;
+  }
+
+  /// Replaces the cause of a failure where a part is hardly held against a rigid motion.
+  void blame_weak_holding(const State& state, FailedSearch& failed) {
+    if (!may_come_from_rounding(failed.cause)) return;
+    const Configuration start = configuration_of(model_, state);
+    stiffness_.evaluate(start);
+    std::string found = find_weakly_held_part(model_, start, stiffness_.rounding());
+    if (!found.empty()) failed = {EquilibriumFailure::HeldTooWeakly, std::move(found)};
   }
 
   /// Inverse of the first pseudo-time step [N/m].

@@ -28,6 +28,8 @@ FailureInfo info(EquilibriumFailure cause) {
       return {"not_converged", "only unstable equilibria were found", kSearchFurther};
     case EquilibriumFailure::NotHeld:
       return {"not_held", "", "Add a support that holds it, or balance the loads."};
+    case EquilibriumFailure::HeldTooWeakly:
+      return {"not_held", "", "Add a support, or make the springs or the foundation stiffer."};
     case EquilibriumFailure::DriftsAway:
       return {"unbounded", "the structure moves away: nothing holds it", kHold};
     case EquilibriumFailure::TurnsWithoutEnd:

@@ -61,7 +61,7 @@ Eigen::MatrixX3d rigid_motions(const Model& model, const Vector& positions,
   for (const Index node : nodes) middle += point(node) / static_cast<double>(nodes.size());
   Eigen::MatrixX3d motions = Eigen::MatrixX3d::Zero(model.num_dofs(), 3);
   for (const Index node : nodes) {
-    const Vec2 arm = (point(node) - middle) / model.size;
+    const Vec2 arm = (point(node) - middle) / model.size();
     motions.row(model.dof(node, 0)) << 1.0, 0.0, -arm.y();
     motions.row(model.dof(node, 1)) << 0.0, 1.0, arm.x();
   }
@@ -124,8 +124,7 @@ std::string find_weakly_held_part(const Model& model, const Configuration& here,
       if (stiffness <= 0.0 || stiffness >= rounding * motion.squaredNorm()) continue;
       return fmt::format(
           "springs or foundations alone hold rod '{}' against {}, with {:.3g} N/m, which is lost "
-          "in "
-          "the rounding errors of its stiffness against stretching",
+          "in the rounding errors of its stiffness against stretching",
           place_of(model, first).rod, motion_in_words(combination), stiffness);
     }
   }

@@ -53,7 +53,7 @@ std::vector<HeldNode> held_nodes(Replay& replay, std::size_t frame) {
     for (const Index place : nodes_at(support.at, rod)) {
       const Index node = rod.nodes[to_size(place)];
       HeldNode held{rod.name, node, held_components(node, replay.model()), std::nullopt};
-      if (support.clamp) held.tangent_angle = clamp_angle(rod, place, replay);
+      if (support.clamps()) held.tangent_angle = clamp_angle(rod, place, replay);
       result.push_back(held);
     }
   }

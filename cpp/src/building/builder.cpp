@@ -123,7 +123,7 @@ void lay_out_rods(const scenario::Scene& scene, Model& model) {
   Index first_node = 0;
   double size = 0.0;
   for (const auto& rod : scene.rods) {
-    const SectionProperties section = section_properties(rod.cross_section, rod.material);
+    const SectionProperties section = section_properties(rod);
     RodLayout layout = lay_out(rod, section, first_node, model);
     layout.mass_per_length = section.mass_per_length;
     set_natural_curvature(rod, layout);

@@ -18,7 +18,7 @@ Format<Components> axis_stiffness(const std::string& unit) {
         if (!place.value->sequence()) {
           double stiffness = 0.0;
           if (!both.read(place, diagnostics, stiffness)) return false;
-          out = {stiffness, stiffness};
+          out = {stiffness, stiffness, stiffness};
           return true;
         }
         if (place.value->sequence()->size() > 2) {

@@ -6,7 +6,7 @@
 
 namespace der::scenario {
 
-/// Stiffnesses along x and y, not both 0: one number for both axes, or one for each.
+/// Stiffnesses along the axes, not all 0: one number for all axes, or one for each.
 Format<Components> axis_stiffness(const std::string& unit);
 
 }  // namespace der::scenario

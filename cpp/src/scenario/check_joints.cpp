@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "scenario/checks.hpp"
+#include "scenario/directions.hpp"
 
 namespace der::scenario {
 namespace {
@@ -17,7 +18,7 @@ struct Node {
   int rod;
   int number;
   bool is_end;
-  double x, y;
+  Vec3 position;
   double along;      ///< [m] coordinate along an oblique line, by which nodes are sorted
   double tolerance;  ///< [m]
 };
@@ -34,17 +35,19 @@ double tolerance_at(const RestLine& line, int node) {
 /// All nodes that could touch another, sorted by `along`.
 std::vector<Node> nodes_of(const CheckContext& context) {
   std::vector<Node> nodes;
+  const Vec3 oblique = Vec3(0.7853, 0.6191, 0.4142).normalized();
   const bool single = context.lines.size() == 1;
   for (int rod = 0; rod < static_cast<int>(context.lines.size()); ++rod) {
     const auto& line = context.lines[static_cast<std::size_t>(rod)];
-    const RodText& text = context.scene.given_rods[static_cast<std::size_t>(rod)];
-    if (!line || (single && text.nodes)) continue;  // a straight rod does not touch itself
+    const auto number = static_cast<std::size_t>(rod);
+    const bool straight = context.scene.given_rods[number].nodes.has_value();
+    if (!line || (single && straight)) continue;  // a straight rod does not touch itself
     const int last = line->num_nodes() - 1;
     for (int i = 0; i <= last; ++i) {
-      const double x = text.points[static_cast<std::size_t>(i)][0];
-      const double y = text.points[static_cast<std::size_t>(i)][1];
+      const Vec3 position =
+          in_space(context.scene.rods[number].points[static_cast<std::size_t>(i)]);
       nodes.push_back(
-          {rod, i, i == 0 || i == last, x, y, 0.7853 * x + 0.6191 * y, tolerance_at(*line, i)});
+          {rod, i, i == 0 || i == last, position, position.dot(oblique), tolerance_at(*line, i)});
     }
   }
   std::sort(nodes.begin(), nodes.end(),
@@ -53,21 +56,23 @@ std::vector<Node> nodes_of(const CheckContext& context) {
 }
 
 bool is_held(const CheckContext& context, const Node& node) {
-  const HeldNode* held = context.held_at(node.rod, node.number);
-  return held && held->holds(Hold::X) && held->holds(Hold::Y);
+  return context.is_fixed(node.rod, node.number);
 }
 
 /// "the start of rod 'a'"
 std::string in_words(const CheckContext& context, const Node& node) {
-  const std::string& rod = context.scene.given_rods[static_cast<std::size_t>(node.rod)].name;
+  const std::string& rod = context.scene.rods[static_cast<std::size_t>(node.rod)].name;
   if (!node.is_end) return fmt::format("a node of rod '{}'", rod);
   return fmt::format("the {} of rod '{}'", node.number == 0 ? "start" : "end", rod);
 }
 
 std::string warning_of(const CheckContext& context, const Node& a, const Node& b) {
-  const std::string place = fmt::format("({:.6g}, {:.6g}) m", a.x, a.y);
+  const Vec3& at = a.position;
+  const std::string place = context.dimension == 2
+                                ? fmt::format("({:.6g}, {:.6g}) m", at.x(), at.y())
+                                : fmt::format("({:.6g}, {:.6g}, {:.6g}) m", at.x(), at.y(), at.z());
   if (a.rod == b.rod && a.is_end && b.is_end) {
-    const std::string& rod = context.scene.given_rods[static_cast<std::size_t>(a.rod)].name;
+    const std::string& rod = context.scene.rods[static_cast<std::size_t>(a.rod)].name;
     return fmt::format(
         "the last point of rod '{}' is its first, {}, but that does not close the rod: it has two "
         "free ends there, which move apart. This version has no joints: hold both ends by "
@@ -105,7 +110,7 @@ class TouchFinder {
 
   [[nodiscard]] bool touch(const Node& a, const Node& b) const {
     if (!a.is_end && !b.is_end) return false;  // rods may cross
-    if (std::hypot(a.x - b.x, a.y - b.y) > std::min(a.tolerance, b.tolerance)) return false;
+    if ((a.position - b.position).norm() > std::min(a.tolerance, b.tolerance)) return false;
     return !is_held(context_, a) || !is_held(context_, b);
   }
 

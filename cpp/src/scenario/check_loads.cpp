@@ -77,9 +77,9 @@ class LoadCheck {
 
   void check_own(const Fluid& load, const Path& here, const Where& /*where*/) {
     check_single(load, here);
-    const auto& rods = context_.scene.given_rods;
-    const bool spheres = std::any_of(rods.begin(), rods.end(),
-                                     [](const RodText& rod) { return !rod.spheres.empty(); });
+    const auto& rods = context_.scene.rods;
+    const bool spheres =
+        std::any_of(rods.begin(), rods.end(), [](const Rod& rod) { return !rod.spheres.empty(); });
     if (!spheres && !context_.diagnostics.under({"rods"})) {
       report(here,
              "a fluid acts on spheres only, and no rod carries any: give a rod "
@@ -106,8 +106,9 @@ class LoadCheck {
 
   /// Warns of a force on a held component: the support takes it.
   void check_acts(const PointForce& load, int rod, const std::vector<int>& nodes) {
-    constexpr std::array axes{Hold::X, Hold::Y};
-    for (std::size_t c = 0; c < axes.size(); ++c) {
+    constexpr std::array axes{Hold::X, Hold::Y, Hold::Z};
+    const std::size_t components = load.force.values.front().size();
+    for (std::size_t c = 0; c < components; ++c) {
       const auto is_zero = [c](const Components& force) { return force[c] == 0.0; };
       if (std::all_of(load.force.values.begin(), load.force.values.end(), is_zero)) continue;
       const bool held = std::all_of(nodes.begin(), nodes.end(), [&](int node) {

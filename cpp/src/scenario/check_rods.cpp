@@ -2,11 +2,17 @@
 #include <cmath>
 
 #include "scenario/checks.hpp"
+#include "scenario/directions.hpp"
 
 namespace der::scenario {
 namespace {
 
 Path rod_path(int rod) { return {"rods", rod}; }
+
+void take_section(RodText& rod) {
+  rod.cross_section = std::move(rod.section.shape);
+  rod.director = std::move(rod.section.director);
+}
 
 void check_name(CheckContext& context, int i) {
   const std::string& name = context.scene.given_rods[static_cast<std::size_t>(i)].name;
@@ -22,11 +28,11 @@ void check_name(CheckContext& context, int i) {
 void place_evenly(RodText& rod) {
   const int count = *rod.nodes;
   const auto last = static_cast<double>(count - 1);
-  rod.points.reserve(static_cast<std::size_t>(count));
-  for (int k = 0; k < count; ++k) {
+  rod.points.assign(static_cast<std::size_t>(count), rod.from);
+  for (int k = 1; k < count; ++k) {
     const double share = static_cast<double>(k) / last;
-    rod.points.push_back({rod.from[0] + share * (rod.to[0] - rod.from[0]),
-                          rod.from[1] + share * (rod.to[1] - rod.from[1])});
+    Components& point = rod.points[static_cast<std::size_t>(k)];
+    for (std::size_t c = 0; c < point.size(); ++c) point[c] += share * (rod.to[c] - rod.from[c]);
   }
   rod.points.back() = rod.to;
 }
@@ -52,26 +58,22 @@ bool check_polyline(const RodText& rod, const RestLine& line, const Path& path,
   const Path points = path / "points";
   if (!finite_length(line, points, diagnostics)) return false;
   const std::size_t before = diagnostics.size();
-  double dx = 0.0;
-  double dy = 0.0;
+  Vec3 before_it = Vec3::Zero();  // the edge before
   for (int k = 1; k < line.num_nodes(); ++k) {
     if (line.arc_length(k) - line.arc_length(k - 1) <= line.same_place()) {
       diagnostics.add(points / k, "coincides with the point before it: an edge needs a length");
       continue;
     }
     const auto i = static_cast<std::size_t>(k);
-    const double ex = rod.points[i][0] - rod.points[i - 1][0];
-    const double ey = rod.points[i][1] - rod.points[i - 1][1];
-    const double dot = dx * ex + dy * ey;
-    const double cross = dx * ey - dy * ex;
+    const Vec3 edge = in_space(rod.points[i]) - in_space(rod.points[i - 1]);
+    const double dot = before_it.dot(edge);
     constexpr double straight_back = 1e-9;  // [rad] from a half turn
-    if (dot < 0.0 && std::abs(cross) <= -dot * straight_back) {
+    if (dot < 0.0 && before_it.cross(edge).norm() <= -dot * straight_back) {
       diagnostics.add(points / (k - 1),
                       "the rod turns straight back here, through 180 degrees: its "
                       "side of bending is not defined");
     }
-    dx = ex;
-    dy = ey;
+    before_it = edge;
   }
   return diagnostics.size() == before;
 }
@@ -101,6 +103,7 @@ std::string kind_name(const CrossSection& section) {
     std::string operator()(const Circle& /*kind*/) const { return "circle"; }
     std::string operator()(const Tube& /*kind*/) const { return "tube"; }
     std::string operator()(const Rectangle& /*kind*/) const { return "rectangle"; }
+    std::string operator()(const Ellipse& /*kind*/) const { return "ellipse"; }
     std::string operator()(const Stiffness& /*kind*/) const { return "stiffness"; }
   };
   return std::visit(Name{}, section);
@@ -147,12 +150,53 @@ void check_velocity(CheckContext& context, int i) {
   }
 }
 
+/// Two numbers are a list with one for each node where vectors have two components, and a pair
+/// where they have three.
 void check_natural_curvature(CheckContext& context, int i) {
   const Path path = rod_path(i) / "natural_curvature";
-  const RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
+  RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
   if (context.diagnostics.under(path)) return;
-  if (const auto* list = std::get_if<std::vector<double>>(&rod.natural_curvature)) {
+  if (const auto* pairs = std::get_if<std::vector<CurvaturePair>>(&rod.natural_curvature)) {
+    one_for_each_node(context, pairs->size(), rod.points.size(), path);
+    return;
+  }
+  const auto* list = std::get_if<std::vector<double>>(&rod.natural_curvature);
+  if (!list) return;
+  if (context.diagnostics.dimension() == 2) {
     one_for_each_node(context, list->size(), rod.points.size(), path);
+  } else if (list->size() == 2) {
+    rod.natural_curvature = CurvaturePair{(*list)[0], (*list)[1]};
+  } else {
+    context.diagnostics.add(
+        path, fmt::format("in a scene of three components a natural curvature is a pair [k1, k2], "
+                          "or a list of pairs with one for each node, but this is a list of {} "
+                          "number{}",
+                          list->size(), list->size() == 1 ? "" : "s"));
+  }
+}
+
+/// A direction across the rod where it begins, which is +z unless given.
+void check_director(CheckContext& context, int i) {
+  RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
+  const Path path = rod_path(i) / "cross_section";
+  if (context.diagnostics.under(path)) return;
+  if (rod.director) {
+    rod.director->resize(3, 0.0);
+    if (is_zero(*rod.director)) {
+      context.diagnostics.add(path / "director",
+                              "a director needs a direction: its components "
+                              "are all 0");
+      return;
+    }
+  }
+  if (has_width_direction(rod)) return;
+  if (rod.director) {
+    context.diagnostics.add(path / "director",
+                            "lies along the rod where it begins: give a direction across it");
+  } else if (!is_isotropic(rod.cross_section)) {
+    context.diagnostics.add(path,
+                            "the rod begins along z: give 'director', the direction of the width "
+                            "across the rod");
   }
 }
 
@@ -165,7 +209,7 @@ void check_spheres(CheckContext& context, int i) {
   }
 }
 
-bool is_massless(const RodText& rod) {
+bool is_massless(const Rod& rod) {
   if (const auto* direct = std::get_if<Stiffness>(&rod.cross_section)) {
     return direct->mass_per_length == 0.0;
   }
@@ -174,7 +218,7 @@ bool is_massless(const RodText& rod) {
 
 /// Nodes that could move but have no mass.
 std::vector<int> weightless_nodes(CheckContext& context, int i) {
-  RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
+  Rod& rod = context.scene.rods[static_cast<std::size_t>(i)];
   std::vector<double> density(rod.points.size(), 0.0);
   for (Sphere& sphere : rod.spheres) {
     const auto nodes = context.nodes_at(i, sphere.at, rod_path(i) / "spheres", true);
@@ -182,15 +226,15 @@ std::vector<int> weightless_nodes(CheckContext& context, int i) {
   }
   std::vector<int> nodes;
   for (int node = 0; node < static_cast<int>(density.size()); ++node) {
-    const HeldNode* held = context.held_at(i, node);
-    const bool fixed = held && held->holds(Hold::X) && held->holds(Hold::Y);
-    if (density[static_cast<std::size_t>(node)] == 0.0 && !fixed) nodes.push_back(node);
+    if (density[static_cast<std::size_t>(node)] == 0.0 && !context.is_fixed(i, node)) {
+      nodes.push_back(node);
+    }
   }
   return nodes;
 }
 
 void check_masses(CheckContext& context, int i) {
-  const RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
+  const Rod& rod = context.scene.rods[static_cast<std::size_t>(i)];
   if (!is_massless(rod)) return;
   const std::vector<int> nodes = weightless_nodes(context, i);
   if (nodes.empty()) return;
@@ -214,7 +258,7 @@ void check_masses(CheckContext& context, int i) {
 
 /// A rod of a single edge has no inner node, so only a clamp can make it bend.
 void check_bends(CheckContext& context, int i) {
-  const RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
+  const Rod& rod = context.scene.rods[static_cast<std::size_t>(i)];
   const bool curved = !std::holds_alternative<AsDrawn>(rod.natural_curvature);
   if (!curved || rod.points.size() > 2) return;
   if (context.is_clamped(i, 0) || context.is_clamped(i, 1)) return;
@@ -230,13 +274,19 @@ void check_rods(CheckContext& context) {
   const auto count = static_cast<int>(context.scene.given_rods.size());
   context.lines.resize(context.scene.given_rods.size());
   for (int i = 0; i < count; ++i) {
+    take_section(context.scene.given_rods[static_cast<std::size_t>(i)]);
     check_name(context, i);
     check_geometry(context, i);
     check_material(context, i);
     if (context.scene.given_rods[static_cast<std::size_t>(i)].points.empty()) continue;
     check_velocity(context, i);
     check_natural_curvature(context, i);
-    if (context.lines[static_cast<std::size_t>(i)]) check_spheres(context, i);
+    if (!context.lines[static_cast<std::size_t>(i)]) continue;
+    check_spheres(context, i);
+    check_director(context, i);
+  }
+  for (RodText& rod : context.scene.given_rods) {
+    context.scene.rods.push_back(static_cast<Rod&&>(rod));
   }
 }
 

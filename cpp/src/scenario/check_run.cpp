@@ -155,7 +155,7 @@ class ProbeCheck {
   /// A rod without bending stiffness has a curvature at its inner nodes alone.
   void check_bend(int rod) {
     const int nodes = context_.lines[static_cast<std::size_t>(rod)]->num_nodes();
-    if (nodes > 2 || !does_not_bend(context_.scene.given_rods[static_cast<std::size_t>(rod)])) {
+    if (nodes > 2 || !does_not_bend(context_.scene.rods[static_cast<std::size_t>(rod)])) {
       return;
     }
     report(path_ / "quantity", fmt::format("a rod of 2 nodes without a stiffness against "
@@ -196,7 +196,7 @@ bool has_amounts(const Load& load) {
 }
 
 bool moves(const Support& support) {
-  return !support.prescribe.empty() || support.rotation.has_value();
+  return !support.prescribe.empty() || support.rotation || support.axis_rotation || support.twist;
 }
 
 /// The item that a path varies, "loads.0 (foundation)", or the scene if it varies all.

@@ -7,7 +7,7 @@ namespace der::scenario {
 namespace {
 
 std::vector<Hold> held_by(const Support& support) {
-  if (support.clamp) return {kHolds.begin(), kHolds.end()};
+  if (support.clamps()) return {kHolds.begin(), kHolds.end()};
   std::vector<Hold> held;
   for (const Component component : support.fix) held.push_back(hold_of(component));
   for (const Prescribed& motion : support.prescribe) held.push_back(hold_of(motion.component));
@@ -32,6 +32,11 @@ void check_start(CheckContext& context, const Series& motion, const Path& path) 
                   "jump. Give a table that begins with 0, as {{times: [0, 1], values: [0, "
                   "{:g}]}}, or begin at rest with 'start_from: equilibrium'",
                   start, start));
+}
+
+void check_motion(CheckContext& context, const Series& motion, const Path& path) {
+  check_constant(context, motion.constant(), path);
+  check_start(context, motion, path);
 }
 
 /// Enters what a support holds of its nodes; reports once where another holds it already.
@@ -60,15 +65,21 @@ void check_support(CheckContext& context, int number) {
   if (context.diagnostics.under(path)) return;
   Support& support = context.scene.supports[static_cast<std::size_t>(number)];
   for (const Prescribed& motion : support.prescribe) {
-    const Path key = path / "prescribe" / (motion.component == Component::X ? "x" : "y");
-    check_constant(context, motion.displacement.constant(), key);
-    check_start(context, motion.displacement, key);
+    check_motion(context, motion.displacement, path / "prescribe" / name_of(motion.component));
   }
   if (support.rotation) {
     const Path key = path / "prescribe" / "angle";
-    check_constant(context, support.rotation->constant(), key);
-    check_start(context, *support.rotation, key);
+    check_motion(context, *support.rotation, key);
+    if (context.diagnostics.dimension() == 3) {
+      context.diagnostics.add(key,
+                              "in a scene of three components a clamp turns about an axis: write "
+                              "'rotation: {axis: [0, 0, 1], angle: ...}'");
+    }
   }
+  if (support.axis_rotation) {
+    check_motion(context, support.axis_rotation->angle, path / "prescribe" / "rotation" / "angle");
+  }
+  if (support.twist) check_motion(context, *support.twist, path / "prescribe" / "twist");
   const std::optional<int> rod = context.find_rod(support.rod, path / "rod");
   if (!rod) return;
   const auto nodes = context.nodes_at(*rod, support.at, path / "at", support.holds());
@@ -88,7 +99,7 @@ void check_spring(CheckContext& context, int number) {
     return;
   }
   const bool turns = support.spring->rotational_stiffness > 0.0;
-  if (turns && does_not_bend(context.scene.given_rods[static_cast<std::size_t>(*rod)])) {
+  if (turns && does_not_bend(context.scene.rods[static_cast<std::size_t>(*rod)])) {
     context.diagnostics.add(here / "rotational_stiffness",
                             "the rod has no stiffness against bending, EI: nothing turns it");
   }
@@ -105,8 +116,9 @@ void check_spring(CheckContext& context, int number) {
                                 name_of(component), nodes->front(), support.rod, *holder));
   };
   const Components& stiffness = support.spring->stiffness;
-  constexpr std::array axes{Hold::X, Hold::Y};
-  for (std::size_t c = 0; c < std::min(axes.size(), stiffness.size()); ++c) {
+  constexpr std::array axes{Hold::X, Hold::Y, Hold::Z};
+  for (std::size_t c = 0;
+       c < std::min(static_cast<std::size_t>(context.dimension), stiffness.size()); ++c) {
     if (stiffness[c] > 0.0) report_if_held(axes[c], "stiffness");
   }
   if (turns) report_if_held(Hold::Angle, "rotational_stiffness");

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "der/scenario/model_choice.hpp"
+#include "scenario/conform.hpp"
 #include "scenario/suggestion.hpp"
 
 namespace der::scenario {
@@ -61,13 +63,19 @@ bool CheckContext::is_clamped(int rod, int node) const {
   return holding && holding->holds(Hold::Angle);
 }
 
+bool CheckContext::is_fixed(int rod, int node) const {
+  const HeldNode* holding = held_at(rod, node);
+  return holding && holding->holds(Hold::X) && holding->holds(Hold::Y) &&
+         (dimension == 2 || holding->holds(Hold::Z));
+}
+
 std::optional<int> CheckContext::find_rod(const std::string& name, const Path& path) {
   if (const auto found = rods.find(name); found != rods.end()) {
     if (!lines[static_cast<std::size_t>(found->second)]) return std::nullopt;
     return found->second;
   }
   std::vector<std::string> names;
-  for (const RodText& rod : scene.given_rods) {
+  for (const Rod& rod : scene.rods) {
     if (rod.name.empty()) return std::nullopt;  // it may be the one that is meant
     names.push_back(rod.name);
   }
@@ -121,20 +129,27 @@ std::optional<std::vector<int>> CheckContext::nodes_at(int rod, Location& at, co
   return std::nullopt;
 }
 
-bool does_not_bend(const RodText& rod) {
+bool does_not_bend(const Rod& rod) {
   const auto* direct = std::get_if<Stiffness>(&rod.cross_section);
-  return direct != nullptr && direct->EI == 0.0;
+  return direct != nullptr && (direct->EI ? direct->EI : direct->EI2) == 0.0;
 }
 
 void check_scene(SceneText& scene, Diagnostics& diagnostics) {
+  if (diagnostics.vectors_differ()) return;
   CheckContext context{scene, diagnostics};
   check_rods(context);
   check_supports(context);
+  if (diagnostics.size() == 0) {
+    context.dimension = choose_model(scene).kind == ModelChoice::Planar ? 2 : 3;
+  }
   check_free_nodes(context);
   check_loads(context);
   check_time(context);
   check_probes(context);
-  if (diagnostics.size() == 0) warn_of_touching_rods(context);
+  if (diagnostics.size() == 0) check_model(scene, diagnostics);
+  if (diagnostics.size() > 0) return;
+  warn_of_touching_rods(context);
+  conform(scene);
 }
 
 }  // namespace der::scenario

@@ -43,6 +43,7 @@ struct CheckContext {
   std::vector<std::optional<RestLine>> lines{};  ///< by rod; none where the rod has mistakes
   std::unordered_map<std::string, int> rods{};   ///< number of the rod with a name
   std::unordered_map<std::int64_t, HeldNode> held{};
+  int dimension = 2;  ///< of the motion of nodes: 2 in the planar model, else 3
 
   [[nodiscard]] static std::int64_t node_key(int rod, int node) {
     return (std::int64_t{rod} << 32) | node;
@@ -50,6 +51,8 @@ struct CheckContext {
   /// Null where no support holds the node.
   [[nodiscard]] const HeldNode* held_at(int rod, int node) const;
   [[nodiscard]] bool is_clamped(int rod, int node) const;
+  /// Whether supports hold all components of its position.
+  [[nodiscard]] bool is_fixed(int rod, int node) const;
 
   /// The rod with this name, if its geometry is known; reports at `path` where there is none.
   std::optional<int> find_rod(const std::string& name, const Path& path);
@@ -60,8 +63,9 @@ struct CheckContext {
 };
 
 /// Whether a rod has no stiffness against bending, EI.
-bool does_not_bend(const RodText& rod);
+bool does_not_bend(const Rod& rod);
 
+/// Checks the rods by themselves and completes `Scene::rods`.
 void check_rods(CheckContext& context);
 void check_supports(CheckContext& context);
 /// Masses and bending, which depend on the supports.
@@ -69,6 +73,11 @@ void check_free_nodes(CheckContext& context);
 void check_loads(CheckContext& context);
 void check_time(CheckContext& context);
 void check_probes(CheckContext& context);
+/// Checks that the model that the scene asks for can represent it, and that this version has in
+/// that model all that the scene needs.
+void check_model(const SceneText& scene, Diagnostics& diagnostics);
+/// Reports what this version does not have in a model (check_spatial.cpp).
+void check_availability(const SceneText& scene, ModelChoice kind, Diagnostics& diagnostics);
 /// Warns of ends of rods that lie on a node: nothing joins them, unless supports hold both.
 void warn_of_touching_rods(CheckContext& context);
 

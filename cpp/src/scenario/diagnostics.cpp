@@ -1,5 +1,7 @@
 #include "scenario/diagnostics.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <tuple>
 #include <utility>
@@ -66,6 +68,21 @@ void Diagnostics::add(const Path& path, std::string message) {
     value = next;
   }
   record(path, value->mark, std::move(message));
+}
+
+void Diagnostics::note_vector(const Place& place) {
+  const std::size_t components = place.value->sequence()->size();
+  std::optional<FirstVector>& first = vectors_[components - 2];
+  if (first) return;
+  first = FirstVector{path_to(place), place.value->mark};
+  const std::optional<FirstVector>& other = vectors_[3 - components];
+  if (!other) return;
+  const auto line = [](const Mark& mark) {
+    return mark.line > 0 ? fmt::format(" (line {})", mark.line) : std::string();
+  };
+  add(place, fmt::format("has {} components, but {}{} has {}: all vectors of a scene have three as "
+                         "soon as one has",
+                         components, written(other->path), line(other->mark), 5 - components));
 }
 
 bool Diagnostics::under(const Path& path) const {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,6 +53,15 @@ class Diagnostics {
   /// About a value, or (where it is absent) about the nearest that holds it.
   void add(const Path& path, std::string message);
 
+  /// Notes a vector, which has as many components as its value has items. Reports it if one with
+  /// fewer or more has come before.
+  void note_vector(const Place& place);
+  /// Components of the scene's vectors: 3 as soon as one has 3.
+  [[nodiscard]] int dimension() const { return vectors_[1] ? 3 : 2; }
+  /// Whether vectors of two components stand beside vectors of three. Then nothing that compares
+  /// places can be checked.
+  [[nodiscard]] bool vectors_differ() const { return vectors_[0] && vectors_[1]; }
+
   [[nodiscard]] std::size_t size() const { return found_.size(); }
   /// Whether something at this path, or below it, is wrong: then nothing can be concluded from it.
   [[nodiscard]] bool under(const Path& path) const;
@@ -69,7 +80,13 @@ class Diagnostics {
   [[nodiscard]] std::vector<Diagnostic> diagnostics() const;
   [[nodiscard]] std::string written(const Path& path) const;
 
+  struct FirstVector {
+    Path path;
+    Mark mark;
+  };
+
   const Document& document_;
+  std::array<std::optional<FirstVector>, 2> vectors_;  // the first with 2 components, and with 3
   std::vector<Found> found_;
 };
 

@@ -1,6 +1,7 @@
 #include "scenario/format.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -137,6 +138,20 @@ bool read_name(const Shape& shape, const Place& place, Diagnostics& diagnostics,
   return true;
 }
 
+/// Reads the numbers of a list that is known to have as many as `out`.
+template <class Numbers>
+bool read_numbers(const Shape& shape, const Place& place, Diagnostics& diagnostics, Numbers& out) {
+  const Sequence& items = *place.value->sequence();
+  Shape component{Shape::Kind::Number};
+  component.unit = shape.unit;
+  bool fine = true;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    fine = read_number(component, place.at(static_cast<int>(i), items[i]), diagnostics, out[i]) &&
+           fine;
+  }
+  return fine;
+}
+
 bool read_vector(const Shape& shape, const Place& place, Diagnostics& diagnostics,
                  Components& out) {
   const Sequence* items = place.value->sequence();
@@ -148,24 +163,26 @@ bool read_vector(const Shape& shape, const Place& place, Diagnostics& diagnostic
         unbracketed ? fmt::format("write it in brackets: [{}]", shortened(*written)) : "");
     return false;
   }
-  if (items->size() == 3) {
-    diagnostics.add(place, kNoSpatialRods);
+  const std::size_t count = items->size();
+  if (count > 3 || count < static_cast<std::size_t>(shape.min_items)) {
+    report_expected(expected(shape), place, diagnostics, count == 1 ? "is a comma missing?" : "");
     return false;
   }
-  if (items->size() != 2) {
-    report_expected(expected(shape), place, diagnostics,
-                    items->size() == 1 ? "is a comma missing?" : "");
+  diagnostics.note_vector(place);
+  out.resize(count);
+  return read_numbers(shape, place, diagnostics, out);
+}
+
+bool read_pair(const Shape& shape, const Place& place, Diagnostics& diagnostics,
+               CurvaturePair& out) {
+  const Sequence* items = place.value->sequence();
+  std::array<double, 2> numbers{};
+  if (!items || items->size() != numbers.size()) {
+    report_expected(expected(shape), place, diagnostics);
     return false;
   }
-  Shape component{Shape::Kind::Number};
-  component.unit = shape.unit;
-  out.resize(2);
-  bool fine = true;
-  for (std::size_t i = 0; i < 2; ++i) {
-    fine =
-        read_number(component, place.at(static_cast<int>(i), (*items)[i]), diagnostics, out[i]) &&
-        fine;
-  }
+  const bool fine = read_numbers(shape, place, diagnostics, numbers);
+  out = {numbers[0], numbers[1]};
   return fine;
 }
 
@@ -215,7 +232,20 @@ Format<std::string> one_of(const std::vector<Word>& words, std::vector<ReservedW
 Format<Components> vector(std::string unit) {
   Shape shape{Shape::Kind::Vector};
   shape.unit = std::move(unit);
+  shape.min_items = 2;
   return {std::move(shape), read_vector};
+}
+
+Format<Components> space_vector(std::string unit) {
+  Format<Components> format = vector(std::move(unit));
+  format.shape.min_items = 3;
+  return format;
+}
+
+Format<CurvaturePair> pair(std::string unit) {
+  Shape shape{Shape::Kind::Pair};
+  shape.unit = std::move(unit);
+  return {std::move(shape), read_pair};
 }
 
 int read_word(const Shape& shape, const std::string& what, const Place& place,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "der/scenario/location.hpp"
+#include "der/scenario/rod.hpp"
 #include "der/scenario/series.hpp"
 #include "scenario/diagnostics.hpp"
 #include "scenario/shape.hpp"
@@ -43,7 +44,12 @@ Format<std::string> text();
 Format<std::string> name();
 /// One of some words, as itself.
 Format<std::string> one_of(const std::vector<Word>& words, std::vector<ReservedWord> reserved = {});
+/// A vector of two or three components. All vectors of a scene have as many, see check_vectors.
 Format<Components> vector(std::string unit);
+/// A vector of three components.
+Format<Components> space_vector(std::string unit);
+/// `[k1, k2]`.
+Format<CurvaturePair> pair(std::string unit);
 
 /// Position among the shape's words of the one that is written; -1 after a diagnostic, which says
 /// that `what` was expected.
@@ -113,13 +119,10 @@ Format<std::vector<T>> list_of(Format<T> item, int min_items) {
 /// A constant, or a table over time.
 Format<Series> series(const std::string& unit);
 Format<VectorSeries> vector_series(const std::string& unit);
+Format<VectorSeries> space_vector_series(const std::string& unit);
 
 /// `at:`. `All` names every node; without it the place is a single one.
 Format<Location> location();
 Format<Location> single_location(const std::string& why_not_all);
-
-/// The message about every value that has a third dimension.
-inline constexpr const char* kNoSpatialRods =
-    "spatial rods are not available in this version: the scene has to lie in the x-y plane";
 
 }  // namespace der::scenario

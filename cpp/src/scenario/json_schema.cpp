@@ -34,8 +34,9 @@ class SchemaBuilder {
       case Shape::Kind::Choice:
         return {{"enum", names_of(shape.words)}};
       case Shape::Kind::Vector:
-        return {
-            {"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
+        return numbers(shape.min_items, 3);
+      case Shape::Kind::Pair:
+        return numbers(2, 2);
       case Shape::Kind::List:
         return list(shape);
       case Shape::Kind::Table:
@@ -61,10 +62,7 @@ class SchemaBuilder {
     result["properties"] = std::move(properties);
     result["additionalProperties"] = false;
     if (!required.empty()) result["required"] = std::move(required);
-    if (info.one_key) {
-      result["minProperties"] = 1;
-      result["maxProperties"] = 1;
-    }
+    if (info.one_key) require_kind(info, result);
     for (const Alternatives& alternatives : info.alternatives) {
       result["allOf"].push_back({{"oneOf", branches(alternatives)}});
     }
@@ -82,6 +80,25 @@ class SchemaBuilder {
       schema[range.max_open ? "exclusiveMaximum" : "maximum"] = number(range.max);
     }
     return schema;
+  }
+
+  static Json numbers(int fewest, int most) {
+    return {{"type", "array"},
+            {"items", {{"type", "number"}}},
+            {"minItems", fewest},
+            {"maxItems", most}};
+  }
+
+  /// One of the keys that say which kind it is, and no other of them.
+  static void require_kind(const TableInfo& info, Json& schema) {
+    if (info.kinds().size() == info.fields.size()) {
+      schema["minProperties"] = 1;
+      schema["maxProperties"] = 1;
+      return;
+    }
+    for (const std::string& kind : info.kinds()) {
+      schema["oneOf"].push_back({{"required", Json::array({kind})}});
+    }
   }
 
   /// Whole bounds without a decimal point.

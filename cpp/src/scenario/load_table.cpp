@@ -38,17 +38,69 @@ Format<PointForce> point_force_format() {
                                "Where; any arc length. With `all` it acts on each node. A support "
                                "takes up the components that it holds there, with a warning.")
                      .required("force", &PointForce::force, vector_series("N"),
-                               "A constant, or a table over time."));
+                               "A constant, or a table over time.")
+                     .optional("follower", &PointForce::follower, boolean(),
+                               "Whether it turns with the rod; not available yet."));
 }
 
-Format<Moment> moment_format() {
+struct MomentValue {
+  Series about_z;
+  VectorSeries vector;
+};
+
+struct MomentText : Moment {
+  MomentValue value;
+};
+
+constexpr auto assign_moment = [](Load& load, MomentText&& text) {
+  text.moment = std::move(text.value.about_z);
+  text.moment_vector = std::move(text.value.vector);
+  load.what = static_cast<Moment&&>(text);
+};
+
+/// Whether a value is written as a vector, or as a table of such.
+bool is_vector(const Value& value) {
+  if (value.sequence()) return true;
+  const Entry* values = value.mapping() ? find_entry(*value.mapping(), "values") : nullptr;
+  const Sequence* items = values ? values->value.sequence() : nullptr;
+  return items && !items->empty() && items->front().sequence();
+}
+
+/// A moment about z, or a vector, each constant or over time.
+Format<MomentValue> moment_value_format() {
+  const Format<Series> about_z = series("N m");
+  const Format<VectorSeries> vector = space_vector_series("N m");
+  Shape shape{Shape::Kind::AnyOf};
+  shape.unit = about_z.shape.unit;
+  for (const Shape* form : {&about_z.shape, &vector.shape}) {
+    shape.parts.insert(shape.parts.end(), form->parts.begin(), form->parts.end());
+  }
+  return {std::move(shape), [about_z, vector](const Shape& /*self*/, const Place& place,
+                                              Diagnostics& diagnostics, MomentValue& out) {
+            const Sequence* items = place.value->sequence();
+            if (items && items->size() != 3) {
+              report_expected(fmt::format("{} or {}", expected(about_z.shape.parts[0]),
+                                          expected(vector.shape.parts[0])),
+                              place, diagnostics);
+              return false;
+            }
+            if (is_vector(*place.value)) return vector.read(place, diagnostics, out.vector);
+            return about_z.read(place, diagnostics, out.about_z);
+          }};
+}
+
+Format<MomentText> moment_format() {
   return mapping(
-      Table<Moment>("moment", "A moment about z, positive counter-clockwise.")
+      Table<MomentText>("moment", "A moment at a place of a rod.")
           .required("rod", &Moment::rod, name(), "Name of the rod.")
           .required("at", &Moment::at,
                     single_location("'all' is not a single place, and a moment acts at one"),
                     "Where; any arc length.")
-          .required("moment", &Moment::moment, series("N m"), "A constant, or a table over time."));
+          .required("moment", &MomentText::value, moment_value_format(),
+                    "A number: about z, positive counter-clockwise. A vector in a scene of three "
+                    "components. Constant, or a table over time.")
+          .optional("follower", &Moment::follower, boolean(),
+                    "Whether it turns with the rod; not available yet."));
 }
 
 /// Where the part of a rod lies on which a load acts: the last keys of its table.
@@ -82,7 +134,7 @@ Format<Foundation> foundation_format() {
                         "Springs along a part of a rod that pull every point to where it is drawn.")
           .required("rod", &Foundation::rod, name(), "Name of the rod.")
           .required("stiffness", &Foundation::stiffness, axis_stiffness("N/m^2"),
-                    "Force per rest length and displacement: of both axes, or one along each; at "
+                    "Force per rest length and displacement: of all axes, or one along each; at "
                     "least one greater than 0.")));
 }
 
@@ -98,7 +150,7 @@ Format<Load> load_format() {
           .kind(Fluid::kKey, fluid_format(), assign_load, "A viscous fluid around the spheres.")
           .kind(Damping::kKey, damping_format(), assign_load, "Linear damping along rods.")
           .kind(PointForce::kKey, point_force_format(), assign_load, "A force at a place.")
-          .kind(Moment::kKey, moment_format(), assign_load, "A moment at a place.")
+          .kind(Moment::kKey, moment_format(), assign_moment, "A moment at a place.")
           .kind(DistributedForce::kKey, distributed_force_format(), assign_load,
                 "A force per length on a part of a rod.")
           .kind(Foundation::kKey, foundation_format(), assign_load,

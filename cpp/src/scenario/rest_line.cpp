@@ -6,10 +6,14 @@
 
 namespace der::scenario {
 
+double distance(const Components& a, const Components& b) {
+  const double in_plane = std::hypot(b[0] - a[0], b[1] - a[1]);
+  return a.size() > 2 ? std::hypot(in_plane, b[2] - a[2]) : in_plane;
+}
+
 RestLine::RestLine(const std::vector<Components>& points) : arc_length_(points.size()) {
   for (std::size_t i = 1; i < points.size(); ++i) {
-    arc_length_[i] = arc_length_[i - 1] +
-                     std::hypot(points[i][0] - points[i - 1][0], points[i][1] - points[i - 1][1]);
+    arc_length_[i] = arc_length_[i - 1] + distance(points[i - 1], points[i]);
   }
 }
 

@@ -7,6 +7,9 @@
 
 namespace der::scenario {
 
+/// Distance of two points that have as many components [m].
+double distance(const Components& a, const Components& b);
+
 /// A rod's rest length as a line with nodes on it.
 class RestLine {
  public:

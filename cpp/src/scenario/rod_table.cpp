@@ -4,9 +4,8 @@
 namespace der::scenario {
 namespace {
 
-/// Puts a kind of a variant into it.
-constexpr auto assign_kind = [](auto& target, auto&& kind) {
-  target = std::forward<decltype(kind)>(kind);
+constexpr auto assign_kind = [](SectionText& section, auto&& kind) {
+  section.shape = std::forward<decltype(kind)>(kind);
 };
 
 Format<Circle> circle_format() {
@@ -29,12 +28,29 @@ Format<Tube> tube_format() {
           }));
 }
 
+constexpr const char* kWidth =
+    "Size along the director: without one, out of the plane of a planar scene.";
+constexpr const char* kHeight =
+    "Size across the director: without one, in the plane of bending of a planar scene.";
+
 Format<Rectangle> rectangle_format() {
   return mapping(Table<Rectangle>("rectangle", "A solid rod with a rectangular cross-section.")
-                     .required("width", &Rectangle::width, number("m", positive()),
-                               "Size out of the plane of a planar scene.")
-                     .required("height", &Rectangle::height, number("m", positive()),
-                               "Size in the plane of bending of a planar scene."));
+                     .required("width", &Rectangle::width, number("m", positive()), kWidth)
+                     .required("height", &Rectangle::height, number("m", positive()), kHeight));
+}
+
+Format<Ellipse> ellipse_format() {
+  return mapping(Table<Ellipse>("ellipse", "A solid rod with an elliptic cross-section.")
+                     .required("width", &Ellipse::width, number("m", positive()), kWidth)
+                     .required("height", &Ellipse::height, number("m", positive()), kHeight));
+}
+
+/// Bending stiffnesses of which one is 0 would leave a rod that resists bending to one side only.
+void check_stiffness(Stiffness& stiffness, const Place& place, Diagnostics& diagnostics) {
+  if (stiffness.EI || (*stiffness.EI1 == 0.0) == (*stiffness.EI2 == 0.0)) return;
+  const char* none = *stiffness.EI1 == 0.0 ? "EI1" : "EI2";
+  diagnostics.add(place.at(*find_entry(*place.value->mapping(), none)),
+                  "'EI1' and 'EI2' are both greater than 0, or both 0 for a cable");
 }
 
 Format<Stiffness> stiffness_format() {
@@ -43,29 +59,54 @@ Format<Stiffness> stiffness_format() {
                        "The stiffnesses themselves, for a cross-section of any other "
                        "kind. Such a rod has no `material`.")
           .required("EA", &Stiffness::EA, number("N", positive()), "Against stretching.")
-          .required("EI", &Stiffness::EI, number("N m^2", not_negative()),
-                    "Against bending; 0 makes a cable, which does not resist it.")
+          .optional("EI", &Stiffness::EI, number("N m^2", not_negative()),
+                    "Against bending to any side; 0 makes a cable, which does not resist it.")
+          .optional("EI1", &Stiffness::EI1, number("N m^2", not_negative()),
+                    "Against bending toward the director (that of the width).")
+          .optional("EI2", &Stiffness::EI2, number("N m^2", not_negative()),
+                    "Against bending across the director: without one, in the plane of a planar "
+                    "scene.")
+          .either({{"EI"}, {"EI1", "EI2"}})
           .optional("GJ", &Stiffness::GJ, number("N m^2", positive()),
-                    "Against twisting. A planar scene does not twist and does not need it.")
+                    "Against twisting; needed where the scene twists.")
           .required("mass_per_length", &Stiffness::mass_per_length, number("kg/m", not_negative()),
-                    "Mass per rest length."));
+                    "Mass per rest length.")
+          .optional("rotary_inertia", &Stiffness::rotary_inertia, number("kg m", not_negative()),
+                    "Mass moment of inertia about the tangent per rest length, for the spin of "
+                    "sections.",
+                    "0")
+          .check(check_stiffness));
 }
 
-Format<CrossSection> cross_section_format() {
-  return mapping(Table<CrossSection>("cross-section", "Exactly one of these keys.")
-                     .kind("circle", circle_format(), assign_kind, "A solid round rod.")
-                     .kind("tube", tube_format(), assign_kind, "A hollow round rod.")
-                     .kind("rectangle", rectangle_format(), assign_kind, "A rectangular rod.")
-                     .kind("stiffness", stiffness_format(), assign_kind,
-                           "The stiffnesses themselves; then without `material`."));
+Format<SectionText> cross_section_format() {
+  return mapping(
+      Table<SectionText>("cross-section", "Exactly one of the kinds, and where it points.")
+          .kind("circle", circle_format(), assign_kind, "A solid round rod.")
+          .kind("tube", tube_format(), assign_kind, "A hollow round rod.")
+          .kind("rectangle", rectangle_format(), assign_kind, "A rectangular rod.")
+          .kind("ellipse", ellipse_format(), assign_kind, "An elliptic rod.")
+          .kind("stiffness", stiffness_format(), assign_kind,
+                "The stiffnesses themselves; then without `material`.")
+          .optional("director", &SectionText::director, vector(""),
+                    "Direction of the width where the rod begins, of any length. It is made "
+                    "perpendicular to the rod and goes along it without twist.",
+                    "[0, 0, 1]"));
 }
 
 Format<Material> material_format() {
-  return mapping(Table<Material>("material", "A linearly elastic material.")
-                     .required("youngs_modulus", &Material::youngs_modulus,
-                               number("Pa", positive()), "Young's modulus.")
-                     .required("density", &Material::density, number("kg/m^3", not_negative()),
-                               "Density; 0 for a rod whose mass is only in its spheres."));
+  return mapping(
+      Table<Material>("material", "A linearly elastic material.")
+          .required("youngs_modulus", &Material::youngs_modulus, number("Pa", positive()),
+                    "Young's modulus.")
+          .optional("poissons_ratio", &Material::poissons_ratio,
+                    number("", Range{-1.0, true, 0.5, false}),
+                    "Poisson's ratio, which gives the shear modulus. A scene that twists "
+                    "needs one of the two.")
+          .optional("shear_modulus", &Material::shear_modulus, number("Pa", positive()),
+                    "Shear modulus.")
+          .at_most_one({{"poissons_ratio"}, {"shear_modulus"}})
+          .required("density", &Material::density, number("kg/m^3", not_negative()),
+                    "Density; 0 for a rod whose mass is only in its spheres."));
 }
 
 Format<Sphere> sphere_format() {
@@ -81,14 +122,20 @@ Format<Sphere> sphere_format() {
 Format<NaturalCurvature> natural_curvature_format() {
   const Format<double> constant = number("1/m");
   const Format<std::vector<double>> list = list_of(number("1/m"), 1);
+  const Format<CurvaturePair> both = pair("1/m");
+  const Format<std::vector<CurvaturePair>> pairs = list_of(both, 1);
   Shape shape{Shape::Kind::AnyOf};
   shape.unit = constant.shape.unit;
-  shape.parts = {constant.shape, list.shape};
-  return {std::move(shape), [constant, list](const Shape& /*self*/, const Place& place,
-                                             Diagnostics& diagnostics, NaturalCurvature& out) {
-            if (!place.value->sequence()) {
-              return constant.read(place, diagnostics, out.emplace<double>());
+  shape.parts = {constant.shape, list.shape, both.shape, pairs.shape};
+  return {std::move(shape),
+          [constant, list, pairs](const Shape& /*self*/, const Place& place,
+                                  Diagnostics& diagnostics, NaturalCurvature& out) {
+            const Sequence* items = place.value->sequence();
+            if (!items) return constant.read(place, diagnostics, out.emplace<double>());
+            if (!items->empty() && items->front().sequence()) {
+              return pairs.read(place, diagnostics, out.emplace<std::vector<CurvaturePair>>());
             }
+            // A pair is told from a list by the checks, which know the scene's vectors.
             return list.read(place, diagnostics, out.emplace<std::vector<double>>());
           }};
 }
@@ -134,16 +181,24 @@ Format<RodText> rod_format() {
           .optional("points", &RodText::given_points, list_of(vector("m"), 2),
                     "The nodes, one by one.")
           .either({{"nodes", "from", "to"}, {"points"}})
-          .required("cross_section", &Rod::cross_section, cross_section_format(),
+          .required("cross_section", &RodText::section, cross_section_format(),
                     "Shape and size across the rod.")
           .optional("material", &Rod::material, material_format(),
                     "Material of the rod; needed with every cross-section but `stiffness`.")
           .optional("curvature", &Rod::curvature, curvature_format(),
                     "Measure of bending at a node.")
           .optional("natural_curvature", &Rod::natural_curvature, natural_curvature_format(),
-                    "Curvature without stress, positive counter-clockwise: one number, or one for "
-                    "each node.",
+                    "Curvature without stress: in a scene of two components a number, positive "
+                    "counter-clockwise, or one for each node; in a scene of three the curvatures "
+                    "toward the director (that of the width) and across it, or a list of such with "
+                    "one for each node.",
                     "as drawn")
+          .optional("natural_twist", &Rod::natural_twist, number("rad/m"),
+                    "Twist without stress, right-handed.", "as drawn")
+          .optional("initial_twist", &Rod::initial_twist, number("rad/m"),
+                    "Twist as drawn, right-handed: the director turns about the rod so much.")
+          .optional("closed", &RodText::closed, boolean(),
+                    "Whether the last node is joined to the first; not available yet.")
           .optional("initial_velocity", &RodText::given_velocity, velocities_format(),
                     "One vector for all nodes, or one for each.", "at rest")
           .optional("spheres", &Rod::spheres, list_of(sphere_format(), 0),

@@ -25,7 +25,7 @@ Format<std::string> quantity_format() {
     const std::string unit = quantity.unit.empty() ? "" : " [" + quantity.unit + "]";
     names.push_back({quantity.name, quantity.meaning + unit});
   }
-  return one_of(names, {{"z", kNoSpatialRods}, {"vz", kNoSpatialRods}, {"twist", kNoSpatialRods}});
+  return one_of(names);
 }
 
 /// `over: rod`: the only span there is.
@@ -178,8 +178,10 @@ const Format<SceneText>& scene_format() {
               "model", &Scene::model,
               choice<ModelChoice>(
                   {{{"auto", "the smallest model that can represent the scene"}, ModelChoice::Auto},
-                   {{"planar", "positions and bending in the x-y plane"}, ModelChoice::Planar}},
-                  {{"spatial", kNoSpatialRods}, {"spatial_bend", kNoSpatialRods}}),
+                   {{"planar", "positions and bending in the x-y plane"}, ModelChoice::Planar},
+                   {{"spatial_bend", "positions and bending in space, of rods that do not twist"},
+                    ModelChoice::SpatialBend},
+                   {{"spatial", "positions, bending and twist in space"}, ModelChoice::Spatial}}),
               "Mechanical model.")
           .required("rods", &SceneText::given_rods, list_of(rod_format(), 1), "The rods.")
           .optional("supports", &Scene::supports, list_of(support_format(), 0),

@@ -24,9 +24,6 @@ scenario::Scene read_scene(const Document& document) {
                         : "a scene is a mapping of keys such as 'rods' and 'time'");
   }
   diagnostics.throw_if_any();
-  for (scenario::RodText& rod : text.given_rods) {
-    text.rods.push_back(static_cast<scenario::Rod&&>(rod));
-  }
   return static_cast<scenario::Scene&&>(text);
 }
 

@@ -64,7 +64,9 @@ std::string value_text(const Shape& shape) {
     case Shape::Kind::Choice:
       return code_list(names_of(shape.words), ", ");
     case Shape::Kind::Vector:
-      return "`[x, y]`";
+      return shape.min_items == 3 ? "`[x, y, z]`" : "`[x, y]`, `[x, y, z]`";
+    case Shape::Kind::Pair:
+      return "`[k1, k2]`";
     case Shape::Kind::List:
       return "list of: " + value_text(shape.parts.front());
     case Shape::Kind::Table:

@@ -13,7 +13,15 @@ namespace der::scenario {
 /// One vector for all nodes, or one for each.
 using Velocities = std::variant<std::monostate, Components, std::vector<Components>>;
 
+/// `cross_section:`.
+struct SectionText {
+  CrossSection shape;
+  std::optional<Components> director;
+};
+
 struct RodText : Rod {
+  SectionText section;
+  bool closed = false;
   std::vector<Components> given_points;  ///< or:
   std::optional<int> nodes;
   Components from;
@@ -35,6 +43,7 @@ struct TimeText : Time {
   std::optional<double> given_spectral_radius;
 };
 
+/// The scene's own `rods`, `time` and `output` are completed by the checks.
 struct SceneText : Scene {
   std::vector<RodText> given_rods;
   TimeText given_time;

@@ -15,6 +15,12 @@ double value_at(const Series& series, double t) {
   return series.values[i - 1] + share * (series.values[i] - series.values[i - 1]);
 }
 
+bool is_zero(const Components& components) {
+  return std::all_of(components.begin(), components.end(), [](double c) { return c == 0.0; });
+}
+
+bool is_zero(const Series& series) { return is_zero(series.values); }
+
 void set_to_zero(Components& components) { std::fill(components.begin(), components.end(), 0.0); }
 
 void set_to_zero(Series& series) { set_to_zero(series.values); }

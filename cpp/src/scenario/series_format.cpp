@@ -61,4 +61,8 @@ Format<VectorSeries> vector_series(const std::string& unit) {
   return constant_or_table<VectorSeries>(vector(unit), "table of vectors");
 }
 
+Format<VectorSeries> space_vector_series(const std::string& unit) {
+  return constant_or_table<VectorSeries>(space_vector(unit), "table of vectors in space");
+}
+
 }  // namespace der::scenario

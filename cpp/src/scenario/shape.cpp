@@ -32,6 +32,14 @@ std::vector<std::string> TableInfo::keys() const {
   return keys;
 }
 
+std::vector<std::string> TableInfo::kinds() const {
+  std::vector<std::string> kinds;
+  for (const FieldInfo& field : fields) {
+    if (field.is_kind) kinds.push_back(field.key);
+  }
+  return kinds;
+}
+
 int TableInfo::find(std::string_view key) const {
   for (std::size_t i = 0; i < fields.size(); ++i) {
     if (fields[i].key == key) return static_cast<int>(i);
@@ -41,7 +49,7 @@ int TableInfo::find(std::string_view key) const {
 
 std::string expected_mapping(const TableInfo& table) {
   if (table.one_key && table.fields.size() > 1) {
-    return "a mapping with one of the keys " + listed(table.keys(), " or ");
+    return "a mapping with one of the keys " + listed(table.kinds(), " or ");
   }
   return fmt::format("a mapping with the key{} {}", table.fields.size() == 1 ? "" : "s",
                      listed(table.keys()));
@@ -62,7 +70,10 @@ std::string expected(const Shape& shape) {
     case Shape::Kind::Choice:
       return listed(names_of(shape.words), " or ");
     case Shape::Kind::Vector:
-      return with_unit("a vector [x, y]", shape);
+      return with_unit(shape.min_items == 3 ? "a vector [x, y, z]" : "a vector [x, y] or [x, y, z]",
+                       shape);
+    case Shape::Kind::Pair:
+      return with_unit("a pair [k1, k2]", shape);
     case Shape::Kind::List:
       return "a list";
     case Shape::Kind::Table:

@@ -47,7 +47,8 @@ struct Shape {
     Text,
     Name,
     Choice,
-    Vector,       ///< [x, y]
+    Vector,       ///< [x, y] or [x, y, z]; with `min_items` 3 only the latter
+    Pair,         ///< [k1, k2]
     List,         ///< of parts[0]
     Table,        ///< a mapping with the keys of `table`
     NamedTables,  ///< a mapping from free names to `table`
@@ -71,6 +72,7 @@ struct FieldInfo {
   std::string default_text;         ///< as it would be written, or in words; "" if there is none
   bool default_is_literal = false;  ///< `default_text` is a value, not words
   std::string doc;
+  bool is_kind = false;  ///< in a table with `one_key`: it says which kind the mapping is
 };
 
 /// Keys of which only one branch may be present; all keys of that branch are then needed.
@@ -97,10 +99,12 @@ struct TableInfo {
   std::string doc;
   std::vector<FieldInfo> fields;
   std::vector<Alternatives> alternatives;
-  bool one_key = false;          ///< exactly one of the keys is present: it says which kind it is
+  bool one_key = false;          ///< exactly one of the keys that say which kind it is is present
   bool unit_of_the_key = false;  ///< values take the unit of the key that the table stands under
 
   [[nodiscard]] std::vector<std::string> keys() const;
+  /// Those that say which kind it is.
+  [[nodiscard]] std::vector<std::string> kinds() const;
   /// Position in `fields`; -1 for an unknown key.
   [[nodiscard]] int find(std::string_view key) const;
 };

@@ -11,7 +11,15 @@ namespace {
 struct PrescribeText {
   std::optional<Series> x;
   std::optional<Series> y;
+  std::optional<Series> z;
   std::optional<Series> angle;
+  std::optional<AxisRotation> rotation;
+  std::optional<Series> twist;
+
+  [[nodiscard]] const std::optional<Series>& displacement(Component component) const {
+    return component == Component::X ? x : component == Component::Y ? y : z;
+  }
+  [[nodiscard]] bool moves() const { return x || y || z || angle || rotation || twist; }
 };
 
 struct SupportText : Support {
@@ -20,8 +28,45 @@ struct SupportText : Support {
 
 Format<Component> component_format() {
   return choice<Component>(
-      {{{"x", "horizontal"}, Component::X}, {{"y", "vertical"}, Component::Y}},
-      {{"z", kNoSpatialRods}, {"angle", "to hold the direction of the rod write 'clamp: true'"}});
+      {{{"x", ""}, Component::X}, {{"y", ""}, Component::Y}, {{"z", ""}, Component::Z}},
+      {{"angle", "to hold the direction of the rod write 'clamp: true'"},
+       {"twist", "to hold the section of the rod write 'clamp: true'"}});
+}
+
+/// `true`, `false` or `tangent`.
+Format<Clamp> clamp_format() {
+  const Format<bool> truth = boolean();
+  const Format<Clamp> word = choice<Clamp>(
+      {{{"tangent",
+         "the node and the direction of the rod are held, and the rod is free to spin "
+         "about it (as with `true` in a planar scene)"},
+        Clamp::Tangent}});
+  Shape shape{Shape::Kind::AnyOf};
+  shape.parts = {truth.shape, word.shape};
+  return {std::move(shape),
+          [truth](const Shape& self, const Place& place, Diagnostics& diagnostics, Clamp& out) {
+            const std::string* written = text_of(*place.value);
+            if (written && *written == "tangent") {
+              out = Clamp::Tangent;
+              return true;
+            }
+            bool held = false;
+            if (!truth.read_shape(self, place, diagnostics, held)) return false;
+            out = held ? Clamp::Section : Clamp::None;
+            return true;
+          }};
+}
+
+Format<AxisRotation> rotation_format() {
+  return mapping(
+      Table<AxisRotation>("rotation", "Turns a clamp about an axis through its node.")
+          .required("axis", &AxisRotation::axis, space_vector(""), "Direction, of any length.")
+          .required("angle", &AxisRotation::angle, series("rad"), "Angle, right-handed.")
+          .check([](AxisRotation& rotation, const Place& place, Diagnostics& diagnostics) {
+            if (!is_zero(rotation.axis)) return;
+            diagnostics.add(place.at(*find_entry(*place.value->mapping(), "axis")),
+                            "an axis needs a direction: its components are all 0");
+          }));
 }
 
 Format<PrescribeText> prescribe_format() {
@@ -29,19 +74,26 @@ Format<PrescribeText> prescribe_format() {
       Table<PrescribeText>("prescribed motion",
                            "Displacements from the initial position and the "
                            "rotation of a clamp, over time.")
-          .optional("x", &PrescribeText::x, series("m"), "Horizontal displacement.")
-          .optional("y", &PrescribeText::y, series("m"), "Vertical displacement.")
+          .optional("x", &PrescribeText::x, series("m"), "Displacement along x.")
+          .optional("y", &PrescribeText::y, series("m"), "Displacement along y.")
+          .optional("z", &PrescribeText::z, series("m"), "Displacement along z.")
           .optional("angle", &PrescribeText::angle, series("rad"),
-                    "Rotation of the clamped tangent, positive counter-clockwise; only with "
-                    "`clamp: true`."));
+                    "Rotation of the clamped tangent, positive counter-clockwise; only with a "
+                    "clamp, in a scene of two components.")
+          .optional("rotation", &PrescribeText::rotation, rotation_format(),
+                    "Rotation of a clamp about an axis.")
+          .optional("twist", &PrescribeText::twist, series("rad"),
+                    "Rotation of the clamped section about the held tangent, right-handed about "
+                    "the direction of growing arc length; only with `clamp: true`.")
+          .at_most_one({{"angle"}, {"rotation"}}));
 }
 
 Format<Spring> spring_format() {
   return mapping(
       Table<Spring>("spring", "An elastic support.")
           .optional("stiffness", &Spring::stiffness, axis_stiffness("N/m"),
-                    "Force per displacement from the anchor: one number, or one each along x and "
-                    "y, of which one may be 0.",
+                    "Force per displacement from the anchor: one number, or one along each axis, "
+                    "of which some may be 0.",
                     "none")
           .optional("anchor", &Spring::anchor, vector("m"),
                     "Where the place is without a force of the spring.",
@@ -61,27 +113,34 @@ Format<Spring> spring_format() {
 
 /// Describes a contradiction between the keys of one support; "" if there is none.
 std::string contradiction(const SupportText& support) {
-  const bool moves = support.motion.x || support.motion.y || support.motion.angle;
-  if (support.clamp && !support.fix.empty()) {
-    return "'clamp: true' holds every component already: remove 'fix'";
+  const PrescribeText& motion = support.motion;
+  const char* held = support.clamp == Clamp::Tangent ? "tangent" : "true";
+  if (support.clamps() && !support.fix.empty()) {
+    return fmt::format("'clamp: {}' holds every component already: remove 'fix'", held);
   }
-  if (support.clamp && support.spring) {
-    return "'clamp: true' holds all that a spring could: remove one of them";
+  if (support.clamps() && support.spring) {
+    return fmt::format("'clamp: {}' holds all that a spring could: remove one of them", held);
   }
-  if (!support.clamp && support.motion.angle) {
-    return "'angle' turns a clamp: add 'clamp: true', or remove it";
+  if (support.clamp == Clamp::Tangent && motion.twist) {
+    return "'twist' turns a section that is held, and 'clamp: tangent' leaves it free: write "
+           "'clamp: true', or remove it";
   }
-  if (!support.clamp && support.fix.empty() && !moves && !support.spring) {
+  if (!support.clamps()) {
+    if (motion.angle) return "'angle' turns a clamp: add 'clamp: true', or remove it";
+    if (motion.rotation) return "'rotation' turns a clamp: add 'clamp: true', or remove it";
+    if (motion.twist) return "'twist' turns a clamp: add 'clamp: true', or remove it";
+  }
+  if (!support.holds() && !motion.moves() && !support.spring) {
     return "this support holds nothing: give 'fix', 'clamp: true', 'prescribe' or 'spring'";
   }
   for (std::size_t i = 0; i < support.fix.size(); ++i) {
     const Component component = support.fix[i];
-    const char* name = component == Component::X ? "x" : "y";
+    const char* name = name_of(component);
     if (std::find(support.fix.begin(), support.fix.begin() + static_cast<std::ptrdiff_t>(i),
                   component) != support.fix.begin() + static_cast<std::ptrdiff_t>(i)) {
       return fmt::format("'{}' is fixed twice", name);
     }
-    if (component == Component::X ? support.motion.x.has_value() : support.motion.y.has_value()) {
+    if (motion.displacement(component)) {
       return fmt::format("'{}' is both fixed and prescribed: give one or the other", name);
     }
   }
@@ -94,9 +153,13 @@ void check_support(SupportText& support, const Place& place, Diagnostics& diagno
 }
 
 Support completed(SupportText text) {
-  if (text.motion.x) text.prescribe.push_back({Component::X, std::move(*text.motion.x)});
-  if (text.motion.y) text.prescribe.push_back({Component::Y, std::move(*text.motion.y)});
+  for (const Component component : {Component::X, Component::Y, Component::Z}) {
+    const std::optional<Series>& displacement = text.motion.displacement(component);
+    if (displacement) text.prescribe.push_back({component, *displacement});
+  }
   text.rotation = std::move(text.motion.angle);
+  text.axis_rotation = std::move(text.motion.rotation);
+  text.twist = std::move(text.motion.twist);
   return static_cast<Support&&>(text);
 }
 
@@ -110,8 +173,10 @@ Format<Support> support_format() {
                     "The node, or all; there has to be a node. For a spring alone: any arc length.")
           .optional("fix", &Support::fix, list_of(component_format(), 1),
                     "Components that stay at their initial value.")
-          .optional("clamp", &Support::clamp, boolean(),
-                    "Whether the node and the direction of the rod at it are held.")
+          .optional("clamp", &Support::clamp, clamp_format(),
+                    "Whether the node, the direction of the rod at it and its section are held: "
+                    "all that a wall holds.",
+                    "false")
           .optional("prescribe", &SupportText::motion, prescribe_format(),
                     "Components that move over time.")
           .optional("spring", &Support::spring, spring_format(),

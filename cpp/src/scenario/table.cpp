@@ -52,19 +52,21 @@ class KeyReader {
   }
 
   void check_one_key() {
-    const Mapping& entries = *place_.value->mapping();
-    if (!table_.one_key || entries.size() == 1) return;
-    if (entries.empty()) {
-      diagnostics_.add(
-          place_, fmt::format("{} needs one of the keys {}", noun_, listed(table_.keys(), " or ")));
+    if (!table_.one_key) return;
+    std::vector<std::string> given;
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      if (table_.fields[i].is_kind && seen_[i]) given.push_back(table_.fields[i].key);
+    }
+    if (given.size() == 1) return;
+    if (given.empty()) {
+      diagnostics_.add(place_, fmt::format("{} needs one of the keys {}", noun_,
+                                           listed(table_.kinds(), " or ")));
       return;
     }
-    std::vector<std::string> given;
-    for (const Entry& entry : entries) given.push_back(entry.key);
     diagnostics_.add(place_,
                      fmt::format("{} has one key, which says what it is, but here are {}: {} (is "
                                  "a list dash '- ' missing, or the indentation wrong?)",
-                                 noun_, entries.size(), listed(given)));
+                                 noun_, given.size(), listed(given)));
   }
 
  private:

@@ -58,11 +58,12 @@ class Table {
     return field(std::move(info), format, assign(member));
   }
 
-  /// One kind of a mapping whose only key says which kind it is.
+  /// One kind of a mapping in which one key says which kind it is.
   template <class T, class Assign>
   Table& kind(std::string key, const Format<T>& format, Assign set, std::string doc) {
     info_.one_key = true;
-    return field({std::move(key), format.shape, false, {}, false, std::move(doc)}, format, set);
+    return field({std::move(key), format.shape, false, {}, false, std::move(doc), true}, format,
+                 set);
   }
 
   /// Exactly one of the branches has to be given, with all its keys.

@@ -10,8 +10,6 @@
 namespace der {
 namespace {
 
-using scenario::Component;
-
 struct Table {
   std::string path;  ///< as in `--set`
   const std::vector<double>& times;
@@ -20,8 +18,8 @@ struct Table {
 void add_tables(const scenario::Support& support, const std::string& path,
                 std::vector<Table>& tables) {
   for (const scenario::Prescribed& motion : support.prescribe) {
-    const char* component = motion.component == Component::X ? "x" : "y";
-    tables.push_back({fmt::format("{}.prescribe.{}", path, component), motion.displacement.times});
+    tables.push_back({fmt::format("{}.prescribe.{}", path, name_of(motion.component)),
+                      motion.displacement.times});
   }
   if (support.rotation) tables.push_back({path + ".prescribe.angle", support.rotation->times});
 }

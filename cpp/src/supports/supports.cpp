@@ -36,7 +36,7 @@ void add_support(const scenario::Support& support, std::size_t number, Model& mo
     for (const auto component : support.fix) {
       hold(model, model.dof(node, static_cast<int>(component)), -1);
     }
-    if (support.clamp) {
+    if (support.clamps()) {
       for (int c = 0; c < model.dimension; ++c) hold(model, model.dof(node, c), -1);
       hold_tangent(support, place, rod, model);
       const Clamp* clamp = rod.clamp_at(place);

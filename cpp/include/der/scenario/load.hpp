@@ -69,13 +69,17 @@ struct Damping {
 };
 struct PointForce : AtPlace {
   static constexpr const char* kKey = "point_force";
-  VectorSeries force;  ///< [N], dead (keeps its direction)
+  VectorSeries force;     ///< [N]
+  bool follower = false;  ///< whether it turns with the rod; otherwise it keeps its direction
   static constexpr auto kAmounts = single_amount("force", &PointForce::force);
 };
 struct Moment : AtPlace {
   static constexpr const char* kKey = "moment";
-  Series moment;  ///< [N m] about z, positive counter-clockwise
-  static constexpr auto kAmounts = single_amount("moment", &Moment::moment);
+  Series moment;               ///< [N m] about z, positive counter-clockwise: of the planar model
+  VectorSeries moment_vector;  ///< [N m] of the spatial models; not given in the planar one
+  bool follower = false;       ///< whether it turns with the rod
+  static constexpr auto kAmounts = std::tuple_cat(single_amount("moment", &Moment::moment),
+                                                  single_amount("moment", &Moment::moment_vector));
 };
 /// A dead force per unit rest length.
 struct DistributedForce : OnPart {
@@ -88,7 +92,7 @@ struct DistributedForce : OnPart {
 /// drawn. It holds the rod as a support does: a path of loads leaves it as it is.
 struct Foundation : OnPart {
   static constexpr const char* kKey = "foundation";
-  Components stiffness;  ///< [N/m^2] along x and y, per unit rest length
+  Components stiffness;  ///< [N/m^2] along each axis, per unit rest length
 };
 
 /// Every kind of load.

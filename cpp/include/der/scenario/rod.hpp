@@ -23,17 +23,31 @@ struct Sphere {
 
 /// The rod is stress-free in its initial shape.
 struct AsDrawn {};
-/// Signed natural curvature [1/m], positive counter-clockwise: one value, or one for each node.
-using NaturalCurvature = std::variant<AsDrawn, double, std::vector<double>>;
+/// Curvature [1/m] toward directors 1 and 2 of the section.
+struct CurvaturePair {
+  double first = 0.0;
+  double second = 0.0;
+};
+/// Natural curvature [1/m]: one value, or one for each node. Scenes of the planar model have signed
+/// values, positive counter-clockwise; scenes of the spatial models have pairs.
+using NaturalCurvature =
+    std::variant<AsDrawn, double, std::vector<double>, CurvaturePair, std::vector<CurvaturePair>>;
 
 struct Rod {
   std::string name;
   /// Initial node positions [m], one per node (from `points`, or spaced evenly over `from`..`to`).
   std::vector<Components> points;
   CrossSection cross_section;
+  /// Direction of director 1, that of the section's width, at the rod's start: any length, three
+  /// components, made perpendicular to the first edge. Absent: +z, or where the rod begins along z
+  /// (of sections whose two bending stiffnesses are equal only) any direction.
+  std::optional<Components> director;
   std::optional<Material> material;  ///< absent only with `Stiffness`
   CurvatureMeasure curvature = CurvatureMeasure::Angle;
   NaturalCurvature natural_curvature = AsDrawn{};
+  std::optional<double> natural_twist;  ///< [rad/m]; absent: stress-free as drawn
+  /// Twist of the drawn frames [rad/m] against frames that are transported without twist.
+  double initial_twist = 0.0;
   /// Initial velocities [m/s], one per node; empty: at rest.
   std::vector<Components> initial_velocity;
   std::vector<Sphere> spheres;

@@ -18,7 +18,12 @@ namespace der::scenario {
 
 struct Load;
 
-enum class ModelChoice { Auto, Planar };
+enum class ModelChoice {
+  Auto,
+  Planar,       ///< x and y of each node
+  SpatialBend,  ///< x, y and z of each node
+  Spatial,      ///< x, y and z of each node, and the angle of each edge's section
+};
 
 /// The copies and the end of a scene are in scene.cpp, where `Load` is complete: a new kind of load
 /// recompiles only those who include load.hpp.
@@ -31,8 +36,10 @@ struct Scene {
   ~Scene();
 
   std::string title;
-  int dimension = 2;  ///< of the vectors in the text: 2 or 3
-  ModelChoice model = ModelChoice::Auto;
+  /// Components of all vectors but `Rod::director` and `AxisRotation::axis`, which have 3: 2 in a
+  /// scene of the planar model, else 3.
+  int dimension = 2;
+  ModelChoice model = ModelChoice::Auto;  ///< as asked for; see model_choice.hpp
   Analysis analysis = DynamicAnalysis{};
   std::vector<Rod> rods;
   std::vector<Support> supports;

@@ -18,12 +18,16 @@ struct Series {
 /// Value of a table at time `t` [s]: linear between entries, constant beyond both ends.
 double value_at(const Series& series, double t);
 
-/// As `Series`, with a vector value for each time.
+/// As `Series`, with a vector value for each time; without any value it is not given.
 struct VectorSeries {
   std::vector<double> times{0.0};
   std::vector<Components> values;
-  [[nodiscard]] bool constant() const { return values.size() == 1; }
+  [[nodiscard]] bool constant() const { return values.size() <= 1; }
 };
+
+/// Whether every value is zero.
+bool is_zero(const Components& components);
+bool is_zero(const Series& series);
 
 /// Sets every value to zero and keeps the times.
 void set_to_zero(Components& components);

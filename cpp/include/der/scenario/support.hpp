@@ -11,6 +11,8 @@
 namespace der::scenario {
 
 enum class Component { X, Y, Z };
+/// "x", "y" or "z".
+const char* name_of(Component component);
 
 /// A component that moves by a table: its displacement from the initial position [m].
 struct Prescribed {
@@ -26,18 +28,38 @@ struct Spring {
   double rotational_stiffness = 0.0;  ///< [N m/rad]; 0: none
 };
 
+/// What a clamp holds besides the node.
+enum class Clamp {
+  None,     ///< there is no clamp
+  Section,  ///< the tangent and the section: all that a wall holds
+  Tangent,  ///< the tangent; the rod is free to spin about it
+};
+
+/// A rotation about an axis that keeps its direction.
+struct AxisRotation {
+  Components axis;  ///< three components, any length
+  Series angle;     ///< [rad], right-handed
+};
+
 struct Support {
   std::string rod;
   Location at;
   std::vector<Component> fix;         ///< held at their initial value
   std::vector<Prescribed> prescribe;  ///< moved by a table
-  bool clamp = false;                 ///< all components of the node and the tangent at it are held
-  std::optional<Series> rotation;     ///< of the clamped tangent, from its initial direction [rad]
+  Clamp clamp = Clamp::None;
+  /// Planar model: rotation of the clamped tangent about z, from its initial direction [rad].
+  std::optional<Series> rotation;
+  /// Spatial models: rotation of the clamped tangent, and of a clamped section with it.
+  std::optional<AxisRotation> axis_rotation;
+  /// Rotation of a clamped section about the held tangent [rad], right-handed about the direction
+  /// of growing arc length. It comes on top of `axis_rotation`.
+  std::optional<Series> twist;
   std::optional<Spring> spring;
   Mark mark;
 
   /// Whether it holds nodes; otherwise it is only a spring, at any arc length.
-  [[nodiscard]] bool holds() const { return clamp || !fix.empty() || !prescribe.empty(); }
+  [[nodiscard]] bool holds() const { return clamps() || !fix.empty() || !prescribe.empty(); }
+  [[nodiscard]] bool clamps() const { return clamp != Clamp::None; }
 };
 
 }  // namespace der::scenario

@@ -1,0 +1,69 @@
+#include "der/scenario/model_choice.hpp"
+#include "scenario/checks.hpp"
+#include "scenario/directions.hpp"
+
+namespace der::scenario {
+namespace {
+
+const char* word_of(ModelChoice kind) {
+  return kind == ModelChoice::Planar ? "planar" : "spatial_bend";
+}
+
+struct ZeroOrNoNumber {
+  bool operator()(double curvature) const { return curvature == 0.0; }
+  bool operator()(const std::vector<double>& list) const { return is_zero(list); }
+  template <class Other>
+  bool operator()(const Other& /*curvature*/) const {
+    return true;
+  }
+};
+
+/// A number says on which side of a rod its curvature lies only where z and the tangent do.
+void check_natural_curvature(const Rod& rod, const Path& path, Diagnostics& diagnostics) {
+  if (std::visit(ZeroOrNoNumber{}, rod.natural_curvature)) return;
+  if (is_flat(rod) && rod.initial_twist == 0.0) return;
+  diagnostics.add(path / "natural_curvature",
+                  "a number is a curvature about z, of a rod drawn without twist at one z: give a "
+                  "pair [k1, k2], the curvatures toward the director and across it");
+}
+
+bool has_torsional_stiffness(const Rod& rod) {
+  if (const auto* direct = std::get_if<Stiffness>(&rod.cross_section)) {
+    return direct->GJ.has_value();
+  }
+  return rod.material->poissons_ratio || rod.material->shear_modulus;
+}
+
+void check_twisting(const Rod& rod, const Path& path, const std::string& reason,
+                    Diagnostics& diagnostics) {
+  if (has_torsional_stiffness(rod)) return;
+  const bool direct = std::holds_alternative<Stiffness>(rod.cross_section);
+  diagnostics.add(
+      direct ? path / "cross_section" / "stiffness" : path / "material",
+      fmt::format("a rod of the model 'spatial' needs a stiffness against twisting: give {} (the "
+                  "model: {})",
+                  direct ? "'GJ'" : "'poissons_ratio' or 'shear_modulus'", reason));
+}
+
+}  // namespace
+
+void check_model(const SceneText& scene, Diagnostics& diagnostics) {
+  const ChosenModel model = choose_model(scene);
+  if (const std::string obstacle = why_not(model.kind, scene); !obstacle.empty()) {
+    diagnostics.add({"model"},
+                    fmt::format("'{}' cannot represent this scene: {}. Write 'auto' for the "
+                                "smallest model that can",
+                                word_of(model.kind), obstacle));
+    return;
+  }
+  check_availability(scene, model.kind, diagnostics);
+  if (model.kind == ModelChoice::Planar) return;
+  for (int i = 0; i < static_cast<int>(scene.rods.size()); ++i) {
+    const Rod& rod = scene.rods[static_cast<std::size_t>(i)];
+    const Path path{"rods", i};
+    check_natural_curvature(rod, path, diagnostics);
+    if (model.kind == ModelChoice::Spatial) check_twisting(rod, path, model.reason, diagnostics);
+  }
+}
+
+}  // namespace der::scenario

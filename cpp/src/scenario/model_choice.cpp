@@ -1,0 +1,286 @@
+#include "der/scenario/model_choice.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "der/scenario/load.hpp"
+#include "scenario/directions.hpp"
+
+namespace der::scenario {
+namespace {
+
+// Each of these functions returns what stands against a model, as a clause; "" if nothing does.
+
+/// The first clause of those about the parts of a list that is not empty.
+template <class Part, class About>
+std::string first_of(const std::vector<Part>& parts, About&& about) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    std::string clause = about(parts[i], i);
+    if (!clause.empty()) return clause;
+  }
+  return {};
+}
+
+bool acts_along_z(const Components& value) { return along_z(value) != 0.0; }
+bool acts_along_z(const VectorSeries& series) {
+  return std::any_of(series.values.begin(), series.values.end(),
+                     [](const Components& value) { return acts_along_z(value); });
+}
+
+// ---- planar
+
+/// Whether bending in the x-y plane stays in it.
+bool bends_in_plane(const Rod& rod) {
+  if (is_isotropic(rod.cross_section)) return true;
+  const FlatDirector director = flat_director(rod);
+  return std::min(std::abs(director.normal), std::abs(director.z)) <= kRounding;
+}
+
+/// Whether the natural curvature of a rod that lies in the plane is about z.
+bool is_curved_in_plane(const Rod& rod) {
+  const FlatDirector director = flat_director(rod);
+  const auto in_plane = [&director](const CurvaturePair& pair) {
+    return std::abs(director.out_of_plane(pair)) <= kRounding * std::hypot(pair.first, pair.second);
+  };
+  if (const auto* pair = std::get_if<CurvaturePair>(&rod.natural_curvature)) return in_plane(*pair);
+  const auto* pairs = std::get_if<std::vector<CurvaturePair>>(&rod.natural_curvature);
+  return !pairs || std::all_of(pairs->begin(), pairs->end(), in_plane);
+}
+
+std::string out_of_plane(const Rod& rod) {
+  std::string clause = first_of(rod.points, [&](const Components& point, std::size_t node) {
+    return along_z(point) == 0.0 ? std::string()
+                                 : fmt::format("node {} of rod '{}' lies at z = {:g} m", node,
+                                               rod.name, along_z(point));
+  });
+  if (!clause.empty()) return clause;
+  if (std::any_of(rod.initial_velocity.begin(), rod.initial_velocity.end(),
+                  [](const Components& velocity) { return acts_along_z(velocity); })) {
+    return fmt::format("rod '{}' begins to move along z", rod.name);
+  }
+  if (!bends_in_plane(rod)) {
+    return fmt::format("neither the width nor the height of rod '{}' lies in the x-y plane",
+                       rod.name);
+  }
+  if (!is_curved_in_plane(rod)) {
+    return fmt::format("the natural curvature of rod '{}' is not about z", rod.name);
+  }
+  return {};
+}
+
+std::string out_of_plane(const Support& support, std::size_t number) {
+  for (const Prescribed& motion : support.prescribe) {
+    if (motion.component == Component::Z && !is_zero(motion.displacement)) {
+      return fmt::format("supports.{} moves along z", number);
+    }
+  }
+  if (support.axis_rotation) {
+    const Components& axis = support.axis_rotation->axis;
+    if (axis[0] != 0.0 || axis[1] != 0.0) {
+      return fmt::format("supports.{} turns about an axis that is not z", number);
+    }
+  }
+  if (support.spring && acts_along_z(support.spring->anchor) &&
+      acts_along_z(support.spring->stiffness)) {
+    return fmt::format("the spring of supports.{} pulls along z", number);
+  }
+  return {};
+}
+
+struct OutOfPlane {
+  std::size_t number;
+
+  std::string operator()(const Moment& load) const {
+    const auto& values = load.moment_vector.values;
+    const bool about_z = std::all_of(values.begin(), values.end(), [](const Components& moment) {
+      return moment[0] == 0.0 && moment[1] == 0.0;
+    });
+    return about_z ? std::string()
+                   : fmt::format("loads.{}.moment is about an axis that is not z", number);
+  }
+  template <class Kind>
+  std::string operator()(const Kind& load) const {
+    std::string clause;
+    for_each_amount(load, [&](const char* /*key*/, const auto& amount) {
+      if (acts_along_z(amount)) {
+        clause = fmt::format("loads.{}.{} has a z component", number, Kind::kKey);
+      }
+    });
+    return clause;
+  }
+};
+
+// ---- no twist
+
+/// A twist that the rod has by itself.
+std::string own_twist(const Rod& rod) {
+  if (rod.initial_twist != 0.0) return fmt::format("rod '{}' has an initial twist", rod.name);
+  if (rod.natural_twist.value_or(0.0) != 0.0) {
+    return fmt::format("rod '{}' has a natural twist", rod.name);
+  }
+  return {};
+}
+
+std::string prescribed_twist(const Support& support, std::size_t number) {
+  if (!support.twist || is_zero(*support.twist)) return {};
+  return fmt::format("supports.{} twists rod '{}'", number, support.rod);
+}
+
+struct IsZero {
+  bool operator()(const AsDrawn& /*curvature*/) const { return false; }
+  bool operator()(double curvature) const { return curvature == 0.0; }
+  bool operator()(const CurvaturePair& pair) const {
+    return pair.first == 0.0 && pair.second == 0.0;
+  }
+  template <class Value>
+  bool operator()(const std::vector<Value>& list) const {
+    return std::all_of(list.begin(), list.end(), *this);
+  }
+};
+
+bool is_naturally_straight(const Rod& rod) {
+  if (std::holds_alternative<AsDrawn>(rod.natural_curvature)) return is_straight(rod);
+  return std::visit(IsZero{}, rod.natural_curvature);
+}
+
+bool is_cable(const Rod& rod) {
+  const auto* direct = std::get_if<Stiffness>(&rod.cross_section);
+  return direct && (direct->EI ? direct->EI : direct->EI1) == 0.0;
+}
+
+std::string may_twist(const Rod& rod, const Scene& scene) {
+  if (!is_isotropic(rod.cross_section)) {
+    return fmt::format("the two bending stiffnesses of rod '{}' differ", rod.name);
+  }
+  if (!is_cable(rod) && !is_naturally_straight(rod)) {
+    return fmt::format("rod '{}' is curved without stress", rod.name);
+  }
+  const auto* direct = std::get_if<Stiffness>(&rod.cross_section);
+  const bool moves = scene.is_dynamic() || std::holds_alternative<ModesAnalysis>(scene.analysis);
+  if (moves && direct && direct->rotary_inertia.value_or(0.0) > 0.0) {
+    return fmt::format("the sections of rod '{}' have a rotary inertia", rod.name);
+  }
+  return {};
+}
+
+/// Whether the rotation of a clamp over time spins the section about the rod. A rotation about an
+/// axis across the held tangent does not.
+bool spins(const Support& support, const Rod& rod) {
+  if (!support.axis_rotation || support.axis_rotation->angle.constant()) return false;
+  if (!is_straight(rod)) return true;
+  const Vec3 axis = in_space(support.axis_rotation->axis);
+  const Vec3 along = in_space(rod.points.back()) - in_space(rod.points.front());
+  return std::abs(axis.dot(along)) > kRounding * axis.norm() * along.norm();
+}
+
+/// Two sections that are held could hold a twist between them.
+std::string holds_sections(const Rod& rod, const Scene& scene) {
+  std::optional<std::size_t> first;
+  return first_of(scene.supports, [&](const Support& support, std::size_t number) {
+    if (support.rod != rod.name || support.clamp != Clamp::Section) return std::string();
+    if (first) {
+      return fmt::format("supports.{} and supports.{} both hold the section of rod '{}'", *first,
+                         number, rod.name);
+    }
+    first = number;
+    if (support.at.kind == Location::Kind::All) {
+      return fmt::format("supports.{} holds every section of rod '{}'", number, rod.name);
+    }
+    if (spins(support, rod)) {
+      return fmt::format("supports.{} spins the section of rod '{}'", number, rod.name);
+    }
+    return std::string();
+  });
+}
+
+std::string may_twist(const Support& support, std::size_t number) {
+  if (support.spring && support.spring->rotational_stiffness > 0.0) {
+    return fmt::format("supports.{} has a spring against rotation", number);
+  }
+  return {};
+}
+
+struct MayTwist {
+  std::size_t number;
+
+  std::string operator()(const Moment& load) const {
+    return fmt::format("loads.{}.moment can twist rod '{}'", number, load.rod);
+  }
+  std::string operator()(const PointForce& load) const {
+    if (!load.follower) return {};
+    return fmt::format("loads.{}.point_force turns with rod '{}'", number, load.rod);
+  }
+  template <class Kind>
+  std::string operator()(const Kind& /*load*/) const {
+    return {};
+  }
+};
+
+// ---- both
+
+template <class AboutLoad>
+std::string about_loads(const Scene& scene) {
+  return first_of(scene.loads, [](const Load& load, std::size_t number) {
+    return std::visit(AboutLoad{number}, load.what);
+  });
+}
+
+std::string first_clause(std::initializer_list<std::string> clauses) {
+  const auto* found = std::find_if(clauses.begin(), clauses.end(),
+                                   [](const std::string& clause) { return !clause.empty(); });
+  return found == clauses.end() ? std::string() : *found;
+}
+
+std::string why_it_twists(const Scene& scene) {
+  return first_clause(
+      {first_of(scene.rods, [](const Rod& rod, std::size_t /*number*/) { return own_twist(rod); }),
+       first_of(scene.supports, prescribed_twist)});
+}
+
+std::string why_not_planar(const Scene& scene) {
+  return first_clause(
+      {first_of(scene.rods,
+                [](const Rod& rod, std::size_t /*number*/) { return out_of_plane(rod); }),
+       first_of(scene.supports,
+                [](const Support& support, std::size_t i) { return out_of_plane(support, i); }),
+       about_loads<OutOfPlane>(scene), why_it_twists(scene)});
+}
+
+std::string why_not_spatial_bend(const Scene& scene) {
+  return first_clause(
+      {why_it_twists(scene),
+       first_of(scene.rods,
+                [&](const Rod& rod, std::size_t /*number*/) { return may_twist(rod, scene); }),
+       first_of(scene.rods,
+                [&](const Rod& rod, std::size_t /*number*/) { return holds_sections(rod, scene); }),
+       first_of(scene.supports,
+                [](const Support& support, std::size_t i) { return may_twist(support, i); }),
+       about_loads<MayTwist>(scene)});
+}
+
+}  // namespace
+
+std::string why_not(ModelChoice kind, const Scene& scene) {
+  if (kind == ModelChoice::Planar) return why_not_planar(scene);
+  if (kind == ModelChoice::SpatialBend) return why_not_spatial_bend(scene);
+  return {};
+}
+
+ChosenModel choose_model(const Scene& scene) {
+  if (scene.model != ModelChoice::Auto) return {scene.model, "asked for by the scene"};
+  const std::string planar = why_not_planar(scene);
+  if (planar.empty()) {
+    return {ModelChoice::Planar, "every position, force and support lies in the x-y plane"};
+  }
+  const std::string bend = why_not_spatial_bend(scene);
+  if (bend.empty()) return {ModelChoice::SpatialBend, planar + ", and no rod can twist"};
+  return {ModelChoice::Spatial, planar == bend ? planar : planar + ", and " + bend};
+}
+
+}  // namespace der::scenario

@@ -26,13 +26,13 @@ std::string in_words(std::string name) {
 /// Entries that a model wants of a Vector; none where it does not say.
 std::optional<Eigen::Index> entries(Extent extent, const Model& model) {
   if (extent == Extent::Dofs) return model.num_dofs();
-  if (extent == Extent::FollowedEdges)
-    return static_cast<Eigen::Index>(model.followed_edges.size());
+  if (extent == Extent::Followed) return num_followed(model);
   return std::nullopt;
 }
 
 const char* counted_by(Extent extent) {
-  return extent == Extent::Dofs ? "degrees of freedom" : "turns at springs and clamps";
+  return extent == Extent::Dofs ? "degrees of freedom"
+                                : "turns at springs and clamps, and numbers of frames,";
 }
 
 void check_sizes(const Model& model, const State& state) {

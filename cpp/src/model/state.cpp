@@ -29,8 +29,8 @@ State initial_state(const Model& model) {
   Vector controls;
   model.tables.evaluate(0.0, controls);
   apply_prescribed_motion(model, controls, state.positions);
-  state.turns.setZero(static_cast<Index>(model.followed_edges.size()));
-  follow_turns(model, state.positions, state.turns);
+  state.followed = followed_as_drawn(model);
+  follow(model, state.positions, controls, state.followed);
   return state;
 }
 
@@ -41,7 +41,14 @@ void evaluate_controls(const Model& model, const State& state, double time, Vect
     model.tables.evaluate(time, controls);
   }
   for (const Ramp& ramp : state.ramps) controls[ramp.control] = ramp.at(time);
-  enter_turns(model, state.turns, controls);
+  enter_followed(model, state.followed, controls);
+}
+
+void follow(const Model& model, State& state) {
+  if (state.followed.size() == 0) return;
+  Vector controls;
+  evaluate_controls(model, state, state.time, controls);
+  follow(model, state.positions, controls, state.followed);
 }
 
 double control_value(const Model& model, const State& state, Index control) {

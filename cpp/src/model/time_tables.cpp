@@ -10,8 +10,8 @@ Index TimeTables::add(scenario::Series series) {
 }
 
 void TimeTables::evaluate(double t, Vector& values) const {
-  values.resize(size());
-  for (Index i = 0; i < size(); ++i) values[i] = value_at((*this)[i], t);
+  if (values.size() != size()) values.setZero(size());
+  for (Index i = first_; i < size(); ++i) values[i] = value_at((*this)[i], t);
 }
 
 }  // namespace der

@@ -45,7 +45,7 @@ RodSeries Replay::along(const std::string& rod, const std::string& quantity,
     show(static_cast<std::size_t>(frame));
     state_.positions = positions.row(frame);
     state_.velocities = velocities.row(frame);
-    follow_turns(model_, state_.positions, state_.turns);
+    follow(model_, state_);
     for (std::size_t i = 0; i < samples; ++i) {
       series.values(frame, static_cast<Eigen::Index>(i)) = field->sample(i, model_, state_);
     }

@@ -74,7 +74,8 @@ LastFrame read_last_frame(hid_t file) {
   last.rods = read_rods(file);
   last.scene = read_text(file, "scene");
   check_nodes(last.rods, columns.layout().nodes);
-  if (const auto checkpoint = read_checkpoint(file, columns)) last.turns = checkpoint->state.turns;
+  if (const auto checkpoint = read_checkpoint(file, columns))
+    last.followed = checkpoint->state.followed;
   return last;
 }
 

@@ -77,17 +77,17 @@ std::string difference(const std::vector<SavedRod>& there, const std::vector<Rod
 /// Takes over whole turns if that run followed the same edges; else they count from the initial
 /// shape.
 void take_over_turns(const LastFrame& last, const Model& model, State& state) {
-  if (last.turns.size() == state.turns.size()) {
+  if (last.followed.size() == state.followed.size()) {
     const Model there = build_model(Scenario::parse(last.scene).scene());
     const auto& before = there.followed_edges;
     if (std::equal(before.begin(), before.end(), model.followed_edges.begin(),
                    model.followed_edges.end(), [](const FollowedEdge& a, const FollowedEdge& b) {
                      return a.edge.first == b.edge.first && a.edge.last == b.edge.last;
                    })) {
-      state.turns = last.turns;
+      state.followed = last.followed;
     }
   }
-  follow_turns(model, state.positions, state.turns);
+  follow(model, state);
 }
 
 LastFrame read_start(const std::string& from) {

@@ -99,7 +99,7 @@ std::vector<PathBranch> Simulation::follow() {
 void Simulation::show(const PathPoint& point, std::int64_t index) {
   state_.load_factor = point.factor;
   state_.positions = point.positions;
-  state_.turns = point.turns;
+  state_.followed = point.followed;
   state_.step = index;
   state_.time = static_cast<double>(index);
 }

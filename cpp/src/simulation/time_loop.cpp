@@ -46,7 +46,7 @@ void Simulation::step() {
   }
   Undo undo(state_, before_step_);
   if (const std::string found = find_nonfinite(); !found.empty()) throw DivergedError(found);
-  follow_turns(model_, state_.positions, state_.turns);  // a program may have moved the rods
+  der::follow(model_, state_);  // a program may have moved the rods
   const bool was_finished = finished();
   energy_watch_.before_step(state_);
   if (adaptive_) {

@@ -167,7 +167,7 @@ LinearBuckling linear_buckling(const Model& model, const Assembler& assembler, L
   const auto evaluate = [&](double factor) -> Vector {
     here.load_factor = factor;
     here.controls = model.load_variation->controls.at(factor);
-    enter_turns(model, state.turns, here.controls);
+    enter_followed(model, state.followed, here.controls);
     external_force(model, here, no_extra, force);
     stiffness.evaluate(here);
     return (force - stiffness.gradient())(model.dofs.free());

@@ -1,5 +1,6 @@
 #include "der/statics/potential.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -40,8 +41,20 @@ double energy_change(const ElementList<Kernel>& list, const Configuration& from,
   return total;
 }
 
-/// Calls use(dofs, hessian, shared) for each element; of its displacement the first `shared`
-/// components, those of its first node, may be taken from all nodes at no cost of energy.
+/// What of an element's displacement may be taken from all of its nodes at no cost of energy: the
+/// components of its first node. Its coordinates are those of nodes, then angles.
+struct Shared {
+  int components = 0;  ///< of a node; 0: none may
+  int positions = 0;   ///< number of coordinates of nodes
+};
+
+template <class Kernel, class = void>
+struct NumPositions : std::integral_constant<int, Kernel::kDofs> {};
+template <class Kernel>
+struct NumPositions<Kernel, std::enable_if_t<(Kernel::kDofs > 3 * Kernel::kNodes)>>
+    : std::integral_constant<int, 3 * Kernel::kNodes> {};
+
+/// Calls use(dofs, hessian, shared) for each element.
 template <class Use>
 void for_each_hessian(const Model& model, const Configuration& here, const Use& use) {
   for_each_list(*model.elements, [&](const auto& list) {
@@ -53,21 +66,24 @@ void for_each_hessian(const Model& model, const Configuration& here, const Use& 
           list.constants[e], here, gather(list.dofs[e], here.coordinates), local);
       const Eigen::Matrix<double, kDofs, kDofs> hessian =
           local.hessian.template selfadjointView<Eigen::Lower>();
-      use(list.dofs[e], hessian, HoldsElement<Kernel>::value ? 0 : model.dimension);
+      use(list.dofs[e], hessian,
+          Shared{HoldsElement<Kernel>::value ? 0 : model.dimension, NumPositions<Kernel>::value});
     }
   });
 }
 
-/// An element's part of a displacement, less that of its first node in `shared` components.
+/// An element's part of a displacement, less what its nodes share.
 template <std::size_t N, class Displacement>
 Eigen::Matrix<double, static_cast<int>(N), 1> relative(const std::array<Index, N>& dofs,
                                                        const Displacement& displacement,
-                                                       int shared) {
+                                                       const Shared& shared) {
   Eigen::Matrix<double, static_cast<int>(N), 1> d;
   for (std::size_t i = 0; i < N; ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     d[k] = displacement[dofs[i]];
-    if (shared > 0) d[k] -= displacement[dofs[i % static_cast<std::size_t>(shared)]];
+    if (shared.components > 0 && k < shared.positions) {
+      d[k] -= displacement[dofs[i % static_cast<std::size_t>(shared.components)]];
+    }
   }
   return d;
 }
@@ -88,7 +104,7 @@ double second_variation(const Model& model, const Configuration& here, const Vec
 SummedVariation summed_variation(const Model& model, const Configuration& here,
                                  const Vector& direction) {
   SummedVariation total;
-  for_each_hessian(model, here, [&](const auto& dofs, const auto& hessian, int shared) {
+  for_each_hessian(model, here, [&](const auto& dofs, const auto& hessian, const Shared& shared) {
     const auto d = relative(dofs, direction, shared);
     total.value += d.dot(hessian * d);
     total.terms += d.cwiseAbs().dot(hessian.cwiseAbs() * d.cwiseAbs());
@@ -100,7 +116,7 @@ SecondVariations second_variations(const Model& model, const Configuration& here
                                    const Eigen::MatrixXd& directions) {
   const Eigen::Index count = directions.cols();
   SecondVariations result{Eigen::MatrixXd::Zero(count, count), Vector::Zero(count)};
-  for_each_hessian(model, here, [&](const auto& dofs, const auto& hessian, int shared) {
+  for_each_hessian(model, here, [&](const auto& dofs, const auto& hessian, const Shared& shared) {
     constexpr int kDofs = std::decay_t<decltype(hessian)>::RowsAtCompileTime;
     Eigen::Matrix<double, kDofs, Eigen::Dynamic> d(kDofs, count);
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -115,7 +131,7 @@ SecondVariations second_variations(const Model& model, const Configuration& here
 
 Vector stiffness_product(const Model& model, const Configuration& here, const Vector& direction) {
   Vector product = Vector::Zero(direction.size());
-  for_each_hessian(model, here, [&](const auto& dofs, const auto& hessian, int shared) {
+  for_each_hessian(model, here, [&](const auto& dofs, const auto& hessian, const Shared& shared) {
     const auto force = (hessian * relative(dofs, direction, shared)).eval();
     for (std::size_t i = 0; i < dofs.size(); ++i) {
       product[dofs[i]] += force[static_cast<Eigen::Index>(i)];
@@ -123,6 +139,21 @@ Vector stiffness_product(const Model& model, const Configuration& here, const Ve
   });
   return product;
 }
+
+namespace {
+
+double largest_spatial_turning_angle(const Model& model, const Vector& positions) {
+  double largest = 0.0;
+  for (std::size_t i = 1; i < model.edges.size(); ++i) {
+    if (model.edges[i - 1].last != model.edges[i].first) continue;
+    const Vec3 before = along_edge<3>(model.edges[i - 1], positions);
+    const Vec3 after = along_edge<3>(model.edges[i], positions);
+    largest = std::max(largest, std::atan2(before.cross(after).norm(), before.dot(after)));
+  }
+  return largest;
+}
+
+}  // namespace
 
 double largest_turning_angle(const Model& model, const Vector& positions) {
   double largest = 0.0;
@@ -134,6 +165,7 @@ double largest_turning_angle(const Model& model, const Vector& positions) {
   };
   look(elements_of<PlanarBend<AngleCurvature>>(*model.elements));
   look(elements_of<PlanarBend<TangentCurvature>>(*model.elements));
+  if (model.dimension == 3) largest = largest_spatial_turning_angle(model, positions);
   return largest;
 }
 

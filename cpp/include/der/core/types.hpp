@@ -8,6 +8,8 @@ namespace der {
 using Vector = Eigen::VectorXd;
 using Vec2 = Eigen::Vector2d;
 using Mat2 = Eigen::Matrix2d;
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
 
 /// Integer type of every node, element, degree-of-freedom and matrix-slot index. 32 bits halve the
 /// memory traffic of the scatter maps and still reach two thousand million.

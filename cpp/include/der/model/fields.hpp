@@ -19,10 +19,10 @@ namespace der {
 
 /// How many entries a Vector or a list has in a given model or run.
 enum class Extent {
-  Any,            ///< as many as there are
-  Dofs,           ///< one a degree of freedom
-  FollowedEdges,  ///< one an edge whose whole turns the model follows
-  Probes,         ///< one a probe
+  Any,       ///< as many as there are
+  Dofs,      ///< one a degree of freedom
+  Followed,  ///< what the model follows (model/followed.hpp)
+  Probes,    ///< one a probe
 };
 
 /// The range of numbers that a run can reach, or a program can write.

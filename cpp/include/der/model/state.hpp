@@ -56,7 +56,7 @@ static_assert(lists_all_members<EnergyAudit>());
 
 /// Version of saved states, in checkpoints and pickles; states of another version are refused.
 /// Increase it when a field keeps its name but changes its meaning.
-constexpr std::int64_t kStateVersion = 2;
+constexpr std::int64_t kStateVersion = 3;
 
 /// Everything that changes in a run. A plain value: copy it to save it, assign it to go back, bit
 /// for bit. Vectors have one entry a degree of freedom. A new member is written here and in
@@ -81,9 +81,8 @@ struct State {
   Work work;
   EnergyAudit audit;
   std::vector<Ramp> ramps;  ///< controls that a program has set, in place of their tables
-  /// Rotations [rad] of the model's followed edges from the initial shape, whole turns included, at
-  /// the last step or equilibrium.
-  Vector turns;
+  /// Whole turns and frames of edges at the last step or equilibrium (model/followed.hpp).
+  Vector followed;
 
   static constexpr auto fields() {
     return std::make_tuple(
@@ -100,7 +99,7 @@ struct State {
         field("last_error", "", &State::last_error, Values::NotNegative),
         field("work", "J", &State::work), field("audit", "", &State::audit),
         field("ramps", "", &State::ramps),
-        field("turns", "rad", &State::turns, Values::Finite, Extent::FollowedEdges));
+        field("followed", "", &State::followed, Values::Finite, Extent::Followed));
   }
 };
 static_assert(lists_all_members<State>());
@@ -120,6 +119,8 @@ std::string find_wrong_value(const State& state);
 /// step that begins at `state`: the tables, or their values at the load factor, the ramps in place
 /// of them, and the turns.
 void evaluate_controls(const Model& model, const State& state, double time, Vector& controls);
+/// Moves what a state follows to its positions, which a program may have written.
+void follow(const Model& model, State& state);
 /// Value of a control that is not a turn, at the time of `state`.
 double control_value(const Model& model, const State& state, Index control);
 /// Sets `here` to the configuration of a state at its own time; allocates nothing if the sizes of

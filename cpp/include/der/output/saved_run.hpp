@@ -40,7 +40,7 @@ struct LastFrame {
   Vector velocities;  ///< [m/s]
   std::vector<SavedRod> rods;
   std::string scene;  ///< YAML text of the scene as run
-  Vector turns;       ///< as in the state, of that scene's model [rad]; none if not known
+  Vector followed;    ///< as in the state, of that scene's model [rad]; none if not known
 };
 LastFrame read_last_frame(const std::filesystem::path& path);
 

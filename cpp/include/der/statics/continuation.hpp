@@ -25,7 +25,7 @@ struct PathPoint {
   Stability stability;
   PathEvent event = PathEvent::None;
   Vector positions;  ///< all degrees of freedom [m]
-  Vector turns;      ///< as in the state [rad]
+  Vector followed;   ///< as in the state [rad]
 };
 
 /// A path of equilibria.

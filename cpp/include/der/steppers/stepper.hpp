@@ -31,7 +31,8 @@ struct StepReport {
 /// Not done where an edge whose whole turns count has turned so far from where it is in `state`,
 /// the start of the step, that the shorter way from there to `positions` may not be the one it
 /// went.
-StepReport check_turns(const Model& model, const State& state, const Vector& positions);
+StepReport check_turns(const Model& model, const State& state, const Vector& coordinates,
+                       const Vector& controls);
 
 /// Advances a state by one time step. One file for each time integrator.
 class Stepper {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "der/model/turns.hpp"
+#include "der/model/followed.hpp"
 #include "statics/continuation/path_equations.hpp"
 #include "statics/continuation/path_events.hpp"
 #include "statics/continuation/path_metric.hpp"
@@ -72,7 +72,7 @@ class PathTracer {
 
   std::vector<PathBranch> run(const State& start) {
     PathNode first =
-        equations_.node_at(start.turns, {start.positions(model_.dofs.free()), options_.from});
+        equations_.node_at(start.followed, {start.positions(model_.dofs.free()), options_.from});
     equations_.set_metric(first);
     if (first.tangent.factor * range_ < 0.0) reverse(first.tangent);
     trace(first, std::nullopt, 0);
@@ -87,7 +87,7 @@ class PathTracer {
 
   void add_point(PathBranch& branch, const PathNode& node, double arc, PathEvent event) const {
     branch.points.push_back(
-        {node.at.factor, arc, node.stability, event, node.positions, node.turns});
+        {node.at.factor, arc, node.stability, event, node.positions, node.followed});
   }
 
   /// How far the factor is on its way: 0 at `from`, 1 at `to`.
@@ -107,7 +107,9 @@ class PathTracer {
   /// turns so far that whole turns could be lost.
   [[nodiscard]] bool is_near(const PathNode& node, double step, const PathNode& found) const {
     const double turn = largest_clamp_turn_ * std::abs(found.at.factor - node.at.factor);
-    return turn <= kLargestTurn && edge_turned_too_far(model_, found.positions, node.turns) < 0 &&
+    const Vector controls = model_.load_variation->controls.at(found.at.factor);
+    return turn <= kLargestTurn &&
+           turned_too_far(model_, found.positions, controls, node.followed) < 0 &&
            metric().dot(found.tangent, node.tangent) >= kLargestBend &&
            step >= kLargestBend * metric().distance(found.at, node.at);
   }
@@ -183,7 +185,7 @@ class PathTracer {
     if (metric().distance(point, foot) > kBulge * length) return false;
     int iterations = 0;
     const auto found =
-        equations_.solve_on_plane(first.turns, from, direction, along, foot, iterations);
+        equations_.solve_on_plane(first.followed, from, direction, along, foot, iterations);
     return found && metric().distance(point, *found) < same;
   }
 
@@ -317,10 +319,10 @@ class PathTracer {
          step *= 0.5) {
       int iterations = 0;
       const auto found =
-          equations_.solve_on_plane(bifurcation.turns, bifurcation.at, across, step,
+          equations_.solve_on_plane(bifurcation.followed, bifurcation.at, across, step,
                                     combine(bifurcation.at, step, across), iterations);
       if (!found) continue;
-      PathNode node = equations_.node_at(bifurcation.turns, *found);
+      PathNode node = equations_.node_at(bifurcation.followed, *found);
       const PathPosition way = difference(node.at, bifurcation.at);
       if (metric().dot(node.tangent, way) < 0.0) reverse(node.tangent);
       return node;

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "der/loads/external_force.hpp"
+#include "der/model/followed.hpp"
 #include "der/model/prescribed_motion.hpp"
-#include "der/model/turns.hpp"
 
 namespace der::statics {
 namespace {
@@ -37,17 +37,17 @@ void PathEquations::set_metric(PathNode& first) {
 }
 
 /// Sets the full positions, held degrees of freedom where the factor has them, and the controls.
-void PathEquations::place(const Vector& turns, const PathPosition& point) {
+void PathEquations::place(const Vector& followed, const PathPosition& point) {
   here_.load_factor = point.factor;
   here_.controls = loads_.controls.at(point.factor);
-  enter_turns(model_, turns, here_.controls);
+  enter_followed(model_, followed, here_.controls);
   apply_prescribed_motion(model_, here_.controls, here_.coordinates);
   here_.coordinates(model_.dofs.free()) = point.x;
 }
 
 /// Sets the residual and the stiffness at a point.
-void PathEquations::evaluate(const Vector& turns, const PathPosition& point) {
-  place(turns, point);
+void PathEquations::evaluate(const Vector& followed, const PathPosition& point) {
+  place(followed, point);
   external_force(model_, here_, no_extra_, force_);
   stiffness_.evaluate(here_);
   residual_ = (stiffness_.gradient() - force_)(model_.dofs.free());
@@ -59,8 +59,8 @@ double PathEquations::unbalanced() const {
   return model_.dofs.largest_free_force(stiffness_.gradient() - force_);
 }
 
-Vector PathEquations::residual_at(const Vector& turns, const PathPosition& point) {
-  place(turns, point);
+Vector PathEquations::residual_at(const Vector& followed, const PathPosition& point) {
+  place(followed, point);
   external_force(model_, here_, no_extra_, force_);
   Vector gradient(model_.num_dofs());
   assembler_.gradient(here_, gradient);
@@ -69,45 +69,45 @@ Vector PathEquations::residual_at(const Vector& turns, const PathPosition& point
 
 /// Derivative of the residual with respect to the factor, by central differences. Forces and
 /// moments are linear in it, so that a long step is exact; a moving support needs a short one.
-Vector PathEquations::factor_derivative(const Vector& turns, const PathPosition& point) {
+Vector PathEquations::factor_derivative(const Vector& followed, const PathPosition& point) {
   const double step = (loads_.is_linear ? 1.0 : 1e-6) * std::abs(metric_.range());
   PathPosition forward = point;
   PathPosition backward = point;
   forward.factor += step;
   backward.factor -= step;
-  return (residual_at(turns, forward) - residual_at(turns, backward)) / (2.0 * step);
+  return (residual_at(followed, forward) - residual_at(followed, backward)) / (2.0 * step);
 }
 
 /// Unit tangent of the path at a point just evaluated, factor rising. The inertia is that of the
 /// stiffness itself, without a margin for rounding, which would move the events.
-PathPosition PathEquations::tangent(const Vector& turns, const PathPosition& point,
+PathPosition PathEquations::tangent(const Vector& followed, const PathPosition& point,
                                     Stability& stability) {
-  const Vector derivative = factor_derivative(turns, point);
+  const Vector derivative = factor_derivative(followed, point);
   stability.unstable_directions = stiffness_.factorize().negative_pivots;
   PathPosition result{-derivative, 1.0};
   stiffness_.solve(result.x);
   return metric_.unit(result);
 }
 
-PathNode PathEquations::node_at(const Vector& turns, const PathPosition& point) {
-  evaluate(turns, point);
+PathNode PathEquations::node_at(const Vector& followed, const PathPosition& point) {
+  evaluate(followed, point);
   PathNode node;
   node.at = point;
   node.positions = here_.coordinates;
-  node.turns = turns;
-  follow_turns(model_, here_.coordinates, node.turns);
-  node.tangent = tangent(turns, point, node.stability);
+  node.followed = followed;
+  follow(model_, here_.coordinates, here_.controls, node.followed);
+  node.tangent = tangent(followed, point, node.stability);
   return node;
 }
 
-std::optional<PathPosition> PathEquations::solve_on_plane(const Vector& turns,
+std::optional<PathPosition> PathEquations::solve_on_plane(const Vector& followed,
                                                           const PathPosition& base,
                                                           const PathPosition& normal, double step,
                                                           PathPosition guess, int& iterations) {
-  evaluate(turns, guess);
+  evaluate(followed, guess);
   for (iterations = 1; iterations <= kMaxIterations; ++iterations) {
-    const Vector derivative = factor_derivative(turns, guess);
-    place(turns, guess);
+    const Vector derivative = factor_derivative(followed, guess);
+    place(followed, guess);
     if (!stiffness_.factorize().factorised) return std::nullopt;
     Vector along = -residual_;
     Vector across = -derivative;
@@ -122,7 +122,7 @@ std::optional<PathPosition> PathEquations::solve_on_plane(const Vector& turns,
     const double length = metric_.norm(change);
     if (!std::isfinite(length) || length > 10.0 * std::max(step, 1e-3)) return std::nullopt;
     guess = combine(guess, 1.0, change);
-    evaluate(turns, guess);
+    evaluate(followed, guess);
     const double allowed =
         std::max(options_.residual_tolerance * force_scale_, stiffness_.rounding() * model_.size());
     if (length < kLastStep && unbalanced() <= allowed) return guess;
@@ -132,10 +132,10 @@ std::optional<PathPosition> PathEquations::solve_on_plane(const Vector& turns,
 }
 
 std::optional<PathNode> PathEquations::next(const PathNode& from, double step, int& iterations) {
-  const auto found = solve_on_plane(from.turns, from.at, from.tangent, step,
+  const auto found = solve_on_plane(from.followed, from.at, from.tangent, step,
                                     combine(from.at, step, from.tangent), iterations);
   if (!found) return std::nullopt;
-  PathNode node = node_at(from.turns, *found);
+  PathNode node = node_at(from.followed, *found);
   if (metric_.dot(node.tangent, from.tangent) < 0.0) reverse(node.tangent);
   return node;
 }
@@ -148,9 +148,9 @@ std::optional<PathNode> PathEquations::node_at_factor(const PathNode& near, doub
   guess.factor = factor;
   int iterations = 0;
   const auto found =
-      solve_on_plane(near.turns, base, normal, factor / range, std::move(guess), iterations);
+      solve_on_plane(near.followed, base, normal, factor / range, std::move(guess), iterations);
   if (!found) return std::nullopt;
-  PathNode node = node_at(near.turns, *found);
+  PathNode node = node_at(near.followed, *found);
   if (metric_.dot(node.tangent, near.tangent) < 0.0) reverse(node.tangent);
   return node;
 }
@@ -164,7 +164,7 @@ bool PathEquations::is_singular(const PathNode& start, double step) {
 }
 
 PathPosition PathEquations::null_direction(const PathNode& node) {
-  evaluate(node.turns, node.at);
+  evaluate(node.followed, node.at);
   return {stiffness_.nearest_to_zero().direction, 0.0};
 }
 

@@ -18,7 +18,7 @@ struct PathNode {
   PathPosition at;
   PathPosition tangent;  ///< of unit length
   Vector positions;      ///< all degrees of freedom [m]
-  Vector turns;          ///< of the followed edges [rad]
+  Vector followed;       ///< of the followed edges [rad]
   Stability stability;
   [[nodiscard]] bool rising() const { return tangent.factor > 0.0; }
 };
@@ -37,11 +37,11 @@ class PathEquations {
   void set_metric(PathNode& first);
 
   /// The node at an equilibrium, with the factor rising along its tangent.
-  PathNode node_at(const Vector& turns, const PathPosition& point);
+  PathNode node_at(const Vector& followed, const PathPosition& point);
 
   /// Newton's method on the plane normal to `normal` through `base + step * normal`, from `guess`.
   /// Returns nothing if it does not converge; sets `iterations` to the number of iterations.
-  std::optional<PathPosition> solve_on_plane(const Vector& turns, const PathPosition& base,
+  std::optional<PathPosition> solve_on_plane(const Vector& followed, const PathPosition& base,
                                              const PathPosition& normal, double step,
                                              PathPosition guess, int& iterations);
 
@@ -59,12 +59,12 @@ class PathEquations {
   PathPosition null_direction(const PathNode& node);
 
  private:
-  void place(const Vector& turns, const PathPosition& point);
-  void evaluate(const Vector& turns, const PathPosition& point);
+  void place(const Vector& followed, const PathPosition& point);
+  void evaluate(const Vector& followed, const PathPosition& point);
   [[nodiscard]] double unbalanced() const;  // [N], at the point evaluated last
-  Vector residual_at(const Vector& turns, const PathPosition& point);
-  Vector factor_derivative(const Vector& turns, const PathPosition& point);
-  PathPosition tangent(const Vector& turns, const PathPosition& point, Stability& stability);
+  Vector residual_at(const Vector& followed, const PathPosition& point);
+  Vector factor_derivative(const Vector& followed, const PathPosition& point);
+  PathPosition tangent(const Vector& followed, const PathPosition& point, Stability& stability);
 
   const Model& model_;
   const LoadVariation& loads_;

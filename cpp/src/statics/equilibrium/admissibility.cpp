@@ -51,11 +51,18 @@ double smallest_length_ratio(const Model& model, const Configuration& here) {
                           [&](const EffectiveEdge& edge, const Stretch<2>::Constants& c) {
                             smallest = std::min(smallest, edge.vector(here).norm() / c.rest_length);
                           });
+  if (model.dimension == 3) {
+    for (const Edge& edge : model.edges) {
+      const double length = along_edge<3>(edge, here.coordinates).norm();
+      smallest = std::min(smallest, length / edge.rest_length);
+    }
+  }
   return smallest;
 }
 
 /// Whether an edge that supports guide along an axis, so that it cannot turn, points backwards.
-bool is_turned_inside_out(const Model& model, const Vector& positions) {
+bool planar_is_turned_inside_out(const Model& model, const Vector& positions) {
+  if (model.dimension != 2) return false;
   const auto held = [&](Index dof) { return !model.dofs.is_free(dof); };
   return std::any_of(model.edges.begin(), model.edges.end(), [&](const Edge& edge) {
     const Vec2 now = along_edge(edge, positions);
@@ -82,7 +89,7 @@ std::optional<FailedSearch> PlanarAdmissibility::check(const Configuration& here
     return FailedSearch{EquilibriumFailure::DriftsAway, {}};
   }
   if (smallest_length_ratio(model_, here) < kCollapsed ||
-      is_turned_inside_out(model_, here.coordinates)) {
+      planar_is_turned_inside_out(model_, here.coordinates)) {
     return FailedSearch{EquilibriumFailure::Collapsed, {}};
   }
   return std::nullopt;

@@ -57,7 +57,7 @@ bool relax_dynamically(const Model& model, const StaticLoads& loads, StaticNewto
     }
     velocity = (here.coordinates - now.positions) / step;
     now.positions = here.coordinates;
-    update_turns(model, now);
+    loads.follow(model, now);
     here = loads.at(model, now);
     if (change < 0.5 * kLargestEdgeChange) step *= kGrowth;
     if (change < change_for_newton) {

@@ -60,7 +60,7 @@ class EquilibriumSearch {
         continuation_(model, newton_) {}
 
   EquilibriumReport run(State& state) {
-    Shape shape{state.positions, state.turns};
+    Shape shape{state.positions, state.followed};
     report_.failed = search(shape);
     if (report_.failed) blame_weak_holding(state, *report_.failed);
     report_.newton_iterations = newton_.iterations();
@@ -68,7 +68,7 @@ class EquilibriumSearch {
     report_.force_scale = newton_.force_scale();
     if (!report_.failed) {
       state.positions = std::move(shape.positions);
-      state.turns = std::move(shape.turns);
+      state.followed = std::move(shape.followed);
     }
     return report_;
   }

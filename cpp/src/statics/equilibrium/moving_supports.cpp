@@ -5,6 +5,7 @@
 
 #include "der/model/prescribed_motion.hpp"
 #include "der/statics/potential.hpp"
+#include "der/supports/clamp.hpp"
 #include "statics/equilibrium/winding.hpp"
 
 namespace der::statics {
@@ -19,24 +20,25 @@ constexpr double kFirstStep = 1e-9;
 constexpr double kBentBesideClamp = 1.0;
 
 template <class Use>
-void for_each_turning_clamp(const Model& model, const Use& use) {
+void for_each_clamp(const Model& model, const Use& use) {
   for (const RodLayout& rod : model.rods) {
-    for (const Clamp& clamp : rod.clamps) {
-      if (clamp.rotation >= 0) use(clamp);
-    }
+    for (const Clamp& clamp : rod.clamps) use(clamp);
   }
 }
 
 /// The controls with all clamps at their initial angles.
 Vector drawn_controls(const Model& model, Vector controls) {
-  for_each_turning_clamp(model, [&](const Clamp& clamp) { controls[clamp.rotation] = 0.0; });
+  for_each_clamp(model, [&](const Clamp& clamp) {
+    for_each_turning_control(clamp, [&](Index control) { controls[control] = 0.0; });
+  });
   return controls;
 }
 
-/// The controls with each clamp turned as far as the edge beside it.
-Vector present_controls(const Model& model, Vector controls, const Vector& turns) {
-  for_each_turning_clamp(model, [&](const Clamp& clamp) {
-    const double turn = turns[clamp.followed];
+/// The controls with each clamp of a planar rod turned as far as the edge beside it.
+Vector present_controls(const Model& model, Vector controls, const Vector& followed) {
+  for_each_clamp(model, [&](const Clamp& clamp) {
+    if (clamp.followed < 0) return;
+    const double turn = followed[clamp.followed];
     if (std::abs(turn - controls[clamp.rotation]) > kBentBesideClamp) {
       controls[clamp.rotation] = turn;
     }
@@ -50,8 +52,9 @@ std::vector<double> move_supports(const Model& model, const StaticLoads& loads,
                                   const Equilibrate& equilibrate, Shape& shape) {
   const bool as_drawn =
       shape.positions(model.dofs.free()) == model.initial_positions(model.dofs.free());
-  if (as_drawn) shape = {model.initial_positions, Vector::Zero(shape.turns.size())};
-  update_turns(model, shape);
+  if (as_drawn) shape = {model.initial_positions, followed_as_drawn(model)};
+  StaticLoads drawn{drawn_controls(model, loads.controls), {}};
+  (as_drawn ? drawn : loads).follow(model, shape);
 
   const Vector target_controls = loads.at(model, shape).controls;
   Vector target = shape.positions;
@@ -59,7 +62,7 @@ std::vector<double> move_supports(const Model& model, const StaticLoads& loads,
   const Vector displacement = target - shape.positions;
   const Vector rotation =
       target_controls - (as_drawn ? drawn_controls(model, target_controls)
-                                  : present_controls(model, target_controls, shape.turns));
+                                  : present_controls(model, target_controls, shape.followed));
   const double longest = kLargestStep / std::max(largest_edge_change(model, displacement),
                                                  rotation.lpNorm<Eigen::Infinity>());
   std::vector<double> whole_turns;
@@ -73,7 +76,7 @@ std::vector<double> move_supports(const Model& model, const StaticLoads& loads,
     step = std::min({2.0 * step, longest, 1.0 - done});
   }
   apply_prescribed_motion(model, target_controls, shape.positions);
-  update_turns(model, shape);
+  loads.follow(model, shape);
   return whole_turns;
 }
 

@@ -63,7 +63,7 @@ PseudoTransient::Result PseudoTransient::run(const StaticLoads& loads, double in
       return result;
     }
     shape.positions = std::move(step->positions);
-    update_turns(model_, shape);
+    loads.follow(model_, shape);
     result.energy_change += step->energy_change;
     if (change < change_for_newton) {
       StaticNewton::LastStep last = newton_.balance_nearby(loads, shape);
@@ -98,7 +98,7 @@ std::optional<PseudoTransient::Step> PseudoTransient::try_step(
     }
     Step step{std::move(here.coordinates), 0.0};
     if (largest_edge_change(model_, step.positions - shape.positions) > kLargestEdgeChange ||
-        edge_turned_too_far(model_, step.positions, shape.turns) >= 0) {
+        turned_too_far(model_, step.positions, loads.controls, shape.followed) >= 0) {
       continue;
     }
     step.energy_change = energy_change(model_, loads, shape, shape.positions, step.positions);

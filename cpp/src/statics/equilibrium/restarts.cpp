@@ -39,8 +39,8 @@ std::vector<Shape> planar_restarts(const Model& model, const StaticLoads& loads,
   const Vector bend = unit_displacement(model, stiffness.softest());
   std::vector<Shape> restarts;
   const auto add = [&](Vector positions) {
-    restarts.push_back({std::move(positions), start.turns});
-    update_turns(model, restarts.back());
+    restarts.push_back({std::move(positions), start.followed});
+    loads.follow(model, restarts.back());
   };
   for (const double size : kBends) {
     for (const double side : {1.0, -1.0}) add(start.positions + side * size * bend);

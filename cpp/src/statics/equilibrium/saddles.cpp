@@ -32,7 +32,7 @@ bool leave_saddle(const Model& model, const StaticLoads& loads, const StaticNewt
     std::optional<Shape> best;
     double best_change = -newton.energy_resolution();
     for (const double side : {1.0, -1.0}) {
-      Shape here{shape.positions + side * perturbation * direction, shape.turns};
+      Shape here{shape.positions + side * perturbation * direction, shape.followed};
       const double push = energy_change(model, loads, shape, shape.positions, here.positions);
       const PseudoTransient::Result result =
           continuation.run(loads, inverse_step, here, PseudoTransient::kDecayAtSaddle);

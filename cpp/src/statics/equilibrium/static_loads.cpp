@@ -17,7 +17,7 @@ StaticLoads scaled(const Model& model, const StaticLoads& loads, double share) {
 
 double energy_change(const Model& model, const StaticLoads& loads, const Shape& seen_from,
                      const Vector& from, const Vector& to) {
-  return potential_change(model, loads.force, loads.at(model, {from, seen_from.turns}), to);
+  return potential_change(model, loads.force, loads.at(model, {from, seen_from.followed}), to);
 }
 
 }  // namespace der::statics

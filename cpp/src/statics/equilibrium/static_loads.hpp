@@ -2,6 +2,7 @@
 
 #include "der/core/types.hpp"
 #include "der/kinematics/configuration.hpp"
+#include "der/model/followed.hpp"
 #include "der/model/model.hpp"
 #include "statics/equilibrium/shape.hpp"
 
@@ -12,11 +13,15 @@ struct StaticLoads {
   Vector controls;  ///< values of the model's tables
   Vector force;     ///< external forces [N], all degrees of freedom
 
-  /// A shape as its elements see it, its turns included.
+  /// A shape as its elements see it.
   [[nodiscard]] Configuration at(const Model& model, const Shape& shape) const {
     Configuration here{shape.positions, controls};
-    enter_turns(model, shape.turns, here.controls);
+    enter_followed(model, shape.followed, here.controls);
     return here;
+  }
+  /// Moves what a shape follows to its positions, which have changed a little.
+  void follow(const Model& model, Shape& shape) const {
+    der::follow(model, shape.positions, controls, shape.followed);
   }
 };
 

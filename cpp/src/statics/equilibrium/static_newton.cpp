@@ -47,7 +47,7 @@ std::optional<FailedSearch> StaticNewton::balance(const StaticLoads& loads, Shap
   Configuration here = loads.at(model_, shape);
   if (auto failed = solve(stage_of(loads), here)) return failed;
   shape.positions = std::move(here.coordinates);
-  update_turns(model_, shape);
+  loads.follow(model_, shape);
   return std::nullopt;
 }
 

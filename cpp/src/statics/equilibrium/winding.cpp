@@ -35,6 +35,7 @@ double turning_angle(const Model& model, const RodLayout& rod, const Clamp& firs
 
 std::vector<double> planar_whole_turns(const Model& model, const Configuration& here) {
   std::vector<double> turns;
+  if (model.dimension != 2) return turns;
   for (const RodLayout& rod : model.rods) {
     for (const Clamp& first : rod.clamps) {
       for (const Clamp& last : rod.clamps) {

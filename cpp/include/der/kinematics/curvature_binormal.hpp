@@ -1,0 +1,59 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "der/kinematics/curvature_measure.hpp"
+
+namespace der {
+
+/// Length of the curvature binormal as a function of d = ta . tb, the cosine of the turning angle
+/// between the unit tangents of two edges: kb = f(d) ta x tb (Bergou et al. 2008, eq. 1).
+struct BinormalFactor {
+  double f = 1.0;
+  double log_slope = 0.0;   ///< f'/f
+  double log_change = 0.0;  ///< (f'/f)' - (f'/f)^2
+};
+
+template <class Curvature>
+struct Binormal;
+
+/// |kb| = 2 tan(phi/2): f = 2/(1 + d).
+template <>
+struct Binormal<TangentCurvature> {
+  static BinormalFactor of(double d) {
+    const double half = 1.0 / (1.0 + d);
+    return {2.0 * half, -half, 0.0};
+  }
+};
+
+/// |kb| = phi: f = acos(d)/sqrt(1 - d^2). With u = 1 - d and k = (f - 1 - u/3)/u^2, a power series
+/// in u, neither f nor its derivatives cancel at d = 1; they follow from
+/// (1 - d^2) f' = d f - 1.
+template <>
+struct Binormal<AngleCurvature> {
+  static BinormalFactor of(double d) {
+    const double u = 1.0 - d;
+    const double k = second_quotient(u);
+    const double f = 1.0 + u * (1.0 / 3.0 + u * k);
+    const double half = 1.0 / (2.0 - u);
+    const double first = (-2.0 / 3.0 - u / 3.0 + u * k * (1.0 - u)) * half;
+    const double second = (2.0 / 3.0 * (1.0 + u) + k * (3.0 - u * (4.0 - 2.0 * u))) * half * half;
+    const double slope = first / f;
+    return {f, slope, second / f - 2.0 * slope * slope};
+  }
+
+ private:
+  static double second_quotient(double u) {
+    if (u < 0.125) {
+      // f = sum of c_n u^n with c_{n+1}/c_n = (n + 1)/(2 n + 3): its terms from n = 2 on.
+      double sum = 1.0;
+      for (int n = 14; n >= 2; --n) sum = 1.0 + sum * u * ((n + 1.0) / (2.0 * n + 3.0));
+      return 2.0 / 15.0 * sum;
+    }
+    const double f = std::acos(std::max(-1.0, 1.0 - u)) / std::sqrt(u * (2.0 - u));
+    return (f - 1.0 - u / 3.0) / (u * u);
+  }
+};
+
+}  // namespace der

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "der/core/types.hpp"
+
+namespace der {
+
+/// What the state follows of one edge with a section frame, as entries of the controls that
+/// elements see: the source tangent and the reference director there, and the reference twists of
+/// the joints at its start and at its end, whole turns included. The blocks of all edges stand at
+/// the head of the controls, in the order of the edges.
+struct FrameBlock {
+  static constexpr Index kSize = 8;
+  Index first = 0;  ///< entry of the controls
+
+  static FrameBlock of(Index edge) { return {kSize * edge}; }
+  [[nodiscard]] Vec3 tangent(const Vector& values) const { return values.segment<3>(first); }
+  [[nodiscard]] Vec3 director(const Vector& values) const { return values.segment<3>(first + 3); }
+  /// Entry of the reference twist [rad] of the joint at the edge's start or end.
+  [[nodiscard]] Index twist_at_start() const { return first + 6; }
+  [[nodiscard]] Index twist_at_end() const { return first + 7; }
+};
+
+}  // namespace der

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "der/core/types.hpp"
+#include "der/kinematics/frame_block.hpp"
+#include "der/kinematics/spatial_edge.hpp"
+
+namespace der {
+
+struct Model;
+
+/// The joint between two edges with section frames, or between one and a clamp.
+struct FramedJoint {
+  Index before = -1;  ///< number of the edge; -1: a clamp, before the edge `after`
+  Index after = -1;   ///< number of the edge; -1: a clamp
+  HeldFrame held;     ///< of the clamp, if there is one
+
+  /// Entry of the reference twist.
+  [[nodiscard]] Index twist() const {
+    return after >= 0 ? FrameBlock::of(after).twist_at_start()
+                      : FrameBlock::of(before).twist_at_end();
+  }
+};
+
+/// Moves the frames of all edges in `frames` to the shape at `coordinates`: parallel transport in
+/// time of their reference directors, and reference twists that change by less than half a turn
+/// (Bergou et al., Discrete Viscous Threads, SIGGRAPH 2010, section 4.2). `controls` turn the
+/// clamps. The angles of the edges, and all energies, stay as they are.
+void follow_frames(const Model& model, const Vector& coordinates, const Vector& controls,
+                   Eigen::Ref<Vector> frames);
+
+/// The edge whose tangent has turned by more than a quarter turn from its value in `frames`; -1 if
+/// none has.
+Index frame_turned_too_far(const Model& model, const Vector& coordinates, const Vector& controls,
+                           const Eigen::Ref<const Vector>& frames);
+
+/// The section frame of an edge in a configuration.
+SectionFrame section_frame(const Model& model, Index edge, const Configuration& here);
+
+}  // namespace der

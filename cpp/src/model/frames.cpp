@@ -1,0 +1,55 @@
+#include "der/model/frames.hpp"
+
+#include "der/core/index.hpp"
+#include "der/kinematics/edge_frame.hpp"
+#include "der/model/model.hpp"
+
+namespace der {
+namespace {
+
+/// The reference frame of an edge, from its block.
+SectionFrame reference_frame(Index edge, const Vector& frames) {
+  const FrameBlock block = FrameBlock::of(edge);
+  return SectionFrame::of(block.tangent(frames), block.director(frames));
+}
+
+}  // namespace
+
+void follow_frames(const Model& model, const Vector& coordinates, const Vector& controls,
+                   Eigen::Ref<Vector> frames) {
+  for (Index edge = 0; edge < static_cast<Index>(model.framed_edges.size()); ++edge) {
+    const FrameBlock block = FrameBlock::of(edge);
+    const Vec3 tangent =
+        model.framed_edges[to_size(edge)].vector(coordinates, controls).normalized();
+    const Vec3 moved = transport(block.director(frames), block.tangent(frames), tangent);
+    frames.segment<3>(block.first) = tangent;
+    frames.segment<3>(block.first + 3) = made_perpendicular(moved, tangent);
+  }
+  for (const FramedJoint& joint : model.framed_joints) {
+    const SectionFrame before = joint.before >= 0 ? reference_frame(joint.before, frames)
+                                                  : joint.held.untwisted(controls);
+    const SectionFrame after =
+        joint.after >= 0 ? reference_frame(joint.after, frames) : joint.held.untwisted(controls);
+    double& twist = frames[joint.twist()];
+    twist = nearest_turn(twist_between(before, after), twist);
+  }
+}
+
+Index frame_turned_too_far(const Model& model, const Vector& coordinates, const Vector& controls,
+                           const Eigen::Ref<const Vector>& frames) {
+  for (Index edge = 0; edge < static_cast<Index>(model.framed_edges.size()); ++edge) {
+    const Vec3 vector = model.framed_edges[to_size(edge)].vector(coordinates, controls);
+    if (FrameBlock::of(edge).tangent(frames).dot(vector) < 0.0) return edge;
+  }
+  return -1;
+}
+
+SectionFrame section_frame(const Model& model, Index edge, const Configuration& here) {
+  const SpatialEdge& framed = model.framed_edges[to_size(edge)];
+  const FrameBlock block = FrameBlock::of(edge);
+  return EdgeFrame(framed.vector(here.coordinates, here.controls), here.coordinates[framed.theta],
+                   block.tangent(here.controls), block.director(here.controls))
+      .frame;
+}
+
+}  // namespace der

@@ -29,8 +29,9 @@ void check_derivatives(Shape shape, Random& random) {
   constexpr int n = Kernel::kDofs;
   using Coordinates = Eigen::Matrix<double, n, 1>;
   const auto constants = sample_constants(Kernel{}, random);
-  const Configuration here = sample_configuration(random);
-  const Coordinates x = sample_positions<n>(shape, random);
+  Configuration here = sample_configuration(random);
+  const Coordinates x = sample_positions<Kernel>(shape, random);
+  sample_frames(Kernel{}, constants, x, random, here);
 
   const auto energy = [&](const Coordinates& y) {
     LocalTerm<n> term;
@@ -75,7 +76,7 @@ void check_rigid_motion(Shape shape, Random& random) {
   constexpr int n = Kernel::kDofs;
   const auto constants = sample_constants(Kernel{}, random);
   const Configuration here = sample_configuration(random);
-  const auto x = sample_positions<n>(shape, random);
+  const auto x = sample_positions<Kernel>(shape, random);
   LocalTerm<n> before;
   Kernel::template evaluate<Derivatives::Gradient>(constants, here, x, before);
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <type_traits>
 
 #include "der/energies/registry.hpp"
 
@@ -15,17 +16,30 @@ inline double uniform(Random& random, double low, double high) {
   return std::uniform_real_distribution<double>(low, high)(random);
 }
 
-/// All that elements read of a configuration besides their own coordinates: the controls that the
-/// sampled constants refer to, a moment, a rotation, and a turn so far.
+/// The controls that the sampled constants refer to, behind the frames of two edges.
+enum Control : Index { kMoment = 2 * FrameBlock::kSize, kRotation, kTurn, kNumControls };
+
+inline Vec3 direction(Random& random) {
+  return Vec3(uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0))
+      .normalized();
+}
+
+inline SectionFrame sample_frame(const Vec3& tangent, Random& random) {
+  return SectionFrame::of(tangent, made_perpendicular(direction(random), tangent));
+}
+
+/// All that elements read of a configuration besides their own coordinates.
 inline Configuration sample_configuration(Random& random) {
   Configuration here;
-  here.controls.resize(3);
-  here.controls << uniform(random, -2.0, 2.0), uniform(random, -1.0, 1.0),
-      uniform(random, -1.0, 1.0);
+  here.controls.setZero(kNumControls);
+  here.controls[kMoment] = uniform(random, -2.0, 2.0);
+  here.controls[kRotation] = uniform(random, -1.0, 1.0);
+  here.controls[kTurn] = uniform(random, -1.0, 1.0);
   return here;
 }
 
-inline Stretch<2>::Constants sample_constants(const Stretch<2>&, Random& random) {
+template <int Dim>
+typename Stretch<Dim>::Constants sample_constants(const Stretch<Dim>&, Random& random) {
   return {uniform(random, 1.0, 100.0), uniform(random, 0.5, 2.0)};
 }
 
@@ -39,11 +53,11 @@ template <class Curvature>
 typename PlanarClamp<Curvature>::Constants sample_constants(const PlanarClamp<Curvature>&,
                                                             Random& random) {
   return {uniform(random, 0.5, 5.0), uniform(random, -1.0, 1.0), uniform(random, -0.5, 0.5),
-          uniform(random, 0.0, 1.0) < 0.5 ? -1.0 : 1.0, 1};
+          uniform(random, 0.0, 1.0) < 0.5 ? -1.0 : 1.0, kRotation};
 }
 
 inline PlanarMoment::Constants sample_constants(const PlanarMoment&, Random& random) {
-  return {uniform(random, 0.1, 1.0), 0};
+  return {uniform(random, 0.1, 1.0), kMoment};
 }
 
 inline Foundation::Constants sample_constants(const Foundation&, Random& random) {
@@ -71,7 +85,7 @@ typename RotationalSpring<Edges>::Constants sample_constants(const RotationalSpr
   c.stiffness = uniform(random, 0.5, 5.0);
   c.direction = uniform(random, -0.5, 0.5);
   c.rest = uniform(random, -1.0, 1.0);
-  c.turn = 2;
+  c.turn = kTurn;
   c.weights.back() = Edges == 1 ? 1.0 : uniform(random, -0.1, 1.1);
   c.weights.front() = Edges == 1 ? 1.0 : 1.0 - c.weights.back();
   return c;
@@ -81,7 +95,59 @@ template <class Kernel>
 typename FromPivot<Kernel>::Constants sample_constants(const FromPivot<Kernel>&, Random& random) {
   const auto pivot = [&] {
     // Short enough for edges that are nearly folded to stay so.
-    return Pivot{uniform(random, -0.01, 0.01), uniform(random, -0.5, 0.5), 1};
+    return Pivot{uniform(random, -0.01, 0.01), uniform(random, -0.5, 0.5), kRotation};
+  };
+  return {sample_constants(Kernel{}, random), pivot(), pivot()};
+}
+
+/// A clamp whose tangent stays within 1.5 rad of the x axis.
+inline HeldFrame sample_held_frame(Random& random) {
+  HeldFrame held;
+  held.drawn = sample_frame((Vec3::UnitX() + 0.4 * direction(random)).normalized(), random);
+  held.axis = direction(random);
+  held.rotation = kRotation;
+  held.twist = kTurn;
+  return held;
+}
+
+inline Joint sample_joint(Random& random) {
+  const auto stiffness = [&] { return uniform(random, 0.5, 5.0); };
+  return {stiffness(),
+          stiffness(),
+          stiffness(),
+          {uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0), uniform(random, -3.0, 3.0)}};
+}
+
+template <class Curvature>
+typename IsotropicBend<Curvature>::Constants sample_constants(const IsotropicBend<Curvature>&,
+                                                              Random& random) {
+  return {uniform(random, 0.5, 5.0)};
+}
+
+template <class Curvature>
+typename IsotropicClamp<Curvature>::Constants sample_constants(const IsotropicClamp<Curvature>&,
+                                                               Random& random) {
+  return {uniform(random, 0.5, 5.0), sample_held_frame(random)};
+}
+
+template <class Curvature>
+typename SpatialBend<Curvature>::Constants sample_constants(const SpatialBend<Curvature>&,
+                                                            Random& random) {
+  return {sample_joint(random), FrameBlock::of(0), FrameBlock::of(1)};
+}
+
+template <class Curvature>
+typename SpatialClamp<Curvature>::Constants sample_constants(const SpatialClamp<Curvature>&,
+                                                             Random& random) {
+  const double side = uniform(random, 0.0, 1.0) < 0.5 ? -1.0 : 1.0;
+  return {sample_joint(random), sample_held_frame(random), FrameBlock::of(0), side};
+}
+
+template <class Kernel>
+typename FromSpatialPivot<Kernel>::Constants sample_constants(const FromSpatialPivot<Kernel>&,
+                                                              Random& random) {
+  const auto pivot = [&] {
+    return SpatialPivot{uniform(random, -0.01, 0.01), sample_held_frame(random)};
   };
   return {sample_constants(Kernel{}, random), pivot(), pivot()};
 }
@@ -94,7 +160,7 @@ constexpr Shape kShapes[] = {Shape::Arbitrary, Shape::NearStraight, Shape::NearF
 /// the one before by an angle that the shape decides. The first edge stays within 1.5 rad of the x
 /// axis, the clamped direction within 0.5 + 1 rad of it: no angle crosses its cut at pi.
 template <int N>
-Eigen::Matrix<double, N, 1> sample_positions(Shape shape, Random& random) {
+Eigen::Matrix<double, N, 1> sample_planar_positions(Shape shape, Random& random) {
   Eigen::Matrix<double, N, 1> x;
   x.template head<2>() << uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0);
   double direction = uniform(random, -1.5, 1.5);
@@ -116,6 +182,88 @@ Eigen::Matrix<double, N, 1> sample_positions(Shape shape, Random& random) {
     }
   }
   return x;
+}
+
+/// Whether the coordinates of a kernel are those of nodes in space, then angles of edges.
+template <class Kernel, class = void>
+struct IsSpatial : std::false_type {};
+template <class Kernel>
+struct IsSpatial<Kernel, std::void_t<decltype(Kernel::kNodes)>>
+    : std::bool_constant<(Kernel::kDofs >= 3 * Kernel::kNodes)> {};
+
+/// As sample_planar_positions; each edge turns about any axis across the one before it. Angles of
+/// edges are up to two turns.
+template <class Kernel>
+Eigen::Matrix<double, Kernel::kDofs, 1> sample_spatial_positions(Shape shape, Random& random) {
+  Eigen::Matrix<double, Kernel::kDofs, 1> x;
+  x.template head<3>() = direction(random);
+  Vec3 tangent = (Vec3::UnitX() + 0.8 * direction(random)).normalized();
+  for (int node = 1; node < Kernel::kNodes; ++node) {
+    double length = uniform(random, 0.7, 1.4);
+    if (shape == Shape::Stretched) length *= std::exp(uniform(random, -1.5, 1.5));
+    x.template segment<3>(3 * node) = x.template segment<3>(3 * node - 3) + length * tangent;
+    double angle = uniform(random, 0.0, 2.5);
+    if (shape == Shape::NearStraight) angle = std::pow(10.0, uniform(random, -9.0, -3.0));
+    if (shape == Shape::NearFolded) angle = 3.14159265358979 - uniform(random, 0.05, 0.2);
+    tangent = Eigen::AngleAxisd(angle, made_perpendicular(direction(random), tangent)) * tangent;
+  }
+  for (int i = 3 * Kernel::kNodes; i < Kernel::kDofs; ++i) x[i] = uniform(random, -12.0, 12.0);
+  return x;
+}
+
+template <class Kernel>
+Eigen::Matrix<double, Kernel::kDofs, 1> sample_positions(Shape shape, Random& random) {
+  if constexpr (IsSpatial<Kernel>::value) {
+    return sample_spatial_positions<Kernel>(shape, random);
+  } else {
+    return sample_planar_positions<Kernel::kDofs>(shape, random);
+  }
+}
+
+/// Frames of which those at `x` come by transport over up to half a radian. Returns the reference
+/// frame at x.
+inline SectionFrame sample_source(Index edge, const Vec3& vector, Random& random,
+                                  Configuration& here) {
+  const Vec3 tangent = vector.normalized();
+  const SectionFrame source = sample_frame((tangent + 0.5 * direction(random)).normalized(), random);
+  const FrameBlock block = FrameBlock::of(edge);
+  here.controls.segment<3>(block.first) = source.tangent;
+  here.controls.segment<3>(block.first + 3) = source.first;
+  return EdgeFrame(vector, 0.0, source.tangent, source.first).frame;
+}
+
+/// Sets the frames that an element reads to some of which those at its coordinates are near.
+template <class Kernel, class Coordinates>
+void sample_frames(const Kernel& /*kernel*/, const typename Kernel::Constants& /*constants*/,
+                   const Coordinates& /*x*/, Random& /*random*/, Configuration& /*here*/) {}
+
+template <class Curvature, class Coordinates>
+void sample_frames(const SpatialBend<Curvature>& /*kernel*/,
+                   const typename SpatialBend<Curvature>::Constants& constants,
+                   const Coordinates& x, Random& random, Configuration& here) {
+  const Vec3 a = x.template segment<3>(3) - x.template segment<3>(0);
+  const Vec3 b = x.template segment<3>(6) - x.template segment<3>(3);
+  const SectionFrame before = sample_source(0, a, random, here);
+  const SectionFrame after = sample_source(1, b, random, here);
+  here.controls[constants.after.twist_at_start()] = twist_between(before, after);
+}
+
+template <class Curvature, class Coordinates>
+void sample_frames(const SpatialClamp<Curvature>& /*kernel*/,
+                   const typename SpatialClamp<Curvature>::Constants& constants,
+                   const Coordinates& x, Random& random, Configuration& here) {
+  const Vec3 e = x.template segment<3>(3) - x.template segment<3>(0);
+  const SectionFrame edge = sample_source(0, e, random, here);
+  const SectionFrame held = constants.held.untwisted(here.controls);
+  here.controls[constants.edge.twist_at_start()] = twist_between(held, edge);
+  here.controls[constants.edge.twist_at_end()] = twist_between(edge, held);
+}
+
+template <class Kernel, class Coordinates>
+void sample_frames(const FromSpatialPivot<Kernel>& /*kernel*/,
+                   const typename FromSpatialPivot<Kernel>::Constants& constants,
+                   const Coordinates& x, Random& random, Configuration& here) {
+  sample_frames(Kernel{}, constants.element, x, random, here);
 }
 
 }  // namespace der::test

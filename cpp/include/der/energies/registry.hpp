@@ -5,11 +5,14 @@
 #include "der/energies/element_list.hpp"
 #include "der/energies/foundation.hpp"
 #include "der/energies/from_pivot.hpp"
+#include "der/energies/from_spatial_pivot.hpp"
+#include "der/energies/isotropic_bend.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/energies/planar_clamp.hpp"
 #include "der/energies/planar_moment.hpp"
 #include "der/energies/point_spring.hpp"
 #include "der/energies/rotational_spring.hpp"
+#include "der/energies/spatial_bend.hpp"
 #include "der/energies/stretch.hpp"
 
 namespace der {
@@ -18,21 +21,35 @@ namespace der {
 /// the energy report and the finite-difference tests loop over this list. A kind without elements
 /// costs nothing in a run.
 struct ElementLists {
-  using Lists = std::tuple<ElementList<Stretch<2>>,                                //
-                           ElementList<FromPivot<Stretch<2>>>,                     //
-                           ElementList<PlanarBend<AngleCurvature>>,                //
-                           ElementList<PlanarBend<TangentCurvature>>,              //
-                           ElementList<FromPivot<PlanarBend<AngleCurvature>>>,     //
-                           ElementList<FromPivot<PlanarBend<TangentCurvature>>>,   //
-                           ElementList<FromPivot<PlanarClamp<AngleCurvature>>>,    //
-                           ElementList<FromPivot<PlanarClamp<TangentCurvature>>>,  //
-                           ElementList<PlanarMoment>,                              //
-                           ElementList<Foundation>,                                //
-                           ElementList<PointSpring<1>>,                            //
-                           ElementList<PointSpring<2>>,                            //
-                           ElementList<PointSpring<3>>,                            //
-                           ElementList<PointSpring<4>>,                            //
-                           ElementList<RotationalSpring<1>>,                       //
+  using Lists = std::tuple<ElementList<Stretch<2>>,                                          //
+                           ElementList<FromPivot<Stretch<2>>>,                               //
+                           ElementList<PlanarBend<AngleCurvature>>,                          //
+                           ElementList<PlanarBend<TangentCurvature>>,                        //
+                           ElementList<FromPivot<PlanarBend<AngleCurvature>>>,               //
+                           ElementList<FromPivot<PlanarBend<TangentCurvature>>>,             //
+                           ElementList<FromPivot<PlanarClamp<AngleCurvature>>>,              //
+                           ElementList<FromPivot<PlanarClamp<TangentCurvature>>>,            //
+                           ElementList<Stretch<3>>,                                          //
+                           ElementList<FromSpatialPivot<Stretch<3>>>,                        //
+                           ElementList<IsotropicBend<AngleCurvature>>,                       //
+                           ElementList<IsotropicBend<TangentCurvature>>,                     //
+                           ElementList<FromSpatialPivot<IsotropicBend<AngleCurvature>>>,     //
+                           ElementList<FromSpatialPivot<IsotropicBend<TangentCurvature>>>,   //
+                           ElementList<FromSpatialPivot<IsotropicClamp<AngleCurvature>>>,    //
+                           ElementList<FromSpatialPivot<IsotropicClamp<TangentCurvature>>>,  //
+                           ElementList<SpatialBend<AngleCurvature>>,                         //
+                           ElementList<SpatialBend<TangentCurvature>>,                       //
+                           ElementList<FromSpatialPivot<SpatialBend<AngleCurvature>>>,       //
+                           ElementList<FromSpatialPivot<SpatialBend<TangentCurvature>>>,     //
+                           ElementList<FromSpatialPivot<SpatialClamp<AngleCurvature>>>,      //
+                           ElementList<FromSpatialPivot<SpatialClamp<TangentCurvature>>>,    //
+                           ElementList<PlanarMoment>,                                        //
+                           ElementList<Foundation>,                                          //
+                           ElementList<PointSpring<1>>,                                      //
+                           ElementList<PointSpring<2>>,                                      //
+                           ElementList<PointSpring<3>>,                                      //
+                           ElementList<PointSpring<4>>,                                      //
+                           ElementList<RotationalSpring<1>>,                                 //
                            ElementList<RotationalSpring<2>>>;
   Lists lists;
 };

@@ -13,8 +13,8 @@ namespace der {
 /// A spring against turning: E = 1/2 k (sum w_i theta_i - rest)^2, theta the direction angles of
 /// one edge, or of two that share a node, from the drawn direction of the first; the weights w add
 /// up to 1. supports/spring.hpp says how the tangent of a rod is such a sum. The first edge is
-/// within half a turn of where the state has followed it to (model/turns.hpp), so that the spring
-/// winds up without an end.
+/// within half a turn of where the state has followed it to (model/followed.hpp), so that the
+/// spring winds up without an end.
 template <int Edges>
 struct RotationalSpring {
   static_assert(Edges == 1 || Edges == 2);

@@ -21,6 +21,7 @@ struct StretchResponse {
 template <int Dim>
 struct Stretch {
   static constexpr int kDofs = 2 * Dim;
+  static constexpr int kNodes = 2;
   static constexpr EnergyTerm kTerm = EnergyTerm::Stretch;
   struct Constants {
     double EA = 0.0;           ///< [N]

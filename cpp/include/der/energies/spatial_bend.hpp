@@ -1,0 +1,154 @@
+#pragma once
+
+#include "der/core/types.hpp"
+#include "der/energies/joint_response.hpp"
+#include "der/energies/local_term.hpp"
+#include "der/kinematics/configuration.hpp"
+#include "der/kinematics/edge_frame.hpp"
+#include "der/kinematics/frame_block.hpp"
+
+namespace der {
+
+/// [v]x, the matrix of the cross product with v.
+inline Mat3 cross_matrix(const Vec3& v) {
+  Mat3 m;
+  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
+  return m;
+}
+
+/// Whole twist [rad] of a joint whose reference twist at the start of the step was `reference`:
+/// that of the two frames, which is known up to whole turns, next to what the angles make of it.
+inline double whole_twist(const SectionFrame& before, const SectionFrame& after,
+                          double theta_before, double theta_after, double reference) {
+  return nearest_turn(twist_between(before, after), theta_after - theta_before + reference);
+}
+
+/// Bending about two axes and twist at a node between two edges (Bergou et al., Discrete Viscous
+/// Threads, SIGGRAPH 2010, section 4.2, with the directors of half the twist; JointKinematics).
+/// Coordinates: the three nodes, then the angles of the two edges.
+template <class Curvature>
+struct SpatialBend {
+  static constexpr int kDofs = 11;
+  static constexpr int kNodes = 3;
+  static constexpr EnergyTerm kTerm = EnergyTerm::Bend;
+  struct Constants {
+    Joint joint;
+    FrameBlock before;
+    FrameBlock after;
+  };
+
+  template <Derivatives D>
+  static void evaluate(const Constants& c, const Configuration& here,
+                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
+    const Vector& values = here.controls;
+    const EdgeFrame a(x.segment<3>(3) - x.segment<3>(0), x[9], c.before.tangent(values),
+                      c.before.director(values));
+    const EdgeFrame b(x.segment<3>(6) - x.segment<3>(3), x[10], c.after.tangent(values),
+                      c.after.director(values));
+    const double twist =
+        whole_twist(a.frame, b.frame, x[9], x[10], values[c.after.twist_at_start()]);
+    const JointKinematics<Curvature> kinematics(a.frame, b.frame, twist);
+    if constexpr (D == Derivatives::Energy) {
+      out.energy = kinematics.energy(c.joint);
+      return;
+    }
+    JointResponse response;
+    kinematics.template respond<D == Derivatives::Hessian>(c.joint, response);
+    out.energy = response.energy;
+    const Eigen::Matrix<double, 3, 4> turn_a = a.rotation();
+    const Eigen::Matrix<double, 3, 4> turn_b = b.rotation();
+    const Eigen::Vector4d force_a = -turn_a.transpose() * response.moment;
+    const Eigen::Vector4d force_b = turn_b.transpose() * response.moment;
+    out.gradient << -force_a.head<3>(), force_a.head<3>() - force_b.head<3>(), force_b.head<3>(),
+        force_a[3], force_b[3];
+    if constexpr (D == Derivatives::Gradient) return;
+
+    // By the vectors and angles of the edges, then by the nodes that these run between.
+    const Mat3& stiffness = response.stiffness;
+    const Eigen::Matrix4d aa =
+        turn_a.transpose() * stiffness * turn_a + a.geometric_stiffness(-response.moment);
+    const Eigen::Matrix4d bb =
+        turn_b.transpose() * stiffness * turn_b + b.geometric_stiffness(response.moment);
+    const Eigen::Matrix4d ba =
+        -turn_b.transpose() * (stiffness + 0.5 * cross_matrix(response.moment)) * turn_a;
+    const Mat3 aa_ee = aa.topLeftCorner<3, 3>();
+    const Mat3 bb_ee = bb.topLeftCorner<3, 3>();
+    const Mat3 ba_ee = ba.topLeftCorner<3, 3>();
+    auto& h = out.hessian;
+    h.template block<3, 3>(0, 0) = aa_ee;
+    h.template block<3, 3>(3, 0) = ba_ee - aa_ee;
+    h.template block<3, 3>(6, 0) = -ba_ee;
+    h.template block<3, 3>(3, 3) = aa_ee - ba_ee - ba_ee.transpose() + bb_ee;
+    h.template block<3, 3>(6, 3) = ba_ee - bb_ee;
+    h.template block<3, 3>(6, 6) = bb_ee;
+    const Eigen::RowVector3d aa_te = aa.bottomLeftCorner<1, 3>();
+    const Eigen::RowVector3d bb_te = bb.bottomLeftCorner<1, 3>();
+    const Eigen::RowVector3d ba_te = ba.bottomLeftCorner<1, 3>();            // theta_b by e_a
+    const Eigen::RowVector3d ab_te = ba.topRightCorner<3, 1>().transpose();  // theta_a by e_b
+    h.template block<1, 3>(9, 0) = -aa_te;
+    h.template block<1, 3>(9, 3) = aa_te - ab_te;
+    h.template block<1, 3>(9, 6) = ab_te;
+    h.template block<1, 3>(10, 0) = -ba_te;
+    h.template block<1, 3>(10, 3) = ba_te - bb_te;
+    h.template block<1, 3>(10, 6) = bb_te;
+    h(9, 9) = aa(3, 3);
+    h(10, 9) = ba(3, 3);
+    h(10, 10) = bb(3, 3);
+  }
+};
+
+/// Bending and twist of the cell between a held section and the edge next to it. Coordinates: the
+/// two nodes, then the edge's angle. supports/clamp.hpp has the lengths of the cell.
+template <class Curvature>
+struct SpatialClamp {
+  static constexpr int kDofs = 7;
+  static constexpr int kNodes = 2;
+  static constexpr EnergyTerm kTerm = EnergyTerm::Bend;
+  struct Constants {
+    Joint joint;
+    HeldFrame held;
+    FrameBlock edge;
+    double side = 1.0;  ///< +1: the edge leaves the clamp, -1: it arrives there
+  };
+
+  template <Derivatives D>
+  static void evaluate(const Constants& c, const Configuration& here,
+                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
+    const Vector& values = here.controls;
+    const EdgeFrame edge(x.segment<3>(3) - x.segment<3>(0), x[6], c.edge.tangent(values),
+                         c.edge.director(values));
+    const double turned = c.held.twist_angle(values);
+    const SectionFrame held = c.held.untwisted(values).turned(turned);
+    const bool leaves = c.side > 0.0;
+    const SectionFrame& a = leaves ? held : edge.frame;
+    const SectionFrame& b = leaves ? edge.frame : held;
+    const double twist = leaves ? whole_twist(a, b, turned, x[6], values[c.edge.twist_at_start()])
+                                : whole_twist(a, b, x[6], turned, values[c.edge.twist_at_end()]);
+    const JointKinematics<Curvature> kinematics(a, b, twist);
+    if constexpr (D == Derivatives::Energy) {
+      out.energy = kinematics.energy(c.joint);
+      return;
+    }
+    JointResponse response;
+    kinematics.template respond<D == Derivatives::Hessian>(c.joint, response);
+    out.energy = response.energy;
+    const Vec3 moment = c.side * response.moment;
+    const Eigen::Matrix<double, 3, 4> turn = edge.rotation();
+    const Eigen::Vector4d force = turn.transpose() * moment;
+    out.gradient << -force.head<3>(), force.head<3>(), force[3];
+    if constexpr (D == Derivatives::Gradient) return;
+
+    const Eigen::Matrix4d own =
+        turn.transpose() * response.stiffness * turn + edge.geometric_stiffness(moment);
+    const Mat3 ee = own.topLeftCorner<3, 3>();
+    auto& h = out.hessian;
+    h.template block<3, 3>(0, 0) = ee;
+    h.template block<3, 3>(3, 0) = -ee;
+    h.template block<3, 3>(3, 3) = ee;
+    h.template block<1, 3>(6, 0) = -own.bottomLeftCorner<1, 3>();
+    h.template block<1, 3>(6, 3) = own.bottomLeftCorner<1, 3>();
+    h(6, 6) = own(3, 3);
+  }
+};
+
+}  // namespace der

@@ -25,7 +25,7 @@ def _exported() -> dict[str, Quantity]:
     along_rods = [
         quantity
         for quantity in quantities()
-        if quantity.kind not in ("turn", "energy") and not quantity.is_component
+        if quantity.kind not in ("turn", "section", "energy") and not quantity.is_component
     ]
     along_rods.sort(key=is_motion)
     return {quantity.name: quantity for quantity in along_rods}

@@ -10,6 +10,7 @@
 #include "der/supports/clamp.hpp"
 #include "output/moment_recovery.hpp"
 #include "output/natural_curvature.hpp"
+#include "output/section_field.hpp"
 
 namespace der {
 namespace {
@@ -248,10 +249,12 @@ std::unique_ptr<RodField> make_turning_angle_field(const RodLayout& rod, const M
 }
 
 std::unique_ptr<RodField> make_curvature_field(const RodLayout& rod, const Model& model) {
+  if (model.dimension == 3) return make_section_field(SectionQuantity::Curvature, rod, model);
   return make_bend_field(false, rod, model);
 }
 
 std::unique_ptr<RodField> make_moment_field(const RodLayout& rod, const Model& model) {
+  if (model.dimension == 3) return make_section_field(SectionQuantity::Moment, rod, model);
   return make_bend_field(true, rod, model);
 }
 

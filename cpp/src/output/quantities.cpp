@@ -5,6 +5,7 @@
 
 #include "output/bend_field.hpp"
 #include "output/motion_field.hpp"
+#include "output/section_field.hpp"
 #include "output/stretch_field.hpp"
 
 namespace der {
@@ -23,6 +24,14 @@ Quantity field(std::string name, std::string unit, QuantityKind kind, std::strin
   return {std::move(name), std::move(unit), kind, std::move(meaning), maker, {}, false};
 }
 
+template <SectionQuantity quantity>
+Quantity section(std::string name, std::string unit, std::string meaning) {
+  const RodFieldMaker maker = [](const RodLayout& rod, const Model& model) {
+    return make_section_field(quantity, rod, model);
+  };
+  return field(std::move(name), std::move(unit), QuantityKind::Section, std::move(meaning), maker);
+}
+
 Quantity energy(std::string name, std::string meaning, std::vector<EnergyTerm> terms) {
   return {std::move(name),  kEnergyUnit, QuantityKind::Energy, std::move(meaning), nullptr,
           std::move(terms), false};
@@ -33,8 +42,10 @@ std::vector<Quantity> quantities_along_rods() {
   return {
       component<&State::positions, 0>("x", "m", Kind::Position, "horizontal position"),
       component<&State::positions, 1>("y", "m", Kind::Position, "vertical position"),
+      component<&State::positions, 2>("z", "m", Kind::Position, "position along z, in space"),
       component<&State::velocities, 0>("vx", "m/s", Kind::Velocity, "horizontal velocity"),
       component<&State::velocities, 1>("vy", "m/s", Kind::Velocity, "vertical velocity"),
+      component<&State::velocities, 2>("vz", "m/s", Kind::Velocity, "velocity along z, in space"),
       field("speed", "m/s", Kind::Velocity, "magnitude of the velocity", make_speed_field),
       field("turning_angle", "rad", Kind::Turn,
             "angle from the edge before a node to the edge after it, positive counter-clockwise",
@@ -42,6 +53,16 @@ std::vector<Quantity> quantities_along_rods() {
       field("curvature", "1/m", Kind::Bend, "turning angle per length", make_curvature_field),
       field("moment", "N m", Kind::Bend,
             "bending moment, positive where it bends counter-clockwise", make_moment_field),
+      section<SectionQuantity::Curvature1>("curvature_1", "1/m",
+                                           "curvature towards the first director"),
+      section<SectionQuantity::Curvature2>("curvature_2", "1/m",
+                                           "curvature towards the second director"),
+      section<SectionQuantity::Moment1>("moment_1", "N m",
+                                        "bending moment of the curvature towards the first director"),
+      section<SectionQuantity::Moment2>(
+          "moment_2", "N m", "bending moment of the curvature towards the second director"),
+      section<SectionQuantity::Twist>("twist", "rad/m", "rotation of the section per length"),
+      section<SectionQuantity::Torque>("torque", "N m", "moment about the tangent"),
       field("strain", "", Kind::Edge, "elongation per rest length", make_strain_field),
       field("tension", "N", Kind::Edge, "axial force, positive in tension", make_tension_field),
   };

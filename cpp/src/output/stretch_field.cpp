@@ -6,6 +6,7 @@
 #include "der/supports/clamp.hpp"
 #include "output/edge_excess.hpp"
 #include "output/line_loads.hpp"
+#include "output/section_field.hpp"
 #include "output/spread_forces.hpp"
 #include "output/stretch_samples.hpp"
 
@@ -98,10 +99,12 @@ class StretchField : public RodField {
 }  // namespace
 
 std::unique_ptr<RodField> make_strain_field(const RodLayout& rod, const Model& model) {
+  if (model.dimension == 3) return make_edge_strain_field(1.0, rod, model);
   return StretchField::make(1.0, rod, model);
 }
 
 std::unique_ptr<RodField> make_tension_field(const RodLayout& rod, const Model& model) {
+  if (model.dimension == 3) return make_edge_strain_field(rod.EA, rod, model);
   return StretchField::make(rod.EA, rod, model);
 }
 

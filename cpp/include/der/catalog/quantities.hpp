@@ -20,6 +20,7 @@ enum class QuantityKind {
   Turn,      ///< of the nodes that bend: inner nodes, and ends that are clamped
   Bend,      ///< of the rod's bending: any arc length, with two values where moments jump
   Edge,      ///< of the edges: any arc length, with two values where forces jump
+  Section,   ///< of the sections of a rod in space: any arc length
   Energy,    ///< of a rod or of the whole model: no place
 };
 

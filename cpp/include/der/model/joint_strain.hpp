@@ -1,0 +1,21 @@
+#pragma once
+
+#include "der/kinematics/joint_strain.hpp"
+#include "der/model/model.hpp"
+#include "der/model/state.hpp"
+
+namespace der {
+
+/// The section frame of an edge of a model with sections, at a state: where the state's frames have
+/// followed its coordinates they need no transport.
+SectionFrame section_frame(const Model& model, Index edge, const State& state);
+
+/// Curvatures and twist of a joint of a rod in space at a state. Without sections, `kappa_1` is the
+/// integrated curvature, in whatever direction, and the rest is zero.
+JointStrain strain_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
+                      const State& state);
+
+/// Vector [m] of an edge of a rod in space as its elements see it.
+Vec3 effective_vector(const SpatialEdge& edge, const Model& model, const State& state);
+
+}  // namespace der

@@ -1,0 +1,119 @@
+#include "der/model/joint_strain.hpp"
+
+#include <cmath>
+
+#include "der/core/index.hpp"
+#include "der/energies/joint_response.hpp"
+#include "der/supports/spatial_clamp.hpp"
+
+namespace der {
+namespace {
+
+double rotation_of(const HeldFrame& held, const Model& model, const State& state) {
+  return held.rotation < 0 ? 0.0 : control_value(model, state, held.rotation);
+}
+
+SectionFrame held_frame(const HeldFrame& held, const Model& model, const State& state) {
+  return held.rotation < 0 ? held.drawn : held.rotated(rotation_of(held, model, state));
+}
+
+Vec3 offset(const SpatialPivot& pivot, const Model& model, const State& state) {
+  if (pivot.distance == 0.0) return Vec3::Zero();
+  return pivot.distance * held_frame(pivot.held, model, state).tangent;
+}
+
+/// The frames on both sides of a joint, with the angle that the side after it is turned by against
+/// the reference directors, less that of the side before it.
+struct Sides {
+  SectionFrame before;
+  SectionFrame after;
+  double turned = 0.0;
+};
+
+double theta(Index edge, const Model& model, const State& state) {
+  return state.positions[model.framed_edges[to_size(edge)].theta];
+}
+
+Sides sides_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
+               const State& state) {
+  Sides sides;
+  const auto clamped = [&](SectionFrame& frame, double sign) {
+    const HeldFrame& held = rod.clamps[to_size(joint.clamp)].held;
+    const double twist = held.twist < 0 ? 0.0 : control_value(model, state, held.twist);
+    frame = held_frame(held, model, state).turned(twist);
+    sides.turned += sign * twist;
+  };
+  const auto on_edge = [&](Index edge, SectionFrame& frame, double sign) {
+    const Index number = rod.first_edge + edge;
+    frame = section_frame(model, number, state);
+    sides.turned += sign * theta(number, model, state);
+  };
+  if (joint.before >= 0) {
+    on_edge(joint.before, sides.before, -1.0);
+  } else {
+    clamped(sides.before, -1.0);
+  }
+  if (joint.after >= 0) {
+    on_edge(joint.after, sides.after, 1.0);
+  } else {
+    clamped(sides.after, 1.0);
+  }
+  return sides;
+}
+
+template <class Curvature>
+JointStrain section_strain(const RodJoint& joint, const RodLayout& rod, const Model& model,
+                           const State& state) {
+  const Sides sides = sides_of(joint, rod, model, state);
+  const FrameBlock block =
+      FrameBlock::of(rod.first_edge + (joint.after >= 0 ? joint.after : joint.before));
+  const Index entry = joint.after >= 0 ? block.twist_at_start() : block.twist_at_end();
+  const Index first = static_cast<Index>(model.followed_edges.size());
+  const double twist = nearest_turn(twist_between(sides.before, sides.after),
+                                    sides.turned + state.followed[first + entry]);
+  return JointKinematics<Curvature>(sides.before, sides.after, twist).strain();
+}
+
+/// Without frames.
+template <class Curvature>
+JointStrain bend_strain(const RodJoint& joint, const RodLayout& rod, const Model& model,
+                        const State& state) {
+  const auto side = [&](Index edge) -> Vec3 {
+    if (edge >= 0) return effective_vector(spatial_edge(rod, edge, model), model, state);
+    return held_frame(rod.clamps[to_size(joint.clamp)].held, model, state).tangent;
+  };
+  const Vec3 before = side(joint.before);
+  const Vec3 after = side(joint.after);
+  return {Curvature::of(std::atan2(before.cross(after).norm(), before.dot(after))).kappa, 0.0, 0.0};
+}
+
+template <class Curvature>
+JointStrain measured(const RodJoint& joint, const RodLayout& rod, const Model& model,
+                     const State& state) {
+  return model.has_sections() ? section_strain<Curvature>(joint, rod, model, state)
+                              : bend_strain<Curvature>(joint, rod, model, state);
+}
+
+}  // namespace
+
+SectionFrame section_frame(const Model& model, Index edge, const State& state) {
+  const FrameBlock block = FrameBlock::of(edge);
+  const auto first = static_cast<Index>(model.followed_edges.size());
+  const Vec3 tangent = state.followed.segment<3>(first + block.first);
+  const Vec3 director = state.followed.segment<3>(first + block.first + 3);
+  return SectionFrame::of(tangent, director).turned(theta(edge, model, state));
+}
+
+JointStrain strain_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
+                      const State& state) {
+  return rod.curvature == scenario::CurvatureMeasure::Angle
+             ? measured<AngleCurvature>(joint, rod, model, state)
+             : measured<TangentCurvature>(joint, rod, model, state);
+}
+
+Vec3 effective_vector(const SpatialEdge& edge, const Model& model, const State& state) {
+  return state.positions.segment<3>(edge.end) + offset(edge.last, model, state) -
+         state.positions.segment<3>(edge.start) - offset(edge.first, model, state);
+}
+
+}  // namespace der

@@ -11,6 +11,7 @@
 #include "der/energies/elements_of.hpp"
 #include "der/energies/registry.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "der/model/dimension.hpp"
 
 namespace der {
 namespace {
@@ -63,6 +64,16 @@ struct MapsOf<std::tuple<ElementList<Kernels>...>> {
   using type = std::tuple<ScatterMap<Kernels>...>;
 };
 
+/// A stiffness [N/m] across an edge vector.
+Mat2 across(const Vec2& e, double length, double stiffness) {
+  const Vec2 normal = perpendicular(e) / length;
+  return stiffness * normal * normal.transpose();
+}
+Mat3 across(const Vec3& e, double length, double stiffness) {
+  const Vec3 tangent = e / length;
+  return stiffness * (Mat3::Identity() - tangent * tangent.transpose());
+}
+
 constexpr auto kKinds = std::make_index_sequence<std::tuple_size_v<ElementLists::Lists>>{};
 
 }  // namespace
@@ -70,7 +81,15 @@ constexpr auto kKinds = std::make_index_sequence<std::tuple_size_v<ElementLists:
 struct Assembler::ScatterMaps {
   std::vector<PlanarChain> chains;
   MapsOf<ElementLists::Lists>::type elements;
-  std::vector<std::array<Index, 10>> edges;  // slots of every plain stretch element
+  // Slots of every plain stretch element.
+  std::vector<std::array<Index, 10>> planar_edges;
+  std::vector<std::array<Index, 21>> spatial_edges;
+
+  template <int Dim>
+  [[nodiscard]] const auto& edges() const {
+    if constexpr (Dim == 2) return planar_edges;
+    if constexpr (Dim == 3) return spatial_edges;
+  }
 
   template <Derivatives D>
   void assemble(const Model& model, const Configuration& here, Vector& gradient,
@@ -101,7 +120,10 @@ Assembler::Assembler(const Model& model, const MatrixLayout& layout)
       },
       kKinds);
   for (const auto& dofs : elements_of<Stretch<2>>(*model.elements).dofs) {
-    maps->edges.push_back(element_slots(dofs, slot_of));
+    maps->planar_edges.push_back(element_slots(dofs, slot_of));
+  }
+  for (const auto& dofs : elements_of<Stretch<3>>(*model.elements).dofs) {
+    maps->spatial_edges.push_back(element_slots(dofs, slot_of));
   }
   maps_ = std::move(maps);
 }
@@ -163,22 +185,31 @@ void Assembler::add_mass(const Mass& mass, double factor, Vector& values) const 
   }
 }
 
+Index Assembler::num_plain_edges() const {
+  return static_cast<Index>(maps_->planar_edges.size() + maps_->spatial_edges.size());
+}
+
+template <int Dim>
 void Assembler::add_tension_stiffness(const Configuration& here, const Vector& tension,
                                       Vector& values) const {
-  const auto& edges = elements_of<Stretch<2>>(*model_.elements);
+  const auto& edges = elements_of<Stretch<Dim>>(*model_.elements);
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Vec2 e = Stretch<2>::edge(gather(edges.dofs[i], here.coordinates));
+    const auto e = Stretch<Dim>::edge(gather(edges.dofs[i], here.coordinates));
     const double length = e.norm();
-    const Vec2 normal = perpendicular(e) / length;
-    const Mat2 block = tension[static_cast<Index>(i)] / length * normal * normal.transpose();
-    const Index* slot = maps_->edges[i].data();
-    for (int column = 0; column < 4; ++column) {
-      for (int row = column; row < 4; ++row) {
-        const double entry = block(row % 2, column % 2);
-        values[*slot++] += row / 2 == column / 2 ? entry : -entry;
+    const auto block = across(e, length, tension[static_cast<Index>(i)] / length);
+    const Index* slot = maps_->edges<Dim>()[i].data();
+    for (int column = 0; column < 2 * Dim; ++column) {
+      for (int row = column; row < 2 * Dim; ++row) {
+        const double entry = block(row % Dim, column % Dim);
+        values[*slot++] += row / Dim == column / Dim ? entry : -entry;
       }
     }
   }
+}
+
+void Assembler::add_tension_stiffness(const Configuration& here, const Vector& tension,
+                                      Vector& values) const {
+  with_dimension(model_, [&](auto dim) { add_tension_stiffness<dim>(here, tension, values); });
 }
 
 void Assembler::add_diagonal(const Vector& diagonal, double factor, Vector& values) const {

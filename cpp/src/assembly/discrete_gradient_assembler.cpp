@@ -13,7 +13,7 @@ DiscreteGradientAssembler::DiscreteGradientAssembler(const Model& model, const A
       model_(model),
       assembler_(assembler),
       at_middle_(Vector::Zero(model.num_dofs())),
-      excess_(Vector::Zero(static_cast<Index>(elements_of<Stretch<2>>(*model.elements).size()))) {}
+      excess_(Vector::Zero(assembler.num_plain_edges())) {}
 
 template <class Kernel>
 void DiscreteGradientAssembler::evaluate(const ElementList<Kernel>& list, std::size_t element,

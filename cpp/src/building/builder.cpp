@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "building/load_variation.hpp"
+#include "building/spatial_rod_elements.hpp"
 #include "der/building/rod_elements.hpp"
 #include "der/core/constants.hpp"
 #include "der/core/error.hpp"
@@ -13,23 +14,44 @@
 #include "der/model/cross_section.hpp"
 #include "der/model/location.hpp"
 #include "der/scenario/load.hpp"
+#include "der/scenario/model_choice.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/supports/supports.hpp"
 
 namespace der {
 namespace {
 
-void choose_model(const scenario::Scene& scene, Model& model) {
-  model.dimension = 2;
-  model.name = "planar";
-  model.reason = scene.model == scenario::ModelChoice::Planar
-                     ? "asked for by the scene"
-                     : "every position, force and support lies in the x-y plane";
+const char* name_of(scenario::ModelChoice kind) {
+  switch (kind) {
+    case scenario::ModelChoice::Spatial:
+      return "spatial";
+    case scenario::ModelChoice::SpatialBend:
+      return "spatial_bend";
+    default:
+      return "planar";
+  }
 }
 
-void place_nodes(const scenario::Scene& scene, Model& model) {
-  for (const auto& rod : scene.rods) model.num_nodes += static_cast<Index>(rod.points.size());
-  model.dofs = DofMap(model.dimension, model.num_nodes);
+/// Returns whether sections count.
+bool choose_model(const scenario::Scene& scene, Model& model) {
+  const auto [kind, reason] = scenario::choose_model(scene);
+  model.dimension = kind == scenario::ModelChoice::Planar ? 2 : 3;
+  model.name = name_of(kind);
+  model.reason = reason;
+  return kind == scenario::ModelChoice::Spatial;
+}
+
+void place_nodes(const scenario::Scene& scene, bool with_sections, Model& model) {
+  std::vector<Index> edge_starts;
+  for (const auto& rod : scene.rods) {
+    for (std::size_t i = 1; with_sections && i < rod.points.size(); ++i) {
+      edge_starts.push_back(model.num_nodes + static_cast<Index>(i) - 1);
+    }
+    model.num_nodes += static_cast<Index>(rod.points.size());
+  }
+  model.dofs = DofMap(model.dimension, model.num_nodes, edge_starts);
+  model.drawn_frames.setZero(FrameBlock::kSize * static_cast<Index>(edge_starts.size()));
+  model.tables = TimeTables(static_cast<Index>(model.drawn_frames.size()));
   const Index dofs = model.num_dofs();
   for (Vector* v : {&model.initial_positions, &model.initial_velocities, &model.mass.lumped,
                     &model.damping, &model.gravity_force, &model.dead_force}) {
@@ -37,8 +59,31 @@ void place_nodes(const scenario::Scene& scene, Model& model) {
   }
 }
 
-Vec2 position(const Model& model, Index node) {
-  return model.initial_positions.segment<2>(model.dof(node, 0));
+auto position(const Model& model, Index node) {
+  return model.initial_positions.segment(model.dof(node, 0), model.dimension);
+}
+
+/// Direction of the section's width at the rod's start, not yet perpendicular to the tangent there.
+Vec3 first_director(const scenario::Rod& rod, const Vec3& tangent) {
+  if (rod.director) return Eigen::Map<const Vec3>(rod.director->data());
+  const Vec3 across_plane = Vec3::UnitZ();
+  return across_plane.cross(tangent).norm() > 1e-6 ? across_plane : Vec3(tangent.unitOrthogonal());
+}
+
+/// The director is transported along the drawn edges without twist, then turned by the initial
+/// twist.
+void draw_sections(const scenario::Rod& rod, RodLayout& layout, const Model& model) {
+  layout.initial_twist = rod.initial_twist;
+  layout.natural_twist = rod.natural_twist;
+  Vec3 tangent = along_edge<3>(layout.edge(0, model), model.initial_positions).normalized();
+  Vec3 director = made_perpendicular(first_director(rod, tangent), tangent);
+  for (Index edge = 0; edge < layout.num_edges(); ++edge) {
+    const Vec3 next = along_edge<3>(layout.edge(edge, model), model.initial_positions).normalized();
+    director = made_perpendicular(transport(director, tangent, next), next);
+    tangent = next;
+    layout.drawn_frames.push_back(
+        SectionFrame::of(tangent, director).turned(rod.initial_twist * layout.edge_middle(edge)));
+  }
 }
 
 /// The only place that makes a chain of nodes; everything after it reads the layout's lists.
@@ -49,6 +94,11 @@ RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, In
   layout.curvature = rod.curvature;
   layout.EA = section.EA;
   layout.EI = section.EI;
+  layout.EI_1 = section.EI1;
+  layout.EI_2 = section.EI2;
+  layout.GJ = section.GJ;
+  layout.spin_inertia = section.spin_inertia;
+  layout.first_edge = static_cast<Index>(model.edges.size());
   layout.draw_radius = section.draw_radius;
 
   layout.arc_length.push_back(0.0);
@@ -69,6 +119,7 @@ RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, In
     model.edges.push_back(layout.edge(edge, model));
   }
   layout.sphere_radius.assign(rod.points.size(), 0.0);
+  if (model.has_sections()) draw_sections(rod, layout, model);
   return layout;
 }
 
@@ -77,6 +128,12 @@ void set_natural_curvature(const scenario::Rod& rod, RodLayout& layout) {
     layout.natural_curvature.assign(layout.nodes.size(), *constant);
   } else if (const auto* list = std::get_if<std::vector<double>>(&rod.natural_curvature)) {
     layout.natural_curvature = *list;
+  } else if (const auto* pair = std::get_if<scenario::CurvaturePair>(&rod.natural_curvature)) {
+    layout.natural_curvatures.assign(layout.nodes.size(), {pair->first, pair->second});
+  } else if (const auto* pairs =
+                 std::get_if<std::vector<scenario::CurvaturePair>>(&rod.natural_curvature)) {
+    for (const auto& [first, second] : *pairs)
+      layout.natural_curvatures.emplace_back(first, second);
   }
 }
 
@@ -84,7 +141,8 @@ void add_mass(Index node, double mass, Model& model) {
   for (int c = 0; c < model.dimension; ++c) model.mass.lumped[model.dof(node, c)] += mass;
 }
 
-/// Lumped masses: each node carries its Voronoi cell and its sphere.
+/// Lumped masses: each node carries its Voronoi cell and its sphere, each edge its inertia against
+/// spin.
 void lump_masses(const scenario::Rod& rod, RodLayout& layout, Model& model) {
   std::vector<double> sphere_density(layout.nodes.size(), 0.0);
   for (const auto& sphere : rod.spheres) {
@@ -99,6 +157,11 @@ void lump_masses(const scenario::Rod& rod, RodLayout& layout, Model& model) {
              layout.mass_per_length * layout.voronoi_length(static_cast<Index>(i)) +
                  sphere_density[i] * volume,
              model);
+  }
+  if (!model.has_sections()) return;
+  for (Index edge = 0; edge < layout.num_edges(); ++edge) {
+    model.mass.lumped[model.dofs.angle(layout.first_edge + edge)] =
+        layout.spin_inertia * layout.edge_length[to_size(edge)];
   }
 }
 
@@ -152,13 +215,19 @@ void hold_dofs(Model& model) {
 Model build_model(const scenario::Scene& scene) {
   Model model;
   model.elements = make_hidden<ElementLists>();
-  choose_model(scene, model);
-  place_nodes(scene, model);
+  const bool with_sections = choose_model(scene, model);
+  place_nodes(scene, with_sections, model);
   lay_out_rods(scene, model);
   for (std::size_t i = 0; i < scene.supports.size(); ++i) {
     add_support(scene.supports[i], i, model);
   }
-  for (RodLayout& rod : model.rods) add_rod_elements(rod, model);
+  for (RodLayout& rod : model.rods) {
+    if (model.dimension == 2) {
+      add_rod_elements(rod, model);
+    } else {
+      add_spatial_rod_elements(rod, model);
+    }
+  }
   for (const auto& load : scene.loads) {
     std::visit([&](const auto& l) { add_load(l, scene, model); }, load.what);
   }

@@ -15,6 +15,7 @@ Vector total_gravity(const scenario::Scene& scene) {
 
 void add_load(const scenario::Gravity& load, const scenario::Scene& /*scene*/, Model& model) {
   for (Index i = 0; i < model.num_dofs(); ++i) {
+    if (model.dofs[i].kind != DofKind::Position) continue;
     const auto component = static_cast<std::size_t>(model.dofs[i].component);
     model.gravity_force[i] += model.mass.lumped[i] * load.acceleration[component];
   }

@@ -3,13 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "der/model/dimension.hpp"
+
 namespace der {
 
 double largest_edge_change(const Model& model, const Vector& displacement) {
   double largest = 0.0;  // squared
-  for (const Edge& edge : model.edges) {
-    largest =
-        std::max(largest, along_edge(edge, displacement).squaredNorm() * edge.per_squared_length);
+  with_dimension(model, [&](auto dim) {
+    for (const Edge& edge : model.edges) {
+      const double squared = along_edge<dim>(edge, displacement).squaredNorm();
+      largest = std::max(largest, squared * edge.per_squared_length);
+    }
+  });
+  for (const SpatialEdge& edge : model.framed_edges) {
+    largest = std::max(largest, displacement[edge.theta] * displacement[edge.theta]);
   }
   return std::sqrt(largest);
 }

@@ -79,7 +79,7 @@ MomentPlace& place_of_moments(double s, RodLayout& rod) {
 
 double carried_moment(const MomentPlace& place, const RodLayout& rod, const Model& model,
                       const State& state, double applied) {
-  const double before = place.followed >= 0 ? state.turns[place.followed] : 0.0;
+  const double before = place.followed >= 0 ? state.followed[place.followed] : 0.0;
   return moment_of(place, rod, applied, spring_turn(place, model, state.positions, before));
 }
 

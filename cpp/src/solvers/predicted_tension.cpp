@@ -3,26 +3,29 @@
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/stretch.hpp"
+#include "der/model/dimension.hpp"
 
 namespace der {
 
 PredictedTension::PredictedTension(const Model& model, const Assembler& assembler)
-    : model_(model), assembler_(assembler) {
-  const auto edges = static_cast<Index>(elements_of<Stretch<2>>(*model.elements).size());
-  excess_.setZero(edges);
-}
+    : model_(model), assembler_(assembler), excess_(Vector::Zero(assembler.num_plain_edges())) {}
 
-void PredictedTension::use(const Configuration& here, const Vector& step, Vector& values) {
-  const auto& edges = elements_of<Stretch<2>>(*model_.elements);
+template <int Dim>
+void PredictedTension::set_excess(const Configuration& here, const Vector& step) {
+  const auto& edges = elements_of<Stretch<Dim>>(*model_.elements);
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    const Vec2 after = Stretch<2>::edge(gather(edges.dofs[i], here.coordinates));
-    const Vec2 change = Stretch<2>::edge(gather(edges.dofs[i], step));
-    const Vec2 before = after - change;
+    const auto after = Stretch<Dim>::edge(gather(edges.dofs[i], here.coordinates));
+    const auto change = Stretch<Dim>::edge(gather(edges.dofs[i], step));
+    const auto before = (after - change).eval();
     const double length = before.norm();
     const double predicted = length + before.dot(change) / length;
     const auto& c = edges.constants[i];
     excess_[static_cast<Index>(i)] = c.EA * (predicted - after.norm()) / c.rest_length;
   }
+}
+
+void PredictedTension::use(const Configuration& here, const Vector& step, Vector& values) {
+  with_dimension(model_, [&](auto dim) { set_excess<dim>(here, step); });
   assembler_.add_tension_stiffness(here, excess_, values);
 }
 

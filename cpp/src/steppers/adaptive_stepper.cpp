@@ -24,9 +24,8 @@ constexpr double kSliver = 1e-9;
 
 std::vector<double> table_entries(const Model& model) {
   std::vector<double> times;
-  for (Index i = 0; i < model.tables.size(); ++i) {
-    const auto& series = model.tables[i].times;
-    times.insert(times.end(), series.begin(), series.end());
+  for (const scenario::Series& series : model.tables.all()) {
+    times.insert(times.end(), series.times.begin(), series.times.end());
   }
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());

@@ -1,5 +1,7 @@
 #include "der/steppers/explicit_force.hpp"
 
+#include "der/model/dimension.hpp"
+
 #include <algorithm>
 
 #include "der/loads/external_force.hpp"
@@ -72,11 +74,13 @@ void ExplicitForce::apply_prescribed_motion_at(const State& state, double time, 
 StepReport ExplicitForce::check(const State& state, const Vector& positions) const {
   for (const Edge& edge : model_.edges) {
     const double limit = kLargestStretch * edge.rest_length;
-    if (!(along_edge(edge, positions).squaredNorm() < limit * limit)) {  // also true for NaN
+    const double squared = with_dimension(
+        model_, [&](auto dim) { return along_edge<dim>(edge, positions).squaredNorm(); });
+    if (!(squared < limit * limit)) {  // also true for NaN
       return {StepOutcome::Diverged, 0, edge.last, "an edge grew beyond 100 times its length"};
     }
   }
-  return check_turns(model_, state, positions);
+  return check_turns(model_, state, positions, here_.controls);
 }
 
 }  // namespace der

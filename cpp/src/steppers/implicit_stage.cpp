@@ -49,7 +49,7 @@ StepReport ImplicitStage::solve(const State& state, double time) {
     report.failure = newton.failure;
     return report;
   }
-  report = check_turns(model_, state, here.coordinates);
+  report = check_turns(model_, state, here.coordinates, here.controls);
   report.newton_iterations = newton.iterations;
   return report;
 }

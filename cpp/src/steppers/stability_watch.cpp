@@ -9,6 +9,7 @@
 
 #include "der/core/error.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "der/model/dimension.hpp"
 #include "der/scenario/time.hpp"
 
 namespace der {
@@ -43,7 +44,7 @@ bool may_be_unstable(const scenario::Time& time) {
 
 /// Rate of change of the shape [1/s]: the largest strain rate of an edge, or rate of the angle
 /// between an edge and the one before it in its rod.
-double rate_of_change(const Model& model, const State& state) {
+double planar_rate_of_change(const Model& model, const State& state) {
   double largest = 0.0;
   double turn_before = 0.0;
   for (std::size_t i = 0; i < model.edges.size(); ++i) {
@@ -59,14 +60,40 @@ double rate_of_change(const Model& model, const State& state) {
   return largest;
 }
 
+/// The same in space, twisting included: the rates of change of directions are vectors.
+double spatial_rate_of_change(const Model& model, const State& state) {
+  double largest = 0.0;
+  Vec3 turn_before = Vec3::Zero();
+  for (std::size_t i = 0; i < model.edges.size(); ++i) {
+    const Vec3 edge = along_edge<3>(model.edges[i], state.positions);
+    const Vec3 rate = along_edge<3>(model.edges[i], state.velocities);
+    const double per_squared = 1.0 / edge.squaredNorm();
+    Vec3 turn = per_squared * edge.cross(rate);
+    if (!model.framed_edges.empty()) {
+      turn += state.velocities[model.framed_edges[i].theta] * std::sqrt(per_squared) * edge;
+    }
+    largest = std::max(largest, std::abs(edge.dot(rate) * per_squared));
+    const bool joined = i > 0 && model.edges[i - 1].last == model.edges[i].first;
+    if (joined) largest = std::max(largest, (turn - turn_before).norm());
+    turn_before = turn;
+  }
+  return largest;
+}
+
+double rate_of_change(const Model& model, const State& state) {
+  return model.dimension == 2 ? planar_rate_of_change(model, state)
+                              : spatial_rate_of_change(model, state);
+}
+
 /// Whether an edge has changed since the positions `before`; rigid translation does not count.
 bool has_other_shape(const Model& model, const Vector& positions, const Vector& before) {
-  for (const Edge& edge : model.edges) {
-    const Vec2 then = along_edge(edge, before);
-    const Vec2 now = along_edge(edge, positions);
-    if ((now - then).squaredNorm() > kOtherShape * kOtherShape * then.squaredNorm()) return true;
-  }
-  return false;
+  return with_dimension(model, [&](auto dim) {
+    return std::any_of(model.edges.begin(), model.edges.end(), [&](const Edge& edge) {
+      const auto then = along_edge<dim>(edge, before);
+      const auto now = along_edge<dim>(edge, positions);
+      return (now - then).squaredNorm() > kOtherShape * kOtherShape * then.squaredNorm();
+    });
+  });
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,12 +16,21 @@
 namespace der {
 namespace {
 
+using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 4, 4>;
+
 /// Largest singular value of the matrix [a b; c d].
 double spectral_norm(double a, double b, double c, double d) {
   const double squares = a * a + b * b + c * c + d * d;
   const double determinant = a * d - b * c;
   const double split = squares * squares - 4.0 * determinant * determinant;
   return std::sqrt(0.5 * (squares + std::sqrt(std::max(0.0, split))));
+}
+
+/// Largest singular value.
+double spectral_norm(const SmallMatrix& m) {
+  if (m.rows() == 2) return spectral_norm(m(0, 0), m(0, 1), m(1, 0), m(1, 1));
+  if (!m.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+  return Eigen::JacobiSVD<SmallMatrix>(m).singularValues()[0];
 }
 
 }  // namespace
@@ -34,6 +44,7 @@ StableStepBound::StableStepBound(const Model& model, bool drag_limits_step)
       gradient_(model.num_dofs()),
       values_(assembler_.num_values()),
       sums_(model.num_nodes) {
+  block_size_ = model.dimension + (model.framed_edges.empty() ? 0 : 1);
   find_blocks();
   if (!drag_limits_step) return;
   for (const Index dof : model.dofs.free()) {
@@ -42,6 +53,11 @@ StableStepBound::StableStepBound(const Model& model, bool drag_limits_step)
     damping_rate_ = rate;
     most_damped_ = dof;
   }
+}
+
+Index StableStepBound::place_in_block(Index dof) const {
+  const Dof what = model_.dofs[dof];
+  return what.kind == DofKind::Angle ? model_.dimension : what.component;
 }
 
 void StableStepBound::find_blocks() {
@@ -56,7 +72,7 @@ void StableStepBound::find_blocks() {
       block.column = column;
       block.slots.fill(layout_.num_values());  // the spare one, for entries that are not there
     }
-    const Index place = 2 * model_.dofs[row_dof].component + model_.dofs[column_dof].component;
+    const Index place = block_size_ * place_in_block(row_dof) + place_in_block(column_dof);
     block.slots[to_size(place)] = slot;
     block.scale[to_size(place)] = inverse_root_mass_[row_dof] * inverse_root_mass_[column_dof];
   };
@@ -78,8 +94,12 @@ double StableStepBound::evaluate(const Configuration& here) {
   values_[layout_.num_values()] = 0.0;
   sums_.setZero();
   for (const Block& block : blocks_) {
-    const auto entry = [&](std::size_t i) { return block.scale[i] * values_[block.slots[i]]; };
-    const double norm = spectral_norm(entry(0), entry(1), entry(2), entry(3));
+    SmallMatrix matrix(block_size_, block_size_);
+    for (Index i = 0; i < block_size_ * block_size_; ++i) {
+      matrix(i / block_size_, i % block_size_) =
+          block.scale[to_size(i)] * values_[block.slots[to_size(i)]];
+    }
+    const double norm = spectral_norm(matrix);
     sums_[block.row] += norm;
     if (block.row != block.column) sums_[block.column] += norm;
   }
@@ -124,7 +144,7 @@ StableStep StableStepBound::explain(const Configuration& here) {
 
 /// The sum over a node's blocks from the elements counted under one term [1/s^2].
 double StableStepBound::term_bound(EnergyTerm term, Index node, const Configuration& here) const {
-  std::map<Index, Mat2> blocks;  // by the other node
+  std::map<Index, SmallMatrix> blocks;  // by the other node
   const DofMap& map = model_.dofs;
   for_each_list(*model_.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
@@ -141,8 +161,9 @@ double StableStepBound::term_bound(EnergyTerm term, Index node, const Configurat
           const Index row = dofs[to_size(i)];
           const Index column = dofs[to_size(j)];
           if (!is_here(row) || !map.is_free(column)) continue;
-          Mat2& block = blocks.try_emplace(map.node_of(column), Mat2::Zero()).first->second;
-          block(map[row].component, map[column].component) +=
+          const SmallMatrix none = SmallMatrix::Zero(block_size_, block_size_);
+          SmallMatrix& block = blocks.try_emplace(map.node_of(column), none).first->second;
+          block(place_in_block(row), place_in_block(column)) +=
               local.hessian(std::max(i, j), std::min(i, j)) * inverse_root_mass_[row] *
               inverse_root_mass_[column];
         }
@@ -151,7 +172,7 @@ double StableStepBound::term_bound(EnergyTerm term, Index node, const Configurat
   });
   double sum = 0.0;
   for (const auto& [other, block] : blocks) {
-    sum += spectral_norm(block(0, 0), block(0, 1), block(1, 0), block(1, 1));
+    sum += spectral_norm(block);
   }
   return sum;
 }

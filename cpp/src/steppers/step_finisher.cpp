@@ -31,7 +31,7 @@ void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector
     state.velocities[dof] = velocities[dof];
     state.positions[dof] = positions[dof];
   }
-  follow_turns(model_, state.positions, state.turns);
+  follow(model_, state.positions, end_.controls, state.followed);
   state.last_step = dt;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "der/supports/clamp.hpp"
+
 namespace der {
 namespace {
 
@@ -67,7 +69,8 @@ SupportMotion::SupportMotion(const Model& model) : model_(model) {
   }
   for (const RodLayout& rod : model.rods) {
     for (const Clamp& clamp : rod.clamps) {
-      if (clamp.rotation >= 0) moved_.push_back({clamp.rotation, kLargestTurn});
+      for_each_turning_control(
+          clamp, [&](Index control) { moved_.push_back({control, kLargestTurn}); });
     }
   }
 }

@@ -4,17 +4,19 @@
 
 #include "der/energies/element_energy.hpp"
 #include "der/energies/registry.hpp"
+#include "der/supports/clamp.hpp"
 
 namespace der {
 namespace {
 
 bool any_clamp_turns(const Model& model) {
+  bool any = false;
   for (const RodLayout& rod : model.rods) {
     for (const Clamp& clamp : rod.clamps) {
-      if (clamp.rotation >= 0) return true;
+      for_each_turning_control(clamp, [&](Index /*control*/) { any = true; });
     }
   }
-  return false;
+  return any;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "der/model/location.hpp"
 #include "der/scenario/support.hpp"
 #include "der/supports/clamp.hpp"
+#include "der/supports/spatial_clamp.hpp"
 #include "der/supports/spring.hpp"
 
 namespace der {
@@ -38,6 +39,18 @@ void add_support(const scenario::Support& support, std::size_t number, Model& mo
     }
     if (support.clamps()) {
       for (int c = 0; c < model.dimension; ++c) hold(model, model.dof(node, c), -1);
+      if (model.dimension == 3) {
+        hold_section(support, place, rod, model);
+        if (const Clamp* clamp = rod.clamp_at(place); clamp != nullptr) {
+          if (clamp->held.rotation >= 0) {
+            model.prescribed.push_back({number, "angle", clamp->held.rotation});
+          }
+          if (clamp->held.twist >= 0) {
+            model.prescribed.push_back({number, "twist", clamp->held.twist});
+          }
+        }
+        continue;
+      }
       hold_tangent(support, place, rod, model);
       const Clamp* clamp = rod.clamp_at(place);
       if (support.rotation && clamp != nullptr && clamp->rotation >= 0) {

@@ -23,6 +23,8 @@ class Assembler {
 
   /// Length of the array of values that `gradient_and_hessian` fills, spare slot included.
   [[nodiscard]] Index num_values() const { return num_values_; }
+  /// Number of plain stretch elements, those that begin and end at nodes.
+  [[nodiscard]] Index num_plain_edges() const;
 
   /// Sets `gradient` (all degrees of freedom) [N] of the potential energy of all elements.
   void gradient(const Configuration& here, Vector& gradient) const;
@@ -38,6 +40,10 @@ class Assembler {
   void add_diagonal(const Vector& diagonal, double factor, Vector& values) const;
 
  private:
+  template <int Dim>
+  void add_tension_stiffness(const Configuration& here, const Vector& tension,
+                             Vector& values) const;
+
   struct ScatterMaps;
   struct CouplingSlots {
     Index a;  // diagonal entries

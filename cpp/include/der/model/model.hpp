@@ -8,12 +8,15 @@
 
 #include "der/core/hidden.hpp"
 #include "der/core/types.hpp"
+#include "der/kinematics/held_frame.hpp"
+#include "der/kinematics/joint_strain.hpp"
 #include "der/model/dof_map.hpp"
 #include "der/model/edge.hpp"
+#include "der/model/followed.hpp"
+#include "der/model/frames.hpp"
 #include "der/model/load_variation.hpp"
 #include "der/model/mass.hpp"
 #include "der/model/time_tables.hpp"
-#include "der/model/turns.hpp"
 #include "der/scenario/curvature_measure.hpp"
 
 namespace der {
@@ -23,10 +26,25 @@ struct ElementLists;  // energies/registry.hpp
 
 /// A node of a rod whose tangent is held.
 struct Clamp {
-  Index place = 0;         ///< position in RodLayout::nodes
-  double direction = 0.0;  ///< initial angle of the held tangent [rad]
-  Index rotation = -1;     ///< control that turns it [rad]; -1: none
-  Index followed = -1;     ///< place in Model::followed_edges of the edge beside it, if it turns
+  Index place = 0;            ///< position in RodLayout::nodes
+  double direction = 0.0;     ///< initial angle of the held tangent [rad], in a plane
+  Index rotation = -1;        ///< control that turns it [rad]; -1: none
+  Index followed = -1;        ///< place in Model::followed_edges of the edge beside it, if it turns
+  HeldFrame held;             ///< in space
+  bool holds_section = true;  ///< in space: against turning about the tangent, too
+};
+
+/// A place at which a rod in space bends and twists: an inner node, or a cell beside a clamp.
+struct RodJoint {
+  Index before = -1;          ///< its edge before, in the rod; -1: a clamp
+  Index after = -1;           ///< its edge after; -1: a clamp
+  Index clamp = -1;           ///< the clamp's number among those of the rod; -1: an inner node
+  double bend_place = 0.0;    ///< arc length [m] at which it bends
+  double bend_length = 0.0;   ///< [m] over which it does
+  double twist_place = 0.0;   ///< arc length [m] at which it twists
+  double twist_length = 0.0;  ///< [m] over which it does
+  JointStrain rest;
+  Vec2 natural_curvature = Vec2::Zero();  ///< towards the two directors [1/m]
 };
 
 /// A place at which moments act on a rod's tangent: those of loads, those of springs against
@@ -78,10 +96,22 @@ struct RodLayout {
   std::vector<double> arc_length;   ///< rest arc length of each node [m]
   std::vector<double> edge_length;  ///< rest length of each edge [m]
   double EA = 0.0;                  ///< [N]
-  double EI = 0.0;                  ///< [N m^2]
+  double EI = 0.0;                  ///< [N m^2], in the plane
+  double EI_1 = 0.0;                ///< [N m^2] towards the first director, in space
+  double EI_2 = 0.0;                ///< [N m^2] towards the second director, in space
+  double GJ = 0.0;                  ///< [N m^2]
+  double spin_inertia = 0.0;        ///< about the tangent, per length [kg m]
   double mass_per_length = 0.0;     ///< [kg/m] without spheres
   scenario::CurvatureMeasure curvature = scenario::CurvatureMeasure::Angle;
-  /// Natural curvature at each node [1/m]; empty: the initial shape is stress-free.
+  Index first_edge = 0;  ///< number of its first edge among those of the model
+  /// Section frame [-] of each drawn edge at its middle, in space; empty where sections do not
+  /// count.
+  std::vector<SectionFrame> drawn_frames;
+  double initial_twist = 0.0;            ///< of these frames [rad/m]
+  std::vector<Vec2> natural_curvatures;  ///< towards the two directors, at each node [1/m]
+  std::optional<double> natural_twist;   ///< [rad/m]
+  std::vector<RodJoint> joints;  ///< of a rod in space that bends, from its start to its end
+  /// Natural curvature of a planar rod at each node [1/m]; empty: the initial shape is stress-free.
   std::vector<double> natural_curvature;
   /// Natural turning angle at each node that bends [rad], at clamped ones of the clamp's cells; 0
   /// at free ends.
@@ -160,10 +190,15 @@ struct Model {
 
   std::vector<Edge> edges;  ///< of all rods
   std::vector<FollowedEdge> followed_edges;
+  std::vector<SpatialEdge> framed_edges;   ///< all edges, if they have section frames; or none
+  std::vector<FramedJoint> framed_joints;  ///< of these
+  Vector drawn_frames;                     ///< blocks of these in the initial shape
   Hidden<ElementLists> elements;
 
   [[nodiscard]] Index num_dofs() const { return dofs.size(); }
   [[nodiscard]] Index num_free() const { return dofs.num_free(); }
+  /// Whether edges have angles of their sections as degrees of freedom.
+  [[nodiscard]] bool has_sections() const { return dofs.size() > dofs.num_positions(); }
   /// The largest extent of the initial shape [m]: the length against which steps are small.
   [[nodiscard]] double size() const { return dofs.length(); }
   [[nodiscard]] Index dof(Index node, int component) const {

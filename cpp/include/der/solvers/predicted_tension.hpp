@@ -22,6 +22,9 @@ class PredictedTension {
   void use(const Configuration& here, const Vector& step, Vector& values);
 
  private:
+  template <int Dim>
+  void set_excess(const Configuration& here, const Vector& step);
+
   const Model& model_;
   const Assembler& assembler_;
   Vector excess_;  // of each edge's predicted tension over the current one [N]

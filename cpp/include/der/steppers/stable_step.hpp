@@ -26,7 +26,7 @@ struct StableStep {
 /// Bound from the stiffness at some shape. A mode of frequency w and damping rate g stays bounded
 /// under explicit Euler's scheme while dt^2 w^2 + 2 dt g <= 4 (both roots of its characteristic
 /// polynomial inside the unit circle), under Verlet's, which takes damping implicitly, while
-/// dt w <= 2. w^2 is bounded by the theorem of Gershgorin for the 2 x 2 blocks of
+/// dt w <= 2. w^2 is bounded by the theorem of Gershgorin for the blocks of
 /// D^-1/2 K D^-1/2 (Feingold and Varga, Pacific J. Math. 12, 1962), D a diagonal below the mass:
 /// the largest sum of the spectral norms of a node's blocks. So the step is safe, invariant
 /// under rotation, and on a uniform chain close to the true limit.
@@ -40,15 +40,19 @@ class StableStepBound {
   StableStep explain(const Configuration& here);
 
  private:
+  /// Degrees of freedom of a node: its position, and the angle of the edge that begins there.
+  static constexpr Index kLargest = 4;
   /// The entries that couple two nodes, or a node with itself.
   struct Block {
     Index row = 0;  // nodes
     Index column = 0;
-    std::array<Index, 4> slots{};   // in the values: xx, xy, yx, yy
-    std::array<double, 4> scale{};  // of D^-1/2 on both sides
+    std::array<Index, kLargest * kLargest> slots{};   // in the values, row by row
+    std::array<double, kLargest * kLargest> scale{};  // of D^-1/2 on both sides
   };
 
   void find_blocks();
+  /// Place of a degree of freedom among those of its node.
+  [[nodiscard]] Index place_in_block(Index dof) const;
   [[nodiscard]] double term_bound(EnergyTerm term, Index node, const Configuration& here) const;
 
   const Model& model_;
@@ -56,6 +60,7 @@ class StableStepBound {
   MatrixLayout layout_;
   Assembler assembler_;
   Vector inverse_root_mass_;  // D^-1/2
+  Index block_size_ = 2;
   std::vector<Block> blocks_;
   double damping_rate_ = 0.0;  // the greatest [1/s]
   Index most_damped_ = -1;

@@ -25,6 +25,14 @@ double initial_tangent_angle(const RodLayout& rod, Index place, const Model& mod
 /// Angle [rad] from the x axis at which a clamp holds the tangent in a state.
 double tangent_angle(const Clamp& clamp, const Model& model, const State& state);
 
+/// Calls use(control) for each control [rad] that turns a clamp.
+template <class Use>
+void for_each_turning_control(const Clamp& clamp, const Use& use) {
+  for (const Index control : {clamp.rotation, clamp.held.rotation, clamp.held.twist}) {
+    if (control >= 0) use(control);
+  }
+}
+
 /// Enters a clamp into the layout of `rod`, which is one of the model's. The rod's elements are
 /// made after it. Without effect on a rod that does not bend.
 void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod, Model& model);

@@ -1,0 +1,278 @@
+#include <array>
+#include <cmath>
+
+#include "building/spatial_rod_elements.hpp"
+#include "der/core/index.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/from_spatial_pivot.hpp"
+#include "der/energies/isotropic_bend.hpp"
+#include "der/energies/spatial_bend.hpp"
+#include "der/energies/stretch.hpp"
+#include "der/supports/clamp.hpp"
+#include "der/supports/spatial_clamp.hpp"
+
+namespace der {
+namespace {
+
+template <class Kernel>
+void add_element(const std::array<Index, Kernel::kDofs>& dofs,
+                 const typename Kernel::Constants& constants, const SpatialPivot& first,
+                 const SpatialPivot& last, Model& model) {
+  if (first.distance == 0.0 && last.distance == 0.0) {
+    elements_of<Kernel>(*model.elements).add(dofs, constants);
+  } else {
+    elements_of<FromSpatialPivot<Kernel>>(*model.elements).add(dofs, {constants, first, last});
+  }
+}
+
+/// The initial shape as its elements see it. No clamp has turned yet.
+Configuration drawn_configuration(const Model& model) {
+  Configuration here{model.initial_positions, Vector::Zero(model.tables.size())};
+  here.controls.head(model.drawn_frames.size()) = model.drawn_frames;
+  return here;
+}
+
+Vec3 drawn_vector(const SpatialEdge& edge, const Model& model) {
+  return edge.vector(model.initial_positions, Vector::Zero(model.tables.size()));
+}
+
+/// An effective edge from a pivot is shorter than its edge and stretches for all of it.
+void add_stretch(const RodLayout& rod, const SpatialEdge& edge, Index number, Model& model) {
+  const double whole = rod.edge_length[to_size(number)];
+  const double length = edge.has_pivot() ? drawn_vector(edge, model).norm() : whole;
+  add_element<Stretch<3>>(
+      {edge.start, edge.start + 1, edge.start + 2, edge.end, edge.end + 1, edge.end + 2},
+      {rod.EA * (length / whole), length}, edge.first, edge.last, model);
+}
+
+Joint stiffness_of(const RodLayout& rod, const RodJoint& joint, bool holds_section) {
+  return {rod.EI_1 / joint.bend_length, rod.EI_2 / joint.bend_length,
+          holds_section ? rod.GJ / joint.twist_length : 0.0, joint.rest};
+}
+
+RodJoint joint_at_node(const RodLayout& rod, Index place) {
+  RodJoint joint;
+  joint.before = place - 1;
+  joint.after = place;
+  joint.bend_place = rod.arc_length[to_size(place)];
+  joint.bend_length = bend_length(rod, place);
+  joint.twist_place = 0.5 * (rod.edge_middle(place - 1) + rod.edge_middle(place));
+  joint.twist_length = rod.voronoi_length(place);
+  return joint;
+}
+
+RodJoint joint_at_clamp(const RodLayout& rod, Index clamp, Index edge) {
+  const Index place = rod.clamps[to_size(clamp)].place;
+  const double length = rod.edge_length[to_size(edge)];
+  const double ahead = edge == place ? length : -length;
+  RodJoint joint;
+  (edge == place ? joint.after : joint.before) = edge;
+  joint.clamp = clamp;
+  joint.bend_place = rod.arc_length[to_size(place)] + clamp_pivot_share() * ahead;
+  joint.bend_length = clamp_cell_length(rod, edge);
+  joint.twist_place = rod.arc_length[to_size(place)] + 0.25 * ahead;
+  joint.twist_length = 0.5 * length;
+  return joint;
+}
+
+/// All joints of a rod, from its start to its end.
+std::vector<RodJoint> joints_of(const RodLayout& rod) {
+  std::vector<RodJoint> joints;
+  for (Index place = 0; place <= rod.num_edges(); ++place) {
+    const Clamp* clamp = rod.clamp_at(place);
+    if (clamp == nullptr) {
+      if (place > 0 && place < rod.num_edges()) joints.push_back(joint_at_node(rod, place));
+      continue;
+    }
+    const auto number = static_cast<Index>(clamp - rod.clamps.data());
+    if (place > 0) joints.push_back(joint_at_clamp(rod, number, place - 1));
+    if (place < rod.num_edges()) joints.push_back(joint_at_clamp(rod, number, place));
+  }
+  return joints;
+}
+
+/// Natural curvature at a joint, where the scene gives it [1/m].
+Vec2 natural_curvature_at(const RodLayout& rod, const RodJoint& joint) {
+  if (joint.clamp < 0) return rod.natural_curvatures[to_size(joint.after)];
+  const Index clamped = rod.clamps[to_size(joint.clamp)].place;
+  const Index next = joint.after >= 0 ? joint.after + 1 : joint.before;
+  return (1.0 - clamp_pivot_share()) * rod.natural_curvatures[to_size(clamped)] +
+         clamp_pivot_share() * rod.natural_curvatures[to_size(next)];
+}
+
+/// A free end lies on the curve, the node next to it l^2 kappa/12 beside it (supports/clamp.hpp):
+/// by how much the natural turning angle there is larger.
+Vec2 free_end_turn(const RodLayout& rod, const RodJoint& joint) {
+  Vec2 turn = Vec2::Zero();
+  if (joint.clamp >= 0) return turn;
+  const auto add = [&](Index end, Index edge) {
+    if (rod.clamp_at(end) != nullptr) return;
+    turn += rod.edge_length[to_size(edge)] / 12.0 * rod.natural_curvatures[to_size(end)];
+  };
+  if (joint.before == 0) add(0, 0);
+  if (joint.after == rod.num_edges() - 1) add(rod.num_edges(), joint.after);
+  return turn;
+}
+
+void set_rest(const RodLayout& rod, const JointStrain& drawn, RodJoint& joint) {
+  joint.rest = drawn;
+  joint.natural_curvature = Vec2(drawn.kappa_1, drawn.kappa_2) / joint.bend_length;
+  if (!rod.natural_curvatures.empty()) {
+    joint.natural_curvature = natural_curvature_at(rod, joint);
+    const Vec2 turn = joint.bend_length * joint.natural_curvature + free_end_turn(rod, joint);
+    joint.rest.kappa_1 = turn[0];
+    joint.rest.kappa_2 = turn[1];
+  }
+  if (rod.natural_twist) joint.rest.twist = *rod.natural_twist * joint.twist_length;
+}
+
+/// Strain of a joint between two frames that are drawn with `twist` between them.
+template <class Curvature>
+JointStrain drawn_strain(const SectionFrame& before, const SectionFrame& after, double twist) {
+  return JointKinematics<Curvature>(before, after,
+                                    nearest_turn(twist_between(before, after), twist))
+      .strain();
+}
+
+/// Makes the elements of a rod whose sections count.
+template <class Curvature>
+class SectionElements {
+ public:
+  SectionElements(RodLayout& rod, Model& model) : rod_(rod), model_(model) {}
+
+  void add() {
+    for (RodJoint& joint : rod_.joints) {
+      if (joint.clamp < 0) {
+        add_joint(joint);
+      } else {
+        add_clamp(joint);
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] Index number(Index edge) const { return rod_.first_edge + edge; }
+  [[nodiscard]] const SpatialEdge& edge(Index edge) const {
+    return model_.framed_edges[to_size(number(edge))];
+  }
+  [[nodiscard]] SectionFrame frame(Index edge) const {
+    return section_frame(model_, number(edge), drawn_configuration(model_));
+  }
+  [[nodiscard]] double theta(Index edge) const {
+    return model_.initial_positions[this->edge(edge).theta];
+  }
+
+  /// Enters a joint with its reference twist, which is what the drawn frames have between them.
+  void follow(const FramedJoint& joint, double reference) {
+    model_.framed_joints.push_back(joint);
+    model_.drawn_frames[joint.twist()] = reference;
+  }
+
+  void add_joint(RodJoint& joint) {
+    const SpatialEdge& before = edge(joint.before);
+    const SpatialEdge& after = edge(joint.after);
+    const double turned = theta(joint.after) - theta(joint.before);
+    const JointStrain drawn =
+        drawn_strain<Curvature>(frame(joint.before), frame(joint.after), turned);
+    set_rest(rod_, drawn, joint);
+    add_element<SpatialBend<Curvature>>(
+        {before.start, before.start + 1, before.start + 2, after.start, after.start + 1,
+         after.start + 2, after.end, after.end + 1, after.end + 2, before.theta, after.theta},
+        {stiffness_of(rod_, joint, true), FrameBlock::of(number(joint.before)),
+         FrameBlock::of(number(joint.after))},
+        before.first, after.last, model_);
+    follow({number(joint.before), number(joint.after), {}}, drawn.twist - turned);
+  }
+
+  void add_clamp(RodJoint& joint) {
+    const Clamp& clamp = rod_.clamps[to_size(joint.clamp)];
+    const bool leaves = joint.after >= 0;
+    const Index beside = leaves ? joint.after : joint.before;
+    const SpatialEdge& own = edge(beside);
+    const double turned = leaves ? theta(beside) : -theta(beside);
+    const SectionFrame frame_of_edge = frame(beside);
+    const SectionFrame& held = clamp.held.drawn;
+    const double beyond = joint.twist_length * rod_.initial_twist;
+    const JointStrain drawn = leaves ? drawn_strain<Curvature>(held, frame_of_edge, beyond)
+                                     : drawn_strain<Curvature>(frame_of_edge, held, beyond);
+    set_rest(rod_, drawn, joint);
+    elements_of<FromSpatialPivot<SpatialClamp<Curvature>>>(*model_.elements)
+        .add(
+            {own.start, own.start + 1, own.start + 2, own.end, own.end + 1, own.end + 2, own.theta},
+            {{stiffness_of(rod_, joint, clamp.holds_section), clamp.held,
+              FrameBlock::of(number(beside)), leaves ? 1.0 : -1.0},
+             own.first,
+             own.last});
+    follow({leaves ? -1 : number(beside), leaves ? number(beside) : -1, clamp.held},
+           drawn.twist - turned);
+  }
+
+  RodLayout& rod_;
+  Model& model_;
+};
+
+/// Bending of a rod whose sections do not count.
+template <class Curvature>
+void add_isotropic_bending(const RodLayout& rod, Model& model) {
+  for (const RodJoint& joint : rod.joints) {
+    const double stiffness = rod.EI_1 / joint.bend_length;
+    if (joint.clamp < 0) {
+      const SpatialEdge before = spatial_edge(rod, joint.before, model);
+      const SpatialEdge after = spatial_edge(rod, joint.after, model);
+      add_element<IsotropicBend<Curvature>>(
+          {before.start, before.start + 1, before.start + 2, after.start, after.start + 1,
+           after.start + 2, after.end, after.end + 1, after.end + 2},
+          {stiffness}, before.first, after.last, model);
+    } else {
+      const Index edge = joint.after >= 0 ? joint.after : joint.before;
+      const SpatialEdge own = spatial_edge(rod, edge, model);
+      const Clamp& clamp = rod.clamps[to_size(joint.clamp)];
+      elements_of<FromSpatialPivot<IsotropicClamp<Curvature>>>(*model.elements)
+          .add({own.start, own.start + 1, own.start + 2, own.end, own.end + 1, own.end + 2},
+               {{stiffness, clamp.held}, own.first, own.last});
+    }
+  }
+}
+
+/// The frames of effective edges, which lie along these and not along the drawn edges.
+void draw_frames(const RodLayout& rod, Model& model) {
+  for (Index i = 0; i < rod.num_edges(); ++i) {
+    const SpatialEdge edge = spatial_edge(rod, i, model);
+    const SectionFrame& drawn = rod.drawn_frames[to_size(i)];
+    const double theta = rod.initial_twist * rod.edge_middle(i);
+    const Vec3 tangent = drawn_vector(edge, model).normalized();
+    const Vec3 director = transport(drawn.turned(-theta).first, drawn.tangent, tangent);
+    const FrameBlock block = FrameBlock::of(rod.first_edge + i);
+    model.drawn_frames.segment<3>(block.first) = tangent;
+    model.drawn_frames.segment<3>(block.first + 3) = made_perpendicular(director, tangent);
+    model.initial_positions[edge.theta] = theta;
+    model.framed_edges.push_back(edge);
+  }
+}
+
+template <class Curvature>
+void add_bending(RodLayout& rod, Model& model) {
+  if (model.has_sections()) {
+    SectionElements<Curvature>(rod, model).add();
+  } else {
+    add_isotropic_bending<Curvature>(rod, model);
+  }
+}
+
+}  // namespace
+
+void add_spatial_rod_elements(RodLayout& rod, Model& model) {
+  if (model.has_sections()) draw_frames(rod, model);
+  for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+    add_stretch(rod, spatial_edge(rod, edge, model), edge, model);
+  }
+  if (rod.EI_1 == 0.0 && rod.EI_2 == 0.0) return;
+  rod.joints = joints_of(rod);
+  if (rod.curvature == scenario::CurvatureMeasure::Angle) {
+    add_bending<AngleCurvature>(rod, model);
+  } else {
+    add_bending<TangentCurvature>(rod, model);
+  }
+}
+
+}  // namespace der

@@ -1,0 +1,91 @@
+#include "der/supports/spatial_clamp.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "der/core/index.hpp"
+#include "der/scenario/support.hpp"
+#include "der/supports/clamp.hpp"
+
+namespace der {
+namespace {
+
+/// From node to node in the initial shape.
+Vec3 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
+  return along_edge<3>(rod.edge(edge, model), model.initial_positions);
+}
+
+/// Rotation vector of the turning angle at the node nearest to `place` that has two edges, per
+/// metre [1/m].
+Vec3 initial_curvature(const RodLayout& rod, Index place, const Model& model) {
+  if (rod.num_edges() < 2) return Vec3::Zero();
+  const Index inner = std::min(std::max<Index>(place, 1), rod.num_edges() - 1);
+  const Vec3 before = drawn_edge(rod, inner - 1, model);
+  const Vec3 after = drawn_edge(rod, inner, model);
+  const Vec3 axis = before.cross(after);
+  const double sine = axis.norm();
+  if (sine == 0.0) return Vec3::Zero();
+  return std::atan2(sine, before.dot(after)) / (sine * rod.voronoi_length(inner)) * axis;
+}
+
+/// The edge that leaves a node, or at the end of a rod the one that arrives there.
+Index edge_beside(const RodLayout& rod, Index place) {
+  return std::min(place, rod.num_edges() - 1);
+}
+
+SectionFrame drawn_section(const RodLayout& rod, Index place, const Model& model) {
+  const Vec3 tangent = initial_tangent(rod, place, model);
+  if (rod.drawn_frames.empty()) return SectionFrame::of(tangent, tangent.unitOrthogonal());
+  const Index edge = edge_beside(rod, place);
+  const SectionFrame& middle = rod.drawn_frames[to_size(edge)];
+  const Vec3 first = transport(middle.first, middle.tangent, tangent);
+  const double beyond = rod.arc_length[to_size(place)] - rod.edge_middle(edge);
+  return SectionFrame::of(tangent, made_perpendicular(first, tangent))
+      .turned(rod.initial_twist * beyond);
+}
+
+SpatialPivot pivot_at(const RodLayout& rod, Index place, Index edge) {
+  const Clamp* clamp = rod.clamp_at(place);
+  if (clamp == nullptr) return {};
+  const double side = edge == place ? 1.0 : -1.0;
+  return {side * clamp_pivot_share() * rod.edge_length[to_size(edge)], clamp->held};
+}
+
+}  // namespace
+
+Vec3 initial_tangent(const RodLayout& rod, Index place, const Model& model) {
+  const Vec3 curvature = initial_curvature(rod, place, model);
+  const Index edge = edge_beside(rod, place);
+  const Vec3 chord = drawn_edge(rod, edge, model).normalized();
+  const double half = (edge == place ? -0.5 : 0.5) * rod.edge_length[to_size(edge)];
+  const double angle = curvature.norm() * half;
+  if (angle == 0.0) return chord;
+  return Eigen::AngleAxisd(angle, curvature.normalized()) * chord;
+}
+
+void hold_section(const scenario::Support& support, Index place, RodLayout& rod, Model& model) {
+  if ((rod.EI_1 == 0.0 && rod.EI_2 == 0.0) || rod.clamp_at(place) != nullptr) return;
+  Clamp clamp;
+  clamp.place = place;
+  clamp.holds_section = support.clamp == scenario::Clamp::Section;
+  clamp.held.drawn = drawn_section(rod, place, model);
+  if (support.axis_rotation) {
+    const auto& [axis, angle] = *support.axis_rotation;
+    clamp.held.axis = Eigen::Map<const Vec3>(axis.data()).normalized();
+    clamp.held.rotation = model.tables.add(angle);
+  } else if (support.rotation) {
+    clamp.held.rotation = model.tables.add(*support.rotation);
+  }
+  if (support.twist) clamp.held.twist = model.tables.add(*support.twist);
+  rod.clamps.push_back(clamp);
+}
+
+SpatialEdge spatial_edge(const RodLayout& rod, Index edge, const Model& model) {
+  const Index number = rod.first_edge + edge;
+  return {model.dof(rod.nodes[to_size(edge)], 0), model.dof(rod.nodes[to_size(edge + 1)], 0),
+          model.has_sections() ? model.dofs.angle(number) : -1, pivot_at(rod, edge, edge),
+          pivot_at(rod, edge + 1, edge)};
+}
+
+}  // namespace der

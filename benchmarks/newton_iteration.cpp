@@ -28,12 +28,12 @@ scenario::Scene cantilever(int nodes) {
     rod.points.push_back({s, 0.01 * std::sin(20.0 * s)});
   }
   rod.cross_section = scenario::Circle{0.01};
-  rod.material = scenario::Material{1e7, 1000.0};
+  rod.material = scenario::Material{1e7, 1000.0, std::nullopt, std::nullopt};
   rod.natural_curvature = 0.0;
   scene.rods.push_back(rod);
   scenario::Support support;
   support.rod = "rod";
-  support.clamp = true;
+  support.clamp = scenario::Clamp::Section;
   scene.supports.push_back(support);
   scene.loads.push_back({scenario::Gravity{{0.0, -9.81}}, {}});
   return scene;

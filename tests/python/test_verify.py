@@ -244,6 +244,25 @@ def test_corners_stay_corners():
     assert find_corners(kink) == [2]
 
 
+def test_corners_in_space():
+    bent = np.array([[0.0, 0, 0], [0, 1, 0], [0, 2, 0], [0, 2, 1], [0, 2, 2]])
+    assert find_corners(bent) == [2]
+    turn = np.linspace(0.0, 4 * np.pi, 49)
+    assert find_corners(np.column_stack([np.cos(turn), np.sin(turn), 0.1 * turn])) == []
+
+
+def test_a_pair_of_curvatures_in_space_is_no_list_of_nodes():
+    rod = ARM["rods"][0] | {"nodes": 3, "from": [0, 0, 0], "to": [1, 0, 0]}
+    scene = {"rods": [rod], "analysis": "static"}
+    for curvature, finer in [
+        ([0, 2], [0, 2]),
+        ([[0, 2], [0, 4], [0, 6]], [[0, 2], [0, 3], [0, 4], [0, 5], [0, 6]]),
+    ]:
+        scene["rods"] = [rod | {"natural_curvature": curvature}]
+        refined = with_elements(der.Scenario.from_dict(scene), 2).to_dict()["rods"][0]
+        assert np.allclose(refined["natural_curvature"], finer)
+
+
 def test_coarser_points_drop_nodes_but_no_corner():
     line = np.column_stack([np.arange(9.0), np.zeros(9)])
     assert np.array_equal(resample_line(line, Fraction(1, 2)), line[::2])

@@ -129,6 +129,10 @@ void check_spring(CheckContext& context, int number) {
 void check_supports(CheckContext& context) {
   const auto count = static_cast<int>(context.scene.supports.size());
   for (int i = 0; i < count; ++i) check_support(context, i);
+}
+
+void check_springs(CheckContext& context) {
+  const auto count = static_cast<int>(context.scene.supports.size());
   for (int i = 0; i < count; ++i) check_spring(context, i);
 }
 

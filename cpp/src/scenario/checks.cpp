@@ -142,6 +142,7 @@ void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   if (diagnostics.size() == 0) {
     context.dimension = choose_model(scene).kind == ModelChoice::Planar ? 2 : 3;
   }
+  check_springs(context);
   check_free_nodes(context);
   check_loads(context);
   check_time(context);

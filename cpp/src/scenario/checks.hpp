@@ -43,7 +43,9 @@ struct CheckContext {
   std::vector<std::optional<RestLine>> lines{};  ///< by rod; none where the rod has mistakes
   std::unordered_map<std::string, int> rods{};   ///< number of the rod with a name
   std::unordered_map<std::int64_t, HeldNode> held{};
-  int dimension = 2;  ///< of the motion of nodes: 2 in the planar model, else 3
+  /// Components of the motion of nodes: 2 in the planar model, else 3. Where the scene has mistakes
+  /// nobody knows the model: 2, so that no further mistake is seen where there is none.
+  int dimension = 2;
 
   [[nodiscard]] static std::int64_t node_key(int rod, int node) {
     return (std::int64_t{rod} << 32) | node;
@@ -67,7 +69,9 @@ bool does_not_bend(const Rod& rod);
 
 /// Checks the rods by themselves and completes `Scene::rods`.
 void check_rods(CheckContext& context);
+/// All but the springs, which depend on what other supports hold.
 void check_supports(CheckContext& context);
+void check_springs(CheckContext& context);
 /// Masses and bending, which depend on the supports.
 void check_free_nodes(CheckContext& context);
 void check_loads(CheckContext& context);

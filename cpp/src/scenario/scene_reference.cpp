@@ -30,6 +30,42 @@ merge keys and several documents in one file do not.
 A value is overridden by its path: keys and list items joined by dots, items by their `name` or their
 number, as in `rods.beam.nodes=101` or `loads.0.gravity=[0, -1.62]`. An empty value removes what the
 path names.
+
+## Planes and space
+
+Vectors have two components, `[x, y]`, or three, `[x, y, z]`. All vectors of a scene have three as
+soon as one has. `model: auto` takes the smallest model that can represent the scene, and the summary
+says why:
+
+- `planar` has x and y of each node. It takes scenes that lie in the x-y plane: positions, velocities,
+  loads, prescribed motions, clamps that turn about z alone; and rods that bend in the plane and do not
+  twist: the width or the height of every section lies in the plane (or its two bending stiffnesses
+  are equal), natural curvature is about z, there is no initial, natural or prescribed twist.
+- `spatial_bend` has x, y and z of each node. It takes rods that provably do not twist: the two
+  bending stiffnesses are equal, the rod is straight without stress (or has no bending stiffness), has
+  no initial or natural twist, no moment acts on it, no support twists it or spins its section over
+  time, and at most one support holds its section (`clamp: true`; `clamp: tangent` holds none). The
+  spin inertia of sections is left out; a scene that gives `rotary_inertia` and moves has the next
+  model.
+- `spatial` has x, y and z of each node and the angle of each edge's section. It needs a stiffness
+  against twisting: `poissons_ratio` or `shear_modulus` of the material, or `GJ`.
+
+Nothing is rounded to the plane: a node 1e-6 m off it is part of the scene, as a seed of buckling out
+of the plane is. A larger model than needed may be asked for; a smaller one is refused, with the
+reason. The spatial models do not have springs, foundations, moments, buckling loads, continuation and
+`energy_momentum` yet.
+
+The section of a rod has two directors: director 1 is the direction of its width, director 2 that of
+its height, t x d1 with the tangent t in the direction of growing arc length. `EI1` and `k1` belong to
+bending toward director 1, `EI2` and `k2` to bending toward director 2. The `director` of a
+cross-section is that of the width where the rod begins; without it the width points along z, so that
+a planar rod bends toward its height. From edge to edge the directors go along the rod without twist;
+`initial_twist` turns them further. Twist is positive when it is right-handed about the tangent.
+
+`natural_curvature` is a number, or a list of one for each node, in a scene of two components; in a
+scene of three it is a pair `[k1, k2]`, or a list with a pair for each node. A number still means a
+curvature about z there, of a rod drawn without twist at one z; 0 is a rod that is straight without
+stress.
 )";
 
 std::string anchor(const TableInfo& table) {

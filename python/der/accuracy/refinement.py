@@ -118,7 +118,7 @@ def _loads(scene: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
 def _refine_rod(scene: dict[str, Any], rod: dict[str, Any], factor: Fraction) -> None:
     places = _Places(rod, factor)
     for key in ("natural_curvature", "initial_velocity"):
-        if _is_per_node(rod.get(key), 1 if key == "natural_curvature" else 2):
+        if _is_per_node(rod, key):
             rod[key] = resample_list(np.array(rod[key], dtype=float), places.elements).tolist()
     if places.points is not None:
         rod["points"] = places.points.tolist()
@@ -130,8 +130,12 @@ def _refine_rod(scene: dict[str, Any], rod: dict[str, Any], factor: Fraction) ->
                 item[key] = places.moved(item[key])
 
 
-def _is_per_node(value: Any, depth: int) -> bool:
-    return np.ndim(value) == depth if value is not None else False
+def _is_per_node(rod: dict[str, Any], key: str) -> bool:
+    """Whether a key holds a list with a value for each node."""
+    depth = np.ndim(rod[key]) if key in rod else 0
+    # Numbers in a row are a pair of curvatures where vectors have three components.
+    in_plane = len(rod["points"][0] if "points" in rod else rod["from"]) == 2
+    return depth == 2 or (depth == 1 and key == "natural_curvature" and in_plane)
 
 
 def _what_stands_on(scene: dict[str, Any], rod: dict[str, Any]) -> Iterator[dict[str, Any]]:

@@ -35,20 +35,21 @@ def find_corners(points: Array) -> list[int]:
     list of int
         Node numbers, ascending.
     """
-    turns = _turning_angles(points)
-    padded = np.concatenate([[0.0], turns, [0.0]])
-    beside = np.maximum(np.sign(turns) * padded[:-2], np.sign(turns) * padded[2:])
-    size = np.abs(turns)
+    size, axes = _turns(points)
+    padded = np.pad(size[:, None] * axes, ((1, 1), (0, 0)))
+    beside = np.maximum(np.sum(axes * padded[:-2], axis=1), np.sum(axes * padded[2:], axis=1))
     alone = (size > _NO_TURN) & (size > _ISOLATED_TURN * np.maximum(beside, 0.0))
     return [int(i) + 1 for i in np.flatnonzero(alone | (size > _SHARP_TURN))]
 
 
-def _turning_angles(points: Array) -> Array:
-    edges = np.diff(points, axis=0)
+def _turns(points: Array) -> tuple[Array, Array]:
+    """Return the angle at each inner node [rad] and the unit vector about which the line turns."""
+    edges = np.diff(np.pad(points, ((0, 0), (0, 3 - points.shape[1]))), axis=0)
     before, after = edges[:-1], edges[1:]
-    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    turns: Array = np.arctan2(cross, np.sum(before * after, axis=1))
-    return turns
+    cross = np.cross(before, after)
+    sine = np.linalg.norm(cross, axis=1)
+    axes = np.divide(cross, sine[:, None], out=np.zeros_like(cross), where=sine[:, None] > 0.0)
+    return np.arctan2(sine, np.sum(before * after, axis=1)), axes
 
 
 def resample_line(points: Array, factor: Fraction) -> Array:

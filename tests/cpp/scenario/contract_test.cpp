@@ -103,7 +103,7 @@ TEST_CASE("contract: the tube") {
   REQUIRE(scene.supports.size() == 2);
   CHECK(scene.supports[0].at.kind == Location::Kind::Start);
   CHECK(scene.supports[0].fix == std::vector<Component>{Component::X, Component::Y});
-  CHECK_FALSE(scene.supports[0].clamp);
+  CHECK_FALSE(scene.supports[0].clamps());
   CHECK(scene.supports[1].at.kind == Location::Kind::End);
   CHECK(scene.supports[1].fix == std::vector<Component>{Component::Y});
 
@@ -152,7 +152,7 @@ TEST_CASE("contract: the arm in equilibrium") {
   CHECK(section.GJ == 1.2);
   CHECK(section.mass_per_length == 0.2);
   CHECK_FALSE(scene.rods[0].material.has_value());
-  CHECK(scene.supports[0].clamp);
+  CHECK(scene.supports[0].clamps());
   CHECK(std::get<scenario::Moment>(scene.loads[1].what).moment.values[0] == 0.2);
 }
 

@@ -71,7 +71,7 @@ TEST_CASE("documents: a scene built by hand is the scene of the text") {
   const Scenario scene = Scenario::from_document(std::make_shared<const Document>(Document(root)));
   CHECK(scene.source().empty());
   CHECK(scene.scene().rods[0].points == test::beam().scene().rods[0].points);
-  CHECK(scene.scene().supports[0].clamp);
+  CHECK(scene.scene().supports[0].clamps());
   const Scenario again = Scenario::parse(scene.to_yaml());
   CHECK(again.scene().rods[0].points == scene.scene().rods[0].points);
   CHECK(again.to_yaml() == scene.to_yaml());

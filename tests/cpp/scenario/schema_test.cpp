@@ -37,6 +37,12 @@ TEST_CASE("schema: has the keys of the contract and no others") {
   CHECK(rod["allOf"][0]["oneOf"][1]["properties"]["nodes"] == false);
   CHECK(schema["$defs"]["tube"]["properties"]["outer_radius"]["exclusiveMinimum"] == 0);
   CHECK(schema["$defs"]["load"]["maxProperties"] == 1);
+  const Json& section = schema["$defs"]["cross-section"];  // one of the kinds beside a director
+  CHECK(section["oneOf"].size() == 5);
+  CHECK(section["oneOf"][0] == Json{{"required", {"circle"}}});
+  CHECK(section["properties"]["director"]["minItems"] == 2);
+  CHECK(section["properties"]["director"]["maxItems"] == 3);
+  CHECK(schema["$defs"]["rotation"]["properties"]["axis"]["minItems"] == 3);
   CHECK(schema["$defs"]["solver"]["properties"]["max_iterations"]["default"] == 50);
 }
 

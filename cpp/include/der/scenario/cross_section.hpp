@@ -12,6 +12,7 @@ struct Tube {
   double inner_radius = 0.0;  ///< [m]
   double outer_radius = 0.0;  ///< [m]
 };
+
 // The width lies along director 1 of the section, the height along director 2 (`Rod::director`).
 
 struct Rectangle {
@@ -39,9 +40,9 @@ using CrossSection = std::variant<Circle, Tube, Rectangle, Ellipse, Stiffness>;
 /// one.
 struct Material {
   double youngs_modulus = 0.0;           ///< [Pa]
+  double density = 0.0;                  ///< [kg/m^3]
   std::optional<double> poissons_ratio;  ///< of an isotropic material: G = E / (2 (1 + nu))
   std::optional<double> shear_modulus;   ///< [Pa]
-  double density = 0.0;                  ///< [kg/m^3]
 };
 
 }  // namespace der::scenario

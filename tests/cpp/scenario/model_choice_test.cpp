@@ -1,0 +1,222 @@
+// `model: auto` chooses the smallest model by stated rules (model_choice.hpp): each rule on both
+// sides.
+
+#include <doctest/doctest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "der/scenario/model_choice.hpp"
+#include "scene_texts.hpp"
+
+namespace der {
+namespace {
+
+using scenario::ChosenModel;
+using scenario::ModelChoice;
+using test::contains;
+
+using Overrides = std::vector<Override>;
+
+const char* word(ModelChoice kind) {
+  if (kind == ModelChoice::Auto) return "auto";
+  if (kind == ModelChoice::Planar) return "planar";
+  return kind == ModelChoice::Spatial ? "spatial" : "spatial_bend";
+}
+
+Overrides operator+(Overrides left, const Overrides& right) {
+  left.insert(left.end(), right.begin(), right.end());
+  return left;
+}
+
+/// The beam along x with vectors of three components.
+const Overrides kInSpace{{"rods.beam.from", "[0, 0, 0]"},
+                         {"rods.beam.to", "[1, 0, 0]"},
+                         {"rods.beam.material.poissons_ratio", "0.3"}};
+/// A force out of the x-y plane.
+const Overrides kAlongZ{{"loads", "[{point_force: {rod: beam, at: end, force: [0, 0, 1]}}]"}};
+const Overrides kStrip{{"rods.beam.cross_section", "{rectangle: {width: 0.02, height: 0.001}}"}};
+
+ChosenModel model_of(const Overrides& overrides) {
+  return choose_model(test::beam(kInSpace + overrides).scene());
+}
+
+std::string chosen(const Overrides& overrides) { return word(model_of(overrides).kind); }
+
+std::string points(const std::string& last) { return "[[0, 0, 0], [1, 0, 0], " + last + "]"; }
+
+Overrides polyline(const std::string& points) {
+  return {{"rods.beam.nodes", ""},
+          {"rods.beam.from", ""},
+          {"rods.beam.to", ""},
+          {"rods.beam.points", points}};
+}
+
+TEST_CASE("model: scenes of two components are planar, unless a rod twists by itself") {
+  CHECK(choose_model(test::beam().scene()).kind == ModelChoice::Planar);
+  CHECK(choose_model(test::beam().scene()).reason ==
+        "every position, force and support lies in the x-y plane");
+  const ChosenModel twisted = choose_model(
+      test::beam({{"rods.beam.natural_twist", "1"}, {"rods.beam.material.poissons_ratio", "0"}})
+          .scene());
+  CHECK(twisted.kind == ModelChoice::Spatial);
+  CHECK(twisted.reason == "rod 'beam' has a natural twist");
+}
+
+TEST_CASE("model: positions and velocities in the plane, and out of it") {
+  CHECK(chosen({}) == "planar");
+  CHECK(chosen(polyline(points("[2, 1, 0]"))) == "planar");
+  const ChosenModel seeded = model_of(polyline(points("[2, 1, 1e-6]")));
+  CHECK(seeded.kind == ModelChoice::Spatial);
+  CHECK(seeded.reason ==
+        "node 2 of rod 'beam' lies at z = 1e-06 m, and rod 'beam' is curved without stress");
+  CHECK(chosen({{"rods.beam.initial_velocity", "[0, 1, 0]"}}) == "planar");
+  CHECK(chosen({{"rods.beam.initial_velocity", "[0, 0, 1]"}}) == "spatial_bend");
+}
+
+TEST_CASE("model: loads in the plane, and out of it") {
+  CHECK(chosen({{"loads", "[{gravity: [0, -9.81, 0]}]"}}) == "planar");
+  CHECK(model_of({{"loads", "[{gravity: [0, 0, -9.81]}]"}}).reason ==
+        "loads.0.gravity has a z component, and no rod can twist");
+  CHECK(chosen({{"loads", "[{distributed_force: {rod: beam, force: [1, 2, 0]}}]"}}) == "planar");
+  const std::string table =
+      "[{distributed_force: {rod: beam, force: {times: [0, 1], values: [[0, 0, 0], [0, 0, 1]]}}}]";
+  CHECK(chosen({{"loads", table}}) == "spatial_bend");
+  CHECK(chosen({{"loads", "[{moment: {rod: beam, at: end, moment: [0, 0, 2]}}]"}}) == "planar");
+  // Spatial models have no moments yet: the message names the model.
+  CHECK(contains(
+      test::diagnostics(
+          kInSpace + Overrides{{"loads", "[{moment: {rod: beam, at: end, moment: [0, 1, 0]}}]"}}),
+      "moments: not available yet in the spatial models"));
+}
+
+TEST_CASE("model: supports that move in the plane, and out of it") {
+  const auto support = [](const std::string& keys) {
+    return chosen({{"supports", "[{rod: beam, at: start, " + keys + "}]"}});
+  };
+  CHECK(support("fix: [x, y, z]") == "planar");
+  CHECK(support("prescribe: {z: {times: [0, 1], values: [0, 0]}}") == "planar");
+  CHECK(support("prescribe: {z: {times: [0, 1], values: [0, 1]}}") == "spatial_bend");
+  const auto turned = [&](const std::string& clamp, const std::string& axis) {
+    return support("clamp: " + clamp + ", prescribe: {rotation: {axis: " + axis +
+                   ", angle: {times: [0, 1], values: [0, 1]}}}");
+  };
+  CHECK(turned("true", "[0, 0, -2]") == "planar");
+  CHECK(turned("true", "[0, 1, 0]") == "spatial_bend");
+  CHECK(turned("true", "[0, 1, 1]") == "spatial_bend");
+  CHECK(turned("true", "[1e-6, 1, 1]") == "spatial");  // it spins the section
+  CHECK(turned("tangent", "[1e-6, 1, 1]") == "spatial_bend");
+  CHECK(support("clamp: true, prescribe: {twist: 0}") == "planar");
+  CHECK(support("clamp: true, prescribe: {twist: {times: [0, 1], values: [0, 1]}}") == "spatial");
+}
+
+TEST_CASE("model: sections whose directors lie in the plane, and such that do not") {
+  const auto strip = [](const std::string& director) {
+    return chosen(kStrip + Overrides{{"rods.beam.cross_section.director", director}});
+  };
+  CHECK(chosen(kStrip) == "planar");
+  CHECK(strip("[0, 0, 1]") == "planar");
+  CHECK(strip("[0, -3, 0]") == "planar");
+  CHECK(strip("[0.5, 0, 1]") == "planar");  // made perpendicular to the rod
+  CHECK(strip("[0, 1e-6, 1]") == "spatial");
+  CHECK(chosen({{"rods.beam.cross_section.director", "[0, 1, 1]"}}) == "planar");  // a circle
+}
+
+TEST_CASE("model: natural curvature about z, and about other axes") {
+  const auto curved = [](const std::string& curvature) {
+    return chosen({{"rods.beam.natural_curvature", curvature}});
+  };
+  CHECK(curved("2") == "planar");
+  CHECK(curved("[0, 2]") == "planar");
+  CHECK(curved("[1e-6, 2]") == "spatial");
+  CHECK(chosen({{"rods.beam.natural_curvature", "[2, 0]"},
+                {"rods.beam.cross_section.director", "[0, 1, 0]"}}) == "planar");
+}
+
+TEST_CASE("model: a twist of the rod itself") {
+  CHECK(chosen({{"rods.beam.natural_twist", "0"}}) == "planar");
+  CHECK(chosen({{"rods.beam.natural_twist", "1e-6"}}) == "spatial");
+  CHECK(chosen({{"rods.beam.initial_twist", "1e-6"}}) == "spatial");
+}
+
+TEST_CASE("model: bending without twist takes equal bending stiffnesses") {
+  CHECK(chosen(kAlongZ) == "spatial_bend");
+  const auto section = [](const std::string& section) {
+    return chosen(kAlongZ + Overrides{{"rods.beam.cross_section", section}});
+  };
+  CHECK(section("{rectangle: {width: 0.02, height: 0.02}}") == "spatial_bend");
+  CHECK(section("{rectangle: {width: 0.02, height: 0.021}}") == "spatial");
+  CHECK(section("{ellipse: {width: 0.02, height: 0.02}}") == "spatial_bend");
+  CHECK(section("{ellipse: {width: 0.02, height: 0.021}}") == "spatial");
+  const auto direct = [](const std::string& keys) {
+    return chosen(kAlongZ +
+                  Overrides{{"rods.beam.material", ""},
+                            {"rods.beam.cross_section",
+                             "{stiffness: {EA: 1, GJ: 1, mass_per_length: 1, " + keys + "}}"}});
+  };
+  CHECK(direct("EI: 1") == "spatial_bend");
+  CHECK(direct("EI1: 2, EI2: 2") == "spatial_bend");
+  CHECK(direct("EI1: 1, EI2: 2") == "spatial");
+  CHECK(direct("EI: 1, rotary_inertia: 0") == "spatial_bend");
+  CHECK(direct("EI: 1, rotary_inertia: 1e-6") == "spatial");
+}
+
+TEST_CASE("model: bending without twist takes rods that are straight without stress") {
+  CHECK(chosen(kAlongZ + Overrides{{"rods.beam.from", "[0.1, 0.2, 0.3]"},
+                                   {"rods.beam.to", "[0.7, 0.9, 1.3]"}}) == "spatial_bend");
+  const Overrides bent = polyline(points("[2, 0, 1e-6]"));
+  CHECK(chosen(bent) == "spatial");
+  CHECK(chosen(bent + Overrides{{"rods.beam.natural_curvature", "0"}}) == "spatial_bend");
+  CHECK(chosen(bent + Overrides{{"rods.beam.natural_curvature", "[0, 0]"}}) == "spatial_bend");
+  CHECK(chosen(bent + Overrides{{"rods.beam.natural_curvature", "[0, 1e-6]"}}) == "spatial");
+  CHECK(chosen(bent + Overrides{{"rods.beam.natural_curvature", "[[0, 0], [0, 0], [0, 0]]"}}) ==
+        "spatial_bend");
+  const std::string cable = "{stiffness: {EA: 1, EI: 0, GJ: 1, mass_per_length: 1}}";
+  CHECK(chosen(bent + Overrides{{"rods.beam.material", ""}, {"rods.beam.cross_section", cable}}) ==
+        "spatial_bend");
+}
+
+TEST_CASE("model: bending without twist takes at most one section of a rod that is held") {
+  const auto held = [](const std::string& start, const std::string& end) {
+    return model_of(kAlongZ +
+                    Overrides{{"supports", "[{rod: beam, at: start, clamp: " + start +
+                                               "}, {rod: beam, at: end, clamp: " + end + "}]"},
+                              {"loads.0.point_force.at", "middle"}});
+  };
+  CHECK(held("true", "tangent").kind == ModelChoice::SpatialBend);
+  CHECK(held("tangent", "tangent").kind == ModelChoice::SpatialBend);
+  CHECK(held("true", "true").reason ==
+        "loads.0.point_force has a z component, and supports.0 and supports.1 both hold the "
+        "section of rod 'beam'");
+  CHECK(held("true", "true").kind == ModelChoice::Spatial);
+}
+
+TEST_CASE("model: one that is asked for may be larger than needed, not smaller") {
+  for (const char* model : {"planar", "spatial_bend", "spatial"}) {
+    const ChosenModel asked = model_of({{"model", model}});
+    CHECK(std::string(word(asked.kind)) == model);
+    CHECK(asked.reason == "asked for by the scene");
+  }
+  const auto refused = [](const Overrides& overrides) {
+    return test::diagnostics(kInSpace + overrides);
+  };
+  CHECK(contains(refused(kAlongZ + Overrides{{"model", "planar"}}),
+                 "model: 'planar' cannot represent this scene: loads.0.point_force has a z"));
+  CHECK(contains(refused(kStrip + Overrides{{"model", "spatial_bend"}}),
+                 "model: 'spatial_bend' cannot represent this scene: the two bending"));
+}
+
+TEST_CASE("model: the same is chosen of a scene in the terms of its model") {
+  // The reader has brought the scene to its model already; a second choice gives the same.
+  for (const Overrides& overrides : {Overrides{}, kAlongZ, kStrip + kAlongZ,
+                                     Overrides{{"rods.beam.natural_curvature", "[0, 2]"}},
+                                     Overrides{{"rods.beam.natural_curvature", "[2, 0]"}}}) {
+    const scenario::Scene scene = test::beam(kInSpace + overrides).scene();
+    CHECK(scene.dimension == (choose_model(scene).kind == ModelChoice::Planar ? 2 : 3));
+    CHECK(scene.rods[0].points[0].size() == static_cast<std::size_t>(scene.dimension));
+  }
+}
+
+}  // namespace
+}  // namespace der

@@ -24,7 +24,7 @@ Eigen::Map<const Vector> as_nodal_force(const Contiguous& force, const py::funct
                           "; (nodes, dim) = (" + std::to_string(model.num_nodes) + ", " +
                           std::to_string(model.dimension) + ") is needed");
   }
-  return {force.data(), model.num_dofs()};
+  return {force.data(), model.dofs.num_positions()};
 }
 
 }  // namespace
@@ -43,14 +43,14 @@ void ForceFunctions::remove(const py::function& function) {
 
 void ForceFunctions::apply(const Model& model, State& state, py::handle owner) {
   if (functions_.empty()) return;
-  const Array positions = live_view(state.positions, model.dimension, owner);
-  const Array velocities = live_view(state.velocities, model.dimension, owner);
+  const Array positions = live_view(state.positions, model.num_nodes, model.dimension, owner);
+  const Array velocities = live_view(state.velocities, model.num_nodes, model.dimension, owner);
   sum_.setZero(model.num_dofs());
   // A copy, because a function may add or remove functions.
   const std::vector<py::function> functions = functions_;
   for (const py::function& function : functions) {
     const Contiguous force(function(state.time, positions, velocities));
-    sum_ += as_nodal_force(force, function, model);
+    sum_.head(model.dofs.num_positions()) += as_nodal_force(force, function, model);
   }
   if (!sum_.allFinite()) {
     throw py::value_error("a force function returned a value that is not finite at t = " +

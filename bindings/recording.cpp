@@ -7,6 +7,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "der/kinematics/frame_block.hpp"
 #include "der/output/memory_sink.hpp"
 #include "der/output/run_arrays.hpp"
 #include "der/output/summary.hpp"
@@ -40,6 +41,18 @@ py::array_t<double> vectors(const py::object& self) {
   const auto entries = static_cast<py::ssize_t>(data.size());
   const py::ssize_t nodes = frames == 0 ? 0 : entries / (frames * dimension);
   return table_view(data, {frames, nodes, dimension}, self);
+}
+
+/// The arrays of the sections, or None without any.
+py::object sections(const py::object& self) {
+  const auto& recording = self.cast<const Recording&>();
+  const py::ssize_t edges = recording.sections;
+  if (edges == 0) return py::none();
+  const auto frames = static_cast<py::ssize_t>(recording.frames.num_frames());
+  return py::make_tuple(
+      table_view(recording.frames.theta, {frames, edges}, self),
+      table_view(recording.frames.spin, {frames, edges}, self),
+      table_view(recording.frames.section_frames, {frames, edges, FrameBlock::kSize}, self));
 }
 
 py::array_t<double> column(const std::vector<double>& data, const py::object& self) {
@@ -97,7 +110,9 @@ std::unique_ptr<RunRecording> record(const py::object& self,
                                      const std::optional<std::filesystem::path>& out) {
   auto& simulation = self.cast<PySimulation&>();
   auto recording = std::make_unique<RunRecording>();
-  recording->dimension = simulation.engine().model().dimension;
+  const Model& model = simulation.engine().model();
+  recording->dimension = model.dimension;
+  if (model.has_sections()) recording->sections = static_cast<Index>(model.framed_edges.size());
   Recorder recorder(simulation.engine());
   MemorySink memory;
   recorder.add(memory);
@@ -136,6 +151,11 @@ void bind_recording(py::module_& module) {
                              "Node positions [m], shape (frames, nodes, dim).")
       .def_property_readonly("velocities", &vectors<&FrameData::velocities>,
                              "Node velocities [m/s], shape (frames, nodes, dim).")
+      .def_property_readonly(
+          "sections", &sections,
+          "Of the model ``spatial``: angles of the edges [rad], their rates [rad/s], both of shape\n"
+          "(frames, edges), and the frames that they count from, shape (frames, edges, 8). None of\n"
+          "other models.")
       .def_property_readonly("energies", &energy_columns, "Energies [J] by name, shape (frames,).")
       .def_property_readonly("work", &work_columns,
                              "Works done and energy lost since the start [J] by name, "

@@ -23,6 +23,7 @@ struct Recording {
   std::vector<std::string> probe_names;
   std::vector<std::string> probe_units;
   Index dimension = 0;
+  Index sections = 0;  ///< edges that have a section
 };
 
 /// The recorded data of a run that has just ended, and how it ended.

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -12,10 +13,13 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "der/core/index.hpp"
+#include "der/kinematics/frame_block.hpp"
+#include "der/model/joint_strain.hpp"
 #include "der/model/location.hpp"
 #include "der/scenario/load.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/supports/clamp.hpp"
+#include "der/supports/spatial_clamp.hpp"
 
 namespace der::python {
 namespace {
@@ -25,7 +29,8 @@ struct HeldNode {
   std::string rod;
   Index node = 0;
   std::vector<std::string> components;  ///< held or moved by a table: x, y, z
-  std::optional<double> tangent_angle;  ///< [rad] from the x axis, of a clamp
+  std::optional<double> tangent_angle;  ///< [rad] from the x axis, of a clamp in a plane
+  std::vector<double> tangent;          ///< unit vector, of a clamp; else none
 };
 
 std::vector<std::string> held_components(Index node, const Model& model) {
@@ -37,11 +42,22 @@ std::vector<std::string> held_components(Index node, const Model& model) {
   return result;
 }
 
-/// The initial angle of the clamp where the rod has no bending stiffness to carry its moment.
-double clamp_angle(const RodLayout& rod, Index place, const Replay& replay) {
+/// Enters the tangent that a clamp holds: the initial one where the rod has no bending stiffness to
+/// carry its moment.
+void enter_tangent(HeldNode& held, const RodLayout& rod, Index place, const Replay& replay) {
   const Clamp* clamp = rod.clamp_at(place);
-  return clamp == nullptr ? initial_tangent_angle(rod, place, replay.model())
-                          : tangent_angle(*clamp, replay.model(), replay.state());
+  const Model& model = replay.model();
+  if (model.dimension == 3) {
+    const Vec3 tangent = clamp == nullptr
+                             ? initial_tangent(rod, place, model)
+                             : held_frame(clamp->held, model, replay.state()).tangent;
+    held.tangent.assign(tangent.begin(), tangent.end());
+    return;
+  }
+  const double angle = clamp == nullptr ? initial_tangent_angle(rod, place, model)
+                                        : tangent_angle(*clamp, model, replay.state());
+  held.tangent_angle = angle;
+  held.tangent = {std::cos(angle), std::sin(angle)};
 }
 
 std::vector<HeldNode> held_nodes(Replay& replay, std::size_t frame) {
@@ -52,8 +68,8 @@ std::vector<HeldNode> held_nodes(Replay& replay, std::size_t frame) {
     const RodLayout& rod = replay.model().rod(support.rod);
     for (const Index place : nodes_at(support.at, rod)) {
       const Index node = rod.nodes[to_size(place)];
-      HeldNode held{rod.name, node, held_components(node, replay.model()), std::nullopt};
-      if (support.clamps()) held.tangent_angle = clamp_angle(rod, place, replay);
+      HeldNode held{rod.name, node, held_components(node, replay.model()), std::nullopt, {}};
+      if (support.clamps()) enter_tangent(held, rod, place, replay);
       result.push_back(held);
     }
   }
@@ -82,27 +98,50 @@ std::vector<HeldNode> held_nodes_at(const Scenario& scenario, double time) {
 
 using Frames = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// The frames as a table, without a copy. ValueError if they are not those of the replayed run.
-Eigen::Map<const FrameTable> to_table(const Frames& frames, const char* name,
-                                      const Replay& replay) {
-  const Model& model = replay.model();
-  const py::tuple wanted = py::make_tuple(replay.num_frames(), model.num_nodes, model.dimension);
+/// The frames as a table, without a copy. ValueError if they are not of that shape.
+Eigen::Map<const FrameTable> to_table(const Frames& frames, const char* name, const char* axes,
+                                      const py::tuple& wanted) {
   const py::object shape = frames.attr("shape");
   if (!shape.equal(wanted)) {
-    throw py::value_error(py::str("{} has the shape {}, not (frames, nodes, dim) = {}")
-                              .format(name, shape, wanted)
+    throw py::value_error(py::str("{} has the shape {}, not {} = {}")
+                              .format(name, shape, axes, wanted)
                               .cast<std::string>());
   }
-  return {frames.data(), frames.shape(0), model.num_dofs()};
+  const py::ssize_t rows = frames.shape(0);
+  return {frames.data(), rows, rows == 0 ? 0 : frames.size() / rows};
+}
+
+/// The arrays of a run as the engine takes them. ValueError if they are not those of the replayed
+/// run.
+SavedFrames to_frames(const Replay& replay, const Frames& positions, const Frames& velocities,
+                      const Frames& theta, const Frames& section_frames) {
+  const Model& model = replay.model();
+  const std::size_t frames = replay.num_frames();
+  const Index edges = model.num_dofs() - model.dofs.num_positions();
+  const py::tuple nodes = py::make_tuple(frames, model.num_nodes, model.dimension);
+  return {to_table(positions, "positions", "(frames, nodes, dim)", nodes),
+          to_table(velocities, "velocities", "(frames, nodes, dim)", nodes),
+          to_table(theta, "theta", "(frames, edges)", py::make_tuple(frames, edges)),
+          to_table(section_frames, "the frames of sections", "(frames, edges, 8)",
+                   py::make_tuple(frames, edges, FrameBlock::kSize))};
 }
 
 py::tuple along(Replay& replay, const std::string& rod, const std::string& quantity,
-                const Frames& positions, const Frames& velocities) {
-  const RodSeries series = replay.along(rod, quantity, to_table(positions, "positions", replay),
-                                        to_table(velocities, "velocities", replay));
+                const Frames& positions, const Frames& velocities, const Frames& theta,
+                const Frames& section_frames) {
+  const RodSeries series = replay.along(
+      rod, quantity, to_frames(replay, positions, velocities, theta, section_frames));
   return py::make_tuple(
       Array(static_cast<py::ssize_t>(series.arc_length.size()), series.arc_length.data()),
       Array({series.values.rows(), series.values.cols()}, series.values.data()));
+}
+
+Array directors(Replay& replay, const Frames& positions, const Frames& velocities,
+                const Frames& theta, const Frames& section_frames) {
+  const FrameTable table =
+      replay.directors(to_frames(replay, positions, velocities, theta, section_frames));
+  return Array({py::ssize_t{table.rows()}, py::ssize_t{table.cols() / 3}, py::ssize_t{3}},
+               table.data());
 }
 
 void bind_held_node(py::module_& module) {
@@ -112,11 +151,19 @@ void bind_held_node(py::module_& module) {
       .def_readonly("components", &HeldNode::components,
                     "Components that are held, or moved by a table: x, y, z.")
       .def_readonly("tangent_angle", &HeldNode::tangent_angle,
-                    "Angle [rad] from the x axis that a clamp holds the tangent at; None without.")
+                    "Angle [rad] from the x axis that a clamp in a plane holds the tangent at; "
+                    "None without.")
+      .def_property_readonly(
+          "tangent",
+          [](const HeldNode& held) -> std::optional<Array> {
+            if (held.tangent.empty()) return std::nullopt;
+            return Array(static_cast<py::ssize_t>(held.tangent.size()), held.tangent.data());
+          },
+          "Unit vector, shape (dim,), that a clamp holds the tangent along; None without.")
       .def("__repr__", [](const HeldNode& held) {
         return py::str("<der.HeldNode {} of {!r}: {}{}>")
             .format(held.node, held.rod, py::str(", ").attr("join")(held.components),
-                    held.tangent_angle ? ", clamped" : "");
+                    held.tangent.empty() ? "" : ", clamped");
       });
   module.def(
       "held_nodes", &held_nodes_at, py::arg("scenario"), py::arg("time") = 0.0,
@@ -138,12 +185,17 @@ void bind_replay(py::module_& module) {
            "factors of\nthe points of the scene's continuation. Raises SceneError or DerError "
            "where no model can be\nbuilt, and on a path if the scene has no continuation.")
       .def("along", &along, py::arg("rod"), py::arg("quantity"), py::arg("positions"),
-           py::arg("velocities"),
+           py::arg("velocities"), py::arg("theta"), py::arg("section_frames"),
            "Return arc lengths [m], shape (samples,), and values in the quantity's SI unit, shape\n"
            "(frames, samples), of a quantity of probes along a rod: at its nodes, at those that "
            "bend, or\nat the middles of its edges. `positions` [m] and `velocities` [m/s] have the "
-           "shape\n(frames, nodes, dim). Raises DerError for an unknown rod or quantity, "
-           "ValueError for another\nshape.")
+           "shape\n(frames, nodes, dim), `theta` [rad] (frames, edges), `section_frames` (frames, "
+           "edges, 8): without\nsections there are 0 edges. Raises DerError for an unknown rod or "
+           "quantity, or one that the model\nhas not, ValueError for another shape.")
+      .def("directors", &directors, py::arg("positions"), py::arg("velocities"), py::arg("theta"),
+           py::arg("section_frames"),
+           "Return director 1 of the section of each edge, shape (frames, edges, 3); the arrays as "
+           "for\n`along`.")
       .def("held_nodes", &held_nodes, py::arg("frame"),
            "Return every node that a support of the scene holds, with the angle of clamps at a "
            "frame.\n\nRaises DerError if there is no such frame.")

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bindings.hpp"
+#include "der/kinematics/frame_block.hpp"
 #include "der/output/run_arrays.hpp"
 #include "der/output/run_folder.hpp"
 #include "recording.hpp"
@@ -28,6 +29,7 @@ std::unique_ptr<FileRecording> read(const std::filesystem::path& file) {
   recording->status = std::move(run.status);
   recording->scene = std::move(run.scene);
   recording->dimension = run.dimension;
+  recording->sections = run.sections;
   recording->probe_names = std::move(run.probe_names);
   recording->probe_units = std::move(run.probe_units);
   recording->frames = std::move(run.frames);
@@ -91,6 +93,17 @@ void save(const std::filesystem::path& folder, const Scenario& scenario, const M
   run.frames.steps = steps.cast<std::vector<std::int64_t>>();
   run.frames.positions = numbers(result.attr("positions").cast<Numbers>(), vectors, "positions");
   run.frames.velocities = numbers(result.attr("velocities").cast<Numbers>(), vectors, "velocities");
+  if (model.has_sections()) {
+    const auto edges = static_cast<py::ssize_t>(model.framed_edges.size());
+    const std::vector<py::ssize_t> angles{times.size(), edges};
+    const py::object sections = result.attr("sections");
+    if (sections.is_none()) throw py::value_error("a run in space needs its sections");
+    run.frames.theta = numbers(sections.attr("theta").cast<Numbers>(), angles, "theta");
+    run.frames.spin = numbers(sections.attr("spin").cast<Numbers>(), angles, "spin");
+    run.frames.section_frames =
+        numbers(sections.attr("frames").cast<Numbers>(), {times.size(), edges, FrameBlock::kSize},
+                "the frames of sections");
+  }
   run.frames.energies = table(result.attr("energies"), names_in_group("energies"), frames);
   run.frames.work = table(result.attr("work"), names_in_group("work"), frames);
   run.frames.probes = table(result.attr("probes"), run.probe_names, frames);

@@ -13,6 +13,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "der/core/error.hpp"
+#include "der/model/joint_strain.hpp"
 #include "recording.hpp"
 #include "state.hpp"
 
@@ -36,11 +37,28 @@ void support_cycle_collection(PyHeapTypeObject* heap_type) {
   };
 }
 
-/// A live view of one of the state's vectors as a property of the Python object.
+/// A live view of the nodes' part of one of the state's vectors as a property of the Python object.
 template <Vector State::* member>
 Array state_view(const py::object& self) {
   Simulation& engine = self.cast<PySimulation&>().engine();
-  return live_view(engine.state().*member, engine.model().dimension, self);
+  const Model& model = engine.model();
+  return live_view(engine.state().*member, model.num_nodes, model.dimension, self);
+}
+
+/// A live view of the angles of the sections, which stand behind the positions.
+Array theta_view(const py::object& self) {
+  Simulation& engine = self.cast<PySimulation&>().engine();
+  const Model& model = engine.model();
+  const Index first = model.dofs.num_positions();
+  return Array(py::ssize_t{model.num_dofs() - first}, engine.state().positions.data() + first,
+               self);
+}
+
+Array present_directors(const PySimulation& simulation) {
+  const Vector directors = directors_of(simulation.engine().model(), simulation.engine().state());
+  Array result({static_cast<py::ssize_t>(directors.size() / 3), py::ssize_t{3}}, directors.data());
+  result.attr("setflags")(false);
+  return result;
 }
 
 py::dict probe_values(const PySimulation& simulation) {
@@ -129,6 +147,16 @@ void bind_arrays(PySimulationClass& cls) {
           "velocities", &state_view<&State::velocities>,
           "Node velocities [m/s], shape (nodes, dim): a live, writable view, as `positions`.")
       .def_property_readonly(
+          "theta", &theta_view,
+          "Angles of the sections [rad], shape (edges,), in the order of the rods and their edges: "
+          "a live,\nwritable view, as `positions`. Each counts about the tangent from the edge's "
+          "reference director,\nwhich is transported in time. Empty but in the model "
+          "``spatial``.")
+      .def_property_readonly(
+          "directors", &present_directors,
+          "Director 1 of the section of each edge, a unit vector along its width, shape (edges, "
+          "3): a\nread-only copy. Shape (0, 3) but in the model ``spatial``.")
+      .def_property_readonly(
           "extra_force", &state_view<&State::extra_force>,
           "Forces on the nodes [N], shape (nodes, dim): a live, writable view, zero at the "
           "start.\n\n"
@@ -151,8 +179,9 @@ void bind_arrays(PySimulationClass& cls) {
             const std::vector<Index>& free = s.engine().model().dofs.free();
             return py::array_t<Index>(static_cast<py::ssize_t>(free.size()), free.data());
           },
-          "Places in `positions.ravel()` of the degrees of freedom that no support holds, shape\n"
-          "(free,), ascending: what `gradient`, `hessian` and `mass` are about.")
+          "Numbers of the degrees of freedom that no support holds, shape (free,), in the order of\n"
+          "`gradient`, `hessian` and `mass`. They are places in `positions.ravel()`; those behind "
+          "its end\nare places in `theta`.")
       .def(
           "gradient",
           [](const PySimulation& s) {
@@ -289,7 +318,7 @@ void bind_actions(PySimulationClass& cls) {
               const auto k = static_cast<py::ssize_t>(i);
               frequencies.mutable_at(k) = modes[i].frequency;
               growth_rates.mutable_at(k) = modes[i].growth_rate;
-              std::copy_n(modes[i].shape.data(), modes[i].shape.size(),
+              std::copy_n(modes[i].shape.data(), model.dofs.num_positions(),
                           shapes.mutable_data(k, 0, 0));
             }
             return py::make_tuple(frequencies, growth_rates, shapes);
@@ -320,7 +349,7 @@ void bind_actions(PySimulationClass& cls) {
           "save_state",
           [](const PySimulation& simulation) {
             const Simulation& engine = simulation.engine();
-            return SavedState{engine.state(), engine.model().dimension};
+            return SavedState{engine.state(), engine.model().num_nodes, engine.model().dimension};
           },
           "Return a copy of the state, to go back to with `restore_state`.")
       .def("restore_state", &restore, py::arg("state"),

@@ -117,7 +117,8 @@ void read(const py::handle& dumped, const std::string& name, Value& value) {
 }
 
 py::tuple dump_state(const SavedState& saved) {
-  return py::make_tuple(kKind, kStateVersion, saved.dimension, dump(saved.state));
+  return py::make_tuple(kKind, kStateVersion, saved.num_nodes, saved.dimension,
+                        dump(saved.state));
 }
 
 SavedState revive(const py::tuple& dumped) {
@@ -127,12 +128,16 @@ SavedState revive(const py::tuple& dumped) {
       refuse("it is of version " + std::to_string(version) + ", not " +
              std::to_string(kStateVersion));
     }
-    if (dumped.size() != 4) refuse("other content");
+    if (dumped.size() != 5) refuse("other content");
     SavedState saved;
-    saved.dimension = dumped[2].cast<Index>();
-    read(dumped[3], "", saved.state);
+    saved.num_nodes = dumped[2].cast<Index>();
+    saved.dimension = dumped[3].cast<Index>();
+    read(dumped[4], "", saved.state);
     const Eigen::Index dofs = saved.state.positions.size();
-    if (saved.dimension != 2 || dofs % saved.dimension != 0) refuse("another number of dimensions");
+    if (saved.dimension != 2 && saved.dimension != 3) refuse("another number of dimensions");
+    if (saved.num_nodes < 1 || saved.num_nodes > dofs / saved.dimension) {
+      refuse("another number of nodes");
+    }
     if (saved.state.velocities.size() != dofs) refuse("as many velocities as positions are needed");
     return saved;
   } catch (const py::cast_error&) {
@@ -179,20 +184,20 @@ void bind_state(py::module_& module) {
           "positions",
           [](const py::object& self) {
             const auto& saved = self.cast<const SavedState&>();
-            return read_only_view(saved.state.positions, saved.dimension, self);
+            return read_only_view(saved.state.positions, saved.num_nodes, saved.dimension, self);
           },
           "Node positions [m], shape (nodes, dim), read-only.")
       .def_property_readonly(
           "velocities",
           [](const py::object& self) {
             const auto& saved = self.cast<const SavedState&>();
-            return read_only_view(saved.state.velocities, saved.dimension, self);
+            return read_only_view(saved.state.velocities, saved.num_nodes, saved.dimension, self);
           },
           "Node velocities [m/s], shape (nodes, dim), read-only.")
       .def(py::pickle(&dump_state, &revive))
       .def("__repr__", [](const SavedState& s) {
         return py::str("<der.State at t = {:.6g} s after {} steps, {} nodes>")
-            .format(s.state.time, s.state.step, s.state.positions.size() / s.dimension);
+            .format(s.state.time, s.state.step, s.num_nodes);
       });
 }
 

@@ -4,9 +4,10 @@
 
 namespace der::python {
 
-/// A saved state, with the number of components of a position so that arrays get their shape.
+/// A saved state, with the numbers that give its arrays their shapes.
 struct SavedState {
   State state;
+  Index num_nodes = 0;
   Index dimension = 2;
 };
 

@@ -17,11 +17,11 @@ from der.progress import ProgressFunction
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from der._core import SpringSupport
+    from der.plotting.picture import Picture
     from der.run_data import RunData
 
 Array = NDArray[np.float64]
-Picture = NDArray[np.uint8]
+Pixels = NDArray[np.uint8]
 
 _MODE_SECONDS, _MODE_SWINGS = 2.0, 2  # how long each mode is shown, and how often it swings
 _PATH_SECONDS = 10.0  # how long a path of equilibria is shown
@@ -85,7 +85,7 @@ def animate(
     ------
     ValueError
         For another ending, an fps or speed out of range, more than 20,000 frames, a run in which
-        nothing moves (a static one, or one of a single frame), and positions in space.
+        nothing moves (a static one, or one of a single frame).
     ModuleNotFoundError
         For an MP4 without imageio-ffmpeg.
     """
@@ -98,8 +98,13 @@ def animate(
     if speed is not None and not 0.0 < speed < np.inf:
         raise ValueError(f"speed must be a positive number, not {speed:g}")
     gif = path.suffix.lower() == ".gif"
-    cut = _cut(result, make_film(result), _gif_rate(fps) if gif else fps, speed)
-    pictures = _draw(result, cut, progress)
+    from der.plotting.picture import Picture  # here, because matplotlib takes long to load
+
+    picture = Picture(result)
+    film = make_film(result)
+    turned = replace(film, positions=picture.plane.turned(film.positions))
+    cut = _cut(result, turned, _gif_rate(fps) if gif else fps, speed)
+    pictures = _draw(picture, cut, progress)
     partial = path.with_name(f".{path.stem}.partial{path.suffix}")
     try:
         writers[path.suffix.lower()](pictures, partial, cut.fps)
@@ -114,8 +119,6 @@ def _gif_rate(fps: float) -> float:
 
 
 def _cut(result: RunData, film: Film, fps: float, speed: float | None) -> _Cut:
-    if result.positions.shape[2] != 2:
-        raise ValueError("an animation shows planar runs; der view shows rods in space")
     if film.times is not None:
         return _cut_motion(film, film.times, fps, speed)
     if speed is not None:
@@ -173,15 +176,14 @@ def _cut_motion(film: Film, times: Array, fps: float, speed: float | None) -> _C
     return _Cut(positions, frames, texts, fps)
 
 
-def _draw(result: RunData, cut: _Cut, progress: ProgressFunction | None) -> Iterator[Picture]:
+def _draw(picture: Picture, cut: _Cut, progress: ProgressFunction | None) -> Iterator[Pixels]:
     """Draw one picture after the other, RGB, shape (height, width, 3), with even sizes."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    from der._core import springs
     from der.plotting.style import style
 
     with style():
-        axes = _set_stage(result, cut)
+        axes = _set_stage(picture, cut)
         figure = axes.get_figure(root=True)
         assert figure is not None
         canvas: Any = FigureCanvasAgg(figure)  # matplotlib leaves its methods without types
@@ -189,12 +191,11 @@ def _draw(result: RunData, cut: _Cut, progress: ProgressFunction | None) -> Iter
         # The parts that do not change are drawn once.
         background = canvas.copy_from_bbox(figure.bbox)
         fixed = set(axes.get_children())
-        elastic = springs(result.scenario)
         for number, (positions, frame, text) in enumerate(
             zip(cut.positions, cut.frames, cut.texts, strict=True)
         ):
             canvas.restore_region(background)
-            _draw_moment(axes, result, elastic, positions, int(frame), text)
+            _draw_moment(axes, picture, positions, int(frame), text)
             moving = [artist for artist in axes.get_children() if artist not in fixed]
             for artist in sorted(moving, key=lambda artist: artist.get_zorder()):
                 axes.draw_artist(artist)
@@ -204,43 +205,35 @@ def _draw(result: RunData, cut: _Cut, progress: ProgressFunction | None) -> Iter
                 progress((number + 1) / len(cut.texts))
 
 
-def _draw_moment(
-    axes: Axes,
-    result: RunData,
-    elastic: list[SpringSupport],
-    positions: Array,
-    frame: int,
-    text: str,
-) -> None:
+def _draw_moment(axes: Axes, picture: Picture, positions: Array, frame: int, text: str) -> None:
     from der.plotting.loads import draw_loads
     from der.plotting.shapes import draw_shapes
     from der.plotting.style import PALETTE
     from der.plotting.supports import draw_springs, draw_supports
-    from der.scene_loads import acting_loads
 
+    result, rods = picture.result, picture.rods
     source = min(frame, len(result.times) - 1)
-    draw_shapes(axes, result.rods, positions, PALETTE[0])
-    draw_supports(axes, result.rods, result.held_nodes(source), positions)
-    draw_springs(axes, result.rods, elastic, positions)
+    draw_shapes(axes, rods, positions, PALETTE[0])
+    draw_supports(axes, rods, picture.held_nodes(source), positions)
+    draw_springs(axes, rods, picture.springs, positions)
     if result.modes is None and result.buckling is None:
-        loads = replace(acting_loads(result, source), gravity=None)  # stands in the legend
-        draw_loads(axes, result.rods, loads, positions)
+        loads = replace(picture.loads(source), gravity=None)  # stands in the legend
+        draw_loads(axes, rods, loads, positions)
     axes.annotate(text, (0.0, 1.0), (0.0, 6.0), "axes fraction", "offset points", fontsize=11)
 
 
-def _set_stage(result: RunData, cut: _Cut) -> Axes:
+def _set_stage(picture: Picture, cut: _Cut) -> Axes:
     """Make a figure with one set of axes: equal, with limits that hold the whole motion."""
     from matplotlib.figure import Figure
 
-    from der.plotting.lengths import label_positions
     from der.plotting.loads import draw_loads
     from der.plotting.style import FIGURE_TITLE, wrapped
-    from der.scene_loads import ActingLoads, acting_loads
+    from der.scene_loads import ActingLoads
 
-    low, high = _extent(result, cut)
+    low, high = _extent(picture, cut)
     left, right, top, bottom = _MARGINS
     room = _WIDTH - left - right  # for the axes
-    title = wrapped(title_of(result), FIGURE_TITLE, room)
+    title = wrapped(title_of(picture.result), FIGURE_TITLE, room)
     top += _TITLE_LINE * (len(title) - 1)
     size = high - low
     height = float(np.clip(room * size[1] / size[0] + top + bottom, *_HEIGHT))
@@ -253,7 +246,7 @@ def _set_stage(result: RunData, cut: _Cut) -> Axes:
     middle = 0.5 * (low + high)
     axes.set_xlim(middle[0] - half[0], middle[0] + half[0])
     axes.set_ylim(middle[1] - half[1], middle[1] + half[1])
-    label_positions(axes, low, high)
+    picture.label(axes, low, high)
     figure.suptitle(
         "\n".join(title),
         x=left / _WIDTH,
@@ -262,31 +255,30 @@ def _set_stage(result: RunData, cut: _Cut) -> Axes:
         va="top",
         parse_math=False,
     )
-    gravity = acting_loads(result, 0).gravity
+    gravity = picture.loads(0).gravity
     if gravity is not None:
-        draw_loads(axes, result.rods, ActingLoads(gravity=gravity), cut.positions[0])
+        draw_loads(axes, picture.rods, ActingLoads(gravity=gravity), cut.positions[0])
         axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1)
     return axes
 
 
-def _extent(result: RunData, cut: _Cut) -> tuple[Array, Array]:
+def _extent(picture: Picture, cut: _Cut) -> tuple[Array, Array]:
     """Return the corners [m] of all that is drawn, with some room around it."""
     from der.plotting.loads import room_for_loads
     from der.plotting.shapes import limits
-    from der.scene_loads import acting_loads
 
-    low, high = limits(result.rods, list(cut.positions))
+    low, high = limits(picture.rods, list(cut.positions))
     point = float(np.max(high - low)) / (72.0 * (_WIDTH - 1.0))
     corners = [low, high]
     for number in np.unique(np.linspace(0, len(cut.frames) - 1, 20).astype(np.int64)):
-        loads = acting_loads(result, min(int(cut.frames[number]), len(result.times) - 1))
-        corners.extend(room_for_loads(result.rods, loads, cut.positions[number], point))
+        loads = picture.loads(min(int(cut.frames[number]), len(picture.result.times) - 1))
+        corners.extend(room_for_loads(picture.rods, loads, cut.positions[number], point))
     low, high = np.min(corners, axis=0), np.max(corners, axis=0)
     room = max(0.05 * float(np.max(high - low)), 20.0 * point)  # for the symbols of supports
     return low - room, high + room
 
 
-def _write_gif(pictures: Iterator[Picture], path: Path, fps: float) -> None:
+def _write_gif(pictures: Iterator[Pixels], path: Path, fps: float) -> None:
     from PIL import Image
 
     # One palette for all, without dithering: quick, small, and colours that do not flicker.
@@ -318,7 +310,7 @@ def _gif_palette() -> list[int]:
     return [int(value) for value in np.rint(255.0 * mixed).ravel()]
 
 
-def _write_mp4(pictures: Iterator[Picture], path: Path, fps: float) -> None:
+def _write_mp4(pictures: Iterator[Pixels], path: Path, fps: float) -> None:
     try:
         import imageio_ffmpeg
     except ModuleNotFoundError:

@@ -11,21 +11,23 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from der._core import Quantity, Rod, quantities
+from der._core import Model, Quantity, Rod, quantities
 from der.run_data import RunData
 
 Array = NDArray[np.float64]
 
 
-def _exported() -> dict[str, Quantity]:
-    """Return the quantities with a value at every arc length, those of the motion last.
+def fields_of(model: Model) -> dict[str, Quantity]:
+    """Return the quantities along rods that exports and views have of a model, by name.
 
-    Components of positions and velocities are left out, as the vectors are exported.
+    They have a value at every arc length; those of the motion come last. Components of positions
+    and velocities are left out, as the vectors are exported.
     """
+    left_out = {"turn", "energy"} | (set() if model.has_sections else {"section"})
     along_rods = [
         quantity
         for quantity in quantities()
-        if quantity.kind not in ("turn", "section", "energy") and not quantity.is_component
+        if quantity.kind not in left_out and not quantity.is_component
     ]
     along_rods.sort(key=is_motion)
     return {quantity.name: quantity for quantity in along_rods}
@@ -34,10 +36,6 @@ def _exported() -> dict[str, Quantity]:
 def is_motion(quantity: Quantity) -> bool:
     """Return whether a quantity is zero where nothing moves."""
     return quantity.kind == "velocity"
-
-
-#: The quantities along rods that exports and views have, by name.
-FIELDS = _exported()
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +49,7 @@ class RodFields:
     positions, velocities
         Positions [m] and velocities [m/s] of its nodes, shape (frames, nodes of the rod, dim).
     at_nodes
-        Each quantity of `FIELDS` by name, in its SI unit, shape (frames, nodes of the rod), as its
+        Each quantity of `fields_of` by name, in its SI unit, shape (frames, nodes of the rod), as its
         probes have it; where it jumps at a node, the value after it. Without bending stiffness
         curvature and moment are known at inner nodes and carried on linearly to the ends; 0 on such
         a rod of two nodes. Signed in the plane, positive counter-clockwise.
@@ -69,13 +67,13 @@ class RodFields:
 
 def rod_fields(result: RunData) -> list[RodFields]:
     """Return the quantities along each rod of a result, in the order of `RunData.rods`."""
-    return [_fields_of(rod, result) for rod in result.rods]
+    return [_fields_along(rod, result) for rod in result.rods]
 
 
-def _fields_of(rod: Rod, result: RunData) -> RodFields:
+def _fields_along(rod: Rod, result: RunData) -> RodFields:
     middles = 0.5 * (rod.arc_lengths[1:] + rod.arc_lengths[:-1])
     at_nodes, at_edges = {}, {}
-    for name, quantity in FIELDS.items():
+    for name, quantity in fields_of(result.model).items():
         known, values = result.along(rod.name, name)
         at_nodes[name] = _carry(values, known, rod.arc_lengths)
         if quantity.kind == "edge":

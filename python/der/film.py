@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der._core import ended_as_asked
-from der.fields import FIELDS, is_motion, rod_fields
+from der.fields import fields_of, is_motion, rod_fields
 from der.run_data import RunData
 from der.scene_loads import ActingLoads, acting_loads
 
@@ -51,7 +51,7 @@ class Film:
     source
         The frame of the result that each frame belongs to, shape (frames,): its loads and supports.
     fields
-        For each quantity of ``der.fields.FIELDS`` its values for each rod, of shape (frames,
+        For each quantity of ``der.fields.fields_of`` its values for each rod, of shape (frames,
         nodes of the rod); empty for modes, whose size means nothing.
     """
 
@@ -125,7 +125,7 @@ def _fields(result: RunData, frames: NDArray[np.int64]) -> dict[str, list[Array]
     rods = rod_fields(result)
     return {
         name: [rod.at_nodes[name][frames] for rod in rods]
-        for name, quantity in FIELDS.items()
+        for name, quantity in fields_of(result.model).items()
         if not (result.scenario.is_static and is_motion(quantity))
     }
 

@@ -13,7 +13,7 @@ def natural_size(rods: Sequence[Rod], unit: str, time: float) -> float:
     Parameters
     ----------
     rods
-        The longest gives the length L and the curvature 1/L; the stiffest the moment, and the
+        The longest gives the length L, the curvature and the twist 1/L; the stiffest the moment, and the
         energy, EI/L and the axial force EA. Angles and strains have the size 1.
     unit
         SI unit of the quantities.
@@ -27,6 +27,7 @@ def natural_size(rods: Sequence[Rod], unit: str, time: float) -> float:
         "rad": 1.0,
         "m": length,
         "1/m": 1.0 / length,
+        "rad/m": 1.0 / length,
         "m/s": length / time if time > 0.0 else 0.0,
         "N": max(rod.EA for rod in rods),
         "N m": moment,

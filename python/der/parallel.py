@@ -216,6 +216,7 @@ def _without_motion(outcome: Outcome) -> Outcome:
         positions=np.empty((0, *result.positions.shape[1:])),
         velocities=np.empty((0, *result.velocities.shape[1:])),
         energies={name: values.copy() for name, values in result.energies.items()},
+        sections=None,
     )
     if outcome.error is not None:
         outcome.error.result = slim

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from der.exporting import ExportFormat, export
 from der.probe_series import make_probes
 from der.progress import ProgressFunction
-from der.run_data import RunData
+from der.run_data import RunData, Sections
 from der.run_folder_writer import save_run
 from der.viewing import view
 
@@ -107,4 +107,5 @@ def to_result(
         ),
         summary=summary,
         data=recording.data,
+        sections=None if recording.sections is None else Sections(*recording.sections),
     )

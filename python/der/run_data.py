@@ -22,6 +22,26 @@ from der.probe_series import ProbeSeries
 
 
 @dataclass(frozen=True, eq=False)
+class Sections:
+    """How the sections of the edges stand at the saved frames of a run of the model ``spatial``.
+
+    Attributes
+    ----------
+    theta
+        Angles [rad], shape (frames, edges), in the order of the rods and their edges.
+    spin
+        Their rates [rad/s], shape (frames, edges).
+    frames
+        The frames that the angles count from, shape (frames, edges, 8): tangent, reference director,
+        and the reference twists [rad] of the joints at the start and at the end of the edge.
+    """
+
+    theta: NDArray[np.float64]
+    spin: NDArray[np.float64]
+    frames: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
 class RunData:
     """The recorded data of a run: its saved frames, probes and summary.
 
@@ -54,6 +74,9 @@ class RunData:
     data
         Arrays that an analysis found besides, by name, as in ``results.h5``; `modes`, `buckling`
         and `path` make objects of them.
+    sections
+        Angles and frames of the edges' sections, of the model ``spatial``; None of others. `theta`
+        and `directors` are what one wants of them.
     """
 
     scenario: Scenario
@@ -66,6 +89,7 @@ class RunData:
     probes: dict[str, ProbeSeries]
     summary: dict[str, Any]
     data: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    sections: Sections | None = None
 
     @property
     def status(self) -> str:
@@ -109,6 +133,31 @@ class RunData:
         instants = self.times if path is None else path.factor
         return Replay(self.scenario, instants, path is not None)
 
+    @property
+    def theta(self) -> NDArray[np.float64]:
+        """Angles of the edges' sections [rad], shape (frames, edges).
+
+        Each counts about the tangent from a reference director that moves with the edge. Without
+        sections there are 0 edges.
+        """
+        return self._frames[2]
+
+    @cached_property
+    def directors(self) -> NDArray[np.float64]:
+        """Director 1 of each edge's section, shape (frames, edges, 3): along its width.
+
+        The edges are in the order of the rods and along each rod; without sections there are none.
+        """
+        return self._replay.directors(*self._frames)
+
+    @property
+    def _frames(self) -> tuple[NDArray[np.float64], ...]:
+        """The frames as the replay takes them."""
+        count = len(self.positions)
+        if self.sections is None:
+            return self.positions, self.velocities, np.empty((count, 0)), np.empty((count, 0, 8))
+        return self.positions, self.velocities, self.sections.theta, self.sections.frames
+
     def along(self, rod: str, quantity: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return a quantity along a rod at every frame, where the discrete rod has it.
 
@@ -135,14 +184,14 @@ class RunData:
         Raises
         ------
         DerError
-            If there is no such rod or quantity.
+            If there is no such rod or quantity, or the model has not that quantity.
 
         Notes
         -----
         Clamps that `Simulation.prescribe` turned are taken to stand as the scene has them, since
         frames do not tell; this concerns the values at the clamp and at the node or edge beside it.
         """
-        return self._replay.along(rod, quantity, self.positions, self.velocities)
+        return self._replay.along(rod, quantity, *self._frames)
 
     def held_nodes(self, frame: int) -> list[HeldNode]:
         """Return every node that a support of the scene holds, clamps turned as at a frame.

@@ -17,7 +17,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class PointLoad:
-    """A force [N], shape (dim,), or a moment about z [N m], shape (), at an arc length [m]."""
+    """A force [N], shape (dim,), or a moment [N m] at an arc length [m].
+
+    A moment in a plane is one about z, of shape (); in space it is a vector, of shape (3,).
+    """
 
     rod: str
     at: float
@@ -73,14 +76,14 @@ def acting_loads(result: RunData, frame: int) -> ActingLoads:
     Along a continuation those that its factor varies are scaled by it. Forces from Python are not
     known to the scene and not among them.
     """
-    found = _Collected(float(result.times[frame]))
+    found = _Collected(float(result.times[frame]), result.positions.shape[2])
     for number, load in enumerate(result.scenario.to_dict().get("loads") or []):
         ((kind, content),) = load.items()
         collect = _COLLECTORS[kind]
         if collect is not None:
             arc_lengths = result.load_arc_lengths(number)
             collect(found, _SceneLoad(content, _factor(result, frame, number), arc_lengths))
-    total = np.sum(found.gravity, axis=0) if found.gravity else np.zeros(2)
+    total = np.sum(found.gravity, axis=0) if found.gravity else np.zeros(result.positions.shape[2])
     gravity = total if total.any() else None
     return ActingLoads(found.forces, found.moments, found.lines, gravity, found.foundations)
 
@@ -95,10 +98,11 @@ class _SceneLoad:
 
 
 class _Collected:
-    """The loads that act at a time [s]."""
+    """The loads that act at a time [s], with vectors of `dimension` components."""
 
-    def __init__(self, time: float) -> None:
+    def __init__(self, time: float, dimension: int) -> None:
         self._time = time
+        self._dimension = dimension
         self.forces: list[PointLoad] = []
         self.moments: list[PointLoad] = []
         self.lines: list[LineLoad] = []
@@ -106,7 +110,8 @@ class _Collected:
         self.foundations: list[FoundationPart] = []
 
     def add_gravity(self, load: _SceneLoad) -> None:
-        self.gravity.append(load.factor * value_at(load.content, self._time))
+        gravity = load.factor * value_at(load.content, self._time)
+        self.gravity.append(_in_space(gravity, self._dimension))
 
     def add_force(self, load: _SceneLoad) -> None:
         self.forces += self._at_places(load, "force")
@@ -122,7 +127,8 @@ class _Collected:
 
     def add_foundation(self, load: _SceneLoad) -> None:
         start, end = load.arc_lengths
-        stiffness = np.broadcast_to(np.asarray(load.content["stiffness"], dtype=np.float64), (2,))
+        given = np.asarray(load.content["stiffness"], dtype=np.float64)
+        stiffness = np.broadcast_to(given, (given.size if given.ndim else 2,))
         self.foundations.append(FoundationPart(load.content["rod"], start, end, stiffness))
 
     def _at_places(self, load: _SceneLoad, amount: str) -> list[PointLoad]:
@@ -131,7 +137,8 @@ class _Collected:
         return [PointLoad(load.content["rod"], at, value) for at in places]
 
     def _value(self, load: _SceneLoad, amount: str) -> Array:
-        return np.asarray(load.factor * value_at(load.content[amount], self._time))
+        value = load.factor * value_at(load.content[amount], self._time)
+        return _in_space(value, self._dimension)
 
 
 #: Every kind of load with the function that collects it for a drawing; None: it has no symbol.
@@ -146,6 +153,18 @@ _COLLECTORS: dict[str, Callable[[_Collected, _SceneLoad], None] | None] = {
 }
 #: The kinds that are not drawn.
 WITHOUT_SYMBOL = frozenset(kind for kind, collect in _COLLECTORS.items() if collect is None)
+
+
+def _in_space(value: Array, dimension: int) -> Array:
+    """Return a vector with all components: in a scene of planar vectors those along z are 0.
+
+    A planar moment is one about z.
+    """
+    if dimension == 2 or value.shape == (3,):
+        return np.asarray(value)
+    full = np.zeros(3)
+    full[slice(None, 2) if value.ndim else 2] = value
+    return full
 
 
 def value_at(series: Any, time: float) -> Array:

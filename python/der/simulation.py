@@ -33,7 +33,8 @@ class Simulation(_core.Simulation):
     """A scenario's model, its state, and the time integrator that advances it.
 
     ``positions``, ``velocities`` and ``extra_force`` are live NumPy views of the engine's memory,
-    shape (nodes, dim), in m, m/s and N. One thread at a time may use a simulation.
+    shape (nodes, dim), in m, m/s and N; so is ``theta``, the angles [rad] of the edges' sections,
+    shape (edges,), in the model ``spatial``. One thread at a time may use a simulation.
 
     Parameters
     ----------
@@ -148,8 +149,8 @@ class Simulation(_core.Simulation):
         """Return the stiffness: the Hessian [N/m] of the potential at the present state.
 
         Sparse and symmetric, shape (free, free), over the degrees of freedom that no support holds;
-        `free_dofs` says where they are in ``positions.ravel()``. The loads' part of it (that of
-        moments) is included.
+        `free_dofs` says where they are in ``positions.ravel()`` and, behind its end, in ``theta``.
+        The loads' part of it (that of moments) is included.
         """
         return _symmetric(*self.lower_hessian())
 

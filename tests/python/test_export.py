@@ -8,13 +8,13 @@ import xml.etree.ElementTree as ET
 import der
 import numpy as np
 import pytest
-from der.fields import FIELDS
+from der.fields import fields_of
 
 
 def probes_at(scene, nodes):
     """Add a probe of each quantity at some nodes of the first rod."""
     rod = scene["rods"][0]["name"]
-    for quantity in ("vx", "vy", *FIELDS):
+    for quantity in ("vx", "vy", *fields_of(der.Model(der.Scenario.from_dict(scene)))):
         for node in nodes:
             scene["output"]["probes"][f"{quantity}-{node}"] = {
                 "rod": rod,
@@ -36,7 +36,10 @@ def test_csv(swing, tmp_path):
     titles, rows = read_table(nodes)
     assert titles == [
         *("frame", "time [s]", "rod", "node", "s [m]", "x [m]", "y [m]", "vx [m/s]", "vy [m/s]"),
-        *(f"{name} [{one.unit}]" if one.unit else name for name, one in FIELDS.items()),
+        *(
+            f"{name} [{one.unit}]" if one.unit else name
+            for name, one in fields_of(result.model).items()
+        ),
     ]
     assert {"curvature [1/m]", "strain", "tension [N]", "speed [m/s]"} < set(titles)
     assert len(rows) == len(result.times) * 11
@@ -46,7 +49,7 @@ def test_csv(swing, tmp_path):
             assert row[:4] == [str(frame), repr(float(result.times[frame])), "arm", str(node)]
             values = [float(value) for value in row[4:]]
             assert values[1:3] == pytest.approx(result.positions[frame, node])
-            for column, name in enumerate(("vx", "vy", *FIELDS), 3):
+            for column, name in enumerate(("vx", "vy", *fields_of(result.model)), 3):
                 known = result.probes[f"{name}-{node}"][frame]
                 scale = np.abs(result.probes[f"{name}-{node}"]).max()
                 assert values[column] == pytest.approx(known, rel=1e-9, abs=1e-9 * scale + 1e-12)
@@ -87,7 +90,7 @@ def test_npz(swing, tmp_path):
         assert np.array_equal(arrays["probes/tip"], np.asarray(result.probes["tip"]))
         assert str(arrays["units/probes/tip"]) == "m"
         assert np.array_equal(arrays["energies/bend"], result.energies["bend"])
-        for name in FIELDS:
+        for name in fields_of(result.model):
             known = result.probes[f"{name}-4"]
             scale = np.abs(known).max()
             assert arrays[f"rods/arm/{name}"][:, 4] == pytest.approx(known, abs=1e-8 * scale)
@@ -153,7 +156,7 @@ def test_vtk_is_read_by_vtk(swing, tmp_path):
         assert arrays["velocity"][:, :2] == pytest.approx(result.velocities[frame])
         assert arrays["radius"] == pytest.approx(np.full(18, 0.01))
         assert np.array_equal(arrays["twist"], np.zeros(18))
-        for name in FIELDS:
+        for name in fields_of(result.model):
             for node in (0, 4):
                 known = result.probes[f"{name}-{node}"]
                 scale = np.abs(known).max()

@@ -5,7 +5,7 @@ from dataclasses import replace
 import der
 import numpy as np
 import pytest
-from der.fields import FIELDS, rod_fields
+from der.fields import fields_of, rod_fields
 from der.natural_sizes import natural_size
 
 TURN = {"times": [0, 0.2], "values": [0, -0.9]}
@@ -14,13 +14,14 @@ TURN = {"times": [0, 0.2], "values": [0, -0.9]}
 def with_probes(scene, bent):
     """The scene with a probe of each exported quantity at every node, those of edges there too."""
     scenario = der.Scenario.from_dict(scene)
+    model = der.Model(scenario)
     probes = {}
-    for rod in der.Model(scenario).rods:
+    for rod in model.rods:
         arc = rod.arc_lengths
         middles = 0.5 * (arc[1:] + arc[:-1])
         for i in range(len(arc)):
-            for quantity in FIELDS:
-                if FIELDS[quantity].kind != "bend" or bent(rod, i):
+            for quantity, row in fields_of(model).items():
+                if row.kind != "bend" or bent(rod, i):
                     place = {"node": i}
                     probes[f"{rod.name}-{quantity}-{i}"] = {
                         "rod": rod.name,
@@ -101,12 +102,17 @@ def test_every_quantity_where_the_rod_has_it(swing):
         assert np.abs(values - probes).max() <= 1e-8 * np.abs(probes).max(), quantity
 
 
-def test_exports_have_every_quantity_with_a_value_at_all_nodes():
+def test_exports_have_every_quantity_with_a_value_at_all_nodes(swing):
     """Components are exported as vectors; a turning angle has no value between nodes that bend."""
     along_rods = [quantity.name for quantity in der.quantities() if quantity.kind != "energy"]
-    left_out = {"x", "y", "vx", "vy", "turning_angle"}
-    assert set(FIELDS) == set(along_rods) - left_out
-    assert [name for name in FIELDS if FIELDS[name].kind == "velocity"] == list(FIELDS)[-1:]
+    left_out = {"x", "y", "z", "vx", "vy", "vz", "turning_angle"}
+    of_sections = {quantity.name for quantity in der.quantities() if quantity.kind == "section"}
+    fields = fields_of(der.Model(der.Scenario.from_dict(swing)))
+    assert set(fields) == set(along_rods) - left_out - of_sections
+    assert [name for name in fields if fields[name].kind == "velocity"] == list(fields)[-1:]
+    swing["rods"][0]["material"]["poissons_ratio"] = 0.3
+    spatial = fields_of(der.Model(der.Scenario.from_dict(swing | {"model": "spatial"})))
+    assert set(spatial) == set(fields) | of_sections
 
 
 def test_every_quantity_has_a_natural_size(swing):

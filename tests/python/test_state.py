@@ -230,7 +230,7 @@ def test_equal_steps_count_their_time_as_before(swing):
     assert simulation.time == 12 * 0.003
 
 
-HEAD = ("kind", "version", "dimension", "fields")
+HEAD = ("kind", "version", "nodes", "dimension", "fields")
 
 
 def content_of(state):
@@ -275,7 +275,7 @@ MALFORMED = {
     "memory without a name": {"memory": {}},
     "unknown field": {"momenta": np.zeros(22)},
     "a number for a struct": {"work": 0.0},
-    "short turns": {"turns": np.zeros(0)},
+    "short turns": {"followed": np.zeros(0)},
     "two dimensions": {"positions": np.zeros((11, 2))},
     "integers": {"velocities": np.zeros(22, dtype=int)},
     "text": {"velocities": "none"},
@@ -286,6 +286,8 @@ MALFORMED = {
     "before the start": {"time": -1.0},
     "negative count": {"step": -5},
     "dimension": {"dimension": 0},
+    "no node": {"nodes": 0},
+    "too many nodes": {"nodes": 12},
     "other kind": {"kind": "der.Model"},
     "other version": {"version": 99},
     "control": {"ramps": [ramp(control=17)]},
@@ -294,7 +296,7 @@ MALFORMED = {
     "ramp without end": {"ramps": [ramp(end=math.nan)]},
     "ramp of four": {"ramps": [{"control": 0, "start": 0.0, "end": 1.0, "from": 0.0}]},
     "backward ramp": {"ramps": [ramp(start=1.0, end=0.5)]},
-    "turn": {"turns": np.array([math.nan])},
+    "turn": {"followed": np.array([math.nan])},
 }
 
 
@@ -321,7 +323,7 @@ def test_each_field_that_is_missing_is_named(moving):
     for name in content["fields"]:
         rest = {key: value for key, value in content["fields"].items() if key != name}
         with pytest.raises(ValueError, match=f"'{name}' is missing"):
-            revived(state, (*list(content.values())[:3], rest))
+            revived(state, (*list(content.values())[:4], rest))
 
 
 def test_pickles_of_other_versions_are_refused_by_name(moving):

@@ -13,10 +13,6 @@ double rotation_of(const HeldFrame& held, const Model& model, const State& state
   return held.rotation < 0 ? 0.0 : control_value(model, state, held.rotation);
 }
 
-SectionFrame held_frame(const HeldFrame& held, const Model& model, const State& state) {
-  return held.rotation < 0 ? held.drawn : held.rotated(rotation_of(held, model, state));
-}
-
 Vec3 offset(const SpatialPivot& pivot, const Model& model, const State& state) {
   if (pivot.distance == 0.0) return Vec3::Zero();
   return pivot.distance * held_frame(pivot.held, model, state).tangent;
@@ -96,12 +92,26 @@ JointStrain measured(const RodJoint& joint, const RodLayout& rod, const Model& m
 
 }  // namespace
 
+SectionFrame held_frame(const HeldFrame& held, const Model& model, const State& state) {
+  return held.rotation < 0 ? held.drawn : held.rotated(rotation_of(held, model, state));
+}
+
 SectionFrame section_frame(const Model& model, Index edge, const State& state) {
   const FrameBlock block = FrameBlock::of(edge);
   const auto first = static_cast<Index>(model.followed_edges.size());
   const Vec3 tangent = state.followed.segment<3>(first + block.first);
   const Vec3 director = state.followed.segment<3>(first + block.first + 3);
   return SectionFrame::of(tangent, director).turned(theta(edge, model, state));
+}
+
+Vector directors_of(const Model& model, const State& state) {
+  const Configuration here = configuration_of(model, state);
+  const auto edges = model.has_sections() ? static_cast<Index>(model.framed_edges.size()) : 0;
+  Vector directors(3 * edges);
+  for (Index edge = 0; edge < edges; ++edge) {
+    directors.segment<3>(3 * edge) = section_frame(model, edge, here).first;
+  }
+  return directors;
 }
 
 JointStrain strain_of(const RodJoint& joint, const RodLayout& rod, const Model& model,

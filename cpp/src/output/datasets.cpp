@@ -10,7 +10,7 @@
 namespace der {
 namespace {
 
-/// Shapes one behind the other: number x nodes x dimension.
+/// Displacements of the nodes one behind the other: number x nodes x dimension.
 template <class M>
 Dataset shapes(const std::string& name, const Model& model, const std::vector<M>& modes) {
   Dataset result{name,
@@ -20,7 +20,7 @@ Dataset shapes(const std::string& name, const Model& model, const std::vector<M>
                  {}};
   for (const M& mode : modes) {
     result.values.insert(result.values.end(), mode.shape.data(),
-                         mode.shape.data() + mode.shape.size());
+                         mode.shape.data() + model.dofs.num_positions());
   }
   return result;
 }

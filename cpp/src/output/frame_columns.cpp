@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <utility>
 
@@ -26,8 +27,13 @@ hsize_t chunk_rows(hsize_t row_bytes, hsize_t total_rows) {
   return std::max<hsize_t>(1, std::min(wanted, largest));
 }
 
+hsize_t bytes_of(const std::vector<hsize_t>& row) {
+  return std::accumulate(row.begin(), row.end(), hsize_t{sizeof(double)}, std::multiplies<>());
+}
+
 constexpr const char* kEnergies = "energies";
 constexpr const char* kWork = "work";
+constexpr const char* kSections = "sections";
 
 std::vector<std::size_t> alphabetical(const std::vector<std::string>& names) {
   std::vector<std::size_t> order(names.size());
@@ -50,18 +56,52 @@ std::vector<double> table(const std::vector<Column<double>>& columns, hsize_t fi
   return rows;
 }
 
+/// A dataset of the group of sections, and the dimensions of its rows.
+struct SectionColumn {
+  const char* name;
+  std::vector<hsize_t> row;
+};
+std::vector<SectionColumn> section_columns(hsize_t sections) {
+  return {{"theta", {sections}},
+          {"spin", {sections}},
+          {"frames", {sections, hsize_t{FrameBlock::kSize}}}};
+}
+
+/// Edges that have a section in a file; 0: its model has none.
+hsize_t sections_in(hid_t file) {
+  const bool expected = hdf5::read_text_attribute(file, "model") == "spatial";
+  if (expected != hdf5::exists(file, kSections)) {
+    throw IoError(expected ? "it is of the model 'spatial' and has no group 'sections'"
+                           : "it has a group 'sections', which only the model 'spatial' writes");
+  }
+  if (!expected) return 0;
+  const hdf5::Handle group = hdf5::open_group(file, kSections);
+  const hdf5::Handle theta = hdf5::open_dataset(group.id(), "theta", hdf5::native_type<double>());
+  const std::vector<hsize_t> dimensions = hdf5::dimensions_of(theta.id());
+  if (dimensions.size() != 2 || dimensions[1] == 0) {
+    throw IoError("'sections/theta' should be frames x edges");
+  }
+  hdf5::check_stored(theta.id(), 1, dimensions[1]);
+  return dimensions[1];
+}
+
 /// The layout of a file, with the probes in alphabetical order.
 FrameLayout layout_in(hid_t file) {
   const hdf5::Handle positions = hdf5::open_dataset(file, "positions", hdf5::native_type<double>());
   const std::vector<hsize_t> dimensions = hdf5::dimensions_of(positions.id());
-  if (dimensions.size() != 3 || dimensions[1] == 0 || dimensions[2] != 2) {
-    throw IoError("'positions' should be frames x nodes x 2");
+  const std::int64_t dimension = hdf5::read_integer_attribute(file, "dimension");
+  if (dimension != 2 && dimension != 3) {
+    throw IoError("its 'dimension' is " + std::to_string(dimension) + " and should be 2 or 3");
+  }
+  if (dimensions.size() != 3 || dimensions[1] == 0 ||
+      dimensions[2] != static_cast<hsize_t>(dimension)) {
+    throw IoError("'positions' should be frames x nodes x " + std::to_string(dimension));
   }
   hdf5::check_stored(positions.id(), 1, dimensions[1]);
   const hdf5::Handle probes = hdf5::open_group(file, "probes");
   std::vector<std::string> names = hdf5::names_in(probes.id());
   std::sort(names.begin(), names.end());
-  return {dimensions[1], dimensions[2], std::move(names), {}};
+  return {dimensions[1], dimensions[2], sections_in(file), std::move(names), {}};
 }
 
 void check_times(const std::vector<double>& times) {
@@ -73,14 +113,17 @@ void check_times(const std::vector<double>& times) {
 
 }  // namespace
 
-FrameRow row_of(const FrameData& data, std::size_t frame, std::size_t dofs, std::size_t probes) {
+FrameRow row_of(const FrameData& data, std::size_t frame, const FrameLayout& layout) {
   return {data.times[frame],
           data.steps[frame],
-          data.positions.data() + frame * dofs,
-          data.velocities.data() + frame * dofs,
+          data.positions.data() + frame * layout.num_positions(),
+          data.velocities.data() + frame * layout.num_positions(),
+          data.theta.data() + frame * layout.sections,
+          data.spin.data() + frame * layout.sections,
+          data.section_frames.data() + frame * layout.frame_numbers(),
           data.energies.data() + frame * kEnergyTerms.size(),
           data.work.data() + frame * kLedger.size(),
-          data.probes.data() + frame * probes};
+          data.probes.data() + frame * layout.probe_names.size()};
 }
 
 FrameColumns::Group FrameColumns::create_group(hid_t file, const std::string& name,
@@ -119,7 +162,7 @@ FrameColumns FrameColumns::create(hid_t file, const FrameLayout& layout, hsize_t
   columns.layout_ = layout;
   const std::vector<hsize_t> row{layout.nodes, layout.dimension};
   const hsize_t scalar_chunk = chunk_rows(sizeof(double), frames);
-  const hsize_t vector_chunk = chunk_rows(sizeof(double) * row[0] * row[1], frames);
+  const hsize_t vector_chunk = chunk_rows(bytes_of(row), frames);
   // One chunk for all times: its place in the index is written with the first frame and never
   // again.
   columns.time_ = Column<double>::create(file, "time", {}, unit_of_array("time"),
@@ -130,6 +173,14 @@ FrameColumns FrameColumns::create(hid_t file, const FrameLayout& layout, hsize_t
       Column<double>::create(file, "positions", row, unit_of_array("positions"), vector_chunk);
   columns.velocities_ =
       Column<double>::create(file, "velocities", row, unit_of_array("velocities"), vector_chunk);
+  if (layout.sections > 0) {
+    const hdf5::Handle group = hdf5::create_group(file, kSections);
+    for (const auto& [name, entries] : section_columns(layout.sections)) {
+      columns.sections_.push_back(Column<double>::create(
+          group.id(), name, entries, unit_of_array(std::string(kSections) + '/' + name),
+          chunk_rows(bytes_of(entries), frames)));
+    }
+  }
   columns.energies_ = create_group(file, kEnergies, scalar_chunk);
   columns.work_ = create_group(file, kWork, scalar_chunk);
   columns.probes_ =
@@ -145,8 +196,8 @@ FrameColumns FrameColumns::open(hid_t file, const FrameLayout& layout) {
   std::vector<std::string> names = layout.probe_names;
   std::sort(names.begin(), names.end());
   if (layout.nodes != there.nodes || layout.dimension != there.dimension ||
-      names != there.probe_names) {
-    throw IoError("its nodes or probes are not those of the scene");
+      layout.sections != there.sections || names != there.probe_names) {
+    throw IoError("its nodes, edges or probes are not those of the scene");
   }
   FrameColumns columns;
   columns.layout_ = layout;
@@ -155,6 +206,12 @@ FrameColumns FrameColumns::open(hid_t file, const FrameLayout& layout) {
   columns.step_ = Column<std::int64_t>::open(file, "step", {});
   columns.positions_ = Column<double>::open(file, "positions", row);
   columns.velocities_ = Column<double>::open(file, "velocities", row);
+  if (layout.sections > 0) {
+    const hdf5::Handle group = hdf5::open_group(file, kSections);
+    for (const auto& [name, entries] : section_columns(layout.sections)) {
+      columns.sections_.push_back(Column<double>::open(group.id(), name, entries));
+    }
+  }
   columns.energies_ = open_group(file, kEnergies, names_in_group(kEnergies));
   columns.work_ = open_group(file, kWork, names_in_group(kWork));
   columns.probes_ = open_group(file, "probes", layout.probe_names);
@@ -163,7 +220,7 @@ FrameColumns FrameColumns::open(hid_t file, const FrameLayout& layout) {
 }
 
 std::size_t FrameColumns::bytes_per_frame() const {
-  const std::size_t numbers = 2 * num_dofs() + energies_.columns.size() + work_.columns.size() +
+  const std::size_t numbers = 2 * layout_.num_dofs() + layout_.frame_numbers() + energies_.columns.size() + work_.columns.size() +
                               probes_.columns.size() + 3;  // time, step, checksum
   return sizeof(double) * numbers;
 }
@@ -173,6 +230,7 @@ void FrameColumns::for_each_data_column(F&& f) {
   f(step_);
   f(positions_);
   f(velocities_);
+  for (auto& column : sections_) f(column);
   for (Group* group : {&energies_, &work_, &probes_}) {
     for (auto& column : group->columns) f(column);
   }
@@ -183,8 +241,13 @@ std::uint64_t FrameColumns::checksum(const FrameRow& row) const {
   Checksum sum;
   sum.add(row.time);
   sum.add(row.step);
-  sum.add(row.positions, num_dofs());
-  sum.add(row.velocities, num_dofs());
+  sum.add(row.positions, layout_.num_positions());
+  sum.add(row.velocities, layout_.num_positions());
+  if (layout_.sections > 0) {
+    sum.add(row.theta, layout_.sections);
+    sum.add(row.spin, layout_.sections);
+    sum.add(row.section_frames, layout_.frame_numbers());
+  }
   for (const std::size_t i : energies_.order) sum.add(row.energies[i]);
   for (const std::size_t i : work_.order) sum.add(row.work[i]);
   for (const std::size_t i : probes_.order) sum.add(row.probes[i]);
@@ -196,6 +259,11 @@ void FrameColumns::push(const FrameRow& row) {
   step_.push(row.step);
   positions_.push(row.positions);
   velocities_.push(row.velocities);
+  if (layout_.sections > 0) {
+    sections_[0].push(row.theta);
+    sections_[1].push(row.spin);
+    sections_[2].push(row.section_frames);
+  }
   const auto push_all = [](Group& group, const double* values) {
     for (std::size_t i = 0; i < group.columns.size(); ++i) group.columns[i].push(values[i]);
   };
@@ -225,12 +293,17 @@ FrameData FrameColumns::read(hsize_t first, hsize_t count) const {
   data.steps = step_.read(first, count);
   data.positions = positions_.read(first, count);
   data.velocities = velocities_.read(first, count);
+  if (layout_.sections > 0) {
+    data.theta = sections_[0].read(first, count);
+    data.spin = sections_[1].read(first, count);
+    data.section_frames = sections_[2].read(first, count);
+  }
   data.energies = table(energies_.columns, first, count);
   data.work = table(work_.columns, first, count);
   data.probes = table(probes_.columns, first, count);
   const std::vector<std::uint64_t> expected = checksum_.read(first, count);
   for (std::size_t frame = 0; frame < count; ++frame) {
-    if (checksum(row_of(data, frame, num_dofs(), probes_.columns.size())) != expected[frame]) {
+    if (checksum(row_of(data, frame, layout_)) != expected[frame]) {
       throw IoError("frame " + std::to_string(first + frame) +
                     " is damaged: its checksum is another one");
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "der/core/types.hpp"
+#include "der/kinematics/frame_block.hpp"
 #include "der/model/state.hpp"
 #include "der/output/frame_data.hpp"
 #include "output/column.hpp"
@@ -16,8 +17,20 @@ namespace der {
 struct FrameLayout {
   hsize_t nodes = 0;
   hsize_t dimension = 0;
+  hsize_t sections = 0;  ///< edges that have a section; 0: the model has none
   std::vector<std::string> probe_names;
   std::vector<std::string> probe_units;  ///< one a probe, to create the columns
+
+  [[nodiscard]] std::size_t num_positions() const {
+    return static_cast<std::size_t>(nodes * dimension);
+  }
+  [[nodiscard]] std::size_t num_dofs() const {
+    return num_positions() + static_cast<std::size_t>(sections);
+  }
+  /// Numbers of the frames of all sections.
+  [[nodiscard]] std::size_t frame_numbers() const {
+    return static_cast<std::size_t>(FrameBlock::kSize * sections);
+  }
 };
 
 /// One frame as it is saved: pointers to a row of each quantity.
@@ -26,15 +39,18 @@ struct FrameRow {
   std::int64_t step = 0;
   const double* positions = nullptr;
   const double* velocities = nullptr;
+  const double* theta = nullptr;  ///< of as many sections as the layout has, and so the next two
+  const double* spin = nullptr;
+  const double* section_frames = nullptr;
   const double* energies = nullptr;
   const double* work = nullptr;
   const double* probes = nullptr;
 };
-/// Row number `frame` of frames that have so many degrees of freedom and probes.
-FrameRow row_of(const FrameData& data, std::size_t frame, std::size_t dofs, std::size_t probes);
+/// Row number `frame` of frames that are laid out so.
+FrameRow row_of(const FrameData& data, std::size_t frame, const FrameLayout& layout);
 
-/// The columns of a run file that have one row a frame: times, steps, positions, velocities,
-/// energies, works, probes, and the checksum of each row.
+/// The columns of a run file that have one row a frame: times, steps, positions, velocities, angles
+/// and frames of sections if there are any, energies, works, probes, and the checksum of each row.
 class FrameColumns {
  public:
   /// `frames`: how many there will be, as far as one can tell.
@@ -47,9 +63,6 @@ class FrameColumns {
   static FrameColumns open(hid_t file, const FrameLayout& layout);
 
   [[nodiscard]] const FrameLayout& layout() const { return layout_; }
-  [[nodiscard]] std::size_t num_dofs() const {
-    return static_cast<std::size_t>(layout_.nodes * layout_.dimension);
-  }
   /// Frames that are whole.
   [[nodiscard]] hsize_t size() const { return time_.rows(); }
   /// Bytes that a frame takes.
@@ -91,6 +104,7 @@ class FrameColumns {
   FrameLayout layout_;
   Column<double> time_, positions_, velocities_;
   Column<std::int64_t> step_;
+  std::vector<Column<double>> sections_;  // theta, spin and frames; none without sections
   Group energies_, work_, probes_;
   Column<std::uint64_t> checksum_;
   hsize_t waiting_ = 0;

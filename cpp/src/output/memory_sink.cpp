@@ -3,7 +3,7 @@
 namespace der {
 namespace {
 
-void append(std::vector<double>& rows, const Vector& row) {
+void append(std::vector<double>& rows, const Eigen::Ref<const Vector>& row) {
   rows.insert(rows.end(), row.data(), row.data() + row.size());
 }
 
@@ -14,6 +14,9 @@ void MemorySink::write(const Frame& frame) {
   steps.push_back(frame.step);
   append(positions, frame.positions);
   append(velocities, frame.velocities);
+  append(theta, frame.theta);
+  append(spin, frame.spin);
+  append(section_frames, frame.section_frames);
   const auto& terms = frame.energies.values();
   energies.insert(energies.end(), terms.begin(), terms.end());
   const auto works = ledger(frame.work, frame.energies);

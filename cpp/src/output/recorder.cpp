@@ -60,7 +60,7 @@ std::string Recorder::try_record(const Simulation& simulation, const State& stat
     if (!is_finite(energy)) return "the energy";
     if (!state.positions.allFinite() || !state.velocities.allFinite()) return "the motion";
     energies_ = energy;
-    hand_out(state);
+    hand_out(simulation.model(), state);
   }
   update_extremes(state.time);
   seen_time_ = state.time;
@@ -76,9 +76,19 @@ std::string Recorder::read_probes(const Simulation& simulation, const State& sta
   return {};
 }
 
-void Recorder::hand_out(const State& state) {
-  const Frame frame{state.time, state.step, state.positions, state.velocities,
-                    *energies_, state.work, values_};
+void Recorder::hand_out(const Model& model, const State& state) {
+  const Index positions = model.dofs.num_positions();
+  const Index angles = model.num_dofs() - positions;
+  const Frame frame{state.time,
+                    state.step,
+                    state.positions.head(positions),
+                    state.velocities.head(positions),
+                    state.positions.tail(angles),
+                    state.velocities.tail(angles),
+                    state.followed.tail(model.drawn_frames.size()),
+                    *energies_,
+                    state.work,
+                    values_};
   for (FrameSink* sink : sinks_) sink->write(frame);
   saved_time_ = state.time;
 }

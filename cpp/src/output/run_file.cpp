@@ -33,7 +33,8 @@ constexpr std::size_t kLargestBatch = std::size_t{8} << 20;  // [bytes]
 constexpr double kMostFrames = 1e15;
 
 FrameLayout layout_of(const Model& model) {
-  return {static_cast<hsize_t>(model.num_nodes), static_cast<hsize_t>(model.dimension), {}, {}};
+  return {static_cast<hsize_t>(model.num_nodes), static_cast<hsize_t>(model.dimension),
+          model.has_sections() ? static_cast<hsize_t>(model.framed_edges.size()) : 0, {}, {}};
 }
 
 FrameLayout layout_of(const Simulation& simulation, const Recorder& recorder) {
@@ -105,7 +106,7 @@ std::unique_ptr<RunFile::Writer> RunFile::Writer::create(const std::filesystem::
     writer->frames_ =
         FrameColumns::create(file, layout_of(simulation, recorder), static_cast<hsize_t>(frames));
     writer->checkpoints_ =
-        CheckpointStore::create(file, writer->frames_.num_dofs(), recorder.probes().size());
+        CheckpointStore::create(file, writer->frames_.layout().num_dofs(), recorder.probes().size());
   });
   return writer;
 }
@@ -122,7 +123,7 @@ std::unique_ptr<RunFile::Writer> RunFile::Writer::resume(const std::filesystem::
 
 void RunFile::Writer::go_on(Simulation& simulation, Recorder& recorder) {
   frames_ = FrameColumns::open(file_.id(), layout_of(simulation, recorder));
-  checkpoints_ = CheckpointStore::open(file_.id(), frames_.num_dofs(), recorder.probes().size());
+  checkpoints_ = CheckpointStore::open(file_.id(), frames_.layout().num_dofs(), recorder.probes().size());
   const auto checkpoint = checkpoints_.read();
   if (!checkpoint) throw IoError("it holds no checkpoint to resume from");
   truncate(frames_up_to(checkpoint->state.time, simulation.plan()));
@@ -151,6 +152,7 @@ void RunFile::Writer::truncate(hsize_t frames) {
 void RunFile::Writer::add(const Frame& frame) {
   const auto works = ledger(frame.work, frame.energies);
   frames_.push({frame.time, frame.step, frame.positions.data(), frame.velocities.data(),
+                frame.theta.data(), frame.spin.data(), frame.section_frames.data(),
                 frame.energies.values().data(), works.data(), frame.probes.data()});
   ahead_of_checkpoint_ = true;
 }
@@ -264,7 +266,7 @@ void write_run(const std::filesystem::path& path, const Scenario& scenario, cons
     FrameColumns columns =
         FrameColumns::create(file, layout, std::max<hsize_t>(1, static_cast<hsize_t>(frames)));
     for (std::size_t i = 0; i < frames; ++i) {
-      columns.push(row_of(run.frames, i, columns.num_dofs(), run.probe_names.size()));
+      columns.push(row_of(run.frames, i, columns.layout()));
     }
     columns.write_data();
     columns.write_times();

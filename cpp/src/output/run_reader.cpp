@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -20,18 +21,29 @@ Handle open_run_file(const std::filesystem::path& path) {
   return file;
 }
 
-Vector to_vector(const std::vector<double>& values) {
-  return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
+/// The values of nodes, then those of edges.
+Vector joined(const std::vector<double>& nodes, const std::vector<double>& edges) {
+  Vector all(static_cast<Index>(nodes.size() + edges.size()));
+  std::copy(edges.begin(), edges.end(), std::copy(nodes.begin(), nodes.end(), all.begin()));
+  return all;
 }
 
-void check_nodes(const std::vector<SavedRod>& rods, hsize_t nodes) {
+/// Throws IoError if the rods have nodes that the frames do not, or another number of edges than
+/// there are sections.
+void check_rods(const std::vector<SavedRod>& rods, const FrameLayout& layout) {
+  hsize_t edges = 0;
   for (const SavedRod& rod : rods) {
+    edges += rod.nodes.size() - 1;
     for (const Index node : rod.nodes) {
-      if (node < 0 || static_cast<hsize_t>(node) >= nodes) {
+      if (node < 0 || static_cast<hsize_t>(node) >= layout.nodes) {
         throw IoError("rod '" + rod.name + "' has a node " + std::to_string(node) + " of " +
-                      std::to_string(nodes));
+                      std::to_string(layout.nodes));
       }
     }
+  }
+  if (layout.sections > 0 && layout.sections != edges) {
+    throw IoError("'sections/theta' has " + std::to_string(layout.sections) +
+                  " edges and the rods have " + std::to_string(edges));
   }
 }
 
@@ -47,7 +59,7 @@ std::vector<std::string> probe_units(hid_t file, const std::vector<std::string>&
 /// None where Python has saved a result, and before the first one is written.
 std::optional<Checkpoint> read_checkpoint(hid_t file, const FrameColumns& columns) {
   if (!CheckpointStore::is_in(file)) return std::nullopt;
-  return CheckpointStore::open(file, columns.num_dofs(), columns.layout().probe_names.size())
+  return CheckpointStore::open(file, columns.layout().num_dofs(), columns.layout().probe_names.size())
       .read();
 }
 
@@ -69,11 +81,13 @@ LastFrame read_last_frame(hid_t file) {
   if (columns.size() == 0) throw IoError("it holds no frame");
   const FrameData frame = columns.read(columns.size() - 1, 1);
   LastFrame last;
-  last.positions = to_vector(frame.positions);
-  last.velocities = to_vector(frame.velocities);
+  last.model = hdf5::read_text_attribute(file, "model");
+  last.positions = joined(frame.positions, frame.theta);
+  last.velocities = joined(frame.velocities, frame.spin);
   last.rods = read_rods(file);
   last.scene = read_text(file, "scene");
-  check_nodes(last.rods, columns.layout().nodes);
+  check_rods(last.rods, columns.layout());
+  last.section_frames = joined(frame.section_frames, {});
   if (const auto checkpoint = read_checkpoint(file, columns))
     last.followed = checkpoint->state.followed;
   return last;
@@ -86,6 +100,7 @@ SavedRun read_run(hid_t file) {
   run.status = hdf5::read_text_attribute(file, "status");
   run.scene = read_text(file, "scene");
   run.dimension = static_cast<Index>(layout.dimension);
+  run.sections = static_cast<Index>(layout.sections);
   run.probe_names = layout.probe_names;
   run.probe_units = probe_units(file, layout.probe_names);
   run.frames = columns.read(0, columns.size());
@@ -93,7 +108,7 @@ SavedRun read_run(hid_t file) {
   if (run.status != run_status::kRunning) {
     run.data = read_datasets(file, layout.nodes, layout.dimension, columns.size());
   }
-  check_nodes(read_rods(file), layout.nodes);
+  check_rods(read_rods(file), layout);
   return run;
 }
 

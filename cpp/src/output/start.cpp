@@ -75,7 +75,7 @@ std::string difference(const std::vector<SavedRod>& there, const std::vector<Rod
 }
 
 /// Takes over whole turns if that run followed the same edges; else they count from the initial
-/// shape.
+/// shape. Angles of edges count from the frames of sections, which come with them.
 void take_over_turns(const LastFrame& last, const Model& model, State& state) {
   if (last.followed.size() == state.followed.size()) {
     const Model there = build_model(Scenario::parse(last.scene).scene());
@@ -87,6 +87,7 @@ void take_over_turns(const LastFrame& last, const Model& model, State& state) {
       state.followed = last.followed;
     }
   }
+  state.followed.tail(last.section_frames.size()) = last.section_frames;
   follow(model, state);
 }
 
@@ -124,6 +125,12 @@ void apply_start(Simulation& simulation) {
         "start_from: the run in '{}' is not one of the same rods: {}. Give the scene the rods of "
         "that run ('{}'), or run that scene with these rods first",
         from, found, RunFolder(from).scene().string()));
+  }
+  if (last.model != model.name) {
+    throw IoError(fmt::format(
+        "start_from: the run in '{}' is one of the model '{}', and this scene is one of the model "
+        "'{}' ({}). Write 'model: {}' in this scene, or in that one and run it again",
+        from, last.model, model.name, model.reason, last.model));
   }
   State& state = simulation.state();
   state.positions = last.positions;

@@ -43,6 +43,7 @@ void DenseOutput::evaluate(double time, const State& start, const State& end, St
                       weight.slope_v0 * start.velocities + weight.slope_v1 * end.velocities;
   evaluate_controls(model_, end, time, controls_);
   apply_prescribed_motion(model_, controls_, result.positions);
+  if (model_.has_sections()) follow(model_, result);
 
   Work work_start = start.work;
   for (const HeldDof& held : model_.held) {

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der._core import array_units
-from der.fields import FIELDS, rod_fields
+from der.fields import fields_of, rod_fields
 from der.film import mode_shapes
 from der.progress import ProgressFunction
 from der.run_data import RunData
@@ -46,7 +46,7 @@ def _write_nodes(result: RunData, file: TextIO, progress: ProgressFunction) -> N
             _title("s", _UNITS["rods/arc_length"]),
             *(_title(axis, _UNITS["positions"]) for axis in _AXES[:dimension]),
             *(_title(f"v{axis}", _UNITS["velocities"]) for axis in _AXES[:dimension]),
-            *(_title(name, quantity.unit) for name, quantity in FIELDS.items()),
+            *(_title(name, quantity.unit) for name, quantity in fields_of(result.model).items()),
         ]
     )
     rods = rod_fields(result)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der._core import array_units
-from der.fields import FIELDS, rod_fields
+from der.fields import fields_of, rod_fields
 from der.progress import ProgressFunction
 from der.run_data import RunData
 
@@ -36,6 +36,9 @@ def write_npz(result: RunData, out: Path, progress: ProgressFunction) -> list[Pa
         "positions": result.positions,
         "velocities": result.velocities,
     }
+    if result.sections is not None:
+        arrays |= {f"sections/{name}": values for name, values in vars(result.sections).items()}
+        arrays["directors"] = result.directors
     for group, columns in (("energies", result.energies), ("work", result.work)):
         arrays |= {f"{group}/{name}": values for name, values in columns.items()}
     arrays |= {f"probes/{name}": np.asarray(probe) for name, probe in result.probes.items()}
@@ -65,10 +68,13 @@ def _units(result: RunData) -> dict[str, str]:
         f"{group}/{name}" for group in ("energies", "work") for name in getattr(result, group)
     )
     units = {name: known[name] for name in (*shared, *grouped)}
+    if result.sections is not None:
+        units |= {f"sections/{name}": known[f"sections/{name}"] for name in vars(result.sections)}
+        units["directors"] = ""
     units |= {name: known.get(name, "") for name in result.data}
     units |= {name: known[in_file] for name, in_file in _NAMES.items()}
     units |= {f"probes/{name}": probe.unit for name, probe in result.probes.items()}
-    for name, quantity in FIELDS.items():
+    for name, quantity in fields_of(result.model).items():
         units[name] = quantity.unit
         if quantity.kind == "edge":
             units[f"edge_{name}"] = quantity.unit

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from der.fields import FIELDS, RodFields, rod_fields
+from der.fields import RodFields, rod_fields
 from der.film import mode_shapes
 from der.progress import ProgressFunction
 from der.run_data import RunData
@@ -53,7 +53,9 @@ def write_vtk(result: RunData, out: Path, progress: ProgressFunction) -> list[Pa
             offsets=np.cumsum(sizes, dtype=np.int32),
             cell_types=lines,
             cellData={"rod": np.arange(len(rods), dtype=np.int32)},
-            pointData=_point_data(rods, frame) | _mode_data(result, rods),
+            pointData=_point_data(rods, frame)
+            | _section_data(result, rods, frame)
+            | _mode_data(result, rods),
             fieldData=_field_data(result, frame, time),
         )
         group.addFile(path, time)
@@ -64,10 +66,11 @@ def write_vtk(result: RunData, out: Path, progress: ProgressFunction) -> list[Pa
 
 def _point_data(rods: list[RodFields], frame: int) -> PointData:
     data: PointData = {
-        name: np.concatenate([fields.at_nodes[name][frame] for fields in rods]) for name in FIELDS
+        name: np.concatenate([fields.at_nodes[name][frame] for fields in rods])
+        for name in rods[0].at_nodes
     }
-    # Rods in a plane do not twist: 0 [1/m], for programs that read it of rods in space as well.
-    data["twist"] = np.zeros(sum(len(fields.rod.nodes) for fields in rods))
+    # Without sections rods do not twist: 0 [rad/m], for programs that read it of all rods.
+    data.setdefault("twist", np.zeros(sum(len(fields.rod.nodes) for fields in rods)))
     data["velocity"] = _in_space(np.vstack([fields.velocities[frame] for fields in rods]))
     data["radius"] = np.concatenate(
         [np.full(len(fields.rod.nodes), fields.rod.radius) for fields in rods]
@@ -75,6 +78,23 @@ def _point_data(rods: list[RodFields], frame: int) -> PointData:
     data["sphere_radius"] = np.concatenate([fields.rod.sphere_radii for fields in rods])
     data["arc_length"] = np.concatenate([fields.rod.arc_lengths for fields in rods])
     return data
+
+
+def _section_data(result: RunData, rods: list[RodFields], frame: int) -> PointData:
+    """Return director 1 at the nodes: the mean of the two edges there, a unit vector."""
+    if result.sections is None:
+        return {}
+    found = []
+    first = 0  # edge of the rod
+    for fields in rods:
+        edges = result.directors[frame, first : first + len(fields.rod.nodes) - 1]
+        first += len(edges)
+        sums = np.vstack([edges[:1], edges[:-1] + edges[1:], edges[-1:]])
+        sizes = np.linalg.norm(sums, axis=1, keepdims=True)
+        # Two opposite directors have no mean: the node has that of the edge after it.
+        after = np.vstack([edges, edges[-1:]])
+        found.append(np.where(sizes > 1e-9, sums / np.maximum(sizes, 1e-9), after))
+    return {"director": _in_space(np.vstack(found))}
 
 
 def _mode_data(result: RunData, rods: list[RodFields]) -> PointData:

@@ -10,13 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from der._core import springs
 from der.film import MODE_SIZE
-from der.plotting.lengths import label_positions
+from der.plotting.picture import Picture
 from der.plotting.shapes import draw_shapes, limits
 from der.plotting.style import MUTED, PALETTE, axis_label
 from der.plotting.supports import draw_foundations, draw_springs, draw_supports
-from der.scene_loads import acting_loads
 
 if TYPE_CHECKING:
     from der.analyses import Path
@@ -29,9 +27,10 @@ _ROW = 1.6  # height of a panel [inch]
 _WIDTH = 7.2  # of the figure [inch]
 
 
-def plot_modes(result: RunData) -> Figure:
+def plot_modes(picture: Picture) -> Figure:
     """Draw each mode: the equilibrium, and the shape to both sides of it, not to scale."""
     labels: list[str] = []
+    result = picture.result
     if result.modes is not None:
         shapes = result.modes.shapes
         for frequency, growth in zip(
@@ -43,7 +42,8 @@ def plot_modes(result: RunData) -> Figure:
         labels = [f"load factor {factor:.5g}" for factor in result.buckling.load_factors]
     else:
         raise ValueError("the run has found no modes to draw")
-    rest = result.positions[-1]
+    shapes = picture.plane.turned(shapes)
+    rest = picture.positions[-1]
     low, high = limits(result.rods, [rest])
     size = MODE_SIZE * float(np.max(high - low))
     figure, panels = plt.subplots(
@@ -55,21 +55,22 @@ def plot_modes(result: RunData) -> Figure:
         layout="constrained",
     )
     for axes, shape, label in zip(panels[:, 0], shapes, labels, strict=True):
-        _draw_mode(axes, result, rest, shape * size / np.abs(shape).max(), label)
-        label_positions(axes, low, high)
+        _draw_mode(axes, picture, rest, shape * size / np.abs(shape).max(), label)
+        picture.label(axes, low, high)
         axes.label_outer()
     return figure
 
 
-def _draw_mode(axes: Axes, result: RunData, rest: Array, shape: Array, label: str) -> None:
-    draw_shapes(axes, result.rods, rest - shape, MUTED, linestyle=":")
-    draw_shapes(axes, result.rods, rest, MUTED, linestyle="--")
-    for rod in result.rods:
+def _draw_mode(axes: Axes, picture: Picture, rest: Array, shape: Array, label: str) -> None:
+    rods = picture.rods
+    draw_shapes(axes, rods, rest - shape, MUTED, linestyle=":")
+    draw_shapes(axes, rods, rest, MUTED, linestyle="--")
+    for rod in rods:
         line = (rest + shape)[rod.nodes]
         axes.plot(line[:, 0], line[:, 1], color=PALETTE[0], zorder=4)
-    draw_supports(axes, result.rods, result.held_nodes(0), rest)
-    draw_springs(axes, result.rods, springs(result.scenario), rest)
-    draw_foundations(axes, result.rods, acting_loads(result, 0).foundations, rest)
+    draw_supports(axes, rods, picture.held_nodes(0), rest)
+    draw_springs(axes, rods, picture.springs, rest)
+    draw_foundations(axes, rods, picture.loads(0).foundations, rest)
     axes.set_aspect("equal", adjustable="datalim")
     axes.text(1.01, 0.5, f"{label},\nnot to scale", transform=axes.transAxes, va="center")
 

@@ -54,13 +54,13 @@ class LengthScale:
         """Return positions [m], shape (..., dim), as they are shown, in the unit."""
         return (positions - self.origin) / self.metres
 
-    def label(self, axis: int) -> str:
-        """Return the title of the axis x, y or z (0, 1, 2), such as ``x [mm]``."""
+    def label(self, axis: int, names: Sequence[str] = "xyz") -> str:
+        """Return the title of an axis by its number, such as ``x [mm]``."""
         start = float(self.origin[axis])
         if start == 0.0:
-            return f"{'xyz'[axis]} [{self.unit}]"
+            return f"{names[axis]} [{self.unit}]"
         sign = "-" if start > 0.0 else "+"
-        return f"{'xyz'[axis]} {sign} {abs(start) / self.metres:.16g} [{self.unit}]"
+        return f"{names[axis]} {sign} {abs(start) / self.metres:.16g} [{self.unit}]"
 
 
 class _LengthFormatter(Formatter):
@@ -82,12 +82,12 @@ class _LengthFormatter(Formatter):
         return [self.fix_minus(f"{value:.{decimals}f}") for value in rounded]
 
 
-def label_positions(axes: Axes, low: Array, high: Array) -> None:
-    """Title both axes with x and y in the unit that suits all between two corners [m].
+def label_positions(axes: Axes, low: Array, high: Array, names: Sequence[str] = ("x", "y")) -> None:
+    """Title both axes with their names in the unit that suits all between two corners [m].
 
     Ticks say all that there is to say: no power of ten stands beside an axis.
     """
     scale = LengthScale.of(low[:2], high[:2])
     for number, axis in enumerate((axes.xaxis, axes.yaxis)):
-        axis.set_label_text(scale.label(number))
+        axis.set_label_text(scale.label(number, names))
         axis.set_major_formatter(_LengthFormatter(scale, number))

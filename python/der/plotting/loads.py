@@ -24,6 +24,10 @@ _LINE_ARROWS = 13  # arrows of a distributed force on a whole rod
 _MOMENT = 12.0  # radius of the arc [points]
 _TEXT = 26.0  # room for what stands beside an arrow [points]
 
+#: A vector that is nearer to the line of sight than this is drawn as seen from its end.
+_HEAD_ON = 0.01
+_DOT = 6.0  # diameter of the circle that it then is [points]
+
 _HEAD = Path(np.array([(0.0, 0.0), (-1.0, 0.38), (-1.0, -0.38), (0.0, 0.0)]))
 _GRAVITY = Path.make_compound_path(Path(np.array([(-1.6, 0.0), (-0.6, 0.0)])), _HEAD)
 
@@ -44,7 +48,7 @@ def draw_loads(
     loads
         From ``der.scene_loads.acting_loads(result, frame)``.
     positions
-        Positions of all nodes at that frame [m], shape (nodes, 2).
+        Positions of all nodes at that frame [m], shape (nodes, dim); the view is along z.
     labels
         Whether to write their amounts.
     """
@@ -66,7 +70,7 @@ def draw_loads(
         _draw_line(axes, by_name[line.rod], line, positions, label(text))
     draw_foundations(axes, by_name.values(), loads.foundations, positions)
     for moment in loads.moments:
-        text = quantity_text(abs(float(moment.value)), "N m")
+        text = quantity_text(float(np.linalg.norm(moment.value)), "N m")
         _draw_moment(axes, by_name[moment.rod], moment, positions, label(text))
     if loads.gravity is not None:
         _add_gravity_to_legend(axes, loads.gravity)
@@ -88,12 +92,17 @@ def room_for_loads(
     corners = [np.zeros((0, 2))]
     for force in loads.forces:
         rod = by_name[force.rod]
-        direction, pulls = _aim(rod, force, positions)
-        outer = (_FORCE + _TEXT) * (direction if pulls else -direction)
+        if _is_head_on(force.value):
+            outer = np.array([0.0, _DOT + 0.5 * _TEXT])
+        else:
+            direction, pulls = _aim(rod, force, positions)
+            outer = (_FORCE + _TEXT) * (direction if pulls else -direction)
         corners.append(place_on(rod, positions, force.at)[:2] + metres_per_point * outer)
     for line in loads.lines:
         rod = by_name[line.rod]
-        outer = -(_LINE_FORCE + _TEXT) * line.value[:2] / np.linalg.norm(line.value[:2])
+        outer = np.array([0.0, _DOT + 0.5 * _TEXT])
+        if not _is_head_on(line.value):
+            outer = -(_LINE_FORCE + _TEXT) * line.value[:2] / np.linalg.norm(line.value[:2])
         middle = place_on(rod, positions, 0.5 * (line.start + line.end))[:2]
         corners.append(middle + metres_per_point * outer)
     for part in loads.foundations:
@@ -108,6 +117,11 @@ def room_for_loads(
     return np.vstack(corners)
 
 
+def _is_head_on(vector: Array) -> bool:
+    """Return whether a vector in space points to the viewer or away from there."""
+    return len(vector) == 3 and bool(np.linalg.norm(vector[:2]) < _HEAD_ON * np.linalg.norm(vector))
+
+
 def _aim(rod: Rod, load: PointLoad, positions: Array) -> tuple[Array, bool]:
     """Return the direction of a force, and whether its arrow begins at its point.
 
@@ -119,6 +133,9 @@ def _aim(rod: Rod, load: PointLoad, positions: Array) -> tuple[Array, bool]:
 
 def _draw_force(axes: Axes, rod: Rod, load: PointLoad, positions: Array, text: str) -> None:
     point = place_on(rod, positions, load.at)
+    if _is_head_on(load.value):
+        _draw_head_on(axes, point, load.value, f"load-{rod.name}-{load.at:g}", text)
+        return
     direction, pulls = _aim(rod, load, positions)
     tail = np.zeros(2) if pulls else -_FORCE * direction
     tip = _FORCE * direction if pulls else np.zeros(2)
@@ -141,21 +158,33 @@ def _outwards(rod: Rod, at: float, positions: Array) -> Array:
 
 
 def _draw_line(axes: Axes, rod: Rod, load: LineLoad, positions: Array, text: str) -> None:
-    direction = load.value[:2] / np.linalg.norm(load.value[:2])
     count = max(3, round(_LINE_ARROWS * (load.end - load.start) / rod.length))
+    head_on = _is_head_on(load.value)
+    direction = np.zeros(2) if head_on else load.value[:2] / np.linalg.norm(load.value[:2])
     tail = -_LINE_FORCE * direction
     for number, at in enumerate(np.linspace(load.start, load.end, count)):
         point = place_on(rod, positions, float(at))
-        _arrow(axes, point, tail, np.zeros(2), 0.8, f"load-{rod.name}-line-{number}")
+        gid = f"load-{rod.name}-line-{number}"
+        if head_on:
+            _draw_head_on(axes, point, load.value, gid, text if number == count // 2 else "")
+        else:
+            _arrow(axes, point, tail, np.zeros(2), 0.8, gid)
+    if head_on:
+        return
     middle = place_on(rod, positions, 0.5 * (load.start + load.end))
     if text:
         _write(axes, middle, tail, -direction, text)
 
 
 def _draw_moment(axes: Axes, rod: Rod, load: PointLoad, positions: Array, text: str) -> None:
-    x, y = place_on(rod, positions, load.at)[:2]
+    point = place_on(rod, positions, load.at)
+    x, y = point[:2]
+    about = float(load.value[2] if load.value.ndim else load.value)  # the line of sight
+    if abs(about) < 0.5 * np.linalg.norm(load.value):
+        _draw_turning_axis(axes, rod, point, load, text)
+        return
     angles = np.radians(np.linspace(-150.0, 90.0, 40))
-    vertices = np.column_stack([np.cos(angles), np.sign(float(load.value)) * np.sin(angles)])
+    vertices = np.column_stack([np.cos(angles), np.sign(about) * np.sin(angles)])
     arc = Path(vertices)
     # The head begins where the arc ends, at its top or its bottom, and is tangent to it.
     head = _HEAD.transformed(
@@ -181,6 +210,35 @@ def _draw_moment(axes: Axes, rod: Rod, load: PointLoad, positions: Array, text: 
         )
     if text:
         _write(axes, np.array([x, y]), np.array([0.0, _MOMENT]), np.array([0.0, 1.0]), text)
+
+
+def _draw_turning_axis(axes: Axes, rod: Rod, point: Array, load: PointLoad, text: str) -> None:
+    """Draw a moment whose axis is seen from the side: an arrow with two heads along it."""
+    direction = load.value[:2] / np.linalg.norm(load.value[:2])
+    gid = f"load-{rod.name}-{load.at:g}"
+    for length in (_FORCE, _FORCE - 7.0):
+        _arrow(axes, point, np.zeros(2), length * direction, 1.5, gid)
+    if text:
+        _write(axes, point, _FORCE * direction, direction, text)
+
+
+def _draw_head_on(axes: Axes, point: Array, vector: Array, gid: str, text: str) -> None:
+    """Draw an arrow along the line of sight: a dot is its tip, a cross its tail."""
+    for marker, size in (("o", _DOT), ("." if vector[2] > 0.0 else "x", 0.5 * _DOT)):
+        axes.plot(
+            [point[0]],
+            [point[1]],
+            marker=marker,
+            markersize=size,
+            markerfacecolor="white" if marker == "o" else LOAD,
+            markeredgecolor=LOAD,
+            linestyle="none",
+            zorder=4.5,
+            clip_on=False,
+            gid=gid,
+        )
+    if text:
+        _write(axes, point, np.array([0.0, 0.5 * _DOT]), np.array([0.0, 1.0]), text)
 
 
 def _arrow(axes: Axes, point: Array, tail: Array, tip: Array, width: float, gid: str) -> None:
@@ -230,6 +288,10 @@ def _write(axes: Axes, point: Array, offset: Array, away: Array, text: str) -> N
 def _add_gravity_to_legend(axes: Axes, gravity: Array) -> None:
     angle = float(np.arctan2(gravity[1], gravity[0]))
     path = _GRAVITY.transformed(Affine2D().translate(0.8, 0.0).rotate(angle))
+    text = f"gravity {quantity_text(float(np.linalg.norm(gravity)), 'm/s²')}"
+    if _is_head_on(gravity):
+        path = Path.circle(radius=0.4)
+        text += ", towards you" if gravity[2] > 0.0 else ", away from you"
     axes.plot(
         [],
         [],
@@ -239,6 +301,6 @@ def _add_gravity_to_legend(axes: Axes, gravity: Array) -> None:
         markeredgecolor=LOAD,
         markeredgewidth=1.2,
         linestyle="none",
-        label=f"gravity {quantity_text(float(np.linalg.norm(gravity)), 'm/s²')}",
+        label=text,
         gid="load-gravity",
     )

@@ -11,11 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from der._core import ended_as_asked, springs
+from der._core import ended_as_asked
 from der.film import title_of
 from der.plotting.analyses import plot_modes, plot_path
-from der.plotting.lengths import label_positions
 from der.plotting.loads import draw_loads, room_for_loads
+from der.plotting.picture import Picture
 from der.plotting.probes import draw_probe, mark_times, shade_unreliable
 from der.plotting.shapes import draw_shapes, limits, make_exactly_equal, pick_frames
 from der.plotting.style import (
@@ -30,7 +30,6 @@ from der.plotting.style import (
 )
 from der.plotting.supports import draw_foundations, draw_springs, draw_supports
 from der.run_data import RunData
-from der.scene_loads import acting_loads
 
 Array = NDArray[np.float64]
 What = Literal["overview", "shapes", "probes"]
@@ -87,13 +86,13 @@ def plot(
         if kind == "continuation" and what != "shapes":
             figure = plot_path(result, names)
         elif kind in ("modes", "buckling") and what != "probes":
-            figure = plot_modes(result)
+            figure = plot_modes(Picture(result))
         elif kind == "continuation":
-            figure = _plot_path_shapes(result)
+            figure = _plot_path_shapes(Picture(result))
         elif result.scenario.is_static:
-            figure = _plot_static(result, what, names)
+            figure = _plot_static(Picture(result), what, names)
         else:
-            figure = _plot_motion(result, what, names, frames)
+            figure = _plot_motion(Picture(result), what, names, frames)
         text = title_of(result) if title is None else title
         figure.align_ylabels()
         if kind == "continuation" and what != "shapes":
@@ -129,16 +128,17 @@ def _frames_to_draw(result: RunData, times: Sequence[float] | None) -> list[int]
     return sorted({int(np.argmin(np.abs(result.times - time))) for time in times})
 
 
-def _plot_motion(result: RunData, what: What, names: list[str], frames: list[int]) -> Figure:
+def _plot_motion(picture: Picture, what: What, names: list[str], frames: list[int]) -> Figure:
+    result = picture.result
     marks = result.times[frames]
-    shapes = [result.positions[frame] for frame in frames]
+    shapes = [picture.positions[frame] for frame in frames]
     heights = [_PROBE_HEIGHT] * len(names)
     if what == "probes":
         figure, panels = _figure(heights)
     else:
-        figure, panels = _figure([_shape_height(result, shapes, frames[-1]), *heights])
+        figure, panels = _figure([_shape_height(picture, shapes, frames[-1]), *heights])
         labels = [_time_label(result, time) for time in marks]
-        _draw_shape_panel(panels.pop(0), result, shapes, labels, frames[-1])
+        _draw_shape_panel(panels.pop(0), picture, shapes, labels, frames[-1])
     for axes, name in zip(panels, names, strict=True):
         probe = result.probes[name]
         draw_probe(axes, result.times, probe, name, probe.unit)
@@ -159,49 +159,51 @@ def _time_label(result: RunData, time: float) -> str:
     return time_text(time) if trusted else f"{time_text(time)}, unreliable"
 
 
-def _plot_path_shapes(result: RunData) -> Figure:
+def _plot_path_shapes(picture: Picture) -> Figure:
     """Draw shapes along a path: coloured by load factor, or by branch where there are several."""
-    path = result.path
+    rods, positions = picture.rods, picture.positions
+    path = picture.result.path
     if path is None:
         raise ValueError("the run has found no path to draw")
     if len(np.unique(path.branch)) == 1:
-        frames = pick_frames(result.positions, 6)
+        frames = pick_frames(positions, 6)
         labels = [f"load factor {path.factor[frame]:.3g}" for frame in frames]
-        shapes = [result.positions[frame] for frame in frames]
-        figure, (axes,) = _figure([_shape_height(result, shapes, frames[-1])])
-        _draw_shape_panel(axes, result, shapes, labels, frames[-1])
+        shapes = [positions[frame] for frame in frames]
+        figure, (axes,) = _figure([_shape_height(picture, shapes, frames[-1])])
+        _draw_shape_panel(axes, picture, shapes, labels, frames[-1])
         return figure
-    low, high = limits(result.rods, list(result.positions))
+    low, high = limits(rods, list(positions))
     figure, (axes,) = _figure([_panel_height(*(high - low))])
     for branch in np.unique(path.branch):
         rows = np.flatnonzero(path.branch == branch)
         first, last = path.factor[rows[0]], path.factor[rows[-1]]
         label: str | None = f"branch {branch}: load factor\n{first:.3g} to {last:.3g}"
-        for row in rows[pick_frames(result.positions[rows], 4)]:
+        for row in rows[pick_frames(positions[rows], 4)]:
             colour = PALETTE[branch % len(PALETTE)]
-            draw_shapes(axes, result.rods, result.positions[row], colour, label)
+            draw_shapes(axes, rods, positions[row], colour, label)
             label = None
-    draw_supports(axes, result.rods, result.held_nodes(0), result.positions[0])
-    draw_springs(axes, result.rods, springs(result.scenario), result.positions[0])
-    draw_foundations(axes, result.rods, acting_loads(result, 0).foundations, result.positions[0])
-    _finish_shape_panel(axes)
+    draw_supports(axes, rods, picture.held_nodes(0), positions[0])
+    draw_springs(axes, rods, picture.springs, positions[0])
+    draw_foundations(axes, rods, picture.loads(0).foundations, positions[0])
+    _finish_shape_panel(axes, picture)
     return figure
 
 
-def _plot_static(result: RunData, what: What, names: list[str]) -> Figure:
-    equilibrium = result.positions[-1]
-    shapes = [result.model.initial_positions, equilibrium]
+def _plot_static(picture: Picture, what: What, names: list[str]) -> Figure:
+    result = picture.result
+    equilibrium = picture.positions[-1]
+    shapes = [picture.initial_positions, equilibrium]
     last = len(result.times) - 1
     table_height = 0.25 + 0.2 * len(names)
     if what == "probes":
         figure, panels = _figure([table_height])
     else:
-        heights = [_shape_height(result, shapes, last), *([table_height] if names else [])]
+        heights = [_shape_height(picture, shapes, last), *([table_height] if names else [])]
         figure, panels = _figure(heights)
         axes = panels.pop(0)
-        draw_shapes(axes, result.rods, shapes[0], MUTED, "undeformed", "--")
+        draw_shapes(axes, picture.rods, shapes[0], MUTED, "undeformed", "--")
         label = "equilibrium" if ended_as_asked(result.status) else "where it ended"
-        _draw_shape_panel(axes, result, [equilibrium], [label], last)
+        _draw_shape_panel(axes, picture, [equilibrium], [label], last)
     if panels:
         _write_values(panels[0], result, names)
     return figure
@@ -219,9 +221,9 @@ def _figure(heights: list[float]) -> tuple[Figure, list[Axes]]:
     return figure, list(axes[:, 0])
 
 
-def _shape_height(result: RunData, shapes: Sequence[Array], frame: int) -> float:
+def _shape_height(picture: Picture, shapes: Sequence[Array], frame: int) -> float:
     """Return the height [inch] at which the shapes fill the width, within bounds."""
-    low, high = _corners(result, shapes, frame)
+    low, high = _corners(picture, shapes, frame)
     return _panel_height(*(high - low))
 
 
@@ -229,37 +231,37 @@ def _panel_height(width: float, height: float) -> float:
     return float(np.clip(_SHAPE_WIDTH * height / max(width, 1e-300) + 0.5, *_SHAPE_HEIGHT))
 
 
-def _corners(result: RunData, shapes: Sequence[Array], frame: int) -> tuple[Array, Array]:
+def _corners(picture: Picture, shapes: Sequence[Array], frame: int) -> tuple[Array, Array]:
     """Return the lower left and upper right corner [m] of shapes and the symbols of loads."""
-    low, high = limits(result.rods, shapes)
+    low, high = limits(picture.rods, shapes)
     width, height = high - low
     point = max(width / (72.0 * _SHAPE_WIDTH), height / (72.0 * (_SHAPE_HEIGHT[1] - 0.5)))
-    room = room_for_loads(result.rods, acting_loads(result, frame), shapes[-1], float(point))
+    room = room_for_loads(picture.rods, picture.loads(frame), shapes[-1], float(point))
     return np.vstack([low, room]).min(axis=0), np.vstack([high, room]).max(axis=0)
 
 
 def _draw_shape_panel(
     axes: Axes,
-    result: RunData,
+    picture: Picture,
     shapes: Sequence[Array],
     labels: Sequence[str],
     frame: int,
 ) -> None:
     """Draw shapes, with supports and loads at the last of them, that of a frame."""
     for positions, label, colour in zip(shapes, labels, time_colours(len(shapes)), strict=True):
-        draw_shapes(axes, result.rods, positions, colour, label)
-    draw_supports(axes, result.rods, result.held_nodes(frame), shapes[-1])
-    draw_springs(axes, result.rods, springs(result.scenario), shapes[-1])
-    draw_loads(axes, result.rods, acting_loads(result, frame), shapes[-1])
-    axes.update_datalim(np.array(_corners(result, shapes, frame)))
-    _finish_shape_panel(axes)
+        draw_shapes(axes, picture.rods, positions, colour, label)
+    draw_supports(axes, picture.rods, picture.held_nodes(frame), shapes[-1])
+    draw_springs(axes, picture.rods, picture.springs, shapes[-1])
+    draw_loads(axes, picture.rods, picture.loads(frame), shapes[-1])
+    axes.update_datalim(np.array(_corners(picture, shapes, frame)))
+    _finish_shape_panel(axes, picture)
 
 
-def _finish_shape_panel(axes: Axes) -> None:
+def _finish_shape_panel(axes: Axes, picture: Picture) -> None:
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.06)
     axes.autoscale_view()
-    label_positions(axes, np.array(axes.dataLim.min), np.array(axes.dataLim.max))
+    picture.label(axes, np.array(axes.dataLim.min), np.array(axes.dataLim.max))
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -53,8 +54,21 @@ _SPIRAL = _strokes(
 )
 
 
+@dataclass(frozen=True)
+class HeldPlace:
+    """A held node as a picture of a run in space shows it: with the attributes of a `HeldNode`."""
+
+    rod: str
+    node: int
+    components: list[str]
+    tangent_angle: float | None
+
+
 def draw_supports(
-    axes: Axes, rods: Iterable[Rod], held: Iterable[HeldNode], positions: NDArray[np.float64]
+    axes: Axes,
+    rods: Iterable[Rod],
+    held: Iterable[HeldNode | HeldPlace],
+    positions: NDArray[np.float64],
 ) -> None:
     """Draw the usual symbol at each held node.
 
@@ -70,7 +84,7 @@ def draw_supports(
     held
         The held nodes, from `Result.held_nodes` or ``der.held_nodes(scenario, time)``.
     positions
-        Positions of all nodes at that time [m], shape (nodes, 2).
+        Positions of all nodes at that time [m], shape (nodes, dim); the view is along z.
     """
     ends = {(rod.name, int(rod.nodes[i])): i for rod in rods for i in (0, -1)}
     for node in held:
@@ -164,7 +178,7 @@ def _draw_symbol(
     )
 
 
-def _symbol(held: HeldNode, end: int | None) -> tuple[Path, float]:
+def _symbol(held: HeldNode | HeldPlace, end: int | None) -> tuple[Path, float]:
     """Return a symbol and its turn [rad]; `end` is 0 at a rod's start, -1 at its end."""
     if held.tangent_angle is not None:
         if end is None:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der._core import Rod, springs
-from der.fields import FIELDS
+from der.fields import fields_of
 from der.film import Film, failure_text, make_film, mode_shapes, round_speed, speed_text
 from der.natural_sizes import natural_size
 from der.plotting.lengths import LengthScale
@@ -38,6 +38,7 @@ def make_payload(result: RunData) -> dict[str, Any]:
     are too few for a rod far from zero.
     """
     film = make_film(result)
+    quantities = fields_of(result.model)
     frames = _kept_frames(film)
     in_metres = _in_space(film.positions[frames])
     scale = LengthScale.of(in_metres.min(axis=(0, 1)), in_metres.max(axis=(0, 1)))
@@ -70,7 +71,7 @@ def make_payload(result: RunData) -> dict[str, Any]:
         "start": len(frames) - 1 if result.scenario.analysis == "static" else 0,
         "speeds": _speeds(span),
         "fields": {
-            name: _field_range(FIELDS[name].unit, values, result.rods, span)
+            name: _field_range(quantities[name].unit, values, result.rods, span)
             for name, values in film.fields.items()
         },
         "quantity": next(iter(film.fields), ""),
@@ -173,6 +174,10 @@ def _in_space(positions: Array) -> Array:
     return full
 
 
+def _vector_in_space(vector: Array) -> list[float]:
+    return [*vector.tolist(), 0.0][:3]
+
+
 def _limits(
     rods: list[Rod], positions: Array, unit: float, symbols: bool
 ) -> tuple[Array, Array, float]:
@@ -262,15 +267,15 @@ def _load_symbols(result: RunData, loads: ActingLoads) -> list[dict[str, Any]]:
 def _supports(result: RunData, source: NDArray[np.int64]) -> list[dict[str, Any]]:
     """Return the symbol of each held node.
 
-    Clamps have the ``angles`` of the tangent that they hold [rad]: one for all frames, or one for
-    each frame of the page, which are frames ``source`` of the result.
+    Clamps have the ``tangents`` that they hold, unit vectors: one for all frames, or one for each
+    frame of the page, which are frames ``source`` of the result.
     """
     rods = {rod.name: (number, rod) for number, rod in enumerate(result.rods)}
     dimension = result.positions.shape[2]
     upright = 1 if dimension == 2 else 2  # the axis that points up
     found = []
-    angles = _clamp_angles(result, source)
-    for held, turned in zip(result.held_nodes(0), angles, strict=True):
+    clamped = _clamp_tangents(result, source)
+    for held, tangents in zip(result.held_nodes(0), clamped, strict=True):
         number, rod = rods[held.rod]
         down = np.zeros(3)
         fixed = ["xyz".index(component) for component in held.components]
@@ -278,24 +283,24 @@ def _supports(result: RunData, source: NDArray[np.int64]) -> list[dict[str, Any]
         down[upright if upright in fixed or not fixed else fixed[0]] = -1.0
         found.append(
             {
-                "kind": "clamp" if held.tangent_angle is not None else kind,
+                "kind": "clamp" if held.tangent is not None else kind,
                 "rod": number,
                 "place": int(np.flatnonzero(rod.nodes == held.node)[0]),
                 "down": down.tolist(),
-                "angles": turned,
+                "tangents": tangents,
             }
         )
     return found
 
 
-def _clamp_angles(result: RunData, source: NDArray[np.int64]) -> list[list[float]]:
-    """Return for each held node the angles of the tangent [rad] as `_supports` has them."""
+def _clamp_tangents(result: RunData, source: NDArray[np.int64]) -> list[list[list[float]]]:
+    """Return for each held node the tangents as `_supports` has them."""
     frames = {frame: result.held_nodes(frame) for frame in np.unique(source).tolist()}
-    found: list[list[float]] = []
+    found: list[list[list[float]]] = []
     for number in range(len(result.held_nodes(0))):
-        turns = [frames[frame][number].tangent_angle for frame in source.tolist()]
-        angles = [angle for angle in turns if angle is not None]
-        found.append(angles if len(set(angles)) > 1 else angles[:1])
+        turned = [frames[frame][number].tangent for frame in source.tolist()]
+        tangents = [_vector_in_space(tangent) for tangent in turned if tangent is not None]
+        found.append(tangents if any(one != tangents[0] for one in tangents) else tangents[:1])
     return found
 
 

@@ -165,8 +165,7 @@
       addPyramid(mesh, node, support.down, size, support.kind === "roller");
       return;
     }
-    const angle = support.angles[support.angles.length > 1 ? frame : 0];
-    const along = [Math.cos(angle), Math.sin(angle), 0];
+    const along = support.tangents[support.tangents.length > 1 ? frame : 0];
     const u = scale(size, across(along));
     const v = scale(size, unit(cross(along, u), [0, 0, 1]));
     const last = line.length - 1;

@@ -27,8 +27,8 @@ namespace fs = std::filesystem;
 using Dimensions = std::vector<hsize_t>;
 
 /// A file with frames, probes and a checkpoint.
-void write_run_file(const fs::path& path) {
-  Simulation simulation(Scenario::parse(kSpheres));
+void write_run_file(const fs::path& path, const std::string& scene = kSpheres) {
+  Simulation simulation(Scenario::parse(scene));
   Recorder recorder(simulation);
   const auto file = RunFile::create(path, simulation, recorder);
   recorder.add(*file);
@@ -127,6 +127,54 @@ struct Mistake {
   std::function<void(hid_t)> make;
 };
 
+/// Those of a run of `kStrip`, and a word of the message.
+struct SectionMistake {
+  std::string name;
+  std::string said;
+  std::function<void(hid_t)> make;
+};
+
+const std::vector<SectionMistake>& section_mistakes() {
+  const auto dataset = [](const char* name, const Dimensions& dimensions) {
+    return [=](hid_t file) { put_dataset(file, name, H5T_NATIVE_DOUBLE, dimensions); };
+  };
+  const auto without = [](const char* name) {
+    return [=](hid_t file) { H5Ldelete(file, name, H5P_DEFAULT); };
+  };
+  const auto changed = [](const char* name) {
+    return [=](hid_t file) { overwrite(file, name, H5T_NATIVE_DOUBLE, 0.25); };
+  };
+  const hsize_t edges = 5;
+  static const std::vector<SectionMistake> all{
+      {"no group", "no group 'sections'", without("sections")},
+      {"of a planar run", "'dimension'", [](hid_t file) { put_integer_attribute(file, "dimension", 4); }},
+      {"in two dimensions", "'positions'", [](hid_t file) { put_integer_attribute(file, "dimension", 2); }},
+      {"theta: none", "'theta'", without("sections/theta")},
+      {"theta: a list", "'sections/theta'", dataset("sections/theta", {edges})},
+      {"theta: of no edges", "'sections/theta'", dataset("sections/theta", {3, 0})},
+      {"theta: of other edges", "'spin'", dataset("sections/theta", {3, edges + 1})},
+      {"all: of other edges", "the rods have 5",
+       [=](hid_t file) {
+         for (const char* name : {"sections/theta", "sections/spin"}) {
+           put_dataset(file, name, H5T_NATIVE_DOUBLE, {0, edges + 1});
+         }
+         put_dataset(file, "sections/frames", H5T_NATIVE_DOUBLE, {0, edges + 1, 8});
+         for (const char* name : {"time", "step", "checksum", "probes/z", "probes/twist"}) {
+           set_length(file, name, {0});
+         }
+       }},
+      {"theta: too short", "too few rows", [=](hid_t file) { set_length(file, "sections/theta", {1, edges}); }},
+      {"theta: changed", "checksum", changed("sections/theta")},
+      {"spin: a list", "'spin'", dataset("sections/spin", {3})},
+      {"spin: changed", "checksum", changed("sections/spin")},
+      {"frames: of 7 numbers", "'frames'", dataset("sections/frames", {3, edges, 7})},
+      {"frames: a table", "'frames'", dataset("sections/frames", {3, edges})},
+      {"frames: of other edges", "'frames'", dataset("sections/frames", {3, edges + 1, 8})},
+      {"frames: changed", "checksum", changed("sections/frames")},
+  };
+  return all;
+}
+
 const std::vector<Mistake>& mistakes() {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const auto attribute = [](const char* object, const char* name, hid_t type,
@@ -154,6 +202,13 @@ const std::vector<Mistake>& mistakes() {
       {"status: 9 texts", attribute("/", "status", variable_text(), {9})},
       {"status: a number", attribute("/", "status", H5T_NATIVE_INT64, {})},
       {"status: none", [](hid_t file) { H5Adelete(file, "status"); }},
+      {"model: none", [](hid_t file) { H5Adelete(file, "model"); }},
+      {"model: a number", attribute("/", "model", H5T_NATIVE_INT64, {})},
+      {"dimension: none", [](hid_t file) { H5Adelete(file, "dimension"); }},
+      {"sections of a planar run",
+       [](hid_t file) {
+         H5Gclose(H5Gcreate2(file, "sections", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+       }},
       {"scene: of variable length", dataset("scene", variable_text(), {})},
       {"scene: a list", dataset("scene", H5T_C_S1, {40})},
       {"scene: a number", dataset("scene", H5T_NATIVE_INT64, {})},
@@ -328,7 +383,8 @@ std::string all_of(const fs::path& path) {
   }
   add(run.frames.times);
   add(run.frames.steps);
-  for (const auto* values : {&run.frames.positions, &run.frames.velocities, &run.frames.energies,
+  for (const auto* values : {&run.frames.positions, &run.frames.velocities, &run.frames.theta,
+                             &run.frames.spin, &run.frames.section_frames, &run.frames.energies,
                              &run.frames.work, &run.frames.probes}) {
     add(*values);
   }
@@ -353,8 +409,8 @@ std::string refusal(const std::function<void()>& read) {
   return {};
 }
 
-void resume(const fs::path& path) {
-  Simulation simulation(Scenario::parse(kSpheres));
+void resume(const fs::path& path, const std::string& scene = kSpheres) {
+  Simulation simulation(Scenario::parse(scene));
   Recorder recorder(simulation);
   RunFile::resume(path, simulation, recorder);
 }
@@ -375,6 +431,24 @@ TEST_CASE("run files of wrong content are refused and named") {
     CHECK(message.find(path.string()) != std::string::npos);
     // A resumed run may accept damaged data that it does not read.
     refusal([&] { resume(path); });
+  }
+}
+
+TEST_CASE("sections that do not fit are refused by name") {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "results.h5";
+  write_run_file(path, kStrip);
+  const std::string good = bytes_of(path);
+  CHECK(refusal([&] { all_of(path); }).empty());
+  for (const SectionMistake& mistake : section_mistakes()) {
+    CAPTURE(mistake.name);
+    put_bytes(path, good);
+    mend(path, mistake.make);
+    const std::string message = refusal([&] { all_of(path); });
+    CAPTURE(message);
+    CHECK(message.find(path.string()) != std::string::npos);
+    CHECK(message.find(mistake.said) != std::string::npos);
+    refusal([&] { resume(path, kStrip); });
   }
 }
 
@@ -436,8 +510,10 @@ TEST_CASE("numbers that no run has are refused although their checksums are righ
     const auto file = RunFile::create(path, simulation, recorder);
     const State& state = simulation.state();
     const Vector probes = Vector::Zero(4);
+    const Vector none;
     for (const double time : {first, second}) {
-      file->write({time, 0, state.positions, state.velocities, {}, state.work, probes});
+      file->write({time, 0, state.positions, state.velocities, none, none, none, {}, state.work,
+                   probes});
     }
   };
   for (const auto& [first, second] : {std::pair{0.0, nan}, {nan, 1.0}, {1.0, 0.5}}) {

@@ -35,6 +35,32 @@ output:
     kinetic: {quantity: kinetic_energy}
 )";
 
+/// A flat strip with a natural bow and twist, dropped from a clamp: 5 edges, every third of 12 steps
+/// saved.
+inline const std::string kStrip = R"(
+title: A strip that falls out of its plane
+model: spatial
+rods:
+  - name: strip
+    nodes: 6
+    from: [0, 0, 0]
+    to: [0.3, 0.1, 0.2]
+    cross_section: {rectangle: {width: 0.02, height: 0.002}, director: [0, 0, 1]}
+    material: {youngs_modulus: 1e8, poissons_ratio: 0.3, density: 1000}
+    natural_curvature: [1.0, 2.0]
+    natural_twist: 3.0
+supports:
+  - {rod: strip, at: start, clamp: true}
+loads:
+  - gravity: [0, 0, -9.8]
+time: {duration: 0.024, step: 0.002, integrator: implicit_euler}
+output:
+  every: 0.006
+  probes:
+    z: {rod: strip, at: end, quantity: z}
+    twist: {rod: strip, at: 0.1, quantity: twist}
+)";
+
 /// A cantilever of unit bending stiffness under a tip load of P L^2/EI = 1.
 inline const std::string kCantilever = R"(
 rods:

@@ -10,6 +10,13 @@ namespace der {
 /// followed its coordinates they need no transport.
 SectionFrame section_frame(const Model& model, Index edge, const State& state);
 
+/// Director 1 of the section of each edge at a state, three components an edge; none without
+/// sections. The positions may be other ones than those that the frames have followed last.
+Vector directors_of(const Model& model, const State& state);
+
+/// The section frame that a clamp in space holds at a state, but for its turn about the tangent.
+SectionFrame held_frame(const HeldFrame& held, const Model& model, const State& state);
+
 /// Curvatures and twist of a joint of a rod in space at a state. Without sections, `kappa_1` is the
 /// integrated curvature, in whatever direction, and the rest is zero.
 JointStrain strain_of(const RodJoint& joint, const RodLayout& rod, const Model& model,

@@ -56,7 +56,7 @@ class Recorder {
   std::string try_record(const Simulation& simulation, const State& state, bool save);
   [[nodiscard]] std::string read_probes(const Simulation& simulation, const State& state);
   void update_extremes(double time);
-  void hand_out(const State& state);
+  void hand_out(const Model& model, const State& state);
 
   std::vector<Probe> probes_;
   std::vector<ProbeSummary> summaries_;

@@ -20,9 +20,17 @@ struct RodSeries {
   FrameTable values;               ///< frames x samples
 };
 
+/// The saved frames of a run: tables with one frame a row.
+struct SavedFrames {
+  Eigen::Ref<const FrameTable> positions;       ///< frames x (nodes * dimension) [m]
+  Eigen::Ref<const FrameTable> velocities;      ///< frames x (nodes * dimension) [m/s]
+  Eigen::Ref<const FrameTable> theta;           ///< frames x edges [rad]; x 0 without sections
+  Eigen::Ref<const FrameTable> section_frames;  ///< frames x (edges * FrameBlock::kSize)
+};
+
 /// Goes through the frames of a run that is over, to read off them what was not saved. Supports
-/// stand as the scene has them, not as `Simulation::prescribe` may have moved them. Frames hold
-/// positions only: whole turns are followed from frame to frame, the shorter way.
+/// stand as the scene has them, not as `Simulation::prescribe` may have moved them. Whole turns of
+/// planar edges are not saved: they are followed from frame to frame, the shorter way.
 class Replay {
  public:
   /// `instants` tells what each frame is of: a time [s], or, `on_path`, the factor of a point on
@@ -40,14 +48,16 @@ class Replay {
   void show(std::size_t frame);
   /// The values of a quantity (catalog/quantities.hpp, but for the energies) where the discrete rod
   /// has it: at its nodes, at those that bend, or at the middles of its edges; curvature and moment
-  /// also where they have a kink, and twice where they jump. `positions` [m] and
-  /// `velocities` [m/s] are frames x degrees of freedom. Throws Error for an unknown rod or
-  /// quantity.
-  RodSeries along(const std::string& rod, const std::string& quantity,
-                  const Eigen::Ref<const FrameTable>& positions,
-                  const Eigen::Ref<const FrameTable>& velocities);
+  /// also where they have a kink, and twice where they jump. Throws Error for an unknown rod or
+  /// quantity, and for one that the model has not.
+  RodSeries along(const std::string& rod, const std::string& quantity, const SavedFrames& frames);
+  /// Director 1 of the section of each edge at every frame: frames x (edges * 3).
+  FrameTable directors(const SavedFrames& frames);
 
  private:
+  /// Puts the state to a frame.
+  void go_to(std::size_t frame, const SavedFrames& frames);
+
   Scenario scenario_;
   const Model model_;
   State state_;

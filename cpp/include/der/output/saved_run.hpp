@@ -36,11 +36,15 @@ struct SavedRod {
 
 /// The last complete frame of a run file, with its scene and rods.
 struct LastFrame {
-  Vector positions;   ///< [m]
-  Vector velocities;  ///< [m/s]
+  std::string model;  ///< name of the model that it is a state of
+  /// One entry a degree of freedom, as in the state: components of the nodes' positions [m], then
+  /// angles of the edges [rad] if there are sections.
+  Vector positions;
+  Vector velocities;  ///< [m/s] and [rad/s]
   std::vector<SavedRod> rods;
   std::string scene;  ///< YAML text of the scene as run
   Vector followed;    ///< as in the state, of that scene's model [rad]; none if not known
+  Vector section_frames;  ///< blocks of the edges that `positions` count from; none without sections
 };
 LastFrame read_last_frame(const std::filesystem::path& path);
 
@@ -49,6 +53,7 @@ struct SavedRun {
   std::string status;
   std::string scene;  ///< YAML text of the scene as run
   Index dimension = 0;
+  Index sections = 0;  ///< edges that have a section
   std::vector<std::string> probe_names;
   std::vector<std::string> probe_units;
   FrameData frames;

@@ -1,0 +1,509 @@
+"""Results of runs in space: live views, saved frames of sections, replay, exports and pictures."""
+
+import copy
+import csv
+import os
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import der
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from der.plotting.picture import Picture, best_plane
+from der.viewing.payload import make_payload
+
+DER_RUN = os.environ.get("DER_RUN", str(Path(sys.executable).with_name("der_run")))
+
+#: A flat strip, straight as drawn, that has a natural helix and falls from a clamp.
+HELIX: dict[str, Any] = {
+    "title": "A helix let go",
+    "model": "spatial",
+    "rods": [
+        {
+            "name": "strip",
+            "nodes": 9,
+            "from": [0, 0, 0],
+            "to": [0.4, 0, 0],
+            "cross_section": {
+                "rectangle": {"width": 0.02, "height": 0.004},
+                "director": [0, 0, 1],
+            },
+            "material": {"youngs_modulus": 1e8, "poissons_ratio": 0.3, "density": 1000},
+            "natural_curvature": [1.5, 4.0],
+            "natural_twist": 5.0,
+        }
+    ],
+    "supports": [{"rod": "strip", "at": "start", "clamp": True}],
+    "loads": [
+        {"gravity": [0, 0, -9.81]},
+        {"point_force": {"rod": "strip", "at": "end", "force": [0, 0.02, 0]}},
+    ],
+    "time": {"duration": 0.04, "step": 0.001, "integrator": "generalized_alpha"},
+    "output": {"every": 0.004},
+}
+
+#: Quantities that have probes here; those of the section first.
+QUANTITIES = (
+    *("curvature_1", "curvature_2", "moment_1", "moment_2", "twist", "torque"),
+    *("curvature", "moment", "tension", "z", "vy", "speed"),
+)
+
+
+@pytest.fixture
+def arm(swing: dict[str, Any]) -> dict[str, Any]:
+    """The planar scene of other tests, with all that the spatial model asks for."""
+    swing["rods"][0]["material"]["poissons_ratio"] = 0.3
+    return swing
+
+
+@pytest.fixture
+def helix() -> dict[str, Any]:
+    return copy.deepcopy(HELIX)
+
+
+@pytest.fixture
+def cantilever(helix) -> dict[str, Any]:
+    """A straight rod that stands out of a wall, with a force out of the plane of its drawing."""
+    del helix["rods"][0]["natural_curvature"], helix["rods"][0]["natural_twist"]
+    helix["analysis"] = "static"
+    helix["loads"] = [{"point_force": {"rod": "strip", "at": "end", "force": [0, 0.1, 0.2]}}]
+    return helix
+
+
+def probed(scene, places=(0.1, 0.2, 0.3)):
+    """The scene with a probe of each quantity at some arc lengths [m]."""
+    scene["output"]["probes"] = {
+        f"{quantity}-{at}": {"rod": "strip", "at": at, "quantity": quantity}
+        for quantity in QUANTITIES
+        for at in places
+    }
+    return scene
+
+
+def section_scene(scene):
+    return der.Simulation(der.Scenario.from_dict(scene))
+
+
+def same_result(one, other):
+    """Whether two results have the same bits."""
+    arrays = ("times", "steps", "positions", "velocities", "theta", "directors")
+    return (
+        all(np.array_equal(getattr(one, name), getattr(other, name)) for name in arrays)
+        and np.array_equal(one.sections.spin, other.sections.spin)
+        and np.array_equal(one.sections.frames, other.sections.frames)
+        and all(np.array_equal(one.energies[name], other.energies[name]) for name in one.energies)
+    )
+
+
+# Live views
+
+
+def test_views_are_those_of_the_nodes_and_of_the_edges(helix):
+    simulation = section_scene(helix)
+    assert simulation.model.has_sections
+    for view in (simulation.positions, simulation.velocities, simulation.extra_force):
+        assert view.shape == (9, 3)
+        assert view.strides == (24, 8)
+        assert view.flags.writeable
+    assert simulation.theta.shape == (8,)
+    assert simulation.theta.strides == (8,)
+    assert simulation.positions[:, 0] == pytest.approx(np.linspace(0.0, 0.4, 9))
+    simulation.step(5)
+    before = simulation.positions.ctypes.data
+    assert simulation.theta.ctypes.data == before + 8 * 27, "theta stands behind the positions"
+    assert np.abs(simulation.theta).max() > 0.0
+    assert np.all(simulation.positions[0] == 0.0)
+
+
+def test_theta_is_a_live_view_that_can_be_written(helix):
+    simulation = section_scene(helix)
+    theta, free = simulation.theta, list(simulation.free_dofs)
+    simulation.step(3)
+    assert np.array_equal(theta, simulation.theta)
+    rest = simulation.gradient()
+    theta[4] += 0.1
+    assert simulation.theta[4] == theta[4]
+    turned = simulation.gradient()
+    place = free.index(simulation.positions.size + 4)
+    assert turned[place] > rest[place], "it is held back"
+    assert simulation.hessian().shape == (len(free), len(free))
+
+
+def test_free_dofs_name_every_node_and_edge(helix):
+    simulation = section_scene(helix)
+    free = simulation.free_dofs
+    assert len(free) == simulation.model.num_free == 8 * 3 + 8
+    assert set(free) == set(range(3, 27 + 8))
+
+
+def test_directors_are_unit_vectors_across_the_edges(helix):
+    simulation = section_scene(helix)
+    assert simulation.directors == pytest.approx(np.tile([0.0, 0.0, 1.0], (8, 1)))
+    simulation.step(20)
+    directors = simulation.directors
+    edges = np.diff(simulation.positions, axis=0)
+    assert np.linalg.norm(directors, axis=1) == pytest.approx(np.ones(8))
+    across = np.sum(directors[1:] * edges[1:], axis=1) / np.linalg.norm(edges[1:], axis=1)
+    assert across == pytest.approx(np.zeros(7), abs=1e-12)
+    assert not directors.flags.writeable
+    # A turn of an edge's section turns its director about the edge.
+    before, angle = directors[3], 0.25
+    simulation.theta[3] += angle
+    edge = edges[3] / np.linalg.norm(edges[3])
+    expected = np.cos(angle) * before + np.sin(angle) * np.cross(edge, before)
+    assert simulation.directors[3] == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("model", ["planar", "spatial_bend"])
+def test_models_without_sections_have_no_angles(arm, model):
+    simulation = section_scene(arm | {"model": model})
+    assert simulation.theta.shape == (0,)
+    assert simulation.directors.shape == (0, 3)
+    result = simulation.run()
+    assert result.sections is None
+    assert result.theta.shape == (len(result.times), 0)
+    assert result.directors.shape == (len(result.times), 0, 3)
+    assert result.positions.shape[2] == (2 if model == "planar" else 3)
+    with pytest.raises(der.DerError):
+        result.along("arm", "twist")
+
+
+def test_forces_from_python_act_on_nodes(helix):
+    def scene():
+        simulation = section_scene(helix)
+        simulation.step(3)
+        return simulation
+
+    written, added = scene(), scene()
+    force = np.zeros((9, 3))
+    force[8] = [0.0, 0.0, 0.01]
+    written.extra_force[:] = force
+    added.add_force(lambda time, positions, velocities: force + 0.0 * positions + 0.0 * velocities)
+    written.step(3)
+    added.step(3)
+    assert np.array_equal(written.positions, added.positions)
+    assert np.array_equal(written.theta, added.theta)
+    plain = scene()
+    plain.step(3)
+    assert written.positions[8, 2] > plain.positions[8, 2]
+
+
+@pytest.mark.parametrize("pickled", [False, True])
+def test_a_state_is_saved_and_restored_bit_for_bit(helix, pickled):
+    simulation = section_scene(helix)
+    simulation.step(7)
+    state = simulation.save_state()
+    assert np.array_equal(state.positions, simulation.positions)
+    assert state.velocities.shape == (9, 3)
+    simulation.step(9)
+    there = simulation.positions.copy(), simulation.theta.copy(), simulation.directors
+    if pickled:
+        state = pickle.loads(pickle.dumps(state))
+        simulation = section_scene(helix)
+    simulation.restore_state(state)
+    simulation.step(9)
+    assert np.array_equal(simulation.positions, there[0])
+    assert np.array_equal(simulation.theta, there[1])
+    assert np.array_equal(simulation.directors, there[2])
+
+
+def test_a_state_of_another_model_is_refused(arm):
+    planar = section_scene(arm).save_state()
+    simulation = section_scene(arm | {"model": "spatial"})
+    with pytest.raises(ValueError, match="degrees of freedom"):
+        simulation.restore_state(planar)
+
+
+def test_equilibrium_and_modes(cantilever):
+    """Small deflections of a cantilever: P L^3 / (3 EI), each about its own axis."""
+    simulation = section_scene(cantilever)
+    report = simulation.equilibrium()
+    assert report.stability == "stable"
+    E, w, h, L = 1e8, 0.02, 0.004, 0.4
+    tip = simulation.positions[-1]
+    across_height, across_width = E * w * h**3 / 12.0, E * h * w**3 / 12.0
+    assert abs(tip[1]) == pytest.approx(0.1 * L**3 / (3.0 * across_height), rel=0.02)
+    assert tip[2] == pytest.approx(0.2 * L**3 / (3.0 * across_width), rel=0.03)
+    modes = simulation.modes(3)
+    assert modes.shapes.shape == (3, 9, 3)
+    first = 1.8751**2 / (2.0 * np.pi * L**2) * np.sqrt(across_height / (1000.0 * w * h))
+    assert modes.frequencies[0] == pytest.approx(first, rel=0.05)
+    assert np.all(modes.shapes[:, 0] == 0.0)
+
+
+# Saved frames and replay
+
+
+def test_a_result_has_the_sections_of_every_frame(helix):
+    simulation = section_scene(helix)
+    seen: dict[int, tuple[np.ndarray, ...]] = {
+        0: (simulation.positions.copy(), simulation.theta.copy(), simulation.directors)
+    }
+
+    def keep(now):
+        seen[now.step_count] = now.positions.copy(), now.theta.copy(), now.directors
+
+    result = simulation.run(keep)
+    assert result.positions.shape == (11, 9, 3)
+    assert result.theta.shape == (11, 8)
+    assert result.directors.shape == (11, 8, 3)
+    assert result.sections.frames.shape == (11, 8, 8)
+    for frame, step in enumerate(result.steps):
+        positions, theta, directors = seen[int(step)]
+        assert np.array_equal(result.positions[frame], positions)
+        assert np.array_equal(result.theta[frame], theta)
+        assert np.array_equal(result.directors[frame], directors)
+
+
+@pytest.mark.parametrize("adaptive", [False, True])
+def test_replay_reads_what_probes_recorded(helix, adaptive):
+    """The probes of the run saw the state itself, the replay sees what was saved of it."""
+    if adaptive:
+        helix["time"] = {"duration": 0.04, "tolerance": 1e-4, "integrator": "sdirk4"}
+    result = der.run(probed(helix))
+    for quantity in QUANTITIES:
+        places, values = result.along("strip", quantity)
+        for at in (0.1, 0.2, 0.3):
+            probe = np.asarray(result.probes[f"{quantity}-{at}"])
+            read = np.array([np.interp(at, places, row) for row in values])
+            scale = np.abs(probe).max()
+            assert scale > 0.0, quantity
+            if quantity != "speed" and quantity not in ("curvature", "moment"):
+                assert np.abs(read - probe).max() <= 1e-12 * scale, (quantity, at)
+
+
+def test_curvatures_and_twist_are_those_of_the_directors(helix):
+    """The section's rotation from edge to edge, by the result's directors alone."""
+    helix["rods"][0]["nodes"] = 41
+    helix["time"] |= {"duration": 0.02}
+    result = der.run(helix)
+    t = np.diff(result.positions[-1], axis=0)
+    t /= np.linalg.norm(t, axis=1, keepdims=True)
+    m1 = result.directors[-1]
+    m2 = np.cross(t, m1)
+    length = 0.4 / 40
+    middle = slice(5, 35)
+    between = np.arange(39)
+    change = (t[1:] - t[:-1]) / length
+    mean1, mean2 = 0.5 * (m1[1:] + m1[:-1]), 0.5 * (m2[1:] + m2[:-1])
+    twist = np.sum((m1[1:] - m1[:-1]) / length * mean2, axis=1)
+    for quantity, found in (
+        ("curvature_1", np.sum(change * mean1, axis=1)),
+        ("curvature_2", np.sum(change * mean2, axis=1)),
+        ("twist", twist),
+    ):
+        places, values = result.along("strip", quantity)
+        read = np.interp(length * (between + 1), places, values[-1])
+        scale = np.abs(read[middle]).max()
+        assert np.abs(read - found)[middle].max() < 0.01 * scale, quantity
+
+
+def test_turning_angles_are_those_of_planar_runs(helix):
+    result = der.run(helix)
+    with pytest.raises(der.DerError, match="take 'curvature'"):
+        result.along("strip", "turning_angle")
+
+
+def test_a_run_folder_holds_what_was_run(helix, tmp_path):
+    result = der.run(probed(helix), out=tmp_path / "written")
+    for folder in (tmp_path / "written", result.save(tmp_path / "saved")):
+        again = der.open_run(folder)
+        assert same_result(again, result)
+        for quantity in ("twist", "curvature_1"):
+            assert np.array_equal(
+                again.along("strip", quantity)[1], result.along("strip", quantity)[1]
+            )
+
+
+def test_planar_files_have_no_sections(arm, tmp_path):
+    h5py = pytest.importorskip("h5py")
+    der.run(arm, out=tmp_path / "planar")
+    der.run(arm | {"model": "spatial"}, out=tmp_path / "spatial")
+    with h5py.File(tmp_path / "planar" / "results.h5") as file:
+        assert "sections" not in file
+    with h5py.File(tmp_path / "spatial" / "results.h5") as file:
+        assert file["sections/theta"].shape[1:] == (10,)
+        assert file["sections/frames"].shape[1:] == (10, 8)
+        assert file["sections/theta"].attrs["unit"] in ("rad", b"rad")
+        assert file["sections/spin"].attrs["unit"] in ("rad/s", b"rad/s")
+
+
+def test_a_stopped_run_is_resumed_to_the_same_bits(helix, tmp_path):
+    helix["output"]["every"] = 0.002
+    whole = der.run(helix)
+    simulation = section_scene(helix)
+    simulation.run(until=0.02, out=tmp_path)
+    subprocess.run(
+        [DER_RUN, tmp_path / "scene.yaml", "--out", tmp_path, "--resume", "--quiet"], check=True
+    )
+    assert same_result(der.open_run(tmp_path), whole)
+
+
+def test_a_run_starts_from_the_end_of_another(helix, tmp_path):
+    """Two halves, the second from the folder of the first, move as one: the spin is taken over."""
+    helix["time"] |= {"integrator": "implicit_midpoint"}
+    whole = der.run(helix)
+    first = copy.deepcopy(helix)
+    first["time"]["duration"] = 0.02
+    half = der.run(first, out=tmp_path / "first")
+    for folder in (tmp_path / "first", half.save(tmp_path / "copy")):
+        second = der.run(first | {"start_from": str(folder)})
+        assert second.positions[-1] == pytest.approx(whole.positions[-1], abs=1e-9)
+        assert second.directors[-1] == pytest.approx(whole.directors[-1], abs=1e-7)
+
+
+def test_a_run_of_another_model_is_no_start(arm, tmp_path):
+    der.run(arm, out=tmp_path)
+    with pytest.raises(der.DerError, match=r"'planar'.*'spatial'"):
+        der.run(arm | {"model": "spatial", "start_from": str(tmp_path)})
+
+
+# Exports
+
+
+def test_exports_have_three_components_and_the_directors(helix, tmp_path):
+    result = der.run(helix)
+    nodes, _ = result.export("csv", tmp_path / "tables")
+    with nodes.open(encoding="utf-8", newline="") as file:
+        titles, *rows = csv.reader(file)
+    assert {"z [m]", "vz [m/s]", "twist [rad/m]", "curvature_1 [1/m]", "torque [N m]"} < set(titles)
+    assert len(rows) == 11 * 9
+    z = [float(row[titles.index("z [m]")]) for row in rows[-9:]]
+    assert z == result.positions[-1, :, 2].tolist()
+    (path,) = result.export("npz", tmp_path / "run.npz")
+    with np.load(path) as arrays:
+        assert np.array_equal(arrays["sections/theta"], result.theta)
+        assert np.array_equal(arrays["directors"], result.directors)
+        assert str(arrays["units/sections/spin"]) == "rad/s"
+
+
+def test_vtk_has_the_directors_as_vectors(helix, tmp_path):
+    pytest.importorskip("pyevtk")
+    from test_export import read_vtk, series
+
+    result = der.run(helix)
+    (path,) = result.export("vtk", tmp_path)
+    points, arrays, _ = read_vtk(series(path)[-1][1])
+    assert points == pytest.approx(result.positions[-1])
+    directors = result.directors[-1]
+    assert arrays["director"].shape == (9, 3)
+    assert arrays["director"][[0, -1]] == pytest.approx(directors[[0, -1]])
+    means = directors[1:] + directors[:-1]
+    means /= np.linalg.norm(means, axis=1, keepdims=True)
+    assert arrays["director"][1:-1] == pytest.approx(means)
+    assert np.abs(arrays["twist"]).max() > 0.1
+
+
+# Pictures
+
+
+def turned_about(axis, angle):
+    axis = np.asarray(axis) / np.linalg.norm(axis)
+    cross = np.cross(np.eye(3), axis)
+    return np.eye(3) - np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
+
+
+@pytest.mark.parametrize(
+    ("axes", "names"),
+    [((0, 1), ("x", "y")), ((0, 2), ("x", "z")), ((1, 2), ("y", "z"))],
+)
+def test_a_shape_in_a_coordinate_plane_is_drawn_there(axes, names):
+    line = np.zeros((1, 20, 3))
+    line[0, :, axes[0]] = np.linspace(0.0, 1.0, 20)
+    line[0, :, axes[1]] = np.linspace(0.0, 1.0, 20) ** 2
+    plane = best_plane(line)
+    assert plane.names == names
+    assert np.array_equal(plane.turned(line)[..., :2], line[..., axes])
+    assert plane.turned(line)[..., 2] == pytest.approx(0.0)
+
+
+def test_another_shape_is_drawn_in_the_plane_of_its_principal_axes():
+    flat = np.zeros((3, 50, 3))
+    angle = np.linspace(0.0, 3.0, 50)
+    flat[..., 0], flat[..., 1] = np.cos(angle), np.sin(angle)
+    flat[1] *= 1.1
+    turn = turned_about([1.0, 2.0, -0.5], 0.9)
+    plane = best_plane(flat @ turn.T)
+    seen = plane.turned(flat @ turn.T)
+    assert np.ptp(seen[..., 2]) < 1e-12, "nothing is lost"
+    assert np.linalg.det(plane.rotation) == pytest.approx(1.0)
+    assert all(name.startswith("along (") for name in plane.names)
+
+
+def test_straight_rods_are_drawn_in_x_and_y(cantilever):
+    cantilever["loads"] = []
+    assert Picture(der.run(cantilever)).plane.names == ("x", "y")
+
+
+@pytest.mark.parametrize("what", ["overview", "shapes", "probes"])
+def test_plots_say_what_they_show(helix, what):
+    result = der.run(probed(helix, (0.1,)))
+    figure = result.plot(what)
+    figure.canvas.draw()
+    if what != "probes":
+        axes = figure.axes[0]
+        names = Picture(result).plane.names
+        assert (axes.get_xlabel(), axes.get_ylabel()) == (f"{names[0]} [m]", f"{names[1]} [m]")
+        assert "along (" in axes.get_xlabel()
+    plt.close(figure)
+
+
+def test_a_force_along_the_line_of_sight_is_a_circle(cantilever):
+    """The rod bends in the plane x, z; a force along y is seen from its end."""
+    cantilever["loads"] = [
+        {"point_force": {"rod": "strip", "at": "end", "force": [0, 0, 1.0]}},
+        {"point_force": {"rod": "strip", "at": 0.2, "force": [0, 1e-6, 0]}},
+        {"distributed_force": {"rod": "strip", "force": [0, 1e-6, 0]}},
+        {"gravity": [0, 1e-6, 0]},
+    ]
+    result = der.run(cantilever)
+    figure = result.plot("shapes")
+    figure.canvas.draw()
+    axes = figure.axes[0]
+    assert axes.get_ylabel() == "z [m]"
+    drawn = [line for line in axes.lines if line.get_gid() == "load-strip-0.2"]
+    assert {line.get_marker() for line in drawn} == {"o", "x"}
+    texts = [text.get_text() for text in axes.texts]
+    assert {"1 N", "1 µN", "1 µN/m"} <= set(texts)
+    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert "gravity 1e-06 m/s², away from you" in labels
+    plt.close(figure)
+
+
+def test_planar_loads_of_a_spatial_scene_are_drawn(arm):
+    result = der.run(arm | {"model": "spatial"})
+    figure = result.plot("shapes")
+    figure.canvas.draw()
+    assert figure.axes[0].get_ylabel() == "y [m]"
+    plt.close(figure)
+
+
+def test_modes_are_drawn(cantilever):
+    cantilever["analysis"] = {"modes": {"count": 2}}
+    result = der.run(cantilever)
+    assert result.modes.shapes.shape == (2, 9, 3)
+    figure = result.plot()
+    figure.canvas.draw()
+    plt.close(figure)
+    assert len(make_payload(result)["chapters"]) == 2
+
+
+def test_an_animation_is_written(helix, tmp_path):
+    helix["time"]["duration"] = 0.008
+    path = der.run(helix).animate(tmp_path / "run.gif", fps=5.0)
+    assert path.stat().st_size > 1000
+
+
+def test_the_view_is_in_space(helix, tmp_path):
+    result = der.run(helix)
+    data = make_payload(result)
+    assert not data["flat"]
+    assert [axis[0] for axis in data["axes"]] == ["x", "y", "z"]
+    assert "twist" in data["fields"]
+    assert data["supports"][0]["kind"] == "clamp"
+    assert data["supports"][0]["tangents"] == [[1.0, 0.0, 0.0]]
+    assert result.view(tmp_path / "view.html").stat().st_size > 1000

@@ -35,6 +35,7 @@ SPATIAL = (
     "bent_cantilever",
     "helix",
     "princeton_beam",
+    "spatial_buckling",
 )
 PROBLEMS = PLANAR + SPATIAL
 

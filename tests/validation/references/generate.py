@@ -36,6 +36,7 @@ SPATIAL = (
     "helix",
     "princeton_beam",
     "spatial_buckling",
+    "helical_buckling",
 )
 PROBLEMS = PLANAR + SPATIAL
 

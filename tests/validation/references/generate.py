@@ -37,6 +37,10 @@ SPATIAL = (
     "princeton_beam",
     "spatial_buckling",
     "helical_buckling",
+    "hanging_coil",
+    "spatial_frequencies",
+    "curved_twisted_rod",
+    "writhe",
 )
 PROBLEMS = PLANAR + SPATIAL
 

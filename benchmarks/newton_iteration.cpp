@@ -1,9 +1,11 @@
-// The cost of one planar Newton iteration (gradient, Hessian, factorisation, solution) against one
-// bare factorisation and solution of the same matrix by Eigen's SimplicialLDLT with its natural
-// ordering, the pattern analysed before. Run it and compare lines of one run: machines differ.
+// The cost of one Newton iteration (gradient, Hessian, factorisation, solution) of each model
+// against one bare factorisation and solution of the same matrix by Eigen's SimplicialLDLT with its
+// natural ordering, the pattern analysed before. Run it and compare lines of one run: machines
+// differ. Arguments: nodes; model (0: planar, 1: spatial_bend, 2: spatial).
 #include <benchmark/benchmark.h>
 
 #include <Eigen/SparseCholesky>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -19,29 +21,47 @@ namespace der {
 namespace {
 
 /// A cantilever whose shape waves a little, so that no angle is zero.
-scenario::Scene cantilever(int nodes) {
+scenario::Scene cantilever(int nodes, scenario::ModelChoice model) {
+  const bool planar = model == scenario::ModelChoice::Planar;
   scenario::Scene scene;
+  scene.model = model;
+  scene.dimension = planar ? 2 : 3;
   scenario::Rod rod;
   rod.name = "rod";
   for (int i = 0; i < nodes; ++i) {
     const double s = static_cast<double>(i) / (nodes - 1);
     rod.points.push_back({s, 0.01 * std::sin(20.0 * s)});
+    if (!planar) rod.points.back().push_back(0.01 * std::sin(23.0 * s));
   }
   rod.cross_section = scenario::Circle{0.01};
-  rod.material = scenario::Material{1e7, 1000.0, std::nullopt, std::nullopt};
+  if (model == scenario::ModelChoice::Spatial) {
+    rod.cross_section = scenario::Rectangle{0.02, 0.01};
+    rod.director = scenario::Components{0.0, 0.0, 1.0};
+  }
+  rod.material = scenario::Material{1e7, 1000.0, 0.3, {}};
   rod.natural_curvature = 0.0;
+  if (model == scenario::ModelChoice::Spatial) {
+    rod.natural_curvature = scenario::CurvaturePair{};
+  }
   scene.rods.push_back(rod);
   scenario::Support support;
   support.rod = "rod";
-  support.clamp = scenario::Clamp::Section;
+  support.clamp = planar ? scenario::Clamp::Section : scenario::Clamp::Tangent;
+  if (model == scenario::ModelChoice::Spatial) support.clamp = scenario::Clamp::Section;
   scene.supports.push_back(support);
-  scene.loads.push_back({scenario::Gravity{{0.0, -9.81}}, {}});
+  scene.loads.push_back({scenario::Gravity{planar ? scenario::Components{0.0, -9.81}
+                                                  : scenario::Components{0.0, -9.81, 0.0}},
+                         {}});
   return scene;
 }
 
+constexpr std::array kModels{scenario::ModelChoice::Planar, scenario::ModelChoice::SpatialBend,
+                             scenario::ModelChoice::Spatial};
+
 struct Problem {
-  explicit Problem(int nodes)
-      : model(build_model(cantilever(nodes))),
+  explicit Problem(const benchmark::State& state)
+      : model(build_model(cantilever(static_cast<int>(state.range(0)),
+                                     kModels[static_cast<std::size_t>(state.range(1))]))),
         pattern(build_pattern(model)),
         solver(pattern),
         assembler(model, solver.layout()),
@@ -87,13 +107,13 @@ void count_nodes(benchmark::State& state) {
 }
 
 void newton_iteration(benchmark::State& state) {
-  Problem problem(static_cast<int>(state.range(0)));
+  Problem problem(state);
   for (auto _ : state) problem.newton_iteration();
   count_nodes(state);
 }
 
 void assembly_alone(benchmark::State& state) {
-  Problem problem(static_cast<int>(state.range(0)));
+  Problem problem(state);
   for (auto _ : state) {
     problem.assemble();
     benchmark::DoNotOptimize(problem.values.data());
@@ -102,7 +122,7 @@ void assembly_alone(benchmark::State& state) {
 }
 
 void residual_alone(benchmark::State& state) {
-  Problem problem(static_cast<int>(state.range(0)));
+  Problem problem(state);
   for (auto _ : state) {
     problem.assembler.gradient(problem.here, problem.gradient);
     benchmark::DoNotOptimize(problem.gradient.data());
@@ -111,7 +131,7 @@ void residual_alone(benchmark::State& state) {
 }
 
 void banded_solve_alone(benchmark::State& state) {
-  Problem problem(static_cast<int>(state.range(0)));
+  Problem problem(state);
   problem.assemble();
   for (auto _ : state) {
     benchmark::DoNotOptimize(problem.solver.factorize(problem.values));
@@ -122,7 +142,7 @@ void banded_solve_alone(benchmark::State& state) {
 }
 
 void eigen_simplicial_ldlt(benchmark::State& state) {
-  Problem problem(static_cast<int>(state.range(0)));
+  Problem problem(state);
   problem.assemble();
   using Matrix = Eigen::SparseMatrix<double>;
   std::vector<Eigen::Triplet<double>> triplets;
@@ -149,7 +169,9 @@ void eigen_simplicial_ldlt(benchmark::State& state) {
 }
 
 void sizes(benchmark::internal::Benchmark* benchmark) {
-  for (const int nodes : {51, 101, 401, 1601}) benchmark->Arg(nodes);
+  for (const int model : {0, 1, 2}) {
+    for (const int nodes : {51, 101, 401, 1601}) benchmark->Args({nodes, model});
+  }
 }
 
 BENCHMARK(newton_iteration)->Apply(sizes);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "der/assembly/planar_chain.hpp"
+#include "der/assembly/spatial_chain.hpp"
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
@@ -36,12 +37,17 @@ std::array<Index, N*(N + 1) / 2> element_slots(const std::array<Index, N>& dofs,
 
 /// The elements, of the `size` of a kind, that no chain assembles.
 template <class Kernel>
-std::vector<std::size_t> loose_elements(std::size_t size, const std::vector<PlanarChain>& chains) {
+std::vector<std::size_t> loose_elements(std::size_t size, const std::vector<PlanarChain>& planar,
+                                        const std::vector<SpatialChain>& spatial) {
   std::vector<bool> in_chain(size, false);
-  for (const PlanarChain& chain : chains) {
-    const auto [first, count] = chain.range_of<Kernel>();
-    std::fill_n(in_chain.begin() + static_cast<std::ptrdiff_t>(first), count, true);
-  }
+  const auto mark = [&](const auto& chains) {
+    for (const auto& chain : chains) {
+      const auto [first, count] = chain.template range_of<Kernel>();
+      std::fill_n(in_chain.begin() + static_cast<std::ptrdiff_t>(first), count, true);
+    }
+  };
+  mark(planar);
+  mark(spatial);
   std::vector<std::size_t> loose;
   for (std::size_t e = 0; e < size; ++e) {
     if (!in_chain[e]) loose.push_back(e);
@@ -79,7 +85,8 @@ constexpr auto kKinds = std::make_index_sequence<std::tuple_size_v<ElementLists:
 }  // namespace
 
 struct Assembler::ScatterMaps {
-  std::vector<PlanarChain> chains;
+  std::vector<PlanarChain> planar_chains;
+  std::vector<SpatialChain> spatial_chains;
   MapsOf<ElementLists::Lists>::type elements;
   // Slots of every plain stretch element.
   std::vector<std::array<Index, 10>> planar_edges;
@@ -108,12 +115,14 @@ Assembler::Assembler(const Model& model, const MatrixLayout& layout)
     coupling_slots_.push_back({slot_of(a, a), slot_of(b, b), slot_of(a, b)});
   }
   auto maps = std::make_unique<ScatterMaps>();
-  maps->chains = PlanarChain::find(model, layout);
+  maps->planar_chains = PlanarChain::find(model, layout);
+  maps->spatial_chains = SpatialChain::find(model, layout);
   for_each_pair(
       model.elements->lists, maps->elements,
       [&](const auto& list, auto& map) {
         using Kernel = typename std::decay_t<decltype(list)>::KernelType;
-        map.elements = loose_elements<Kernel>(list.size(), maps->chains);
+        map.elements =
+            loose_elements<Kernel>(list.size(), maps->planar_chains, maps->spatial_chains);
         for (const std::size_t e : map.elements) {
           map.slots.push_back(element_slots(list.dofs[e], slot_of));
         }
@@ -133,13 +142,17 @@ void Assembler::ScatterMaps::assemble(const Model& model, const Configuration& h
                                       Vector& gradient, Vector* values) const {
   gradient.setZero();
   if constexpr (D == Derivatives::Hessian) values->setZero();
-  for (const PlanarChain& chain : chains) {
-    if constexpr (D == Derivatives::Hessian) {
-      chain.add_gradient_and_hessian(model, here, gradient, values->data());
-    } else {
-      chain.add_gradient(model, here, gradient);
+  const auto add = [&](const auto& chains) {
+    for (const auto& chain : chains) {
+      if constexpr (D == Derivatives::Hessian) {
+        chain.add_gradient_and_hessian(model, here, gradient, values->data());
+      } else {
+        chain.add_gradient(model, here, gradient);
+      }
     }
-  }
+  };
+  add(planar_chains);
+  add(spatial_chains);
   for_each_pair(
       model.elements->lists, elements,
       [&](const auto& list, const auto& map) {

@@ -1,7 +1,6 @@
 #include "der/assembly/planar_chain.hpp"
 
 #include <algorithm>
-#include <map>
 
 #include "der/core/index.hpp"
 #include "der/core/processor.hpp"
@@ -11,10 +10,6 @@
 
 namespace der {
 namespace {
-
-using Edges = ElementList<Stretch<2>>;
-template <class Curvature>
-using Bends = ElementList<PlanarBend<Curvature>>;
 
 /// The slope of an edge's energy by its vector e, and what the elements on both sides of a node
 /// need of the edge.
@@ -57,56 +52,10 @@ Symmetric edge_hessian(const EdgeTerms& edge, double moment, double stiffness) {
 }
 
 template <class Curvature>
-bool has_bend(const Bends<Curvature>& bends, std::size_t i, const std::array<Index, 4>& before,
-              const std::array<Index, 4>& after) {
-  return i < bends.size() && std::equal(before.begin(), before.end(), bends.dofs[i].begin()) &&
-         std::equal(after.begin(), after.end(), bends.dofs[i].begin() + 2);
-}
-
-/// Number of edges from `first` on that follow one another, with the bend elements from
-/// `first_bend` on between them.
-template <class Curvature>
-std::size_t run_length(const Edges& edges, std::size_t first, const Bends<Curvature>& bends,
-                       std::size_t first_bend) {
-  const auto consecutive = [](const std::array<Index, 4>& dofs) {
-    return dofs[1] == dofs[0] + 1 && dofs[2] == dofs[0] + 2 && dofs[3] == dofs[0] + 3;
-  };
-  std::size_t count = consecutive(edges.dofs[first]) ? 1 : 0;
-  while (count > 0 && first + count < edges.size() && consecutive(edges.dofs[first + count]) &&
-         has_bend(bends, first_bend + count - 1, edges.dofs[first + count - 1],
-                  edges.dofs[first + count])) {
-    ++count;
-  }
-  return count;
-}
-
-/// For each bend element the first of its degrees of freedom, with its place in the list.
-template <class Curvature>
-std::map<Index, std::size_t> bends_by_start(const Bends<Curvature>& bends) {
-  std::map<Index, std::size_t> starts;
-  for (std::size_t i = 0; i < bends.size(); ++i) starts.emplace(bends.dofs[i][0], i);
-  return starts;
-}
-
-struct Run {
-  PlanarChain::Range edges;
-  PlanarChain::Range bends;
-};
-
-template <class Curvature>
-std::vector<Run> find_runs(const Model& model) {
-  std::vector<Run> runs;
-  const auto& edges = elements_of<Stretch<2>>(*model.elements);
-  const auto& bends = elements_of<PlanarBend<Curvature>>(*model.elements);
-  const auto starts = bends_by_start(bends);
-  for (std::size_t first = 0; first < edges.size();) {
-    const auto bend = starts.find(edges.dofs[first][0]);
-    const std::size_t count =
-        bend == starts.end() ? 0 : run_length(edges, first, bends, bend->second);
-    if (count >= 2) runs.push_back({{first, count}, {bend->second, count - 1}});
-    first += std::max<std::size_t>(count, 1);
-  }
-  return runs;
+std::vector<ChainRun> find_runs(const Model& model) {
+  return ChainRunFinder(elements_of<Stretch<2>>(*model.elements),
+                        elements_of<PlanarBend<Curvature>>(*model.elements))
+      .find();
 }
 
 }  // namespace
@@ -116,7 +65,7 @@ std::vector<PlanarChain> PlanarChain::find(const Model& model, const MatrixLayou
   for (const bool tangent : {false, true}) {
     const auto runs =
         tangent ? find_runs<TangentCurvature>(model) : find_runs<AngleCurvature>(model);
-    for (const Run& run : runs) {
+    for (const ChainRun& run : runs) {
       PlanarChain& chain = chains.emplace_back();
       chain.edges_ = run.edges;
       chain.bends_ = run.bends;

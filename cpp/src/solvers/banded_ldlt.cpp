@@ -70,6 +70,23 @@ DER_FOR_EACH_PROCESSOR
 void solve_band_5(Index size, Index /*width*/, const double* band, double* b) {
   solve_band<5>(size, 5, band, b);
 }
+// Chains in space without and with angles of sections.
+DER_FOR_EACH_PROCESSOR
+Inertia factorize_band_8(Index size, Index /*width*/, double* band, double* scratch) {
+  return factorize_band<8>(size, 8, band, scratch);
+}
+DER_FOR_EACH_PROCESSOR
+void solve_band_8(Index size, Index /*width*/, const double* band, double* b) {
+  solve_band<8>(size, 8, band, b);
+}
+DER_FOR_EACH_PROCESSOR
+Inertia factorize_band_10(Index size, Index /*width*/, double* band, double* scratch) {
+  return factorize_band<10>(size, 10, band, scratch);
+}
+DER_FOR_EACH_PROCESSOR
+void solve_band_10(Index size, Index /*width*/, const double* band, double* b) {
+  solve_band<10>(size, 10, band, b);
+}
 
 }  // namespace
 
@@ -82,6 +99,12 @@ BandedLdlt::BandedLdlt(const Pattern& pattern)
   if (half_bandwidth_ == 5) {
     factorize_kernel_ = factorize_band_5;
     solve_kernel_ = solve_band_5;
+  } else if (half_bandwidth_ == 8) {
+    factorize_kernel_ = factorize_band_8;
+    solve_kernel_ = solve_band_8;
+  } else if (half_bandwidth_ == 10) {
+    factorize_kernel_ = factorize_band_10;
+    solve_kernel_ = solve_band_10;
   } else if (half_bandwidth_ == 2) {  // their mass matrix
     factorize_kernel_ = factorize_band<2>;
     solve_kernel_ = solve_band<2>;

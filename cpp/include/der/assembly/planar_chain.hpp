@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "der/assembly/chain_run.hpp"
 #include "der/assembly/pattern.hpp"
 #include "der/core/types.hpp"
 #include "der/energies/local_term.hpp"
@@ -24,19 +25,14 @@ class PlanarChain {
   /// All runs of a model that are at least two edges long.
   static std::vector<PlanarChain> find(const Model& model, const MatrixLayout& layout);
 
-  /// Consecutive elements of a list.
-  struct Range {
-    std::size_t first = 0;
-    std::size_t count = 0;
-  };
   /// The elements of one kernel that the chain assembles.
   template <class Kernel>
-  [[nodiscard]] Range range_of() const {
+  [[nodiscard]] ChainRange range_of() const {
     if constexpr (std::is_same_v<Kernel, Stretch<2>>) return edges_;
     if constexpr (std::is_same_v<Kernel, PlanarBend<AngleCurvature>>)
-      return tangent_ ? Range{} : bends_;
+      return tangent_ ? ChainRange{} : bends_;
     if constexpr (std::is_same_v<Kernel, PlanarBend<TangentCurvature>>)
-      return tangent_ ? bends_ : Range{};
+      return tangent_ ? bends_ : ChainRange{};
     return {};
   }
 
@@ -58,8 +54,8 @@ class PlanarChain {
   void add_measured(const Model& model, const Configuration& here, Vector& gradient,
                     double* values) const;
 
-  Range edges_;
-  Range bends_;
+  ChainRange edges_;
+  ChainRange bends_;
   bool tangent_ = false;  ///< bends_ are of TangentCurvature, not of AngleCurvature
   Index first_dof_ = 0;   ///< of the first node; the others follow, x before y
   std::vector<NodeSlots> slots_;

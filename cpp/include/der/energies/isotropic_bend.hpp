@@ -28,20 +28,25 @@ IsotropicResponse isotropic_response(double stiffness, double cosine) {
           -stiffness * p * power * factor.log_slope};
 }
 
-/// Derivatives of an energy by an edge vector e, of length l, which it depends on through its unit
-/// tangent t and d = t . other.
+/// The unit tangent t of an edge of length l, on which an energy depends through d = t . other.
 struct TangentTerm {
   Vec3 tangent;
-  Vec3 by_edge;  ///< dd/de = (other - d t)/l
-  double per_length;
+  double per_length;  ///< 1/l [1/m]
 
   TangentTerm(const Vec3& edge, double length) : tangent(edge / length), per_length(1.0 / length) {}
-  void see(const Vec3& other, double cosine) { by_edge = per_length * (other - cosine * tangent); }
-  /// d2d/de2.
-  [[nodiscard]] Mat3 second(double cosine) const {
+  /// dd/de = (other - d t)/l.
+  [[nodiscard]] Vec3 first(const Vec3& other, double cosine) const {
+    return per_length * (other - cosine * tangent);
+  }
+  /// d2d/de2, from dd/de.
+  [[nodiscard]] Mat3 second(const Vec3& by_edge, double cosine) const {
     Mat3 m = -per_length * (by_edge * tangent.transpose() + tangent * by_edge.transpose());
     m += cosine * per_length * per_length * (tangent * tangent.transpose() - Mat3::Identity());
     return m;
+  }
+  /// dt/de.
+  [[nodiscard]] Mat3 across() const {
+    return per_length * (Mat3::Identity() - tangent * tangent.transpose());
   }
 };
 
@@ -61,28 +66,23 @@ struct IsotropicBend {
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     const Vec3 ea = x.segment<3>(3) - x.segment<3>(0);
     const Vec3 eb = x.segment<3>(6) - x.segment<3>(3);
-    TangentTerm a(ea, ea.norm());
-    TangentTerm b(eb, eb.norm());
+    const TangentTerm a(ea, ea.norm());
+    const TangentTerm b(eb, eb.norm());
     const double cosine = a.tangent.dot(b.tangent);
     const IsotropicResponse bend = isotropic_response<Curvature>(c.stiffness_per_length, cosine);
     out.energy = bend.energy;
     if constexpr (D == Derivatives::Energy) return;
-    a.see(b.tangent, cosine);
-    b.see(a.tangent, cosine);
-    const Vec3 force_a = bend.slope * a.by_edge;
-    const Vec3 force_b = bend.slope * b.by_edge;
+    const Vec3 by_a = a.first(b.tangent, cosine);
+    const Vec3 by_b = b.first(a.tangent, cosine);
+    const Vec3 force_a = bend.slope * by_a;
+    const Vec3 force_b = bend.slope * by_b;
     out.gradient << -force_a, force_a - force_b, force_b;
     if constexpr (D == Derivatives::Gradient) return;
 
-    const Mat3 aa =
-        bend.curvature * a.by_edge * a.by_edge.transpose() + bend.slope * a.second(cosine);
-    const Mat3 bb =
-        bend.curvature * b.by_edge * b.by_edge.transpose() + bend.slope * b.second(cosine);
-    // d2d/de_b de_a = (I - tb tb')(I - ta ta')/(lb la).
-    const Mat3 across_b = b.per_length * (Mat3::Identity() - b.tangent * b.tangent.transpose());
-    const Mat3 across_a = a.per_length * (Mat3::Identity() - a.tangent * a.tangent.transpose());
+    const Mat3 aa = bend.curvature * by_a * by_a.transpose() + bend.slope * a.second(by_a, cosine);
+    const Mat3 bb = bend.curvature * by_b * by_b.transpose() + bend.slope * b.second(by_b, cosine);
     const Mat3 ba =
-        bend.curvature * b.by_edge * a.by_edge.transpose() + bend.slope * across_b * across_a;
+        bend.curvature * by_b * by_a.transpose() + bend.slope * (b.across() * a.across());
     auto& h = out.hessian;
     h.template block<3, 3>(0, 0) = aa;
     h.template block<3, 3>(3, 0) = ba - aa;
@@ -109,19 +109,19 @@ struct IsotropicClamp {
   static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     const Vec3 e = x.segment<3>(3) - x.segment<3>(0);
-    TangentTerm edge(e, e.norm());
+    const TangentTerm edge(e, e.norm());
     const Vec3 held = c.held.tangent(here.controls);
     const double cosine = edge.tangent.dot(held);
     const IsotropicResponse bend = isotropic_response<Curvature>(c.stiffness_per_length, cosine);
     out.energy = bend.energy;
     if constexpr (D == Derivatives::Energy) return;
-    edge.see(held, cosine);
-    const Vec3 force = bend.slope * edge.by_edge;
+    const Vec3 by_edge = edge.first(held, cosine);
+    const Vec3 force = bend.slope * by_edge;
     out.gradient << -force, force;
     if constexpr (D == Derivatives::Gradient) return;
 
     const Mat3 own =
-        bend.curvature * edge.by_edge * edge.by_edge.transpose() + bend.slope * edge.second(cosine);
+        bend.curvature * by_edge * by_edge.transpose() + bend.slope * edge.second(by_edge, cosine);
     auto& h = out.hessian;
     h.template block<3, 3>(0, 0) = own;
     h.template block<3, 3>(3, 0) = -own;

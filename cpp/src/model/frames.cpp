@@ -8,7 +8,7 @@ namespace der {
 namespace {
 
 /// The reference frame of an edge, from its block.
-SectionFrame reference_frame(Index edge, const Vector& frames) {
+SectionFrame reference_frame(Index edge, const Eigen::Ref<const Vector>& frames) {
   const FrameBlock block = FrameBlock::of(edge);
   return SectionFrame::of(block.tangent(frames), block.director(frames));
 }

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "der/core/error.hpp"
-
 namespace der {
 namespace {
 
@@ -53,10 +51,6 @@ class SpeedField : public RodField {
 
 std::unique_ptr<RodField> make_component_field(Vector State::* vector, int component,
                                                const RodLayout& rod, const Model& model) {
-  if (component >= model.dimension) {
-    throw Error("model_error", "a planar model has no component along z: write 'model: spatial', or "
-                               "probe another quantity");
-  }
   return std::make_unique<ComponentField>(vector, component, rod, model);
 }
 

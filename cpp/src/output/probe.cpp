@@ -160,7 +160,7 @@ SampleWeights sample_weights(const std::vector<Weighted>& weights) {
 
 std::unique_ptr<RodField> make_probed_field(const scenario::Probe& probe, const Quantity& quantity,
                                             const RodLayout& rod, const Model& model) {
-  auto field = quantity.make_field(rod, model);
+  auto field = make_rod_field(quantity.name, rod, model);
   if (field->arc_length().empty()) {
     throw Error("model_error", "probe '" + probe.name + "': rod '" + rod.name + "' bends nowhere");
   }

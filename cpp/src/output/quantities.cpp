@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "der/model/model.hpp"
+
 #include "output/bend_field.hpp"
 #include "output/motion_field.hpp"
 #include "output/section_field.hpp"
@@ -16,7 +18,14 @@ Quantity component(std::string name, std::string unit, QuantityKind kind, std::s
   const RodFieldMaker maker = [](const RodLayout& rod, const Model& model) {
     return make_component_field(vector, number, rod, model);
   };
-  return {std::move(name), std::move(unit), kind, std::move(meaning), maker, {}, true};
+  return {std::move(name),
+          std::move(unit),
+          kind,
+          std::move(meaning),
+          maker,
+          {},
+          true,
+          number < 2 ? QuantityScope::All : QuantityScope::Space};
 }
 
 Quantity field(std::string name, std::string unit, QuantityKind kind, std::string meaning,
@@ -24,12 +33,18 @@ Quantity field(std::string name, std::string unit, QuantityKind kind, std::strin
   return {std::move(name), std::move(unit), kind, std::move(meaning), maker, {}, false};
 }
 
+Quantity in(QuantityScope scope, Quantity quantity) {
+  quantity.scope = scope;
+  return quantity;
+}
+
 template <SectionQuantity quantity>
 Quantity section(std::string name, std::string unit, std::string meaning) {
   const RodFieldMaker maker = [](const RodLayout& rod, const Model& model) {
     return make_section_field(quantity, rod, model);
   };
-  return field(std::move(name), std::move(unit), QuantityKind::Section, std::move(meaning), maker);
+  return in(QuantityScope::Sections,
+            field(std::move(name), std::move(unit), QuantityKind::Section, std::move(meaning), maker));
 }
 
 Quantity energy(std::string name, std::string meaning, std::vector<EnergyTerm> terms) {
@@ -47,9 +62,10 @@ std::vector<Quantity> quantities_along_rods() {
       component<&State::velocities, 1>("vy", "m/s", Kind::Velocity, "vertical velocity"),
       component<&State::velocities, 2>("vz", "m/s", Kind::Velocity, "velocity along z, in space"),
       field("speed", "m/s", Kind::Velocity, "magnitude of the velocity", make_speed_field),
-      field("turning_angle", "rad", Kind::Turn,
-            "angle from the edge before a node to the edge after it, positive counter-clockwise",
-            make_turning_angle_field),
+      in(QuantityScope::Planar,
+         field("turning_angle", "rad", Kind::Turn,
+               "angle from the edge before a node to the edge after it, positive counter-clockwise",
+               make_turning_angle_field)),
       field("curvature", "1/m", Kind::Bend, "turning angle per length", make_curvature_field),
       field("moment", "N m", Kind::Bend,
             "bending moment, positive where it bends counter-clockwise", make_moment_field),
@@ -95,6 +111,20 @@ std::vector<Quantity> all_quantities() {
 const std::vector<Quantity>& quantities() {
   static const std::vector<Quantity> table = all_quantities();
   return table;
+}
+
+bool is_available(const Quantity& quantity, const Model& model) {
+  switch (quantity.scope) {
+    case QuantityScope::All:
+      return true;
+    case QuantityScope::Planar:
+      return model.dimension == 2;
+    case QuantityScope::Space:
+      return model.dimension == 3;
+    case QuantityScope::Sections:
+      break;
+  }
+  return model.has_sections();
 }
 
 const Quantity* find_quantity(std::string_view name) {

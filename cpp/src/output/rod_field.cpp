@@ -2,11 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "der/catalog/quantities.hpp"
 #include "der/core/error.hpp"
 
 namespace der {
 namespace {
+
+/// What a quantity needs, by its scope.
+constexpr std::array kNeeds{"", "it belongs to planar rods",
+                            "write 'model: spatial', or 'spatial_bend' for a rod that cannot twist",
+                            "write 'model: spatial', in which sections count"};
 
 std::string quantities_along_rods() {
   std::string names;
@@ -29,7 +36,13 @@ double RodField::interpolate(const SampleWeights& weights, const Model& model,
 std::unique_ptr<RodField> make_rod_field(const std::string& quantity, const RodLayout& rod,
                                          const Model& model) {
   const Quantity* row = find_quantity(quantity);
-  if (row != nullptr && row->make_field != nullptr) return row->make_field(rod, model);
+  if (row != nullptr && row->make_field != nullptr) {
+    if (!is_available(*row, model)) {
+      throw Error("model_error", fmt::format("the model '{}' has no '{}': {}", model.name,
+                                             quantity, kNeeds[static_cast<int>(row->scope)]));
+    }
+    return row->make_field(rod, model);
+  }
   throw Error("model_error", fmt::format("'{}' is not a quantity along a rod; these are: {}",
                                          quantity, quantities_along_rods()));
 }

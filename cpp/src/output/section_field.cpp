@@ -3,7 +3,6 @@
 #include <cmath>
 #include <utility>
 
-#include "der/core/error.hpp"
 #include "der/core/index.hpp"
 #include "der/model/joint_strain.hpp"
 #include "der/supports/spatial_clamp.hpp"
@@ -13,10 +12,6 @@ namespace {
 
 bool is_of_twist(SectionQuantity quantity) {
   return quantity == SectionQuantity::Twist || quantity == SectionQuantity::Torque;
-}
-
-bool needs_sections(SectionQuantity quantity) {
-  return quantity != SectionQuantity::Curvature && quantity != SectionQuantity::Moment;
 }
 
 std::vector<double> places(SectionQuantity quantity, const RodLayout& rod) {
@@ -99,13 +94,7 @@ class EdgeStrainField : public RodField {
 }  // namespace
 
 std::unique_ptr<RodField> make_section_field(SectionQuantity quantity, const RodLayout& rod,
-                                             const Model& model) {
-  if (needs_sections(quantity) && !model.has_sections()) {
-    throw Error("model_error",
-                "the model '" + model.name +
-                    "' has no sections: write 'model: spatial' for curvatures, moments and twist "
-                    "by the directors of the section");
-  }
+                                             const Model& /*model*/) {
   return std::make_unique<SectionField>(quantity, rod);
 }
 

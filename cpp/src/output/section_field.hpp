@@ -21,7 +21,7 @@ enum class SectionQuantity {
   Torque,      ///< [N m]
 };
 
-/// Throws Error if the model has no sections and the quantity needs them.
+/// All but the magnitudes need a model with sections.
 std::unique_ptr<RodField> make_section_field(SectionQuantity quantity, const RodLayout& rod,
                                              const Model& model);
 

@@ -46,7 +46,7 @@ void Simulation::step() {
   }
   Undo undo(state_, before_step_);
   if (const std::string found = find_nonfinite(); !found.empty()) throw DivergedError(found);
-  der::follow(model_, state_);  // a program may have moved the rods
+  if (energy_watch_.was_written(state_)) der::follow(model_, state_);
   const bool was_finished = finished();
   energy_watch_.before_step(state_);
   if (adaptive_) {

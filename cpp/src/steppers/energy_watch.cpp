@@ -87,8 +87,12 @@ EnergyWatch::EnergyWatch(const Model& model)
 
 void EnergyWatch::begin(const State& state) { keep(state); }
 
+bool EnergyWatch::was_written(const State& state) const {
+  return state.positions != positions_ || state.velocities != velocities_;
+}
+
 void EnergyWatch::before_step(State& state) {
-  if (state.positions == positions_ && state.velocities == velocities_) return;
+  if (!was_written(state)) return;
   configuration_of(model_, state, here_);
   const double now = energies(model_, here_, state.velocities).total();
   here_.coordinates = positions_;

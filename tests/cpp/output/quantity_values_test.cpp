@@ -125,9 +125,10 @@ double probe_value(const std::string& probe) {
 
 }  // namespace
 
-TEST_CASE("every quantity has the value worked out by hand") {
+TEST_CASE("every quantity of a planar rod has the value worked out by hand") {
   const std::map<std::string, double> expected = expected_values();
   for (const Quantity& quantity : quantities()) {
+    if (quantity.scope > QuantityScope::Planar) continue;
     CAPTURE(quantity.name);
     const auto value = expected.find(quantity.name);
     const bool is_known = value != expected.end() && value->second != 0.0;

@@ -29,6 +29,14 @@ constexpr bool can_jump(QuantityKind kind) {
   return kind == QuantityKind::Bend || kind == QuantityKind::Edge;
 }
 
+/// The models that have a quantity.
+enum class QuantityScope {
+  All,
+  Planar,
+  Space,     ///< `spatial_bend` and `spatial`
+  Sections,  ///< `spatial`
+};
+
 /// Makes the reader of a quantity along a rod (output/rod_field.hpp).
 using RodFieldMaker = std::unique_ptr<RodField> (*)(const RodLayout& rod, const Model& model);
 
@@ -41,11 +49,14 @@ struct Quantity {
   RodFieldMaker make_field = nullptr;  ///< of energies none
   std::vector<EnergyTerm> energies;    ///< the terms that an energy adds up; else empty
   bool is_component = false;  ///< of the position or velocity, which exports write as vectors
+  QuantityScope scope = QuantityScope::All;
 };
 
 /// The table. It is written in output/quantities.cpp, where the makers are; this header is all that
 /// the reader of scenes knows of it.
 const std::vector<Quantity>& quantities();
+/// Whether a model has the quantity.
+bool is_available(const Quantity& quantity, const Model& model);
 /// Null for an unknown name.
 const Quantity* find_quantity(std::string_view name);
 

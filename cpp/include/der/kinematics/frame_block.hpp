@@ -13,8 +13,14 @@ struct FrameBlock {
   Index first = 0;  ///< entry of the controls
 
   static FrameBlock of(Index edge) { return {kSize * edge}; }
-  [[nodiscard]] Vec3 tangent(const Vector& values) const { return values.segment<3>(first); }
-  [[nodiscard]] Vec3 director(const Vector& values) const { return values.segment<3>(first + 3); }
+  template <class Values>
+  [[nodiscard]] Vec3 tangent(const Values& values) const {
+    return values.template segment<3>(first);
+  }
+  template <class Values>
+  [[nodiscard]] Vec3 director(const Values& values) const {
+    return values.template segment<3>(first + 3);
+  }
   /// Entry of the reference twist [rad] of the joint at the edge's start or end.
   [[nodiscard]] Index twist_at_start() const { return first + 6; }
   [[nodiscard]] Index twist_at_end() const { return first + 7; }

@@ -30,6 +30,8 @@ class EnergyWatch {
 
   /// To be called at the start of a motion, whose energy is the reference.
   void begin(const State& state);
+  /// Whether a program has moved the state since the last step.
+  [[nodiscard]] bool was_written(const State& state) const;
   /// To be called before each step: accumulates what a program has written since the last one.
   void before_step(State& state);
   /// To be called after each step: enters a node that has folded over in it. Allocates nothing.

@@ -198,6 +198,17 @@ void lay_out_rods(const scenario::Scene& scene, Model& model) {
   model.dofs.set_length(size);
 }
 
+void check_spin_inertia(const Model& model) {
+  for (const RodLayout& rod : model.rods) {
+    if (!model.has_sections() || rod.joints.empty() || rod.spin_inertia > 0.0) continue;
+    throw Error(
+        "model_error",
+        "the sections of rod '" + rod.name +
+            "' have no inertia against spin, which a run over time in space needs: give the "
+            "rod a density, or its stiffnesses a 'rotary_inertia'");
+  }
+}
+
 void hold_dofs(Model& model) {
   std::vector<Index> held;
   for (const HeldDof& support : model.held) {
@@ -233,6 +244,7 @@ Model build_model(const scenario::Scene& scene) {
   }
   model.damped = (model.damping.array() != 0.0).any();
   hold_dofs(model);
+  if (scene.is_dynamic()) check_spin_inertia(model);
   for (const RodLayout& rod : model.rods) couple_masses(rod, model);
   model.load_variation = load_variation(scene, model);
   return model;

@@ -250,6 +250,13 @@ void draw_frames(const RodLayout& rod, Model& model) {
   }
 }
 
+/// Nothing turns the sections of a rod without joints.
+void hold_angles(const RodLayout& rod, Model& model) {
+  for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+    model.held.push_back({model.dofs.angle(rod.first_edge + edge), -1});
+  }
+}
+
 template <class Curvature>
 void add_bending(RodLayout& rod, Model& model) {
   if (model.has_sections()) {
@@ -266,8 +273,12 @@ void add_spatial_rod_elements(RodLayout& rod, Model& model) {
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     add_stretch(rod, spatial_edge(rod, edge, model), edge, model);
   }
-  if (rod.EI_1 == 0.0 && rod.EI_2 == 0.0) return;
-  rod.joints = joints_of(rod);
+  const bool bends = rod.EI_1 > 0.0 || rod.EI_2 > 0.0;
+  if (bends) rod.joints = joints_of(rod);
+  if (rod.joints.empty()) {
+    if (model.has_sections()) hold_angles(rod, model);
+    return;
+  }
   if (rod.curvature == scenario::CurvatureMeasure::Angle) {
     add_bending<AngleCurvature>(rod, model);
   } else {

@@ -66,7 +66,9 @@ SectionProperties properties(const scenario::Stiffness& given) {
   section.EI2 = given.EI ? *given.EI : *given.EI2;
   section.GJ = given.GJ.value_or(0.0);
   section.mass_per_length = given.mass_per_length;
-  section.spin_inertia = given.rotary_inertia.value_or(0.0);
+  // That of a homogeneous section: rho (I1 + I2).
+  const double homogeneous = given.mass_per_length * (section.EI1 + section.EI2) / given.EA;
+  section.spin_inertia = given.rotary_inertia.value_or(homogeneous);
   return section;
 }
 

@@ -74,7 +74,7 @@ Format<Stiffness> stiffness_format() {
           .optional("rotary_inertia", &Stiffness::rotary_inertia, number("kg m", not_negative()),
                     "Mass moment of inertia about the tangent per rest length, for the spin of "
                     "sections.",
-                    "0")
+                    "that of a homogeneous section, mass_per_length (EI1 + EI2)/EA")
           .check(check_stiffness));
 }
 

@@ -115,7 +115,9 @@ TEST_CASE("all linear solvers lead to the same motion, to 1e-10, on every scene"
       } else {
         for (int i = 0; i < 20; ++i) simulation.step();
       }
-      const Vector& positions = simulation.state().positions;
+      // Angles of sections count from directors that depend on the way of the search.
+      const Vector positions =
+          simulation.state().positions.head(simulation.model().dofs.num_positions());
       if (expected.size() == 0) expected = positions;
       CHECK((positions - expected).lpNorm<Eigen::Infinity>() < 1e-10 * simulation.model().size());
     }

@@ -1,7 +1,5 @@
 #include "scenario/axis_stiffness.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 namespace der::scenario {
@@ -20,11 +18,6 @@ Format<Components> axis_stiffness(const std::string& unit) {
           if (!both.read(place, diagnostics, stiffness)) return false;
           out = {stiffness, stiffness, stiffness};
           return true;
-        }
-        if (place.value->sequence()->size() > 2) {
-          diagnostics.add(place, fmt::format("a planar scene has two stiffnesses, [kx, ky], got {}",
-                                             place.value->sequence()->size()));
-          return false;
         }
         if (!each.read(place, diagnostics, out)) return false;
         const bool negative = std::any_of(out.begin(), out.end(), [](double k) { return k < 0; });

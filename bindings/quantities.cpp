@@ -26,6 +26,8 @@ const char* kind_name(QuantityKind kind) {
       return "bend";
     case QuantityKind::Edge:
       return "edge";
+    case QuantityKind::Section:
+      return "section";
     case QuantityKind::Energy:
       return "energy";
   }

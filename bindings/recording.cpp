@@ -151,11 +151,12 @@ void bind_recording(py::module_& module) {
                              "Node positions [m], shape (frames, nodes, dim).")
       .def_property_readonly("velocities", &vectors<&FrameData::velocities>,
                              "Node velocities [m/s], shape (frames, nodes, dim).")
-      .def_property_readonly(
-          "sections", &sections,
-          "Of the model ``spatial``: angles of the edges [rad], their rates [rad/s], both of shape\n"
-          "(frames, edges), and the frames that they count from, shape (frames, edges, 8). None of\n"
-          "other models.")
+      .def_property_readonly("sections", &sections,
+                             "Of the model ``spatial``: angles of the edges [rad], their rates "
+                             "[rad/s], both of shape\n"
+                             "(frames, edges), and the frames that they count from, shape (frames, "
+                             "edges, 8). None of\n"
+                             "other models.")
       .def_property_readonly("energies", &energy_columns, "Energies [J] by name, shape (frames,).")
       .def_property_readonly("work", &work_columns,
                              "Works done and energy lost since the start [J] by name, "

@@ -48,9 +48,8 @@ void enter_tangent(HeldNode& held, const RodLayout& rod, Index place, const Repl
   const Clamp* clamp = rod.clamp_at(place);
   const Model& model = replay.model();
   if (model.dimension == 3) {
-    const Vec3 tangent = clamp == nullptr
-                             ? initial_tangent(rod, place, model)
-                             : held_frame(clamp->held, model, replay.state()).tangent;
+    const Vec3 tangent = clamp == nullptr ? initial_tangent(rod, place, model)
+                                          : held_frame(clamp->held, model, replay.state()).tangent;
     held.tangent.assign(tangent.begin(), tangent.end());
     return;
   }
@@ -129,8 +128,8 @@ SavedFrames to_frames(const Replay& replay, const Frames& positions, const Frame
 py::tuple along(Replay& replay, const std::string& rod, const std::string& quantity,
                 const Frames& positions, const Frames& velocities, const Frames& theta,
                 const Frames& section_frames) {
-  const RodSeries series = replay.along(
-      rod, quantity, to_frames(replay, positions, velocities, theta, section_frames));
+  const RodSeries series =
+      replay.along(rod, quantity, to_frames(replay, positions, velocities, theta, section_frames));
   return py::make_tuple(
       Array(static_cast<py::ssize_t>(series.arc_length.size()), series.arc_length.data()),
       Array({series.values.rows(), series.values.cols()}, series.values.data()));

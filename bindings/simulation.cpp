@@ -179,7 +179,8 @@ void bind_arrays(PySimulationClass& cls) {
             const std::vector<Index>& free = s.engine().model().dofs.free();
             return py::array_t<Index>(static_cast<py::ssize_t>(free.size()), free.data());
           },
-          "Numbers of the degrees of freedom that no support holds, shape (free,), in the order of\n"
+          "Numbers of the degrees of freedom that no support holds, shape (free,), in the order "
+          "of\n"
           "`gradient`, `hessian` and `mass`. They are places in `positions.ravel()`; those behind "
           "its end\nare places in `theta`.")
       .def(

@@ -117,8 +117,7 @@ void read(const py::handle& dumped, const std::string& name, Value& value) {
 }
 
 py::tuple dump_state(const SavedState& saved) {
-  return py::make_tuple(kKind, kStateVersion, saved.num_nodes, saved.dimension,
-                        dump(saved.state));
+  return py::make_tuple(kKind, kStateVersion, saved.num_nodes, saved.dimension, dump(saved.state));
 }
 
 SavedState revive(const py::tuple& dumped) {

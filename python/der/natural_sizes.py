@@ -13,8 +13,8 @@ def natural_size(rods: Sequence[Rod], unit: str, time: float) -> float:
     Parameters
     ----------
     rods
-        The longest gives the length L, the curvature and the twist 1/L; the stiffest the moment, and the
-        energy, EI/L and the axial force EA. Angles and strains have the size 1.
+        The longest gives the length L, the curvature and the twist 1/L; the stiffest the moment,
+        and the energy, EI/L and the axial force EA. Angles and strains have the size 1.
     unit
         SI unit of the quantities.
     time

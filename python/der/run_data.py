@@ -32,8 +32,8 @@ class Sections:
     spin
         Their rates [rad/s], shape (frames, edges).
     frames
-        The frames that the angles count from, shape (frames, edges, 8): tangent, reference director,
-        and the reference twists [rad] of the joints at the start and at the end of the edge.
+        The frames that the angles count from, shape (frames, edges, 8): tangent, reference
+        director, and the reference twists [rad] of the joints at the start and the end of the edge.
     """
 
     theta: NDArray[np.float64]

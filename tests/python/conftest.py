@@ -78,6 +78,34 @@ SPHERES: dict[str, Any] = {
     },
 }
 
+#: A flat strip, straight as drawn, that has a natural helix and falls from a clamp.
+HELIX: dict[str, Any] = {
+    "title": "A helix let go",
+    "model": "spatial",
+    "rods": [
+        {
+            "name": "strip",
+            "nodes": 9,
+            "from": [0, 0, 0],
+            "to": [0.4, 0, 0],
+            "cross_section": {
+                "rectangle": {"width": 0.02, "height": 0.004},
+                "director": [0, 0, 1],
+            },
+            "material": {"youngs_modulus": 1e8, "poissons_ratio": 0.3, "density": 1000},
+            "natural_curvature": [1.5, 4.0],
+            "natural_twist": 5.0,
+        }
+    ],
+    "supports": [{"rod": "strip", "at": "start", "clamp": True}],
+    "loads": [
+        {"gravity": [0, 0, -9.81]},
+        {"point_force": {"rod": "strip", "at": "end", "force": [0, 0.02, 0]}},
+    ],
+    "time": {"duration": 0.04, "step": 0.001, "integrator": "implicit_euler"},
+    "output": {"every": 0.004},
+}
+
 
 @pytest.fixture
 def tube() -> dict[str, Any]:
@@ -92,6 +120,11 @@ def swing() -> dict[str, Any]:
 @pytest.fixture
 def spheres() -> dict[str, Any]:
     return copy.deepcopy(SPHERES)
+
+
+@pytest.fixture
+def helix() -> dict[str, Any]:
+    return copy.deepcopy(HELIX)
 
 
 @pytest.fixture

@@ -163,6 +163,21 @@ def test_vtk_is_read_by_vtk(swing, tmp_path):
                 assert arrays[name][node] == pytest.approx(known[frame], abs=1e-8 * scale)
 
 
+def test_vtk_has_the_directors_as_vectors(helix, tmp_path):
+    pytest.importorskip("pyevtk")
+    result = der.run(helix)
+    (path,) = result.export("vtk", tmp_path)
+    points, arrays, _ = read_vtk(series(path)[-1][1])
+    assert points == pytest.approx(result.positions[-1])
+    directors = result.directors[-1]
+    assert arrays["director"].shape == (9, 3)
+    assert arrays["director"][[0, -1]] == pytest.approx(directors[[0, -1]])
+    means = directors[1:] + directors[:-1]
+    means /= np.linalg.norm(means, axis=1, keepdims=True)
+    assert arrays["director"][1:-1] == pytest.approx(means)
+    assert np.abs(arrays["twist"]).max() > 0.1
+
+
 def test_vtk_replaces_an_earlier_export_and_has_modes(swing, tmp_path):
     pytest.importorskip("pyevtk")
     der.run(swing).export("vtk", tmp_path)

@@ -227,19 +227,16 @@ def test_run_with_one_frame(swing):
         make_payload(none)
 
 
-def test_rods_in_space(swing, monkeypatch):
-    """Positions with three columns, which no model has yet."""
-    whole = der.run(swing)
-    lifted = np.concatenate([whole.positions, whole.positions[:, :, :1] ** 2], axis=2)
-    resting = np.concatenate([whole.velocities, whole.velocities[:, :, :1]], axis=2)
-    model = type("Model", (), {"initial_positions": lifted[0], "rods": whole.rods})
-    result = replace(whole, positions=lifted, velocities=resting)
-    monkeypatch.setitem(result.__dict__, "model", model)
-    monkeypatch.setattr("der.film.rod_fields", lambda result: rod_fields(whole))
+def test_rods_in_space(helix):
+    result = der.run(helix)
     data = make_payload(result)
     assert not data["flat"]
-    assert unpack(data["rods"][0]["positions"], len(lifted), 11, 3) == pytest.approx(
-        lifted, abs=1e-6
+    assert [axis[0] for axis in data["axes"]] == ["x", "y", "z"]
+    assert "twist" in data["fields"]
+    (clamp,) = data["supports"]
+    assert (clamp["kind"], clamp["tangents"]) == ("clamp", [[1.0, 0.0, 0.0]])
+    assert unpack(data["rods"][0]["positions"], len(result.times), 9, 3) == pytest.approx(
+        result.positions, abs=1e-6
     )
 
 

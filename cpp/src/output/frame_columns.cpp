@@ -220,7 +220,8 @@ FrameColumns FrameColumns::open(hid_t file, const FrameLayout& layout) {
 }
 
 std::size_t FrameColumns::bytes_per_frame() const {
-  const std::size_t numbers = 2 * layout_.num_dofs() + layout_.frame_numbers() + energies_.columns.size() + work_.columns.size() +
+  const std::size_t numbers = 2 * layout_.num_dofs() + layout_.frame_numbers() +
+                              energies_.columns.size() + work_.columns.size() +
                               probes_.columns.size() + 3;  // time, step, checksum
   return sizeof(double) * numbers;
 }

@@ -33,8 +33,11 @@ constexpr std::size_t kLargestBatch = std::size_t{8} << 20;  // [bytes]
 constexpr double kMostFrames = 1e15;
 
 FrameLayout layout_of(const Model& model) {
-  return {static_cast<hsize_t>(model.num_nodes), static_cast<hsize_t>(model.dimension),
-          model.has_sections() ? static_cast<hsize_t>(model.framed_edges.size()) : 0, {}, {}};
+  return {static_cast<hsize_t>(model.num_nodes),
+          static_cast<hsize_t>(model.dimension),
+          model.has_sections() ? static_cast<hsize_t>(model.framed_edges.size()) : 0,
+          {},
+          {}};
 }
 
 FrameLayout layout_of(const Simulation& simulation, const Recorder& recorder) {
@@ -105,8 +108,8 @@ std::unique_ptr<RunFile::Writer> RunFile::Writer::create(const std::filesystem::
     const double frames = std::min(kMostFrames, 1.0 + expected_frames(simulation));
     writer->frames_ =
         FrameColumns::create(file, layout_of(simulation, recorder), static_cast<hsize_t>(frames));
-    writer->checkpoints_ =
-        CheckpointStore::create(file, writer->frames_.layout().num_dofs(), recorder.probes().size());
+    writer->checkpoints_ = CheckpointStore::create(file, writer->frames_.layout().num_dofs(),
+                                                   recorder.probes().size());
   });
   return writer;
 }
@@ -123,7 +126,8 @@ std::unique_ptr<RunFile::Writer> RunFile::Writer::resume(const std::filesystem::
 
 void RunFile::Writer::go_on(Simulation& simulation, Recorder& recorder) {
   frames_ = FrameColumns::open(file_.id(), layout_of(simulation, recorder));
-  checkpoints_ = CheckpointStore::open(file_.id(), frames_.layout().num_dofs(), recorder.probes().size());
+  checkpoints_ =
+      CheckpointStore::open(file_.id(), frames_.layout().num_dofs(), recorder.probes().size());
   const auto checkpoint = checkpoints_.read();
   if (!checkpoint) throw IoError("it holds no checkpoint to resume from");
   truncate(frames_up_to(checkpoint->state.time, simulation.plan()));

@@ -59,7 +59,8 @@ std::vector<std::string> probe_units(hid_t file, const std::vector<std::string>&
 /// None where Python has saved a result, and before the first one is written.
 std::optional<Checkpoint> read_checkpoint(hid_t file, const FrameColumns& columns) {
   if (!CheckpointStore::is_in(file)) return std::nullopt;
-  return CheckpointStore::open(file, columns.layout().num_dofs(), columns.layout().probe_names.size())
+  return CheckpointStore::open(file, columns.layout().num_dofs(),
+                               columns.layout().probe_names.size())
       .read();
 }
 

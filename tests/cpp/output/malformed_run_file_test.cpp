@@ -147,8 +147,10 @@ const std::vector<SectionMistake>& section_mistakes() {
   const hsize_t edges = 5;
   static const std::vector<SectionMistake> all{
       {"no group", "no group 'sections'", without("sections")},
-      {"of a planar run", "'dimension'", [](hid_t file) { put_integer_attribute(file, "dimension", 4); }},
-      {"in two dimensions", "'positions'", [](hid_t file) { put_integer_attribute(file, "dimension", 2); }},
+      {"of a planar run", "'dimension'",
+       [](hid_t file) { put_integer_attribute(file, "dimension", 4); }},
+      {"in two dimensions", "'positions'",
+       [](hid_t file) { put_integer_attribute(file, "dimension", 2); }},
       {"theta: none", "'theta'", without("sections/theta")},
       {"theta: a list", "'sections/theta'", dataset("sections/theta", {edges})},
       {"theta: of no edges", "'sections/theta'", dataset("sections/theta", {3, 0})},
@@ -163,7 +165,8 @@ const std::vector<SectionMistake>& section_mistakes() {
            set_length(file, name, {0});
          }
        }},
-      {"theta: too short", "too few rows", [=](hid_t file) { set_length(file, "sections/theta", {1, edges}); }},
+      {"theta: too short", "too few rows",
+       [=](hid_t file) { set_length(file, "sections/theta", {1, edges}); }},
       {"theta: changed", "checksum", changed("sections/theta")},
       {"spin: a list", "'spin'", dataset("sections/spin", {3})},
       {"spin: changed", "checksum", changed("sections/spin")},
@@ -383,9 +386,9 @@ std::string all_of(const fs::path& path) {
   }
   add(run.frames.times);
   add(run.frames.steps);
-  for (const auto* values : {&run.frames.positions, &run.frames.velocities, &run.frames.theta,
-                             &run.frames.spin, &run.frames.section_frames, &run.frames.energies,
-                             &run.frames.work, &run.frames.probes}) {
+  for (const auto* values :
+       {&run.frames.positions, &run.frames.velocities, &run.frames.theta, &run.frames.spin,
+        &run.frames.section_frames, &run.frames.energies, &run.frames.work, &run.frames.probes}) {
     add(*values);
   }
   const LastFrame last = read_last_frame(path);
@@ -512,8 +515,8 @@ TEST_CASE("numbers that no run has are refused although their checksums are righ
     const Vector probes = Vector::Zero(4);
     const Vector none;
     for (const double time : {first, second}) {
-      file->write({time, 0, state.positions, state.velocities, none, none, none, {}, state.work,
-                   probes});
+      file->write(
+          {time, 0, state.positions, state.velocities, none, none, none, {}, state.work, probes});
     }
   };
   for (const auto& [first, second] : {std::pair{0.0, nan}, {nan, 1.0}, {1.0, 0.5}}) {

@@ -35,8 +35,8 @@ output:
     kinetic: {quantity: kinetic_energy}
 )";
 
-/// A flat strip with a natural bow and twist, dropped from a clamp: 5 edges, every third of 12 steps
-/// saved.
+/// A flat strip with a natural bow and twist, dropped from a clamp: 5 edges, every third of 12
+/// steps saved.
 inline const std::string kStrip = R"(
 title: A strip that falls out of its plane
 model: spatial

@@ -308,9 +308,9 @@ TEST_CASE("frames that come without a step in between are not kept in memory") {
   const auto file = RunFile::create(path, simulation, recorder);
   const auto empty = fs::file_size(path);
   Vector values = Vector::Zero(static_cast<Index>(recorder.probes().size()));
+  const Vector none;
   const State& state = simulation.state();
   for (int i = 0; i < 100; ++i) {  // of 320 kB each
-    const Vector none;
     file->write(
         {1e-9 * i, 0, state.positions, state.velocities, none, none, none, {}, state.work, values});
   }

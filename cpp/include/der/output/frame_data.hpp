@@ -12,14 +12,14 @@ struct FrameData {
 
   std::vector<double> times;  ///< [s]
   std::vector<std::int64_t> steps;
-  std::vector<double> positions;   ///< frames x (nodes * dimension) [m]
-  std::vector<double> velocities;  ///< frames x (nodes * dimension) [m/s]
+  std::vector<double> positions;       ///< frames x (nodes * dimension) [m]
+  std::vector<double> velocities;      ///< frames x (nodes * dimension) [m/s]
   std::vector<double> theta;           ///< frames x edges [rad]; none without sections
   std::vector<double> spin;            ///< frames x edges [rad/s]
   std::vector<double> section_frames;  ///< frames x (edges * 8) (kinematics/frame_block.hpp)
-  std::vector<double> energies;    ///< frames x kEnergyTerms [J]
-  std::vector<double> work;        ///< frames x kLedger [J]
-  std::vector<double> probes;      ///< frames x probes
+  std::vector<double> energies;        ///< frames x kEnergyTerms [J]
+  std::vector<double> work;            ///< frames x kLedger [J]
+  std::vector<double> probes;          ///< frames x probes
 };
 
 }  // namespace der

@@ -44,7 +44,8 @@ struct LastFrame {
   std::vector<SavedRod> rods;
   std::string scene;  ///< YAML text of the scene as run
   Vector followed;    ///< as in the state, of that scene's model [rad]; none if not known
-  Vector section_frames;  ///< blocks of the edges that `positions` count from; none without sections
+  Vector
+      section_frames;  ///< blocks of the edges that `positions` count from; none without sections
 };
 LastFrame read_last_frame(const std::filesystem::path& path);
 

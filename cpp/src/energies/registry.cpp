@@ -29,7 +29,7 @@ constexpr auto accessors_of(const std::tuple<ElementList<Kernels>...>* /*lists*/
 }
 
 // Instantiates both functions for every kernel.
-[[gnu::used]] const auto kAccessors =
+[[gnu::used]] constexpr auto kAccessors =
     accessors_of(static_cast<const ElementLists::Lists*>(nullptr));
 
 }  // namespace

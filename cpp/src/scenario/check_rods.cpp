@@ -10,7 +10,7 @@ namespace {
 Path rod_path(int rod) { return {"rods", rod}; }
 
 void take_section(RodText& rod) {
-  rod.cross_section = std::move(rod.section.shape);
+  rod.cross_section = rod.section.shape;
   rod.director = std::move(rod.section.director);
 }
 

@@ -39,7 +39,7 @@ bool is_straight(const Rod& rod) {
     const Vec3 offset = in_space(rod.points[i]) - start;
     const double along = offset.dot(chord) / chord.norm();
     const double beside = offset.cross(chord).norm() / chord.norm();
-    if (!(along > reached && beside <= kRounding * scale)) return false;
+    if (along <= reached || beside > kRounding * scale) return false;
     reached = along;
   }
   return true;

@@ -1,10 +1,10 @@
-"""Recompute `values.json` and compare it with the quoted numbers.
+"""Recompute `values.json` and `spatial_values.json` and compare them with the quoted numbers.
 
     python -m references.generate                    all problems
     python -m references.generate elastica swing     only these, the rest of the file stays
 
 Started in `tests/validation`. Ends with status 1 if a quoted number lies outside its own
-error and ours. Layout of the file:
+error and ours. The rods in the plane are in one file, those in space in the other. Layout:
 
     {problem: {about, method, values: {key: {value, error, unit, quoted?, quoted_error?}}}}
 """
@@ -21,7 +21,8 @@ from typing import Any
 from .record import Problem, Reference
 
 FILE = Path(__file__).with_name("values.json")
-PROBLEMS = (
+SPATIAL_FILE = Path(__file__).with_name("spatial_values.json")
+PLANAR = (
     "falling_spheres",
     "elastica",
     "extensible_beam",
@@ -30,6 +31,19 @@ PROBLEMS = (
     "frequencies",
     "springs",
 )
+SPATIAL = (
+    "bent_cantilever",
+    "helix",
+    "princeton_beam",
+    "spatial_buckling",
+    "helical_buckling",
+    "hanging_coil",
+    "spatial_frequencies",
+    "curved_twisted_rod",
+    "writhe",
+    "spatial_motion",
+)
+PROBLEMS = PLANAR + SPATIAL
 
 
 def load_values(file: Path = FILE) -> dict[str, Any]:
@@ -57,8 +71,9 @@ def _entry(reference: Reference) -> dict[str, Any]:
     return entry
 
 
-def store(problem: Problem, file: Path = FILE) -> None:
-    """Put one problem into the file and leave the others as they are."""
+def store(problem: Problem) -> None:
+    """Put one problem into its file and leave the others as they are."""
+    file = SPATIAL_FILE if problem.name in SPATIAL else FILE
     everything = load_values(file)
     everything[problem.name] = {
         "about": problem.about,

@@ -1,8 +1,9 @@
 """Equilibria of rods in space against solutions of the boundary value problem.
 
-References: `references/bent_cantilever.py`, `princeton_beam.py`, `curved_twisted_rod.py` and, for ends
-that are held, `kirchhoff_rod.py` itself. There d1 is the director of the width, and the curvatures u1
-and u2 turn the section about d1 and d2: towards d1 the rod is curved by u2, towards d2 by -u1.
+References: `references/bent_cantilever.py`, `princeton_beam.py`, `curved_twisted_rod.py` and, for
+ends that are held, `kirchhoff_rod.py` itself. There d1 is the director of the width, and the
+curvatures u1 and u2 turn the section about d1 and d2: towards d1 the rod is curved by u2, towards
+d2 by -u1.
 """
 
 import numpy as np

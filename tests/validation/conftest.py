@@ -23,6 +23,18 @@ def reference() -> Callable[[str, str], float]:
 
 
 @pytest.fixture(scope="session")
+def spatial_reference() -> Callable[[str, str], float]:
+    """A number of references/spatial_values.json, of rods in space."""
+    file = ROOT / "tests/validation/references/spatial_values.json"
+    problems = json.loads(file.read_text())
+
+    def value(problem: str, name: str) -> float:
+        return problems[problem]["values"][name]["value"]
+
+    return value
+
+
+@pytest.fixture(scope="session")
 def scene() -> Callable[[str], der.Scenario]:
     """A scene of configs/ by its name."""
     return lambda name: der.load(ROOT / "configs" / f"{name}.yaml")

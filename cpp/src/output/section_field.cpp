@@ -76,19 +76,25 @@ class EdgeStrainField : public RodField {
     for (Index i = 0; i < rod.num_edges(); ++i) {
       edges_.push_back(spatial_edge(rod, i, model));
       const SpatialEdge& edge = edges_.back();
-      lengths_.push_back(edge.has_pivot() ? edge.vector(model.initial_positions, drawn).norm()
-                                          : rod.edge_length[to_size(i)]);
+      const double whole = rod.edge_length[to_size(i)];
+      whole_lengths_.push_back(whole);
+      effective_lengths_.push_back(
+          edge.has_pivot() ? edge.vector(model.initial_positions, drawn).norm() : whole);
     }
   }
+  /// An effective edge from a pivot is shorter than its edge and stretches for all of it.
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
-    return stiffness_ * (effective_vector(edges_[i], model, state).norm() / lengths_[i] - 1.0);
+    const double elongation =
+        effective_vector(edges_[i], model, state).norm() - effective_lengths_[i];
+    return stiffness_ * elongation / whole_lengths_[i];
   }
 
  private:
   double stiffness_;
   std::vector<SpatialEdge> edges_;
-  std::vector<double> lengths_;  // at rest [m]
+  std::vector<double> whole_lengths_;      // at rest [m]
+  std::vector<double> effective_lengths_;  // at rest [m]
 };
 
 }  // namespace

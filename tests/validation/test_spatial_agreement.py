@@ -1,0 +1,161 @@
+"""One scene as planar, `spatial_bend` and `spatial`, and turned in space; shapes at rest."""
+
+import der
+import numpy as np
+import pytest
+from references.kirchhoff_rod import rotation
+from scenes import END, START
+from spatial_scenes import measured, rod_through
+
+PLANAR = ("x", "y", "vx", "vy")
+PLACES = [0.3, "middle", "end"]
+STEPPERS = [
+    *("implicit_euler", "implicit_midpoint", "generalized_alpha", "newmark", "bdf2", "tr_bdf2"),
+    *("sdirk4", "sdirk5", "verlet"),
+]
+
+
+def planar_scene(model, curved, **more):
+    """A rod with all loads that the models share, drawn in the plane z = 0."""
+    angle = np.linspace(0, 1.2, 13) if curved else np.linspace(0.3, 0.3, 13)
+    points = np.cumsum(0.1 * np.column_stack([np.cos(angle), np.sin(angle), 0 * angle]), axis=0)
+    # Stiff in the plane and towards z alike: no side to bend to is special.
+    square = {"rectangle": {"width": 0.02, "height": 0.02}}
+    supports = [{**START, "clamp": True}]
+    if not curved and "time" not in more:
+        supports[0]["prescribe"] = {"rotation": {"axis": [0, 0, 1], "angle": 0.4}}
+    loads = [
+        {"gravity": [0, -9.81, 0]},
+        {"point_force": {"rod": "rod", "at": 0.437, "force": [0.3, 0.2, 0]}},
+        {"distributed_force": {"rod": "rod", "force": [0.1, -0.3, 0], "from": 0.2, "to": 0.9}},
+    ]
+    if "time" in more:
+        loads.append({"damping": {"coefficient": 0.1}})
+    material = {"youngs_modulus": 1e7, "density": 1000, "poissons_ratio": 0.3}
+    scene = rod_through(
+        points, square, supports=supports, rod={"material": material}, loads=loads, **more
+    )
+    return {**scene, "model": model}
+
+
+def motion(stepper):
+    time = {"duration": 0.2, "step": 0.01, "integrator": stepper}
+    return time if stepper != "verlet" else {**time, "duration": 0.02, "step": "auto"}
+
+
+@pytest.mark.parametrize("stepper", ["static", *STEPPERS, "tolerance"])
+@pytest.mark.parametrize("curved", [False, True])
+def test_planar_scene_is_the_same_in_all_models(stepper, curved):
+    """Positions and speeds are of size 1: the bound is far above rounding, far below any error."""
+    more = {}
+    if stepper == "tolerance":
+        more["time"] = {"duration": 0.2, "tolerance": 1e-3}
+    elif stepper != "static":
+        more["time"] = motion(stepper)
+    models = ["planar", "spatial"] if curved else ["planar", "spatial_bend", "spatial"]
+    answers, balances = [], []
+    for model in models:
+        values, result = measured(planar_scene(model, curved, **more), PLACES, PLANAR)
+        answers.append(values)
+        balances.append([result.energies[k][-1] for k in ("kinetic", "bend", "stretch")])
+        balances[-1] += [result.work[k][-1] for k in ("loads", "drag", "supports", "numerical")]
+    for other, balance in zip(answers[1:], balances[1:], strict=True):
+        assert other == pytest.approx(answers[0], abs=1e-9)
+        assert balance == pytest.approx(balances[0], abs=1e-9)
+
+
+def test_modes_of_the_plane_are_among_those_in_space():
+    def squares(model, count):
+        scene = planar_scene(model, curved=True, analysis={"modes": {"count": count}})
+        return np.array(der.run(scene).summary["frequencies_hz"])
+
+    in_space = squares("spatial", 8)
+    for frequency in squares("planar", 4):
+        assert np.abs(in_space / frequency - 1).min() < 1e-9
+
+
+def twisted_scene(turn, drawn, **more):
+    """A rod of curved and twisted shape with all that acts on it turned by the matrix `turn`."""
+    s = np.linspace(0, 1, 15)
+    points = np.column_stack([np.sin(2 * s), 0.3 * s**2, 0.4 * np.cos(3 * s) - 0.4]) @ turn.T
+    strip = {
+        "rectangle": {"width": 0.05, "height": 0.02},
+        "director": (turn @ [0.2, 1, 0.3]).tolist(),
+    }
+    material = {"youngs_modulus": 1e7, "density": 1000, "poissons_ratio": 0.3}
+    rod = {"initial_twist": 4.0, "material": material, **drawn}
+    return rod_through(points, strip, rod=rod, **more)
+
+
+ANYHOW = rotation(np.array([2, -3, 6]) / 7, 2.2)
+RIGID = np.eye(3)
+SECTION = ("curvature_1", "curvature_2", "twist", "torque", "moment_1", "moment_2", "tension")
+
+
+@pytest.mark.parametrize("stepper", ["static", "tr_bdf2", "sdirk4", "verlet"])
+def test_turning_a_scene_turns_the_answer(stepper):
+    more = {} if stepper == "static" else {"time": motion(stepper)}
+
+    def answer(turn):
+        def turned(*vector):
+            return (turn @ vector).tolist()
+
+        spin, tilt = (
+            {"times": [0, 0.2], "values": [0, 1.5]},
+            {"times": [0, 0.2], "values": [0, 0.8]},
+        )
+        if stepper == "static":
+            spin, tilt = 1.5, 0.8
+        move = {"twist": spin, "rotation": {"axis": turned(0, 1, 1), "angle": tilt}}
+        loads = [
+            {"gravity": turned(0, -9.81, 3)},
+            {"point_force": {"rod": "rod", "at": 0.437, "force": turned(0.3, 0.2, 0.1)}},
+        ]
+        supports = [{**START, "clamp": True, "prescribe": move}]
+        scene = twisted_scene(turn, {}, supports=supports, loads=loads, **more)
+        values, _ = measured(scene, PLACES, ("x", "y", "z", "vx", "vy", "vz", *SECTION))
+        return values
+
+    straight, turned = answer(RIGID), answer(ANYHOW)
+    assert turned[:, :3] == pytest.approx(straight[:, :3] @ ANYHOW.T, abs=1e-10)
+    assert turned[:, 3:6] == pytest.approx(straight[:, 3:6] @ ANYHOW.T, abs=1e-9)
+    # Curvatures of up to 5/m, differences of directions over a cell of 0.08 m; tensions of 10 N,
+    # differences of lengths times EA = 1e4 N.
+    assert turned[:, 6:-1] == pytest.approx(straight[:, 6:-1], abs=1e-8)
+    assert turned[:, -1] == pytest.approx(straight[:, -1], abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    "time",
+    [
+        {"duration": 10.0, "step": 1e-3, "integrator": "implicit_midpoint"},
+        {"duration": 100.0, "step": 1e-2, "integrator": "tr_bdf2"},
+        {"duration": 1.0, "step": "auto", "integrator": "verlet"},
+    ],
+    ids=["implicit_midpoint", "tr_bdf2", "verlet"],
+)
+@pytest.mark.parametrize("supports", [[], [{**START, "clamp": True}]], ids=["free", "clamped"])
+def test_any_shape_stays_at_rest(time, supports):
+    """4000 to 10,000 steps from a curved, twisted shape that is free of stress."""
+    scene = twisted_scene(ANYHOW, {}, supports=supports, time=time)
+    points = np.array(scene["rods"][0]["points"])
+    values, result = measured(scene, ["start", "end"], ("x", "y", "z", "vx", "vy", "vz"))
+    assert values[:, :3] == pytest.approx(points[[0, -1]], abs=1e-11)
+    assert np.abs(values[:, 3:]).max() < 1e-10
+    assert result.energies["kinetic"][-1] + result.energies["bend"][-1] < 1e-20
+
+
+def test_end_of_the_same_rod_drawn_backwards():
+    """Nothing depends on where a rod begins but the signs of its directors' handedness."""
+    strip = {"rectangle": {"width": 0.05, "height": 0.02}, "director": [0.2, 1, 0.3]}
+    material = {"youngs_modulus": 1e7, "density": 1000, "poissons_ratio": 0.3}
+    s = np.linspace(0, 1, 21)
+    points = np.column_stack([s, 0 * s, 0 * s])
+    load = [{"point_force": {"rod": "rod", "at": 0.7, "force": [0, -0.5, 1.2]}}]
+    back = [{"point_force": {"rod": "rod", "at": 0.3, "force": [0, -0.5, 1.2]}}]
+    rod = {"material": material}
+    there, _ = measured(rod_through(points, strip, loads=load, rod=rod), [0.35, "end"], "xyz")
+    clamp = [{**END, "clamp": True}]
+    scene = rod_through(points[::-1], strip, supports=clamp, loads=back, rod=rod)
+    reverse, _ = measured(scene, [0.65, "start"], "xyz")
+    assert reverse == pytest.approx(there, abs=1e-9)

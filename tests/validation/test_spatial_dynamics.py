@@ -1,0 +1,218 @@
+"""Motions of rods in space: `references/spatial_motion.py`, closed forms, and laws of balance."""
+
+import der
+import numpy as np
+import pytest
+from references.princeton_beam import torsion_constant
+from scenes import START
+from spatial_scenes import measured, rod_through, section, straight_rod
+
+XYZ = ("x", "y", "z")
+VELOCITY = ("vx", "vy", "vz")
+
+
+def histories(scene, places, quantities, every):
+    """Probes over time, shape (frames, places, quantities), and the whole result."""
+    scene = {**scene, "output": {"every": every}}
+    _, result = measured(scene, places, quantities)
+    series = [[result.probes[f"{q}_{i}"] for q in quantities] for i in range(len(places))]
+    return np.moveaxis(np.array(series), 2, 0), result
+
+
+@pytest.mark.parametrize("stepper", ["implicit_midpoint", "newmark", "tr_bdf2", "sdirk4"])
+def test_torsional_wave(stepper):
+    """A bar drawn with a twist that it would not have by itself is let go: its end turns as a
+    triangle wave of period 4 L/c, c = sqrt(GJ/j) (d'Alembert)."""
+    edges, twist, period = 80, 1.0, 2.0
+    bar = section(EA=1e3, EI=10.0, GJ=2.0, rotary_inertia=0.5)
+    rod = {"initial_twist": twist, "natural_twist": 0.0}
+    time = {"duration": period, "step": period / 320, "integrator": stepper}
+    length = 1 / edges
+    # The joints: a quarter of an edge from the clamp, over half an edge, and the inner nodes.
+    places = [0.25 * length, *(np.arange(1, edges) * length)]
+    twists, result = histories(straight_rod(edges, bar, rod=rod, time=time), places, ["twist"], 0.1)
+    angle = twists[:, :, 0] @ [0.5 * length, *np.full(edges - 1, length)]
+    triangle = np.interp(result.times, [0, 1, 2], [1.0, -1.0, 1.0])
+    # Kinks disperse: an error of (l/L)^(2/3) = 0.05 at the turning points, much less in between.
+    assert angle == pytest.approx(triangle, abs=0.05)
+    assert np.abs(angle - triangle)[[3, 5, 7]].max() < 0.01
+    assert result.summary["probes"]["twist_1"]["final"] == pytest.approx(1.0, abs=0.3)
+
+
+def curved_points(edges):
+    s = np.linspace(0, 1, edges + 1)
+    return np.column_stack([np.sin(2 * s), 0.3 * s**2, 0.4 * np.cos(3 * s) - 0.4])
+
+
+def momentum(thickness, stepper):
+    """Relative drift of the linear and angular momentum of a free rod that tumbles and bends for a
+    second. The spin of the sections is not counted."""
+    edges = 20
+    points = curved_points(edges)
+    s = np.linspace(0, 1, edges + 1)
+    shear = 0.5 * np.column_stack([np.sin(3 * s), 0 * s, np.cos(2 * s)])
+    velocities = np.cross([2.0, 3.0, 1.0], points) + np.array([0.1, 0.2, 0.3]) + shear
+    scale = (0.02 / thickness) ** 2  # the same mass and stretching for all
+    strip = {"rectangle": {"width": 2 * thickness, "height": thickness}}
+    material = {"youngs_modulus": 1e7 * scale, "density": 1000 * scale, "poissons_ratio": 0.3}
+    rod = {"material": material, "initial_twist": 3.0, "initial_velocity": velocities.tolist()}
+    step = "auto" if stepper == "verlet" else 2e-3
+    time = {"duration": 0.5, "step": step, "integrator": stepper}
+    scene = rod_through(points, strip, supports=[], rod=rod, time=time)
+    nodes = [{"node": k} for k in range(edges + 1)]
+    states, _ = histories(scene, nodes, [*XYZ, *VELOCITY], 0.5)
+
+    mass = 1000 * 2 * 0.02**2 * np.linalg.norm(np.diff(points, axis=0), axis=1)[:, None]
+
+    def momenta(state):
+        x, v = state[:, :3], state[:, 3:]
+        p = np.zeros_like(v)  # each edge is a uniform bar: 1/3 and 1/6 of its mass
+        p[:-1] += mass * (v[:-1] / 3 + v[1:] / 6)
+        p[1:] += mass * (v[1:] / 3 + v[:-1] / 6)
+        return p.sum(axis=0), np.cross(x, p).sum(axis=0)
+
+    first, last = momenta(states[0]), momenta(states[-1])
+    return [np.linalg.norm(b - a) / np.linalg.norm(a) for a, b in zip(first, last, strict=True)]
+
+
+@pytest.mark.parametrize("stepper", ["implicit_midpoint", "sdirk4", "verlet"])
+def test_a_free_rod_keeps_its_momenta(stepper):
+    """The linear one to rounding; the angular one up to the spin of the sections, which falls as
+    the square of the thickness."""
+    thick, thin = momentum(0.04, stepper), momentum(0.01, stepper)
+    assert max(thick[0], thin[0]) < 1e-12
+    assert thick[1] < 0.04**2
+    assert thin[1] < 2 * 0.01**2
+
+
+def held_and_turned(stepper, **time):
+    """A curved, twisted strip whose clamp turns about an axis, and about its tangent."""
+    strip = section([0.1, 0.3, 1], EA=200, EI1=0.3, EI2=0.1, GJ=0.1, mass_per_length=0.2)
+    strip["stiffness"]["rotary_inertia"] = 1e-3
+    times = np.linspace(0, 0.5, 5)
+    ramp = np.sin(np.pi * times) ** 2
+
+    def table(size):
+        return {"times": times.tolist(), "values": (size * ramp).tolist()}
+
+    motion = {"rotation": {"axis": [1, 2, 0.5], "angle": table(1.5)}, "twist": table(4.0)}
+    supports = [{**START, "clamp": True, "prescribe": motion}]
+    scene = straight_rod(
+        10,
+        strip,
+        supports=supports,
+        rod={"natural_curvature": [0.5, -1], "natural_twist": 1.0},
+        loads=[{"gravity": [0, 0, -3]}],
+        time={"duration": 0.5, "integrator": stepper, **time},
+    )
+    values, result = measured(scene, ["middle", "end"], XYZ)
+    return values, result
+
+
+@pytest.mark.parametrize("stepper", ["implicit_midpoint", "newmark", "tr_bdf2"])
+def test_ledger_of_a_clamp_that_turns_and_twists(fitted_order, stepper):
+    """What the stepper makes or loses falls with order 2 at least, and the work of the support
+    converges to one value."""
+    _, fine = held_and_turned("sdirk4", step=0.5 / 4096)
+    steps = [512, 1024, 2048]
+    numerical, supports = [], []
+    for count in steps:
+        _, result = held_and_turned(stepper, step=0.5 / count)
+        numerical.append(result.work["numerical"][-1])
+        supports.append(result.work["supports"][-1] - fine.work["supports"][-1])
+        terms = ("kinetic", "stretch", "bend", "gravity")
+        gain = sum(result.energies[k][-1] - result.energies[k][0] for k in terms)
+        work = sum(result.work[k][-1] for k in ("loads", "supports", "solver"))
+        work -= sum(result.work[k][-1] for k in ("drag", "numerical"))
+        assert gain == pytest.approx(work, abs=1e-9)
+    assert fitted_order([1 / k for k in steps], numerical) > 1.9
+    assert np.abs(supports[-1]) < 1e-4 * fine.work["supports"][-1]
+
+
+@pytest.mark.parametrize("stepper", ["tr_bdf2", "newmark", "sdirk4"])
+def test_adaptive_steps_keep_their_tolerance(stepper):
+    fine, _ = held_and_turned("sdirk4", step=0.5 / 8192)
+    for tolerance in (1e-3, 1e-4):
+        values, _ = held_and_turned(stepper, tolerance=tolerance)
+        assert np.abs(values - fine).max() < tolerance
+
+
+WIDTH, THICKNESS, MODULUS, POISSON, DENSITY = 0.03, 0.01, 5e6, 0.45, 1100.0
+
+
+def strip_in_motion(case, edges, steps, stepper, spins=True):
+    """The strips of references/spatial_motion.py; largest distance from it of middle and end."""
+    area = WIDTH * THICKNESS
+    polar = area * (WIDTH**2 + THICKNESS**2) / 12
+    strip = section(
+        [1, 0, 0],
+        EA=MODULUS * area,
+        EI1=MODULUS * THICKNESS * WIDTH**3 / 12,
+        EI2=MODULUS * WIDTH * THICKNESS**3 / 12,
+        GJ=MODULUS / (2 + 2 * POISSON) * torsion_constant(WIDTH, THICKNESS),
+        mass_per_length=DENSITY * area,
+        rotary_inertia=DENSITY * polar if spins else 0.0,
+    )
+    s = np.linspace(0, 0.5, edges + 1)
+    bow, along = (1 - np.cos(3 * s)) / 3, np.sin(3 * s) / 3
+    support = {**START, "clamp": True}
+    if case == "dropped":
+        duration, points = 0.4, np.column_stack([bow, 0 * s, along])
+        loads = [{"gravity": [0, -9.81, 0]}]
+    else:
+        duration, points, loads = 0.8, np.column_stack([0 * s, -bow, along]), []
+        times = np.linspace(0, 0.8, 801)
+        angle = np.pi * (1 - np.cos(np.pi * times))
+        support["prescribe"] = {"twist": {"times": times.tolist(), "values": angle.tolist()}}
+    time = {"duration": duration, "step": duration / steps, "integrator": stepper}
+    scene = rod_through(points, strip, supports=[support], loads=loads, time=time)
+    return histories(scene, ["middle", "end"], XYZ, duration / 8)[0]
+
+
+def paths(spatial_reference, case):
+    places = ("middle", "tip")
+    series = [[spatial_reference("spatial_motion", f"{case}.{p}.{c}") for c in XYZ] for p in places]
+    return np.moveaxis(np.array(series), 2, 0)
+
+
+@pytest.mark.parametrize(("case", "bound"), [("dropped", 3e-4), ("spun", 2.2e-3)])
+@pytest.mark.parametrize("stepper", ["implicit_midpoint", "tr_bdf2", "sdirk4"])
+def test_strips_in_motion(spatial_reference, case, bound, stepper):
+    """40 edges, 800 steps. The reference has the couple by which spinning sections resist being
+    tilted, which is 1.5e-4 m of the dropped strip, 8e-4 m of the spun one, 0.5 m long."""
+    error = strip_in_motion(case, 40, 800, stepper) - paths(spatial_reference, case)
+    assert np.abs(error).max() < bound
+
+
+def test_space_and_time_converge_at_order_2(spatial_reference, fitted_order):
+    """In the first half of the motion, where that couple has not yet turned anything."""
+    exact = paths(spatial_reference, "dropped")[:4]
+    sizes = [10, 20, 40]
+    errors = [
+        np.abs(strip_in_motion("dropped", n, 20 * n, "implicit_midpoint")[:4] - exact).max()
+        for n in sizes
+    ]
+    assert fitted_order([1 / n for n in sizes], errors) > 1.9
+
+
+@pytest.mark.parametrize("stepper", ["tr_bdf2", "newmark", "sdirk4", "bdf2", "generalized_alpha"])
+def test_sections_without_inertia(stepper):
+    """The angle then follows the nodes: all steppers agree with the midpoint rule."""
+    midpoint = strip_in_motion("dropped", 10, 800, "implicit_midpoint", spins=False)
+    other = strip_in_motion("dropped", 10, 800, stepper, spins=False)
+    assert np.abs(other - midpoint).max() < 2e-4  # the swing is 0.4 m; errors of time, order 2
+
+
+def test_automatic_step_of_verlet_is_stable_and_not_much_smaller_than_it_needs_to_be():
+    strip = section([0, 0, 1], EA=1e3, EI1=0.03, EI2=0.01, GJ=0.05, rotary_inertia=1e-3)
+    time = {"duration": 2.0, "step": "auto", "integrator": "verlet"}
+    loads = [{"gravity": [0, -1, 1]}]
+    scene = rod_through(curved_points(12), strip, loads=loads, time=time)
+    simulation = der.Simulation(der.Scenario.from_dict(scene))
+    stiffness, mass = simulation.hessian().toarray(), simulation.mass().toarray()
+    fastest = np.sqrt(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real.max())
+    _, result = measured(scene, ["end"], ["x"])
+    share = time["duration"] / result.summary["steps"] * fastest / 2
+    assert 0.4 < share < 1.0
+    total = sum(result.energies[k] for k in ("kinetic", "stretch", "bend", "gravity"))
+    assert np.abs(total - total[0]).max() < 0.02 * result.energies["kinetic"].max()

@@ -16,12 +16,6 @@ MassSolver::MassSolver(const Model& model)
 
 void MassSolver::prepare(double t) {
   diagonal_ = model_.mass.lumped + t * model_.damping;
-  massless_.clear();
-  for (const Index dof : model_.dofs.free()) {
-    if (diagonal_[dof] != 0.0) continue;
-    massless_.push_back(dof);
-    diagonal_[dof] = 1.0;
-  }
   prepared_for_ = t;
   if (!solver_) return;
   const MatrixLayout& layout = solver_->layout();
@@ -40,7 +34,6 @@ void MassSolver::prepare(double t) {
 
 void MassSolver::solve(double t, Vector& b) {
   if (t != prepared_for_) prepare(t);
-  for (const Index dof : massless_) b[dof] = 0.0;
   if (solver_) {
     for (Index i = 0; i < free_.size(); ++i) free_[i] = b[model_.dofs.free()[to_size(i)]];
     solver_->solve(free_);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "der/assembly/pattern.hpp"
 #include "der/core/types.hpp"
@@ -11,9 +10,7 @@
 namespace der {
 
 /// Solves (M + t C) x = b, M the mass matrix, C the model's diagonal damping, over the free degrees
-/// of freedom: a division where no masses are coupled. Factorises again when `t` changes. Where a
-/// degree of freedom has neither mass nor damping, as the angle of a section without rotary
-/// inertia, x is 0: no equation of motion tells it.
+/// of freedom: a division where no masses are coupled. Factorises again when `t` changes.
 class MassSolver {
  public:
   explicit MassSolver(const Model& model);
@@ -27,10 +24,9 @@ class MassSolver {
   std::unique_ptr<Pattern> pattern_;      // null where the mass is diagonal
   std::unique_ptr<LinearSolver> solver_;  // likewise
   Vector values_;
-  Vector diagonal_;              // lumped + t C
-  std::vector<Index> massless_;  // free, with a zero on the diagonal; a one stands there
-  Vector free_;                  // over the free degrees of freedom
-  double prepared_for_ = -1.0;   // t [s]; -1: none yet
+  Vector diagonal_;             // lumped + t C
+  Vector free_;                 // over the free degrees of freedom
+  double prepared_for_ = -1.0;  // t [s]; -1: none yet
 };
 
 }  // namespace der

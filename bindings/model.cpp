@@ -115,8 +115,6 @@ void bind_model(py::module_& module) {
       .def_readonly("reason", &Model::reason, "Why this model was taken.")
       .def_readonly("dimension", &Model::dimension, "Components of a position: 2 or 3.")
       .def_readonly("num_nodes", &Model::num_nodes, "Number of nodes of all rods.")
-      .def_property_readonly("has_sections", &Model::has_sections,
-                             "Whether edges have sections that turn: the model ``spatial``.")
       .def_property_readonly("num_dofs", &Model::num_dofs,
                              "Degrees of freedom, held ones included.")
       .def_property_readonly("num_free", &Model::num_free,

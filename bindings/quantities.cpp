@@ -53,11 +53,14 @@ void bind_quantities(py::module_& module) {
       .def_readonly("unit", &Quantity::unit, "SI unit; empty for a pure number.")
       .def_property_readonly(
           "kind", [](const Quantity& quantity) { return kind_name(quantity.kind); },
-          "Where it is known: position, velocity (at nodes), turn (at nodes that bend), bend, edge "
+          "Where it is known: position, velocity (at nodes), turn (at nodes that bend), section "
+          "(where "
+          "sections bend or twist), bend, edge "
           "(at any arc length, with jumps), energy (of a rod or the whole model, at no place).")
       .def_readonly("meaning", &Quantity::meaning, "In words.")
       .def_readonly("is_component", &Quantity::is_component,
                     "Whether it is a component of the position or of the velocity.")
+      .def("is_available", &is_available, py::arg("model"), "Whether a model has the quantity.")
       .def("__repr__", [](const Quantity& quantity) {
         return py::str("<der.Quantity {} [{}]: {}>")
             .format(quantity.name, quantity.unit, quantity.meaning);

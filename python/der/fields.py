@@ -23,11 +23,12 @@ def fields_of(model: Model) -> dict[str, Quantity]:
     They have a value at every arc length; those of the motion come last. Components of positions
     and velocities are left out, as the vectors are exported.
     """
-    left_out = {"turn", "energy"} | (set() if model.has_sections else {"section"})
     along_rods = [
         quantity
         for quantity in quantities()
-        if quantity.kind not in left_out and not quantity.is_component
+        if quantity.is_available(model)
+        and quantity.kind not in ("turn", "energy")
+        and not quantity.is_component
     ]
     along_rods.sort(key=is_motion)
     return {quantity.name: quantity for quantity in along_rods}

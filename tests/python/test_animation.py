@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from der.animation import _cut, _set_stage
 from der.film import make_film, round_speed, speed_text
+from der.plotting.picture import Picture
 from matplotlib.colors import to_rgb
 from PIL import Image
 
@@ -60,7 +61,7 @@ def test_long_titles_are_not_cut_off(swing, words):
     swing["title"] = "wonderful " * words
     result = der.run(swing)
     cut = _cut(result, make_film(result), 10.0, None)
-    axes = _set_stage(result, cut)
+    axes = _set_stage(Picture(result), cut)
     figure = axes.get_figure(root=True)
     figure.draw_without_rendering()
     box = figure._suptitle.get_window_extent()
@@ -73,7 +74,7 @@ def test_pictures_say_that_a_run_failed(unstable):
     with pytest.raises(der.DivergedError) as caught:
         der.run(unstable)
     result = caught.value.result
-    axes = _set_stage(result, _cut(result, make_film(result), 10.0, None))
+    axes = _set_stage(Picture(result), _cut(result, make_film(result), 10.0, None))
     title = axes.get_figure(root=True).get_suptitle()
     assert title == f"Three spheres in a fluid (diverged at t = {result.times[-1]:g} s)"
 
@@ -83,7 +84,7 @@ def test_axes_share_one_unit(swing):
     swing["time"] = {"duration": 1e-3, "step": 1e-5, "integrator": "implicit_euler"}
     swing["output"] = {"every": 1e-4}
     result = der.run(swing)
-    axes = _set_stage(result, _cut(result, make_film(result), 10.0, None))
+    axes = _set_stage(Picture(result), _cut(result, make_film(result), 10.0, None))
     axes.get_figure(root=True).draw_without_rendering()
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("x [mm]", "y [mm]")
     labels = [label.get_text() for label in axes.get_xticklabels()]

@@ -72,7 +72,6 @@ def same_result(one, other):
 
 def test_views_are_those_of_the_nodes_and_of_the_edges(helix):
     simulation = section_scene(helix)
-    assert simulation.model.has_sections
     for view in (simulation.positions, simulation.velocities, simulation.extra_force):
         assert view.shape == (9, 3)
         assert view.strides == (24, 8)

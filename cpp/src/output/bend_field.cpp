@@ -4,7 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "der/core/error.hpp"
 #include "der/core/index.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/kinematics/planar_edge.hpp"
@@ -241,11 +240,6 @@ std::unique_ptr<RodField> make_bend_field(bool moment, const RodLayout& rod, con
 }  // namespace
 
 std::unique_ptr<RodField> make_turning_angle_field(const RodLayout& rod, const Model& model) {
-  if (model.dimension == 3) {
-    throw Error("model_error",
-                "turning angles are signed in a plane, and the model '" + model.name +
-                    "' is in space: take 'curvature', or 'curvature_1' and 'curvature_2'");
-  }
   std::vector<Weighted> nodes;
   for (Index i = 0; i <= rod.num_edges(); ++i) {
     const bool inner = i > 0 && i < rod.num_edges();

@@ -11,7 +11,7 @@ namespace der {
 namespace {
 
 /// What a quantity needs, by its scope.
-constexpr std::array kNeeds{"", "it belongs to planar rods",
+constexpr std::array kNeeds{"", "it has a sign in a plane only, take 'curvature'",
                             "write 'model: spatial', or 'spatial_bend' for a rod that cannot twist",
                             "write 'model: spatial', in which sections count"};
 
@@ -38,8 +38,8 @@ std::unique_ptr<RodField> make_rod_field(const std::string& quantity, const RodL
   const Quantity* row = find_quantity(quantity);
   if (row != nullptr && row->make_field != nullptr) {
     if (!is_available(*row, model)) {
-      throw Error("model_error", fmt::format("the model '{}' has no '{}': {}", model.name,
-                                             quantity, kNeeds[static_cast<int>(row->scope)]));
+      throw Error("model_error", fmt::format("the model '{}' has no '{}': {}", model.name, quantity,
+                                             kNeeds[static_cast<int>(row->scope)]));
     }
     return row->make_field(rod, model);
   }

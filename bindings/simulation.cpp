@@ -365,8 +365,10 @@ void bind_actions(PySimulationClass& cls) {
            "`callback()` returns false after a step. `tick()` is called now and then; `out` is a\n"
            "folder to write the run to. A failure is told by the recording, not raised.\n"
            "`Simulation.run` makes a Result of it.")
-      .def("__repr__", [](const PySimulation& simulation) {
-        const Simulation& engine = simulation.engine();
+      .def("__repr__", [](const py::object& self) {
+        // Tracebacks print objects whose constructor has failed, too.
+        if (!py::detail::is_holder_constructed(self.ptr())) return py::str("<der.Simulation>");
+        const Simulation& engine = self.cast<const PySimulation&>().engine();
         return py::str("<der.Simulation of {!r}: {} nodes, t = {:.6g} s, step {} of {}>")
             .format(engine.scenario().scene().title, engine.model().num_nodes, engine.state().time,
                     engine.state().step, engine.plan().total_steps);

@@ -43,8 +43,8 @@ Quantity section(std::string name, std::string unit, std::string meaning) {
   const RodFieldMaker maker = [](const RodLayout& rod, const Model& model) {
     return make_section_field(quantity, rod, model);
   };
-  return in(QuantityScope::Sections,
-            field(std::move(name), std::move(unit), QuantityKind::Section, std::move(meaning), maker));
+  return in(QuantityScope::Sections, field(std::move(name), std::move(unit), QuantityKind::Section,
+                                           std::move(meaning), maker));
 }
 
 Quantity energy(std::string name, std::string meaning, std::vector<EnergyTerm> terms) {
@@ -66,15 +66,17 @@ std::vector<Quantity> quantities_along_rods() {
          field("turning_angle", "rad", Kind::Turn,
                "angle from the edge before a node to the edge after it, positive counter-clockwise",
                make_turning_angle_field)),
-      field("curvature", "1/m", Kind::Bend, "turning angle per length", make_curvature_field),
+      field("curvature", "1/m", Kind::Bend, "turning angle per length; its magnitude in space",
+            make_curvature_field),
       field("moment", "N m", Kind::Bend,
-            "bending moment, positive where it bends counter-clockwise", make_moment_field),
+            "bending moment, positive where it bends counter-clockwise; its magnitude in space",
+            make_moment_field),
       section<SectionQuantity::Curvature1>("curvature_1", "1/m",
                                            "curvature towards the first director"),
       section<SectionQuantity::Curvature2>("curvature_2", "1/m",
                                            "curvature towards the second director"),
-      section<SectionQuantity::Moment1>("moment_1", "N m",
-                                        "bending moment of the curvature towards the first director"),
+      section<SectionQuantity::Moment1>(
+          "moment_1", "N m", "bending moment of the curvature towards the first director"),
       section<SectionQuantity::Moment2>(
           "moment_2", "N m", "bending moment of the curvature towards the second director"),
       section<SectionQuantity::Twist>("twist", "rad/m", "rotation of the section per length"),

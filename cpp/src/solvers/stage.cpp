@@ -6,6 +6,7 @@
 
 #include "der/assembly/discrete_gradient_assembler.hpp"
 #include "der/core/index.hpp"
+#include "der/kinematics/edge_frame.hpp"
 #include "der/model/edge_change.hpp"
 #include "stage_kernels.hpp"
 
@@ -112,7 +113,21 @@ double StageProblem::residual_rounding(Vector& values) {
                   stage_->velocity_factor * largest_term(model_.damping));
 }
 
+/// Takes out of the elastic forces on nodes the part T a of the torque T on an edge, with the spin
+/// a of its transport from the source.
+void StageProblem::take_spin_out(Vector& residual) const {
+  for (std::size_t i = 0; i < model_.framed_edges.size(); ++i) {
+    const SpatialEdge& edge = model_.framed_edges[i];
+    const Vec3 vector = edge.vector(here_->coordinates, here_->controls);
+    const Vec3 source = FrameBlock::of(static_cast<Index>(i)).tangent(here_->controls);
+    const Vec3 force = residual[edge.theta] * transport_spin(vector, source);
+    residual.segment<3>(edge.start) += force;
+    residual.segment<3>(edge.end) -= force;
+  }
+}
+
 void StageProblem::add_stage_forces(Vector& residual) {
+  if (stage_->is_motion) take_spin_out(residual);
   const DofMap& dofs = model_.dofs;
   acting_ = std::max(subtract_force(dofs, stage_->force, residual), external_);
   if (stage_->inertia != 0.0) {

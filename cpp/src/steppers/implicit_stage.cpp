@@ -19,7 +19,9 @@ ImplicitStage::ImplicitStage(const Model& model, const Assembler& assembler, Lin
       finisher_(model),
       held_controls_(Vector::Zero(model.tables.size())),
       start_controls_(Vector::Zero(model.tables.size())),
-      displacement_(Vector::Zero(model.num_dofs())) {}
+      displacement_(Vector::Zero(model.num_dofs())) {
+  equation.is_motion = true;
+}
 
 void ImplicitStage::apply_prescribed_motion_at(const State& state, double time, Vector& where) {
   evaluate_controls(state, time, held_controls_);

@@ -5,6 +5,13 @@
 
 namespace der {
 
+/// Spin a [1/m] about the tangent, by a change of the vector of an edge, of a frame that is
+/// transported from the unit tangent `source` (EdgeFrame).
+inline Vec3 transport_spin(const Vec3& edge, const Vec3& source) {
+  const double length = edge.norm();
+  return -source.cross(edge) / (length * (length + source.dot(edge)));
+}
+
 /// The section frame on an edge as a function of the edge vector e and the angle theta: the
 /// reference director of the edge's source, transported from the source's tangent to that of e in
 /// one step, then turned by theta (Bergou et al., Discrete Viscous Threads, SIGGRAPH 2010,
@@ -24,7 +31,7 @@ struct EdgeFrame {
       : length(edge.norm()), source(source_tangent) {
     const Vec3 tangent = edge / length;
     frame = SectionFrame::of(tangent, transport(director, source, tangent)).turned(theta);
-    spin = -source.cross(tangent) / (length * (1.0 + source.dot(tangent)));
+    spin = transport_spin(edge, source);
   }
 
   /// omega = L (de, dtheta).

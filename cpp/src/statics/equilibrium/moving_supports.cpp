@@ -72,7 +72,10 @@ std::vector<double> move_supports(const Model& model, const StaticLoads& loads,
   double step = longest < 1.0 ? kFirstStep : 1.0;
   for (double done = step; done < 1.0; done += step) {
     shape.positions += step * displacement;
-    equilibrate({target_controls - (1.0 - done) * rotation, loads.force}, shape);
+    const StaticLoads on_the_way{target_controls - (1.0 - done) * rotation, loads.force};
+    equilibrate(on_the_way, shape);
+    // Where no equilibrium was found, too: a clamp that gets ahead of its frames loses whole turns.
+    if (!model.framed_edges.empty()) on_the_way.follow(model, shape);
     step = std::min({2.0 * step, longest, 1.0 - done});
   }
   apply_prescribed_motion(model, target_controls, shape.positions);

@@ -13,7 +13,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "der/core/error.hpp"
-#include "der/model/joint_strain.hpp"
+#include "der/output/joint_strain.hpp"
 #include "recording.hpp"
 #include "state.hpp"
 

@@ -1,7 +1,7 @@
+#include "der/energies/foundation.hpp"
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
-#include "der/energies/foundation.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/location.hpp"
 

@@ -26,8 +26,8 @@ void follow_frames(const Model& model, const Vector& coordinates, const Vector& 
     frames.segment<3>(block.first + 3) = made_perpendicular(moved, tangent);
   }
   for (const FramedJoint& joint : model.framed_joints) {
-    const SectionFrame before = joint.before >= 0 ? reference_frame(joint.before, frames)
-                                                  : joint.held.untwisted(controls);
+    const SectionFrame before =
+        joint.before >= 0 ? reference_frame(joint.before, frames) : joint.held.untwisted(controls);
     const SectionFrame after =
         joint.after >= 0 ? reference_frame(joint.after, frames) : joint.held.untwisted(controls);
     double& twist = frames[joint.twist()];

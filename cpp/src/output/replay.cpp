@@ -7,7 +7,7 @@
 
 #include "der/building/builder.hpp"
 #include "der/core/error.hpp"
-#include "der/model/joint_strain.hpp"
+#include "der/output/joint_strain.hpp"
 #include "der/scenario/scenario.hpp"
 #include "output/rod_field.hpp"
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "der/core/index.hpp"
-#include "der/model/joint_strain.hpp"
+#include "der/output/joint_strain.hpp"
 #include "der/supports/spatial_clamp.hpp"
 
 namespace der {

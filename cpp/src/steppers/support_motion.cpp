@@ -69,8 +69,8 @@ SupportMotion::SupportMotion(const Model& model) : model_(model) {
   }
   for (const RodLayout& rod : model.rods) {
     for (const Clamp& clamp : rod.clamps) {
-      for_each_turning_control(
-          clamp, [&](Index control) { moved_.push_back({control, kLargestTurn}); });
+      for_each_turning_control(clamp,
+                               [&](Index control) { moved_.push_back({control, kLargestTurn}); });
     }
   }
 }

@@ -20,8 +20,8 @@ def parameters_table() -> Table:
     trees = [Scenario.load(scene_file(name)).to_dict() for name in _SCENES]
     return Table(
         caption="Parameters of the runs. Problem 2 is shown for 21 nodes; with another number the "
-        "small spheres have a tenth of an edge for their radius. The explicit scheme takes steps of "
-        "0.00001 s, and 0.0001 s where it blows up.",
+        "small spheres have a tenth of an edge for their radius. The explicit scheme takes steps "
+        "of 0.00001 s, and 0.0001 s where it blows up.",
         columns=["Parameter", "Unit", "Problem 1", "Problem 2", "Problem 3"],
         align=["left", "left", "right", "right", "right"],
         rows=[[name, unit, *(read(tree) for tree in trees)] for name, unit, read in _ROWS],

@@ -169,9 +169,9 @@ class Mesh:
         self.q_dead += weight * self.L / self.F
         self.position_drawn = position / self.L
         self.bedding = np.zeros((*self.u_gauss.shape, 2))  # stiffness of foundations
-        for lo, hi, k in rod.foundations:
+        for lo, hi, bed in rod.foundations:
             inside = (self.u_gauss > lo) & (self.u_gauss < hi)
-            self.bedding[inside] += np.array(k) * self.L**2 / self.F
+            self.bedding[inside] += np.array(bed) * self.L**2 / self.F
         self._index()
         self._held, self._constants = self._conditions()
 

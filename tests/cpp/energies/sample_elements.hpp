@@ -225,7 +225,8 @@ Eigen::Matrix<double, Kernel::kDofs, 1> sample_positions(Shape shape, Random& ra
 inline SectionFrame sample_source(Index edge, const Vec3& vector, Random& random,
                                   Configuration& here) {
   const Vec3 tangent = vector.normalized();
-  const SectionFrame source = sample_frame((tangent + 0.5 * direction(random)).normalized(), random);
+  const SectionFrame source =
+      sample_frame((tangent + 0.5 * direction(random)).normalized(), random);
   const FrameBlock block = FrameBlock::of(edge);
   here.controls.segment<3>(block.first) = source.tangent;
   here.controls.segment<3>(block.first + 3) = source.first;

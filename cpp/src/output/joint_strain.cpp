@@ -1,4 +1,4 @@
-#include "der/model/joint_strain.hpp"
+#include "der/output/joint_strain.hpp"
 
 #include <cmath>
 

@@ -272,23 +272,29 @@ void bind_actions(PySimulationClass& cls) {
       .def(
           "prescribe",
           [](PySimulation& simulation, std::size_t support, std::optional<double> x,
-             std::optional<double> y, std::optional<double> angle) {
+             std::optional<double> y, std::optional<double> z, std::optional<double> angle,
+             std::optional<double> twist) {
             Simulation& engine = simulation.engine();
             const std::vector<Ramp> before = engine.state().ramps;
             try {
               if (x) engine.prescribe(support, "x", *x);
               if (y) engine.prescribe(support, "y", *y);
+              if (z) engine.prescribe(support, "z", *z);
               if (angle) engine.prescribe(support, "angle", *angle);
+              if (twist) engine.prescribe(support, "twist", *twist);
             } catch (...) {  // all of them or none
               engine.state().ramps = before;
               throw;
             }
           },
           py::arg("support"), py::kw_only(), py::arg("x") = py::none(), py::arg("y") = py::none(),
-          py::arg("angle") = py::none(),
+          py::arg("z") = py::none(), py::arg("angle") = py::none(), py::arg("twist") = py::none(),
           "Move a support, by its number in the scene, in place of the table that it has there.\n\n"
-          "`x`, `y` [m] count from its initial place, `angle` [rad] from the initial direction. "
-          "They are\nreached evenly, at the end of the next step, and kept until they are moved "
+          "`x`, `y`, `z` [m] count from its initial place, `angle` [rad] from the initial "
+          "direction, in space\nabout the axis of the clamp's rotation, `twist` [rad] about the "
+          "held "
+          "tangent. They are\nreached evenly, at the end of the next step, and kept until they are "
+          "moved "
           "again; `equilibrium`\nand static scenes take them at once. The scene has to prescribe "
           "them (``prescribe: {angle: 0}``)\nand to have steps of one length: DerError if not.")
       .def(
@@ -303,8 +309,9 @@ void bind_actions(PySimulationClass& cls) {
             return values;
           },
           py::arg("support"),
-          "Present values of what a support prescribes, by name: ``x``, ``y`` [m], ``angle`` "
-          "[rad].")
+          "Present values of what a support prescribes, by name: ``x``, ``y``, ``z`` [m], "
+          "``angle``,\n"
+          "``twist`` [rad].")
       .def(
           "vibration_modes",
           [](PySimulation& simulation, int count) {

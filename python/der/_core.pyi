@@ -314,7 +314,9 @@ class Simulation:
         *,
         x: float | None = None,
         y: float | None = None,
+        z: float | None = None,
         angle: float | None = None,
+        twist: float | None = None,
     ) -> None: ...
     def prescribed(self, support: int) -> dict[str, float]: ...
     def vibration_modes(

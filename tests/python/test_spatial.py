@@ -458,3 +458,42 @@ def test_an_animation_is_written(helix, tmp_path):
     helix["time"]["duration"] = 0.008
     path = der.run(helix).animate(tmp_path / "run.gif", fps=5.0)
     assert path.stat().st_size > 1000
+
+
+def test_a_program_turns_and_twists_a_clamp():
+    scene = {
+        "rods": [
+            {
+                "name": "rod",
+                "nodes": 9,
+                "from": [0, 0, 0],
+                "to": [1, 0, 0],
+                "cross_section": {
+                    "stiffness": {"EA": 1e4, "EI": 1, "GJ": 2, "mass_per_length": 1},
+                },
+            }
+        ],
+        "supports": [
+            {"rod": "rod", "at": "start", "clamp": True},
+            {
+                "rod": "rod",
+                "at": "end",
+                "clamp": True,
+                "prescribe": {"z": 0, "twist": 0, "rotation": {"axis": [0, 1, 0], "angle": 0}},
+            },
+        ],
+        "analysis": "static",
+        "output": {"probes": {"torque": {"quantity": "torque", "rod": "rod", "at": "middle"}}},
+    }
+    simulation = der.Simulation(der.Scenario.from_dict(scene))
+    simulation.prescribe(1, twist=1.5)
+    simulation.equilibrium()
+    # A straight rod: GJ times the twist.
+    assert simulation.probes["torque"] == pytest.approx(3.0, rel=1e-9)
+    simulation.prescribe(1, twist=0, z=0.1, angle=0.2)
+    simulation.equilibrium()
+    assert simulation.prescribed(1) == {"z": 0.1, "angle": 0.2, "twist": 0.0}
+    assert simulation.positions[-1, 2] == pytest.approx(0.1)
+    # The end's tangent falls by 0.2 rad about y, of which the last half cell takes some.
+    tangent = simulation.positions[-1] - simulation.positions[-2]
+    assert -0.2 < tangent[2] / tangent[0] < 0.0

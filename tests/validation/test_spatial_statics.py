@@ -131,9 +131,17 @@ def test_curved_and_twisted_rod_under_a_tip_force(spatial_reference, fitted_orde
 
 
 @pytest.mark.parametrize("edges", [5, 20])
-def test_27_turns_of_an_end(edges):
+@pytest.mark.parametrize(
+    "motion",
+    [
+        {"twist": 27 * 2 * np.pi},
+        {"rotation": {"axis": [1, 0, 0], "angle": 27 * 2 * np.pi}},
+    ],
+    ids=["twist", "rotation"],
+)
+def test_27_turns_of_an_end(edges, motion):
     """While the rod is straight, its twist is the same all along, and the torque GJ times it."""
-    turned = {**END, "clamp": True, "prescribe": {"twist": 27 * 2 * np.pi}}
+    turned = {**END, "clamp": True, "prescribe": motion}
     supports = [{**START, "clamp": True}, turned]
     rod = section(EI=5e3, GJ=0.8)
     scene = straight_rod(edges, rod, to=[2, 0, 0], supports=supports)

@@ -179,7 +179,7 @@ void SpatialChain::add_terms(const Model& model, const Configuration& here, Vect
                              double* values) const {
   constexpr bool with_hessian = D == Derivatives::Hessian;
   constexpr int size = Terms::kSize;
-  using Edge = typename Terms::Edge;
+  using EdgeTerms = typename Terms::Edge;
   using Block = typename Terms::Block;
   using Response = typename Terms::Response;
   const auto* edge_constants =
@@ -195,20 +195,21 @@ void SpatialChain::add_terms(const Model& model, const Configuration& here, Vect
     const Vec3 e = vector(j);
     if constexpr (size == 4) {
       const auto& block = j == 0 ? bend_constants[0].before : bend_constants[j - 1].after;
-      return Edge(e, here.coordinates[first_theta_ + static_cast<Index>(j)], block, here.controls);
+      return EdgeTerms(e, here.coordinates[first_theta_ + static_cast<Index>(j)], block,
+                       here.controls);
     } else {
-      return Edge(e, e.norm());
+      return EdgeTerms(e, e.norm());
     }
   };
 
-  Edge edge = edge_at(0);
+  EdgeTerms edge = edge_at(0);
   Response start;                     // of the joint at the start of the edge
   Vec3 force_before = Vec3::Zero();   // F_{j-1}
   Mat3 before = Mat3::Zero();         // B_{j-1} by the vector
   Block from_before = Block::Zero();  // C_j
   for (std::size_t j = 0; j < edges_.count; ++j, g += 3) {
     const bool last = j + 1 == edges_.count;
-    const Edge next = last ? edge : edge_at(j + 1);
+    const EdgeTerms next = last ? edge : edge_at(j + 1);
     Response end;
     if (!last) {
       end = Terms::template joint<with_hessian>(bend_constants[j], edge, next, here.controls);

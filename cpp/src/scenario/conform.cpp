@@ -51,7 +51,7 @@ class Conform {
     } else if (const auto* list = std::get_if<std::vector<CurvaturePair>>(&rod.natural_curvature)) {
       std::vector<double> signed_values(list->size());
       std::transform(list->begin(), list->end(), signed_values.begin(),
-                     [&](const CurvaturePair& pair) { return director.in_plane(pair); });
+                     [&](const CurvaturePair& each) { return director.in_plane(each); });
       rod.natural_curvature = std::move(signed_values);
     }
   }

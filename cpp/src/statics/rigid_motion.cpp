@@ -105,7 +105,7 @@ const char* motion_in_words(const Eigen::Vector3d& combination) {
   constexpr std::array kWords{"moving along x", "moving along y", "turning"};
   Eigen::Index largest = 0;
   combination.cwiseAbs().maxCoeff(&largest);
-  return kWords[to_size(largest)];
+  return kWords[static_cast<std::size_t>(largest)];
 }
 
 }  // namespace

@@ -62,7 +62,8 @@ void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod,
   const Index rotation = support.rotation ? model.tables.add(*support.rotation) : -1;
   const Index beside = std::min(place, rod.num_edges() - 1);
   const Index followed = support.rotation ? follow_edge(rod, beside, model) : -1;
-  rod.clamps.push_back({place, initial_tangent_angle(rod, place, model), rotation, followed});
+  rod.clamps.push_back(
+      {place, initial_tangent_angle(rod, place, model), rotation, followed, {}, true});
 }
 
 EffectiveEdge effective_edge(const RodLayout& rod, Index edge, const Model& model) {

@@ -137,7 +137,6 @@ TEST_CASE("a discrete gradient along a step is the change of energy, however lar
   for_each_kernel([](auto kernel) {
     using Kernel = decltype(kernel);
     for_each_sample<Kernel>([](const auto& element, Shape shape, Random& random) {
-      constexpr int n = Kernel::kDofs;
       const auto start = sample_positions<Kernel>(shape, random);
       CHECK(element.gap(start, sample_positions<Kernel>(shape, random)) < 1e-13);
       // Small steps: quotients of small differences.

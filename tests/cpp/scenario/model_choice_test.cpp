@@ -142,8 +142,8 @@ TEST_CASE("model: a twist of the rod itself") {
 
 TEST_CASE("model: bending without twist takes equal bending stiffnesses") {
   CHECK(chosen(kAlongZ) == "spatial_bend");
-  const auto section = [](const std::string& section) {
-    return chosen(kAlongZ + Overrides{{"rods.beam.cross_section", section}});
+  const auto section = [](const std::string& text) {
+    return chosen(kAlongZ + Overrides{{"rods.beam.cross_section", text}});
   };
   CHECK(section("{rectangle: {width: 0.02, height: 0.02}}") == "spatial_bend");
   CHECK(section("{rectangle: {width: 0.02, height: 0.021}}") == "spatial");

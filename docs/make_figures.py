@@ -167,6 +167,11 @@ def snap_through_arch() -> Figure:
     return der.run(CONFIGS / "snap_through_arch.yaml").plot()
 
 
+def helix_spring() -> Figure:
+    """Draw a wire in space that coils up to its natural shape."""
+    return der.run(CONFIGS / "helix_spring.yaml").plot()
+
+
 def tutorial_falling_rod() -> Figure:
     """Draw the rod with beads of the first tutorial."""
     return falling_rod.figure(der.run(falling_rod.SCENE))
@@ -337,6 +342,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         beam_modes,
         euler_buckling,
         snap_through_arch,
+        helix_spring,
         tutorial_falling_rod,
         tutorial_beam_study,
         tutorial_control,

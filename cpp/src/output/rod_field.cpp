@@ -39,7 +39,7 @@ std::unique_ptr<RodField> make_rod_field(const std::string& quantity, const RodL
   if (row != nullptr && row->make_field != nullptr) {
     if (!is_available(*row, model)) {
       throw Error("model_error", fmt::format("the model '{}' has no '{}': {}", model.name, quantity,
-                                             kNeeds[static_cast<int>(row->scope)]));
+                                             kNeeds[static_cast<std::size_t>(row->scope)]));
     }
     return row->make_field(rod, model);
   }

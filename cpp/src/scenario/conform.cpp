@@ -100,7 +100,7 @@ class Conform {
 
   template <class Kind>
   void conform(Kind& load) const {
-    for_each_amount(load, [this](const char* /*key*/, auto& amount) { resize(amount); });
+    for_each_amount(load, [&](const char* /*key*/, auto& amount) { resize(amount); });
   }
 
   void conform(Foundation& load) const { resize(load.stiffness); }

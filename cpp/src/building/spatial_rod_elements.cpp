@@ -4,7 +4,7 @@
 #include "building/spatial_rod_elements.hpp"
 #include "der/core/index.hpp"
 #include "der/energies/elements_of.hpp"
-#include "der/energies/from_spatial_pivot.hpp"
+#include "der/energies/from_pivot.hpp"
 #include "der/energies/isotropic_bend.hpp"
 #include "der/energies/spatial_bend.hpp"
 #include "der/energies/stretch.hpp"
@@ -25,21 +25,10 @@ void add_element(const std::array<Index, Kernel::kDofs>& dofs,
   }
 }
 
-/// The initial shape as its elements see it. No clamp has turned yet.
-Configuration drawn_configuration(const Model& model) {
-  Configuration here{model.initial_positions, Vector::Zero(model.tables.size())};
-  here.controls.head(model.drawn_frames.size()) = model.drawn_frames;
-  return here;
-}
-
-Vec3 drawn_vector(const SpatialEdge& edge, const Model& model) {
-  return edge.vector(model.initial_positions, Vector::Zero(model.tables.size()));
-}
-
 /// An effective edge from a pivot is shorter than its edge and stretches for all of it.
 void add_stretch(const RodLayout& rod, const SpatialEdge& edge, Index number, Model& model) {
   const double whole = rod.edge_length[to_size(number)];
-  const double length = edge.has_pivot() ? drawn_vector(edge, model).norm() : whole;
+  const double length = edge.has_pivot() ? edge.drawn(model.initial_positions).norm() : whole;
   add_element<Stretch<3>>(
       {edge.start, edge.start + 1, edge.start + 2, edge.end, edge.end + 1, edge.end + 2},
       {rod.EA * (length / whole), length}, edge.first, edge.last, model);
@@ -156,7 +145,9 @@ class SectionElements {
     return model_.framed_edges[to_size(number(edge))];
   }
   [[nodiscard]] SectionFrame frame(Index edge) const {
-    return section_frame(model_, number(edge), drawn_configuration(model_));
+    const FrameBlock block = FrameBlock::of(number(edge));
+    return SectionFrame::of(block.tangent(model_.drawn_frames), block.director(model_.drawn_frames))
+        .turned(theta(edge));
   }
   [[nodiscard]] double theta(Index edge) const {
     return model_.initial_positions[this->edge(edge).theta];
@@ -240,7 +231,7 @@ void draw_frames(const RodLayout& rod, Model& model) {
     const SpatialEdge edge = spatial_edge(rod, i, model);
     const SectionFrame& drawn = rod.drawn_frames[to_size(i)];
     const double theta = rod.initial_twist * rod.edge_middle(i);
-    const Vec3 tangent = drawn_vector(edge, model).normalized();
+    const Vec3 tangent = edge.drawn(model.initial_positions).normalized();
     const Vec3 director = transport(drawn.turned(-theta).first, drawn.tangent, tangent);
     const FrameBlock block = FrameBlock::of(rod.first_edge + i);
     model.drawn_frames.segment<3>(block.first) = tangent;

@@ -59,7 +59,7 @@ class SectionField : public RodField {
 
  private:
   SectionQuantity quantity_;
-  const RodLayout& rod_;
+  RodLayout rod_;
 };
 
 std::vector<double> middles(const RodLayout& rod) {
@@ -72,14 +72,13 @@ class EdgeStrainField : public RodField {
  public:
   EdgeStrainField(double stiffness, const RodLayout& rod, const Model& model)
       : RodField(middles(rod)), stiffness_(stiffness) {
-    const Vector drawn = Vector::Zero(model.tables.size());
     for (Index i = 0; i < rod.num_edges(); ++i) {
       edges_.push_back(spatial_edge(rod, i, model));
       const SpatialEdge& edge = edges_.back();
       const double whole = rod.edge_length[to_size(i)];
       whole_lengths_.push_back(whole);
-      effective_lengths_.push_back(
-          edge.has_pivot() ? edge.vector(model.initial_positions, drawn).norm() : whole);
+      effective_lengths_.push_back(edge.has_pivot() ? edge.drawn(model.initial_positions).norm()
+                                                    : whole);
     }
   }
   /// An effective edge from a pivot is shorter than its edge and stretches for all of it.

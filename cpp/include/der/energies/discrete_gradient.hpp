@@ -165,8 +165,8 @@ void discrete_gradient(KernelTag<FromPivot<Kernel>> /*kernel*/,
                        const typename FromPivot<Kernel>::Constants& c, const Configuration& here,
                        Local<Kernel::kDofs> start, Local<Kernel::kDofs> end,
                        Local<Kernel::kDofs>& gradient) {
-  const Vec2 first = c.first.offset(c.first.turn(here));
-  const Vec2 last = c.last.offset(c.last.turn(here));
+  const Vec2 first = c.first.offset(here.controls);
+  const Vec2 last = c.last.offset(here.controls);
   for (auto* ends : {&start, &end}) {
     ends->template head<2>() += first;
     ends->template tail<2>() += last;

@@ -3,8 +3,8 @@
 #include <array>
 
 #include "der/core/types.hpp"
-#include "der/energies/from_pivot.hpp"
 #include "der/kinematics/configuration.hpp"
+#include "der/kinematics/pivot.hpp"
 
 namespace der {
 
@@ -21,7 +21,7 @@ struct EffectiveEdge {
            Vec2(positions[dofs[0]], positions[dofs[1]]) - first.offset(first_turn);
   }
   [[nodiscard]] Vec2 vector(const Configuration& here) const {
-    return vector(here.coordinates, first.turn(here), last.turn(here));
+    return vector(here.coordinates, first.turn(here.controls), last.turn(here.controls));
   }
 };
 

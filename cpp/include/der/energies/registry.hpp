@@ -5,7 +5,6 @@
 #include "der/energies/element_list.hpp"
 #include "der/energies/foundation.hpp"
 #include "der/energies/from_pivot.hpp"
-#include "der/energies/from_spatial_pivot.hpp"
 #include "der/energies/isotropic_bend.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/energies/planar_clamp.hpp"

@@ -35,6 +35,8 @@ struct HeldFrame {
 
 /// The point about which the edge next to a clamp turns, on the held tangent (supports/clamp.hpp).
 struct SpatialPivot {
+  static constexpr int kDimension = 3;
+
   double distance = 0.0;  ///< [m] along the tangent, negative behind the node; 0: the node itself
   HeldFrame held;
 
@@ -43,6 +45,8 @@ struct SpatialPivot {
     if (distance == 0.0) return Vec3::Zero();
     return distance * held.tangent(controls);
   }
+  /// The same in the initial shape, where no clamp has turned yet.
+  [[nodiscard]] Vec3 drawn_offset() const { return distance * held.drawn.tangent; }
 };
 
 }  // namespace der

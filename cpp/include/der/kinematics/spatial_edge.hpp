@@ -20,6 +20,11 @@ struct SpatialEdge {
     return coordinates.segment<3>(end) + last.offset(controls) - coordinates.segment<3>(start) -
            first.offset(controls);
   }
+  /// The vector [m] in the initial shape, where no clamp has turned yet.
+  [[nodiscard]] Vec3 drawn(const Vector& coordinates) const {
+    return coordinates.segment<3>(end) + last.drawn_offset() - coordinates.segment<3>(start) -
+           first.drawn_offset();
+  }
 };
 
 }  // namespace der

@@ -4,96 +4,127 @@
 
 #include "der/core/index.hpp"
 #include "der/core/processor.hpp"
+#include "der/core/two_lanes.hpp"
 #include "der/energies/elements_of.hpp"
 
 namespace der {
 namespace {
 
-// The terms of a chain: what the loop over its edges needs of the energies.
+// The terms of a chain: what the loop over its edges needs of the energies, in the lanes of the
+// number type `Number`.
 //   kSize                       variables of an edge: its vector, and its angle if it has one
 //   Bend                        the kernel of its joints
 //   Edge                        an edge at a configuration
-//   JointResponse joint(..)     of the joint between two edges
+//   joint(..)                   response of the joint between two edges
+//   scale(response, factor)     the response of a joint that counts `factor` times
 //   force(edge, start, end)     slope of the energy of two joints by the edge's variables
 //   own(edge, start, end)       second derivative likewise
 //   coupling(edge, next, joint) second derivative by the variables of `next` (rows) and `edge`
 
 /// Rods whose sections count.
-template <class Curvature>
+template <class Curvature, class T>
 struct Sections {
+  using Number = T;
   static constexpr int kSize = 4;
   using Bend = SpatialBend<Curvature>;
-  using Variables = Eigen::Vector4d;
-  using Block = Eigen::Matrix4d;
-  using Response = JointResponse;
+  using Variables = Eigen::Matrix<T, 4, 1>;
+  using Block = Eigen::Matrix<T, 4, 4>;
+  using Response = JointResponseOf<T>;
 
   struct Edge {
-    EdgeFrame frame;
-    Eigen::Matrix<double, 3, 4> rotation;
-    double theta;
+    EdgeFrameOf<T> frame;
+    typename EdgeFrameOf<T>::Rotation rotation;
+    T theta;
+    T length;
+    Vector3<T> tangent;
 
-    Edge(const Vec3& vector, double angle, const FrameBlock& block, const Vector& values)
-        : frame(vector, angle, block.tangent(values), block.director(values)),
+    Edge(const Vector3<T>& vector, const T& angle, const Vector3<T>& source,
+         const Vector3<T>& director)
+        : frame(vector, angle, source, director),
           rotation(frame.rotation()),
-          theta(angle) {}
+          theta(angle),
+          length(frame.length),
+          tangent(frame.frame.tangent) {}
   };
 
-  template <bool with_stiffness>
-  static Response joint(const typename Bend::Constants& c, const Edge& edge, const Edge& next,
+  /// `constants(lane)` is the joint of a lane.
+  template <bool with_stiffness, class Constants>
+  static Response joint(const Constants& constants, const Edge& edge, const Edge& next,
                         const Vector& values) {
-    const double twist = whole_twist(edge.frame.frame, next.frame.frame, edge.theta, next.theta,
-                                     values[c.after.twist_at_start()]);
+    const auto each = [&](auto member) {
+      return in_lanes<T>([&](int lane) { return member(constants(lane)); });
+    };
+    using C = typename Bend::Constants;
+    const JointOf<T> joint{each([](const C& c) { return c.joint.bend_1; }),
+                           each([](const C& c) { return c.joint.bend_2; }),
+                           each([](const C& c) { return c.joint.twist; }),
+                           {each([](const C& c) { return c.joint.rest.kappa_1; }),
+                            each([](const C& c) { return c.joint.rest.kappa_2; }),
+                            each([](const C& c) { return c.joint.rest.twist; })}};
+    const T reference = each([&](const C& c) { return values[c.after.twist_at_start()]; });
+    const T twist =
+        whole_twist<T>(edge.frame.frame, next.frame.frame, edge.theta, next.theta, reference);
     Response response;
-    JointKinematics<Curvature>(edge.frame.frame, next.frame.frame, twist)
-        .template respond<with_stiffness>(c.joint, response);
+    JointKinematics<Curvature, T>(edge.frame.frame, next.frame.frame, twist)
+        .template respond<with_stiffness>(joint, response);
     return response;
+  }
+  static void scale(Response& response, const T& factor) {
+    response.moment *= factor;
+    response.stiffness *= factor;
   }
   static Variables force(const Edge& edge, const Response& start, const Response& end) {
     return edge.rotation.transpose() * (start.moment - end.moment);
   }
   static Block own(const Edge& edge, const Response& start, const Response& end) {
-    const Mat3 stiffness = start.stiffness + end.stiffness;
-    const Eigen::Matrix<double, 3, 4> turned = stiffness * edge.rotation;
+    const Matrix3<T> stiffness = start.stiffness + end.stiffness;
+    const typename EdgeFrameOf<T>::Rotation turned = stiffness * edge.rotation;
     return edge.rotation.transpose() * turned +
            edge.frame.geometric_stiffness(start.moment - end.moment);
   }
   static Block coupling(const Edge& edge, const Edge& next, const Response& joint) {
-    const Mat3 stiffness = -(joint.stiffness + 0.5 * cross_matrix(joint.moment));
-    const Eigen::Matrix<double, 3, 4> turned = stiffness * edge.rotation;
+    const Matrix3<T> stiffness = -(joint.stiffness + cross_matrix<T>(0.5 * joint.moment));
+    const typename EdgeFrameOf<T>::Rotation turned = stiffness * edge.rotation;
     return next.rotation.transpose() * turned;
   }
 };
 
 /// Rods whose sections do not count.
-template <class Curvature>
+template <class Curvature, class T>
 struct Tangents {
+  using Number = T;
   static constexpr int kSize = 3;
   using Bend = IsotropicBend<Curvature>;
-  using Variables = Vec3;
-  using Block = Mat3;
+  using Variables = Vector3<T>;
+  using Block = Matrix3<T>;
   struct Response {
-    IsotropicResponse bend;
-    double cosine = 0.0;
-    Vec3 by_before = Vec3::Zero();  ///< derivative of the cosine by the edge before [1/m]
-    Vec3 by_after = Vec3::Zero();
+    IsotropicResponse<T> bend;
+    T cosine = 0.0;
+    Vector3<T> by_before = Vector3<T>::Zero();  ///< of the cosine, by the edge before [1/m]
+    Vector3<T> by_after = Vector3<T>::Zero();
   };
-  using Edge = TangentTerm;
+  using Edge = TangentTermOf<T>;
 
-  template <bool with_stiffness>
-  static Response joint(const typename Bend::Constants& c, const Edge& edge, const Edge& next,
+  template <bool with_stiffness, class Constants>
+  static Response joint(const Constants& constants, const Edge& edge, const Edge& next,
                         const Vector& /*values*/) {
+    const T stiffness = in_lanes<T>([&](int lane) { return constants(lane).stiffness_per_length; });
     Response response;
     response.cosine = edge.tangent.dot(next.tangent);
-    response.bend = isotropic_response<Curvature>(c.stiffness_per_length, response.cosine);
+    response.bend = isotropic_response<Curvature>(stiffness, response.cosine);
     response.by_before = edge.first(next.tangent, response.cosine);
     response.by_after = next.first(edge.tangent, response.cosine);
     return response;
+  }
+  static void scale(Response& response, const T& factor) {
+    response.bend.slope *= factor;
+    response.bend.curvature *= factor;
   }
   static Variables force(const Edge& /*edge*/, const Response& start, const Response& end) {
     return start.bend.slope * start.by_after + end.bend.slope * end.by_before;
   }
   static Block own(const Edge& edge, const Response& start, const Response& end) {
-    const auto half = [&](const Response& joint, const Vec3& by_edge) -> Block {
+    const auto half = [&](const Response& joint, const Vector3<T>& by_edge) -> Block {
       return joint.bend.curvature * by_edge * by_edge.transpose() +
              joint.bend.slope * edge.second(by_edge, joint.cosine);
     };
@@ -159,102 +190,171 @@ void SpatialChain::add(const Model& model, const Configuration& here, Vector& gr
                        double* values) const {
   switch (kind_) {
     case Kind::SectionAngle:
-      return add_terms<D, Sections<AngleCurvature>>(model, here, gradient, values);
+      return add_parts<D, Sections, AngleCurvature>(model, here, gradient, values);
     case Kind::SectionTangent:
-      return add_terms<D, Sections<TangentCurvature>>(model, here, gradient, values);
+      return add_parts<D, Sections, TangentCurvature>(model, here, gradient, values);
     case Kind::IsotropicAngle:
-      return add_terms<D, Tangents<AngleCurvature>>(model, here, gradient, values);
+      return add_parts<D, Tangents, AngleCurvature>(model, here, gradient, values);
     case Kind::IsotropicTangent:
-      return add_terms<D, Tangents<TangentCurvature>>(model, here, gradient, values);
+      return add_parts<D, Tangents, TangentCurvature>(model, here, gradient, values);
   }
 }
 
-/// With F_j, B_j the first and second derivative by the variables of edge j, its vector e and its
-/// angle, and C_j that by the variables of edges j (rows) and j - 1: node j, at the start of edge
-/// j, has the gradient F_{j-1} - F_j in its position, and in its columns of the Hessian
+/// The two halves of the chain run side by side in two lanes; an odd edge is left for the end.
+template <Derivatives D, template <class, class> class Terms, class Curvature>
+void SpatialChain::add_parts(const Model& model, const Configuration& here, Vector& gradient,
+                             double* values) const {
+  const auto count = static_cast<std::ptrdiff_t>(edges_.count);
+  const std::ptrdiff_t half = count / 2;
+  const Totals totals{gradient, values};
+  add_part<D, Terms<Curvature, TwoLanes>>({0, half}, half, model, here, totals);
+  if (count > 2 * half) add_part<D, Terms<Curvature, double>>({2 * half}, 1, model, here, totals);
+}
+
+/// Adds in each lane the `count` edges from `first` on, with their part of the joints at both their
+/// ends. With F_j, B_j the first and second derivative by the variables of edge j, its vector e and
+/// its angle, and C_j that by the variables of edges j (rows) and j - 1: node j, at the start of
+/// edge j, has the gradient F_{j-1} - F_j in its position, and in its columns of the Hessian
 ///   B_{j-1} + B_j - C_j - C_j',  then -B_j + C_j + C_{j+1},  then -C_{j+1}.
 /// The angle of edge j does not enter at the edge's other end.
 template <Derivatives D, class Terms>
-void SpatialChain::add_terms(const Model& model, const Configuration& here, Vector& gradient,
-                             double* values) const {
+void SpatialChain::add_part(const LaneStarts<Terms>& first, std::ptrdiff_t count,
+                            const Model& model, const Configuration& here,
+                            const Totals& totals) const {
   constexpr bool with_hessian = D == Derivatives::Hessian;
   constexpr int size = Terms::kSize;
+  using T = typename Terms::Number;
+  using Lane = LaneTraits<T>;
   using EdgeTerms = typename Terms::Edge;
   using Block = typename Terms::Block;
   using Response = typename Terms::Response;
-  const auto* edge_constants =
-      elements_of<Stretch<3>>(*model.elements).constants.data() + edges_.first;
-  const auto* bend_constants =
+  const auto* stretches = elements_of<Stretch<3>>(*model.elements).constants.data() + edges_.first;
+  const auto* bends =
       elements_of<typename Terms::Bend>(*model.elements).constants.data() + bends_.first;
   const double* x = here.coordinates.data() + first_dof_;
-  double* g = gradient.data() + first_dof_;
-  const auto vector = [&](std::size_t j) -> Vec3 {
-    return Eigen::Map<const Vec3>(x + 3 * j + 3) - Eigen::Map<const Vec3>(x + 3 * j);
-  };
-  const auto edge_at = [&](std::size_t j) {
-    const Vec3 e = vector(j);
+  const std::ptrdiff_t last = static_cast<std::ptrdiff_t>(edges_.count) - 1;
+
+  // Edges `j` places after the first of each lane; for those beyond the chain's ends, whose joints
+  // count nothing, its outermost.
+  const auto edge_at = [&](std::ptrdiff_t j) {
+    const auto number = [&](int lane) {
+      return std::clamp<std::ptrdiff_t>(first[to_size(lane)] + j, 0, last);
+    };
+    const auto component = [&](int c) {
+      return in_lanes<T>([&](int lane) {
+        const double* node = x + 3 * number(lane);
+        return node[c + 3] - node[c];
+      });
+    };
+    const Vector3<T> e{component(0), component(1), component(2)};
     if constexpr (size == 4) {
-      const auto& block = j == 0 ? bend_constants[0].before : bend_constants[j - 1].after;
-      return EdgeTerms(e, here.coordinates[first_theta_ + static_cast<Index>(j)], block,
-                       here.controls);
+      const auto followed = [&](Index entry) {
+        return in_lanes<T>([&](int lane) {
+          const std::ptrdiff_t edge = number(lane);
+          const FrameBlock& block = edge == 0 ? bends[0].before : bends[edge - 1].after;
+          return here.controls[block.first + entry];
+        });
+      };
+      const T theta = in_lanes<T>([&](int lane) {
+        return here.coordinates[first_theta_ + static_cast<Index>(number(lane))];
+      });
+      return EdgeTerms(e, theta, {followed(0), followed(1), followed(2)},
+                       {followed(3), followed(4), followed(5)});
     } else {
-      return EdgeTerms(e, e.norm());
+      return EdgeTerms(e);
     }
+  };
+  const auto joint_after = [&](std::ptrdiff_t j, const EdgeTerms& edge, const EdgeTerms& next) {
+    return Terms::template joint<with_hessian>(
+        [&](int lane) -> const auto& {
+          return bends[std::clamp<std::ptrdiff_t>(first[to_size(lane)] + j, 0, last - 1)];
+        },
+        edge, next, here.controls);
+  };
+  const auto joint_exists = [&](std::ptrdiff_t j) {
+    return in_lanes<T>([&](int lane) {
+      const std::ptrdiff_t joint = first[to_size(lane)] + j;
+      return joint >= 0 && joint < last ? 1.0 : 0.0;
+    });
+  };
+  const auto add_force = [&](std::ptrdiff_t j, const Vector3<T>& force) {
+    for (int lane = 0; lane < Lane::kCount; ++lane) {
+      double* g = totals.gradient.data() + first_dof_ + 3 * (first[to_size(lane)] + j);
+      for (int c = 0; c < 3; ++c) g[c] += Lane::lane(force[c], lane);
+    }
+  };
+  // Adds entries of the columns of node j, one after the other.
+  const auto entries_of = [&](std::ptrdiff_t j) {
+    return [&, j, k = std::size_t{0}](const T& entry) mutable {
+      for (int lane = 0; lane < Lane::kCount; ++lane) {
+        const NodeSlots& slots = slots_[static_cast<std::size_t>(first[to_size(lane)] + j)];
+        totals.values[slots[k]] += Lane::lane(entry, lane);
+      }
+      ++k;
+    };
   };
 
   EdgeTerms edge = edge_at(0);
-  Response start;                     // of the joint at the start of the edge
-  Vec3 force_before = Vec3::Zero();   // F_{j-1}
-  Mat3 before = Mat3::Zero();         // B_{j-1} by the vector
-  Block from_before = Block::Zero();  // C_j
-  for (std::size_t j = 0; j < edges_.count; ++j, g += 3) {
-    const bool last = j + 1 == edges_.count;
-    const EdgeTerms next = last ? edge : edge_at(j + 1);
-    Response end;
-    if (!last) {
-      end = Terms::template joint<with_hessian>(bend_constants[j], edge, next, here.controls);
-    }
-    const Vec3 e = vector(j);
-    const double length = e.norm();
-    const StretchResponse stretch = Stretch<3>::response(edge_constants[j], length);
+  const EdgeTerms previous = edge_at(-1);
+  Response start = joint_after(-1, previous, edge);  // of the joint at the start of the edge
+  Terms::scale(start, joint_exists(-1));
+  Vector3<T> force_before = Vector3<T>::Zero();  // F_{j-1}
+  Matrix3<T> before = Matrix3<T>::Zero();        // B_{j-1} by the vector
+  Block from_before = Block::Zero();             // C_j
+  if constexpr (with_hessian) from_before = Terms::coupling(previous, edge, start);
+  for (std::ptrdiff_t j = 0; j < count; ++j) {
+    const EdgeTerms next = edge_at(j + 1);
+    Response end = joint_after(j, edge, next);
+    if (j + 1 == count) Terms::scale(end, joint_exists(j));
+    const auto constant = [&](double Stretch<3>::Constants::* member) {
+      return in_lanes<T>([&](int lane) { return stretches[first[to_size(lane)] + j].*member; });
+    };
+    const StretchResponseOf<T> stretch =
+        stretch_response(constant(&Stretch<3>::Constants::EA),
+                         constant(&Stretch<3>::Constants::rest_length), edge.length);
     const typename Terms::Variables slope = Terms::force(edge, start, end);
-    const Vec3 force = stretch.across * e + slope.template head<3>();
-    Eigen::Map<Vec3>(g) += force_before - force;
-    if constexpr (size == 4) gradient[first_theta_ + static_cast<Index>(j)] += slope[3];
+    const Vector3<T> force = stretch.tension * edge.tangent + slope.template head<3>();
+    add_force(j, force_before - force);
+    if constexpr (size == 4) {
+      for (int lane = 0; lane < Lane::kCount; ++lane) {
+        totals.gradient[first_theta_ + static_cast<Index>(first[to_size(lane)] + j)] +=
+            Lane::lane(slope[3], lane);
+      }
+    }
     force_before = force;
 
     if constexpr (with_hessian) {
       Block own = Terms::own(edge, start, end);
       own.template topLeftCorner<3, 3>() +=
-          (stretch.along - stretch.across) / (length * length) * e * e.transpose();
+          (stretch.along - stretch.across) * edge.tangent * edge.tangent.transpose();
       own.diagonal().template head<3>().array() += stretch.across;
-      const Block to_next = last ? Block::Zero().eval() : Terms::coupling(edge, next, end);
-      const Index* slot = slots_[j].data();
+      const Block to_next = Terms::coupling(edge, next, end);
+      auto add = entries_of(j);
       for (int column = 0; column < size; ++column) {
         const bool by_angle = column == 3;
         // The node's own position and angle.
         for (int row = column; row < size; ++row) {
-          double entry = own(row, column);
+          T entry = own(row, column);
           if (row < 3) {
             entry += before(row, column) - from_before(row, column) - from_before(column, row);
           } else if (!by_angle) {
             entry = from_before(row, column) - entry;
           }
-          values[*slot++] += entry;
+          add(entry);
         }
         // The next node.
         for (int row = 0; row < size; ++row) {
-          double entry = to_next(row, column);
+          T entry = to_next(row, column);
           if (by_angle) {
             if (row < 3) entry = own(row, column) - entry;
           } else {
             entry = row < 3 ? entry + from_before(row, column) - own(row, column) : -entry;
           }
-          values[*slot++] += entry;
+          add(entry);
         }
         // The position of the node after that.
         for (int row = 0; row < 3; ++row) {
-          values[*slot++] += by_angle ? to_next(row, column) : -to_next(row, column);
+          add(by_angle ? to_next(row, column) : -to_next(row, column));
         }
       }
       before = own.template topLeftCorner<3, 3>();
@@ -263,13 +363,24 @@ void SpatialChain::add_terms(const Model& model, const Configuration& here, Vect
     edge = next;
     start = end;
   }
-  Eigen::Map<Vec3>(g) += force_before;
-  if constexpr (with_hessian) {
-    const Index* slot = slots_.back().data();
+  add_force(count, force_before);
+  if constexpr (with_hessian) add_last_node<Terms>(first, count, before, totals.values);
+}
+
+/// B_{j-1} of the node behind the last edge of each lane.
+template <class Terms>
+void SpatialChain::add_last_node(const LaneStarts<Terms>& first, std::ptrdiff_t count,
+                                 const Matrix3<typename Terms::Number>& before,
+                                 double* values) const {
+  using Lane = LaneTraits<typename Terms::Number>;
+  for (int lane = 0; lane < Lane::kCount; ++lane) {
+    const Index* slot = slots_[static_cast<std::size_t>(first[to_size(lane)] + count)].data();
     for (int column = 0; column < 3; ++column) {
       const Index* entry = slot;
-      for (int row = column; row < 3; ++row) values[*entry++] += before(row, column);
-      slot += (size - column) + size + 3;
+      for (int row = column; row < 3; ++row) {
+        values[*entry++] += Lane::lane(before(row, column), lane);
+      }
+      slot += (Terms::kSize - column) + Terms::kSize + 3;
     }
   }
 }

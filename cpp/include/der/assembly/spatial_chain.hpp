@@ -1,11 +1,13 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <type_traits>
 #include <vector>
 
 #include "der/assembly/chain_run.hpp"
 #include "der/assembly/pattern.hpp"
+#include "der/core/two_lanes.hpp"
 #include "der/core/types.hpp"
 #include "der/energies/isotropic_bend.hpp"
 #include "der/energies/local_term.hpp"
@@ -50,13 +52,26 @@ class SpatialChain {
   /// begins there), of the block of the next node below it, and of the position of the node after
   /// that: column by column. Without angles some are not used.
   using NodeSlots = std::array<Index, 10 + 16 + 12>;
+  /// The first edge of each lane.
+  template <class Terms>
+  using LaneStarts = std::array<std::ptrdiff_t, LaneTraits<typename Terms::Number>::kCount>;
+  struct Totals {
+    Vector& gradient;
+    double* values;
+  };
 
   void map_nodes(const Model& model, const MatrixLayout& layout);
   template <Derivatives D>
   void add(const Model& model, const Configuration& here, Vector& gradient, double* values) const;
-  template <Derivatives D, class Terms>
-  void add_terms(const Model& model, const Configuration& here, Vector& gradient,
+  template <Derivatives D, template <class, class> class Terms, class Curvature>
+  void add_parts(const Model& model, const Configuration& here, Vector& gradient,
                  double* values) const;
+  template <Derivatives D, class Terms>
+  void add_part(const LaneStarts<Terms>& first, std::ptrdiff_t count, const Model& model,
+                const Configuration& here, const Totals& totals) const;
+  template <class Terms>
+  void add_last_node(const LaneStarts<Terms>& first, std::ptrdiff_t count,
+                     const Matrix3<typename Terms::Number>& before, double* values) const;
 
   Kind kind_ = Kind::SectionAngle;
   ChainRange edges_;

@@ -10,6 +10,11 @@ using Vec2 = Eigen::Vector2d;
 using Mat2 = Eigen::Matrix2d;
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
+/// The same of any number type, for kernels that work on lanes (core/two_lanes.hpp).
+template <class T>
+using Vector3 = Eigen::Matrix<T, 3, 1>;
+template <class T>
+using Matrix3 = Eigen::Matrix<T, 3, 3>;
 
 /// Integer type of every node, element, degree-of-freedom and matrix-slot index. 32 bits halve the
 /// memory traffic of the scatter maps and still reach two thousand million.

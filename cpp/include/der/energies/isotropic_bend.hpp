@@ -1,6 +1,7 @@
 #pragma once
 
 #include "der/core/types.hpp"
+#include "der/energies/edge_blocks.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/kinematics/curvature_binormal.hpp"
@@ -11,44 +12,50 @@ namespace der {
 /// E = 1/2 B |kb|^2 of a joint whose bending stiffness B is the same in all directions and whose
 /// rest shape is straight, with its derivatives by the unit tangents of its two edges: for dE/dd =
 /// -B p(d), d = ta . tb, p is f for `angle` and f^2 for `tangent`.
+template <class T>
 struct IsotropicResponse {
-  double energy = 0.0;
-  double slope = 0.0;      ///< dE/dd [N m]
-  double curvature = 0.0;  ///< d2E/dd2 [N m]
+  T energy = 0.0;
+  T slope = 0.0;      ///< dE/dd [N m]
+  T curvature = 0.0;  ///< d2E/dd2 [N m]
 };
 
-template <class Curvature>
-IsotropicResponse isotropic_response(double stiffness, double cosine) {
-  const BinormalFactor factor = Binormal<Curvature>::of(cosine);
+template <class Curvature, class T>
+IsotropicResponse<T> isotropic_response(const T& stiffness, const T& cosine) {
+  const BinormalFactor<T> factor = Binormal<Curvature>::of(cosine);
   // Powers of f in p: kb is the angle itself, or the tangent of its half.
   constexpr double power = std::is_same_v<Curvature, AngleCurvature> ? 1.0 : 2.0;
-  const double p = power == 1.0 ? factor.f : factor.f * factor.f;
-  const double sine_squared = (1.0 - cosine) * (1.0 + cosine);
+  const T p = power == 1.0 ? factor.f : factor.f * factor.f;
+  const T sine_squared = (1.0 - cosine) * (1.0 + cosine);
   return {0.5 * stiffness * factor.f * factor.f * sine_squared, -stiffness * p,
           -stiffness * p * power * factor.log_slope};
 }
 
 /// The unit tangent t of an edge of length l, on which an energy depends through d = t . other.
-struct TangentTerm {
-  Vec3 tangent;
-  double per_length;  ///< 1/l [1/m]
+template <class T>
+struct TangentTermOf {
+  T length;      ///< [m]
+  T per_length;  ///< 1/l [1/m]
+  Vector3<T> tangent;
 
-  TangentTerm(const Vec3& edge, double length) : tangent(edge / length), per_length(1.0 / length) {}
+  explicit TangentTermOf(const Vector3<T>& edge)
+      : length(edge.norm()), per_length(1.0 / length), tangent(per_length * edge) {}
   /// dd/de = (other - d t)/l.
-  [[nodiscard]] Vec3 first(const Vec3& other, double cosine) const {
+  [[nodiscard]] Vector3<T> first(const Vector3<T>& other, const T& cosine) const {
     return per_length * (other - cosine * tangent);
   }
   /// d2d/de2, from dd/de.
-  [[nodiscard]] Mat3 second(const Vec3& by_edge, double cosine) const {
-    Mat3 m = -per_length * (by_edge * tangent.transpose() + tangent * by_edge.transpose());
-    m += cosine * per_length * per_length * (tangent * tangent.transpose() - Mat3::Identity());
+  [[nodiscard]] Matrix3<T> second(const Vector3<T>& by_edge, const T& cosine) const {
+    Matrix3<T> m = -per_length * (by_edge * tangent.transpose() + tangent * by_edge.transpose());
+    m +=
+        cosine * per_length * per_length * (tangent * tangent.transpose() - Matrix3<T>::Identity());
     return m;
   }
   /// dt/de.
-  [[nodiscard]] Mat3 across() const {
-    return per_length * (Mat3::Identity() - tangent * tangent.transpose());
+  [[nodiscard]] Matrix3<T> across() const {
+    return per_length * (Matrix3<T>::Identity() - tangent * tangent.transpose());
   }
 };
+using TangentTerm = TangentTermOf<double>;
 
 /// Bending in space of a rod with the same stiffness in all directions that is straight without
 /// stress: the model `spatial_bend`, which needs no frames. Coordinates: the three nodes.
@@ -66,10 +73,10 @@ struct IsotropicBend {
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     const Vec3 ea = x.segment<3>(3) - x.segment<3>(0);
     const Vec3 eb = x.segment<3>(6) - x.segment<3>(3);
-    const TangentTerm a(ea, ea.norm());
-    const TangentTerm b(eb, eb.norm());
+    const TangentTerm a(ea);
+    const TangentTerm b(eb);
     const double cosine = a.tangent.dot(b.tangent);
-    const IsotropicResponse bend = isotropic_response<Curvature>(c.stiffness_per_length, cosine);
+    const auto bend = isotropic_response<Curvature>(c.stiffness_per_length, cosine);
     out.energy = bend.energy;
     if constexpr (D == Derivatives::Energy) return;
     const Vec3 by_a = a.first(b.tangent, cosine);
@@ -83,13 +90,7 @@ struct IsotropicBend {
     const Mat3 bb = bend.curvature * by_b * by_b.transpose() + bend.slope * b.second(by_b, cosine);
     const Mat3 ba =
         bend.curvature * by_b * by_a.transpose() + bend.slope * (b.across() * a.across());
-    auto& h = out.hessian;
-    h.template block<3, 3>(0, 0) = aa;
-    h.template block<3, 3>(3, 0) = ba - aa;
-    h.template block<3, 3>(6, 0) = -ba;
-    h.template block<3, 3>(3, 3) = aa - ba - ba.transpose() + bb;
-    h.template block<3, 3>(6, 3) = ba - bb;
-    h.template block<3, 3>(6, 6) = bb;
+    set_joint_blocks(aa, ba, bb, out.hessian);
   }
 };
 
@@ -109,10 +110,10 @@ struct IsotropicClamp {
   static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     const Vec3 e = x.segment<3>(3) - x.segment<3>(0);
-    const TangentTerm edge(e, e.norm());
+    const TangentTerm edge(e);
     const Vec3 held = c.held.tangent(here.controls);
     const double cosine = edge.tangent.dot(held);
-    const IsotropicResponse bend = isotropic_response<Curvature>(c.stiffness_per_length, cosine);
+    const auto bend = isotropic_response<Curvature>(c.stiffness_per_length, cosine);
     out.energy = bend.energy;
     if constexpr (D == Derivatives::Energy) return;
     const Vec3 by_edge = edge.first(held, cosine);
@@ -122,10 +123,7 @@ struct IsotropicClamp {
 
     const Mat3 own =
         bend.curvature * by_edge * by_edge.transpose() + bend.slope * edge.second(by_edge, cosine);
-    auto& h = out.hessian;
-    h.template block<3, 3>(0, 0) = own;
-    h.template block<3, 3>(3, 0) = -own;
-    h.template block<3, 3>(3, 3) = own;
+    set_edge_blocks(own, out.hessian);
   }
 };
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "der/core/types.hpp"
+#include "der/energies/edge_blocks.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/kinematics/curvature_measure.hpp"
@@ -32,6 +33,7 @@ BendResponse bend_response(double stiffness_per_length, double rest_kappa, doubl
 template <class Curvature>
 struct PlanarBend {
   static constexpr int kDofs = 6;
+  static constexpr int kNodes = 3;
   static constexpr EnergyTerm kTerm = EnergyTerm::Bend;
   struct Constants {
     double stiffness_per_length = 0.0;  ///< EI / l_v [N m]
@@ -68,12 +70,7 @@ struct PlanarBend {
     const Mat2 h11 =
         bend.stiffness * d1 * d1.transpose() + bend.moment * direction_hessian(e1, d1, w1);
     const Mat2 h10 = -bend.stiffness * d1 * d0.transpose();
-    out.hessian.block<2, 2>(0, 0) = h00;
-    out.hessian.block<2, 2>(2, 0) = h10 - h00;
-    out.hessian.block<2, 2>(4, 0) = -h10;
-    out.hessian.block<2, 2>(2, 2) = h00 - h10 - h10.transpose() + h11;
-    out.hessian.block<2, 2>(4, 2) = h10 - h11;
-    out.hessian.block<2, 2>(4, 4) = h11;
+    set_joint_blocks(h00, h10, h11, out.hessian);
   }
 };
 

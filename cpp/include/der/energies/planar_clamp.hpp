@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "der/core/types.hpp"
+#include "der/energies/edge_blocks.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/kinematics/configuration.hpp"
@@ -16,6 +17,7 @@ namespace der {
 template <class Curvature>
 struct PlanarClamp {
   static constexpr int kDofs = 4;
+  static constexpr int kNodes = 2;
   static constexpr EnergyTerm kTerm = EnergyTerm::Bend;
   struct Constants {
     double stiffness_per_length = 0.0;  ///< EI / c [N m]
@@ -44,9 +46,7 @@ struct PlanarClamp {
     if constexpr (D == Derivatives::Gradient) return;
 
     const Mat2 h = bend.stiffness * d * d.transpose() + moment * direction_hessian(e, d, w);
-    out.hessian.topLeftCorner<2, 2>() = h;
-    out.hessian.bottomLeftCorner<2, 2>() = -h;
-    out.hessian.bottomRightCorner<2, 2>() = h;
+    set_edge_blocks(h, out.hessian);
   }
 };
 

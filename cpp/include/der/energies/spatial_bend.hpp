@@ -1,6 +1,7 @@
 #pragma once
 
 #include "der/core/types.hpp"
+#include "der/energies/edge_blocks.hpp"
 #include "der/energies/joint_response.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/configuration.hpp"
@@ -10,16 +11,18 @@
 namespace der {
 
 /// [v]x, the matrix of the cross product with v.
-inline Mat3 cross_matrix(const Vec3& v) {
-  Mat3 m;
+template <class T>
+Matrix3<T> cross_matrix(const Vector3<T>& v) {
+  Matrix3<T> m;
   m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
   return m;
 }
 
 /// Whole twist [rad] of a joint whose reference twist at the start of the step was `reference`:
 /// that of the two frames, which is known up to whole turns, next to what the angles make of it.
-inline double whole_twist(const SectionFrame& before, const SectionFrame& after,
-                          double theta_before, double theta_after, double reference) {
+template <class T>
+T whole_twist(const SectionFrameOf<T>& before, const SectionFrameOf<T>& after,
+              const T& theta_before, const T& theta_after, const T& reference) {
   return nearest_turn(twist_between(before, after), theta_after - theta_before + reference);
 }
 
@@ -71,16 +74,9 @@ struct SpatialBend {
         turn_b.transpose() * stiffness * turn_b + b.geometric_stiffness(response.moment);
     const Eigen::Matrix4d ba =
         -turn_b.transpose() * (stiffness + 0.5 * cross_matrix(response.moment)) * turn_a;
-    const Mat3 aa_ee = aa.topLeftCorner<3, 3>();
-    const Mat3 bb_ee = bb.topLeftCorner<3, 3>();
-    const Mat3 ba_ee = ba.topLeftCorner<3, 3>();
     auto& h = out.hessian;
-    h.template block<3, 3>(0, 0) = aa_ee;
-    h.template block<3, 3>(3, 0) = ba_ee - aa_ee;
-    h.template block<3, 3>(6, 0) = -ba_ee;
-    h.template block<3, 3>(3, 3) = aa_ee - ba_ee - ba_ee.transpose() + bb_ee;
-    h.template block<3, 3>(6, 3) = ba_ee - bb_ee;
-    h.template block<3, 3>(6, 6) = bb_ee;
+    set_joint_blocks<Mat3>(aa.topLeftCorner<3, 3>(), ba.topLeftCorner<3, 3>(),
+                           bb.topLeftCorner<3, 3>(), h);
     const Eigen::RowVector3d aa_te = aa.bottomLeftCorner<1, 3>();
     const Eigen::RowVector3d bb_te = bb.bottomLeftCorner<1, 3>();
     const Eigen::RowVector3d ba_te = ba.bottomLeftCorner<1, 3>();            // theta_b by e_a
@@ -140,11 +136,8 @@ struct SpatialClamp {
 
     const Eigen::Matrix4d own =
         turn.transpose() * response.stiffness * turn + edge.geometric_stiffness(moment);
-    const Mat3 ee = own.topLeftCorner<3, 3>();
     auto& h = out.hessian;
-    h.template block<3, 3>(0, 0) = ee;
-    h.template block<3, 3>(3, 0) = -ee;
-    h.template block<3, 3>(3, 3) = ee;
+    set_edge_blocks<Mat3>(own.topLeftCorner<3, 3>(), h);
     h.template block<1, 3>(6, 0) = -own.bottomLeftCorner<1, 3>();
     h.template block<1, 3>(6, 3) = own.bottomLeftCorner<1, 3>();
     h(6, 6) = own(3, 3);

@@ -3,18 +3,29 @@
 #include <cmath>
 
 #include "der/core/types.hpp"
+#include "der/energies/edge_blocks.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/configuration.hpp"
 
 namespace der {
 
 /// Force and stiffness of a stretched edge.
-struct StretchResponse {
-  double extension = 0.0;  ///< [m]
-  double tension = 0.0;    ///< [N]
-  double along = 0.0;      ///< material stiffness along the edge [N/m]
-  double across = 0.0;     ///< geometric stiffness across it, tension / length [N/m]
+template <class T>
+struct StretchResponseOf {
+  T extension = 0.0;  ///< [m]
+  T tension = 0.0;    ///< [N]
+  T along = 0.0;      ///< material stiffness along the edge [N/m]
+  T across = 0.0;     ///< geometric stiffness across it, tension / length [N/m]
 };
+using StretchResponse = StretchResponseOf<double>;
+
+template <class T>
+StretchResponseOf<T> stretch_response(const T& EA, const T& rest_length, const T& length) {
+  const T extension = length - rest_length;
+  const T along = EA / rest_length;
+  const T tension = along * extension;
+  return {extension, tension, along, tension / length};
+}
 
 /// Axial stretching of an edge: E = 1/2 EA (|e|/l - 1)^2 l with e = x1 - x0 and rest length l
 /// (Bergou et al., Discrete Viscous Threads, SIGGRAPH 2010, eq. 3).
@@ -34,10 +45,7 @@ struct Stretch {
   }
 
   static StretchResponse response(const Constants& c, double length) {
-    const double extension = length - c.rest_length;
-    const double along = c.EA / c.rest_length;
-    const double tension = along * extension;
-    return {extension, tension, along, tension / length};
+    return stretch_response(c.EA, c.rest_length, length);
   }
 
   template <Derivatives D>
@@ -59,9 +67,7 @@ struct Stretch {
     const Vec tangent = e / length;
     Mat block = (stretch.along - stretch.across) * tangent * tangent.transpose();
     block.diagonal().array() += stretch.across;
-    out.hessian.template topLeftCorner<Dim, Dim>() = block;
-    out.hessian.template bottomLeftCorner<Dim, Dim>() = -block;
-    out.hessian.template bottomRightCorner<Dim, Dim>() = block;
+    set_edge_blocks(block, out.hessian);
   }
 };
 

@@ -3,16 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "der/core/two_lanes.hpp"
 #include "der/kinematics/curvature_measure.hpp"
 
 namespace der {
 
 /// Length of the curvature binormal as a function of d = ta . tb, the cosine of the turning angle
 /// between the unit tangents of two edges: kb = f(d) ta x tb (Bergou et al. 2008, eq. 1).
+template <class T>
 struct BinormalFactor {
-  double f = 1.0;
-  double log_slope = 0.0;   ///< f'/f
-  double log_change = 0.0;  ///< (f'/f)' - (f'/f)^2
+  T f = 1.0;
+  T log_slope = 0.0;   ///< f'/f
+  T log_change = 0.0;  ///< (f'/f)' - (f'/f)^2
 };
 
 template <class Curvature>
@@ -21,8 +23,9 @@ struct Binormal;
 /// |kb| = 2 tan(phi/2): f = 2/(1 + d).
 template <>
 struct Binormal<TangentCurvature> {
-  static BinormalFactor of(double d) {
-    const double half = 1.0 / (1.0 + d);
+  template <class T>
+  static BinormalFactor<T> of(const T& d) {
+    const T half = 1.0 / (1.0 + d);
     return {2.0 * half, -half, 0.0};
   }
 };
@@ -32,27 +35,36 @@ struct Binormal<TangentCurvature> {
 /// (1 - d^2) f' = d f - 1.
 template <>
 struct Binormal<AngleCurvature> {
-  static BinormalFactor of(double d) {
-    const double u = 1.0 - d;
-    const double k = second_quotient(u);
-    const double f = 1.0 + u * (1.0 / 3.0 + u * k);
-    const double half = 1.0 / (2.0 - u);
-    const double first = (-2.0 / 3.0 - u / 3.0 + u * k * (1.0 - u)) * half;
-    const double second = (2.0 / 3.0 * (1.0 + u) + k * (3.0 - u * (4.0 - 2.0 * u))) * half * half;
-    const double slope = first / f;
+  template <class T>
+  static BinormalFactor<T> of(const T& d) {
+    const T u = 1.0 - d;
+    const T k = second_quotient(u);
+    const T f = 1.0 + u * (1.0 / 3.0 + u * k);
+    const T half = 1.0 / (2.0 - u);
+    const T first = (-2.0 / 3.0 - u * (1.0 / 3.0) + u * k * (1.0 - u)) * half;
+    const T second = (2.0 / 3.0 * (1.0 + u) + k * (3.0 - u * (4.0 - 2.0 * u))) * half * half;
+    const T slope = first / f;
     return {f, slope, second / f - 2.0 * slope * slope};
   }
 
  private:
+  static constexpr double kSmall = 0.125;
+
+  /// f = sum of c_n u^n with c_{n+1}/c_n = (n + 1)/(2 n + 3): its terms from n = 2 on.
+  template <class T>
+  static T series(const T& u) {
+    T sum = 1.0;
+    for (int n = 14; n >= 2; --n) sum = 1.0 + sum * u * ((n + 1.0) / (2.0 * n + 3.0));
+    return 2.0 / 15.0 * sum;
+  }
   static double second_quotient(double u) {
-    if (u < 0.125) {
-      // f = sum of c_n u^n with c_{n+1}/c_n = (n + 1)/(2 n + 3): its terms from n = 2 on.
-      double sum = 1.0;
-      for (int n = 14; n >= 2; --n) sum = 1.0 + sum * u * ((n + 1.0) / (2.0 * n + 3.0));
-      return 2.0 / 15.0 * sum;
-    }
+    if (u < kSmall) return series(u);
     const double f = std::acos(std::max(-1.0, 1.0 - u)) / std::sqrt(u * (2.0 - u));
     return (f - 1.0 - u / 3.0) / (u * u);
+  }
+  static TwoLanes second_quotient(const TwoLanes& u) {
+    if (u.lane(0) < kSmall && u.lane(1) < kSmall) return series(u);
+    return {second_quotient(u.lane(0)), second_quotient(u.lane(1))};
   }
 };
 

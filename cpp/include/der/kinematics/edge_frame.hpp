@@ -6,10 +6,16 @@
 namespace der {
 
 /// Spin a [1/m] about the tangent, by a change of the vector of an edge, of a frame that is
-/// transported from the unit tangent `source` (EdgeFrame).
+/// transported from the unit tangent `source` to the unit tangent `tangent` (EdgeFrame).
+template <class T>
+Vector3<T> transport_spin(const Vector3<T>& tangent, const T& per_length,
+                          const Vector3<T>& source) {
+  return (-per_length / (1.0 + source.dot(tangent))) * source.cross(tangent);
+}
+
 inline Vec3 transport_spin(const Vec3& edge, const Vec3& source) {
-  const double length = edge.norm();
-  return -source.cross(edge) / (length * (length + source.dot(edge)));
+  const double per_length = 1.0 / edge.norm();
+  return transport_spin<double>(per_length * edge, per_length, source);
 }
 
 /// The section frame on an edge as a function of the edge vector e and the angle theta: the
@@ -20,25 +26,35 @@ inline Vec3 transport_spin(const Vec3& edge, const Vec3& source) {
 /// A change of (e, theta) turns the frame by omega = (t x de)/|e| + (dtheta + a . de) t with the
 /// spin a = -(s x t)/(|e| (1 + s . t)) of the transport from the source tangent s: it is zero
 /// at the source only.
-struct EdgeFrame {
-  SectionFrame frame;
-  double length = 1.0;          ///< [m]
-  Vec3 source = Vec3::UnitX();  ///< source tangent
-  Vec3 spin = Vec3::Zero();     ///< a [1/m]
+template <class T>
+struct EdgeFrameOf {
+  using Variables = Eigen::Matrix<T, 4, 1>;
+  using Block = Eigen::Matrix<T, 4, 4>;
+  using Rotation = Eigen::Matrix<T, 3, 4>;
+
+  SectionFrameOf<T> frame;
+  T length = 1.0;                           ///< [m]
+  T per_length = 1.0;                       ///< 1/|e| [1/m]
+  Vector3<T> source = Vector3<T>::UnitX();  ///< source tangent
+  Vector3<T> spin = Vector3<T>::Zero();     ///< a [1/m]
 
   /// `director` is the reference director at the unit tangent `source`.
-  EdgeFrame(const Vec3& edge, double theta, const Vec3& source_tangent, const Vec3& director)
-      : length(edge.norm()), source(source_tangent) {
-    const Vec3 tangent = edge / length;
-    frame = SectionFrame::of(tangent, transport(director, source, tangent)).turned(theta);
-    spin = transport_spin(edge, source);
+  EdgeFrameOf(const Vector3<T>& edge, const T& theta, const Vector3<T>& source_tangent,
+              const Vector3<T>& director)
+      : length(edge.norm()), per_length(1.0 / length), source(source_tangent) {
+    const Vector3<T> tangent = per_length * edge;
+    frame = SectionFrameOf<T>::of(tangent, transport<T>(director, source, tangent)).turned(theta);
+    spin = transport_spin(tangent, per_length, source);
   }
 
   /// omega = L (de, dtheta).
-  [[nodiscard]] Eigen::Matrix<double, 3, 4> rotation() const {
-    const Vec3& t = frame.tangent;
-    Eigen::Matrix<double, 3, 4> result;
-    for (int c = 0; c < 3; ++c) result.col(c) = t.cross(Vec3::Unit(c)) / length + spin[c] * t;
+  [[nodiscard]] Rotation rotation() const {
+    const Vector3<T>& t = frame.tangent;
+    const Vector3<T> across = per_length * t;
+    Rotation result;
+    result.col(0) << spin[0] * t[0], spin[0] * t[1] + across[2], spin[0] * t[2] - across[1];
+    result.col(1) << spin[1] * t[0] - across[2], spin[1] * t[1], spin[1] * t[2] + across[0];
+    result.col(2) << spin[2] * t[0] + across[1], spin[2] * t[1] - across[0], spin[2] * t[2];
     result.col(3) = t;
     return result;
   }
@@ -46,23 +62,25 @@ struct EdgeFrame {
   /// Derivative by (e, theta) of the generalised forces L' N of a moment N [N m] that stays as it
   /// is, with the part of the turning of N that makes it symmetric: the Hessian of an energy E
   /// with dE = N . omega and dN = (S - 1/2 [N]x) omega is L' S L + this.
-  [[nodiscard]] Eigen::Matrix4d geometric_stiffness(const Vec3& moment) const {
-    const Vec3& t = frame.tangent;
-    const double torque = moment.dot(t);
-    const Vec3 across = moment - torque * t;
-    const Vec3 force = moment.cross(t) / (length * length);
-    const Vec3 leaning = (source + (2.0 + source.dot(t)) * t) / (1.0 + source.dot(t));
-    const auto sum_with_transposed = [](const Vec3& a, const Vec3& b) -> Mat3 {
-      return a * b.transpose() + b * a.transpose();
-    };
-    Eigen::Matrix4d result = Eigen::Matrix4d::Zero();
-    result.topLeftCorner<3, 3>() = -sum_with_transposed(force, t) +
-                                   0.5 / length * sum_with_transposed(spin, across) -
-                                   0.5 * torque / length * sum_with_transposed(spin, leaning);
-    result.topRightCorner<3, 1>() = 0.5 / length * across;
-    result.bottomLeftCorner<1, 3>() = result.topRightCorner<3, 1>().transpose();
+  [[nodiscard]] Block geometric_stiffness(const Vector3<T>& moment) const {
+    const Vector3<T>& t = frame.tangent;
+    const T torque = moment.dot(t);
+    const Vector3<T> across = moment - torque * t;
+    const Vector3<T> force = (per_length * per_length) * moment.cross(t);
+    const T lean = 1.0 / (1.0 + source.dot(t));
+    const Vector3<T> leaning = lean * source + (1.0 + lean) * t;
+    // -(force t') + spin (across - torque leaning)'/(2 |e|), with its transpose.
+    const Vector3<T> with_spin = (0.5 * per_length) * (across - torque * leaning);
+    Matrix3<T> half = -force * t.transpose();
+    half += spin * with_spin.transpose();
+    Block result;
+    result.template topLeftCorner<3, 3>() = half + half.transpose();
+    result.template topRightCorner<3, 1>() = (0.5 * per_length) * across;
+    result.template bottomLeftCorner<1, 3>() = result.template topRightCorner<3, 1>().transpose();
+    result(3, 3) = 0.0;
     return result;
   }
 };
+using EdgeFrame = EdgeFrameOf<double>;
 
 }  // namespace der

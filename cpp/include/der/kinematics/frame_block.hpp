@@ -4,10 +4,10 @@
 
 namespace der {
 
-/// What the state follows of one edge with a section frame, as entries of the controls that
-/// elements see: the source tangent and the reference director there, and the reference twists of
-/// the joints at its start and at its end, whole turns included. The blocks of all edges stand at
-/// the head of the controls, in the order of the edges.
+/// The values that the state follows for one edge with a section frame, as entries of the controls
+/// that elements see: the source tangent and the reference director there, and the reference twists
+/// of the joints at its start and at its end, whole turns included. The blocks of all edges stand
+/// at the head of the controls, in the order of the edges.
 struct FrameBlock {
   static constexpr Index kSize = 8;
   Index first = 0;  ///< entry of the controls

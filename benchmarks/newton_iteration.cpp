@@ -7,6 +7,7 @@
 #include <Eigen/SparseCholesky>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <random>
 
 #include "der/assembly/assembler.hpp"
@@ -14,7 +15,7 @@
 #include "der/model/state.hpp"
 #include "der/scenario/load.hpp"
 #include "der/scenario/scenario.hpp"
-#include "der/solvers/banded_ldlt.hpp"
+#include "der/solvers/linear_solver.hpp"
 #include "der/solvers/stage.hpp"
 
 namespace der {
@@ -63,7 +64,8 @@ struct Problem {
       : model(build_model(cantilever(static_cast<int>(state.range(0)),
                                      kModels[static_cast<std::size_t>(state.range(1))]))),
         pattern(build_pattern(model)),
-        solver(pattern),
+        solver_memory(make_linear_solver("banded", pattern, Elimination::FromBothEnds).solver),
+        solver(*solver_memory),
         assembler(model, solver.layout()),
         here(configuration_of(model, initial_state(model))),
         stage(model),
@@ -91,7 +93,8 @@ struct Problem {
 
   Model model;
   Pattern pattern;
-  BandedLdlt solver;
+  std::unique_ptr<LinearSolver> solver_memory;
+  LinearSolver& solver;
   Assembler assembler;
   Configuration here;
   Stage stage;

@@ -77,6 +77,13 @@ MatrixLayout MatrixLayout::band(Index size, Index half_bandwidth) {
   return layout;
 }
 
+MatrixLayout MatrixLayout::two_ended(Index size, Index half_bandwidth) {
+  MatrixLayout layout = band(size, half_bandwidth);
+  layout.half_ = (size - half_bandwidth + 1) / 2;
+  layout.num_values_ = 2 * (layout.half_ + half_bandwidth) * layout.width_;
+  return layout;
+}
+
 Index MatrixLayout::slot_or_spare(Index i, Index j) const {
   return i < 0 || j < 0 ? num_values_ : slot(std::max(i, j), std::min(i, j));
 }
@@ -87,7 +94,14 @@ void MatrixLayout::shift_diagonal(double shift, Vector& values) const {
 
 Index MatrixLayout::slot(Index row, Index column) const {
   assert(row >= column);
-  if (pattern_ == nullptr) return column * width_ + (row - column);
+  if (pattern_ == nullptr) {
+    const Index below = row - column;
+    if (half_ < 0) return column * width_ + below;
+    const Index behind_middle = half_ + width_ - 1;
+    if (row < behind_middle) return 2 * (column * width_ + below);
+    const Index padding = half_ + behind_middle - size_;
+    return 2 * ((size_ - 1 - row + padding) * width_ + below) + 1;
+  }
   const auto begin = pattern_->inner.begin() + pattern_->outer[to_size(column)];
   const auto end = pattern_->inner.begin() + pattern_->outer[to_size(column) + 1];
   const auto found = std::lower_bound(begin, end, row);

@@ -31,7 +31,9 @@ Simulation::Simulation(Scenario scenario)
     : scenario_(std::move(scenario)),
       model_(build_model(scenario_.scene())),
       pattern_(build_pattern(model_)),
-      solver_(make_linear_solver(scenario_.scene().solver.linear, pattern_)),
+      solver_(make_linear_solver(
+          scenario_.scene().solver.linear, pattern_,
+          scenario_.scene().is_dynamic() ? Elimination::FromBothEnds : Elimination::FromStart)),
       assembler_(model_, solver_.solver->layout()),
       stepper_info_(find_stepper(scenario_.scene().time.integrator)),
       stepper_(make_stepper(stepper_info_.name, model_, assembler_, *solver_.solver,

@@ -3,6 +3,7 @@
 #include "der/core/error.hpp"
 #include "der/solvers/banded_ldlt.hpp"
 #include "der/solvers/sparse_ldlt.hpp"
+#include "der/solvers/two_ended_ldlt.hpp"
 
 namespace der {
 namespace {
@@ -11,33 +12,43 @@ namespace {
 /// has 5 in the plane.
 constexpr Index kNarrowBand = 32;
 
-std::unique_ptr<LinearSolver> make_banded(const Pattern& pattern) {
+std::unique_ptr<LinearSolver> make_banded(const Pattern& pattern, Elimination order) {
+  if (order == Elimination::FromBothEnds && TwoEndedLdlt::suits(pattern)) {
+    return std::make_unique<TwoEndedLdlt>(pattern);
+  }
   return std::make_unique<BandedLdlt>(pattern);
+}
+
+/// A solver that finds an order of its own.
+template <std::unique_ptr<LinearSolver> (*make)(const Pattern&)>
+std::unique_ptr<LinearSolver> make_sparse(const Pattern& pattern, Elimination /*order*/) {
+  return make(pattern);
 }
 
 struct LinearSolverInfo {
   const char* name;
-  std::unique_ptr<LinearSolver> (*make)(const Pattern&);
+  std::unique_ptr<LinearSolver> (*make)(const Pattern&, Elimination);
 };
 
 /// Every linear solver of the catalog. A new one is one file, one line here and one there.
 constexpr LinearSolverInfo kSolvers[] = {
     {"banded", make_banded},
-    {"simplicial_ldlt", make_simplicial_ldlt},
-    {"cholmod", make_cholmod},
+    {"simplicial_ldlt", make_sparse<make_simplicial_ldlt>},
+    {"cholmod", make_sparse<make_cholmod>},
 };
 
 }  // namespace
 
-LinearSolverChoice make_linear_solver(const std::string& name, const Pattern& pattern) {
+LinearSolverChoice make_linear_solver(const std::string& name, const Pattern& pattern,
+                                      Elimination order) {
   if (name == "auto") {
     const std::string width = "half-bandwidth " + std::to_string(pattern.half_bandwidth);
     return pattern.half_bandwidth <= kNarrowBand
-               ? LinearSolverChoice{make_banded(pattern), width + " is narrow"}
+               ? LinearSolverChoice{make_banded(pattern, order), width + " is narrow"}
                : LinearSolverChoice{make_simplicial_ldlt(pattern), width + " is wide"};
   }
   for (const auto& info : kSolvers) {
-    if (name == info.name) return {info.make(pattern), "asked for by the scene"};
+    if (name == info.name) return {info.make(pattern, order), "asked for by the scene"};
   }
   throw Error("model_error", "unknown linear solver '" + name + "'");
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "der/building/builder.hpp"
@@ -25,6 +26,8 @@ bool built_in(const std::string& name, const Pattern& pattern) {
     return error.status() != "not_available";
   }
 }
+
+constexpr Elimination kOrders[] = {Elimination::FromBothEnds, Elimination::FromStart};
 
 /// A full band of the given width.
 Pattern band_pattern(Index size, Index half_bandwidth) {
@@ -56,8 +59,10 @@ Vector values_of(const Eigen::MatrixXd& dense, const Pattern& pattern, const Mat
 TEST_CASE("every linear solver solves and counts negative eigenvalues as dense algebra does") {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  for (const Index width : {0, 1, 3, 5, 8}) {
-    const Index size = 40;
+  // 5, 8 and 10 have two halves, of the same number of rows or not.
+  using Size = std::pair<Index, Index>;
+  for (const auto& [width, size] : {Size{0, 40}, Size{1, 40}, Size{3, 40}, Size{5, 40}, Size{5, 41},
+                                    Size{8, 40}, Size{8, 41}, Size{10, 40}, Size{10, 41}}) {
     const Pattern pattern = band_pattern(size, width);
     Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(size, size);
     for (Index j = 0; j < size; ++j) {
@@ -75,14 +80,16 @@ TEST_CASE("every linear solver solves and counts negative eigenvalues as dense a
       if (!built_in(name, pattern)) continue;
       CAPTURE(name);
       CAPTURE(width);
-      const LinearSolverChoice choice = make_linear_solver(name, pattern);
-      const Inertia inertia =
-          choice.solver->factorize(values_of(dense, pattern, choice.solver->layout()));
-      REQUIRE(inertia.factorised);
-      CHECK(inertia.negative_pivots == negative);
-      Vector x = b;
-      choice.solver->solve(x);
-      CHECK((x - expected).norm() < 1e-12 * expected.norm());
+      for (const Elimination order : kOrders) {
+        const LinearSolverChoice choice = make_linear_solver(name, pattern, order);
+        const Inertia inertia =
+            choice.solver->factorize(values_of(dense, pattern, choice.solver->layout()));
+        REQUIRE(inertia.factorised);
+        CHECK(inertia.negative_pivots == negative);
+        Vector x = b;
+        choice.solver->solve(x);
+        CHECK((x - expected).norm() < 1e-12 * expected.norm());
+      }
     }
   }
 }
@@ -96,6 +103,23 @@ TEST_CASE("a vanishing pivot is reported, not divided by") {
     const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(4, 4);
     CHECK_FALSE(
         choice.solver->factorize(values_of(zero, pattern, choice.solver->layout())).factorised);
+  }
+}
+
+TEST_CASE("the band solver says which pivot vanishes, in either half and between them") {
+  for (const Index size : {40, 41}) {
+    for (const Elimination order : kOrders) {
+      const Pattern pattern = band_pattern(size, 5);
+      const LinearSolverChoice choice = make_linear_solver("banded", pattern, order);
+      for (const Index row : {0, 3, 17, 20, 22, 30, size - 1}) {
+        Eigen::MatrixXd dense = Eigen::MatrixXd::Identity(size, size);
+        dense(row, row) = 0.0;
+        const Inertia inertia =
+            choice.solver->factorize(values_of(dense, pattern, choice.solver->layout()));
+        CHECK_FALSE(inertia.factorised);
+        CHECK(inertia.failed_at == row);
+      }
+    }
   }
 }
 

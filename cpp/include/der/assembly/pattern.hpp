@@ -23,12 +23,18 @@ Pattern build_pattern(const Model& model);
 Pattern build_mass_pattern(const Model& model);
 
 /// Where the entry (row, column), row >= column, of the lower triangle lies in a solver's array of
-/// values. Two ways serve all solvers: compressed columns, and the columns of a band.
+/// values. Compressed columns and the columns of a band, from one end or from both, serve all
+/// solvers.
 class MatrixLayout {
  public:
   static MatrixLayout compressed(const Pattern& pattern);
   /// Column j holds rows j .. j + half_bandwidth.
   static MatrixLayout band(Index size, Index half_bandwidth);
+  /// The same in two lanes, the values of which alternate: columns from the start in the first,
+  /// columns of the reversed matrix, which begins at the end, in the second, as far as a middle of
+  /// `half_bandwidth` rows. That is the rest of the first; the second has room for it. Where the
+  /// number of other rows is odd, the second begins with a column that stays empty.
+  static MatrixLayout two_ended(Index size, Index half_bandwidth);
 
   [[nodiscard]] Index slot(Index row, Index column) const;
   /// The slot of an entry given by its two indices in either order. A negative index is a held
@@ -43,6 +49,7 @@ class MatrixLayout {
   const Pattern* pattern_ = nullptr;  // null: a band
   Index size_ = 0;
   Index width_ = 0;
+  Index half_ = -1;  // columns of a lane but for the middle; -1: one lane
   Index num_values_ = 0;
 };
 

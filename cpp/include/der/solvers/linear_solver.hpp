@@ -32,6 +32,17 @@ class LinearSolver {
   virtual void solve(Vector& b) = 0;
 };
 
+/// The order in which a band solver takes the rows of a chain.
+enum class Elimination {
+  /// From both ends to the middle, which is faster.
+  FromBothEnds,
+  /// From the start. Where rods are held at their starts, as most are, no part that nothing holds
+  /// is eliminated before the rest. Such a part has no stiffness of its own; the rounding error of
+  /// its stretching stiffness takes the place of that. It shows beyond EA L^2/EI = 1e12, and in
+  /// equilibria, where no inertia comes in addition.
+  FromStart
+};
+
 /// A solver chosen, and why.
 struct LinearSolverChoice {
   std::unique_ptr<LinearSolver> solver;
@@ -40,6 +51,7 @@ struct LinearSolverChoice {
 
 /// `name` is one of `linear_solver_names()`; `auto` takes the band solver where the band is narrow.
 /// `pattern` must outlive the solver. Throws Error for a solver that is not built in.
-LinearSolverChoice make_linear_solver(const std::string& name, const Pattern& pattern);
+LinearSolverChoice make_linear_solver(const std::string& name, const Pattern& pattern,
+                                      Elimination order = Elimination::FromStart);
 
 }  // namespace der

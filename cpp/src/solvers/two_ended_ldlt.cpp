@@ -1,0 +1,124 @@
+#include "der/solvers/two_ended_ldlt.hpp"
+
+#include <array>
+
+#include "der/core/processor.hpp"
+#include "solvers/band_kernels.hpp"
+
+namespace der {
+namespace {
+
+template <Index kWidth>
+DER_FOR_EACH_PROCESSOR Inertia factorize_halves(Index columns, TwoLanes* band) {
+  return factorize_band<kWidth>(columns, kWidth, band, static_cast<TwoLanes*>(nullptr));
+}
+template <Index kWidth>
+DER_FOR_EACH_PROCESSOR void eliminate_halves(Index columns, const TwoLanes* band, TwoLanes* b) {
+  eliminate<kWidth>(columns, kWidth, band, b);
+}
+template <Index kWidth>
+DER_FOR_EACH_PROCESSOR void substitute_halves(Index columns, const TwoLanes* band, TwoLanes* b) {
+  substitute<kWidth>(columns, kWidth, band, b);
+}
+
+}  // namespace
+
+TwoEndedLdlt::Kernels TwoEndedLdlt::kernels_of(Index half_bandwidth) {
+  switch (half_bandwidth) {
+    case 5:  // chains in the plane
+      return {factorize_halves<5>, eliminate_halves<5>, substitute_halves<5>};
+    case 8:  // chains in space
+      return {factorize_halves<8>, eliminate_halves<8>, substitute_halves<8>};
+    case 10:  // the same with angles of sections
+      return {factorize_halves<10>, eliminate_halves<10>, substitute_halves<10>};
+    default:
+      return {};
+  }
+}
+
+bool TwoEndedLdlt::suits(const Pattern& pattern) {
+  return kernels_of(pattern.half_bandwidth).factorize != nullptr &&
+         pattern.size >= 3 * pattern.half_bandwidth;
+}
+
+TwoEndedLdlt::TwoEndedLdlt(const Pattern& pattern)
+    : size_(pattern.size),
+      width_(pattern.half_bandwidth),
+      columns_((size_ - width_ + 1) / 2),
+      padding_((size_ - width_) % 2),
+      layout_(MatrixLayout::two_ended(size_, width_)),
+      kernels_(kernels_of(width_)) {
+  const Index rows = columns_ + width_;
+  band_.resize(to_size(rows * (width_ + 1)));
+  right_side_.resize(to_size(rows));
+  middle_.setZero(2 * width_ * (width_ + 1));
+  middle_right_side_.setZero(2 * width_);
+}
+
+Inertia TwoEndedLdlt::factorize(const Vector& values) {
+  for (std::size_t k = 0; k < band_.size(); ++k) {
+    band_[k] = {values[2 * static_cast<Index>(k)], values[2 * static_cast<Index>(k) + 1]};
+  }
+  if (padding_ > 0) band_[0] = {band_[0].lane(0), 1.0};
+  Inertia inertia = kernels_.factorize(columns_, band_.data());
+  if (!inertia.factorised) {
+    const Index first = inertia.failed_at;
+    const bool is_first = !is_pivot(band_[to_size(first * (width_ + 1))].lane(0));
+    inertia.failed_at = is_first ? first : size_ - 1 - (first - padding_);
+    return inertia;
+  }
+  const Inertia middle = factorize_middle();
+  inertia.negative_pivots += middle.negative_pivots;
+  inertia.factorised = middle.factorised;
+  if (!middle.factorised) inertia.failed_at = columns_ + middle.failed_at;
+  return inertia;
+}
+
+/// The middle's own entries are in the first lane; the second has its rows and columns reversed.
+Inertia TwoEndedLdlt::factorize_middle() {
+  const Index stride = width_ + 1;
+  const TwoLanes* rest = band_.data() + columns_ * stride;
+  middle_.setZero();
+  for (Index column = 0; column < width_; ++column) {
+    for (Index below = 0; column + below < width_; ++below) {
+      const Index reversed = width_ - 1 - (column + below);
+      middle_[column * stride + below] =
+          rest[column * stride + below].lane(0) + rest[reversed * stride + below].lane(1);
+    }
+  }
+  std::array<double, 10> scratch;
+  return factorize_band<0>(width_, width_, middle_.data(), scratch.data());
+}
+
+void TwoEndedLdlt::solve(Vector& b) {
+  const auto reversed = [&](Index row) { return size_ - 1 - (row - padding_); };
+  for (Index row = padding_; row < columns_; ++row) {
+    right_side_[to_size(row)] = {b[row], b[reversed(row)]};
+  }
+  if (padding_ > 0) right_side_[0] = {b[0], 0.0};
+  for (Index i = 0; i < width_; ++i) {
+    right_side_[to_size(columns_ + i)] = {b[columns_ + i], 0.0};
+  }
+  kernels_.eliminate(columns_, band_.data(), right_side_.data());
+  solve_middle();
+  kernels_.substitute(columns_, band_.data(), right_side_.data());
+  for (Index row = 0; row < columns_ + width_; ++row) b[row] = right_side_[to_size(row)].lane(0);
+  for (Index row = padding_; row < columns_; ++row) {
+    b[reversed(row)] = right_side_[to_size(row)].lane(1);
+  }
+}
+
+void TwoEndedLdlt::solve_middle() {
+  TwoLanes* rest = right_side_.data() + columns_;
+  for (Index i = 0; i < width_; ++i) {
+    middle_right_side_[i] = rest[i].lane(0) + rest[width_ - 1 - i].lane(1);
+  }
+  middle_right_side_.tail(width_).setZero();
+  eliminate<0>(width_, width_, middle_.data(), middle_right_side_.data());
+  substitute<0>(width_, width_, middle_.data(), middle_right_side_.data());
+  for (Index i = 0; i < width_; ++i) {
+    rest[i] = {middle_right_side_[i], middle_right_side_[width_ - 1 - i]};
+  }
+}
+
+}  // namespace der

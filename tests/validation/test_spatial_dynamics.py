@@ -111,8 +111,8 @@ def held_and_turned(stepper, **time):
 
 @pytest.mark.parametrize("stepper", ["implicit_midpoint", "newmark", "tr_bdf2"])
 def test_ledger_of_a_clamp_that_turns_and_twists(fitted_order, stepper):
-    """What the stepper makes or loses falls with order 2 at least, and the work of the support
-    converges to one value."""
+    """The energy that the stepper makes or loses falls with order 2 at least, and the work of the
+    support converges to one value."""
     _, fine = held_and_turned("sdirk4", step=0.5 / 4096)
     steps = [512, 1024, 2048]
     numerical, supports = [], []

@@ -10,7 +10,7 @@
 namespace der {
 namespace {
 
-/// What a quantity needs, by its scope.
+/// The advice to whoever asks for a quantity that the model lacks, by the scope of the quantity.
 constexpr std::array kNeeds{"", "it has a sign in a plane only, take 'curvature'",
                             "write 'model: spatial', or 'spatial_bend' for a rod that cannot twist",
                             "write 'model: spatial', in which sections count"};

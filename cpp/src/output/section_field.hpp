@@ -9,7 +9,7 @@ namespace der {
 // Bending, twist and strain of a rod in space: at its joints or the middles of its edges, linear in
 // between and beyond.
 
-/// What a joint says of its section.
+/// Quantities of the section at a joint.
 enum class SectionQuantity {
   Curvature,   ///< magnitude [1/m]
   Curvature1,  ///< towards the first director [1/m]

@@ -14,7 +14,7 @@ class Availability {
   Availability(const SceneText& scene, Diagnostics& diagnostics)
       : scene_(scene), diagnostics_(diagnostics) {}
 
-  /// What no model has.
+  /// Keys that no model has yet.
   void check_all_models() {
     for (int i = 0; i < static_cast<int>(scene_.given_rods.size()); ++i) {
       if (scene_.given_rods[static_cast<std::size_t>(i)].closed) {
@@ -28,7 +28,7 @@ class Availability {
     });
   }
 
-  /// What the planar model alone has.
+  /// Keys that only the planar model has yet.
   void check_spatial_models() {
     for (int i = 0; i < static_cast<int>(scene_.supports.size()); ++i) {
       if (scene_.supports[static_cast<std::size_t>(i)].spring) {

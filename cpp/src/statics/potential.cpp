@@ -41,8 +41,8 @@ double energy_change(const ElementList<Kernel>& list, const Configuration& from,
   return total;
 }
 
-/// What of an element's displacement may be taken from all of its nodes at no cost of energy: the
-/// components of its first node. Its coordinates are those of nodes, then angles.
+/// The displacement that may be taken from all nodes of an element at no cost of energy: that of
+/// its first node. The coordinates of the element are those of nodes, then angles.
 struct Shared {
   int components = 0;  ///< of a node; 0: none may
   int positions = 0;   ///< number of coordinates of nodes

@@ -14,8 +14,8 @@ constexpr int kSteps = 100;
 constexpr double kStiffness = 1e6;  // EA [N]
 constexpr double kMassPerLength = 0.1;
 constexpr int kEdges = 50;
-// Of the fastest motion of a chain of equal masses and springs, at which neighbours move against
-// each other: 2 sqrt(k/m), k = EA/l and m = mu l.
+// Angular frequency of a chain of equal masses and springs in its fastest motion, in which
+// neighbours move against each other: 2 sqrt(k/m), k = EA/l and m = mu l.
 const double kFastest = 2.0 * kEdges * std::sqrt(kStiffness / kMassPerLength);
 
 /// A cantilever of 1 m under a load put on at once, in steps such that w dt is `fast`.

@@ -167,7 +167,7 @@ class SpatialElements:
 
 @dataclass(frozen=True)
 class Strained:
-    """What the states of a batch are at the quadrature points, shapes (..., points, 3 or 1)."""
+    """The strains of a batch of states at the quadrature points, shapes (..., points, 3 or 1)."""
 
     stretch: Array  # |r'|
     tangent: Array

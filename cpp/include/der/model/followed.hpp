@@ -7,7 +7,7 @@ namespace der {
 
 struct Model;
 
-// What the coordinates at a time do not tell, so that the state follows it from step to step
+// The coordinates at a time do not tell everything; the state follows the rest from step to step
 // (`State::followed`): whole turns of edges of a planar rod, frames of edges in space
 // (model/frames.hpp). Elements see it, as it was at the start of a step, through the controls.
 // All vectors `followed` have the rotations of the followed edges first, then the blocks of the

@@ -24,7 +24,7 @@ struct EdgePart {
 std::vector<EdgePart> edge_parts(const RodLayout& rod, double from, double to);
 /// Whether the part is less than its edge.
 bool is_cut(const EdgePart& part, const RodLayout& rod);
-/// What the last end of the edge takes of a uniform load on the part, as a length [m]: the integral
+/// Share of the last end of the edge in a uniform load on the part, as a length [m]: the integral
 /// of (s - s0)/(s1 - s0) over it, the consistent load of linear interpolation.
 double length_at_last_end(const EdgePart& part, const RodLayout& rod);
 

@@ -28,7 +28,7 @@ struct Spring {
   double rotational_stiffness = 0.0;  ///< [N m/rad]; 0: none
 };
 
-/// What a clamp holds besides the node.
+/// A clamp holds its node, and besides:
 enum class Clamp {
   None,     ///< there is no clamp
   Section,  ///< the tangent and the section: all that a wall holds

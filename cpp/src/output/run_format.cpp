@@ -77,8 +77,11 @@ void check_whole(const Dataset& dataset, double largest) {
 
 void check_path(const std::vector<Dataset>& datasets) {
   for (const Dataset& dataset : datasets) {
-    if (dataset.name == "path/event") check_whole(dataset, 2.0);
-    if (dataset.name == "path/branch" || dataset.name == "path/unstable_directions") {
+    if (dataset.name == "path/event") {
+      check_whole(dataset, static_cast<double>(PathEvent::OutOfPlane));
+    }
+    if (dataset.name == "path/branch" || dataset.name == "path/unstable_directions" ||
+        dataset.name == "path/unstable_out_of_plane") {
       check_whole(dataset, std::numeric_limits<Index>::max());
     }
   }

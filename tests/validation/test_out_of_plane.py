@@ -248,7 +248,8 @@ def test_path_leaves_its_plane(spatial_reference, fitted_order):
     space = straight_rod(SIZES[-1], bar, loads=tip_force(0, 0.1, 0), model="spatial")
     space["analysis"] = {"continuation": {"to": 6}}
     path = der.run(space).path
-    assert path.factor[path.rows("bifurcation")[0]] == pytest.approx(factor, rel=1e-8)
+    # The test of a plane counts eigenvalues beyond rounding, the path in space all below zero.
+    assert path.factor[path.rows("bifurcation")[0]] == pytest.approx(factor, rel=1e-7)
 
 
 def test_warning_and_summary():

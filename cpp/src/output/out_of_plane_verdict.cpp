@@ -8,9 +8,9 @@ namespace der {
 namespace {
 
 constexpr const char* kAdvice =
-    "To follow it out of the plane, write 'model: spatial', draw a node in the middle of the rod a "
-    "millionth of its length off the plane, and let the supports hold z ('clamp: true' holds the "
-    "section, too)";
+    "Supports are taken to hold z and the section there. To follow the rod out of the plane, write "
+    "'model: spatial', draw a node in its middle a millionth of its length off the plane, and let "
+    "the supports hold z ('clamp: true' holds the section, too)";
 
 std::string directions(Index count) {
   return fmt::format("{} {}", count, count == 1 ? "direction" : "directions");

@@ -29,13 +29,23 @@ double turned_by(const Vec& edge, const Vec& change) {
   return (change - along * edge).norm() / edge.norm();
 }
 
-/// An edge of a joint, with the change of its vector and angle.
-struct JointEdge {
+/// An edge beside a joint, and the change of its vector and angle.
+struct TurningEdge {
   EdgeFrame frame;
   Eigen::Vector4d change;
 
   [[nodiscard]] Vec3 turned() const { return frame.rotation() * change; }
 };
+
+template <int N>
+TurningEdge turning_edge(const Eigen::Matrix<double, N, 1>& x, const Eigen::Matrix<double, N, 1>& d,
+                         int first_node, int angle, const FrameBlock& block, const Vector& values) {
+  const int start = 3 * first_node;
+  const Vec3 vector = x.template segment<3>(start + 3) - x.template segment<3>(start);
+  const Vec3 change = d.template segment<3>(start + 3) - d.template segment<3>(start);
+  return {{vector, x[angle], block.tangent(values), block.director(values)},
+          {change.x(), change.y(), change.z(), d[angle]}};
+}
 
 /// The change of the moment of a joint as its frames turn.
 Vec3 moment_change(const JointResponse& response, const Vec3& omega_a, const Vec3& omega_b) {
@@ -60,6 +70,68 @@ Eigen::Matrix<double, static_cast<int>(N), 1> moved(const std::array<Index, N>& 
   x.template segment<3>(static_cast<Eigen::Index>(3) * (nodes - 1)) += last.offset(here.controls);
   return x;
 }
+
+/// What a displacement does to the joint between two edges, and the moment that it causes.
+struct StressedJoint {
+  TurningEdge a;
+  TurningEdge b;
+  Vec3 moment;  ///< [N m]
+
+  template <class Curvature>
+  static StressedJoint of(const std::array<Index, 11>& dofs,
+                          const typename SpatialBend<Curvature>::Constants& c,
+                          const SpatialPivot& first, const SpatialPivot& last,
+                          const Configuration& here, const Vector& displacement) {
+    const Vector& values = here.controls;
+    const auto x = moved(dofs, here, first, last, 3);
+    const auto d = gather(dofs, displacement);
+    const TurningEdge a = turning_edge(x, d, 0, 9, c.before, values);
+    const TurningEdge b = turning_edge(x, d, 1, 10, c.after, values);
+    const double twist =
+        whole_twist(a.frame.frame, b.frame.frame, x[9], x[10], values[c.after.twist_at_start()]);
+    JointResponse response;
+    JointKinematics<Curvature>(a.frame.frame, b.frame.frame, twist)
+        .template respond<true>(c.joint, response);
+    return {a, b, moment_change(response, a.turned(), b.turned())};
+  }
+
+  /// By vector and angle of the first edge, then of the second.
+  [[nodiscard]] Eigen::Matrix<double, 8, 8> stiffness() const {
+    const Eigen::Matrix4d ba =
+        -0.5 * b.frame.rotation().transpose() * cross_matrix(moment) * a.frame.rotation();
+    Eigen::Matrix<double, 8, 8> matrix;
+    matrix << own_stiffness(a.frame, -moment), ba.transpose(), ba, own_stiffness(b.frame, moment);
+    return matrix;
+  }
+};
+
+/// The same between an edge and a clamp, which does not turn.
+struct StressedClamp {
+  TurningEdge edge;
+  Vec3 moment;  ///< [N m] on the edge
+
+  template <class Curvature>
+  static StressedClamp of(const std::array<Index, 7>& dofs,
+                          const typename SpatialClamp<Curvature>::Constants& c,
+                          const SpatialPivot& first, const SpatialPivot& last,
+                          const Configuration& here, const Vector& displacement) {
+    const Vector& values = here.controls;
+    const auto x = moved(dofs, here, first, last, 2);
+    const TurningEdge edge = turning_edge(x, gather(dofs, displacement), 0, 6, c.edge, values);
+    const double turned = c.held.twist_angle(values);
+    const SectionFrame held = c.held.untwisted(values).turned(turned);
+    const bool leaves = c.side > 0.0;
+    const SectionFrame& a = leaves ? held : edge.frame.frame;
+    const SectionFrame& b = leaves ? edge.frame.frame : held;
+    const double twist = leaves ? whole_twist(a, b, turned, x[6], values[c.edge.twist_at_start()])
+                                : whole_twist(a, b, x[6], turned, values[c.edge.twist_at_end()]);
+    JointResponse response;
+    JointKinematics<Curvature>(a, b, twist).template respond<true>(c.joint, response);
+    const Vec3 none = Vec3::Zero();
+    return {edge, c.side * (leaves ? moment_change(response, none, edge.turned())
+                                   : moment_change(response, edge.turned(), none))};
+  }
+};
 
 }  // namespace
 
@@ -119,36 +191,16 @@ void InitialStress::add_spatial_edges(const Model& model, const Configuration& h
 template <class Curvature>
 void InitialStress::add_joints(const Model& model, const Configuration& here,
                                const Vector& displacement) {
-  const Vector& values = here.controls;
   const auto count = [&](const Vec3& moment) {
     largest_ = std::max(largest_, moment.norm() / model.size());
   };
-  const auto add = [&](const auto& dofs, const typename SpatialBend<Curvature>::Constants& c,
-                       const SpatialPivot& first, const SpatialPivot& last) {
-    const auto x = moved(dofs, here, first, last, 3);
-    const auto d = gather(dofs, displacement);
-    JointEdge a{{x.template segment<3>(3) - x.template segment<3>(0), x[9],
-                 c.before.tangent(values), c.before.director(values)},
-                {}};
-    JointEdge b{{x.template segment<3>(6) - x.template segment<3>(3), x[10],
-                 c.after.tangent(values), c.after.director(values)},
-                {}};
-    a.change << d.template segment<3>(3) - d.template segment<3>(0), d[9];
-    b.change << d.template segment<3>(6) - d.template segment<3>(3), d[10];
-    const double twist =
-        whole_twist(a.frame.frame, b.frame.frame, x[9], x[10], values[c.after.twist_at_start()]);
-    JointResponse response;
-    JointKinematics<Curvature>(a.frame.frame, b.frame.frame, twist)
-        .template respond<true>(c.joint, response);
-    const Vec3 moment = moment_change(response, a.turned(), b.turned());
-    count(moment);
-    const Eigen::Matrix4d ba =
-        -0.5 * b.frame.rotation().transpose() * cross_matrix(moment) * a.frame.rotation();
+  const auto add = [&](const auto& dofs, const auto& c, const SpatialPivot& first,
+                       const SpatialPivot& last) {
+    const auto joint = StressedJoint::of<Curvature>(dofs, c, first, last, here, displacement);
+    count(joint.moment);
     Term& term = terms_.emplace_back();
     term.size = 8;
-    term.matrix.resize(8, 8);
-    term.matrix << own_stiffness(a.frame, -moment), ba.transpose(), ba,
-        own_stiffness(b.frame, moment);
+    term.matrix = joint.stiffness();
     for (std::size_t i = 0; i < 3; ++i) {
       term.variables[i] = {dofs[3 + i], dofs[i]};
       term.variables[4 + i] = {dofs[6 + i], dofs[3 + i]};
@@ -163,34 +215,16 @@ void InitialStress::add_joints(const Model& model, const Configuration& here,
     const auto& c = pivoted.constants[i];
     add(pivoted.dofs[i], c.element, c.first, c.last);
   }
-
   const auto& clamps = elements_of<FromSpatialPivot<SpatialClamp<Curvature>>>(*model.elements);
   for (std::size_t i = 0; i < clamps.size(); ++i) {
     const auto& dofs = clamps.dofs[i];
-    const auto& [c, first, last] = clamps.constants[i];
-    const auto x = moved(dofs, here, first, last, 2);
-    const auto d = gather(dofs, displacement);
-    JointEdge edge{{x.template segment<3>(3) - x.template segment<3>(0), x[6],
-                    c.edge.tangent(values), c.edge.director(values)},
-                   {}};
-    edge.change << d.template segment<3>(3) - d.template segment<3>(0), d[6];
-    const double side = c.side;
-    const double turned = c.held.twist_angle(values);
-    const SectionFrame held = c.held.untwisted(values).turned(turned);
-    const bool leaves = side > 0.0;
-    const SectionFrame& a = leaves ? held : edge.frame.frame;
-    const SectionFrame& b = leaves ? edge.frame.frame : held;
-    const double twist = leaves ? whole_twist(a, b, turned, x[6], values[c.edge.twist_at_start()])
-                                : whole_twist(a, b, x[6], turned, values[c.edge.twist_at_end()]);
-    JointResponse response;
-    JointKinematics<Curvature>(a, b, twist).template respond<true>(c.joint, response);
-    const Vec3 none = Vec3::Zero();
-    const Vec3 moment =
-        moment_change(response, leaves ? none : edge.turned(), leaves ? edge.turned() : none);
-    count(moment);
+    const auto& c = clamps.constants[i];
+    const auto clamp =
+        StressedClamp::of<Curvature>(dofs, c.element, c.first, c.last, here, displacement);
+    count(clamp.moment);
     Term& term = terms_.emplace_back();
     term.size = 4;
-    term.matrix = own_stiffness(edge.frame, side * moment);
+    term.matrix = own_stiffness(clamp.edge.frame, clamp.moment);
     for (std::size_t k = 0; k < 3; ++k) term.variables[k] = {dofs[3 + k], dofs[k]};
     term.variables[3] = {dofs[6], -1};
   }

@@ -59,16 +59,16 @@ def quiet_run(scene):
         return der.run(scene)
 
 
-def prandtl(moment, end):
+def prandtl(moment, end, symmetric=False):
     """Least factor P of EI_weak = GJ = 1, L = 1: phi'' + (P moment(s))^2 phi = 0 over 0 .. `end`,
-    phi = 0 at the start and phi = 0 (end 1) or phi' = 0 (end 1/2, by symmetry) there."""
+    phi = 0 at the start, and there or, in the middle of a symmetric beam, phi' = 0."""
 
     def at_end(load):
         def rate(s, y):
             return [y[1], -((load * moment(s)) ** 2) * y[0]]
 
         y = solve_ivp(rate, (0, end), [0, 1], method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1]
-        return y[1] if end < 1 else y[0]
+        return y[1] if symmetric else y[0]
 
     low = 1.0
     while at_end(low) * at_end(low + 2) > 0:
@@ -138,7 +138,7 @@ def test_verdict_is_that_of_the_spatial_model(spatial_reference, load):
 )
 def test_beam_between_forks(fitted_order, name, loads, moment, end, quoted):
     """Linear buckling of a planar beam, whose supports hold the section as forks do."""
-    exact = prandtl(moment, end)
+    exact = prandtl(moment, end, symmetric=name == "middle")
     assert exact == pytest.approx(quoted, rel=1e-3)
     weak, twisting = 0.3, 0.2
     errors = []
@@ -150,10 +150,41 @@ def test_beam_between_forks(fitted_order, name, loads, moment, end, quoted):
     assert abs(errors[-1]) < 3e-3
 
 
+def test_two_spans(fitted_order):
+    """A fork between two spans of length 1/2 under a uniform load q, with the moment q s (3/16 -
+    s/2) from either end. The lowest mode is odd, so that the middle support has no force across."""
+    exact = prandtl(lambda s: s * (3 / 16 - s / 2), 0.5)
+    weak, twisting = 0.3, 0.2
+    supports = [*BEAM, {"rod": "rod", "at": "middle", "fix": ["y"]}]
+    loads = [{"distributed_force": {"rod": "rod", "force": [0, -1]}}]
+    errors = []
+    sizes = [40, 80, 160]  # two terms of the error cancel on coarse meshes
+    for n in sizes:
+        scene = strip(n, supports, loads, weak, twisting, analysis="buckling")
+        factor = quiet_run(scene).summary["out_of_plane"]["load_factor"]
+        errors.append(factor / (exact * np.sqrt(weak * twisting)) - 1)
+    assert fitted_order([1 / n for n in sizes], errors) > 1.9
+
+
+def test_forks_turn_with_the_rod():
+    """A beam drawn straight and bent by a load, and one that is drawn as it is bent: the same."""
+    loads = [{"point_force": {"rod": "rod", "at": {"node": 8}, "force": [0, -6]}}]
+    drawn_straight = strip(20, BEAM, loads, 0.1, 0.1, analysis="modes")
+    bent = quiet_run(drawn_straight)
+    rod = {**drawn_straight["rods"][0], "points": bent.positions[-1].tolist()}
+    rod = {key: value for key, value in rod.items() if key not in ("nodes", "from", "to")}
+    drawn_bent = {**drawn_straight, "rods": [{**rod, "natural_curvature": 0}]}
+    rates = [
+        result.summary["out_of_plane"]["growth_rate"] for result in (bent, quiet_run(drawn_bent))
+    ]
+    assert rates[0] > 0
+    assert rates[1] == pytest.approx(rates[0], rel=1e-4)
+
+
 def test_beam_between_forks_leaves_its_plane_at_that_load():
     """A beam so stiff in its plane that it hardly bends before."""
     weak, twisting = 1e-4, 1e-4
-    exact = prandtl(lambda s: s / 2, 0.5) * 1e-4
+    exact = prandtl(lambda s: s / 2, 0.5, symmetric=True) * 1e-4
     for share, word in ((0.98, "stable"), (1.02, "unstable")):
         loads = [{"point_force": {"rod": "rod", "at": "middle", "force": [0, -share * exact]}}]
         assert planar_verdict(strip(40, BEAM, loads, weak, twisting)).stability == word

@@ -1,5 +1,6 @@
 #include "der/statics/initial_stress.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -22,11 +23,12 @@ Mat3 across(const Vec3& edge, double stiffness) {
   return stiffness * (Mat3::Identity() - tangent * tangent.transpose());
 }
 
-/// The component of `change` across `edge`, over the edge's length.
-template <class Vec>
-double turned_by(const Vec& edge, const Vec& change) {
-  const double along = edge.dot(change) / edge.squaredNorm();
-  return (change - along * edge).norm() / edge.norm();
+/// Angle [rad] by which the change of an edge turns it.
+double turned_by(const Vec2& edge, const Vec2& change) {
+  return std::abs(edge.x() * change.y() - edge.y() * change.x()) / edge.squaredNorm();
+}
+double turned_by(const Vec3& edge, const Vec3& change) {
+  return edge.cross(change).norm() / edge.squaredNorm();
 }
 
 /// An edge beside a joint, and the change of its vector and angle.

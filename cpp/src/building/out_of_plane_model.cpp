@@ -56,20 +56,25 @@ std::vector<Place> fork_places(const scenario::Scene& scene, const Model& planar
   return places;
 }
 
-scenario::Support hold(const std::string& rod, scenario::Location at,
-                       std::vector<scenario::Component> components) {
+scenario::Support hold_z(const std::string& rod, Index node) {
   scenario::Support support;
   support.rod = rod;
-  support.at = at;
-  support.fix = std::move(components);
+  support.at = {scenario::Location::Kind::Node, 0.0, static_cast<int>(node), {}};
+  support.fix = {scenario::Component::Z};
   return support;
 }
 
-/// The rods in space with their clamps, x and y of all nodes and z of the forks held.
+void hold_plane(Model& model) {
+  std::vector<Index> in_plane;
+  for (Index node = 0; node < model.num_nodes; ++node) {
+    for (const int c : {0, 1}) in_plane.push_back(model.dof(node, c));
+  }
+  model.dofs.hold(in_plane);
+}
+
+/// The rods in space with their clamps, and z held at the forks.
 scenario::Scene rods_in_space(const scenario::Scene& planar_scene, const Model& planar,
                               const std::vector<Place>& forks) {
-  using scenario::Component;
-  using scenario::Location;
   scenario::Scene scene = planar_scene;
   scene.model = scenario::ModelChoice::Spatial;
   scene.analysis = scenario::StaticAnalysis{};
@@ -83,14 +88,8 @@ scenario::Scene rods_in_space(const scenario::Scene& planar_scene, const Model& 
     support.spring.reset();
     scene.supports.push_back(std::move(support));
   }
-  for (const RodLayout& rod : planar.rods) {
-    scene.supports.push_back(
-        hold(rod.name, {Location::Kind::All, 0.0, 0, {}}, {Component::X, Component::Y}));
-  }
   for (const auto& [rod, node] : forks) {
-    scene.supports.push_back(hold(planar.rods[to_size(rod)].name,
-                                  {Location::Kind::Node, 0.0, static_cast<int>(node), {}},
-                                  {Component::Z}));
+    scene.supports.push_back(hold_z(planar.rods[to_size(rod)].name, node));
   }
   for (scenario::Rod& rod : scene.rods) rod.initial_velocity.clear();
   conform(scene);
@@ -193,6 +192,7 @@ Configuration OutOfPlaneModel::at(const Model& planar, const Configuration& here
 OutOfPlaneModel build_out_of_plane_model(const scenario::Scene& scene, const Model& planar) {
   const std::vector<Place> places = fork_places(scene, planar);
   OutOfPlaneModel twin{build_model(rods_in_space(scene, planar, places)), {}};
+  hold_plane(twin.model);
   std::vector<char> has_fork(to_size(planar.num_nodes), 0);
   for (const auto& [rod, place] : places) {
     const RodLayout& layout = twin.model.rods[to_size(rod)];

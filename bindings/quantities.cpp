@@ -42,7 +42,7 @@ std::map<std::string, std::string> array_units() {
 
 std::vector<std::string> path_events() {
   return {event_name(PathEvent::None), event_name(PathEvent::Fold),
-          event_name(PathEvent::Bifurcation)};
+          event_name(PathEvent::Bifurcation), event_name(PathEvent::OutOfPlane)};
 }
 
 }  // namespace

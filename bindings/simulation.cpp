@@ -92,6 +92,28 @@ void bind_reports(py::module_& module) {
         return py::str("Counters(steps={}, newton_iterations={}, retried_steps={})")
             .format(c.steps, c.newton_iterations, c.retried_steps);
       });
+  py::class_<OutOfPlane>(module, "OutOfPlane",
+                         "Whether a planar equilibrium is stable against displacement out of its "
+                         "plane and twist.")
+      .def_readonly("not_tested", &OutOfPlane::not_tested,
+                    "Why it was not tested, as a clause; empty if it was.")
+      .def_property_readonly(
+          "stability", [](const OutOfPlane& r) { return r.name(); },
+          "``stable``, ``unstable``, ``neutral``, ``unknown`` as of an equilibrium in its plane, "
+          "or "
+          "``not_tested``.")
+      .def_property_readonly(
+          "unstable_directions",
+          [](const OutOfPlane& r) { return r.stability.unstable_directions; },
+          "Independent directions in which the potential falls.")
+      .def_property_readonly(
+          "neutral_directions", [](const OutOfPlane& r) { return r.stability.neutral_directions; },
+          "Directions in which the potential is flat to rounding.")
+      .def_property_readonly(
+          "unknown_directions", [](const OutOfPlane& r) { return r.stability.unknown_directions; },
+          "Directions of which rounding hides whether the potential rises or falls.")
+      .def("__repr__",
+           [](const OutOfPlane& r) { return py::str("OutOfPlane({})").format(r.name()); });
   py::class_<EquilibriumReport>(module, "EquilibriumReport",
                                 "How a search for an equilibrium ended.")
       .def_readonly("newton_iterations", &EquilibriumReport::newton_iterations,
@@ -104,6 +126,9 @@ void bind_reports(py::module_& module) {
                     "Unstable equilibria that were found on the way and left downhill.")
       .def_readonly("largest_turning_angle", &EquilibriumReport::largest_turning_angle,
                     "Largest turning angle at a node [rad]; far above 1 the mesh is too coarse.")
+      .def_readonly(
+          "out_of_plane", &EquilibriumReport::out_of_plane,
+          "Whether an equilibrium of a planar model would leave its plane; None in space.")
       .def_property_readonly(
           "stability", [](const EquilibriumReport& r) { return r.stability.name(); },
           "``stable``, ``unstable``, ``neutral`` (flat to rounding in some direction) or "

@@ -73,8 +73,12 @@ class Path:
     unstable_directions
         Independent directions in which the equilibrium is unstable, shape (points,).
     events
-        ``fold``, ``bifurcation`` or nothing, shape (points,); each event is at the branch that
-        meets it first.
+        ``fold``, ``bifurcation``, ``out_of_plane`` (directions out of the plane of a planar model
+        lose or regain their stability) or nothing, shape (points,); each event is at the branch
+        that meets it first.
+    unstable_out_of_plane
+        Independent directions out of the plane in which the equilibrium of a planar model is
+        unstable, shape (points,); None in space, and where that is not tested.
     """
 
     branch: NDArray[np.int64]
@@ -82,10 +86,11 @@ class Path:
     arc: Array
     unstable_directions: NDArray[np.int64]
     events: NDArray[np.str_]
+    unstable_out_of_plane: NDArray[np.int64] | None = None
 
     @property
     def stable(self) -> NDArray[np.bool_]:
-        """Whether each point is stable, shape (points,)."""
+        """Whether each point is stable, in its plane if the model is planar, shape (points,)."""
         return np.asarray(self.unstable_directions == 0)
 
     def rows(self, event: str, branch: int = 0) -> NDArray[np.int64]:
@@ -113,10 +118,12 @@ def make_path(data: Mapping[str, Array]) -> Path | None:
     """Collect a path from the arrays of a run; None without one."""
     if "path/factor" not in data:
         return None
+    out_of_plane = data.get("path/unstable_out_of_plane")
     return Path(
         data["path/branch"].astype(np.int64),
         data["path/factor"],
         data["path/arc"],
         data["path/unstable_directions"].astype(np.int64),
         np.array(path_events())[data["path/event"].astype(np.int64)],
+        None if out_of_plane is None else out_of_plane.astype(np.int64),
     )

@@ -136,7 +136,7 @@ def _path(result: RunData) -> Film:
         raise ValueError("the run has found no path to show")
     captions = [
         f"load factor {factor:.4g}, {'stable' if stable else 'unstable'}"
-        + (f", {event}" if event else "")
+        + (f", {event.replace('_', ' ')}" if event else "")
         for factor, stable, event in zip(path.factor, path.stable, path.events, strict=True)
     ]
     chapters = []

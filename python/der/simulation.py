@@ -104,7 +104,8 @@ class Simulation(_core.Simulation):
         Warns
         -----
         DerWarning
-            If a run with a tolerance takes very many steps: why, and what takes fewer.
+            If a run with a tolerance takes very many steps: why, and what takes fewer. If an
+            equilibrium, a path or a buckling load of a planar model would leave its plane.
         UnreliableResultWarning
             If the integrator has created energy, but not enough for the run to fail.
         """
@@ -128,6 +129,7 @@ class Simulation(_core.Simulation):
             raise error
         if warns:
             warn(result.summary["hints"])
+            warn(_leaving_the_plane(result))
             if recording.doubt and not recording.failed:
                 warn([recording.doubt], UnreliableResultWarning)
         return result
@@ -187,6 +189,11 @@ def _symmetric(
 
     lower = csc_array((values, rows, starts), shape=(len(starts) - 1, len(starts) - 1))
     return csc_array(lower + lower.T - diags_array(lower.diagonal()))
+
+
+def _leaving_the_plane(result: Result) -> list[str]:
+    verdict = result.summary.get("out_of_plane", {})
+    return [verdict["warning"]] if "warning" in verdict else []
 
 
 def _goes_on(answer: bool | None) -> bool:

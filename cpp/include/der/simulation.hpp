@@ -19,6 +19,7 @@
 #include "der/statics/continuation.hpp"
 #include "der/statics/equilibrium.hpp"
 #include "der/statics/modes.hpp"
+#include "der/statics/out_of_plane.hpp"
 #include "der/steppers/adaptive_stepper.hpp"
 #include "der/steppers/energy_watch.hpp"
 #include "der/steppers/stability_watch.hpp"
@@ -86,7 +87,10 @@ class Simulation {
   /// Replaces the state by the static equilibrium near it under the loads at the present time,
   /// velocities zero. One that is unstable is left for a stable one, unless `leave_saddles` is
   /// false. Throws NotConvergedError; Error if a position or an extra force is not finite.
+  /// One of a planar model is tested against motion out of its plane.
   EquilibriumReport equilibrium(bool leave_saddles = true);
+  /// The same without that test, as the start of something else.
+  EquilibriumReport settle(bool leave_saddles = true);
 
   /// Moves what support number `support` prescribes, in place of its table: `component` ("x", "y"
   /// [m] from the initial place, or "angle" [rad]) comes to `value` at the end of the next step,
@@ -99,6 +103,16 @@ class Simulation {
   /// The `count` modes of lowest frequency about the present state, which has to be an equilibrium
   /// (Error if not).
   [[nodiscard]] std::vector<Mode> modes(int count);
+  /// Growth rate [1/s] of the fastest motion of the present equilibrium out of the plane of a
+  /// planar model; 0 if there is none, or if that is not tested.
+  [[nodiscard]] double growth_rate_out_of_plane();
+  /// The lowest factor of the loads at which the structure of a planar model buckles out of its
+  /// plane; nothing if there is none, or if that is not tested. `in_plane` is what `buckling`
+  /// returned last.
+  std::optional<double> buckling_factor_out_of_plane(const LinearBuckling& in_plane);
+  /// Why equilibria of the scene are not tested against motion out of their plane, as a clause;
+  /// empty if they are, and where the model is one in space.
+  [[nodiscard]] const std::string& not_tested_out_of_plane() const { return not_tested_; }
   /// Replaces the state by the equilibrium without loads, and returns its linear buckling modes
   /// under the scene's loads. Throws NotConvergedError, and Error where that is not the scene's
   /// analysis.
@@ -159,6 +173,8 @@ class Simulation {
     [[nodiscard]] Vector unbalanced(const Model& model) const;
   };
   [[nodiscard]] Forces forces() const;
+  /// Made when it is first asked for; null where there is none.
+  OutOfPlaneTest* out_of_plane_test();
   [[nodiscard]] std::string describe_failure(const StepReport& report, double dt) const;
   [[nodiscard]] std::string describe_inaccuracy(const AdaptiveReport& report) const;
   [[nodiscard]] std::string describe_unstable_motion() const;
@@ -169,6 +185,8 @@ class Simulation {
   Pattern pattern_;
   LinearSolverChoice solver_;
   Assembler assembler_;
+  std::string not_tested_;  // out of the plane
+  std::unique_ptr<OutOfPlaneTest> out_of_plane_;
   const StepperInfo& stepper_info_;
   std::unique_ptr<Stepper> stepper_;
   std::optional<StabilityWatch> stability_;  // of explicit steppers

@@ -13,6 +13,7 @@
 #include "der/core/printable.hpp"
 #include "der/output/datasets.hpp"
 #include "der/output/hints.hpp"
+#include "der/output/out_of_plane_verdict.hpp"
 #include "der/output/result_size.hpp"
 #include "der/output/summary.hpp"
 #include "der/scenario/scenario.hpp"
@@ -134,6 +135,21 @@ std::string equilibrium_lines(const EquilibriumReport& report, const Style& styl
   return text;
 }
 
+/// What the summary says about motion out of the plane, besides its warnings.
+std::string out_of_plane_text(const OutOfPlaneVerdict& verdict, const Style& style) {
+  if (!verdict.not_tested.empty()) return "not tested out of it, because " + verdict.not_tested;
+  if (verdict.load_factor) {
+    return fmt::format("stability out of it lost at the load factor {:.6g}", *verdict.load_factor);
+  }
+  if (!verdict.stability) return "stable out of it at all load factors";
+  const Stability& stability = *verdict.stability;
+  const Index doubtful =
+      stability.unstable_directions + stability.neutral_directions + stability.unknown_directions;
+  if (doubtful == 0) return "stable out of it";
+  return style.warning(
+      fmt::format("{} out of it in {}", stability.name(), format_count(doubtful, "direction")));
+}
+
 std::string status_line(const Simulation& simulation, const RunOutcome& outcome,
                         const Style& style) {
   std::string status = outcome.status;
@@ -154,6 +170,9 @@ std::string status_line(const Simulation& simulation, const RunOutcome& outcome,
   }
   std::string text = line("status", status, style);
   if (outcome.equilibrium) text += equilibrium_lines(*outcome.equilibrium, style);
+  if (const auto plane = out_of_plane_verdict(simulation, outcome)) {
+    text += line("plane", out_of_plane_text(*plane, style), style);
+  }
   return text;
 }
 

@@ -15,6 +15,8 @@ namespace {
 void hold_still(scenario::Support& support) {
   for (auto& prescribed : support.prescribe) set_to_zero(prescribed.displacement);
   if (support.rotation) set_to_zero(*support.rotation);
+  if (support.axis_rotation) set_to_zero(support.axis_rotation->angle);
+  if (support.twist) set_to_zero(*support.twist);
 }
 
 /// The quantities that the load factor of a scene scales.

@@ -45,8 +45,16 @@ std::vector<PlacedPoint> points_of(const RunOutcome& outcome) {
 }  // namespace
 
 const char* event_name(PathEvent event) {
-  if (event == PathEvent::Fold) return "fold";
-  return event == PathEvent::Bifurcation ? "bifurcation" : "";
+  switch (event) {
+    case PathEvent::Fold:
+      return "fold";
+    case PathEvent::Bifurcation:
+      return "bifurcation";
+    case PathEvent::OutOfPlane:
+      return "out_of_plane";
+    default:
+      return "";
+  }
 }
 
 std::vector<Dataset> datasets(const Simulation& simulation, const RunOutcome& outcome) {
@@ -82,6 +90,10 @@ std::vector<Dataset> datasets(const Simulation& simulation, const RunOutcome& ou
     add("arc", [](const PlacedPoint& p) { return p.second->arc; });
     add("unstable_directions",
         [](const PlacedPoint& p) { return p.second->stability.unstable_directions; });
+    if (model.dimension == 2 && simulation.not_tested_out_of_plane().empty()) {
+      add("unstable_out_of_plane",
+          [](const PlacedPoint& p) { return p.second->unstable_out_of_plane; });
+    }
     add("event", [](const PlacedPoint& p) { return static_cast<int>(p.second->event); });
   }
   return result;

@@ -40,10 +40,16 @@ struct Analyse {
     outcome.equilibrium = simulation.equilibrium();
     recorder.observe(simulation);
     outcome.modes = simulation.modes(analysis.count);
+    const auto& plane = outcome.equilibrium->out_of_plane;
+    if (plane && plane->stability.unstable_directions > 0) {
+      outcome.out_of_plane.growth_rate = simulation.growth_rate_out_of_plane();
+    }
     return run_status::kCompleted;
   }
   std::string operator()(const scenario::BucklingAnalysis& analysis) const {
     outcome.buckling = simulation.buckling(analysis.count);
+    outcome.out_of_plane.buckling_factor =
+        simulation.buckling_factor_out_of_plane(outcome.buckling);
     recorder.observe(simulation);
     return run_status::kCompleted;
   }

@@ -33,6 +33,7 @@ std::vector<RunArray> all_arrays() {
       {"path/factor", ""},
       {"path/arc", ""},
       {"path/unstable_directions", ""},
+      {"path/unstable_out_of_plane", ""},
       {"path/event", ""},
   };
   for (const EnergyTermInfo& row : kEnergyTerms) {

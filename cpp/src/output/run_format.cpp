@@ -20,6 +20,8 @@ constexpr std::size_t kStatusLength = 32;
 
 /// The array of a group of modes that has a vector for each node, not one value for each mode.
 constexpr const char* kShapes = "shapes";
+/// Of a path that was tested against motion out of its plane.
+constexpr const char* kOutOfPlane = "unstable_out_of_plane";
 
 template <class T>
 void write_rod_array(hid_t group, const std::string& name, const std::vector<T>& values) {
@@ -77,8 +79,11 @@ void check_whole(const Dataset& dataset, double largest) {
 
 void check_path(const std::vector<Dataset>& datasets) {
   for (const Dataset& dataset : datasets) {
-    if (dataset.name == "path/event") check_whole(dataset, 2.0);
-    if (dataset.name == "path/branch" || dataset.name == "path/unstable_directions") {
+    if (dataset.name == "path/event") {
+      check_whole(dataset, static_cast<double>(PathEvent::OutOfPlane));
+    }
+    if (dataset.name == "path/branch" || dataset.name == "path/unstable_directions" ||
+        dataset.name == "path/unstable_out_of_plane") {
       check_whole(dataset, std::numeric_limits<Index>::max());
     }
   }
@@ -141,6 +146,7 @@ std::vector<Dataset> read_datasets(hid_t file, hsize_t nodes, hsize_t dimension,
     const hsize_t items =
         has_shapes ? read_array<double>(group.id(), names.front()).values.size() : frames;
     for (const std::string& name : names) {
+      if (name == kOutOfPlane && !hdf5::exists(group.id(), name)) continue;
       const std::vector<hsize_t> shape =
           name == kShapes ? std::vector<hsize_t>{items, nodes, dimension} : std::vector{items};
       datasets.push_back(read_dataset(group.id(), kind, name, shape));

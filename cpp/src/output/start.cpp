@@ -113,7 +113,7 @@ void apply_start(Simulation& simulation) {
   const std::string& from = simulation.scenario().scene().start_from;
   if (from.empty()) return;
   if (from == "equilibrium") {
-    simulation.equilibrium();
+    simulation.settle();
     simulation.check_first_step();
     return;
   }

@@ -10,6 +10,7 @@
 
 #include "der/output/datasets.hpp"
 #include "der/output/hints.hpp"
+#include "der/output/out_of_plane_verdict.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/steppers/fine_tables.hpp"
 #include "der/version.hpp"
@@ -71,6 +72,7 @@ Json path_json(const RunOutcome& outcome, const Recorder& recorder) {
                                 {"branch", number},
                                 {"load_factor", point.factor},
                                 {"unstable_directions", point.stability.unstable_directions},
+                                {"unstable_out_of_plane", point.unstable_out_of_plane},
                                 {"probes", std::move(probes)}});
     }
   }
@@ -87,6 +89,26 @@ void add_buckling(const LinearBuckling& buckling, Json& summary) {
     summary["prebuckling_rotations"].push_back(mode.load_factor * buckling.rotation);
     summary["prebuckling_strains"].push_back(mode.load_factor * buckling.strain);
   }
+}
+
+Json out_of_plane_json(const OutOfPlaneVerdict& verdict) {
+  Json json;
+  if (!verdict.not_tested.empty()) {
+    json["stability"] = "not_tested";
+    json["not_tested"] = verdict.not_tested;
+    return json;
+  }
+  if (verdict.stability) {
+    json["stability"] = verdict.stability->name();
+    json["unstable_directions"] = verdict.stability->unstable_directions;
+    json["neutral_directions"] = verdict.stability->neutral_directions;
+    json["unknown_directions"] = verdict.stability->unknown_directions;
+  } else {
+    json["load_factor"] = verdict.load_factor ? Json(*verdict.load_factor) : Json();
+  }
+  if (verdict.growth_rate > 0.0) json["growth_rate"] = verdict.growth_rate;
+  if (!verdict.warning.empty()) json["warning"] = verdict.warning;
+  return json;
 }
 
 bool sought_buckling(const Simulation& simulation) {
@@ -159,6 +181,10 @@ std::vector<std::string> warnings(const Simulation& simulation, const RunOutcome
   const auto add = [&](const std::vector<std::string>& more) {
     found.insert(found.end(), more.begin(), more.end());
   };
+  if (const auto plane = out_of_plane_verdict(simulation, outcome);
+      plane && !plane->warning.empty()) {
+    found.push_back(plane->warning);
+  }
   if (sought_buckling(simulation) && outcome.ok()) {
     add(buckling_warnings(outcome.buckling));
     return found;
@@ -211,6 +237,9 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
     summary["unknown_directions"] = outcome.equilibrium->stability.unknown_directions;
     summary["saddles_left"] = outcome.equilibrium->saddles_left;
     summary["largest_turning_angle"] = outcome.equilibrium->largest_turning_angle;
+  }
+  if (const auto plane = out_of_plane_verdict(simulation, outcome)) {
+    summary["out_of_plane"] = out_of_plane_json(*plane);
   }
   add_analysis(simulation, outcome, recorder, summary);
   if (recorder.energies()) summary["energies"] = energies_json(*recorder.energies());

@@ -27,13 +27,6 @@ void check_natural_curvature(const Rod& rod, const Path& path, Diagnostics& diag
                   "pair [k1, k2], the curvatures toward the director and across it");
 }
 
-bool has_torsional_stiffness(const Rod& rod) {
-  if (const auto* direct = std::get_if<Stiffness>(&rod.cross_section)) {
-    return direct->GJ.has_value();
-  }
-  return rod.material->poissons_ratio || rod.material->shear_modulus;
-}
-
 void check_twisting(const Rod& rod, const Path& path, const std::string& reason,
                     Diagnostics& diagnostics) {
   if (has_torsional_stiffness(rod)) return;

@@ -40,12 +40,6 @@ class Availability {
       if (std::is_same_v<Kind, Moment>) only_planar(path, "moments");
       if (std::is_same_v<Kind, Foundation>) only_planar(path, "foundations");
     });
-    if (std::holds_alternative<BucklingAnalysis>(scene_.analysis)) {
-      only_planar({"analysis"}, "buckling loads");
-    }
-    if (std::holds_alternative<ContinuationAnalysis>(scene_.analysis)) {
-      only_planar({"analysis"}, "continuation");
-    }
     if (scene_.is_dynamic() && scene_.time.integrator == "energy_momentum") {
       only_planar({"time", "integrator"}, "'energy_momentum'");
     }

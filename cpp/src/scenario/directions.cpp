@@ -30,6 +30,18 @@ double along_z(const Components& components) { return components.size() > 2 ? co
 
 bool is_isotropic(const CrossSection& section) { return std::visit(IsIsotropic{}, section); }
 
+bool is_cable(const Rod& rod) {
+  const auto* direct = std::get_if<Stiffness>(&rod.cross_section);
+  return direct && (direct->EI ? direct->EI : direct->EI1) == 0.0;
+}
+
+bool has_torsional_stiffness(const Rod& rod) {
+  if (const auto* direct = std::get_if<Stiffness>(&rod.cross_section)) {
+    return direct->GJ.has_value();
+  }
+  return rod.material->poissons_ratio || rod.material->shear_modulus;
+}
+
 bool is_straight(const Rod& rod) {
   const Vec3 start = in_space(rod.points.front());
   const Vec3 chord = in_space(rod.points.back()) - start;

@@ -5,7 +5,7 @@
 
 #include "der/scenario/rod.hpp"
 
-/// How a rod and its sections lie in space, as far as the checks need it.
+/// How a rod and its sections lie in space, and what they resist, as far as the checks need it.
 namespace der::scenario {
 
 using Vec3 = Eigen::Vector3d;
@@ -17,6 +17,10 @@ double along_z(const Components& components);
 
 /// Whether the two bending stiffnesses are equal.
 bool is_isotropic(const CrossSection& section);
+/// Whether the rod does not resist bending.
+bool is_cable(const Rod& rod);
+/// Whether the scene tells how the rod resists twisting.
+bool has_torsional_stiffness(const Rod& rod);
 /// Whether all nodes lie on a line, but for rounding.
 bool is_straight(const Rod& rod);
 /// Whether all nodes have the same z.

@@ -149,11 +149,6 @@ bool is_naturally_straight(const Rod& rod) {
   return std::visit(IsZero{}, rod.natural_curvature);
 }
 
-bool is_cable(const Rod& rod) {
-  const auto* direct = std::get_if<Stiffness>(&rod.cross_section);
-  return direct && (direct->EI ? direct->EI : direct->EI1) == 0.0;
-}
-
 std::string may_twist(const Rod& rod, const Scene& scene) {
   if (!is_isotropic(rod.cross_section)) {
     return fmt::format("the two bending stiffnesses of rod '{}' differ", rod.name);

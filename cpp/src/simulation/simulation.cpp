@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "der/building/builder.hpp"
+#include "der/building/out_of_plane_model.hpp"
 #include "der/core/error.hpp"
+#include "der/scenario/out_of_plane.hpp"
 #include "der/scenario/scenario.hpp"
 #include "simulation/stepper_options.hpp"
 
@@ -25,6 +27,15 @@ std::string find_nonfinite(const Model& model, const Vector& values, const std::
       what, describe_dof(model, dof), values[dof]);
 }
 
+std::string why_not_tested_out_of_plane(const scenario::Scene& scene, const Model& model) {
+  if (model.dimension != 2) return {};
+  std::string why_not = scenario::why_not_tested_out_of_plane(scene);
+  if (why_not.empty() && is_held_out_of_plane(scene, model)) {
+    why_not = "supports hold every node there, and there is no section to twist";
+  }
+  return why_not;
+}
+
 }  // namespace
 
 Simulation::Simulation(Scenario scenario)
@@ -35,6 +46,7 @@ Simulation::Simulation(Scenario scenario)
           scenario_.scene().solver.linear, pattern_,
           scenario_.scene().is_dynamic() ? Elimination::FromBothEnds : Elimination::FromStart)),
       assembler_(model_, solver_.solver->layout()),
+      not_tested_(why_not_tested_out_of_plane(scenario_.scene(), model_)),
       stepper_info_(find_stepper(scenario_.scene().time.integrator)),
       stepper_(make_stepper(stepper_info_.name, model_, assembler_, *solver_.solver,
                             stepper_options(scenario_.scene()))),

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "der/core/error.hpp"
@@ -14,6 +15,38 @@
 namespace der {
 
 EquilibriumReport Simulation::equilibrium(bool leave_saddles) {
+  EquilibriumReport report = settle(leave_saddles);
+  if (model_.dimension != 2) return report;
+  report.out_of_plane.emplace();
+  if (OutOfPlaneTest* test = out_of_plane_test()) {
+    report.out_of_plane->stability = test->stability(configuration_of(model_, state_));
+  } else {
+    report.out_of_plane->not_tested = not_tested_;
+  }
+  return report;
+}
+
+OutOfPlaneTest* Simulation::out_of_plane_test() {
+  if (model_.dimension == 2 && not_tested_.empty() && !out_of_plane_) {
+    out_of_plane_ = std::make_unique<OutOfPlaneTest>(scenario_.scene(), model_);
+  }
+  return out_of_plane_.get();
+}
+
+double Simulation::growth_rate_out_of_plane() {
+  OutOfPlaneTest* test = out_of_plane_test();
+  return test == nullptr ? 0.0 : test->growth_rate(configuration_of(model_, state_));
+}
+
+std::optional<double> Simulation::buckling_factor_out_of_plane(const LinearBuckling& in_plane) {
+  OutOfPlaneTest* test = out_of_plane_test();
+  if (test == nullptr) return std::nullopt;
+  State unloaded = state_;
+  unloaded.load_factor = 0.0;
+  return test->buckling_factor(configuration_of(model_, unloaded), in_plane.response);
+}
+
+EquilibriumReport Simulation::settle(bool leave_saddles) {
   check_finite_state();
   State found = state_;
   for (Ramp& ramp : found.ramps) ramp.from = ramp.to;
@@ -61,7 +94,7 @@ LinearBuckling Simulation::buckling(int count) {
   State before;
   Undo undo(state_, before);
   state_.load_factor = 0.0;
-  equilibrium();
+  settle();
   LinearBuckling result = linear_buckling(model_, assembler_, *solver_.solver, state_, count);
   state_.load_factor = 1.0;
   undo.keep();
@@ -83,7 +116,15 @@ std::vector<PathBranch> Simulation::follow() {
   State before;
   Undo undo(state_, before);
   state_.load_factor = analysis->from;
-  equilibrium();
+  const EquilibriumReport start = settle();
+  if (model_.dimension == 3 && start.stability.neutral_directions > 0) {
+    throw NotConvergedError(
+        fmt::format("the path has no stable start: its first equilibrium is free to move in {} "
+                    "direction(s), such as the turning of a rod about its own axis; hold the "
+                    "section of each rod ('clamp: true') and its nodes",
+                    start.stability.neutral_directions),
+        status_of(EquilibriumFailure::NotHeld));
+  }
   ContinuationOptions options;
   options.newton = stepper_options(scenario_.scene()).newton;
   options.from = analysis->from;
@@ -91,7 +132,8 @@ std::vector<PathBranch> Simulation::follow() {
   options.largest_step = analysis->step;
   options.max_points = analysis->points;
   options.branching = analysis->branches;
-  auto path = follow_path(model_, assembler_, *solver_.solver, options, state_);
+  auto path =
+      follow_path(model_, assembler_, *solver_.solver, options, out_of_plane_test(), state_);
   undo.keep();
   return path;
 }

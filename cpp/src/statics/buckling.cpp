@@ -1,78 +1,16 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "der/core/error.hpp"
-#include "der/core/index.hpp"
-#include "der/energies/element_energy.hpp"
-#include "der/energies/stretched_edges.hpp"
-#include "der/kinematics/planar_edge.hpp"
 #include "der/loads/external_force.hpp"
 #include "der/statics/equilibrium_failure.hpp"
+#include "der/statics/initial_stress.hpp"
 #include "der/statics/modes.hpp"
 #include "der/statics/potential.hpp"
 #include "der/statics/stiffness.hpp"
 
 namespace der {
 namespace {
-
-/// An edge of the unloaded shape, as its stretch element sees it, and the effect of the loads.
-struct LoadedEdge {
-  std::array<Index, 4> dofs{};
-  Vec2 turn;              ///< gradient of its direction angle by its vector [1/m]
-  double length = 0.0;    ///< [m]
-  double strain = 0.0;    ///< to first order in the load factor
-  double tension = 0.0;   ///< [N], likewise
-  double rotation = 0.0;  ///< [rad], likewise
-
-  /// How much a displacement turns the edge [rad].
-  [[nodiscard]] double turned_by(const Vector& displacement) const {
-    return turn.dot(Stretch<2>::edge(gather(dofs, displacement)));
-  }
-};
-
-std::vector<LoadedEdge> loaded_edges(const Model& model, const Configuration& here,
-                                     const Vector& displacement) {
-  std::vector<LoadedEdge> edges;
-  for_each_stretched_edge(
-      *model.elements, [&](const EffectiveEdge& effective, const Stretch<2>::Constants& c) {
-        const Vec2 e = effective.vector(here);
-        const Vec2 change = Stretch<2>::edge(gather(effective.dofs, displacement));
-        LoadedEdge& edge = edges.emplace_back();
-        edge.dofs = effective.dofs;
-        edge.length = e.norm();
-        edge.turn = direction_gradient(e, 1.0 / e.squaredNorm());
-        edge.strain = e.dot(change) / (edge.length * c.rest_length);
-        edge.tension = c.EA * edge.strain;
-        edge.rotation = edge.turn.dot(change);
-      });
-  return edges;
-}
-
-template <class Member>
-double largest(const std::vector<LoadedEdge>& edges, Member member) {
-  double result = 0.0;
-  for (const LoadedEdge& edge : edges) result = std::max(result, std::abs(edge.*member));
-  return result;
-}
-
-/// K1 in the layout of a linear solver: the sum of tension * length * turn turn'.
-Vector initial_stress_stiffness(const Model& model, const MatrixLayout& layout,
-                                const std::vector<LoadedEdge>& edges) {
-  Vector values = Vector::Zero(layout.num_values() + 1);
-  for (const LoadedEdge& edge : edges) {
-    Eigen::Vector4d slope;  // of the direction angle
-    slope << -edge.turn, edge.turn;
-    for (int column = 0; column < 4; ++column) {
-      for (int row = column; row < 4; ++row) {
-        const Index slot = layout.slot_or_spare(model.dofs.free_index(edge.dofs[to_size(row)]),
-                                                model.dofs.free_index(edge.dofs[to_size(column)]));
-        values[slot] += edge.tension * edge.length * slope[row] * slope[column];
-      }
-    }
-  }
-  return values;
-}
 
 /// K0 + a K1, and the number of critical factors below a.
 class Pencil {
@@ -111,16 +49,32 @@ class Pencil {
   Vector k1_;
 };
 
-/// The `count` modes of lowest factor of the tensions of `edges`; fewer if there are not so many.
-std::vector<BucklingMode> buckling_modes(const Model& model, LinearSolver& solver, const Vector& k0,
-                                         const std::vector<LoadedEdge>& edges,
-                                         const Configuration& here, int count) {
-  const Vector k1 = initial_stress_stiffness(model, solver.layout(), edges);
+/// The shape with its largest displacement 1; the largest angle of a shape that only twists.
+Vector scaled(const Model& model, const Vector& shape) {
+  const auto largest = [](const auto& values) {
+    Eigen::Index main = 0;
+    values.cwiseAbs().maxCoeff(&main);
+    return values[main];
+  };
+  const double displacement = largest(shape.head(model.dofs.num_positions()));
+  constexpr double kNone = 1e-9;
+  const double all = largest(shape);
+  return shape / (std::abs(displacement) > kNone * std::abs(all) ? displacement : all);
+}
+
+}  // namespace
+
+std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& stiffness,
+                                         LinearSolver& solver, const Configuration& here,
+                                         const InitialStress& stress, int count) {
+  const Vector& k0 = stiffness.values();
+  const Vector k1 = stress.stiffness(model, solver.layout());
   // Factors are sought in units in which both matrices are of a size, so that no load is too large
   // or too small. As K0 is positive definite beyond rounding, none is less than that.
   const auto entries = [&](const Vector& values) {
     return values.head(solver.layout().num_values()).lpNorm<Eigen::Infinity>();
   };
+  if (entries(k1) == 0.0) return {};
   const double unit = entries(k0) / entries(k1);
   constexpr double kLeast = 1e-18;
   constexpr double kMost = 1e8;
@@ -134,19 +88,12 @@ std::vector<BucklingMode> buckling_modes(const Model& model, LinearSolver& solve
     const double factor = pencil.bisect(i, low, kMost);
     if (factor > before * (1.0 + 1e-9)) same.clear();
     same.push_back(pencil.shape(factor, same, model.num_free()));
-    Vector shape = over_all_dofs(model, same.back());
+    const Vector shape = over_all_dofs(model, same.back());
     // Taken element by element, the quotient keeps the digits of slender rods.
-    double released = 0.0;
-    for (const LoadedEdge& edge : edges) {
-      const double turned = edge.turned_by(shape);
-      released -= edge.tension * edge.length * turned * turned;
-    }
-    const double exact = second_variation(model, here, shape) / released;
+    const double exact = -second_variation(model, here, shape) / stress.variation(shape);
     // Where K1 is much larger than K0, its rounding errors cause spurious critical factors.
     if (!(std::abs(exact / (unit * factor) - 1.0) < 0.5)) break;
-    Eigen::Index main = 0;
-    shape.cwiseAbs().maxCoeff(&main);
-    modes.push_back({exact, shape / shape[main]});
+    modes.push_back({exact, scaled(model, shape)});
     before = factor;
     low = factor * (1.0 - 1e-12);
   }
@@ -154,8 +101,6 @@ std::vector<BucklingMode> buckling_modes(const Model& model, LinearSolver& solve
             [](const auto& a, const auto& b) { return a.load_factor < b.load_factor; });
   return modes;
 }
-
-}  // namespace
 
 LinearBuckling linear_buckling(const Model& model, const Assembler& assembler, LinearSolver& solver,
                                const State& state, int count) {
@@ -184,21 +129,22 @@ LinearBuckling linear_buckling(const Model& model, const Assembler& assembler, L
   Vector step = loaded - unloaded;
   stiffness.factorize();
   stiffness.solve(step);
-  auto edges = loaded_edges(model, here, over_all_dofs(model, step));
 
   LinearBuckling result;
-  result.rotation = largest(edges, &LoadedEdge::rotation);
-  result.strain = largest(edges, &LoadedEdge::strain);
-  const double noise = stiffness.rounding() * step.lpNorm<Eigen::Infinity>();
-  if (largest(edges, &LoadedEdge::tension) <= noise) return result;
+  result.response = over_all_dofs(model, step);
+  InitialStress stress(model, here, result.response);
+  result.rotation = stress.rotation();
+  result.strain = stress.strain();
+  const double noise = stiffness.rounding() * model.dofs.largest_motion(result.response);
+  if (stress.largest() <= noise) return result;
 
-  const auto modes_of = [&](const std::vector<LoadedEdge>& of, int most) {
-    return buckling_modes(model, solver, stiffness.values(), of, here, most);
+  const auto modes_of = [&](int most) {
+    return buckling_modes(model, stiffness, solver, here, stress, most);
   };
-  result.modes = modes_of(edges, count);
+  result.modes = modes_of(count);
   if (result.modes.empty()) {
-    for (LoadedEdge& edge : edges) edge.tension = -edge.tension;
-    result.reversed = !modes_of(edges, 1).empty();
+    stress.reverse();
+    result.reversed = !modes_of(1).empty();
   }
   return result;
 }

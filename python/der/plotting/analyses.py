@@ -91,10 +91,15 @@ def plot_path(result: RunData, names: list[str]) -> Figure:
         probe = result.probes[name]
         values = np.asarray(probe)
         _draw_branches(axes, np.column_stack([values, path.factor]), path)
-        for event, marker, colour in (("fold", "o", PALETTE[1]), ("bifurcation", "D", PALETTE[2])):
+        for event, marker, colour in (
+            ("fold", "o", PALETTE[1]),
+            ("bifurcation", "D", PALETTE[2]),
+            ("out_of_plane", "^", PALETTE[3]),
+        ):
             at = path.events == event
             if at.any():
-                axes.plot(values[at], path.factor[at], marker, color=colour, label=event, zorder=5)
+                label = event.replace("_", " ")
+                axes.plot(values[at], path.factor[at], marker, color=colour, label=label, zorder=5)
         axes.set_xlabel(axis_label(name, probe.unit))
     panels[0, 0].set_ylabel("load factor")
     panels[0, 0].plot([], [], label="stable", **_line(stable=True))

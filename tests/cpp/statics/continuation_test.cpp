@@ -121,7 +121,8 @@ TEST_CASE("paths in two threads on one model are the same bits as alone") {
     State start = initial_state(model);
     start.load_factor = 0.0;
     std::vector<PathPoint> points;
-    for (const PathBranch& branch : follow_path(model, assembler, *solver.solver, options, start)) {
+    for (const PathBranch& branch :
+         follow_path(model, assembler, *solver.solver, options, nullptr, start)) {
       points.insert(points.end(), branch.points.begin(), branch.points.end());
     }
     return points;

@@ -34,7 +34,17 @@ import numpy as np
 from scipy.linalg import eigvals
 from scipy.optimize import brentq
 
-from .kirchhoff_rod import Equilibrium, Held, Loaded, Rod, natural_shape, shoot, solve
+from .kirchhoff_rod import (
+    Checked,
+    Equilibrium,
+    Held,
+    Loaded,
+    Rod,
+    checked,
+    natural_shape,
+    shoot,
+    solve,
+)
 from .princeton_beam import torsion_constant
 from .record import Array, Problem, Reference, exact
 
@@ -92,6 +102,18 @@ def lateral_load(rod: Rod, degree: int, shooting: bool = False) -> float:
     while first * determinant(low + 0.5) > 0.0:
         low += 0.5
     return float(brentq(determinant, low, low + 0.5, xtol=1e-13, rtol=1e-13))
+
+
+def sideways(rod: Rod, load: float, degree: int) -> Checked:
+    """The equilibrium beside the planar one beyond that load, under the same force. A force across
+    leads off the plane, and is then taken away.
+    """
+    solution = natural_shape(rod, CLAMP, np.array([0.0, 0.5, 1.0]), degree)
+    ways = [(share, 0.1 * share) for share in np.linspace(0.1, 1.0, 10)]
+    for share, seed in (*ways, (1.0, 0.05), (1.0, 0.02), (1.0, 0.01), (1.0, 0.003), (1.0, 0.0)):
+        found = solve(rod, CLAMP, Loaded((load * share, load * seed, 0.0)), solution)
+        solution = found.solution
+    return checked(found)
 
 
 def _conditions(ends: Ends, u: Array, torque: float) -> Array:
@@ -194,6 +216,9 @@ def references() -> Problem:
         values[f"lateral.{label}"] = Reference(best, error, "sqrt(EI_weak GJ)/L^2")
         values[f"lateral.{label}.GJ"] = exact(twisting, "EI_strong")
         values[f"lateral.{label}.EI_weak"] = exact(weak, "EI_strong")
+    buckled = sideways(lateral_rod(0.1, 0.1), 0.6, 16)
+    across, aside, along = buckled.point()
+    values |= {"sideways.x": along, "sideways.y": across, "sideways.z": aside}
     for ends in ENDS:
         for thrust in THRUSTS[ends]:
             torque = twist_torque(ends, thrust)
@@ -212,10 +237,11 @@ def references() -> Problem:
         "spatial_buckling",
         "lateral.*: critical tip force of an inextensible cantilever bent across its weak "
         "direction, with the bending before buckling (limit: without), EI and GJ in units of "
-        "EI_strong, rectangle4: sides 4 to 1, nu 0.3; twist.ENDS.thrustP: critical torque of a "
-        "straight rod under the thrust P L^2/EI, ends clamped (may approach each other), axial "
-        "(pinned, moment a vector along the axis), tangential (pinned, moment along the "
-        "tangent); ring.R.twist: critical total twist of a naturally straight ring with EI/GJ = R",
+        "EI_strong, rectangle4: sides 4 to 1, nu 0.3; sideways.*: its tip under 0.6 EI_strong/L^2 "
+        "along y, EI_weak = GJ = EI_strong/10; twist.ENDS.thrustP: critical torque of a straight "
+        "rod under the thrust P L^2/EI, ends clamped (may approach each other), axial (pinned, "
+        "moment a vector along the axis), tangential (pinned, moment along the tangent); "
+        "ring.R.twist: critical total twist of a naturally straight ring with EI/GJ = R",
         "singular determinants of the linearised collocation, checked by shooting; "
         "characteristic determinants, checked by Chebyshev polynomials, and closed forms",
         values,

@@ -24,7 +24,7 @@ std::vector<Dataset> datasets(const Simulation& simulation, const RunOutcome& ou
 /// The table of a path as CSV, one line a point, with the probes.
 std::string path_csv(const Simulation& simulation, const RunOutcome& outcome);
 
-/// "fold", "bifurcation", or nothing.
+/// "fold", "bifurcation", "out_of_plane", or nothing.
 const char* event_name(PathEvent event);
 
 }  // namespace der

@@ -15,6 +15,13 @@ namespace der {
 /// Called after every step; return false to stop the run early (status "stopped").
 using StepCallback = std::function<bool(const Simulation&)>;
 
+/// What the analysis of a planar model found about motion out of the plane. Of the equilibrium
+/// itself its report tells (EquilibriumReport::out_of_plane), of a path its points do.
+struct OutOfPlaneAnswer {
+  double growth_rate = 0.0;               ///< [1/s] of the fastest motion, of a modes analysis
+  std::optional<double> buckling_factor;  ///< the lowest, of a buckling analysis
+};
+
 /// How a run ended. `status` is one of catalog/run_status.hpp or that of the error.
 struct RunOutcome {
   std::string status;
@@ -28,6 +35,7 @@ struct RunOutcome {
   LinearBuckling buckling;       ///< of a buckling analysis
   std::vector<PathBranch> path;  ///< of a continuation, and the probes of each of its points
   std::vector<std::vector<double>> path_probes;
+  OutOfPlaneAnswer out_of_plane;  ///< of a planar model
   [[nodiscard]] bool ok() const { return run_status::is_finished(status); }
   [[nodiscard]] bool failed() const { return !message.empty(); }
 };

@@ -8,6 +8,7 @@
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 #include "der/solvers/newton.hpp"
+#include "der/statics/out_of_plane.hpp"
 #include "der/statics/stiffness.hpp"
 
 namespace der {
@@ -16,6 +17,7 @@ enum class PathEvent {
   None,
   Fold,         ///< a limit point: the factor turns
   Bifurcation,  ///< another path crosses
+  OutOfPlane,   ///< of a planar path: directions out of the plane lose or regain their stability
 };
 
 /// One equilibrium on a path.
@@ -23,6 +25,7 @@ struct PathPoint {
   double factor = 0.0;  ///< of the loads
   double arc = 0.0;     ///< [-] length of the path so far
   Stability stability;
+  Index unstable_out_of_plane = 0;  ///< directions; 0 where that is not tested
   PathEvent event = PathEvent::None;
   Vector positions;  ///< all degrees of freedom [m]
   Vector followed;   ///< as in the state [rad]
@@ -60,11 +63,15 @@ struct ContinuationOptions {
 /// it has been traced or will be. No branch starts where its first point lies on a complete one. An
 /// event belongs to the branch that meets it first.
 ///
+/// `out_of_plane`, if there is one, tests the points of a planar path against motion out of the
+/// plane; where the number of unstable directions changes, the place is found and put into the
+/// path, too.
+///
 /// A branch ends at the factor `to`, at the opposite limit 2 from - to, at its largest number of
 /// points, where it closes on itself or meets another one, or where no further point is found.
 /// `start` is an equilibrium at the factor `from`, and the model has a load variation.
 std::vector<PathBranch> follow_path(const Model& model, const Assembler& assembler,
                                     LinearSolver& solver, const ContinuationOptions& options,
-                                    const State& start);
+                                    OutOfPlaneTest* out_of_plane, const State& start);
 
 }  // namespace der

@@ -8,6 +8,7 @@
 #include "der/model/state.hpp"
 #include "der/solvers/newton.hpp"
 #include "der/statics/equilibrium_failure.hpp"
+#include "der/statics/out_of_plane.hpp"
 #include "der/statics/stiffness.hpp"
 
 namespace der {
@@ -29,10 +30,13 @@ struct EquilibriumReport {
   Stability stability;       ///< of the equilibrium found
   /// Largest turning angle at a node [rad]; far above 1 the mesh is too coarse.
   double largest_turning_angle = 0.0;
+  /// Of an equilibrium of a planar model: whether it would leave its plane. `find_equilibrium`
+  /// leaves it empty (Simulation::equilibrium).
+  std::optional<OutOfPlane> out_of_plane;
 };
 
 /// Moves the positions of `state`, with the turns, to a static equilibrium under the loads at its
-/// time. Leaves the state as it is if the search fails. Planar models only.
+/// time. Leaves the state as it is if the search fails.
 ///
 /// Newton's method comes first. Where it fails, pseudo-transient continuation follows the gradient
 /// flow of the potential. Where that fails, too, the search goes on with load steps, then dynamic

@@ -8,6 +8,8 @@
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 #include "der/solvers/linear_solver.hpp"
+#include "der/statics/initial_stress.hpp"
+#include "der/statics/stiffness.hpp"
 
 namespace der {
 
@@ -43,18 +45,22 @@ struct LinearBuckling {
   /// is for each unit of the load factor.
   double rotation = 0.0;
   double strain = 0.0;
+  /// That response: the displacement of all degrees of freedom for a unit of the load factor.
+  Vector response;
   /// Whether the loads would make it buckle with reversed signs; checked only if there are no
   /// modes.
   bool reversed = false;
 };
 
-/// Linear buckling: the lowest positive factors a of all loads at which (K0 + a K1) v = 0 has a
-/// solution. K0 is the stiffness of the unloaded equilibrium `state`; K1 is the stiffness
-/// across the edges from the tensions that the loads cause to first order, the initial-stress
-/// stiffness of the classical theory. Moments are left out of K1: they would couple the turning of
-/// an edge with its stretching, which makes a straight beam buckle under a load across it of about
-/// sqrt(EA EI), where terms of second order in the displacement, left out too, cancel that.
-/// Found by bisection on the inertia of the sparse factorisation. No modes if the loads do not make
+/// The `count` lowest positive factors a at which (K0 + a K1) v = 0 has a solution, fewer if there
+/// are not so many: by bisection on the inertia of the sparse factorisation. `stiffness` is the
+/// positive definite K0 at the shape `here`, on the same solver, and `stress` has K1.
+std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& stiffness,
+                                         LinearSolver& solver, const Configuration& here,
+                                         const InitialStress& stress, int count);
+
+/// Linear buckling: K0 is the stiffness of the unloaded equilibrium `state`, K1 that of the initial
+/// stresses that all loads cause to first order (InitialStress). No modes if the loads do not make
 /// it buckle. Throws NotConvergedError if the unloaded structure is not stable. The model has a
 /// load variation, of all loads.
 LinearBuckling linear_buckling(const Model& model, const Assembler& assembler, LinearSolver& solver,

@@ -11,9 +11,11 @@
 #include <vector>
 
 #include "der/model/followed.hpp"
+#include "der/supports/clamp.hpp"
 #include "statics/continuation/path_equations.hpp"
 #include "statics/continuation/path_events.hpp"
 #include "statics/continuation/path_metric.hpp"
+#include "statics/continuation/plane_watch.hpp"
 
 namespace der::statics {
 namespace {
@@ -50,8 +52,9 @@ double largest_clamp_turn(const Model& model) {
   double largest = 0.0;
   for (const RodLayout& rod : model.rods) {
     for (const Clamp& clamp : rod.clamps) {
-      if (clamp.rotation < 0) continue;
-      largest = std::max(largest, std::abs(model.load_variation->controls.change[clamp.rotation]));
+      for_each_turning_control(clamp, [&](Index control) {
+        largest = std::max(largest, std::abs(model.load_variation->controls.change[control]));
+      });
     }
   }
   return largest;
@@ -61,20 +64,23 @@ double largest_clamp_turn(const Model& model) {
 class PathTracer {
  public:
   PathTracer(const Model& model, const Assembler& assembler, LinearSolver& solver,
-             const ContinuationOptions& options, const Vector& positions)
+             const ContinuationOptions& options, OutOfPlaneTest* out_of_plane,
+             const Vector& positions)
       : model_(model),
         options_(options),
         range_(options.to - options.from),
         largest_clamp_turn_(largest_clamp_turn(model)),
         equations_(model, assembler, solver, options.newton, first_metric(model, range_),
                    positions),
-        events_(equations_, options.largest_step) {}
+        events_(equations_, options.largest_step),
+        plane_(equations_, out_of_plane) {}
 
   std::vector<PathBranch> run(const State& start) {
     PathNode first =
         equations_.node_at(start.followed, {start.positions(model_.dofs.free()), options_.from});
     equations_.set_metric(first);
     if (first.tangent.factor * range_ < 0.0) reverse(first.tangent);
+    plane_.look(first);
     trace(first, std::nullopt, 0);
     for (std::size_t i = 0; i < crossings_.size(); ++i) {
       if (crossings_[i].depth < options_.branching) trace_from(i);
@@ -86,8 +92,8 @@ class PathTracer {
   [[nodiscard]] const PathMetric& metric() const { return equations_.metric(); }
 
   void add_point(PathBranch& branch, const PathNode& node, double arc, PathEvent event) const {
-    branch.points.push_back(
-        {node.at.factor, arc, node.stability, event, node.positions, node.followed});
+    branch.points.push_back({node.at.factor, arc, node.stability, node.unstable_out_of_plane, event,
+                             node.positions, node.followed});
   }
 
   /// How far the factor is on its way: 0 at `from`, 1 at `to`.
@@ -145,35 +151,44 @@ class PathTracer {
   };
 
   /// Number of the bifurcation at a place `arc` along a branch, if it is known.
-  [[nodiscard]] std::optional<std::size_t> crossing_at(const LocatedEvent& place, int branch,
-                                                       double arc) const {
+  std::optional<std::size_t> crossing_at(const LocatedEvent& place, int branch, double arc) {
     const double same = kSamePlace * options_.largest_step + 2.0 * place.reach;
     for (std::size_t i = 0; i < crossings_.size(); ++i) {
       const Crossing& known = crossings_[i];
       const bool came_back =
           known.branch != branch || arc - known.arc > kShortestLoop * options_.largest_step;
-      if (came_back && metric().distance(known.node.at, place.node.at) < same) return i;
+      if (came_back && distance(known.node, place.node) < same) return i;
     }
     return std::nullopt;
   }
 
-  [[nodiscard]] PathPosition position_of(const PathPoint& point) const {
-    return {point.positions(model_.dofs.free()), point.factor};
+  /// The distance of two nodes that were reached on different ways.
+  double distance(const PathNode& a, const PathNode& b) {
+    return metric().distance(in_chart_of(b.followed, a), b.at);
   }
 
-  /// Whether a point lies on a branch that is over: whether Newton leads to it from the line that
+  PathPosition in_chart_of(const Vector& chart, const PathNode& node) {
+    return equations_.in_chart(chart, node.at.factor, node.positions, node.followed);
+  }
+  PathPosition in_chart_of(const Vector& chart, const PathPoint& point) {
+    return equations_.in_chart(chart, point.factor, point.positions, point.followed);
+  }
+
+  /// Whether a node lies on a branch that is over: whether Newton leads to it from the line that
   /// joins two neighbours, on the plane across that line. Neither of them need be near.
-  bool is_traced(const PathPosition& point) {
+  bool is_traced(const PathNode& node) {
     for (const PathBranch& branch : branches_) {
       for (std::size_t i = 0; i + 1 < branch.points.size(); ++i) {
-        if (lies_between(branch.points[i], position_of(branch.points[i + 1]), point)) return true;
+        if (lies_between(branch.points[i], branch.points[i + 1], node)) return true;
       }
     }
     return false;
   }
 
-  bool lies_between(const PathPoint& first, const PathPosition& to, const PathPosition& point) {
-    const PathPosition from = position_of(first);
+  bool lies_between(const PathPoint& first, const PathPoint& second, const PathNode& node) {
+    const PathPosition from = in_chart_of(first.followed, first);
+    const PathPosition to = in_chart_of(first.followed, second);
+    const PathPosition point = in_chart_of(first.followed, node);
     const PathPosition line = difference(to, from);
     const double length = metric().norm(line);
     const double same = kSamePath * options_.largest_step;
@@ -195,7 +210,7 @@ class PathTracer {
     int number = 0;
     std::optional<std::size_t> root;  // the bifurcation at which it begins
     int depth = 0;                    // bifurcations between it and the first branch
-    PathPosition origin;
+    PathNode origin;
     double arc = 0.0;
   };
 
@@ -205,15 +220,15 @@ class PathTracer {
     trace.number = static_cast<int>(branches_.size());
     trace.root = root;
     trace.branch.side = side;
-    trace.origin = first.at;
+    trace.origin = first;
     if (root) {
       const Crossing& start = crossings_[*root];
       trace.branch.parent = start.branch;
-      trace.origin = start.node.at;
+      trace.origin = start.node;
       trace.depth = start.depth + 1;
       add_point(trace.branch, start.node, 0.0, PathEvent::None);
     }
-    trace.arc = metric().distance(first.at, trace.origin);
+    trace.arc = distance(trace.origin, first);
     add_point(trace.branch, first, trace.arc, PathEvent::None);
     return trace;
   }
@@ -229,7 +244,7 @@ class PathTracer {
       crossing.beyond.push_back(*beyond);
       return true;
     }
-    return is_traced(beyond->at);
+    return is_traced(*beyond);
   }
 
   /// Puts the events on the way to `found` into a branch, each the first time that it is met. Ends
@@ -277,12 +292,16 @@ class PathTracer {
         continue;
       }
       events_.merge(events, node);
+      for (LocatedEvent& event : events) plane_.look(event.node);
+      plane_.look(*found);
+      plane_.locate(node, reached, *found, events);
       add_events(events, *found, now);
       if (!branch.ending.empty()) break;
       branch.ending = ending;
       now.arc += reached;
       add_point(branch, *found, now.arc, PathEvent::None);
-      if (now.arc > kShortestLoop * options_.largest_step && passes(now.origin, node, *found)) {
+      if (now.arc > kShortestLoop * options_.largest_step &&
+          passes(in_chart_of(node.followed, now.origin), node, *found)) {
         branch.ending = "closed loop";
       }
       node = *found;
@@ -297,7 +316,7 @@ class PathTracer {
   /// path it lies on, and on from those that end there.
   void trace_from(std::size_t number) {
     const auto trace_new = [&](const PathNode& node, int side) {
-      if (!is_traced(node.at)) trace(node, number, side);
+      if (!is_traced(node)) trace(node, number, side);
     };
     for (const int side : {1, -1}) {
       if (const auto node = first_point(crossings_[number].node, side)) trace_new(*node, side);
@@ -325,6 +344,7 @@ class PathTracer {
       PathNode node = equations_.node_at(bifurcation.followed, *found);
       const PathPosition way = difference(node.at, bifurcation.at);
       if (metric().dot(node.tangent, way) < 0.0) reverse(node.tangent);
+      plane_.look(node);
       return node;
     }
     return std::nullopt;
@@ -336,6 +356,7 @@ class PathTracer {
   double largest_clamp_turn_;  // by a unit of the factor [rad]
   PathEquations equations_;
   EventLocator events_;
+  PlaneWatch plane_;
   std::vector<PathBranch> branches_;
   std::vector<Crossing> crossings_;
 };
@@ -347,8 +368,9 @@ namespace der {
 
 std::vector<PathBranch> follow_path(const Model& model, const Assembler& assembler,
                                     LinearSolver& solver, const ContinuationOptions& options,
-                                    const State& start) {
-  return statics::PathTracer(model, assembler, solver, options, start.positions).run(start);
+                                    OutOfPlaneTest* out_of_plane, const State& start) {
+  return statics::PathTracer(model, assembler, solver, options, out_of_plane, start.positions)
+      .run(start);
 }
 
 }  // namespace der

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "der/core/index.hpp"
+#include "der/kinematics/frame_block.hpp"
+#include "der/kinematics/section_frame.hpp"
 #include "der/loads/external_force.hpp"
 #include "der/model/followed.hpp"
 #include "der/model/prescribed_motion.hpp"
@@ -16,6 +19,21 @@ constexpr int kMaxIterations = 12;
 /// The last Newton step of a point, in arc length. Convergence is quadratic: the next one would be
 /// its square.
 constexpr double kLastStep = 1e-7;
+
+/// The frames in a vector `followed` of the model.
+Vector model_frames(const Model& model, const Vector& followed) {
+  return followed.tail(model.drawn_frames.size());
+}
+
+/// Angle [rad] about an edge by which its director in the frames `to` is turned against that of
+/// `from`, transported to the same tangent.
+double director_angle(Index edge, const Vector& from, const Vector& to) {
+  const FrameBlock block = FrameBlock::of(edge);
+  const auto frame = [&](const Vector& frames) {
+    return SectionFrame::of(block.tangent(frames), block.director(frames));
+  };
+  return twist_between(frame(from), frame(to));
+}
 
 }  // namespace
 
@@ -90,14 +108,36 @@ PathPosition PathEquations::tangent(const Vector& followed, const PathPosition& 
 }
 
 PathNode PathEquations::node_at(const Vector& followed, const PathPosition& point) {
-  evaluate(followed, point);
+  place(followed, point);
   PathNode node;
   node.at = point;
   node.positions = here_.coordinates;
   node.followed = followed;
   follow(model_, here_.coordinates, here_.controls, node.followed);
-  node.tangent = tangent(followed, point, node.stability);
+  // A tangent belongs to the chart of its node: frames have moved there, and the change of an
+  // angle counts from them.
+  const Vector& chart = model_.has_sections() ? node.followed : followed;
+  evaluate(chart, point);
+  node.tangent = tangent(chart, point, node.stability);
   return node;
+}
+
+PathPosition PathEquations::in_chart(const Vector& chart, double factor, const Vector& positions,
+                                     const Vector& followed) {
+  PathPosition point{positions(model_.dofs.free()), factor};
+  if (!model_.has_sections()) return point;
+  const Vector own = model_frames(model_, followed);
+  const Vector other = model_frames(model_, chart);
+  for (Index edge = 0; edge < static_cast<Index>(model_.framed_edges.size()); ++edge) {
+    const Index free = model_.dofs.free_index(model_.framed_edges[to_size(edge)].theta);
+    if (free >= 0) point.x[free] += director_angle(edge, other, own);
+  }
+  return point;
+}
+
+const Configuration& PathEquations::configuration_at(const PathNode& node) {
+  place(node.followed, node.at);
+  return here_;
 }
 
 std::optional<PathPosition> PathEquations::solve_on_plane(const Vector& followed,

@@ -20,11 +20,13 @@ struct PathNode {
   Vector positions;      ///< all degrees of freedom [m]
   Vector followed;       ///< of the followed edges [rad]
   Stability stability;
+  Index unstable_out_of_plane = 0;  ///< directions (PlaneWatch)
   [[nodiscard]] bool rising() const { return tangent.factor > 0.0; }
 };
 
 /// The equations of equilibrium with the load factor as one more unknown, and Newton's method for
-/// them on a plane across the path. `turns` are always those of a point nearby.
+/// them on a plane across the path. `followed` is always that of a point nearby: the chart in which
+/// angles of sections count.
 class PathEquations {
  public:
   /// `positions` give the values of held degrees of freedom that do not vary.
@@ -32,6 +34,15 @@ class PathEquations {
                 const NewtonOptions& options, PathMetric metric, Vector positions);
 
   [[nodiscard]] const PathMetric& metric() const { return metric_; }
+
+  /// A shape in another chart, that of the frames `chart`: its free degrees of freedom, the angles
+  /// of sections from those frames. Two points of a path have the same angles from frames that
+  /// followed it from one to the other, but points that were reached on two ways have not.
+  [[nodiscard]] PathPosition in_chart(const Vector& chart, double factor, const Vector& positions,
+                                      const Vector& followed);
+
+  /// The shape and the controls at a node.
+  [[nodiscard]] const Configuration& configuration_at(const PathNode& node);
 
   /// Sets the metric from the tangent of the first node, and makes that tangent a unit one again.
   void set_metric(PathNode& first);

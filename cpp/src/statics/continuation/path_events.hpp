@@ -14,12 +14,14 @@ struct LocatedEvent {
   PathNode node;
   bool factor_turns = false;
   Index lost_directions = 0;
-  double reach = 0.0;  ///< to either side, within which the place is uncertain
+  double reach = 0.0;         ///< to either side, within which the place is uncertain
+  bool out_of_plane = false;  ///< whether it is one of directions out of the plane
 
   /// At a limit point the factor turns and a direction loses its stability. Where only one of the
   /// two happens another path crosses: on a branch that passes through a symmetric bifurcation
   /// again the factor turns, but both of its sides are alike.
   [[nodiscard]] PathEvent event() const {
+    if (out_of_plane) return PathEvent::OutOfPlane;
     return factor_turns && lost_directions != 0 ? PathEvent::Fold : PathEvent::Bifurcation;
   }
 };

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "der/kinematics/configuration.hpp"
+#include "der/model/model.hpp"
+
+namespace der {
+
+namespace scenario {
+struct Scene;
+}
+
+/// A planar scene in space with x and y of all nodes held, so that its free degrees of freedom are
+/// z of the nodes and the angles of the sections. At a planar shape the energy in space is even in
+/// these: its Hessian splits into a block of the plane and this one.
+///
+/// What holds the rods in the plane holds them out of it, too: a clamp holds the tangent and the
+/// section (or the tangent alone, as the scene says), and every other support, springs included,
+/// holds z of its node and the section against turning about the rod, as a fork does. Loads act on
+/// the centre line, and forces of a constant direction in the plane, springs and foundations
+/// change nothing in this block.
+struct OutOfPlaneModel {
+  /// A fork holds the section of an edge that ends there. It turns in the plane with the edge.
+  struct Fork {
+    Index edge = 0;
+    Index rotation = 0;  ///< control that turns it [rad]
+  };
+  Model model;
+  std::vector<Fork> forks;
+
+  /// The shape and the controls of the planar model in this one. Frames are those of the edges as
+  /// they lie there.
+  [[nodiscard]] Configuration at(const Model& planar, const Configuration& here) const;
+};
+
+/// `planar` is the model of `scene`, in which at least one node or section is not held by supports
+/// in this sense, and the stiffness against twisting of every rod that bends is known.
+OutOfPlaneModel build_out_of_plane_model(const scenario::Scene& scene, const Model& planar);
+
+/// Whether supports hold every node, and there is no section to twist.
+bool is_held_out_of_plane(const scenario::Scene& scene, const Model& planar);
+
+}  // namespace der

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "der/assembly/pattern.hpp"
+#include "der/core/types.hpp"
+#include "der/kinematics/configuration.hpp"
+#include "der/model/model.hpp"
+
+namespace der {
+
+/// The tensions and moments that a displacement causes to first order, and K1, the stiffness that
+/// they make by turning with the structure: the initial-stress stiffness of the classical theory.
+/// Material stiffness is that of the shape at the start, and so are all directions.
+///
+/// A tension T makes T/l across an edge of length l. In space a moment M between two section frames
+/// that turn by omega_a and omega_b makes the quadratic form
+///   omega_b . (omega_a x M),
+/// and what remains of it where an edge is turned by a force: M across the tangent t couples the
+/// turning of an edge with its angle (EdgeFrame::geometric_stiffness). The part that couples the
+/// turning with stretching is left out: it would make a straight beam buckle under a load across it
+/// of about sqrt(EA EI), where terms of second order in the displacement, left out too, cancel it.
+/// In a plane nothing remains of moments, nor where sections do not count.
+class InitialStress {
+ public:
+  /// `displacement` has all degrees of freedom, `here` the frames of the shape itself.
+  InitialStress(const Model& model, const Configuration& here, const Vector& displacement);
+
+  [[nodiscard]] double rotation() const { return rotation_; }  ///< largest of an edge [rad]
+  [[nodiscard]] double strain() const { return strain_; }      ///< largest of an edge
+  /// The largest tension [N]; a moment counts over the size of the model.
+  [[nodiscard]] double largest() const { return largest_; }
+
+  /// K1 in the layout of a linear solver, with the spare slot.
+  [[nodiscard]] Vector stiffness(const Model& model, const MatrixLayout& layout) const;
+  /// d' K1 d [J] of a displacement d (all degrees of freedom) [m], summed over the elements, each
+  /// of which sees differences of it alone.
+  [[nodiscard]] double variation(const Vector& direction) const;
+  /// The stresses of the reversed displacement.
+  void reverse();
+
+ private:
+  /// A variable of an element: the difference of two degrees of freedom, or one of them.
+  struct Variable {
+    Index plus = 0;
+    Index minus = -1;  ///< -1: none
+    [[nodiscard]] double of(const Vector& direction) const {
+      return direction[plus] - (minus < 0 ? 0.0 : direction[minus]);
+    }
+  };
+  static constexpr int kMost = 8;
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
+  struct Term {
+    int size = 0;
+    std::array<Variable, kMost> variables{};
+    Matrix matrix;
+  };
+
+  template <int Dim>
+  void add_edge(const std::array<Index, std::size_t{2} * Dim>& dofs,
+                const Eigen::Matrix<double, Dim, 1>& edge,
+                const Eigen::Matrix<double, Dim, 1>& change, double EA, double rest_length);
+  void add_planar_edges(const Model& model, const Configuration& here, const Vector& displacement);
+  void add_spatial_edges(const Model& model, const Configuration& here, const Vector& displacement);
+  template <class Curvature>
+  void add_joints(const Model& model, const Configuration& here, const Vector& displacement);
+
+  std::vector<Term> terms_;
+  double rotation_ = 0.0;
+  double strain_ = 0.0;
+  double largest_ = 0.0;
+};
+
+}  // namespace der

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "der/assembly/assembler.hpp"
+#include "der/assembly/pattern.hpp"
+#include "der/building/out_of_plane_model.hpp"
+#include "der/solvers/linear_solver.hpp"
+#include "der/statics/stiffness.hpp"
+
+namespace der {
+
+/// Whether a planar equilibrium is stable against displacement out of its plane and twist.
+struct OutOfPlane {
+  std::string not_tested;  ///< why it was not tested, as a clause; empty if it was
+  Stability stability;
+  [[nodiscard]] bool tested() const { return not_tested.empty(); }
+  /// As `Stability::name`, or "not_tested".
+  [[nodiscard]] const char* name() const { return tested() ? stability.name() : "not_tested"; }
+};
+
+/// Tests shapes of a planar model against motion out of the plane: by the inertia of the block of
+/// the stiffness in space that belongs to z of the nodes and the angles of the sections
+/// (OutOfPlaneModel).
+class OutOfPlaneTest {
+ public:
+  /// `planar` is the model of `scene`; as for `build_out_of_plane_model`.
+  OutOfPlaneTest(const scenario::Scene& scene, const Model& planar);
+
+  /// Stability of an equilibrium of the planar model.
+  Stability stability(const Configuration& planar);
+  /// Number of unstable directions alone, not counting those that rounding leaves in doubt.
+  Index unstable_directions(const Configuration& planar);
+  /// Growth rate [1/s] of the fastest motion out of the plane; 0 if the equilibrium is stable, and
+  /// if a section has no inertia against spin.
+  /// Throws as `vibration_modes` does.
+  double growth_rate(const Configuration& planar);
+  /// The lowest factor of the loads at which the structure buckles out of its plane by linear
+  /// theory. `unloaded` is its stable shape without them, `response` the displacement (all degrees
+  /// of freedom of the planar model) that they cause to first order.
+  std::optional<double> buckling_factor(const Configuration& unloaded, const Vector& response);
+
+ private:
+  const Model& planar_;
+  const OutOfPlaneModel twin_;
+  const Pattern pattern_;
+  LinearSolverChoice solver_;
+  Assembler assembler_;
+  Stiffness stiffness_;
+};
+
+}  // namespace der

@@ -1,0 +1,219 @@
+#include "der/building/out_of_plane_model.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "der/building/builder.hpp"
+#include "der/core/index.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/from_spatial_pivot.hpp"
+#include "der/energies/spatial_bend.hpp"
+#include "der/model/location.hpp"
+#include "der/scenario/load.hpp"
+#include "der/scenario/scenario.hpp"
+#include "scenario/conform.hpp"
+
+namespace der {
+namespace {
+
+/// A node of a rod.
+struct Place {
+  Index rod;
+  Index node;  // position in RodLayout::nodes
+};
+
+/// The nodes of a support: those that it holds, or the one next to a spring.
+std::vector<Place> places_of(const scenario::Support& support, const Model& planar) {
+  const auto rod = std::find_if(planar.rods.begin(), planar.rods.end(),
+                                [&](const RodLayout& each) { return each.name == support.rod; });
+  const auto number = static_cast<Index>(rod - planar.rods.begin());
+  std::vector<Place> places;
+  if (support.holds()) {
+    for (const Index node : nodes_at(support.at, *rod)) places.push_back({number, node});
+    return places;
+  }
+  for (const double s : arc_lengths_of(support.at, *rod)) {
+    const auto distance = [s](double a, double b) { return std::abs(a - s) < std::abs(b - s); };
+    const auto& lengths = rod->arc_length;
+    const auto nearest = std::min_element(lengths.begin(), lengths.end(), distance);
+    places.push_back({number, static_cast<Index>(nearest - lengths.begin())});
+  }
+  return places;
+}
+
+/// The nodes of all supports but clamps.
+std::vector<Place> fork_places(const scenario::Scene& scene, const Model& planar) {
+  std::vector<Place> places;
+  for (const scenario::Support& support : scene.supports) {
+    if (support.clamps()) continue;
+    const std::vector<Place> more = places_of(support, planar);
+    places.insert(places.end(), more.begin(), more.end());
+  }
+  return places;
+}
+
+scenario::Support hold_z(const std::string& rod, Index node) {
+  scenario::Support support;
+  support.rod = rod;
+  support.at = {scenario::Location::Kind::Node, 0.0, static_cast<int>(node), {}};
+  support.fix = {scenario::Component::Z};
+  return support;
+}
+
+void hold_plane(Model& model) {
+  std::vector<Index> in_plane;
+  for (Index node = 0; node < model.num_nodes; ++node) {
+    for (const int c : {0, 1}) in_plane.push_back(model.dof(node, c));
+  }
+  model.dofs.hold(in_plane);
+}
+
+/// The rods in space with their clamps, and z held at the forks.
+scenario::Scene rods_in_space(const scenario::Scene& planar_scene, const Model& planar,
+                              const std::vector<Place>& forks) {
+  scenario::Scene scene = planar_scene;
+  scene.model = scenario::ModelChoice::Spatial;
+  scene.analysis = scenario::StaticAnalysis{};
+  scene.start_from.clear();
+  scene.loads.clear();
+  scene.supports.clear();
+  for (scenario::Support support : planar_scene.supports) {
+    if (!support.clamps()) continue;
+    support.fix.clear();
+    support.prescribe.clear();
+    support.spring.reset();
+    scene.supports.push_back(std::move(support));
+  }
+  for (const auto& [rod, node] : forks) {
+    scene.supports.push_back(hold_z(planar.rods[to_size(rod)].name, node));
+  }
+  for (scenario::Rod& rod : scene.rods) rod.initial_velocity.clear();
+  conform(scene);
+  return scene;
+}
+
+/// Takes the twist out of the joint at a node, which a fork divides in two.
+template <class Curvature>
+void divide_joint(Index first_dof, ElementLists& elements) {
+  auto& plain = elements_of<SpatialBend<Curvature>>(elements);
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    if (plain.dofs[i][3] == first_dof) plain.constants[i].joint.twist = 0.0;
+  }
+  auto& beside_clamps = elements_of<FromSpatialPivot<SpatialBend<Curvature>>>(elements);
+  for (std::size_t i = 0; i < beside_clamps.size(); ++i) {
+    if (beside_clamps.dofs[i][3] != first_dof) continue;
+    beside_clamps.constants[i].element.joint.twist = 0.0;
+  }
+}
+
+/// Holds the section at a node by the half edges beside it, which twist against it as they do
+/// against a clamp.
+template <class Curvature>
+void add_fork(const RodLayout& rod, Index place, OutOfPlaneModel& twin) {
+  Model& model = twin.model;
+  divide_joint<Curvature>(model.dof(rod.nodes[to_size(place)], 0), *model.elements);
+  for (const Index edge : {place - 1, place}) {
+    if (edge < 0 || edge >= rod.num_edges()) continue;
+    const Index number = rod.first_edge + edge;
+    const FrameBlock block = FrameBlock::of(number);
+    const SpatialEdge& own = model.framed_edges[to_size(number)];
+    HeldFrame held;
+    held.drawn =
+        SectionFrame::of(block.tangent(model.drawn_frames), block.director(model.drawn_frames));
+    held.rotation = model.tables.add({});
+    const double half = 0.5 * rod.edge_length[to_size(edge)];
+    elements_of<FromSpatialPivot<SpatialClamp<Curvature>>>(*model.elements)
+        .add(
+            {own.start, own.start + 1, own.start + 2, own.end, own.end + 1, own.end + 2, own.theta},
+            {{{0.0, 0.0, rod.GJ / half, {}}, held, block, edge == place ? 1.0 : -1.0},
+             own.first,
+             own.last});
+    twin.forks.push_back({number, held.rotation});
+  }
+}
+
+void add_fork(const RodLayout& rod, Index place, OutOfPlaneModel& twin) {
+  if (rod.joints.empty() || rod.clamp_at(place) != nullptr) return;
+  if (rod.curvature == scenario::CurvatureMeasure::Angle) {
+    add_fork<AngleCurvature>(rod, place, twin);
+  } else {
+    add_fork<TangentCurvature>(rod, place, twin);
+  }
+}
+
+/// Angle [rad] about z from one tangent in the plane to another.
+double angle_about_z(const Vec3& from, const Vec3& to) {
+  return std::atan2(from.cross(to).z(), from.dot(to));
+}
+
+}  // namespace
+
+Configuration OutOfPlaneModel::at(const Model& planar, const Configuration& here) const {
+  Configuration result;
+  result.coordinates = model.initial_positions;
+  for (Index node = 0; node < model.num_nodes; ++node) {
+    for (const int c : {0, 1}) {
+      result.coordinates[model.dof(node, c)] = here.coordinates[planar.dof(node, c)];
+    }
+  }
+  Vector& controls = result.controls;
+  model.tables.evaluate(0.0, controls);
+  for (std::size_t rod = 0; rod < model.rods.size(); ++rod) {
+    for (std::size_t i = 0; i < model.rods[rod].clamps.size(); ++i) {
+      const Index rotation = planar.rods[rod].clamps[i].rotation;
+      if (rotation < 0) continue;
+      controls[model.rods[rod].clamps[i].held.rotation] = here.controls[rotation];
+    }
+  }
+  controls.head(model.drawn_frames.size()) = model.drawn_frames;
+  const auto drawn_tangent = [&](Index edge) -> Vec3 {
+    return FrameBlock::of(edge).tangent(model.drawn_frames);
+  };
+  for (Index edge = 0; edge < static_cast<Index>(model.framed_edges.size()); ++edge) {
+    const FrameBlock block = FrameBlock::of(edge);
+    const Vec3 tangent =
+        model.framed_edges[to_size(edge)].vector(result.coordinates, controls).normalized();
+    const Eigen::AngleAxisd turn(angle_about_z(drawn_tangent(edge), tangent), Vec3::UnitZ());
+    const Vec3 director = turn * block.director(model.drawn_frames);
+    controls.segment<3>(block.first) = tangent;
+    controls.segment<3>(block.first + 3) = made_perpendicular(director, tangent);
+  }
+  for (const Fork& fork : forks) {
+    controls[fork.rotation] =
+        angle_about_z(drawn_tangent(fork.edge), FrameBlock::of(fork.edge).tangent(controls));
+  }
+  return result;
+}
+
+OutOfPlaneModel build_out_of_plane_model(const scenario::Scene& scene, const Model& planar) {
+  const std::vector<Place> places = fork_places(scene, planar);
+  OutOfPlaneModel twin{build_model(rods_in_space(scene, planar, places)), {}};
+  hold_plane(twin.model);
+  std::vector<char> has_fork(to_size(planar.num_nodes), 0);
+  for (const auto& [rod, place] : places) {
+    const RodLayout& layout = twin.model.rods[to_size(rod)];
+    char& done = has_fork[to_size(layout.nodes[to_size(place)])];
+    if (std::exchange(done, 1) == 0) add_fork(layout, place, twin);
+  }
+  return twin;
+}
+
+bool is_held_out_of_plane(const scenario::Scene& scene, const Model& planar) {
+  const bool has_sections =
+      std::any_of(planar.rods.begin(), planar.rods.end(),
+                  [](const RodLayout& rod) { return rod.EI > 0.0 && rod.nodes.size() > 2; });
+  if (has_sections) return false;
+  std::vector<char> held(to_size(planar.num_nodes), 0);
+  for (const scenario::Support& support : scene.supports) {
+    for (const auto& [rod, place] : places_of(support, planar)) {
+      held[to_size(planar.rods[to_size(rod)].nodes[to_size(place)])] = 1;
+    }
+  }
+  return std::all_of(held.begin(), held.end(), [](char each) { return each != 0; });
+}
+
+}  // namespace der

@@ -1,0 +1,179 @@
+"""Linear buckling and continuation of rods in space against closed forms, boundary value solutions
+and the planar model.
+"""
+
+import der
+import numpy as np
+import pytest
+from scenes import END, START, arch, tip_force
+from spatial_scenes import section, straight_rod
+
+SIZES = [10, 20, 40]
+STEPS = [1 / n for n in SIZES]
+SLENDER = 1e7  # EA
+
+
+def buckling(scene, count=3):
+    return der.run({**scene, "analysis": {"buckling": {"count": count}}}).buckling
+
+
+def continued(scene, **options):
+    return der.run({**scene, "analysis": {"continuation": options}})
+
+
+# ---- linear buckling
+
+
+def test_columns_buckle_about_both_axes(fitted_order):
+    """pi^2 EI/4, 9 pi^2 EI/4 of a clamped column with EI = 1 and 0.4."""
+    exact = np.sort(np.outer([1.0, 0.4], [1, 9]).ravel())[:3] * np.pi**2 / 4
+    errors = []
+    for n in SIZES:
+        bar = section([0, 0, 1], EA=SLENDER, EI1=0.4, EI2=1.0, GJ=0.3)
+        found = buckling(straight_rod(n, bar, loads=tip_force(-1, 0, 0), model="spatial"))
+        errors.append(found.load_factors / exact - 1)
+    for column in np.transpose(errors):
+        assert fitted_order(STEPS, column) > 1.9
+    # the weak direction is z
+    along = np.abs(found.shapes[0]).max(axis=0)
+    assert along[2] == 1.0
+    assert along[:2].max() < 1e-6
+
+
+def test_column_without_sections(fitted_order):
+    """pi^2 EI, twice, of the model without twist, pinned along any direction."""
+    along = np.array([1.0, 2.0, 2.0]) / 3
+    supports = [
+        {**START, "fix": ["x", "y", "z"]},
+        {**END, "fix": ["y", "z"]},
+    ]
+    errors = []
+    for n in SIZES:
+        bar = section(EA=SLENDER, EI=1.0)
+        scene = straight_rod(
+            n, bar, supports=supports, loads=tip_force(-1, 0, 0), model="spatial_bend"
+        )
+        errors.append(buckling(scene, 2).load_factors / np.pi**2 - 1)
+    for column in np.transpose(errors):
+        assert fitted_order(STEPS, column) > 1.9
+    slanted = straight_rod(SIZES[-1], bar, to=along, loads=tip_force(*-along), model="spatial_bend")
+    assert buckling(slanted, 2).load_factors == pytest.approx(np.pi**2 / 4, rel=1e-3)
+
+
+def test_lateral_torsional_buckling(spatial_reference, fitted_order):
+    """P L^2/sqrt(EI_weak GJ) = 4.0126, whatever the stiffness in the plane of the load."""
+    exact = spatial_reference("spatial_buckling", "lateral.limit")
+    errors = []
+    for n in SIZES:
+        bar = section([0, 0, 1], EA=SLENDER, EI1=0.4, EI2=1.0, GJ=0.1)
+        scene = straight_rod(n, bar, loads=tip_force(0, 0.2, 0), model="spatial")
+        errors.append(buckling(scene, 1).load_factors[0] / exact - 1)
+    assert fitted_order(STEPS, errors) > 1.9
+    assert abs(errors[-1]) < 2e-3
+
+
+def test_rotated_cantilever_buckles_at_the_same_load():
+    bar = section([0, 0, 1], EA=SLENDER, EI1=0.4, EI2=1.0, GJ=0.1)
+    upright = buckling(straight_rod(10, bar, loads=tip_force(0, 0.2, 0), model="spatial"), 1)
+    turn = np.linalg.qr(np.array([[1.0, 2.0, 0.5], [0.3, -1.0, 2.0], [1.0, 1.0, 1.0]]))[0]
+    turn *= np.sign(np.linalg.det(turn))
+    bar = section(turn[:, 2], EA=SLENDER, EI1=0.4, EI2=1.0, GJ=0.1)
+    turned = straight_rod(10, bar, to=turn[:, 0], loads=tip_force(*(0.2 * turn[:, 1])))
+    assert buckling(turned, 1).load_factors == pytest.approx(upright.load_factors, rel=1e-8)
+
+
+# ---- continuation
+
+
+def clamped_arch(model, out_of_plane=False):
+    """An arch that snaps through; in space its nodes stay at z = 0 unless they may leave."""
+    scene = {**arch(20, 0.15), "model": model}
+    (rod,) = scene["rods"]
+    rod["cross_section"]["stiffness"]["GJ"] = 0.7
+    scene["supports"] = [{**START, "clamp": True}, {**END, "clamp": True}]
+    if model == "spatial" and not out_of_plane:
+        scene["supports"] += [
+            {"rod": "rod", "at": {"node": i}, "fix": ["z"]}
+            for i in range(1, len(rod["points"]) - 1)
+        ]
+    return scene
+
+
+def test_planar_path_in_space():
+    """The same limit points, and the same shape at the end."""
+    with pytest.warns(der.DerWarning, match="leaves its plane"):
+        planar = continued(clamped_arch("planar"), to=60)
+    spatial = continued(clamped_arch("spatial"), to=60)
+    folds = [result.path.factor[result.path.rows("fold")] for result in (planar, spatial)]
+    assert len(folds[0]) == 2
+    assert folds[1] == pytest.approx(folds[0], rel=1e-9)
+    ends = [result.positions[-1][:, :2] for result in (planar, spatial)]
+    assert np.abs(ends[0] - ends[1]).max() < 1e-9
+
+    free = continued(clamped_arch("spatial", out_of_plane=True), to=60, branches=1)
+    left = planar.path.factor[planar.path.rows("out_of_plane")]
+    assert len(left) == 4
+    assert free.path.factor[free.path.rows("bifurcation")] == pytest.approx(left, rel=1e-7)
+    # Two pairs of branches out of the plane, each from one bifurcation to another.
+    endings = [branch["ending"] for branch in free.summary["path"]["branches"]]
+    assert endings == ["last factor", *["meets branch 0"] * 4]
+
+
+def lateral(n, **options):
+    bar = section([0, 0, 1], EA=SLENDER, EI1=0.1, EI2=1.0, GJ=0.1)
+    probes = {c: {**END, "quantity": c} for c in "xyz"}
+    scene = straight_rod(n, bar, loads=tip_force(0, 0.1, 0), model="spatial")
+    return continued({**scene, "output": {"probes": probes}}, **options)
+
+
+def test_lateral_torsional_path(spatial_reference, fitted_order):
+    """The bifurcation, with the bending before it."""
+    exact = spatial_reference("spatial_buckling", "lateral.weak0.1.GJ0.1")
+    errors = []
+    for n in SIZES:
+        path = lateral(n, to=6).path
+        errors.append(path.factor[path.rows("bifurcation")[0]] / exact - 1)
+        assert path.unstable_directions[-1] == 1
+    assert fitted_order(STEPS, errors) > 1.9
+
+
+def test_buckled_sideways(spatial_reference, fitted_order):
+    """Both branches beyond it, at the load 6, against the boundary value problem of the rod."""
+    exact = [spatial_reference("spatial_buckling", f"sideways.{c}") for c in "xyz"]
+    errors = []
+    for n in SIZES:
+        result = lateral(n, to=6, branches=1)
+        path = result.path
+        assert path.branch.max() == 2
+        tips = []
+        for branch in (1, 2):
+            last = np.flatnonzero(path.branch == branch)[-1]
+            assert path.factor[last] == pytest.approx(6, rel=1e-12)
+            assert path.stable[last]
+            tips.append([result.probes[c][last] for c in "xyz"])
+        assert tips[0] == pytest.approx(tips[1] * np.array([1, 1, -1]), abs=1e-6)
+        errors.append(np.abs(np.abs(tips[0]) - exact).max())
+    assert fitted_order(STEPS, errors) > 1.9
+    assert errors[-1] < 5e-3
+
+
+def test_greenhill_along_a_path(spatial_reference, fitted_order):
+    """Both ends clamped, one turned about the rod: the path of the twist bifurcates."""
+    exact = spatial_reference("spatial_buckling", "twist.clamped.thrust0")
+    turns = {"twist": 1 / 2.0}  # the torque GJ/L times the twist is the factor
+    supports = [{**START, "clamp": True}, {**END, "clamp": True, "prescribe": turns}]
+    errors = []
+    for n in SIZES:
+        scene = straight_rod(n, section(EA=SLENDER, EI=1.0, GJ=2.0), supports=supports)
+        path = continued(scene, to=10, vary="supports").path
+        first = np.flatnonzero(path.unstable_directions > 0)[0]
+        errors.append(path.factor[first] / exact - 1)
+    assert fitted_order(STEPS, errors) > 1.9
+
+
+def test_a_rod_that_may_spin_has_no_path():
+    supports = [{**START, "fix": ["x", "y", "z"]}, {**END, "fix": ["y", "z"]}]
+    bar = section([0, 0, 1], EA=SLENDER, EI1=0.4, EI2=1.0, GJ=0.3)
+    scene = straight_rod(10, bar, supports=supports, loads=tip_force(-1, 0, 0))
+    with pytest.raises(der.NotConvergedError, match="own axis"):
+        continued(scene, to=1)

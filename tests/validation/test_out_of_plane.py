@@ -1,0 +1,336 @@
+"""Planar answers that would leave their plane: the verdict, the place on a path, the factor of
+linear buckling. References: `references/spatial_buckling.py` and `references/hanging_coil.py`, with
+the bending before buckling, and Prandtl's equation of the narrow beam, without it.
+"""
+
+import warnings
+
+import der
+import numpy as np
+import pytest
+from scenes import END, START, tip_force
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+from spatial_scenes import measured, section, straight_rod
+
+SIZES = [10, 20, 40]
+STEPS = [1 / n for n in SIZES]
+SLENDER = 1e7  # EA
+CANTILEVER = [{**START, "clamp": True}]
+BEAM = [{**START, "fix": ["x", "y"]}, {**END, "fix": ["y"]}]
+
+
+def strip(n, supports, loads, weak, twisting, **more):
+    """A straight rod of length 1 along x, with EI = 1 in its plane."""
+    stiffness = {"EA": SLENDER, "EI1": weak, "EI2": 1.0, "GJ": twisting, "mass_per_length": 1.0}
+    rod = {
+        "name": "rod",
+        "nodes": n + 1,
+        "from": [0, 0],
+        "to": [1, 0],
+        "cross_section": {"stiffness": stiffness},
+    }
+    return {"rods": [rod], "supports": supports, "loads": loads, "analysis": "static", **more}
+
+
+def planar_verdict(scene):
+    """Of the equilibrium, stable in its plane or not."""
+    return der.Simulation(scene).equilibrium(leave_saddles=False).out_of_plane
+
+
+def critical(is_unstable, low, high, digits):
+    """The load between `low` and `high` where the verdict changes."""
+    assert not is_unstable(low)
+    assert is_unstable(high)
+    while high - low > digits:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if is_unstable(middle) else (middle, high)
+    return 0.5 * (low + high)
+
+
+def leaves_plane(scene):
+    return planar_verdict(scene).stability == "unstable"
+
+
+def quiet_run(scene):
+    """Without the warning that is tested elsewhere."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", der.DerWarning)
+        return der.run(scene)
+
+
+def prandtl(moment, end, symmetric=False):
+    """Least factor P of EI_weak = GJ = 1, L = 1: phi'' + (P moment(s))^2 phi = 0 over 0 .. `end`,
+    phi = 0 at the start, and there or, in the middle of a symmetric beam, phi' = 0."""
+
+    def at_end(load):
+        def rate(s, y):
+            return [y[1], -((load * moment(s)) ** 2) * y[0]]
+
+        y = solve_ivp(rate, (0, end), [0, 1], method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1]
+        return y[1] if symmetric else y[0]
+
+    low = 1.0
+    while at_end(low) * at_end(low + 2) > 0:
+        low += 2
+    return brentq(at_end, low, low + 2, xtol=1e-10)
+
+
+@pytest.mark.parametrize("case", ["weak0.01.GJ0.01", "weak0.1.GJ0.2"])
+def test_cantilever_under_a_tip_load(spatial_reference, fitted_order, case):
+    weak = spatial_reference("spatial_buckling", f"lateral.{case}.EI_weak")
+    twisting = spatial_reference("spatial_buckling", f"lateral.{case}.GJ")
+    exact = spatial_reference("spatial_buckling", f"lateral.{case}")
+    unit = np.sqrt(weak * twisting)
+    errors = []
+    for n in SIZES:
+
+        def is_unstable(load, n=n):
+            scene = strip(n, CANTILEVER, tip_force(0, load * unit), weak, twisting)
+            return leaves_plane(scene)
+
+        errors.append(critical(is_unstable, 0.9 * exact, 1.1 * exact, 1e-7) / exact - 1)
+    assert fitted_order(STEPS, errors) > 1.9
+    assert abs(errors[-1]) < 2e-3
+
+
+@pytest.mark.parametrize("load", [4.5, 4.7, 9.0, 15.0])
+def test_verdict_is_that_of_the_spatial_model(spatial_reference, load):
+    """The numbers of unstable directions add up to that of the same shape in space, and beyond the
+    critical load a seed leaves the plane."""
+    weak, twisting = 0.1, 0.1
+    exact = spatial_reference("spatial_buckling", "lateral.weak0.1.GJ0.1")
+    force = load * np.sqrt(weak * twisting)
+    report = der.Simulation(strip(20, CANTILEVER, tip_force(0, force), weak, twisting)).equilibrium(
+        leave_saddles=False
+    )
+    bar = section([0, 0, 1], EA=SLENDER, EI1=weak, EI2=1.0, GJ=twisting)
+    in_space = straight_rod(20, bar, loads=tip_force(0, force, 0), model="spatial")
+    spatial = der.Simulation(in_space).equilibrium(leave_saddles=False)
+    directions = report.unstable_directions + report.out_of_plane.unstable_directions
+    assert directions == spatial.unstable_directions
+    assert (directions > 0) == (load > exact)
+    seeded = straight_rod(20, bar, loads=tip_force(0, force, 1e-5 * force))
+    values, _ = measured(seeded, ["end"], "z")
+    assert (abs(values[0, 0]) > 0.05) == (load > exact)
+
+
+@pytest.mark.parametrize(
+    ("name", "loads", "moment", "end", "quoted"),
+    [
+        # P/4 at the middle, 16.94 sqrt(EI GJ)/L^2 (Timoshenko and Gere, Theory of Elastic
+        # Stability, 6.4), and q s (1 - s)/2, 28.3 sqrt(EI GJ)/L^3
+        (
+            "middle",
+            [{"point_force": {"rod": "rod", "at": "middle", "force": [0, -1]}}],
+            lambda s: s / 2,
+            0.5,
+            16.94,
+        ),
+        (
+            "uniform",
+            [{"distributed_force": {"rod": "rod", "force": [0, -1]}}],
+            lambda s: s * (1 - s) / 2,
+            1.0,
+            28.3,
+        ),
+    ],
+)
+def test_beam_between_forks(fitted_order, name, loads, moment, end, quoted):
+    """Linear buckling of a planar beam, whose supports hold the section as forks do."""
+    exact = prandtl(moment, end, symmetric=name == "middle")
+    assert exact == pytest.approx(quoted, rel=1e-3)
+    weak, twisting = 0.3, 0.2
+    errors = []
+    for n in SIZES:
+        scene = strip(n, BEAM, loads, weak, twisting, analysis="buckling")
+        factor = quiet_run(scene).summary["out_of_plane"]["load_factor"]
+        errors.append(factor / (exact * np.sqrt(weak * twisting)) - 1)
+    assert fitted_order(STEPS, errors) > 1.9
+    assert abs(errors[-1]) < 3e-3
+
+
+def test_two_spans(fitted_order):
+    """A fork between two spans of length 1/2 under a uniform load q, with the moment q s (3/16 -
+    s/2) from either end. The lowest mode is odd, so that the middle support has no force across."""
+    exact = prandtl(lambda s: s * (3 / 16 - s / 2), 0.5)
+    weak, twisting = 0.3, 0.2
+    supports = [*BEAM, {"rod": "rod", "at": "middle", "fix": ["y"]}]
+    loads = [{"distributed_force": {"rod": "rod", "force": [0, -1]}}]
+    errors = []
+    sizes = [40, 80, 160]  # two terms of the error cancel on coarse meshes
+    for n in sizes:
+        scene = strip(n, supports, loads, weak, twisting, analysis="buckling")
+        factor = quiet_run(scene).summary["out_of_plane"]["load_factor"]
+        errors.append(factor / (exact * np.sqrt(weak * twisting)) - 1)
+    assert fitted_order([1 / n for n in sizes], errors) > 1.9
+
+
+def test_forks_turn_with_the_rod():
+    """A beam drawn straight and bent by a load, and one that is drawn as it is bent: the same."""
+    loads = [{"point_force": {"rod": "rod", "at": {"node": 8}, "force": [0, -6]}}]
+    drawn_straight = strip(20, BEAM, loads, 0.1, 0.1, analysis="modes")
+    bent = quiet_run(drawn_straight)
+    rod = {**drawn_straight["rods"][0], "points": bent.positions[-1].tolist()}
+    rod = {key: value for key, value in rod.items() if key not in ("nodes", "from", "to")}
+    drawn_bent = {**drawn_straight, "rods": [{**rod, "natural_curvature": 0}]}
+    rates = [
+        result.summary["out_of_plane"]["growth_rate"] for result in (bent, quiet_run(drawn_bent))
+    ]
+    assert rates[0] > 0
+    assert rates[1] == pytest.approx(rates[0], rel=1e-4)
+
+
+def test_beam_between_forks_leaves_its_plane_at_that_load():
+    """A beam so stiff in its plane that it hardly bends before."""
+    weak, twisting = 1e-4, 1e-4
+    exact = prandtl(lambda s: s / 2, 0.5, symmetric=True) * 1e-4
+    for share, word in ((0.98, "stable"), (1.02, "unstable")):
+        loads = [{"point_force": {"rod": "rod", "at": "middle", "force": [0, -share * exact]}}]
+        assert planar_verdict(strip(40, BEAM, loads, weak, twisting)).stability == word
+
+
+@pytest.mark.parametrize(
+    ("supports", "length"), [(BEAM, 1.0), (CANTILEVER, 2.0)], ids=["pinned", "clamped"]
+)
+def test_column_whose_weak_axis_lies_in_the_plane(fitted_order, supports, length):
+    weak = 0.4
+    exact = weak * (np.pi / length) ** 2
+    errors = []
+    for n in SIZES:
+
+        def is_unstable(load, n=n):
+            return leaves_plane(strip(n, supports, tip_force(-load, 0), weak, 0.3))
+
+        errors.append(critical(is_unstable, 0.9 * exact, 1.1 * exact, 1e-7) / exact - 1)
+    assert fitted_order(STEPS, errors) > 1.9
+    below = planar_verdict(strip(10, supports, tip_force(-0.5 * exact, 0), weak, 0.3))
+    assert below.stability == "stable"
+
+
+def coil(n, length):
+    """A naturally curved rod hangs from a clamp whose tangent points down; EI = k = 1."""
+    section_ = {"stiffness": {"EA": 1e6, "EI": 1.0, "GJ": 1 / 1.3, "mass_per_length": 0.1}}
+    rod = {
+        "name": "rod",
+        "nodes": n + 1,
+        "from": [0, 0],
+        "to": [0, -length],
+        "natural_curvature": 1.0,
+        "cross_section": section_,
+    }
+    return {
+        "rods": [rod],
+        "supports": CANTILEVER,
+        "loads": [{"gravity": [0, -1]}],
+        "analysis": "static",
+    }
+
+
+def test_hanging_coil(spatial_reference, fitted_order):
+    """The length at which it leaves the plane."""
+    exact = spatial_reference("hanging_coil", "critical_length")
+    errors = []
+    for n in SIZES:
+
+        def is_unstable(length, n=n):
+            return leaves_plane(coil(n, length))
+
+        errors.append(critical(is_unstable, 0.8 * exact, 1.2 * exact, 1e-7) / exact - 1)
+    assert fitted_order(STEPS, errors) > 1.9
+    assert abs(errors[-1]) < 5e-3
+
+
+def test_a_free_rod_is_neutral():
+    """Its rigid motions out of the plane: along z, and about x and y."""
+    verdict = planar_verdict(strip(10, [], [], 0.3, 0.2))
+    assert (verdict.stability, verdict.neutral_directions) == ("neutral", 3)
+
+
+def test_turned_clamp():
+    """A clamp turned by five radians holds the same rod: nothing changes out of the plane."""
+    weak, twisting, turn = 0.1, 0.1, 5.0
+    unit = np.sqrt(weak * twisting)
+    words = []
+    for load in (4.4, 4.9):
+        force = load * unit * np.array([-np.sin(turn), np.cos(turn)])
+        supports = [{**START, "clamp": True, "prescribe": {"angle": turn}}]
+        words.append(planar_verdict(strip(20, supports, tip_force(*force), weak, twisting)))
+    assert [word.stability for word in words] == ["stable", "unstable"]
+
+
+def test_path_leaves_its_plane(spatial_reference, fitted_order):
+    """The event of a path, at the same load as the bifurcation of the path in space."""
+    exact = spatial_reference("spatial_buckling", "lateral.weak0.1.GJ0.1")
+    errors = []
+    for n in SIZES:
+        scene = strip(n, CANTILEVER, tip_force(0, 0.1), 0.1, 0.1)
+        scene["analysis"] = {"continuation": {"to": 6}}
+        with pytest.warns(der.DerWarning, match="leaves its plane at the load factor"):
+            result = der.run(scene)
+        (row,) = result.path.rows("out_of_plane")
+        factor = result.path.factor[row]
+        assert result.summary["out_of_plane"]["load_factor"] == pytest.approx(factor, rel=1e-12)
+        assert list(result.path.unstable_out_of_plane[[row - 1, row, -1]]) == [0, 1, 1]
+        assert not result.path.unstable_directions.any()
+        errors.append(factor / exact - 1)
+    assert fitted_order(STEPS, errors) > 1.9
+    bar = section([0, 0, 1], EA=SLENDER, EI1=0.1, EI2=1.0, GJ=0.1)
+    space = straight_rod(SIZES[-1], bar, loads=tip_force(0, 0.1, 0), model="spatial")
+    space["analysis"] = {"continuation": {"to": 6}}
+    path = der.run(space).path
+    # The test of a plane counts eigenvalues beyond rounding, the path in space all below zero.
+    assert path.factor[path.rows("bifurcation")[0]] == pytest.approx(factor, rel=1e-7)
+
+
+def test_warning_and_summary():
+    scene = strip(20, CANTILEVER, tip_force(0, 0.5), 0.1, 0.1)
+    with pytest.warns(der.DerWarning, match="stable in its plane, unstable out of it: 1 direction"):
+        result = der.run(scene)
+    verdict = result.summary["out_of_plane"]
+    assert verdict["stability"] == "unstable"
+    assert verdict["unstable_directions"] == 1
+    assert "model: spatial" in verdict["warning"]
+    assert verdict["warning"] in result.summary["warnings"]
+    with pytest.warns(der.DerWarning, match="grows by"):
+        modes = der.run({**scene, "analysis": "modes"})
+    assert modes.summary["out_of_plane"]["growth_rate"] > 0.0
+    steady = der.run(strip(20, CANTILEVER, tip_force(0, 0.3), 0.1, 0.1))
+    assert steady.summary["out_of_plane"]["stability"] == "stable"
+    assert steady.summary["warnings"] == []
+
+
+def test_growth_rate_is_that_of_the_spatial_model():
+    force = 0.6
+    scene = strip(20, CANTILEVER, tip_force(0, force), 0.1, 0.1, analysis="modes")
+    bar = section([0, 0, 1], EA=SLENDER, EI1=0.1, EI2=1.0, GJ=0.1)
+    space = der.Simulation(straight_rod(20, bar, loads=tip_force(0, force, 0), model="spatial"))
+    space.equilibrium(leave_saddles=False)
+    rate = quiet_run(scene).summary["out_of_plane"]["growth_rate"]
+    assert rate == pytest.approx(space.modes(1).growth_rates[0], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"EI1": None, "EI2": None, "EI": 1.0, "GJ": None}, "give 'GJ' beside 'EI'"),
+        ({"GJ": None}, "give 'GJ' beside 'EI1' and 'EI2'"),
+    ],
+)
+def test_unknown_stiffness(change, reason):
+    scene = strip(10, CANTILEVER, tip_force(0, 0.1), 0.1, 0.1)
+    stiffness = scene["rods"][0]["cross_section"]["stiffness"] | change
+    scene["rods"][0]["cross_section"] = {
+        "stiffness": {key: value for key, value in stiffness.items() if value is not None}
+    }
+    verdict = der.run(scene).summary["out_of_plane"]
+    assert verdict["stability"] == "not_tested"
+    assert reason in verdict["not_tested"]
+
+
+def test_no_potential_in_space():
+    scene = strip(10, CANTILEVER, [{"moment": {**END, "moment": 0.1}}], 0.1, 0.1)
+    assert planar_verdict(scene).not_tested == "loads.0.moment has no potential in space"
+    sprung = [*CANTILEVER, {**END, "spring": {"rotational_stiffness": 1.0}}]
+    scene = strip(10, sprung, tip_force(0, 0.1), 0.1, 0.1)
+    assert "supports.1 against rotation" in planar_verdict(scene).not_tested

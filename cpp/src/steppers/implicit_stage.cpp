@@ -105,7 +105,7 @@ void ImplicitStage::accumulate_and_finish(const Vector& new_positions,
   // The rule with points at 0 and `place` that is exact for a power linear in time.
   const double late = 0.5 / place;
   displacement_ = (1.0 - late) * (new_positions - state.positions);
-  at_start.evaluate_works(state, state.positions, state.time);
+  at_start.evaluate_works(state, state.positions, state.velocities, state.time);
   at_start.accumulate(state.velocities, displacement_, state.work);
   displacement_ = late * (new_positions - state.positions);
   accumulate_forces(displacement_, state.work);

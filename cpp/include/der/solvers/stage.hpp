@@ -27,9 +27,8 @@ struct Stage {
   double velocity_factor = 0.0;  ///< [1/s]
   Vector velocity_reference;     ///< [m] from the origin
   Vector force;                  ///< [N] external forces at the stage's time
-  /// Whether the stage is one of a motion. The rates of angles are then spins of sections, and the
-  /// forces on nodes are without what the frames' transport within the step makes of torques: in
-  /// the equations of motion the inertia of the spin takes that up (docs/space.md).
+  /// Whether the stage is one of a motion. The rates of angles are then spins of sections, which
+  /// change the forces on nodes (model/spin.hpp).
   bool is_motion = false;
   /// If set, it gives the forces in place of grad E: the stage is the middle of a step from
   /// `origin`.
@@ -58,7 +57,7 @@ class StageProblem final : public NewtonProblem {
   double residual_rounding(Vector& values) override;
 
  private:
-  void take_spin_out(Vector& residual) const;
+  void add_spin_forces(Vector& residual) const;
   void add_stage_forces(Vector& residual);
 
   const Model& model_;

@@ -113,17 +113,27 @@ double StageProblem::residual_rounding(Vector& values) {
                   stage_->velocity_factor * largest_term(model_.damping));
 }
 
-/// The forces on nodes by which spinning sections enter a motion, `residual` being the elastic ones.
-/// Newton's matrix leaves the gyroscopic ones out: their derivative is skew.
+/// The forces on nodes by which spinning sections enter a motion, `residual` being the elastic
+/// ones. Newton's matrix leaves the gyroscopic ones out: their derivative is skew.
 void StageProblem::add_spin_forces(Vector& residual) const {
-  const auto velocity = [&](Index dof) {
-    return stage_->velocity_factor * (displacement_[dof] - stage_->velocity_reference[dof]);
-  };
+  const auto rate = [&](Index dof) { return velocity(dof); };
   const auto force = [&](const SpatialEdge& edge, Index number, const Vec3& vector) -> Vec3 {
     return transport_force(vector, number, residual[edge.theta], here_->controls) +
-           gyroscopic_force(edge, vector, stage_->mass, velocity);
+           gyroscopic_force(edge, vector, stage_->mass, rate);
   };
   take_pairs(model_, *here_, force, residual);
+}
+
+double StageProblem::gyroscopic_share() const {
+  double largest = 0.0;
+  const Vector& lumped = stage_->mass.lumped;
+  for (const SpatialEdge& edge : model_.framed_edges) {
+    const double spin = lumped[edge.theta] * std::abs(velocity(edge.theta));
+    const double squared = edge.vector(here_->coordinates, here_->controls).squaredNorm();
+    const double inertia = stage_->inertia * std::min(lumped[edge.start], lumped[edge.end]);
+    largest = std::max(largest, stage_->velocity_factor * spin / (squared * inertia));
+  }
+  return largest;
 }
 
 void StageProblem::add_stage_forces(Vector& residual) {

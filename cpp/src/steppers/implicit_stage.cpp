@@ -8,6 +8,12 @@
 #include "der/steppers/work.hpp"
 
 namespace der {
+namespace {
+
+/// Share of the gyroscopic forces from which on they may be why Newton's method fails.
+constexpr double kLargeGyroscopicShare = 0.3;
+
+}  // namespace
 
 ImplicitStage::ImplicitStage(const Model& model, const Assembler& assembler, LinearSolver& solver,
                              const NewtonOptions& options)
@@ -49,6 +55,9 @@ StepReport ImplicitStage::solve(const State& state, double time) {
     report.outcome = StepOutcome::NotConverged;
     report.worst_dof = newton.worst_dof;
     report.failure = newton.failure;
+    if (problem_.gyroscopic_share() > kLargeGyroscopicShare) {
+      report.failure += "; sections spin so fast that gyroscopic forces rule the motion of nodes";
+    }
     return report;
   }
   report = check_turns(model_, state, here.coordinates, here.controls);

@@ -55,8 +55,14 @@ class StageProblem final : public NewtonProblem {
   [[nodiscard]] double acting_force() const override { return acting_; }
   [[nodiscard]] double position_rounding() const override;
   double residual_rounding(Vector& values) override;
+  /// The largest gyroscopic force of an edge over the inertial force of its lighter node in the
+  /// same motion. Newton's matrix leaves the former out: above about 1 it may not converge.
+  [[nodiscard]] double gyroscopic_share() const;
 
  private:
+  [[nodiscard]] double velocity(Index dof) const {
+    return stage_->velocity_factor * (displacement_[dof] - stage_->velocity_reference[dof]);
+  }
   void add_spin_forces(Vector& residual) const;
   void add_stage_forces(Vector& residual);
 

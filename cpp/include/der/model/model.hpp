@@ -109,7 +109,7 @@ struct RodLayout {
   std::vector<SectionFrame> drawn_frames;
   double initial_twist = 0.0;            ///< of these frames [rad/m]
   std::vector<Vec2> natural_curvatures;  ///< towards the two directors, at each node [1/m]
-  std::optional<double> natural_twist;   ///< [rad/m]
+  std::vector<double> natural_twist;     ///< at each node [rad/m]; empty: stress-free as drawn
   std::vector<RodJoint> joints;  ///< of a rod in space that bends, from its start to its end
   /// Natural curvature of a planar rod at each node [1/m]; empty: the initial shape is stress-free.
   std::vector<double> natural_curvature;

@@ -34,7 +34,8 @@ class Simulation(_core.Simulation):
 
     ``positions``, ``velocities`` and ``extra_force`` are live NumPy views of the engine's memory,
     shape (nodes, dim), in m, m/s and N; so are ``theta`` and ``spin``, the angles [rad] of the
-    edges' sections and their rates, shape (edges,), in the model ``spatial``. One thread at a time may use a simulation.
+    edges' sections and their rates, shape (edges,), in the model ``spatial``. One thread at a time
+    may use a simulation.
 
     Parameters
     ----------

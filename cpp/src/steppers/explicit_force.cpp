@@ -53,15 +53,18 @@ bool ExplicitForce::acceleration(const State& state, const Vector& positions,
     solve();
     return true;
   }
-  set_couple(velocities, acceleration, 0.0, couple_);
+  const auto at_start = [&](Index dof) { return velocities[dof]; };
+  const auto mean = [&](Index dof) { return velocities[dof] + damping_time * acceleration[dof]; };
+  set_couple(at_start, couple_);
   solve();
   bool converged = damping_time == 0.0;
   const double largest = model_.dofs.largest_force(gradient_);
   for (int round = 0; round < kMostRounds && !converged; ++round) {
-    set_couple(velocities, acceleration, damping_time, next_couple_);
+    set_couple(mean, next_couple_);
     couple_.swap(next_couple_);
     next_couple_ -= couple_;
-    converged = model_.dofs.largest_force(next_couple_) <= kCoupleTolerance * largest;
+    // What is no number is for `check` to say.
+    converged = !(model_.dofs.largest_force(next_couple_) > kCoupleTolerance * largest);
     if (!converged) solve();
   }
   gradient_ -= couple_;
@@ -75,7 +78,7 @@ void ExplicitForce::evaluate_works(const State& state, const Vector& positions,
   if (!supports_move_) return;
   evaluate_gradient();
   if (!model_.has_sections()) return;
-  set_couple(velocities, velocities, 0.0, couple_);
+  set_couple([&](Index dof) { return velocities[dof]; }, couple_);
   gradient_ -= couple_;
 }
 
@@ -87,10 +90,9 @@ void ExplicitForce::evaluate_gradient() {
   take_pairs(model_, here_, force, gradient_);
 }
 
-/// At the velocities v + t a.
-void ExplicitForce::set_couple(const Vector& velocities, const Vector& acceleration, double t,
-                               Vector& couple) {
-  const auto velocity = [&](Index dof) { return velocities[dof] + t * acceleration[dof]; };
+/// At the rates `velocity(dof)`.
+template <class Velocity>
+void ExplicitForce::set_couple(const Velocity& velocity, Vector& couple) const {
   const auto force = [&](const SpatialEdge& edge, Index /*number*/, const Vec3& vector) {
     return Vec3(-gyroscopic_force(edge, vector, model_.mass, velocity));
   };

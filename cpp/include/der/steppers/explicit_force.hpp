@@ -39,7 +39,8 @@ class ExplicitForce {
  private:
   void evaluate_loads(const State& state, const Vector& positions, double time);
   void evaluate_gradient();
-  void set_couple(const Vector& velocities, const Vector& acceleration, double t, Vector& couple);
+  template <class Velocity>
+  void set_couple(const Velocity& velocity, Vector& couple) const;
 
   const Model& model_;
   const Assembler& assembler_;

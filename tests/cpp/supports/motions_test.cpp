@@ -54,7 +54,9 @@ TEST_CASE("motions: the warning of fine tables looks at every table") {
 
 TEST_CASE("motions: a load factor scales every one, from rest at the factor 0") {
   scenario::Scene scene = moved_clamp(false).scene();
-  scene.analysis = scenario::ContinuationAnalysis{scenario::Varied::Supports};
+  scenario::ContinuationAnalysis path;
+  path.vary = scenario::Varied::Supports;
+  scene.analysis = path;
   const Model model = build_model(scene);
   REQUIRE(model.load_variation.has_value());
   const LinearInFactor& controls = model.load_variation->controls;

@@ -70,16 +70,16 @@ struct MomentPlace {
 /// A place at which a point force acts on a rod, of a load or of a spring to an anchor.
 struct ForcePlace {
   double arc_length = 0.0;  ///< [m]
-  /// Controls of the load [N]; -1: there is none, or it is constant and at a node.
-  std::array<Index, 2> force{-1, -1};
+  /// Controls of the load [N]; -1: there is none, or it is constant and at a node, or planar.
+  std::array<Index, 3> force{-1, -1, -1};
   Vec2 stiffness = Vec2::Zero();  ///< of the spring [N/m]
   Vec2 anchor = Vec2::Zero();     ///< [m]
 };
 
 /// A part of a rod on which a distributed force acts.
 struct DistributedPlace {
-  double from = 0.0, to = 0.0;         ///< rest arc length [m]
-  std::array<Index, 2> force{-1, -1};  ///< controls of the load [N/m]
+  double from = 0.0, to = 0.0;             ///< rest arc length [m]
+  std::array<Index, 3> force{-1, -1, -1};  ///< controls of the load [N/m]
 };
 
 /// A part of a rod under which there is an elastic foundation.

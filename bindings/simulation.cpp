@@ -13,6 +13,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "der/core/error.hpp"
+#include "der/model/momentum.hpp"
 #include "der/output/joint_strain.hpp"
 #include "recording.hpp"
 #include "state.hpp"
@@ -45,13 +46,20 @@ Array state_view(const py::object& self) {
   return live_view(engine.state().*member, model.num_nodes, model.dimension, self);
 }
 
-/// A live view of the angles of the sections, which stand behind the positions.
-Array theta_view(const py::object& self) {
+/// A live view of the sections' part of one of the state's vectors, which stands behind the nodes'.
+template <Vector State::* member>
+Array section_view(const py::object& self) {
   Simulation& engine = self.cast<PySimulation&>().engine();
   const Model& model = engine.model();
   const Index first = model.dofs.num_positions();
-  return Array(py::ssize_t{model.num_dofs() - first}, engine.state().positions.data() + first,
+  return Array(py::ssize_t{model.num_dofs() - first}, (engine.state().*member).data() + first,
                self);
+}
+
+template <Vec3 Momenta::* part>
+Array momentum(const PySimulation& simulation) {
+  const Momenta all = momenta(simulation.engine().model(), simulation.engine().state());
+  return Array(py::ssize_t{3}, (all.*part).data());
 }
 
 Array present_directors(const PySimulation& simulation) {
@@ -172,11 +180,15 @@ void bind_arrays(PySimulationClass& cls) {
           "velocities", &state_view<&State::velocities>,
           "Node velocities [m/s], shape (nodes, dim): a live, writable view, as `positions`.")
       .def_property_readonly(
-          "theta", &theta_view,
+          "theta", &section_view<&State::positions>,
           "Angles of the sections [rad], shape (edges,), in the order of the rods and their edges: "
           "a live,\nwritable view, as `positions`. Each counts about the tangent from the edge's "
           "reference director,\nwhich is transported in time. Empty but in the model "
           "``spatial``.")
+      .def_property_readonly(
+          "spin", &section_view<&State::velocities>,
+          "Spins of the sections about their tangents [rad/s], shape (edges,): a live, writable "
+          "view, the\nrates of `theta`.")
       .def_property_readonly(
           "directors", &present_directors,
           "Director 1 of the section of each edge, a unit vector along its width, shape (edges, "
@@ -198,6 +210,12 @@ void bind_arrays(PySimulationClass& cls) {
             return mass;
           },
           "Mass lumped on each node [kg], shape (nodes,), read-only.")
+      .def_property_readonly("momentum", &momentum<&Momenta::linear>,
+                             "Linear momentum of all rods [kg m/s], shape (3,).")
+      .def_property_readonly(
+          "angular_momentum", &momentum<&Momenta::angular>,
+          "Angular momentum of all rods about the origin [kg m^2/s], shape (3,), that of the spin "
+          "of sections\nincluded.")
       .def_property_readonly(
           "free_dofs",
           [](const PySimulation& s) {

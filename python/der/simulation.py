@@ -33,8 +33,9 @@ class Simulation(_core.Simulation):
     """A scenario's model, its state, and the time integrator that advances it.
 
     ``positions``, ``velocities`` and ``extra_force`` are live NumPy views of the engine's memory,
-    shape (nodes, dim), in m, m/s and N; so is ``theta``, the angles [rad] of the edges' sections,
-    shape (edges,), in the model ``spatial``. One thread at a time may use a simulation.
+    shape (nodes, dim), in m, m/s and N; so are ``theta`` and ``spin``, the angles [rad] of the
+    edges' sections and their rates, shape (edges,), in the model ``spatial``. One thread at a time
+    may use a simulation.
 
     Parameters
     ----------

@@ -263,6 +263,15 @@ def test_a_pair_of_curvatures_in_space_is_no_list_of_nodes():
         assert np.allclose(refined["natural_curvature"], finer)
 
 
+def test_a_list_of_natural_twists_is_refined():
+    rod = ARM["rods"][0] | {"nodes": 3, "from": [0, 0, 0], "to": [1, 0, 0]}
+    rod["cross_section"] = {"stiffness": {"EA": 1, "EI": 1, "GJ": 1, "mass_per_length": 1}}
+    for twist, finer in [(2.0, 2.0), ([0, 2, 4], [0, 1, 2, 3, 4])]:
+        scene = {"rods": [rod | {"natural_twist": twist}], "analysis": "static"}
+        refined = with_elements(der.Scenario.from_dict(scene), 2).to_dict()["rods"][0]
+        assert np.allclose(refined["natural_twist"], finer)
+
+
 def test_coarser_points_drop_nodes_but_no_corner():
     line = np.column_stack([np.arange(9.0), np.zeros(9)])
     assert np.array_equal(resample_line(line, Fraction(1, 2)), line[::2])

@@ -74,7 +74,6 @@ Vec3 first_director(const scenario::Rod& rod, const Vec3& tangent) {
 /// twist.
 void draw_sections(const scenario::Rod& rod, RodLayout& layout, const Model& model) {
   layout.initial_twist = rod.initial_twist;
-  layout.natural_twist = rod.natural_twist;
   Vec3 tangent = along_edge<3>(layout.edge(0, model), model.initial_positions).normalized();
   Vec3 director = made_perpendicular(first_director(rod, tangent), tangent);
   for (Index edge = 0; edge < layout.num_edges(); ++edge) {
@@ -121,6 +120,14 @@ RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, In
   layout.sphere_radius.assign(rod.points.size(), 0.0);
   if (model.has_sections()) draw_sections(rod, layout, model);
   return layout;
+}
+
+void set_natural_twist(const scenario::Rod& rod, RodLayout& layout) {
+  if (const auto* constant = std::get_if<double>(&rod.natural_twist)) {
+    layout.natural_twist.assign(layout.nodes.size(), *constant);
+  } else if (const auto* list = std::get_if<std::vector<double>>(&rod.natural_twist)) {
+    layout.natural_twist = *list;
+  }
 }
 
 void set_natural_curvature(const scenario::Rod& rod, RodLayout& layout) {
@@ -190,6 +197,7 @@ void lay_out_rods(const scenario::Scene& scene, Model& model) {
     RodLayout layout = lay_out(rod, section, first_node, model);
     layout.mass_per_length = section.mass_per_length;
     set_natural_curvature(rod, layout);
+    set_natural_twist(rod, layout);
     lump_masses(rod, layout, model);
     first_node += static_cast<Index>(rod.points.size());
     size = std::max(size, layout.rest_length());

@@ -13,10 +13,8 @@ namespace {
 
 /// Sets the prescribed motions of a support to zero, but keeps their tables in the model.
 void hold_still(scenario::Support& support) {
-  for (auto& prescribed : support.prescribe) set_to_zero(prescribed.displacement);
-  if (support.rotation) set_to_zero(*support.rotation);
-  if (support.axis_rotation) set_to_zero(support.axis_rotation->angle);
-  if (support.twist) set_to_zero(*support.twist);
+  scenario::for_each_motion(
+      support, [](const char* /*key*/, scenario::Series& motion) { set_to_zero(motion); });
 }
 
 /// The quantities that the load factor of a scene scales.

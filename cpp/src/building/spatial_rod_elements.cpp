@@ -103,6 +103,20 @@ Vec2 free_end_turn(const RodLayout& rod, const RodJoint& joint) {
   return turn;
 }
 
+/// Natural twist at the middle of the length over which a joint twists, its mean there, where the
+/// scene gives it [rad/m].
+double natural_twist_at(const RodLayout& rod, const RodJoint& joint) {
+  const auto edge = [&] {
+    if (joint.before < 0) return joint.after;
+    if (joint.after < 0) return joint.before;
+    return joint.twist_place < rod.arc_length[to_size(joint.after)] ? joint.before : joint.after;
+  }();
+  const double share =
+      (joint.twist_place - rod.arc_length[to_size(edge)]) / rod.edge_length[to_size(edge)];
+  return (1.0 - share) * rod.natural_twist[to_size(edge)] +
+         share * rod.natural_twist[to_size(edge + 1)];
+}
+
 void set_rest(const RodLayout& rod, const JointStrain& drawn, RodJoint& joint) {
   joint.rest = drawn;
   joint.natural_curvature = Vec2(drawn.kappa_1, drawn.kappa_2) / joint.bend_length;
@@ -112,7 +126,9 @@ void set_rest(const RodLayout& rod, const JointStrain& drawn, RodJoint& joint) {
     joint.rest.kappa_1 = turn[0];
     joint.rest.kappa_2 = turn[1];
   }
-  if (rod.natural_twist) joint.rest.twist = *rod.natural_twist * joint.twist_length;
+  if (!rod.natural_twist.empty()) {
+    joint.rest.twist = natural_twist_at(rod, joint) * joint.twist_length;
+  }
 }
 
 /// Strain of a joint between two frames that are drawn with `twist` between them.

@@ -28,9 +28,12 @@ void DeadForce::act_on(Index node, double weight, Model& model) const {
   }
 }
 
-std::array<Index, 2> DeadForce::as_controls(Model& model) const {
-  if (!controls_.empty()) return {controls_[0], controls_[1]};
-  return {model.tables.add({{0.0}, {constant_[0]}}), model.tables.add({{0.0}, {constant_[1]}})};
+std::array<Index, 3> DeadForce::as_controls(Model& model) const {
+  std::array<Index, 3> controls{-1, -1, -1};
+  for (std::size_t c = 0; c < static_cast<std::size_t>(model.dimension); ++c) {
+    controls[c] = controls_.empty() ? model.tables.add({{0.0}, {constant_[c]}}) : controls_[c];
+  }
+  return controls;
 }
 
 }  // namespace der

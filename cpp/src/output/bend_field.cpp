@@ -8,6 +8,8 @@
 #include "der/energies/planar_bend.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/supports/clamp.hpp"
+#include "output/edgewise_field.hpp"
+#include "output/in_space.hpp"
 #include "output/moment_recovery.hpp"
 #include "output/natural_curvature.hpp"
 #include "output/section_field.hpp"
@@ -92,37 +94,32 @@ std::unique_ptr<RodField> limp_field(bool moment, const RodLayout& rod, const Mo
 /// Curvature or moment of a rod with bending stiffness: along each edge that of its two ends,
 /// linear but for the loads inside the edge.
 template <class Measure>
-class BendField : public RodField {
+class BendField : public EdgewiseField<double> {
  public:
   static std::unique_ptr<RodField> make(bool moment, const RodLayout& rod, const Model& model) {
-    const MomentRecovery recovery(rod, model);
-    return std::unique_ptr<RodField>(
-        new BendField(moment, rod, model, samples_of(rod, recovery), recovery));
+    std::vector<std::pair<Known, Known>> edges;
+    Lines lines;
+    const NaturalCurvature natural(rod, model);
+    for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+      edges.emplace_back(known(rod, edge, false, natural, model),
+                         known(rod, edge, true, natural, model));
+      lines.emplace_back(edges.back().first.arc_length, edges.back().second.arc_length);
+    }
+    MomentRecovery recovery(rod, model);
+    std::vector<Sample> samples = samples_of(rod, recovery);
+    return std::unique_ptr<RodField>(new BendField(
+        moment, rod, std::move(samples), std::move(lines), std::move(recovery), std::move(edges)));
   }
 
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
-    const auto& [edge, place, smooth] = samples_[i];
-    const auto& [first, last] = edges_[to_size(edge)];
-    const double share =
-        (place.arc_length - first.arc_length) / (last.arc_length - first.arc_length);
-    double value = recovery_.inside(edge, place, model, state) / per_moment_;
-    if (share != 1.0) value += (1.0 - share) * line(edge, first, model, state);
-    if (share != 0.0) value += share * line(edge, last, model, state);
-    return value;
+    return value(i, model, state);
   }
-  [[nodiscard]] bool smooth_at(std::size_t i) const override { return samples_[i].smooth; }
 
  private:
-  struct Sample {
-    Index edge = 0;
-    MomentRecovery::Place place;
-    bool smooth = true;
-  };
   /// Where the chain has a moment: at a node, at the pivot of a clamp, and, as it must be, at an
   /// end that is not clamped.
   struct Known {
-    bool last = false;               // at the last end of its edge
     double arc_length = 0.0;         // [m]
     double natural_curvature = 0.0;  // [1/m]
     std::optional<BendCell> cell;    // none at an end
@@ -131,50 +128,19 @@ class BendField : public RodField {
     EffectiveEdge effective;         // of the edge
   };
 
-  BendField(bool moment, const RodLayout& rod, const Model& model, std::vector<Sample> samples,
-            MomentRecovery recovery)
-      : RodField(arc_lengths(samples)),
+  BendField(bool moment, const RodLayout& rod, std::vector<Sample> samples, Lines lines,
+            MomentRecovery recovery, std::vector<std::pair<Known, Known>> edges)
+      : EdgewiseField(std::move(samples), std::move(lines)),
         moment_(moment),
         EI_(rod.EI),
         per_moment_(moment ? 1.0 : rod.EI),
         recovery_(std::move(recovery)),
-        samples_(std::move(samples)) {
-    const NaturalCurvature natural(rod, model);
-    for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-      edges_.emplace_back(known(rod, edge, false, natural, model),
-                          known(rod, edge, true, natural, model));
-    }
-  }
-
-  static std::vector<Sample> samples_of(const RodLayout& rod, const MomentRecovery& recovery) {
-    std::vector<Sample> samples;
-    for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-      const auto add = [&](double s, bool before, bool smooth) {
-        samples.push_back({edge, {s, before}, smooth});
-      };
-      const bool smooth = !recovery.has_kink_at(edge) && !recovery.jumps_at(edge);
-      add(rod.arc_length[to_size(edge)], false, smooth);
-      for (const auto& [s, jumps] : recovery.breaks(edge)) {
-        add(s, true, false);
-        if (jumps) add(s, false, false);
-      }
-      const bool end = edge + 1 == rod.num_edges();
-      if (end || recovery.jumps_at(edge + 1)) add(rod.arc_length[to_size(edge + 1)], true, false);
-    }
-    return samples;
-  }
-
-  static std::vector<double> arc_lengths(const std::vector<Sample>& samples) {
-    std::vector<double> result;
-    for (const Sample& sample : samples) result.push_back(sample.place.arc_length);
-    return result;
-  }
+        edges_(std::move(edges)) {}
 
   static Known known(const RodLayout& rod, Index edge, bool last, const NaturalCurvature& natural,
                      const Model& model) {
     const Index node = last ? edge + 1 : edge;
     Known result;
-    result.last = last;
     result.effective = effective_edge(rod, edge, model);
     result.arc_length = rod.arc_length[to_size(node)];
     if (const Clamp* clamp = rod.clamp_at(node)) {
@@ -199,19 +165,25 @@ class BendField : public RodField {
     return result;
   }
 
-  /// The straight line along an edge at one of the places that define it.
-  [[nodiscard]] double line(Index edge, const Known& known, const Model& model,
-                            const State& state) const {
+  [[nodiscard]] double line(Index edge, bool last, const Model& model,
+                            const State& state) const override {
+    const auto& ends = edges_[to_size(edge)];
+    const Known& known = last ? ends.second : ends.first;
     if (!known.cell) {
-      const MomentRecovery::Place end{known.arc_length, known.last};
+      const MomentRecovery::Place end{known.arc_length, last};
       const double moment =
-          recovery_.at_end(known.last, model, state) - recovery_.inside(edge, end, model, state);
+          recovery_.at_end(last, model, state) - recovery_.inside(edge, end, model, state).z();
       return moment / per_moment_ + (moment_ ? 0.0 : known.natural_curvature);
     }
     const double angle = turning_angle(*known.cell, model, state);
-    const Vec2 point = effective_end(known.effective, known.last, model, state);
+    const Vec3 point = in_space(effective_end(known.effective, last, model, state));
     return chain(known, angle) +
-           recovery_.smooth(edge, known.last, point, model, state) / per_moment_;
+           recovery_.smooth(edge, last, point, model, state).z() / per_moment_;
+  }
+
+  [[nodiscard]] double inside(Index edge, const MomentRecovery::Place& place, const Model& model,
+                              const State& state) const override {
+    return recovery_.inside(edge, place, model, state).z() / per_moment_;
   }
 
   /// Moment or curvature of the chain at this turning angle.
@@ -225,7 +197,6 @@ class BendField : public RodField {
   double EI_;
   double per_moment_;  // 1, or EI to make curvatures of moments
   MomentRecovery recovery_;
-  std::vector<Sample> samples_;
   std::vector<std::pair<Known, Known>> edges_;  // first and last of each
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "der/core/index.hpp"
+#include "output/in_space.hpp"
 #include "output/line_loads.hpp"
 
 namespace der {
@@ -51,10 +52,10 @@ bool EdgeExcess::none(Index edge) const {
   return loads.forces.empty() && loads.distributed.empty() && loads.foundations.empty();
 }
 
-Vec2 EdgeExcess::force(Index edge, const SpreadForces& forces, const Model& model,
+Vec3 EdgeExcess::force(Index edge, const SpreadForces& forces, const Model& model,
                        const State& state) const {
   const Loads& loads = edges_[to_size(edge)];
-  Vec2 sum = Vec2::Zero();
+  Vec3 sum = Vec3::Zero();
   for (const auto& [force, amount] : loads.forces) {
     sum += amount * forces.value(force, model, state);
   }
@@ -62,7 +63,7 @@ Vec2 EdgeExcess::force(Index edge, const SpreadForces& forces, const Model& mode
     sum += amount * force_per_length(rod_.distributed_places[number], model, state);
   }
   for (const CutFoundation& foundation : loads.foundations) {
-    sum += foundation_force(edge, foundation, model, state);
+    sum += in_space(foundation_force(edge, foundation, model, state));
   }
   return sum;
 }

@@ -19,7 +19,7 @@ class EdgeExcess {
   /// Whether an edge has no such load.
   [[nodiscard]] bool none(Index edge) const;
   /// Their sum [N]; `forces` as in the constructor.
-  [[nodiscard]] Vec2 force(Index edge, const SpreadForces& forces, const Model& model,
+  [[nodiscard]] Vec3 force(Index edge, const SpreadForces& forces, const Model& model,
                            const State& state) const;
 
  private:

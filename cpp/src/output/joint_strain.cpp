@@ -1,6 +1,7 @@
 #include "der/output/joint_strain.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "der/core/index.hpp"
 #include "der/energies/joint_response.hpp"
@@ -70,16 +71,21 @@ JointStrain section_strain(const RodJoint& joint, const RodLayout& rod, const Mo
   return JointKinematics<Curvature>(sides.before, sides.after, twist).strain();
 }
 
-/// Without frames.
-template <class Curvature>
-JointStrain bend_strain(const RodJoint& joint, const RodLayout& rod, const Model& model,
-                        const State& state) {
+/// The edges or held tangents before and after a joint.
+std::pair<Vec3, Vec3> directions(const RodJoint& joint, const RodLayout& rod, const Model& model,
+                                 const State& state) {
   const auto side = [&](Index edge) -> Vec3 {
     if (edge >= 0) return effective_vector(spatial_edge(rod, edge, model), model, state);
     return held_frame(rod.clamps[to_size(joint.clamp)].held, model, state).tangent;
   };
-  const Vec3 before = side(joint.before);
-  const Vec3 after = side(joint.after);
+  return {side(joint.before), side(joint.after)};
+}
+
+/// Without frames.
+template <class Curvature>
+JointStrain bend_strain(const RodJoint& joint, const RodLayout& rod, const Model& model,
+                        const State& state) {
+  const auto [before, after] = directions(joint, rod, model, state);
   return {Curvature::of(std::atan2(before.cross(after).norm(), before.dot(after))).kappa, 0.0, 0.0};
 }
 
@@ -119,6 +125,12 @@ JointStrain strain_of(const RodJoint& joint, const RodLayout& rod, const Model& 
   return rod.curvature == scenario::CurvatureMeasure::Angle
              ? measured<AngleCurvature>(joint, rod, model, state)
              : measured<TangentCurvature>(joint, rod, model, state);
+}
+
+Vec3 bend_axis(const RodJoint& joint, const RodLayout& rod, const Model& model,
+               const State& state) {
+  const auto [before, after] = directions(joint, rod, model, state);
+  return before.cross(after).normalized();
 }
 
 Vec3 effective_vector(const SpatialEdge& edge, const Model& model, const State& state) {

@@ -3,11 +3,16 @@
 #include <algorithm>
 
 #include "der/core/index.hpp"
+#include "output/in_space.hpp"
 
 namespace der {
 
-Vec2 force_per_length(const DistributedPlace& place, const Model& model, const State& state) {
-  return {control_value(model, state, place.force[0]), control_value(model, state, place.force[1])};
+Vec3 force_per_length(const DistributedPlace& place, const Model& model, const State& state) {
+  Vec3 force = Vec3::Zero();
+  for (int c = 0; c < model.dimension; ++c) {
+    force[c] = control_value(model, state, place.force[to_size(c)]);
+  }
+  return force;
 }
 
 Vec2 node_displacement(const RodLayout& rod, Index node, const Model& model, const State& state) {
@@ -15,7 +20,7 @@ Vec2 node_displacement(const RodLayout& rod, Index node, const Model& model, con
   return state.positions.segment<2>(dof) - model.initial_positions.segment<2>(dof);
 }
 
-Vec2 force_per_length(const FoundationPlace& place, double s, const RodLayout& rod,
+Vec3 force_per_length(const FoundationPlace& place, double s, const RodLayout& rod,
                       const Model& model, const State& state) {
   const auto& arc = rod.arc_length;
   const auto beyond = std::upper_bound(arc.begin() + 1, arc.end() - 1, s);
@@ -23,7 +28,7 @@ Vec2 force_per_length(const FoundationPlace& place, double s, const RodLayout& r
   const double share = (s - arc[to_size(last - 1)]) / rod.edge_length[to_size(last - 1)];
   const Vec2 displacement = (1.0 - share) * node_displacement(rod, last - 1, model, state) +
                             share * node_displacement(rod, last, model, state);
-  return -place.stiffness.cwiseProduct(displacement);
+  return in_space(-place.stiffness.cwiseProduct(displacement));
 }
 
 }  // namespace der

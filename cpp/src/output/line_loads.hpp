@@ -6,17 +6,17 @@
 
 namespace der {
 
-// The loads along a rod, each on a part of it.
+// The loads along a rod, each on a part of it. In a plane the z component is 0.
 
 /// Force [N/m] of a distributed force.
-Vec2 force_per_length(const DistributedPlace& place, const Model& model, const State& state);
+Vec3 force_per_length(const DistributedPlace& place, const Model& model, const State& state);
 
 /// Displacement [m] of a node of a rod from where it is drawn.
 Vec2 node_displacement(const RodLayout& rod, Index node, const Model& model, const State& state);
 
 /// Force [N/m] of a foundation at arc length `s` [m], which is on its part: the displacement is
 /// linear along each edge.
-Vec2 force_per_length(const FoundationPlace& place, double s, const RodLayout& rod,
+Vec3 force_per_length(const FoundationPlace& place, double s, const RodLayout& rod,
                       const Model& model, const State& state);
 
 }  // namespace der

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "der/core/index.hpp"
-#include "der/kinematics/planar_edge.hpp"
 #include "der/model/moment_place.hpp"
 
 namespace der {
@@ -117,42 +116,42 @@ double MomentRecovery::carried(std::size_t number, const Model& model, const Sta
   return carried_moment(place, rod_, model, state, applied);
 }
 
-double MomentRecovery::smooth(Index edge, bool last, const Vec2& point, const Model& model,
-                              const State& state) const {
+Vec3 MomentRecovery::smooth(Index edge, bool last, const Vec3& point, const Model& model,
+                            const State& state) const {
   const EdgeTerms& terms = edges_[to_size(edge)];
-  double moment = 0.0;
+  Vec3 moment = Vec3::Zero();
   // A moment is a couple at the nodes of its edge: a pivot between them sees the nearer one's force
   // taken by the clamp.
-  const Vec2 along = forces_.node_point(edge + 1, state) - forces_.node_point(edge, state);
+  const Vec3 along = forces_.node_point(edge + 1, state) - forces_.node_point(edge, state);
   const double pivot =
       (point - forces_.node_point(last ? edge + 1 : edge, state)).dot(along) / along.squaredNorm();
   for (const MomentTerm& term : terms.moments) {
     const double factor = (last ? term.last : term.first) + term.own * pivot;
-    if (factor != 0.0) moment += factor * carried(term.place, model, state);
+    if (factor != 0.0) moment.z() += factor * carried(term.place, model, state);
   }
   for (const ForceTerm& term : terms.forces) {
-    const Vec2 stands = forces_.point(term.place, state);
-    Vec2 arm = Vec2::Zero();  // of the true force, less those of the spread one
+    const Vec3 stands = forces_.point(term.place, state);
+    Vec3 arm = Vec3::Zero();  // of the true force, less those of the spread one
     if (term.where == (term.sign > 0.0 ? Where::Beyond : Where::Before)) arm = stands - point;
     for (const auto& [node, weight] : term.nodes)
       arm -= weight * (forces_.node_point(node, state) - point);
-    moment += term.sign * cross(arm, forces_.value(term.place, model, state));
+    moment += term.sign * arm.cross(forces_.value(term.place, model, state));
   }
   return moment;
 }
 
-double MomentRecovery::inside(Index edge, const Place& place, const Model& model,
-                              const State& state) const {
+Vec3 MomentRecovery::inside(Index edge, const Place& place, const Model& model,
+                            const State& state) const {
   const EdgeTerms& terms = edges_[to_size(edge)];
   const double s = place.arc_length;
-  double moment = 0.0;
+  Vec3 moment = Vec3::Zero();
   for (const MomentTerm& term : terms.moments) {
     if (!term.inside) continue;
     const bool beyond = std::abs(term.arc_length - s) <= rod_.same_place()
                             ? place.loads_here_are_beyond
                             : term.arc_length > s;
     const double factor = beyond ? term.before : term.after;
-    if (factor != 0.0) moment += factor * carried(term.place, model, state);
+    if (factor != 0.0) moment.z() += factor * carried(term.place, model, state);
   }
   for (const ForceTerm& term : terms.forces) {
     if (term.where != Where::Inside) continue;
@@ -161,8 +160,8 @@ double MomentRecovery::inside(Index edge, const Place& place, const Model& model
     if (!counts) continue;
     const Index end = term.sign > 0.0 ? edge : edge + 1;
     const double share = (there - s) / (there - rod_.arc_length[to_size(end)]);
-    const Vec2 arm = share * (forces_.point(term.place, state) - forces_.node_point(end, state));
-    moment += term.sign * cross(arm, forces_.value(term.place, model, state));
+    const Vec3 arm = share * (forces_.point(term.place, state) - forces_.node_point(end, state));
+    moment += term.sign * arm.cross(forces_.value(term.place, model, state));
   }
   return moment;
 }

@@ -20,7 +20,8 @@ namespace der {
 /// would be wrong next to each load.
 ///
 /// Along an edge the moment is the sum of a straight line, given by `smooth` at both its ends, and
-/// of a correction for the loads inside the edge, `inside`.
+/// of a correction for the loads inside the edge, `inside`. Moments are vectors in space, exerted
+/// by what is beyond a place on what is before it; in a plane they are along z.
 class MomentRecovery {
  public:
   MomentRecovery(const RodLayout& rod, const Model& model);
@@ -38,12 +39,12 @@ class MomentRecovery {
 
   /// Difference [N m] between the straight line and the chain's moment at a point of an edge: at
   /// its first end (`last` false) or its last one.
-  [[nodiscard]] double smooth(Index edge, bool last, const Vec2& point, const Model& model,
-                              const State& state) const;
+  [[nodiscard]] Vec3 smooth(Index edge, bool last, const Vec3& point, const Model& model,
+                            const State& state) const;
   /// Correction [N m] of the straight line at a place of an edge.
-  [[nodiscard]] double inside(Index edge, const Place& place, const Model& model,
-                              const State& state) const;
-  /// Moment [N m] in the rod at its start or its end, which are not clamped.
+  [[nodiscard]] Vec3 inside(Index edge, const Place& place, const Model& model,
+                            const State& state) const;
+  /// Moment [N m] about z in a planar rod at its start or its end, which are not clamped.
   [[nodiscard]] double at_end(bool last, const Model& model, const State& state) const;
 
   /// Inside an edge, in the order of the arc length.

@@ -1,11 +1,14 @@
 #include "output/section_field.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <utility>
 
 #include "der/core/index.hpp"
 #include "der/output/joint_strain.hpp"
+#include "der/supports/clamp.hpp"
 #include "der/supports/spatial_clamp.hpp"
+#include "output/edgewise_field.hpp"
+#include "output/moment_recovery.hpp"
 
 namespace der {
 namespace {
@@ -14,98 +17,217 @@ bool is_of_twist(SectionQuantity quantity) {
   return quantity == SectionQuantity::Twist || quantity == SectionQuantity::Torque;
 }
 
-std::vector<double> places(SectionQuantity quantity, const RodLayout& rod) {
-  std::vector<double> result;
-  for (const RodJoint& joint : rod.joints) {
-    result.push_back(is_of_twist(quantity) ? joint.twist_place : joint.bend_place);
+bool is_moment(SectionQuantity quantity) {
+  switch (quantity) {
+    case SectionQuantity::Moment:
+    case SectionQuantity::Moment1:
+    case SectionQuantity::Moment2:
+    case SectionQuantity::Torque:
+      return true;
+    default:
+      return false;
   }
-  return result;
 }
 
-class SectionField : public RodField {
+/// Bending towards the two directors and twist, of a rod with sections: curvatures and twist, or
+/// the two moments and the torque. Of a rod without sections the vector about which it bends, in
+/// fixed axes.
+class SectionField : public EdgewiseField<Vec3> {
  public:
-  SectionField(SectionQuantity quantity, const RodLayout& rod)
-      : RodField(places(quantity, rod)), quantity_(quantity), rod_(rod) {}
+  static std::unique_ptr<RodField> make(SectionQuantity quantity, const RodLayout& rod,
+                                        const Model& model) {
+    MomentRecovery recovery(rod, model);
+    std::vector<Sample> samples;
+    std::vector<std::pair<Known, Known>> edges;
+    Lines lines;
+    if (!rod.joints.empty()) {
+      samples = samples_of(rod, recovery);
+      for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+        edges.emplace_back(known(quantity, rod, edge, false), known(quantity, rod, edge, true));
+        lines.emplace_back(edges.back().first.arc_length, edges.back().second.arc_length);
+      }
+    }
+    return std::unique_ptr<RodField>(new SectionField(quantity, rod, model, std::move(samples),
+                                                      std::move(lines), std::move(recovery),
+                                                      std::move(edges)));
+  }
 
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
-    const RodJoint& joint = rod_.joints[i];
-    const JointStrain strain = strain_of(joint, rod_, model, state);
-    const Vec2 excess =
-        Vec2(strain.kappa_1 - joint.rest.kappa_1, strain.kappa_2 - joint.rest.kappa_2) /
-        joint.bend_length;
-    const Vec2 curvature = joint.natural_curvature + excess;
-    const Vec2 moment(rod_.EI_1 * excess[0], rod_.EI_2 * excess[1]);
+    const Vec3 all = value(i, model, state);
     switch (quantity_) {
-      case SectionQuantity::Curvature:
-        return curvature.norm();
       case SectionQuantity::Curvature1:
-        return curvature[0];
-      case SectionQuantity::Curvature2:
-        return curvature[1];
-      case SectionQuantity::Moment:
-        return moment.norm();
       case SectionQuantity::Moment1:
-        return moment[0];
+        return all[0];
+      case SectionQuantity::Curvature2:
       case SectionQuantity::Moment2:
-        return moment[1];
+        return all[1];
       case SectionQuantity::Twist:
-        return strain.twist / joint.twist_length;
       case SectionQuantity::Torque:
-        break;
+        return all[2];
+      default:
+        return model.has_sections() ? all.head<2>().norm() : all.norm();
     }
-    return rod_.GJ * (strain.twist - joint.rest.twist) / joint.twist_length;
   }
 
  private:
+  /// Where the chain has a moment: at a joint, or, as it must be, at an end that is free to turn.
+  struct Known {
+    const RodJoint* joint = nullptr;  // of the model's rod; none at an end
+    double arc_length = 0.0;          // [m]
+    Vec3 natural = Vec3::Zero();      // curvatures and twist
+  };
+
+  SectionField(SectionQuantity quantity, const RodLayout& rod, const Model& model,
+               std::vector<Sample> samples, Lines lines, MomentRecovery recovery,
+               std::vector<std::pair<Known, Known>> edges)
+      : EdgewiseField(std::move(samples), std::move(lines)),
+        quantity_(quantity),
+        rod_(rod),
+        stiffness_(model.has_sections() ? Vec3(rod.EI_1, rod.EI_2, rod.GJ)
+                                        : Vec3::Constant(rod.EI_1)),
+        recovery_(std::move(recovery)),
+        edges_(std::move(edges)) {}
+
+  static Vec3 natural_of(const RodJoint& joint) {
+    return {joint.natural_curvature[0], joint.natural_curvature[1],
+            joint.rest.twist / joint.twist_length};
+  }
+
+  /// Natural curvatures and twist at an end of the rod: as given, or those of the drawn rod,
+  /// extrapolated.
+  static Vec3 natural_at_end(const RodLayout& rod, bool last) {
+    const std::vector<RodJoint>& joints = rod.joints;
+    const RodJoint& near = last ? joints.back() : joints.front();
+    const Vec3 natural = natural_of(near);
+    Vec3 result = natural;
+    if (joints.size() > 1) {
+      const RodJoint& far = last ? joints[joints.size() - 2] : joints[1];
+      const double s = last ? rod.rest_length() : 0.0;
+      result +=
+          (s - near.bend_place) / (near.bend_place - far.bend_place) * (natural - natural_of(far));
+    }
+    if (!rod.natural_curvatures.empty()) {
+      result.head<2>() = last ? rod.natural_curvatures.back() : rod.natural_curvatures.front();
+    }
+    if (!rod.natural_twist.empty()) {
+      result[2] = last ? rod.natural_twist.back() : rod.natural_twist.front();
+    }
+    return result;
+  }
+
+  static Known known(SectionQuantity quantity, const RodLayout& rod, Index edge, bool last) {
+    Known result;
+    result.arc_length = rod.arc_length[to_size(last ? edge + 1 : edge)];
+    const auto joint = std::find_if(
+        rod.joints.begin(), rod.joints.end(),
+        [&](const RodJoint& other) { return (last ? other.before : other.after) == edge; });
+    if (joint == rod.joints.end()) {
+      result.natural = natural_at_end(rod, last);
+      return result;
+    }
+    result.natural = natural_of(*joint);
+    // A clamp that holds the tangent alone lets the section turn.
+    const bool lets_turn = joint->clamp >= 0 && !rod.clamps[to_size(joint->clamp)].holds_section;
+    if (is_of_twist(quantity) && lets_turn) return result;
+    result.joint = &*joint;
+    result.arc_length = is_of_twist(quantity) ? joint->twist_place : joint->bend_place;
+    return result;
+  }
+
+  [[nodiscard]] Vec3 line(Index edge, bool last, const Model& model,
+                          const State& state) const override {
+    const auto& ends = edges_[to_size(edge)];
+    const Known& known = last ? ends.second : ends.first;
+    const Vec3 natural = is_moment(quantity_) ? Vec3::Zero() : known.natural;
+    if (known.joint == nullptr) {
+      return natural - inside(edge, {known.arc_length, last}, model, state);
+    }
+    const Vec3 excess = excess_of(*known.joint, model, state);
+    const SpatialEdge vector = spatial_edge(rod_, edge, model);
+    const Index node = last ? edge + 1 : edge;
+    const double share =
+        (known.arc_length - rod_.arc_length[to_size(node)]) / rod_.edge_length[to_size(edge)];
+    const Vec3 along =
+        state.positions.segment<3>(vector.end) - state.positions.segment<3>(vector.start);
+    const Vec3 point = state.positions.segment<3>(last ? vector.end : vector.start) + share * along;
+    const Vec3 recovered =
+        in_section(edge, recovery_.smooth(edge, last, point, model, state), model, state);
+    Vec3 moment = stiffness_.cwiseProduct(excess);
+    if (model.has_sections()) moment = moved(moment, known, natural_of(*known.joint) + excess);
+    return natural + (is_moment(quantity_) ? moment : Vec3(moment.cwiseQuotient(stiffness_))) +
+           recovered;
+  }
+
+  [[nodiscard]] Vec3 inside(Index edge, const MomentRecovery::Place& place, const Model& model,
+                            const State& state) const override {
+    return in_section(edge, recovery_.inside(edge, place, model, state), model, state);
+  }
+
+  /// Curvatures and twist of a joint beyond the natural ones [1/m].
+  [[nodiscard]] Vec3 excess_of(const RodJoint& joint, const Model& model,
+                               const State& state) const {
+    const JointStrain strain = strain_of(joint, rod_, model, state);
+    if (!model.has_sections()) {
+      return strain.kappa_1 / joint.bend_length * bend_axis(joint, rod_, model, state);
+    }
+    return {(strain.kappa_1 - joint.rest.kappa_1) / joint.bend_length,
+            (strain.kappa_2 - joint.rest.kappa_2) / joint.bend_length,
+            (strain.twist - joint.rest.twist) / joint.twist_length};
+  }
+
+  /// The moments of a joint and its torque [N m], which it has in its own frame, in the section's
+  /// frame at the known place. The joint's tangent is the mean of those beside it, and its
+  /// directors are those in the middle of the length over which it twists. At inner nodes of an
+  /// even mesh all these places are one.
+  [[nodiscard]] Vec3 moved(const Vec3& moment, const Known& known, const Vec3& strains) const {
+    const double tilted = known.arc_length - tangent_place(*known.joint);
+    const double turned = known.arc_length - known.joint->twist_place;
+    // Bending towards a director turns about the other one.
+    const auto about = [](const Vec3& parts) { return Vec3(-parts[1], parts[0], parts[2]); };
+    const Vec3 turn = about({tilted * strains[0], tilted * strains[1], turned * strains[2]});
+    const Vec3 change = about(moment).cross(turn);
+    return moment + Vec3(change[1], -change[0], change[2]);
+  }
+
+  /// Arc length [m] in the middle between the places where the rod has the directions of the two
+  /// sides of a joint: a clamp, or an edge's middle, which beside a clamp is a little further away
+  /// (supports/clamp.hpp).
+  [[nodiscard]] double tangent_place(const RodJoint& joint) const {
+    const auto side = [&](Index edge) {
+      if (edge < 0) return rod_.arc_length[to_size(rod_.clamps[to_size(joint.clamp)].place)];
+      const double further = clamp_cell_length(rod_, edge) - 0.5 * rod_.edge_length[to_size(edge)];
+      return rod_.edge_middle(edge) + (rod_.clamp_at(edge) != nullptr ? further : 0.0) -
+             (rod_.clamp_at(edge + 1) != nullptr ? further : 0.0);
+    };
+    return 0.5 * (side(joint.before) + side(joint.after));
+  }
+
+  /// A moment [N m] in fixed axes as the field has it: bending towards a director turns about the
+  /// other one.
+  [[nodiscard]] Vec3 in_section(Index edge, const Vec3& moment, const Model& model,
+                                const State& state) const {
+    if (moment.isZero(0.0)) return moment;
+    Vec3 parts = moment;
+    if (model.has_sections()) {
+      const SectionFrame frame = section_frame(model, rod_.first_edge + edge, state);
+      parts = {moment.dot(frame.second), -moment.dot(frame.first), moment.dot(frame.tangent)};
+    }
+    return is_moment(quantity_) ? parts : Vec3(parts.cwiseQuotient(stiffness_));
+  }
+
   SectionQuantity quantity_;
   RodLayout rod_;
-};
-
-std::vector<double> middles(const RodLayout& rod) {
-  std::vector<double> result;
-  for (Index edge = 0; edge < rod.num_edges(); ++edge) result.push_back(rod.edge_middle(edge));
-  return result;
-}
-
-class EdgeStrainField : public RodField {
- public:
-  EdgeStrainField(double stiffness, const RodLayout& rod, const Model& model)
-      : RodField(middles(rod)), stiffness_(stiffness) {
-    for (Index i = 0; i < rod.num_edges(); ++i) {
-      edges_.push_back(spatial_edge(rod, i, model));
-      const SpatialEdge& edge = edges_.back();
-      const double whole = rod.edge_length[to_size(i)];
-      whole_lengths_.push_back(whole);
-      effective_lengths_.push_back(edge.has_pivot() ? edge.drawn(model.initial_positions).norm()
-                                                    : whole);
-    }
-  }
-  /// An effective edge from a pivot is shorter than its edge and stretches for all of it.
-  [[nodiscard]] double sample(std::size_t i, const Model& model,
-                              const State& state) const override {
-    const double elongation =
-        effective_vector(edges_[i], model, state).norm() - effective_lengths_[i];
-    return stiffness_ * elongation / whole_lengths_[i];
-  }
-
- private:
-  double stiffness_;
-  std::vector<SpatialEdge> edges_;
-  std::vector<double> whole_lengths_;      // at rest [m]
-  std::vector<double> effective_lengths_;  // at rest [m]
+  Vec3 stiffness_;
+  MomentRecovery recovery_;
+  std::vector<std::pair<Known, Known>> edges_;  // first and last of each
 };
 
 }  // namespace
 
 std::unique_ptr<RodField> make_section_field(SectionQuantity quantity, const RodLayout& rod,
-                                             const Model& /*model*/) {
-  return std::make_unique<SectionField>(quantity, rod);
-}
-
-std::unique_ptr<RodField> make_edge_strain_field(double stiffness, const RodLayout& rod,
-                                                 const Model& model) {
-  return std::make_unique<EdgeStrainField>(stiffness, rod, model);
+                                             const Model& model) {
+  return SectionField::make(quantity, rod, model);
 }
 
 }  // namespace der

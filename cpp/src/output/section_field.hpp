@@ -6,10 +6,10 @@
 
 namespace der {
 
-// Bending, twist and strain of a rod in space: at its joints or the middles of its edges, linear in
-// between and beyond.
+// Bending and twist of a rod in space: at all nodes and wherever loads between them make a kink,
+// linear in between, of order 2 up to the ends (output/moment_recovery.hpp).
 
-/// Quantities of the section at a joint.
+/// Quantities of a section.
 enum class SectionQuantity {
   Curvature,   ///< magnitude [1/m]
   Curvature1,  ///< towards the first director [1/m]
@@ -24,9 +24,5 @@ enum class SectionQuantity {
 /// All but the magnitudes need a model with sections.
 std::unique_ptr<RodField> make_section_field(SectionQuantity quantity, const RodLayout& rod,
                                              const Model& model);
-
-/// The strain in the edges, times a stiffness [N] (1: the strain itself).
-std::unique_ptr<RodField> make_edge_strain_field(double stiffness, const RodLayout& rod,
-                                                 const Model& model);
 
 }  // namespace der

@@ -4,10 +4,11 @@
 #include <utility>
 
 #include "der/core/index.hpp"
+#include "output/in_space.hpp"
 
 namespace der {
 
-SpreadForces::SpreadForces(const RodLayout& rod, const Model& model) {
+SpreadForces::SpreadForces(const RodLayout& rod, const Model& model) : dimension_(model.dimension) {
   for (const Index node : rod.nodes) first_dofs_.push_back(model.dof(node, 0));
   for (const ForcePlace& place : rod.force_places) {
     std::vector<Weighted> nodes = node_weights(rod, place.arc_length);
@@ -15,20 +16,23 @@ SpreadForces::SpreadForces(const RodLayout& rod, const Model& model) {
   }
 }
 
-Vec2 SpreadForces::node_point(Index node, const State& state) const {
-  return state.positions.segment<2>(first_dofs_[to_size(node)]);
+Vec3 SpreadForces::node_point(Index node, const State& state) const {
+  Vec3 point = Vec3::Zero();
+  for (int c = 0; c < dimension_; ++c) point[c] = state.positions[first_dofs_[to_size(node)] + c];
+  return point;
 }
 
-Vec2 SpreadForces::point(std::size_t i, const State& state) const {
-  Vec2 point = Vec2::Zero();
+Vec3 SpreadForces::point(std::size_t i, const State& state) const {
+  Vec3 point = Vec3::Zero();
   for (const auto& [node, weight] : forces_[i].nodes) point += weight * node_point(node, state);
   return point;
 }
 
-Vec2 SpreadForces::value(std::size_t i, const Model& model, const State& state) const {
+Vec3 SpreadForces::value(std::size_t i, const Model& model, const State& state) const {
   const ForcePlace& place = forces_[i].place;
-  Vec2 value = -place.stiffness.cwiseProduct(point(i, state) - place.anchor);
-  for (int c = 0; c < 2; ++c) {
+  const Vec2 stretched = point(i, state).head<2>() - place.anchor;
+  Vec3 value = in_space(-place.stiffness.cwiseProduct(stretched));
+  for (int c = 0; c < dimension_; ++c) {
     const Index control = place.force[to_size(c)];
     if (control >= 0) value[c] += control_value(model, state, control);
   }
@@ -38,8 +42,10 @@ Vec2 SpreadForces::value(std::size_t i, const Model& model, const State& state) 
 std::vector<bool> loaded_nodes(const RodLayout& rod, const Model& model) {
   std::vector<bool> loaded(rod.nodes.size());
   for (std::size_t i = 0; i < loaded.size(); ++i) {
-    loaded[i] = rod.sphere_radius[i] > 0.0 || !model.dofs.is_free(model.dof(rod.nodes[i], 0)) ||
-                !model.dofs.is_free(model.dof(rod.nodes[i], 1));
+    loaded[i] = rod.sphere_radius[i] > 0.0;
+    for (int c = 0; c < model.dimension; ++c) {
+      if (!model.dofs.is_free(model.dof(rod.nodes[i], c))) loaded[i] = true;
+    }
     for (const ForcePlace& place : rod.force_places) {
       if (std::abs(place.arc_length - rod.arc_length[i]) <= rod.same_place()) loaded[i] = true;
     }

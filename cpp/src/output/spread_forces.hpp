@@ -10,7 +10,7 @@
 namespace der {
 
 /// The point forces between the nodes of a rod, of loads and of springs: where they stand, what
-/// they are, and the nodes over which the chain spreads them.
+/// they are, and the nodes over which the chain spreads them. In a plane all z components are 0.
 class SpreadForces {
  public:
   struct Force {
@@ -24,13 +24,14 @@ class SpreadForces {
   [[nodiscard]] const Force& operator[](std::size_t i) const { return forces_[i]; }
 
   /// [m]
-  [[nodiscard]] Vec2 node_point(Index node, const State& state) const;
+  [[nodiscard]] Vec3 node_point(Index node, const State& state) const;
   /// Where force number `i` stands [m].
-  [[nodiscard]] Vec2 point(std::size_t i, const State& state) const;
+  [[nodiscard]] Vec3 point(std::size_t i, const State& state) const;
   /// Force number `i` [N].
-  [[nodiscard]] Vec2 value(std::size_t i, const Model& model, const State& state) const;
+  [[nodiscard]] Vec3 value(std::size_t i, const Model& model, const State& state) const;
 
  private:
+  int dimension_;
   std::vector<Index> first_dofs_;  // of each node
   std::vector<Force> forces_;
 };

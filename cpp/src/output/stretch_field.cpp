@@ -1,10 +1,17 @@
 #include "output/stretch_field.hpp"
 
+#include <algorithm>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include "der/core/index.hpp"
+#include "der/output/joint_strain.hpp"
 #include "der/supports/clamp.hpp"
+#include "der/supports/spatial_clamp.hpp"
+#include "output/bend_field.hpp"
 #include "output/edge_excess.hpp"
+#include "output/in_space.hpp"
 #include "output/line_loads.hpp"
 #include "output/section_field.hpp"
 #include "output/spread_forces.hpp"
@@ -12,6 +19,144 @@
 
 namespace der {
 namespace {
+
+/// The vectors of the edges of a rod as its elements see them, from a clamp's pivot on. An
+/// effective edge is shorter than its edge and stretches for all of it.
+class EffectiveVectors {
+ public:
+  EffectiveVectors(const RodLayout& rod, const Model& model) {
+    const Vector drawn = Vector::Zero(model.tables.size());
+    for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+      if (model.dimension == 3) {
+        in_space_.push_back(spatial_edge(rod, edge, model));
+        rest_length_.push_back(in_space_.back().vector(model.initial_positions, drawn).norm());
+      } else {
+        planar_.push_back(effective_edge(rod, edge, model));
+        rest_length_.push_back(planar_.back().vector(model.initial_positions, 0.0, 0.0).norm());
+      }
+    }
+  }
+
+  /// [m]
+  [[nodiscard]] Vec3 at(Index edge, const Model& model, const State& state) const {
+    if (model.dimension == 3) return effective_vector(in_space_[to_size(edge)], model, state);
+    return in_space(effective_vector(planar_[to_size(edge)], model, state));
+  }
+  /// [m]
+  [[nodiscard]] double rest_length(Index edge) const { return rest_length_[to_size(edge)]; }
+
+ private:
+  std::vector<EffectiveEdge> planar_;
+  std::vector<SpatialEdge> in_space_;  // one of the two lists is empty
+  std::vector<double> rest_length_;
+};
+
+/// The tension that edges have in excess because they lean: an edge next to a clamp, and one at a
+/// free end with a natural curvature, has the direction that the curve has not in the edge's middle
+/// but a distance beyond it (supports/clamp.hpp; docs/mechanics.md). The excess is this distance
+/// times k . F, with the curvature k and the force F in the rod across it.
+class LeaningEdges {
+ public:
+  LeaningEdges(const RodLayout& rod, const Model& model) : rod_(rod) {
+    for (const Clamp& clamp : rod.clamps) {
+      for (const Index edge : {clamp.place - 1, clamp.place}) {
+        if (edge < 0 || edge >= rod.num_edges()) continue;
+        const double further = clamp_cell_length(rod, edge) - 0.5 * rod.edge_length[to_size(edge)];
+        add({edge, edge == clamp.place ? further : -further, {}}, model);
+      }
+    }
+    add_free_end(false, model);
+    add_free_end(true, model);
+  }
+
+  /// [N]
+  [[nodiscard]] double excess(Index edge, const Model& model, const State& state) const {
+    double excess = 0.0;
+    for (const Lean& lean : leans_) {
+      if (lean.edge == edge) excess += lean.beyond * curvature_times_force(lean, model, state);
+    }
+    return excess;
+  }
+
+ private:
+  struct Lean {
+    Index edge = 0;
+    double beyond = 0.0;                    // [m]
+    std::optional<Vec2> natural_curvature;  // [1/m] at a free end, where it alone makes edges lean
+  };
+
+  void add_free_end(bool last, const Model& model) {
+    if (rod_.clamp_at(last ? rod_.num_edges() : 0) != nullptr) return;
+    Vec2 natural = Vec2::Zero();
+    if (!rod_.natural_curvature.empty()) {
+      natural[0] = last ? rod_.natural_curvature.back() : rod_.natural_curvature.front();
+    } else if (!rod_.natural_curvatures.empty()) {
+      natural = last ? rod_.natural_curvatures.back() : rod_.natural_curvatures.front();
+    }
+    if (natural.isZero(0.0)) return;
+    const Index edge = last ? rod_.num_edges() - 1 : 0;
+    const double twelfth = rod_.edge_length[to_size(edge)] / 12.0;
+    add({edge, last ? twelfth : -twelfth, natural}, model);
+  }
+
+  void add(const Lean& lean, const Model& model) {
+    leans_.push_back(lean);
+    if (!bends_.empty()) return;
+    if (model.has_sections()) {
+      bends_.push_back({make_section_field(SectionQuantity::Curvature1, rod_, model),
+                        make_section_field(SectionQuantity::Moment1, rod_, model)});
+      bends_.push_back({make_section_field(SectionQuantity::Curvature2, rod_, model),
+                        make_section_field(SectionQuantity::Moment2, rod_, model)});
+      twist_ = make_section_field(SectionQuantity::Twist, rod_, model);
+    } else {
+      bends_.push_back({make_curvature_field(rod_, model), make_moment_field(rod_, model)});
+    }
+  }
+
+  /// F = -M', with the components of M along directors that turn with the twist u as
+  /// F1 = -M1' + u M2, F2 = -M2' - u M1; the torque's part falls out of k . F.
+  [[nodiscard]] double curvature_times_force(const Lean& lean, const Model& model,
+                                             const State& state) const {
+    const auto mean = [&](const RodField& field) {
+      return 0.5 * (at_end(field, lean.edge, false, model, state) +
+                    at_end(field, lean.edge, true, model, state));
+    };
+    Vec2 curvature = Vec2::Zero();
+    Vec2 moment = Vec2::Zero();
+    Vec2 force = Vec2::Zero();
+    for (std::size_t k = 0; k < bends_.size(); ++k) {
+      const auto component = static_cast<Index>(k);
+      curvature[component] = mean(*bends_[k].curvature);
+      moment[component] = mean(*bends_[k].moment);
+      force[component] = (at_end(*bends_[k].moment, lean.edge, false, model, state) -
+                          at_end(*bends_[k].moment, lean.edge, true, model, state)) /
+                         rod_.edge_length[to_size(lean.edge)];
+    }
+    if (twist_) force += mean(*twist_) * Vec2(moment[1], -moment[0]);
+    return lean.natural_curvature.value_or(curvature).dot(force);
+  }
+
+  /// The value of a field at the first or last end of an edge, on the edge's side of a jump.
+  [[nodiscard]] double at_end(const RodField& field, Index edge, bool last, const Model& model,
+                              const State& state) const {
+    const double place = rod_.arc_length[to_size(last ? edge + 1 : edge)];
+    const std::vector<double>& samples = field.arc_length();
+    const auto found =
+        last ? std::lower_bound(samples.begin(), samples.end(), place - rod_.same_place())
+             : std::upper_bound(samples.begin(), samples.end(), place + rod_.same_place()) - 1;
+    return field.sample(static_cast<std::size_t>(found - samples.begin()), model, state);
+  }
+
+  struct Bend {
+    std::unique_ptr<RodField> curvature;
+    std::unique_ptr<RodField> moment;
+  };
+
+  const RodLayout& rod_;
+  std::vector<Lean> leans_;
+  std::vector<Bend> bends_;  // towards each director, or in the plane; empty where no edge leans
+  std::unique_ptr<RodField> twist_;  // of sections
+};
 
 /// The strain, times a stiffness [N] (1: the strain itself).
 ///
@@ -35,10 +180,10 @@ class StretchField : public RodField {
     for (const auto& [edge, weight] : sample.edges) {
       strain += weight * middle_strain(edge, model, state);
     }
-    const auto pass = [&](const StretchSample::Passed& load, const Vec2& force) {
-      Vec2 along = Vec2::Zero();
+    const auto pass = [&](const StretchSample::Passed& load, const Vec3& force) {
+      Vec3 along = Vec3::Zero();
       for (const auto& [edge, weight] : load.direction) {
-        along += weight * direction(edge, model, state);
+        along += weight * vectors_.at(edge, model, state).normalized();
       }
       strain += load.amount * along.normalized().dot(force) / rod_.EA;
     };
@@ -61,13 +206,10 @@ class StretchField : public RodField {
         stiffness_(stiffness),
         rod_(rod),
         forces_(std::move(forces)),
+        vectors_(rod, model),
+        leans_(rod, model),
         excess_(rod, forces_),
-        samples_(std::move(samples)) {
-    for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-      effective_.push_back(effective_edge(rod, edge, model));
-      rest_length_.push_back(effective_.back().vector(model.initial_positions, 0.0, 0.0).norm());
-    }
-  }
+        samples_(std::move(samples)) {}
 
   static std::vector<double> arc_lengths(const std::vector<StretchSample>& samples) {
     std::vector<double> result;
@@ -75,23 +217,20 @@ class StretchField : public RodField {
     return result;
   }
 
-  [[nodiscard]] Vec2 direction(Index edge, const Model& model, const State& state) const {
-    return effective_vector(effective_[to_size(edge)], model, state).normalized();
-  }
-
   [[nodiscard]] double middle_strain(Index edge, const Model& model, const State& state) const {
-    const Vec2 effective = effective_vector(effective_[to_size(edge)], model, state);
+    const Vec3 effective = vectors_.at(edge, model, state);
     const double length = effective.norm();
-    const double chain = (length - rest_length_[to_size(edge)]) / rod_.edge_length[to_size(edge)];
-    if (excess_.none(edge)) return chain;
-    return chain + effective.dot(excess_.force(edge, forces_, model, state)) / (length * rod_.EA);
+    const double chain = (length - vectors_.rest_length(edge)) / rod_.edge_length[to_size(edge)];
+    const double upright = chain - leans_.excess(edge, model, state) / rod_.EA;
+    if (excess_.none(edge)) return upright;
+    return upright + effective.dot(excess_.force(edge, forces_, model, state)) / (length * rod_.EA);
   }
 
   double stiffness_;
   RodLayout rod_;
-  std::vector<double> rest_length_;  // of the effective edges
-  std::vector<EffectiveEdge> effective_;
   SpreadForces forces_;
+  EffectiveVectors vectors_;
+  LeaningEdges leans_;
   EdgeExcess excess_;
   std::vector<StretchSample> samples_;
 };
@@ -99,12 +238,10 @@ class StretchField : public RodField {
 }  // namespace
 
 std::unique_ptr<RodField> make_strain_field(const RodLayout& rod, const Model& model) {
-  if (model.dimension == 3) return make_edge_strain_field(1.0, rod, model);
   return StretchField::make(1.0, rod, model);
 }
 
 std::unique_ptr<RodField> make_tension_field(const RodLayout& rod, const Model& model) {
-  if (model.dimension == 3) return make_edge_strain_field(rod.EA, rod, model);
   return StretchField::make(rod.EA, rod, model);
 }
 

@@ -175,6 +175,15 @@ void check_natural_curvature(CheckContext& context, int i) {
   }
 }
 
+void check_natural_twist(CheckContext& context, int i) {
+  const Path path = rod_path(i) / "natural_twist";
+  const RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
+  if (context.diagnostics.under(path)) return;
+  if (const auto* list = std::get_if<std::vector<double>>(&rod.natural_twist)) {
+    one_for_each_node(context, list->size(), rod.points.size(), path);
+  }
+}
+
 /// A direction across the rod where it begins, which is +z unless given.
 void check_director(CheckContext& context, int i) {
   RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
@@ -281,6 +290,7 @@ void check_rods(CheckContext& context) {
     if (context.scene.given_rods[static_cast<std::size_t>(i)].points.empty()) continue;
     check_velocity(context, i);
     check_natural_curvature(context, i);
+    check_natural_twist(context, i);
     if (!context.lines[static_cast<std::size_t>(i)]) continue;
     check_spheres(context, i);
     check_director(context, i);

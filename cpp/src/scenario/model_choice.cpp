@@ -118,20 +118,6 @@ struct OutOfPlane {
 
 // ---- no twist
 
-/// A twist that the rod has by itself.
-std::string own_twist(const Rod& rod) {
-  if (rod.initial_twist != 0.0) return fmt::format("rod '{}' has an initial twist", rod.name);
-  if (rod.natural_twist.value_or(0.0) != 0.0) {
-    return fmt::format("rod '{}' has a natural twist", rod.name);
-  }
-  return {};
-}
-
-std::string prescribed_twist(const Support& support, std::size_t number) {
-  if (!support.twist || is_zero(*support.twist)) return {};
-  return fmt::format("supports.{} twists rod '{}'", number, support.rod);
-}
-
 struct IsZero {
   bool operator()(const AsDrawn& /*curvature*/) const { return false; }
   bool operator()(double curvature) const { return curvature == 0.0; }
@@ -143,6 +129,21 @@ struct IsZero {
     return std::all_of(list.begin(), list.end(), *this);
   }
 };
+
+/// A twist that the rod has by itself.
+std::string own_twist(const Rod& rod) {
+  if (rod.initial_twist != 0.0) return fmt::format("rod '{}' has an initial twist", rod.name);
+  const bool as_drawn = std::holds_alternative<AsDrawn>(rod.natural_twist);
+  if (!as_drawn && !std::visit(IsZero{}, rod.natural_twist)) {
+    return fmt::format("rod '{}' has a natural twist", rod.name);
+  }
+  return {};
+}
+
+std::string prescribed_twist(const Support& support, std::size_t number) {
+  if (!support.twist || is_zero(*support.twist)) return {};
+  return fmt::format("supports.{} twists rod '{}'", number, support.rod);
+}
 
 bool is_naturally_straight(const Rod& rod) {
   if (std::holds_alternative<AsDrawn>(rod.natural_curvature)) return is_straight(rod);

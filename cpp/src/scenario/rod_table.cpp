@@ -140,6 +140,21 @@ Format<NaturalCurvature> natural_curvature_format() {
           }};
 }
 
+Format<NaturalTwist> natural_twist_format() {
+  const Format<double> constant = number("rad/m");
+  const Format<std::vector<double>> list = list_of(constant, 1);
+  Shape shape{Shape::Kind::AnyOf};
+  shape.unit = constant.shape.unit;
+  shape.parts = {constant.shape, list.shape};
+  return {std::move(shape), [constant, list](const Shape& /*self*/, const Place& place,
+                                             Diagnostics& diagnostics, NaturalTwist& out) {
+            if (place.value->sequence()) {
+              return list.read(place, diagnostics, out.emplace<std::vector<double>>());
+            }
+            return constant.read(place, diagnostics, out.emplace<double>());
+          }};
+}
+
 Format<Velocities> velocities_format() {
   const Format<Components> one = vector("m/s");
   const Format<std::vector<Components>> list = list_of(one, 1);
@@ -193,8 +208,9 @@ Format<RodText> rod_format() {
                     "toward the director (that of the width) and across it, or a list of such with "
                     "one for each node.",
                     "as drawn")
-          .optional("natural_twist", &Rod::natural_twist, number("rad/m"),
-                    "Twist without stress, right-handed.", "as drawn")
+          .optional("natural_twist", &Rod::natural_twist, natural_twist_format(),
+                    "Twist without stress, right-handed: a number, or one for each node.",
+                    "as drawn")
           .optional("initial_twist", &Rod::initial_twist, number("rad/m"),
                     "Twist as drawn, right-handed: the director turns about the rod so much.")
           .optional("closed", &RodText::closed, boolean(),

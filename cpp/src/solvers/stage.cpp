@@ -6,8 +6,8 @@
 
 #include "der/assembly/discrete_gradient_assembler.hpp"
 #include "der/core/index.hpp"
-#include "der/kinematics/edge_frame.hpp"
 #include "der/model/edge_change.hpp"
+#include "der/model/spin.hpp"
 #include "stage_kernels.hpp"
 
 namespace der {
@@ -113,21 +113,31 @@ double StageProblem::residual_rounding(Vector& values) {
                   stage_->velocity_factor * largest_term(model_.damping));
 }
 
-/// Takes out of the elastic forces on nodes the part T a of the torque T on an edge, with the spin
-/// a of its transport from the source.
-void StageProblem::take_spin_out(Vector& residual) const {
-  for (std::size_t i = 0; i < model_.framed_edges.size(); ++i) {
-    const SpatialEdge& edge = model_.framed_edges[i];
-    const Vec3 vector = edge.vector(here_->coordinates, here_->controls);
-    const Vec3 source = FrameBlock::of(static_cast<Index>(i)).tangent(here_->controls);
-    const Vec3 force = residual[edge.theta] * transport_spin(vector, source);
-    residual.segment<3>(edge.start) += force;
-    residual.segment<3>(edge.end) -= force;
+/// The forces on nodes by which spinning sections enter a motion, `residual` being the elastic
+/// ones. Newton's matrix leaves the gyroscopic ones out: their derivative is skew.
+void StageProblem::add_spin_forces(Vector& residual) const {
+  const auto rate = [&](Index dof) { return velocity(dof); };
+  const auto force = [&](const SpatialEdge& edge, Index number, const Vec3& vector) -> Vec3 {
+    return transport_force(vector, number, residual[edge.theta], here_->controls) +
+           gyroscopic_force(edge, vector, stage_->mass, rate);
+  };
+  take_pairs(model_, *here_, force, residual);
+}
+
+double StageProblem::gyroscopic_share() const {
+  double largest = 0.0;
+  const Vector& lumped = stage_->mass.lumped;
+  for (const SpatialEdge& edge : model_.framed_edges) {
+    const double spin = lumped[edge.theta] * std::abs(velocity(edge.theta));
+    const double squared = edge.vector(here_->coordinates, here_->controls).squaredNorm();
+    const double inertia = stage_->inertia * std::min(lumped[edge.start], lumped[edge.end]);
+    largest = std::max(largest, stage_->velocity_factor * spin / (squared * inertia));
   }
+  return largest;
 }
 
 void StageProblem::add_stage_forces(Vector& residual) {
-  if (stage_->is_motion) take_spin_out(residual);
+  if (stage_->is_motion) add_spin_forces(residual);
   const DofMap& dofs = model_.dofs;
   acting_ = std::max(subtract_force(dofs, stage_->force, residual), external_);
   if (stage_->inertia != 0.0) {

@@ -72,7 +72,7 @@ Work DenseOutput::powers(const State& where, const State& start, const State& en
     power.drag += drag;
     power.supports += drag;
   }
-  force_.evaluate_works(start, where.positions, where.time);
+  force_.evaluate_works(start, where.positions, velocities_, where.time);
   force_.accumulate(velocities_, velocities_, power);
   return power;
 }

@@ -1,11 +1,11 @@
 #include "der/steppers/explicit_force.hpp"
 
-#include "der/model/dimension.hpp"
-
 #include <algorithm>
 
 #include "der/loads/external_force.hpp"
+#include "der/model/dimension.hpp"
 #include "der/model/prescribed_motion.hpp"
+#include "der/model/spin.hpp"
 #include "der/steppers/work.hpp"
 
 namespace der {
@@ -14,6 +14,11 @@ namespace {
 /// No material of a rod survives this; an unstable explicit step gets here within a few hundred
 /// steps, long before numbers overflow.
 constexpr double kLargestStretch = 100.0;
+/// Change of the gyroscopic forces, over the largest force on a node, that ends their rounds.
+constexpr double kCoupleTolerance = 1e-12;
+/// Rounds that converge do so sooner: each one's change is that of the round before times about
+/// the spin in half a step times the square of thickness over edge length.
+constexpr int kMostRounds = 30;
 
 bool any_support_moves(const Model& model) {
   return std::any_of(model.held.begin(), model.held.end(),
@@ -30,21 +35,69 @@ ExplicitForce::ExplicitForce(const Model& model, const Assembler& assembler)
       here_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       scratch_controls_(here_.controls),
       force_(Vector::Zero(model.num_dofs())),
-      gradient_(Vector::Zero(model.num_dofs())) {}
+      gradient_(Vector::Zero(model.num_dofs())),
+      couple_(Vector::Zero(model.num_dofs())),
+      next_couple_(couple_) {}
 
-void ExplicitForce::acceleration(const State& state, const Vector& positions,
+bool ExplicitForce::acceleration(const State& state, const Vector& positions,
                                  const Vector& velocities, double time, double damping_time,
                                  Vector& acceleration) {
   evaluate_loads(state, positions, time);
-  assembler_.gradient(here_, gradient_);
-  acceleration = force_ - gradient_ - model_.damping.cwiseProduct(velocities);
-  mass_.solve(damping_time, acceleration);
+  evaluate_gradient();
+  const auto solve = [&] {
+    acceleration = force_ - gradient_ - model_.damping.cwiseProduct(velocities);
+    if (model_.has_sections()) acceleration += couple_;
+    mass_.solve(damping_time, acceleration);
+  };
+  if (!model_.has_sections()) {
+    solve();
+    return true;
+  }
+  const auto at_start = [&](Index dof) { return velocities[dof]; };
+  const auto mean = [&](Index dof) { return velocities[dof] + damping_time * acceleration[dof]; };
+  set_couple(at_start, couple_);
+  solve();
+  bool converged = damping_time == 0.0;
+  const double largest = model_.dofs.largest_force(gradient_);
+  for (int round = 0; round < kMostRounds && !converged; ++round) {
+    set_couple(mean, next_couple_);
+    couple_.swap(next_couple_);
+    next_couple_ -= couple_;
+    // What is no number is for `check` to say.
+    converged = !(model_.dofs.largest_force(next_couple_) > kCoupleTolerance * largest);
+    if (!converged) solve();
+  }
+  gradient_ -= couple_;
+  return converged;
 }
 
-void ExplicitForce::evaluate_works(const State& state, const Vector& positions, double time) {
+void ExplicitForce::evaluate_works(const State& state, const Vector& positions,
+                                   const Vector& velocities, double time) {
   evaluate_loads(state, positions, time);
   // Only the reactions on held degrees of freedom need it, and those work where supports move.
-  if (supports_move_) assembler_.gradient(here_, gradient_);
+  if (!supports_move_) return;
+  evaluate_gradient();
+  if (!model_.has_sections()) return;
+  set_couple([&](Index dof) { return velocities[dof]; }, couple_);
+  gradient_ -= couple_;
+}
+
+void ExplicitForce::evaluate_gradient() {
+  assembler_.gradient(here_, gradient_);
+  const auto force = [&](const SpatialEdge& edge, Index number, const Vec3& vector) {
+    return transport_force(vector, number, gradient_[edge.theta], here_.controls);
+  };
+  take_pairs(model_, here_, force, gradient_);
+}
+
+/// At the rates `velocity(dof)`.
+template <class Velocity>
+void ExplicitForce::set_couple(const Velocity& velocity, Vector& couple) const {
+  const auto force = [&](const SpatialEdge& edge, Index /*number*/, const Vec3& vector) {
+    return Vec3(-gyroscopic_force(edge, vector, model_.mass, velocity));
+  };
+  couple.setZero();
+  take_pairs(model_, here_, force, couple);
 }
 
 void ExplicitForce::evaluate_loads(const State& state, const Vector& positions, double time) {

@@ -17,11 +17,9 @@ struct Table {
 
 void add_tables(const scenario::Support& support, const std::string& path,
                 std::vector<Table>& tables) {
-  for (const scenario::Prescribed& motion : support.prescribe) {
-    tables.push_back({fmt::format("{}.prescribe.{}", path, name_of(motion.component)),
-                      motion.displacement.times});
-  }
-  if (support.rotation) tables.push_back({path + ".prescribe.angle", support.rotation->times});
+  scenario::for_each_motion(support, [&](const char* key, const scenario::Series& motion) {
+    tables.push_back({fmt::format("{}.prescribe.{}", path, key), motion.times});
+  });
 }
 
 template <class Load>

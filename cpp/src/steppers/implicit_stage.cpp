@@ -8,6 +8,12 @@
 #include "der/steppers/work.hpp"
 
 namespace der {
+namespace {
+
+/// Share of the gyroscopic forces from which on they may be why Newton's method fails.
+constexpr double kLargeGyroscopicShare = 0.3;
+
+}  // namespace
 
 ImplicitStage::ImplicitStage(const Model& model, const Assembler& assembler, LinearSolver& solver,
                              const NewtonOptions& options)
@@ -49,6 +55,9 @@ StepReport ImplicitStage::solve(const State& state, double time) {
     report.outcome = StepOutcome::NotConverged;
     report.worst_dof = newton.worst_dof;
     report.failure = newton.failure;
+    if (problem_.gyroscopic_share() > kLargeGyroscopicShare) {
+      report.failure += "; sections spin so fast that gyroscopic forces rule the motion of nodes";
+    }
     return report;
   }
   report = check_turns(model_, state, here.coordinates, here.controls);
@@ -105,7 +114,7 @@ void ImplicitStage::accumulate_and_finish(const Vector& new_positions,
   // The rule with points at 0 and `place` that is exact for a power linear in time.
   const double late = 0.5 / place;
   displacement_ = (1.0 - late) * (new_positions - state.positions);
-  at_start.evaluate_works(state, state.positions, state.time);
+  at_start.evaluate_works(state, state.positions, state.velocities, state.time);
   at_start.accumulate(state.velocities, displacement_, state.work);
   displacement_ = late * (new_positions - state.positions);
   accumulate_forces(displacement_, state.work);

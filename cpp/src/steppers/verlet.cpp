@@ -12,7 +12,8 @@ namespace {
 class Verlet final : public Stepper {
  public:
   Verlet(const Model& model, const Assembler& assembler)
-      : force_(model, assembler),
+      : model_(model),
+        force_(model, assembler),
         finisher_(model),
         positions_(model.num_dofs()),
         acceleration_(model.num_dofs()),
@@ -24,8 +25,11 @@ class Verlet final : public Stepper {
     const double half = 0.5 * dt;
     positions_ = state.positions + half * state.velocities;
     force_.apply_prescribed_motion_at(state, state.time + half, positions_);
-    force_.acceleration(state, positions_, state.velocities, state.time + half, half,
-                        acceleration_);
+    if (!force_.acceleration(state, positions_, state.velocities, state.time + half, half,
+                             acceleration_)) {
+      return {StepOutcome::Diverged, 0, model_.dofs.most_moved(acceleration_),
+              "the sections spin too fast for the mass of the nodes"};
+    }
     positions_ = state.positions + dt * (state.velocities + half * acceleration_);
     force_.apply_prescribed_motion_at(state, state.time + dt, positions_);
     const StepReport report = force_.check(state, positions_);
@@ -40,6 +44,7 @@ class Verlet final : public Stepper {
   }
 
  private:
+  const Model& model_;
   ExplicitForce force_;
   StepFinisher finisher_;
   Vector positions_;

@@ -39,7 +39,7 @@ void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s,
   }
   if (!spring.anchor.empty()) constants.anchor = Eigen::Map<const Vec2>(spring.anchor.data());
   elements_of<Kernel>(*model.elements).add(dofs, constants);
-  rod.force_places.push_back({s, {-1, -1}, constants.stiffness, constants.anchor});
+  rod.force_places.push_back({s, {-1, -1, -1}, constants.stiffness, constants.anchor});
 }
 
 /// Turn [rad] of the weighted directions, from the initial direction of the first edge, at which

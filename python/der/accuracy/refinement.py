@@ -117,7 +117,7 @@ def _loads(scene: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
 
 def _refine_rod(scene: dict[str, Any], rod: dict[str, Any], factor: Fraction) -> None:
     places = _Places(rod, factor)
-    for key in ("natural_curvature", "initial_velocity"):
+    for key in ("natural_curvature", "natural_twist", "initial_velocity"):
         if _is_per_node(rod, key):
             rod[key] = resample_list(np.array(rod[key], dtype=float), places.elements).tolist()
     if places.points is not None:
@@ -133,6 +133,8 @@ def _refine_rod(scene: dict[str, Any], rod: dict[str, Any], factor: Fraction) ->
 def _is_per_node(rod: dict[str, Any], key: str) -> bool:
     """Whether a key holds a list with a value for each node."""
     depth = np.ndim(rod[key]) if key in rod else 0
+    if key == "natural_twist":
+        return depth == 1
     # Numbers in a row are a pair of curvatures where vectors have three components.
     in_plane = len(rod["points"][0] if "points" in rod else rod["from"]) == 2
     return depth == 2 or (depth == 1 and key == "natural_curvature" and in_plane)

@@ -137,6 +137,8 @@ TEST_CASE("model: natural curvature about z, and about other axes") {
 TEST_CASE("model: a twist of the rod itself") {
   CHECK(chosen({{"rods.beam.natural_twist", "0"}}) == "planar");
   CHECK(chosen({{"rods.beam.natural_twist", "1e-6"}}) == "spatial");
+  CHECK(chosen({{"rods.beam.natural_twist", "[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]"}}) == "planar");
+  CHECK(chosen({{"rods.beam.natural_twist", "[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1e-6]"}}) == "spatial");
   CHECK(chosen({{"rods.beam.initial_twist", "1e-6"}}) == "spatial");
 }
 

@@ -71,13 +71,13 @@ TEST_CASE("space: every key") {
   CHECK_FALSE(strip.material->shear_modulus.has_value());
   CHECK(std::get<std::vector<CurvaturePair>>(strip.natural_curvature)[2].first == 4.0);
   CHECK(std::get<std::vector<CurvaturePair>>(strip.natural_curvature)[2].second == 5.0);
-  CHECK(strip.natural_twist == 6.0);
+  CHECK(std::get<double>(strip.natural_twist) == 6.0);
   CHECK(strip.initial_twist == -2.0);
   CHECK(strip.initial_velocity[2] == Components{1, 2, 3});
   const scenario::Rod& bar = scene.rods[1];
   CHECK(bar.points[1] == Components{0, 1, 1});
   CHECK_FALSE(bar.director.has_value());
-  CHECK_FALSE(bar.natural_twist.has_value());
+  CHECK(std::holds_alternative<scenario::AsDrawn>(bar.natural_twist));
   const auto& stiffness = std::get<scenario::Stiffness>(bar.cross_section);
   CHECK_FALSE(stiffness.EI.has_value());
   CHECK(stiffness.EI1 == 2.0);

@@ -33,6 +33,8 @@ from .collocation import Boundary, Numbers, Solution, constant_start
 from .record import Array, Reference
 
 Vector: TypeAlias = Sequence[float] | Array
+PointForces: TypeAlias = Sequence[tuple[int, Vector]]
+"""Dead forces inside a rod, each at the border with that number between segments, from 0 on."""
 UPRIGHT = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 """Frame of a rod along x: columns d1 = y, d2 = z, d3 = x."""
 
@@ -148,7 +150,13 @@ def constant(k1: float, k2: float, k3: float) -> Callable[[Array], Array]:
     return lambda s: np.repeat(np.array([[k1], [k2], [k3]]), len(s), axis=1)
 
 
-def problem(rod: Rod, start: Held, end: Held | Loaded, weight: Vector = (0, 0, 0)) -> Boundary:
+def problem(
+    rod: Rod,
+    start: Held,
+    end: Held | Loaded,
+    weight: Vector = (0, 0, 0),
+    inside: PointForces = (),
+) -> Boundary:
     """The boundary value problem in the units of `rod.units`; `weight` is f."""
     length = rod.length
     stiffness = (rod.stiffness / rod.bending[0])[:, None]
@@ -164,7 +172,10 @@ def problem(rod: Rod, start: Held, end: Held | Loaded, weight: Vector = (0, 0, 0
         return np.concatenate([slope, turn(q, u), np.broadcast_to(-load, n.shape), cross(n, slope)])
 
     def ends(left: Numbers, right: Numbers, _p: Numbers) -> Numbers:
-        joints = (right[:-1] - left[1:]).ravel()
+        joints = right[:-1] - left[1:]
+        for border, force in inside:
+            joints[border, 7:10] -= np.asarray(force) / rod.units[7]
+        joints = joints.ravel()
         return np.concatenate([left[0, :7] - first, _end(rod, end, right[-1]), joints])
 
     return Boundary(rate, ends)
@@ -249,9 +260,10 @@ def solve(
     end: Held | Loaded,
     guess: Solution,
     weight: Vector = (0.0, 0.0, 0.0),
+    inside: PointForces = (),
 ) -> Equilibrium:
     """The equilibrium near `guess`."""
-    boundary = problem(rod, start, end, weight)
+    boundary = problem(rod, start, end, weight, inside)
     load = np.asarray(weight, dtype=float)
     return Equilibrium(rod, boundary, boundary.solve(guess, tolerance=1e-11), load)
 
@@ -264,9 +276,12 @@ def follow(
     weight: Vector = (0.0, 0.0, 0.0),
     segments: int = 3,
     degree: int = 24,
+    inside: PointForces = (),
 ) -> Equilibrium:
-    """The equilibrium reached from the natural shape when `end(share)` and `share * weight` go
-    from share 0 to 1 in `steps` steps.
+    """The equilibrium reached from the natural shape when `end(share)`, `share * weight` and that
+    share of the forces `inside` go from share 0 to 1 in `steps` steps.
+
+    Shooting, and so `checked`, does not know the forces inside.
     """
     solution = natural_shape(rod, start, np.linspace(0.0, 1.0, segments + 1), degree)
     previous = solution
@@ -274,7 +289,8 @@ def follow(
     for share in np.arange(1, steps + 1) / steps:
         ahead = replace(solution, values=2.0 * solution.values - previous.values)
         previous = solution
-        found = solve(rod, start, end(float(share)), ahead, float(share) * load)
+        forces = [(border, share * np.asarray(force)) for border, force in inside]
+        found = solve(rod, start, end(float(share)), ahead, float(share) * load, forces)
         solution = found.solution
     return found
 

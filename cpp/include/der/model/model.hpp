@@ -70,16 +70,16 @@ struct MomentPlace {
 /// A place at which a point force acts on a rod, of a load or of a spring to an anchor.
 struct ForcePlace {
   double arc_length = 0.0;  ///< [m]
-  /// Controls of the load [N]; -1: there is none, or it is constant and at a node.
-  std::array<Index, 2> force{-1, -1};
+  /// Controls of the load [N]; -1: there is none, or it is constant and at a node, or planar.
+  std::array<Index, 3> force{-1, -1, -1};
   Vec2 stiffness = Vec2::Zero();  ///< of the spring [N/m]
   Vec2 anchor = Vec2::Zero();     ///< [m]
 };
 
 /// A part of a rod on which a distributed force acts.
 struct DistributedPlace {
-  double from = 0.0, to = 0.0;         ///< rest arc length [m]
-  std::array<Index, 2> force{-1, -1};  ///< controls of the load [N/m]
+  double from = 0.0, to = 0.0;             ///< rest arc length [m]
+  std::array<Index, 3> force{-1, -1, -1};  ///< controls of the load [N/m]
 };
 
 /// A part of a rod under which there is an elastic foundation.
@@ -109,7 +109,7 @@ struct RodLayout {
   std::vector<SectionFrame> drawn_frames;
   double initial_twist = 0.0;            ///< of these frames [rad/m]
   std::vector<Vec2> natural_curvatures;  ///< towards the two directors, at each node [1/m]
-  std::optional<double> natural_twist;   ///< [rad/m]
+  std::vector<double> natural_twist;     ///< at each node [rad/m]; empty: stress-free as drawn
   std::vector<RodJoint> joints;  ///< of a rod in space that bends, from its start to its end
   /// Natural curvature of a planar rod at each node [1/m]; empty: the initial shape is stress-free.
   std::vector<double> natural_curvature;

@@ -22,6 +22,9 @@ SectionFrame held_frame(const HeldFrame& held, const Model& model, const State& 
 JointStrain strain_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
                       const State& state);
 
+/// Unit vector about which a rod in space bends at a joint; zero where it does not.
+Vec3 bend_axis(const RodJoint& joint, const RodLayout& rod, const Model& model, const State& state);
+
 /// Vector [m] of an edge of a rod in space as its elements see it.
 Vec3 effective_vector(const SpatialEdge& edge, const Model& model, const State& state);
 

@@ -32,6 +32,8 @@ struct CurvaturePair {
 /// values, positive counter-clockwise; scenes of the spatial models have pairs.
 using NaturalCurvature =
     std::variant<AsDrawn, double, std::vector<double>, CurvaturePair, std::vector<CurvaturePair>>;
+/// Natural twist [rad/m]: one value, or one for each node, linear in between.
+using NaturalTwist = std::variant<AsDrawn, double, std::vector<double>>;
 
 struct Rod {
   std::string name;
@@ -45,7 +47,7 @@ struct Rod {
   std::optional<Material> material;  ///< absent only with `Stiffness`
   CurvatureMeasure curvature = CurvatureMeasure::Angle;
   NaturalCurvature natural_curvature = AsDrawn{};
-  std::optional<double> natural_twist;  ///< [rad/m]; absent: stress-free as drawn
+  NaturalTwist natural_twist = AsDrawn{};
   /// Twist of the drawn frames [rad/m] against frames that are transported without twist.
   double initial_twist = 0.0;
   /// Initial velocities [m/s], one per node; empty: at rest.

@@ -62,4 +62,14 @@ struct Support {
   [[nodiscard]] bool clamps() const { return clamp != Clamp::None; }
 };
 
+/// Calls `use(key, table)` with every motion of a support, its key that under `prescribe`.
+/// `Support` may be const.
+template <class Support, class Use>
+void for_each_motion(Support& support, Use&& use) {
+  for (auto& motion : support.prescribe) use(name_of(motion.component), motion.displacement);
+  if (support.rotation) use("angle", *support.rotation);
+  if (support.axis_rotation) use("rotation.angle", support.axis_rotation->angle);
+  if (support.twist) use("twist", *support.twist);
+}
+
 }  // namespace der::scenario

@@ -27,9 +27,8 @@ struct Stage {
   double velocity_factor = 0.0;  ///< [1/s]
   Vector velocity_reference;     ///< [m] from the origin
   Vector force;                  ///< [N] external forces at the stage's time
-  /// Whether the stage is one of a motion. The rates of angles are then spins of sections, and the
-  /// forces on nodes are without what the frames' transport within the step makes of torques: in
-  /// the equations of motion the inertia of the spin takes that up (docs/space.md).
+  /// Whether the stage is one of a motion. The rates of angles are then spins of sections, which
+  /// change the forces on nodes (model/spin.hpp).
   bool is_motion = false;
   /// If set, it gives the forces in place of grad E: the stage is the middle of a step from
   /// `origin`.
@@ -56,9 +55,15 @@ class StageProblem final : public NewtonProblem {
   [[nodiscard]] double acting_force() const override { return acting_; }
   [[nodiscard]] double position_rounding() const override;
   double residual_rounding(Vector& values) override;
+  /// The largest gyroscopic force of an edge over the inertial force of its lighter node in the
+  /// same motion. Newton's matrix leaves the former out: above about 1 it may not converge.
+  [[nodiscard]] double gyroscopic_share() const;
 
  private:
-  void take_spin_out(Vector& residual) const;
+  [[nodiscard]] double velocity(Index dof) const {
+    return stage_->velocity_factor * (displacement_[dof] - stage_->velocity_reference[dof]);
+  }
+  void add_spin_forces(Vector& residual) const;
   void add_stage_forces(Vector& residual);
 
   const Model& model_;

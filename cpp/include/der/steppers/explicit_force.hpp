@@ -19,11 +19,14 @@ class ExplicitForce {
 
   /// Sets `acceleration` [m/s^2] to (M + t C)^-1 (external - grad E - C v) at `time`, 0 on held
   /// degrees of freedom. `damping_time` t [s] 0: the acceleration as it is; half a step: the mean
-  /// one over the step under the damping of the mean velocity.
-  void acceleration(const State& state, const Vector& positions, const Vector& velocities,
+  /// one over the step under the damping and the gyroscopic forces (model/spin.hpp) of the mean
+  /// velocity v + t a, which for the latter takes a few rounds. False: these rounds did not
+  /// converge; they do where t is zero.
+  bool acceleration(const State& state, const Vector& positions, const Vector& velocities,
                     double time, double damping_time, Vector& acceleration);
   /// Evaluates at `time` what `accumulate` needs, which is less than the acceleration does.
-  void evaluate_works(const State& state, const Vector& positions, double time);
+  void evaluate_works(const State& state, const Vector& positions, const Vector& velocities,
+                      double time);
   /// Adds up what the forces evaluated last do along `displacement` [m], with the damping of
   /// `velocities` [m/s]. Along a velocity in place of the displacement: powers [W].
   void accumulate(const Vector& velocities, const Vector& displacement, Work& work) const;
@@ -35,6 +38,9 @@ class ExplicitForce {
 
  private:
   void evaluate_loads(const State& state, const Vector& positions, double time);
+  void evaluate_gradient();
+  template <class Velocity>
+  void set_couple(const Velocity& velocity, Vector& couple) const;
 
   const Model& model_;
   const Assembler& assembler_;
@@ -43,7 +49,9 @@ class ExplicitForce {
   Configuration here_;  // of the last evaluation
   Vector scratch_controls_;
   Vector force_;
-  Vector gradient_;
+  Vector gradient_;  // without what the transport of frames makes of torques
+  Vector couple_;    // gyroscopic forces on nodes
+  Vector next_couple_;
 };
 
 }  // namespace der

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "der/core/index.hpp"
+#include "der/model/model.hpp"
+#include "der/model/state.hpp"
+#include "output/moment_recovery.hpp"
+#include "output/rod_field.hpp"
+
+namespace der {
+
+/// Bending or twist of a rod: along each edge linear between two places where it is known, but for
+/// the loads inside the edge (output/moment_recovery.hpp). `Value` is what is interpolated.
+template <class Value>
+class EdgewiseField : public RodField {
+ public:
+  [[nodiscard]] bool smooth_at(std::size_t i) const override { return samples_[i].smooth; }
+
+ protected:
+  struct Sample {
+    Index edge = 0;
+    MomentRecovery::Place place;
+    bool smooth = true;
+  };
+  /// Arc lengths [m] of the two places of each edge.
+  using Lines = std::vector<std::pair<double, double>>;
+
+  EdgewiseField(std::vector<Sample> samples, Lines lines)
+      : RodField(arc_lengths(samples)), samples_(std::move(samples)), lines_(std::move(lines)) {}
+
+  /// At the nodes and at all places inside edges where the moment has a kink or jumps.
+  static std::vector<Sample> samples_of(const RodLayout& rod, const MomentRecovery& recovery) {
+    std::vector<Sample> samples;
+    for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+      const auto add = [&](double s, bool before, bool smooth) {
+        samples.push_back({edge, {s, before}, smooth});
+      };
+      const bool smooth = !recovery.has_kink_at(edge) && !recovery.jumps_at(edge);
+      add(rod.arc_length[to_size(edge)], false, smooth);
+      for (const auto& [s, jumps] : recovery.breaks(edge)) {
+        add(s, true, false);
+        if (jumps) add(s, false, false);
+      }
+      const bool end = edge + 1 == rod.num_edges();
+      if (end || recovery.jumps_at(edge + 1)) add(rod.arc_length[to_size(edge + 1)], true, false);
+    }
+    return samples;
+  }
+
+  /// The value of sample number `i`.
+  [[nodiscard]] Value value(std::size_t i, const Model& model, const State& state) const {
+    const auto& [edge, place, smooth] = samples_[i];
+    const auto& [first, last] = lines_[to_size(edge)];
+    const double share = (place.arc_length - first) / (last - first);
+    Value value = inside(edge, place, model, state);
+    if (share != 1.0) value += (1.0 - share) * line(edge, false, model, state);
+    if (share != 0.0) value += share * line(edge, true, model, state);
+    return value;
+  }
+
+ private:
+  /// The straight line of an edge at the first or the last of its two places.
+  [[nodiscard]] virtual Value line(Index edge, bool last, const Model& model,
+                                   const State& state) const = 0;
+  /// What the loads inside the edge add to it.
+  [[nodiscard]] virtual Value inside(Index edge, const MomentRecovery::Place& place,
+                                     const Model& model, const State& state) const = 0;
+
+  static std::vector<double> arc_lengths(const std::vector<Sample>& samples) {
+    std::vector<double> result;
+    for (const Sample& sample : samples) result.push_back(sample.place.arc_length);
+    return result;
+  }
+
+  std::vector<Sample> samples_;
+  Lines lines_;
+};
+
+}  // namespace der

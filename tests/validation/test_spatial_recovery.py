@@ -1,0 +1,117 @@
+"""Moments, torque and tension of rods in space beside point forces, at clamps and at free ends,
+against the boundary value problem of `references/kirchhoff_rod.py`."""
+
+import der
+import numpy as np
+import pytest
+from references.kirchhoff_rod import UPRIGHT, Held, Loaded, Rod, constant, follow
+from scenes import END, START, tip_force
+from spatial_scenes import measured, rod_through, section, straight_rod
+
+STRONG, WEAK, TWISTING, STRETCHING = 2.0, 1.0, 0.7, 1e3
+NATURAL = (0.8, -0.6, 1.5)
+TIP, INSIDE = (1.2, -0.5, 0.7), (-2.0, 1.5, -2.5)
+QUANTITIES = (
+    *("curvature_1", "curvature_2", "twist"),
+    *("moment_1", "moment_2", "torque", "tension"),
+)
+#: Places and sides; the force stands at 0.4.
+PLACES = {
+    "start": (0.0, "after"),
+    "before": (0.4, "before"),
+    "after": (0.4, "after"),
+    "near": (0.45, "after"),
+    "end": (1.0, "before"),
+}
+
+
+@pytest.fixture(scope="module")
+def exact():
+    """Values at the places, shape (places, quantities)."""
+    rod = Rod(1.0, (WEAK, STRONG), TWISTING, STRETCHING, constant(*NATURAL))
+    start = Held((0, 0, 0), UPRIGHT)
+    found = follow(
+        rod,
+        start,
+        lambda share: Loaded(share * np.array(TIP)),
+        steps=4,
+        segments=5,  # the second border is at 0.4
+        degree=16,
+        inside=[(1, INSIDE)],
+    )
+    assert found.boundary.shooting_gap(found.solution) < 1e-10
+    places = np.array([s - 1e-12 if side == "before" else s for s, side in PLACES.values()])
+    u1, u2, u3, strain = found.strains(places)
+    n1, n2, n3 = NATURAL
+    moments = [STRONG * (u2 - n2), -WEAK * (u1 - n1), TWISTING * (u3 - n3)]
+    return np.vstack([u2, -u1, u3, *moments, STRETCHING * strain]).T
+
+
+def found(edges):
+    beam = section([0, 1, 0], EA=STRETCHING, EI1=STRONG, EI2=WEAK, GJ=TWISTING)
+    shape = {"natural_curvature": [NATURAL[1], -NATURAL[0]], "natural_twist": NATURAL[2]}
+    loads = [
+        {"point_force": {"rod": "rod", "at": 0.4, "force": list(INSIDE)}},
+        *tip_force(*TIP),
+    ]
+    scene = straight_rod(edges, beam, rod=shape, loads=loads)
+    probes = {
+        f"{quantity}-{name}": {"rod": "rod", "at": s, "quantity": quantity}
+        | ({"side": side} if quantity == "tension" else {})
+        for quantity in QUANTITIES
+        for name, (s, side) in PLACES.items()
+    }
+    result = der.run(der.Scenario.from_dict({**scene, "output": {"probes": probes}}))
+    return np.array(
+        [[result.probes[f"{quantity}-{name}"][-1] for quantity in QUANTITIES] for name in PLACES]
+    )
+
+
+@pytest.mark.parametrize("sizes", [(22, 42, 82), (20, 40, 80)], ids=["between nodes", "at a node"])
+def test_order_2_everywhere(exact, fitted_order, sizes):
+    """The force stands at 4/5 of an edge, or at a node."""
+    errors = np.array([found(edges) - exact for edges in sizes])
+    scale = np.abs(exact).max(axis=0)
+    assert (np.abs(errors[-1]) < 5e-3 * scale).all()
+    for i, name in enumerate(PLACES):
+        for k, quantity in enumerate(QUANTITIES):
+            if np.abs(errors[:, i, k]).max() < 1e-9 * scale[k]:
+                continue  # moments at a free end are known
+            order = fitted_order([1 / n for n in sizes], errors[:, i, k])
+            assert order > 1.9, (name, quantity, errors[:, i, k])
+
+
+def test_a_section_that_may_turn_in_its_clamp_bears_no_torque():
+    """However it has turned there."""
+    beam = section([0, 1, 0], EA=STRETCHING, EI1=STRONG, EI2=WEAK, GJ=TWISTING)
+    supports = [{**START, "clamp": "tangent"}, {**END, "clamp": True, "prescribe": {"twist": 2.0}}]
+    values, _ = measured(
+        straight_rod(8, beam, supports=supports), ["start", 0.3, "end"], ["torque"]
+    )
+    assert values == pytest.approx(np.zeros((3, 1)), abs=1e-9)
+
+
+def test_without_sections(fitted_order):
+    """A round rod that cannot twist has the same moment and tension as one whose sections count."""
+    places = {"before": (0.4, "before"), "after": (0.4, "after"), "start": (0.0, "after")}
+    loads = [
+        {"point_force": {"rod": "rod", "at": 0.4, "force": list(INSIDE)}},
+        *tip_force(*TIP),
+    ]
+    probes = {
+        f"{quantity}-{name}": {"rod": "rod", "at": s, "side": side, "quantity": quantity}
+        for quantity in ("moment", "curvature", "tension")
+        for name, (s, side) in places.items()
+    }
+    beam = section(EA=STRETCHING, EI=1.0, GJ=TWISTING)
+    scene = rod_through(
+        np.linspace([0, 0, 0], [1, 0, 0], 23), beam, loads=loads, output={"probes": probes}
+    )
+    scene["rods"][0]["natural_curvature"] = 0
+    scene["supports"] = [{**START, "clamp": "tangent"}]
+    with_sections, without = (
+        der.run(der.Scenario.from_dict({**scene, "model": model})).summary["probes"]
+        for model in ("spatial", "spatial_bend")
+    )
+    for name in probes:
+        assert without[name]["final"] == pytest.approx(with_sections[name]["final"], rel=1e-3)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from der.film import MODE_SIZE
 from der.plotting.lengths import label_positions
 from der.plotting.supports import HeldPlace
 from der.scene_loads import ActingLoads, acting_loads
@@ -80,6 +81,17 @@ def _name(axis: Array) -> str:
     return f"along ({', '.join(f'{component + 0.0:.2f}' for component in axis)})"
 
 
+def _modes_as_drawn(result: RunData) -> Array:
+    """Positions at the largest deflection of each mode, shape (modes, nodes, dim)."""
+    modes = result.modes or result.buckling
+    if modes is None:
+        return np.empty((0, *result.positions.shape[1:]))
+    rest = result.positions[-1]
+    size = MODE_SIZE * float(np.ptp(rest, axis=0).max())
+    largest = np.abs(modes.shapes).max(axis=(1, 2), keepdims=True)
+    return np.asarray(rest + size * modes.shapes / largest)
+
+
 class Picture:
     """A run turned into the plane of its pictures, where x is to the right and y upwards.
 
@@ -89,7 +101,9 @@ class Picture:
     def __init__(self, result: RunData) -> None:
         self.result = result
         initial = result.model.initial_positions
-        self.plane = best_plane(np.concatenate([result.positions, initial[np.newaxis]]))
+        self.plane = best_plane(
+            np.concatenate([result.positions, initial[np.newaxis], _modes_as_drawn(result)])
+        )
 
     @property
     def rods(self) -> list[Rod]:

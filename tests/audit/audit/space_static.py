@@ -62,6 +62,7 @@ def space_static(rng: Random) -> Case:
         loads.append({"point_force": {"rod": "rod", "at": "end", "force": force}})
     scene: dict[str, Any] = {
         "title": "Audit: equilibrium in space",
+        "model": "spatial",
         "rods": [entry],
         "supports": supports,
         "loads": loads,

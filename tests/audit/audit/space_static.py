@@ -96,8 +96,8 @@ def space_static(rng: Random) -> Case:
             s = share(probe.get("at", "end"), nodes, unit)
             a, b = (_read(placed, solved, probe["quantity"], s) for solved in (rough, fine))
             size = _size(placed, fine, probe["quantity"])
-            error = 3 * abs(a - b) + 1e-9 * size
-            found[name, "final"] = Truth(b, error, size, probe["quantity"])
+            apart = 3 * abs(a - b) + 1e-9 * size
+            found[name, "final"] = Truth(b, apart, size, probe["quantity"])
         return found
 
     return Case("space_static", scene, truths)

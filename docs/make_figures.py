@@ -172,6 +172,34 @@ def helix_spring() -> Figure:
     return der.run(CONFIGS / "helix_spring.yaml").plot()
 
 
+def spun_strip() -> Figure:
+    """Draw the strip at two instants, from the side and from above: its section as it lies."""
+    result = der.run(CONFIGS / "spun_strip.yaml")
+    return result.plot("shapes", times=[1.0, 1.5], views=["xz", "xy"])
+
+
+def helical_buckling() -> Figure:
+    """Draw the localised helix, and its envelope beside that of the infinite rod."""
+    result = der.run(CONFIGS / "helical_buckling.yaml")
+    line = result.positions[-1]
+    along = line[2:] - line[:-2]
+    angle = np.arccos(along[:, 0] / np.linalg.norm(along, axis=1))
+    s = result.rods[0].arc_lengths[1:-1] - 50.0
+    # The closed form of tests/validation/references/helical_buckling.py.
+    cosine, width = np.cos(0.831675696), 4.596127046
+    envelope = cosine + (1.0 - cosine) * np.tanh(s / width) ** 2
+    figure, (shape, below) = plt.subplots(
+        2, 1, figsize=(7.2, 4.4), height_ratios=(1, 2), layout="constrained"
+    )
+    shape.plot(line[:, 0] - line[100, 0], line[:, 2], color=PALETTE[0])
+    shape.set(aspect="equal", xlabel="x - middle", ylabel="z", xlim=(-30, 30), ylim=(-3, 3))
+    below.plot(s, np.arccos(envelope), color="0.6", linewidth=4, label="infinite rod")
+    below.plot(s, angle, color=PALETTE[0], label="der, 200 edges")
+    below.set(xlabel="arc length from the middle", ylabel="tangent to axis [rad]", xlim=(-30, 30))
+    below.legend()
+    return figure
+
+
 def tutorial_falling_rod() -> Figure:
     """Draw the rod with beads of the first tutorial."""
     return falling_rod.figure(der.run(falling_rod.SCENE))
@@ -343,6 +371,8 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         euler_buckling,
         snap_through_arch,
         helix_spring,
+        spun_strip,
+        helical_buckling,
         tutorial_falling_rod,
         tutorial_beam_study,
         tutorial_control,

@@ -213,7 +213,8 @@ def _draw_moment(axes: Axes, picture: Picture, positions: Array, frame: int, tex
 
     result, rods = picture.result, picture.rods
     source = min(frame, len(result.times) - 1)
-    draw_shapes(axes, rods, positions, PALETTE[0])
+    half_widths = picture.half_widths(source, positions)
+    draw_shapes(axes, rods, positions, PALETTE[0], half_widths=half_widths)
     draw_supports(axes, rods, picture.held_nodes(source), positions)
     draw_springs(axes, rods, picture.springs, positions)
     if result.modes is None and result.buckling is None:

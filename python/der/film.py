@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from der._core import ended_as_asked
+from der._core import Simulation, ended_as_asked
 from der.fields import fields_of, is_motion, rod_fields
 from der.run_data import RunData
 from der.scene_loads import ActingLoads, acting_loads
+from der.sections import directors_along
 
 Array = NDArray[np.float64]
 
@@ -53,6 +54,9 @@ class Film:
     fields
         For each quantity of ``der.fields.fields_of`` its values for each rod, of shape (frames,
         nodes of the rod); empty for modes, whose size means nothing.
+    directors
+        Director 1 at the nodes of each rod, along the width of its section, as
+        ``der.sections.directors_along`` has it.
     """
 
     positions: Array
@@ -61,6 +65,7 @@ class Film:
     times: Array | None
     source: NDArray[np.int64]
     fields: dict[str, list[Array]]
+    directors: list[Array | None]
 
     def loads(self, result: RunData, frame: int) -> ActingLoads:
         """Return the loads of the scene at a frame."""
@@ -117,6 +122,7 @@ def make_film(result: RunData) -> Film:
         result.times,
         np.arange(count),
         _fields(result, np.arange(count)),
+        directors_along(result),
     )
 
 
@@ -144,7 +150,9 @@ def _path(result: RunData) -> Film:
         rows = np.flatnonzero(path.branch == branch)
         chapters.append(Chapter(f"branch {branch}", int(rows[0]), int(rows[-1])))
     frames = np.arange(len(captions))
-    return Film(result.positions, captions, chapters, None, frames, _fields(result, frames))
+    fields = _fields(result, frames)
+    directors = directors_along(result)
+    return Film(result.positions, captions, chapters, None, frames, fields, directors)
 
 
 def _equilibrium(result: RunData) -> Film:
@@ -158,7 +166,11 @@ def _equilibrium(result: RunData) -> Film:
     chapter = Chapter(result.scenario.title, 0, 1)
     found = "equilibrium" if ended_as_asked(result.status) else result.status
     captions = ["undeformed", found]
-    return Film(positions, captions, [chapter], None, np.array([last, last]), fields)
+    drawn = Simulation(result.scenario).directors if result.sections is not None else None
+    directors = directors_along(
+        result, None if drawn is None else np.stack([drawn, result.directors[last]])
+    )
+    return Film(positions, captions, [chapter], None, np.array([last, last]), fields, directors)
 
 
 def _modes(result: RunData) -> Film:
@@ -180,7 +192,11 @@ def _modes(result: RunData) -> Film:
         for number, name in enumerate(names)
     ]
     source = np.full(len(positions), len(result.times) - 1)
-    return Film(np.stack(positions), captions, chapters, None, source, {})
+    # Sections are shown as they stand in the equilibrium: a mode is small.
+    directors = [
+        one if one is None or len(one[0]) == 1 else one[source] for one in directors_along(result)
+    ]
+    return Film(np.stack(positions), captions, chapters, None, source, {}, directors)
 
 
 def mode_shapes(result: RunData) -> Array:

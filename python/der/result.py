@@ -32,12 +32,13 @@ class Result(RunData):
         *,
         times: Sequence[float] | None = None,
         probes: Sequence[str] | None = None,
+        views: Sequence[str] | None = None,
         title: str | None = None,
     ) -> Figure:
         """Draw the shapes coloured by time and the probes against time; see `der.plot`."""
         from der.plotting import plot  # here, because matplotlib takes long to load
 
-        return plot(self, what, times=times, probes=probes, title=title)
+        return plot(self, what, times=times, probes=probes, views=views, title=title)
 
     def animate(
         self,

@@ -21,6 +21,8 @@ from pathlib import Path
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+sys.path.append(str(Path(__file__).resolve().parents[1] / "validation"))  # its references
+
 import numpy as np
 from audit import KINDS, aims_missed
 from audit.score import Outcome, judge, report, summarise

@@ -4,8 +4,17 @@ from audit import KINDS, aims_missed
 from audit.score import report, summarise
 from run import audit
 
-# Scenes of each kind; about 20 s on one core. The long run: docs/validation.md.
-SCENES = {"static": 40, "modes": 12, "buckling": 12, "fall": 12, "motion": 6, "paths": 4}
+# Scenes of each kind; about 30 s on one core. The long run: docs/validation.md.
+SCENES = {
+    "static": 40,
+    "modes": 12,
+    "buckling": 12,
+    "fall": 12,
+    "motion": 6,
+    "paths": 4,
+    "space_static": 8,
+    "space_motion": 2,
+}
 
 
 def test_true_values_are_inside_and_right_values_are_not_flagged() -> None:

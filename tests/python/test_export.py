@@ -145,7 +145,7 @@ def test_vtk_is_read_by_vtk(swing, tmp_path):
         {**swing["rods"][0], "name": "other", "nodes": 7, "from": [0, 1], "to": [2, 1]}
     )
     result = der.run(probes_at(swing, [0, 4]))
-    (path,) = result.export("vtk", tmp_path / "vtk")
+    path, _ = result.export("vtk", tmp_path / "vtk")
     frames = series(path)
     assert [time for time, _ in frames] == pytest.approx(result.times)
     for frame in (0, 7, len(frames) - 1):
@@ -166,7 +166,7 @@ def test_vtk_is_read_by_vtk(swing, tmp_path):
 def test_vtk_has_the_directors_as_vectors(helix, tmp_path):
     pytest.importorskip("pyevtk")
     result = der.run(helix)
-    (path,) = result.export("vtk", tmp_path)
+    path, _ = result.export("vtk", tmp_path)
     points, arrays, _ = read_vtk(series(path)[-1][1])
     assert points == pytest.approx(result.positions[-1])
     directors = result.directors[-1]
@@ -185,8 +185,8 @@ def test_vtk_replaces_an_earlier_export_and_has_modes(swing, tmp_path):
     del swing["time"], swing["output"]["every"]
     swing["analysis"] = {"modes": {"count": 2}}
     result = der.run(swing)
-    (path,) = result.export("vtk", tmp_path)
-    assert before > len(list((tmp_path / "frames").iterdir())) == len(series(path)) == 1
+    path, _ = result.export("vtk", tmp_path)
+    assert before > len(list((tmp_path / "frames").glob("rods_*"))) == len(series(path)) == 1
     _, arrays, _ = read_vtk(series(path)[0][1])
     assert arrays["mode_2"][:, :2] == pytest.approx(result.modes.shapes[1])
 
@@ -194,8 +194,48 @@ def test_vtk_replaces_an_earlier_export_and_has_modes(swing, tmp_path):
 def test_vtk_of_a_path_counts_its_points(tube, tmp_path):
     pytest.importorskip("pyevtk")
     result = der.continuation(tube)
+    for path in result.export("vtk", tmp_path):
+        assert [time for time, _ in series(path)] == list(range(len(result.times)))
+
+
+def test_vtk_has_the_surfaces_of_the_sections(helix, tmp_path):
+    """Of a strip: four long sides and two ends, as wide and as high as the section is."""
+    pytest.importorskip("pyevtk")
+    result = der.run(helix)
+    shape = result.scenario.to_dict()["rods"][0]["cross_section"]["rectangle"]
+    lines, surfaces = result.export("vtk", tmp_path)
+    assert surfaces.name == "sections.pvd"
+    assert [time for time, _ in series(surfaces)] == pytest.approx(result.times)
+    points, arrays, cells = read_vtk(series(surfaces)[-1][1])
+    assert [len(cell) for cell in cells] == [4] * 4 * 8 + [8, 8]
+    # The edge at a clamp starts from a pivot: it is nearly across the director that is saved.
+    directors, middle = result.directors[-1], result.positions[-1]
+    ring = points[:8]  # of the first node: each corner twice
+    assert ring.mean(axis=0) == pytest.approx(middle[0])
+    assert np.ptp(ring @ directors[0]) == pytest.approx(shape["width"], rel=1e-3)
+    tangent = (middle[1] - middle[0]) / np.linalg.norm(middle[1] - middle[0])
+    assert np.ptp(ring @ np.cross(tangent, directors[0])) == pytest.approx(
+        shape["height"], rel=1e-3
+    )
+    _, at_nodes, _ = read_vtk(series(lines)[-1][1])
+    for name in ("curvature", "width", "height", "director"):
+        assert np.array_equal(arrays[name], np.repeat(at_nodes[name], 8, axis=0)), name
+    assert at_nodes["width"] == pytest.approx(np.full(9, shape["width"]))
+
+
+def test_vtk_of_stiffnesses_has_lines_alone(swing, tmp_path):
+    pytest.importorskip("pyevtk")
+    der.run(swing).export("vtk", tmp_path)
+    swing["rods"][0]["cross_section"] = {
+        "stiffness": {"EA": 3e3, "EI": 0.08, "mass_per_length": 0.3}
+    }
+    del swing["rods"][0]["material"]
+    result = der.run(swing)
     (path,) = result.export("vtk", tmp_path)
-    assert [time for time, _ in series(path)] == list(range(len(result.times)))
+    assert path.name == "rods.pvd"
+    assert not (tmp_path / "sections.pvd").exists(), "that of an earlier export"
+    _, arrays, _ = read_vtk(series(path)[-1][1])
+    assert not arrays["width"].any()
 
 
 def test_mistakes(spheres, tmp_path, monkeypatch):
@@ -209,7 +249,11 @@ def test_mistakes(spheres, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     ("format", "files"),
-    [("csv", ["csv/nodes.csv", "csv/probes.csv"]), ("npz", ["run.npz"]), ("vtk", ["vtk/rods.pvd"])],
+    [
+        ("csv", ["csv/nodes.csv", "csv/probes.csv"]),
+        ("npz", ["run.npz"]),
+        ("vtk", ["vtk/rods.pvd", "vtk/sections.pvd"]),
+    ],
 )
 def test_command(swing, tmp_path, format, files):
     if format == "vtk":

@@ -14,6 +14,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from der.plotting.picture import Picture, best_plane
+from der.sections import section_of, swept
 from der.viewing.payload import make_payload
 
 DER_RUN = os.environ.get("DER_RUN", str(Path(sys.executable).with_name("der_run")))
@@ -383,6 +384,74 @@ def test_a_shape_in_a_coordinate_plane_is_drawn_there(axes, names):
     assert plane.turned(line)[..., 2] == pytest.approx(0.0)
 
 
+def test_a_shape_in_no_plane_is_drawn_with_z_upwards():
+    """Its widest spread is to the right; a shape much wider than high is seen from above."""
+    angle = np.linspace(0.0, 12.0, 200)
+    helix = np.column_stack([0.1 * np.cos(angle), 0.1 * np.sin(angle), 0.1 * angle])
+    assert best_plane(helix[np.newaxis]).names == ("x", "z")
+    oblique = helix + np.outer(angle, [0.3, 0.3, 0.0])
+    plane = best_plane(oblique[np.newaxis])
+    assert plane.rotation[0] == pytest.approx([np.sqrt(0.5), np.sqrt(0.5), 0.0], abs=0.02)
+    assert (plane.names[0][:7], plane.names[1]) == ("along (", "z")
+    low = helix * [10.0, 7.0, 0.3]
+    assert best_plane(low[np.newaxis]).names == ("x", "y")
+
+
+def test_views_are_named_by_their_axes(helix):
+    result = der.run(probed(helix, (2,)))
+    figure = result.plot("shapes", views=["xy", "zy"])
+    labels = [(axes.get_xlabel(), axes.get_ylabel()) for axes in figure.axes]
+    assert labels == [("x [m]", "y [m]"), ("z [m]", "y [m]")]
+    for axes, columns in zip(figure.axes, ((0, 1), (2, 1)), strict=True):
+        drawn = [line.get_xydata() for line in axes.lines if len(line.get_xydata()) == 9]
+        assert drawn[-1] == pytest.approx(result.positions[-1][:, columns])
+    for wrong in ("xx", "z", "uv"):
+        with pytest.raises(ValueError, match="a view is two of x, y and z"):
+            result.plot(views=[wrong])
+    plt.close(figure)
+
+
+def test_other_runs_are_drawn_in_one_view(helix, swing):
+    del helix["time"]
+    helix["analysis"] = {"modes": {"count": 1}}
+    with pytest.raises(ValueError, match="one view, not in 2"):
+        der.run(helix).plot(views=["xy", "xz"])
+    with pytest.raises(ValueError, match="a planar run is seen in its plane"):
+        der.run(swing).plot(views=["xy"])
+
+
+def test_pictures_show_a_section_as_it_lies(cantilever):
+    """A strip along x, 20 by 4 mm: seen on its width, on its height, and turned by half a right
+    angle."""
+    rod = cantilever["rods"][0]
+    rod["cross_section"] = {"rectangle": {"width": 0.02, "height": 0.004}, "director": [0, 0, 1]}
+    cantilever["loads"] = []
+    half = {}
+    for view in ("xy", "xz"):
+        picture = Picture(der.run(cantilever), view)
+        half[view] = picture.half_widths(0, picture.positions[0])["strip"]
+    assert half["xy"] == pytest.approx(np.full(9, 0.002))
+    assert half["xz"] == pytest.approx(np.full(9, 0.01))
+    rod["cross_section"]["director"] = [0, 1, 1]
+    picture = Picture(der.run(cantilever), "xy")
+    seen = picture.half_widths(0, picture.positions[0])["strip"]
+    assert seen == pytest.approx(np.full(9, np.sqrt(0.5) * (0.01 + 0.002)))
+    rod["cross_section"] = {"ellipse": {"width": 0.02, "height": 0.004}, "director": [0, 0, 1]}
+    picture = Picture(der.run(cantilever), "xz")
+    assert picture.half_widths(0, picture.positions[0])["strip"] == pytest.approx(np.full(9, 0.01))
+
+
+def test_a_section_sweeps_a_mitred_surface():
+    """At a right angle the corners of a square tube lie on the bisecting plane."""
+    line = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0]])
+    outline = section_of({"rectangle": {"width": 0.2, "height": 0.1}}).outline
+    corners = swept(line, np.array([[0.0, 0.0, 1.0]]), outline)
+    assert corners.shape == (3, 8, 3)
+    assert np.abs(corners[..., 2]) == pytest.approx(np.full((3, 8), 0.1))
+    assert corners[1] @ [1, 1, 0] == pytest.approx(np.full(8, 1.0))
+    assert sorted({round(x, 9) for x in corners[1, :, 0].tolist()}) == [0.95, 1.05]
+
+
 def test_another_shape_is_drawn_in_the_plane_of_its_principal_axes():
     flat = np.zeros((3, 50, 3))
     angle = np.linspace(0.0, 3.0, 50)
@@ -410,7 +479,7 @@ def test_plots_say_what_they_show(helix, what):
         axes = figure.axes[0]
         names = Picture(result).plane.names
         assert (axes.get_xlabel(), axes.get_ylabel()) == (f"{names[0]} [m]", f"{names[1]} [m]")
-        assert "along (" in axes.get_xlabel()
+        assert names == ("x", "z"), "z is upwards in a shape that lies in no plane"
     plt.close(figure)
 
 

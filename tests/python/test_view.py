@@ -58,7 +58,8 @@ def test_page_holds_the_run_and_nothing_from_elsewhere(swing, tmp_path):
     positions = unpack(rod["positions"], count, 11, 3)
     assert positions[:, :, :2] == pytest.approx(result.positions, abs=1e-6)
     assert np.all(positions[:, :, 2] == 0.0)
-    assert rod["radius"] == 0.01
+    assert np.linalg.norm(rod["outline"], axis=1) == pytest.approx(np.full(16, 0.01))
+    assert unpack(rod["directors"], 3).tolist() == [0.0, 0.0, 1.0], "the same everywhere"
     (fields,) = rod_fields(result)
     for name, values in fields.at_nodes.items():
         scale = np.abs(values).max()
@@ -114,7 +115,8 @@ def test_lengths_are_those_of_the_axes(swing, start, length, titles, metres):
     origin = start if abs(start) > 100 * length else 0.0
     drawn = unpack(data["rods"][0]["positions"], 2, 11, 3)[-1, :, 0].astype(np.float64)
     assert origin + metres * drawn == pytest.approx(result.positions[-1, :, 0], abs=1e-6 * length)
-    assert data["rods"][0]["radius"] == pytest.approx(0.01 * length / metres)
+    outline = np.array(data["rods"][0]["outline"])
+    assert outline.max() == pytest.approx(0.01 * length / metres)
     assert 0.0 < data["high"][0] - length / metres < 0.5 * length / metres
 
 
@@ -238,6 +240,22 @@ def test_rods_in_space(helix):
     assert unpack(data["rods"][0]["positions"], len(result.times), 9, 3) == pytest.approx(
         result.positions, abs=1e-6
     )
+    shape = result.scenario.to_dict()["rods"][0]["cross_section"]["rectangle"]
+    corners = 0.5 * np.array([shape["width"], shape["height"]])
+    assert np.abs(data["rods"][0]["outline"]) == pytest.approx(np.tile(corners, (8, 1)))
+    directors = unpack(data["rods"][0]["directors"], len(result.times), 9, 3)
+    assert directors[:, [0, -1]] == pytest.approx(result.directors[:, [0, -1]], abs=1e-6)
+
+
+def test_an_equilibrium_in_space_starts_as_it_is_drawn(helix):
+    """The undeformed shape has the sections of the drawing, the equilibrium its own."""
+    del helix["time"]
+    helix["analysis"] = "static"
+    result = der.run(helix)
+    directors = unpack(make_payload(result)["rods"][0]["directors"], 2, 9, 3)
+    drawn = der.Simulation(result.scenario).directors
+    assert directors[:, 0] == pytest.approx(np.stack([drawn[0], result.directors[-1, 0]]), abs=1e-6)
+    assert np.abs(directors[1] - directors[0]).max() > 0.1
 
 
 def test_long_runs_leave_out_frames(swing, monkeypatch):

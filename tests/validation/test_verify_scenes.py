@@ -16,6 +16,8 @@ from der.accuracy.static_readings import static_readings
 from der.accuracy.time_levels import find_stepper, fixed_step, save_every_step
 
 CONFIGS = sorted((Path(__file__).resolve().parents[2] / "configs").glob("*.yaml"))
+#: A reference run of these would take minutes; other tests compare them with exact solutions.
+LONG = {"helical_buckling"}
 MOST_STEPS = {"implicit": 200, "explicit": 100_000}
 
 
@@ -78,9 +80,10 @@ def within_bars(path):
 
 
 def test_true_errors_lie_within_the_bars():
+    scenes = [path for path in CONFIGS if not fails(path) and path.stem not in LONG]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         held = {}
-        for part in pool.map(within_bars, [path for path in CONFIGS if not fails(path)]):
+        for part in pool.map(within_bars, scenes):
             held |= part
     outside = [name for name, inside in held.items() if not inside]
     assert len(held) >= 50

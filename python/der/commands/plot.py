@@ -24,6 +24,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--times", nargs="+", type=float, metavar="T", help="times of the shapes [s]"
     )
+    parser.add_argument(
+        "--view",
+        metavar="AXES",
+        help="axes to the right and upwards, in space, such as xz; xy,xz draws two views",
+    )
     parser.add_argument("--probes", nargs="+", metavar="NAME", help="probes to draw (default: all)")
 
 
@@ -36,7 +41,12 @@ def execute(arguments: argparse.Namespace) -> int:
         raise ValueError(f"cannot write {out.name}: a picture ends with .png, .svg or .pdf")
     mpl.use("agg")  # a file is written and no window opened, on a screen or without
     result = open_run(arguments.run)
-    figure = result.plot(arguments.what, times=arguments.times, probes=arguments.probes)
+    figure = result.plot(
+        arguments.what,
+        times=arguments.times,
+        probes=arguments.probes,
+        views=None if arguments.view is None else arguments.view.split(","),
+    )
     figure.savefig(out)
     print(out)
     return 0

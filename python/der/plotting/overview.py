@@ -47,6 +47,7 @@ def plot(
     *,
     times: Sequence[float] | None = None,
     probes: Sequence[str] | None = None,
+    views: Sequence[str] | None = None,
     title: str | None = None,
 ) -> Figure:
     """Draw a result: shapes coloured by time, and probes against time.
@@ -62,6 +63,10 @@ def plot(
         frames that are evenly spaced along the way that the nodes travel.
     probes
         Names of the probes to draw; without it, all.
+    views
+        Views of a run in space, one below the other: each names the axis to the right and the one
+        upwards, such as ``"xz"``. Without it, the view that shows the shapes best. Modes and the
+        shapes of a path have one.
     title
         In place of the scene's title.
 
@@ -73,7 +78,8 @@ def plot(
     Raises
     ------
     ValueError
-        For a time outside of the run or of a run without time, or a probe that the scene has not.
+        For a time outside of the run or of a run without time, a probe that the scene has not, a
+        view that is none, or several of modes or of a path.
     """
     names = _probe_names(result, probes) if what != "shapes" else []
     kind = result.scenario.analysis
@@ -82,17 +88,20 @@ def plot(
     frames = [] if kind == "continuation" else _frames_to_draw(result, times)
     if what == "probes" and not names:
         raise ValueError("the scene has no probes to plot; add some under output.probes")
+    pictures = [Picture(result, view) for view in views] if views else [Picture(result)]
+    if len(pictures) > 1 and kind in ("continuation", "modes", "buckling"):
+        raise ValueError(f"a {kind} run is drawn in one view, not in {len(pictures)}")
     with style():
         if kind == "continuation" and what != "shapes":
             figure = plot_path(result, names)
         elif kind in ("modes", "buckling") and what != "probes":
-            figure = plot_modes(Picture(result))
+            figure = plot_modes(pictures[0])
         elif kind == "continuation":
-            figure = _plot_path_shapes(Picture(result))
+            figure = _plot_path_shapes(pictures[0])
         elif result.scenario.is_static:
-            figure = _plot_static(Picture(result), what, names)
+            figure = _plot_static(pictures, what, names)
         else:
-            figure = _plot_motion(Picture(result), what, names, frames)
+            figure = _plot_motion(pictures, what, names, frames)
         text = title_of(result) if title is None else title
         figure.align_ylabels()
         if kind == "continuation" and what != "shapes":
@@ -101,8 +110,9 @@ def plot(
         else:
             lines = wrapped(text, AXES_TITLE, _WIDTH - _LEFT)
             figure.axes[0].set_title("\n".join(lines), pad=10, parse_math=False)
-        if figure.axes[0].get_aspect() == 1.0 and kind not in ("modes", "buckling"):
-            make_exactly_equal(figure, figure.axes[0])
+        for axes in figure.axes[: len(pictures)]:
+            if axes.get_aspect() == 1.0 and kind not in ("modes", "buckling"):
+                make_exactly_equal(figure, axes)
     return figure
 
 
@@ -128,17 +138,22 @@ def _frames_to_draw(result: RunData, times: Sequence[float] | None) -> list[int]
     return sorted({int(np.argmin(np.abs(result.times - time))) for time in times})
 
 
-def _plot_motion(picture: Picture, what: What, names: list[str], frames: list[int]) -> Figure:
-    result = picture.result
+def _plot_motion(
+    pictures: list[Picture], what: What, names: list[str], frames: list[int]
+) -> Figure:
+    result = pictures[0].result
     marks = result.times[frames]
-    shapes = [picture.positions[frame] for frame in frames]
     heights = [_PROBE_HEIGHT] * len(names)
     if what == "probes":
         figure, panels = _figure(heights)
     else:
-        figure, panels = _figure([_shape_height(picture, shapes, frames[-1]), *heights])
+        shapes = [[picture.positions[frame] for frame in frames] for picture in pictures]
+        seen = list(zip(pictures, shapes, strict=True))
+        views = [_shape_height(picture, own, frames[-1]) for picture, own in seen]
+        figure, panels = _figure([*views, *heights])
         labels = [_time_label(result, time) for time in marks]
-        _draw_shape_panel(panels.pop(0), picture, shapes, labels, frames[-1])
+        for picture, own in seen:
+            _draw_shape_panel(panels.pop(0), picture, own, labels, frames)
     for axes, name in zip(panels, names, strict=True):
         probe = result.probes[name]
         draw_probe(axes, result.times, probe, name, probe.unit)
@@ -170,7 +185,7 @@ def _plot_path_shapes(picture: Picture) -> Figure:
         labels = [f"load factor {path.factor[frame]:.3g}" for frame in frames]
         shapes = [positions[frame] for frame in frames]
         figure, (axes,) = _figure([_shape_height(picture, shapes, frames[-1])])
-        _draw_shape_panel(axes, picture, shapes, labels, frames[-1])
+        _draw_shape_panel(axes, picture, shapes, labels, frames)
         return figure
     low, high = limits(rods, list(positions))
     figure, (axes,) = _figure([_panel_height(*(high - low))])
@@ -180,7 +195,8 @@ def _plot_path_shapes(picture: Picture) -> Figure:
         label: str | None = f"branch {branch}: load factor\n{first:.3g} to {last:.3g}"
         for row in rows[pick_frames(positions[rows], 4)]:
             colour = PALETTE[branch % len(PALETTE)]
-            draw_shapes(axes, rods, positions[row], colour, label)
+            half_widths = picture.half_widths(int(row), positions[row])
+            draw_shapes(axes, rods, positions[row], colour, label, half_widths=half_widths)
             label = None
     draw_supports(axes, rods, picture.held_nodes(0), positions[0])
     draw_springs(axes, rods, picture.springs, positions[0])
@@ -189,21 +205,23 @@ def _plot_path_shapes(picture: Picture) -> Figure:
     return figure
 
 
-def _plot_static(picture: Picture, what: What, names: list[str]) -> Figure:
-    result = picture.result
-    equilibrium = picture.positions[-1]
-    shapes = [picture.initial_positions, equilibrium]
+def _plot_static(pictures: list[Picture], what: What, names: list[str]) -> Figure:
+    result = pictures[0].result
     last = len(result.times) - 1
     table_height = 0.25 + 0.2 * len(names)
     if what == "probes":
         figure, panels = _figure([table_height])
     else:
-        heights = [_shape_height(picture, shapes, last), *([table_height] if names else [])]
-        figure, panels = _figure(heights)
-        axes = panels.pop(0)
-        draw_shapes(axes, picture.rods, shapes[0], MUTED, "undeformed", "--")
+        views = [
+            _shape_height(picture, [picture.initial_positions, picture.positions[-1]], last)
+            for picture in pictures
+        ]
+        figure, panels = _figure([*views, *([table_height] if names else [])])
         label = "equilibrium" if ended_as_asked(result.status) else "where it ended"
-        _draw_shape_panel(axes, picture, [equilibrium], [label], last)
+        for picture in pictures:
+            axes = panels.pop(0)
+            draw_shapes(axes, picture.rods, picture.initial_positions, MUTED, "undeformed", "--")
+            _draw_shape_panel(axes, picture, [picture.positions[-1]], [label], [last])
     if panels:
         _write_values(panels[0], result, names)
     return figure
@@ -245,11 +263,14 @@ def _draw_shape_panel(
     picture: Picture,
     shapes: Sequence[Array],
     labels: Sequence[str],
-    frame: int,
+    frames: Sequence[int],
 ) -> None:
-    """Draw shapes, with supports and loads at the last of them, that of a frame."""
-    for positions, label, colour in zip(shapes, labels, time_colours(len(shapes)), strict=True):
-        draw_shapes(axes, picture.rods, positions, colour, label)
+    """Draw the shapes at some frames, with supports and loads at the last of them."""
+    colours = time_colours(len(shapes))
+    for positions, label, colour, at in zip(shapes, labels, colours, frames, strict=True):
+        half_widths = picture.half_widths(at, positions)
+        draw_shapes(axes, picture.rods, positions, colour, label, half_widths=half_widths)
+    frame = frames[-1]
     draw_supports(axes, picture.rods, picture.held_nodes(frame), shapes[-1])
     draw_springs(axes, picture.rods, picture.springs, shapes[-1])
     draw_loads(axes, picture.rods, picture.loads(frame), shapes[-1])

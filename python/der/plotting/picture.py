@@ -13,6 +13,7 @@ from der.film import MODE_SIZE
 from der.plotting.lengths import label_positions
 from der.plotting.supports import HeldPlace
 from der.scene_loads import ActingLoads, acting_loads
+from der.sections import directors_along, sections_of, seen_half_widths
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,6 +25,12 @@ Array = NDArray[np.float64]
 
 #: A shape no thicker than this, against its size, lies in a coordinate plane.
 _FLAT = 0.01
+#: The view from the side shows a shape unless it spreads so many times less upwards than sideways.
+_LOW = 0.25
+#: A horizontal axis that is nearer to a coordinate axis than this [rad] is turned into it.
+_NEARLY = 0.35
+#: A shape whose least variance sideways is more than this share of the largest is round: x will do.
+_ROUND = 0.5
 #: The tangent of a clamp that is nearer to the line of sight than this has no direction there.
 _HEAD_ON = 1e-6
 
@@ -52,26 +59,64 @@ class PicturePlane:
 def best_plane(positions: Array) -> PicturePlane:
     """Choose the plane of a picture for positions [m], shape (frames, nodes, dim).
 
-    In space it is the coordinate plane that the shapes lie in at all frames, or else that of their
-    first two principal axes.
+    In space it is the plane that the shapes lie in at all frames, if there is one. Other shapes are
+    seen from the side, z upwards and the direction of their widest spread to the right; those that
+    are much wider than high are seen from above.
     """
     if positions.shape[-1] == 2:
         return PicturePlane(None, ("x", "y"))
     points = positions.reshape(-1, 3)
     extents = np.ptp(points, axis=0)
     flattest = 2 - int(np.argmin(extents[::-1]))  # z before y before x
+    axes = np.eye(3)
     if extents[flattest] <= _FLAT * extents.max():
-        normal = np.eye(3)[flattest]
-    else:
-        centred = points - points.mean(axis=0)
-        normal = np.linalg.eigh(centred.T @ centred)[1][:, 0]
-    nearest = np.eye(3)[int(np.argmin(np.abs(normal)))]  # the axis that is seen best
-    right = nearest - (nearest @ normal) * normal
-    right /= np.linalg.norm(right)
-    up = np.cross(normal, right)
-    if up[int(np.argmax(np.abs(up)))] < 0.0:
-        up = -up
+        right, up = np.delete(axes, flattest, axis=0)
+        return _plane(right, up)
+    variances, directions = np.linalg.eigh(np.cov(points.T))
+    if variances[0] <= _FLAT**2 * variances[2]:
+        return _plane_across(directions[:, 0])
+    spread, directions = np.linalg.eigh(np.cov(points[:, :2].T))
+    widest = np.array([1.0, 0.0]) if spread[0] > _ROUND * spread[1] else directions[:, 1]
+    right = np.array([*_towards_an_axis(widest), 0.0])
+    if np.var(points[:, 2]) >= _LOW**2 * spread[0]:
+        return _plane(right, axes[2])
+    return _plane(right, np.array([-right[1], right[0], 0.0]))
+
+
+def named_plane(name: str) -> PicturePlane:
+    """Return the plane of a view such as ``xz``: the axis to the right, and the one upwards.
+
+    Raises
+    ------
+    ValueError
+        If the name is not that of two different axes.
+    """
+    if len(name) != 2 or not set(name) <= set("xyz") or name[0] == name[1]:
+        raise ValueError(f"a view is two of x, y and z, such as xz, not {name!r}")
+    right, up = (np.eye(3)["xyz".index(axis)] for axis in name)
+    return _plane(right, up)
+
+
+def _plane(right: Array, up: Array) -> PicturePlane:
     return PicturePlane(np.vstack([right, up, np.cross(right, up)]), (_name(right), _name(up)))
+
+
+def _plane_across(normal: Array) -> PicturePlane:
+    """Return the plane across a vector: z rises in it, unless it is nearly horizontal."""
+    up = np.array([0.0, 0.0, 1.0]) - normal[2] * normal
+    if np.linalg.norm(up) < np.sin(_NEARLY):
+        up = np.array([0.0, 1.0, 0.0]) - normal[1] * normal
+    up /= np.linalg.norm(up)
+    right = np.cross(up, normal)
+    return _plane(right * np.sign(right[int(np.argmax(np.abs(right)))]), up)
+
+
+def _towards_an_axis(direction: Array) -> Array:
+    """Return a horizontal direction, or the coordinate axis near it, along which x or y grow."""
+    nearest = int(np.argmax(np.abs(direction)))
+    if np.abs(direction[nearest]) > np.cos(_NEARLY):
+        return np.asarray(np.eye(2)[nearest])
+    return np.asarray(direction * np.sign(direction[nearest]))
 
 
 def _name(axis: Array) -> str:
@@ -98,12 +143,17 @@ class Picture:
     In space the third component of vectors is the one towards the viewer.
     """
 
-    def __init__(self, result: RunData) -> None:
+    def __init__(self, result: RunData, view: str | None = None) -> None:
         self.result = result
-        initial = result.model.initial_positions
-        self.plane = best_plane(
-            np.concatenate([result.positions, initial[np.newaxis], _modes_as_drawn(result)])
-        )
+        if view is None:
+            initial = result.model.initial_positions
+            self.plane = best_plane(
+                np.concatenate([result.positions, initial[np.newaxis], _modes_as_drawn(result)])
+            )
+        elif result.model.dimension == 2:
+            raise ValueError("a planar run is seen in its plane, and in no other view")
+        else:
+            self.plane = named_plane(view)
 
     @property
     def rods(self) -> list[Rod]:
@@ -119,6 +169,37 @@ class Picture:
     def initial_positions(self) -> Array:
         """Positions as drawn [m], shape (nodes, dim)."""
         return self.plane.turned(self.result.model.initial_positions)
+
+    @cached_property
+    def _sections(self) -> list[tuple[str, Array, Array]]:
+        """Name, outline [m] and directors of each rod whose section has a shape and a place."""
+        along = zip(self.rods, sections_of(self.result), directors_along(self.result), strict=True)
+        return [
+            (rod.name, section.outline, self.plane.turned(directors))
+            for rod, section, directors in along
+            if section is not None and directors is not None and self.plane.rotation is not None
+        ]
+
+    def half_widths(self, frame: int, positions: Array) -> dict[str, Array]:
+        """Return how far rods reach to both sides of their lines [m], by name, shape (nodes,).
+
+        Parameters
+        ----------
+        frame
+            The frame as whose sections they lie.
+        positions
+            Where the nodes are in the picture [m], shape (nodes, 3).
+
+        Returns
+        -------
+        dict
+            Rods with sections alone; the others reach as far as their radius.
+        """
+        nodes = {rod.name: rod.nodes for rod in self.rods}
+        return {
+            name: seen_half_widths(positions[nodes[name]], directors[frame], outline)
+            for name, outline, directors in self._sections
+        }
 
     @cached_property
     def springs(self) -> list[SpringSupport]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -40,15 +40,15 @@ def pick_frames(positions: Array, count: int) -> list[int]:
     return sorted(frames | {len(positions) - 1})
 
 
-def outline(positions: Array, radius: float) -> Array:
-    """Return the outline of a rod of constant radius as a polygon.
+def outline(positions: Array, radius: float | Array) -> Array:
+    """Return the outline of a rod as a polygon.
 
     Parameters
     ----------
     positions
         Centre line [m], shape (nodes, 2).
     radius
-        Half the thickness [m].
+        Half the thickness [m], one for all or shape (nodes,).
 
     Returns
     -------
@@ -61,8 +61,9 @@ def outline(positions: Array, radius: float) -> Array:
     # no farther than twice the radius, or a fold would have an endless spike.
     sums = np.vstack([2.0 * tangents[:1], tangents[:-1] + tangents[1:], 2.0 * tangents[-1:]])
     along = 2.0 * sums / np.maximum(np.sum(sums**2, axis=1, keepdims=True), 1.0)
-    normals = np.column_stack([-along[:, 1], along[:, 0]])
-    return np.vstack([positions + radius * normals, (positions - radius * normals)[::-1]])
+    reach = np.broadcast_to(radius, len(positions))[:, np.newaxis]
+    offsets = reach * np.column_stack([-along[:, 1], along[:, 0]])
+    return np.vstack([positions + offsets, (positions - offsets)[::-1]])
 
 
 def draw_shapes(
@@ -72,6 +73,7 @@ def draw_shapes(
     colour: ColorType,
     label: str | None = None,
     linestyle: str = "-",
+    half_widths: Mapping[str, Array] | None = None,
 ) -> None:
     """Draw all rods at one instant.
 
@@ -90,20 +92,24 @@ def draw_shapes(
         Style of the centre line; thickness and spheres are a pale tone of the colour.
     label
         For the legend.
+    half_widths
+        How far each rod, by its name, reaches to both sides of its line at its nodes [m]; those
+        that are missing have their radius.
     """
+    half_widths = half_widths or {}
     for rod in rods:
         line = positions[rod.nodes][:, :2]
         axes.plot(line[:, 0], line[:, 1], color=colour, linestyle=linestyle, label=label, zorder=3)
         label = None  # once for all rods of the instant
         if linestyle == "-":
-            _draw_thickness(axes, rod, line, colour)
+            _draw_thickness(axes, line, half_widths.get(rod.name, rod.radius), colour)
             _draw_spheres(axes, rod, line, colour)
 
 
-def _draw_thickness(axes: Axes, rod: Rod, line: Array, colour: ColorType) -> None:
-    if rod.radius > 0.0:
+def _draw_thickness(axes: Axes, line: Array, half_width: float | Array, colour: ColorType) -> None:
+    if np.any(np.asarray(half_width) > 0.0):
         body = PolyCollection(
-            [outline(line, rod.radius)], facecolor=colour, alpha=0.3, linewidth=0.0, zorder=2
+            [outline(line, half_width)], facecolor=colour, alpha=0.3, linewidth=0.0, zorder=2
         )
         axes.add_collection(body)
 

@@ -15,9 +15,9 @@ _FOLDER = Path(__file__).parent
 def view(result: RunData, path: str | os.PathLike[str], *, open: bool = False) -> Path:
     """Write an interactive view of a result as one HTML file.
 
-    Rods are tubes of their radius, coloured by a quantity along them; a slider and a play
-    button go through the frames. Static runs have the undeformed shape and the equilibrium, paths
-    of equilibria their points by branch, and modes vibrate. The file holds all it needs.
+    Rods are drawn with their sections as they lie, coloured by a quantity along them; a slider and
+    a play button go through the frames. Static runs have the undeformed shape and the equilibrium,
+    paths of equilibria their points by branch, and modes vibrate. The file holds all it needs.
 
     Parameters
     ----------

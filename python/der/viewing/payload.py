@@ -16,6 +16,7 @@ from der.plotting.lengths import LengthScale
 from der.plotting.style import quantity_text
 from der.run_data import RunData
 from der.scene_loads import ActingLoads, ground_direction
+from der.sections import Section, sections_of
 
 Array = NDArray[np.float64]
 
@@ -43,10 +44,11 @@ def make_payload(result: RunData) -> dict[str, Any]:
     in_metres = _in_space(film.positions[frames])
     scale = LengthScale.of(in_metres.min(axis=(0, 1)), in_metres.max(axis=(0, 1)))
     positions = scale.shown(in_metres)
+    sections = sections_of(result)
     loads = _loads(result, film, frames)
     found_springs = _springs(result)
     symbols = any(loads["loads"]) or bool(found_springs)
-    low, high, symbol = _limits(result.rods, positions, scale.metres, symbols)
+    low, high, symbol = _limits(result.rods, sections, positions, scale.metres, symbols)
     span = 0.0 if film.times is None else float(film.times[-1] - film.times[0])
     notes = [failure_text(result), result.scenario.analysis if result.scenario.is_static else ""]
     if len(frames) < len(film.captions):
@@ -82,6 +84,7 @@ def make_payload(result: RunData) -> dict[str, Any]:
                 scale.metres,
                 {name: rods[k][frames] for name, rods in film.fields.items()},
             )
+            | _section(sections[k], film.directors[k], frames, scale.metres)
             for k, rod in enumerate(result.rods)
         ],
         "supports": _supports(result, film.source[frames]),
@@ -102,6 +105,7 @@ def _vector_text(vector: Array) -> str:
 def _kept_frames(film: Film) -> NDArray[np.int64]:
     """Return the frames that a page has room for; a chapter keeps its first and its last."""
     numbers = film.positions[0].size + sum(len(rods[0][0]) for rods in film.fields.values())
+    numbers += sum(one[0].size for one in film.directors if one is not None)
     stride = max(1, int(np.ceil(len(film.captions) * numbers / _BUDGET)))
     kept = set(range(0, len(film.captions), stride))
     kept |= {frame for chapter in film.chapters for frame in (chapter.first, chapter.last)}
@@ -156,10 +160,25 @@ def _rod(rod: Rod, positions: Array, unit: float, fields: dict[str, Array]) -> d
     return {
         "name": rod.name,
         "nodes": len(rod.nodes),
-        "radius": rod.radius / unit,
         "spheres": [(i, radius) for i, radius in enumerate(radii) if radius > 0.0],
         "positions": _packed(positions[:, rod.nodes]),
         "fields": {name: _packed(values) for name, values in fields.items()},
+    }
+
+
+def _section(
+    section: Section | None, directors: Array | None, frames: NDArray[np.int64], unit: float
+) -> dict[str, Any]:
+    """Return the corners of a rod's section and the director along its width.
+
+    The director has three numbers for each frame and node, or three for all; there is none where a
+    round section may lie in any way.
+    """
+    if directors is not None and len(directors[0]) > 1:
+        directors = directors[frames]
+    return {
+        "outline": [] if section is None else (section.outline / unit).tolist(),
+        "directors": "" if directors is None else _packed(directors),
     }
 
 
@@ -179,12 +198,17 @@ def _vector_in_space(vector: Array) -> list[float]:
 
 
 def _limits(
-    rods: list[Rod], positions: Array, unit: float, symbols: bool
+    rods: list[Rod],
+    sections: list[Section | None],
+    positions: Array,
+    unit: float,
+    symbols: bool,
 ) -> tuple[Array, Array, float]:
     """Return the corners of all frames, symbols included, and the size of these, in the unit."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for rod in rods:
-        around = np.maximum(rod.sphere_radii, rod.radius)[:, np.newaxis] / unit
+    for rod, section in zip(rods, sections, strict=True):
+        reach = 0.0 if section is None else float(np.linalg.norm(section.outline, axis=1).max())
+        around = np.maximum(rod.sphere_radii, reach)[:, np.newaxis] / unit
         low = np.minimum(low, (positions[:, rod.nodes] - around).min(axis=(0, 1)))
         high = np.maximum(high, (positions[:, rod.nodes] + around).max(axis=(0, 1)))
     symbol = _SYMBOL * float(np.max(high - low))

@@ -1,6 +1,6 @@
 "use strict";
-// Draws the frames of a result with Plotly. The page holds centre lines and quantities only; tubes,
-// spheres and supports are made here for the frame that is shown.
+// Draws the frames of a result with Plotly. The page holds centre lines, directors and quantities only;
+// surfaces, spheres and supports are made here for the frame that is shown.
 
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
@@ -35,6 +35,7 @@
   const rods = data.rods.map((rod) => ({
     ...rod,
     positions: floats(rod.positions),
+    directors: floats(rod.directors),
     fields: Object.fromEntries(Object.entries(rod.fields).map(([k, v]) => [k, floats(v)])),
   }));
 
@@ -45,6 +46,13 @@
       line.push([rod.positions[at], rod.positions[at + 1], rod.positions[at + 2]]);
     }
     return line;
+  };
+  // Director 1 at the nodes, along the width of the section; none where round ones lie in any way.
+  const directorsOf = (rod, frame) => {
+    const all = rod.directors;
+    if (all.length === 0) return null;
+    const start = (i) => (all.length === 3 ? 0 : 3 * (frame * rod.nodes + i));
+    return Array.from({ length: rod.nodes }, (_, i) => Array.from(all.slice(start(i), start(i) + 3)));
   };
   const valueOf = (rod, frame, name, i) => rod.fields[name][frame * rod.nodes + i];
 
@@ -63,38 +71,48 @@
     mesh.k.push(c);
   };
 
-  // A tube around a line; at a node the tubes of its two edges meet on the bisecting plane.
-  const addTube = (mesh, line, radius, values) => {
+  const circle = (radius) =>
+    Array.from({ length: SIDES }, (_, side) => {
+      const angle = (2 * Math.PI * side) / SIDES;
+      return [radius * Math.cos(angle), radius * Math.sin(angle)];
+    });
+  const addTube = (mesh, line, radius, values) => addSwept(mesh, line, circle(radius), null, values);
+
+  // What an outline sweeps along a line, its corners being given along director 1 and across it; at
+  // a node the surfaces of two edges meet on the bisecting plane. Without directors the outline is
+  // carried along.
+  const addSwept = (mesh, line, outline, directors, values) => {
+    const sides = outline.length;
     const edges = [];
     for (let i = 0; i + 1 < line.length; i++) {
       edges.push(unit(sub(line[i + 1], line[i]), edges[i - 1] || [1, 0, 0]));
     }
-    let normal = across(edges[0]);
+    let normal = directors ? directors[0] : across(edges[0]);
     let previous = -1;
     line.forEach((point, node) => {
       const before = edges[Math.max(node - 1, 0)];
       const after = edges[Math.min(node, edges.length - 1)];
       const tangent = unit(add(before, after), after);
+      if (directors) normal = directors[node];
       normal = unit(sub(normal, scale(dot(normal, tangent), tangent)), across(tangent));
       const other = cross(tangent, normal);
       const bend = unit(sub(after, before), [0, 0, 0]);
       const stretch = 1 / Math.max(dot(tangent, after), 0.5) - 1;
       const first = mesh.x.length;
-      for (let side = 0; side < SIDES; side++) {
-        const angle = (2 * Math.PI * side) / SIDES;
-        let offset = add(scale(Math.cos(angle), normal), scale(Math.sin(angle), other));
+      for (const [u, v] of outline) {
+        let offset = add(scale(u, normal), scale(v, other));
         offset = add(offset, scale(stretch * dot(offset, bend), bend));
-        corner(mesh, add(point, scale(radius, offset)), values[node]);
+        corner(mesh, add(point, offset), values[node]);
       }
-      for (let side = 0; previous >= 0 && side < SIDES; side++) {
-        const next = (side + 1) % SIDES;
+      for (let side = 0; previous >= 0 && side < sides; side++) {
+        const next = (side + 1) % sides;
         triangle(mesh, previous + side, previous + next, first + side);
         triangle(mesh, previous + next, first + next, first + side);
       }
       if (node === 0 || node === line.length - 1) {
         const middle = corner(mesh, point, values[node]);
-        for (let side = 0; side < SIDES; side++) {
-          triangle(mesh, first + side, first + ((side + 1) % SIDES), middle);
+        for (let side = 0; side < sides; side++) {
+          triangle(mesh, first + side, first + ((side + 1) % sides), middle);
         }
       }
       previous = first;
@@ -294,11 +312,11 @@
 
   const tubes = (frame) => {
     const mesh = newMesh();
-    for (const rod of rods.filter((one) => one.radius > 0)) {
+    for (const rod of rods.filter((one) => one.outline.length)) {
       const values = Array.from({ length: rod.nodes }, (_, i) =>
         range() ? valueOf(rod, frame, state.quantity, i) : 0,
       );
-      addTube(mesh, lineOf(rod, frame), rod.radius, values);
+      addSwept(mesh, lineOf(rod, frame), rod.outline, directorsOf(rod, frame), values);
     }
     const filled = range() ? mesh : plain(mesh);
     return { type: "mesh3d", hoverinfo: "skip", lighting: LIGHT, ...filled, ...colourOf() };

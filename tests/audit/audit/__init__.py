@@ -12,6 +12,8 @@ from .modes import modes
 from .motions import fall, motion
 from .paths import paths
 from .score import Summary
+from .space_motion import space_motion
+from .space_static import space_static
 from .statics import static
 
 KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
@@ -20,6 +22,8 @@ KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
     "modes": modes,
     "motion": motion,
     "paths": paths,
+    "space_motion": space_motion,
+    "space_static": space_static,
     "static": static,
 }
 

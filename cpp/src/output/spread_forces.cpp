@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "der/core/index.hpp"
+#include "der/energies/registry.hpp"
 
 namespace der {
 
@@ -28,6 +29,10 @@ Vec2 SpreadForces::point(std::size_t i, const State& state) const {
 Vec2 SpreadForces::value(std::size_t i, const Model& model, const State& state) const {
   const ForcePlace& place = forces_[i].place;
   Vec2 value = -place.stiffness.cwiseProduct(point(i, state) - place.anchor);
+  if (place.follower >= 0) {
+    const CirculatoryLoad& load = model.elements->circulatory[to_size(place.follower)];
+    value += load.force(configuration_of(model, state)).head<2>();
+  }
   for (int c = 0; c < 2; ++c) {
     const Index control = place.force[to_size(c)];
     if (control >= 0) value[c] += control_value(model, state, control);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <tuple>
+#include <vector>
 
+#include "der/energies/circulatory_load.hpp"
 #include "der/energies/element_list.hpp"
 #include "der/energies/foundation.hpp"
 #include "der/energies/from_pivot.hpp"
@@ -52,6 +54,10 @@ struct ElementLists {
                            ElementList<RotationalSpring<1>>,                                 //
                            ElementList<RotationalSpring<2>>>;
   Lists lists;
+  std::vector<CirculatoryLoad> circulatory;  ///< what acts on the rods and is no energy
+
+  /// Whether forces are the gradient of a potential, so that the tangent is symmetric.
+  [[nodiscard]] bool has_potential() const { return circulatory.empty(); }
 };
 
 /// Calls `f(list)` for each kind of element.

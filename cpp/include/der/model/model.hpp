@@ -74,6 +74,8 @@ struct ForcePlace {
   std::array<Index, 2> force{-1, -1};
   Vec2 stiffness = Vec2::Zero();  ///< of the spring [N/m]
   Vec2 anchor = Vec2::Zero();     ///< [m]
+  Index follower =
+      -1;  ///< number of the load in ElementLists::circulatory, if it turns with the rod
 };
 
 /// A part of a rod on which a distributed force acts.
@@ -116,9 +118,9 @@ struct RodLayout {
   /// Natural turning angle at each node that bends [rad], at clamped ones of the clamp's cells; 0
   /// at free ends.
   std::vector<double> rest_turning_angle;
-  std::vector<Clamp> clamps;               ///< none on a rod that does not bend
-  std::vector<MomentPlace> moment_places;  ///< no two at the same place
-  std::vector<ForcePlace> force_places;    ///< of forces at single places
+  std::vector<Clamp> clamps;                        ///< none on a rod that does not bend
+  std::vector<MomentPlace> moment_places;           ///< no two at the same place
+  std::vector<ForcePlace> force_places;             ///< of forces at single places
   std::vector<DistributedPlace> distributed_places;
   std::vector<FoundationPlace> foundation_places;
   double draw_radius = 0.0;           ///< half the height of the section [m]; 0 if not known

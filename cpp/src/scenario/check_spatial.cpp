@@ -42,15 +42,6 @@ class Availability {
 
   /// What the planar model alone has.
   void check_spatial_models() {
-    for (int i = 0; i < static_cast<int>(scene_.supports.size()); ++i) {
-      if (scene_.supports[static_cast<std::size_t>(i)].spring) {
-        only_planar({"supports", i, "spring"}, "springs");
-      }
-    }
-    for_each_load([this](const auto& load, const Path& path) {
-      using Kind = std::decay_t<decltype(load)>;
-      if (std::is_same_v<Kind, Foundation>) only_planar(path, "foundations");
-    });
     if (std::holds_alternative<BucklingAnalysis>(scene_.analysis)) {
       only_planar({"analysis"}, "buckling loads");
     }

@@ -143,7 +143,8 @@ TEST_CASE("Newton's method converges quadratically near the solution") {
     for (const char* EA : {"1", "20"}) {
       CAPTURE(force);
       CAPTURE(EA);
-      check_quadratic(residuals_of_newton(pressed(force, EA)), 3.0);  // measured: from 0.002 to 1
+      const std::vector<double> residuals = residuals_of_newton(pressed(force, EA));
+      check_quadratic(residuals, 3.0);  // measured: from 0.002 to 1
       CHECK(residuals.back() < 1e-5);
     }
   }

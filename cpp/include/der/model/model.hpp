@@ -78,6 +78,12 @@ struct ForcePlace {
       -1;  ///< number of the load in ElementLists::circulatory, if it turns with the rod
 };
 
+/// A place at which springs hold the section of a rod in space against turning.
+struct SectionSpringPlace {
+  double arc_length = 0.0;        ///< [m]
+  Vec3 stiffness = Vec3::Zero();  ///< towards the two directors, about the tangent [N m/rad]
+};
+
 /// A part of a rod on which a distributed force acts.
 struct DistributedPlace {
   double from = 0.0, to = 0.0;         ///< rest arc length [m]
@@ -121,6 +127,7 @@ struct RodLayout {
   std::vector<Clamp> clamps;                        ///< none on a rod that does not bend
   std::vector<MomentPlace> moment_places;           ///< no two at the same place
   std::vector<ForcePlace> force_places;             ///< of forces at single places
+  std::vector<SectionSpringPlace> section_springs;  ///< no two at the same place
   std::vector<DistributedPlace> distributed_places;
   std::vector<FoundationPlace> foundation_places;
   double draw_radius = 0.0;           ///< half the height of the section [m]; 0 if not known

@@ -116,7 +116,7 @@ class EquilibriumSearch {
 
   /// Newton's method, then pseudo-transient continuation from where it started.
   std::optional<FailedSearch> find_near(const StaticLoads& loads, Shape& shape) {
-    if (!has_potential_) return raise_loads(model_, loads, newton_, shape);
+    if (!has_potential_) return raise_loads(model_, loads, newton_, continuation_, shape);
     if (!newton_.balance(loads, shape)) return std::nullopt;
     return continuation_.run(loads, inverse_step(), shape).failed;
   }

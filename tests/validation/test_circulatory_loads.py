@@ -193,7 +193,7 @@ def test_moments_anywhere_along_a_rod():
 
 
 def test_the_ledger_closes():
-    """Loads that do work along a closed way: the ledger misses a share of the square of the step."""
+    """Loads that do work along a closed way: the ledger misses about the square of the step."""
     strip = section([0, 1, 0], EA=100.0, EI1=3.0, EI2=1.0, GJ=0.8, rotary_inertia=0.05)
     loads = [
         force(-0.5, 1.0, 0.5),

@@ -140,8 +140,7 @@ TEST_CASE("loads: set to zero, each kind leaves no force behind and keeps its ta
 }
 
 TEST_CASE("loads: a force that follows the rod, set to zero, leaves no force behind") {
-  scenario::Scene scene =
-      samples({{"loads.3.point_force.follower", "true"}}).scene();
+  scenario::Scene scene = samples({{"loads.3.point_force.follower", "true"}}).scene();
   scene.loads = {scene.loads[3]};
   const Model loaded = build_model(scene);
   REQUIRE(loaded.elements->circulatory.size() == 1);

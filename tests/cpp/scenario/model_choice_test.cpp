@@ -93,8 +93,8 @@ TEST_CASE("model: loads in the plane, and out of it") {
 
 TEST_CASE("model: loads that turn with the rod in the plane, and out of it") {
   const auto loads = [](const std::string& kind, const std::string& amount) {
-    return chosen({{"loads", "[{" + kind + ": {rod: beam, at: end, follower: true, " + amount +
-                                 "}}]"}});
+    return chosen(
+        {{"loads", "[{" + kind + ": {rod: beam, at: end, follower: true, " + amount + "}}]"}});
   };
   CHECK(loads("point_force", "force: [0, 1, 0]") == "planar");
   CHECK(loads("moment", "moment: 1") == "planar");
@@ -104,9 +104,10 @@ TEST_CASE("model: loads that turn with the rod in the plane, and out of it") {
 
 TEST_CASE("model: springs against turning in the plane, and out of it") {
   const auto spring = [](const std::string& stiffness, const Overrides& more = {}) {
-    return chosen(more + Overrides{{"supports", "[{rod: beam, at: start, fix: [x, y, z], spring: "
-                                                "{rotational_stiffness: " +
-                                                    stiffness + "}}]"}});
+    return chosen(more + Overrides{{"supports",
+                                    "[{rod: beam, at: start, fix: [x, y, z], spring: "
+                                    "{rotational_stiffness: " +
+                                        stiffness + "}}]"}});
   };
   CHECK(spring("2") == "planar");
   CHECK(spring("[1, 2, 3]") == "planar");

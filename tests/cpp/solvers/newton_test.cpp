@@ -168,10 +168,11 @@ loads:
 analysis: static
 )";
   check_quadratic(residuals_of_newton(Scenario::parse(kLoaded)), 3.0);
-  check_quadratic(residuals_of_newton(Scenario::parse(
-                      kLoaded, "scene", {{"model", "planar"},
-                                         {"loads", "[{point_force: {rod: rod, at: end, force: "
-                                                   "[-0.2, 0.8, 0], follower: true}}]"}})),
+  check_quadratic(residuals_of_newton(Scenario::parse(kLoaded, "scene",
+                                                      {{"model", "planar"},
+                                                       {"loads",
+                                                        "[{point_force: {rod: rod, at: end, force: "
+                                                        "[-0.2, 0.8, 0], follower: true}}]"}})),
                   3.0);
 }
 

@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,9 @@ std::vector<SpringSupport> springs(const Scenario& scenario) {
     spring.rod = rod.name;
     spring.stiffness = support.spring->stiffness;
     if (spring.stiffness.empty()) spring.stiffness.assign(to_size(model.dimension), 0.0);
-    spring.rotational_stiffness = support.spring->rotational_stiffness;
+    for (const double k : support.spring->rotational_stiffness) {
+      spring.rotational_stiffness = std::max(spring.rotational_stiffness, k);
+    }
     for (const auto& [place, weight] : node_weights(rod, arc_length_of(support.at, rod))) {
       spring.nodes.push_back(rod.nodes[to_size(place)]);
       spring.weights.push_back(weight);
@@ -95,7 +98,7 @@ void bind_spring(py::module_& module) {
       .def_readonly("stiffness", &SpringSupport::stiffness,
                     "Stiffness along each axis [N/m]; 0 where the spring does not pull.")
       .def_readonly("rotational_stiffness", &SpringSupport::rotational_stiffness,
-                    "Stiffness against turning [N m/rad]; 0 without.")
+                    "Stiffness against turning [N m/rad], the largest in space; 0 without.")
       .def("__repr__", [](const SpringSupport& spring) {
         return py::str("<der.SpringSupport on {!r}: {} N/m, {:.6g} N m/rad>")
             .format(spring.rod, spring.stiffness, spring.rotational_stiffness);

@@ -139,9 +139,9 @@ void bind_reports(py::module_& module) {
           "Whether an equilibrium of a planar model would leave its plane; None in space.")
       .def_property_readonly(
           "stability", [](const EquilibriumReport& r) { return r.stability.name(); },
-          "``stable``, ``unstable``, ``neutral`` (flat to rounding in some direction) or "
-          "``unknown`` "
-          "(rounding hides whether it is stable).")
+          "``stable``, ``unstable``, ``neutral`` (flat to rounding in some direction), "
+          "``unknown`` (rounding hides whether it is stable) or ``not_judged`` (a load has no "
+          "potential).")
       .def_property_readonly(
           "unstable_directions",
           [](const EquilibriumReport& r) { return r.stability.unstable_directions; },

@@ -76,7 +76,11 @@ def acting_loads(result: RunData, frame: int) -> ActingLoads:
     Along a continuation those that its factor varies are scaled by it. Forces from Python are not
     known to the scene and not among them.
     """
-    found = _Collected(float(result.times[frame]), result.positions.shape[2])
+    found = _Collected(
+        float(result.times[frame]),
+        result.positions.shape[2],
+        lambda rod, at, value: _turned_with(result, frame, rod, at, value),
+    )
     for number, load in enumerate(result.scenario.to_dict().get("loads") or []):
         ((kind, content),) = load.items()
         collect = _COLLECTORS[kind]
@@ -98,11 +102,17 @@ class _SceneLoad:
 
 
 class _Collected:
-    """The loads that act at a time [s], with vectors of `dimension` components."""
+    """The loads that act at a time [s], with vectors of `dimension` components.
 
-    def __init__(self, time: float, dimension: int) -> None:
+    `turn` turns a vector at an arc length of a rod as the rod is turned there.
+    """
+
+    def __init__(
+        self, time: float, dimension: int, turn: Callable[[str, float, Array], Array]
+    ) -> None:
         self._time = time
         self._dimension = dimension
+        self._turn = turn
         self.forces: list[PointLoad] = []
         self.moments: list[PointLoad] = []
         self.lines: list[LineLoad] = []
@@ -128,13 +138,19 @@ class _Collected:
     def add_foundation(self, load: _SceneLoad) -> None:
         start, end = load.arc_lengths
         given = np.asarray(load.content["stiffness"], dtype=np.float64)
-        stiffness = np.broadcast_to(given, (given.size if given.ndim else 2,))
+        if given.ndim:
+            given = _in_space(given, self._dimension)
+        stiffness = np.broadcast_to(given, (self._dimension,))
         self.foundations.append(FoundationPart(load.content["rod"], start, end, stiffness))
 
     def _at_places(self, load: _SceneLoad, amount: str) -> list[PointLoad]:
         value = self._value(load, amount)
         places = load.arc_lengths if np.any(value) else []
-        return [PointLoad(load.content["rod"], at, value) for at in places]
+        rod = load.content["rod"]
+        follows = bool(load.content.get("follower", False)) and value.ndim > 0
+        return [
+            PointLoad(rod, at, self._turn(rod, at, value) if follows else value) for at in places
+        ]
 
     def _value(self, load: _SceneLoad, amount: str) -> Array:
         value = load.factor * value_at(load.content[amount], self._time)
@@ -167,6 +183,40 @@ def _in_space(value: Array, dimension: int) -> Array:
     return full
 
 
+def _turned_with(result: RunData, frame: int, name: str, at: float, value: Array) -> Array:
+    """Return a vector turned as the tangent of a rod is, from the initial shape to a frame.
+
+    The smallest such rotation: drawings leave out how the section turns about the tangent.
+    """
+    rod = next(rod for rod in result.rods if rod.name == name)
+    before = np.zeros(3)
+    after, turned = before.copy(), before.copy()
+    before[: value.size] = _tangent(rod, result.model.initial_positions, at)
+    after[: value.size] = _tangent(rod, result.positions[frame], at)
+    turned[: value.size] = value
+    axis, cosine = np.cross(before, after), float(before @ after)
+    if cosine < -1.0 + 1e-9:  # half a turn: about z in a plane, about any axis across in space
+        if value.size == 2:
+            return np.asarray(-value)
+        axis = np.cross(before, np.eye(3)[int(np.argmin(np.abs(before)))])
+        return np.asarray(2.0 * axis * (axis @ turned) / (axis @ axis) - turned)
+    moved = cosine * turned + np.cross(axis, turned) + axis * (axis @ turned) / (1.0 + cosine)
+    return np.asarray(moved[: value.size])
+
+
+def _tangent(rod: Rod, positions: Array, at: float) -> Array:
+    """Return the direction of the edges beside an arc length, shape (dim,)."""
+    edges = np.diff(positions[rod.nodes], axis=0)
+    edges /= np.linalg.norm(edges, axis=1)[:, np.newaxis]
+    middles = 0.5 * (rod.arc_lengths[1:] + rod.arc_lengths[:-1])
+    if len(edges) == 1:
+        return np.asarray(edges[0])
+    first = max(0, min(int(np.searchsorted(middles, at)) - 1, len(edges) - 2))
+    share = (at - middles[first]) / (middles[first + 1] - middles[first])
+    tangent = (1.0 - share) * edges[first] + share * edges[first + 1]
+    return np.asarray(tangent / np.linalg.norm(tangent))
+
+
 def value_at(series: Any, time: float) -> Array:
     """Return a value of a scene file at a time [s].
 
@@ -193,14 +243,17 @@ def place_on(rod: Rod, positions: Array, at: float) -> Array:
 
 
 def ground_direction(part: FoundationPart, rod: Rod, positions: Array) -> Array:
-    """Return the unit vector, shape (2,), from a rod to the ground of its foundation.
+    """Return the unit vector, shape (dim,), from a rod to the ground of its foundation.
 
-    It is down, or to the left where the springs across the rod act along x.
+    It is down, or to the left where the springs across the rod act along x. `positions` are those
+    of all nodes [m], shape (nodes, dim).
     """
     chord = place_on(rod, positions, part.end) - place_on(rod, positions, part.start)
-    across = np.abs(chord[1::-1]) + 1e-9 * rod.length  # an axis is across where the other is along
-    axis = int(np.argmax(np.where(part.stiffness > 0.0, across, 0.0)))
-    return np.asarray(-np.eye(2)[axis])
+    # An axis is across where the others are along.
+    across = np.array([np.linalg.norm(np.delete(chord, axis)) for axis in range(len(chord))])
+    held = part.stiffness[: len(chord)] > 0.0
+    axis = int(np.argmax(np.where(held, across + 1e-9 * rod.length, 0.0)))
+    return np.asarray(-np.eye(len(chord))[axis])
 
 
 def _factor(result: RunData, frame: int, number: int) -> float:

@@ -11,7 +11,7 @@ import der
 import numpy as np
 import pytest
 from der.accuracy.refinement import with_elements
-from der.scene_loads import WITHOUT_SYMBOL, acting_loads
+from der.scene_loads import WITHOUT_SYMBOL, acting_loads, ground_direction
 from der.viewing.payload import make_payload
 
 ROOT = Path(__file__).parents[2]
@@ -92,6 +92,52 @@ def test_loads_are_drawn_where_they_act(at, arc_lengths):
     acting = acting_loads(der.run(scene), 0)
     assert [load.at for load in acting.forces] == pytest.approx(arc_lengths)
     assert [(load.start, load.end) for load in acting.lines] == [(0.2, pytest.approx(1.2))]
+
+
+def test_a_force_that_follows_is_drawn_as_it_is_turned():
+    """A clamp turns a straight rod by a right angle, and past half a turn."""
+    scene = {
+        **SAMPLES,
+        "rods": [{**SAMPLES["rods"][0], "points": [[0, 0], [1, 0], [2, 0]]}],
+        "loads": [{"point_force": {"rod": "rod", "at": "end", "force": [0, 3], "follower": True}}],
+        "analysis": "static",
+    }
+    del scene["time"], scene["rods"][0]["initial_velocity"], scene["rods"][0]["spheres"]
+    scene["rods"][0]["cross_section"] = {"stiffness": {"EA": 1e9, "EI": 1e9, "mass_per_length": 1}}
+    for angle in (np.pi / 2, np.pi, 4.0):
+        turn = {"clamp": True, "prescribe": {"angle": angle}}
+        result = der.run({**scene, "supports": [{"rod": "rod", "at": "start", **turn}]})
+        (force,) = acting_loads(result, len(result.times) - 1).forces
+        assert force.value == pytest.approx([-3 * np.sin(angle), 3 * np.cos(angle)], abs=1e-6)
+
+
+def test_springs_and_foundations_in_space_are_drawn():
+    """A rod along y, seen along x: what acts along z is drawn downwards."""
+    rod = {**SAMPLES["rods"][0], "points": [[0, 0, 0], [0, 1, 0], [0, 2, 0.3]]}
+    del rod["initial_velocity"], rod["spheres"]
+    stiffness = {"EA": 100, "EI": 1, "GJ": 1, "mass_per_length": 1}
+    scene = {
+        "rods": [{**rod, "cross_section": {"stiffness": stiffness}}],
+        "supports": [
+            {"rod": "rod", "at": "start", "clamp": True},
+            {"rod": "rod", "at": "end", "spring": {"stiffness": [0, 0, 5]}},
+        ],
+        "loads": [
+            {"gravity": [0, 0, -1]},
+            {"foundation": {"rod": "rod", "stiffness": [0, 0, 20]}},
+        ],
+        "analysis": "static",
+    }
+    result = der.run(scene)
+    (part,) = acting_loads(result, 0).foundations
+    assert part.stiffness.tolist() == [0, 0, 20]
+    down = ground_direction(part, result.rods[0], result.positions[0])
+    assert down.tolist() == [0, 0, -1]
+    axes = result.plot("shapes").axes[0]
+    drawn = [line.get_gid() or "" for line in axes.lines]
+    assert any(gid.startswith("load-rod-foundation") for gid in drawn)
+    assert any(gid.startswith("spring-rod") for gid in drawn)
+    assert make_payload(result)["springs"][0]["along"] == [[0, 0, -1]]
 
 
 def test_view_draws_every_symbol():

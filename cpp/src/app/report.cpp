@@ -96,6 +96,10 @@ std::string model_lines(const Simulation& simulation, const Style& style) {
 }
 
 std::string stability_text(const Stability& stability, const Style& style) {
+  if (!stability.judged) {
+    return "stability not judged: a load that turns with the rod, or a moment in space, has no "
+           "potential";
+  }
   if (stability.unstable_directions > 0) {
     return style.warning(fmt::format("UNSTABLE in {}: a small disturbance would move it away",
                                      format_count(stability.unstable_directions, "direction")));

@@ -9,6 +9,7 @@
 #include "der/energies/spatial_bend.hpp"
 #include "der/energies/stretch.hpp"
 #include "der/supports/clamp.hpp"
+#include "der/supports/section_spring.hpp"
 #include "der/supports/spatial_clamp.hpp"
 
 namespace der {
@@ -282,7 +283,7 @@ void add_spatial_rod_elements(RodLayout& rod, Model& model) {
   }
   const bool bends = rod.EI_1 > 0.0 || rod.EI_2 > 0.0;
   if (bends) rod.joints = joints_of(rod);
-  if (rod.joints.empty()) {
+  if (rod.joints.empty() && rod.section_springs.empty()) {
     if (model.has_sections()) hold_angles(rod, model);
     return;
   }
@@ -291,6 +292,7 @@ void add_spatial_rod_elements(RodLayout& rod, Model& model) {
   } else {
     add_bending<TangentCurvature>(rod, model);
   }
+  if (model.has_sections()) add_section_springs(rod, model);
 }
 
 }  // namespace der

@@ -1,8 +1,12 @@
 #include "der/energies/foundation.hpp"
+
+#include <array>
+
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/loads/loads.hpp"
+#include "der/model/dimension.hpp"
 #include "der/model/location.hpp"
 
 namespace der {
@@ -22,23 +26,32 @@ Eigen::Matrix2d shape_products(const EdgePart& part, const RodLayout& rod) {
   return (b - a) / 6.0 * (at(a) + 4.0 * at(0.5 * (a + b)) + at(b));
 }
 
+template <int Dim>
+void add_elements(const scenario::Foundation& load, const RodLayout& rod, Model& model) {
+  using Kernel = Foundation<Dim>;
+  for (const EdgePart& part : edge_parts(rod, load.from, load.to)) {
+    std::array<Index, Kernel::kDofs> dofs{};
+    for (Index c = 0; c < Dim; ++c) {
+      dofs[to_size(c)] = model.dof(rod.nodes[to_size(part.edge)], c);
+      dofs[to_size(Dim + c)] = model.dof(rod.nodes[to_size(part.edge + 1)], c);
+    }
+    typename Kernel::Constants constants;
+    constants.stiffness = Eigen::Map<const Eigen::Matrix<double, Dim, 1>>(load.stiffness.data());
+    constants.drawn = gather(dofs, model.initial_positions);
+    constants.lengths = shape_products(part, rod);
+    elements_of<Kernel>(*model.elements).add(dofs, constants);
+  }
+}
+
 }  // namespace
 
 // Nodes lie beside the curve by l^2/12 of its curvature, and edges as far on its other side in the
 // mean: the linear interpolation has the displacement of the curve up to order 4.
 void add_load(const scenario::Foundation& load, const scenario::Scene& /*scene*/, Model& model) {
   RodLayout& rod = model.rod(load.rod);
-  const Eigen::Map<const Vec2> stiffness(load.stiffness.data());
-  auto& elements = elements_of<Foundation>(*model.elements);
-  for (const EdgePart& part : edge_parts(rod, load.from, load.to)) {
-    const auto dofs = rod.edge_dofs(part.edge, model);
-    Foundation::Constants constants;
-    constants.stiffness = stiffness;
-    constants.drawn = gather(dofs, model.initial_positions);
-    constants.lengths = shape_products(part, rod);
-    elements.add(dofs, constants);
-  }
-  rod.foundation_places.push_back({load.from, load.to, stiffness});
+  with_dimension(model, [&](auto dim) { add_elements<dim>(load, rod, model); });
+  const Eigen::Map<const Vec2> in_plane(load.stiffness.data());
+  rod.foundation_places.push_back({load.from, load.to, in_plane});
 }
 
 }  // namespace der

@@ -3,6 +3,7 @@
 
 #include "der/energies/elements_of.hpp"
 #include "der/energies/planar_moment.hpp"
+#include "der/loads/circulatory.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/location.hpp"
 #include "der/model/moment_place.hpp"
@@ -21,8 +22,14 @@ bool is_clamped(const RodLayout& rod, double s) {
 
 void add_load(const scenario::Moment& load, const scenario::Scene& /*scene*/, Model& model) {
   RodLayout& rod = model.rod(load.rod);
-  const Index control = model.tables.add(load.moment);
   const double s = arc_length_of(load.at, rod);
+  if (model.dimension == 3) {
+    if (!is_clamped(rod, s)) {
+      add_spatial_moment(load.moment_vector, load.follower, s, rod, model);
+    }
+    return;
+  }
+  const Index control = model.tables.add(load.moment);
   // The clamp takes it up; on the edges beside it, it would bend the rod by an error of order 1.
   if (is_clamped(rod, s)) return;
   MomentPlace& place = place_of_moments(s, rod);

@@ -1,3 +1,4 @@
+#include "der/loads/circulatory.hpp"
 #include "der/loads/dead_force.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/location.hpp"
@@ -6,6 +7,13 @@ namespace der {
 
 void add_load(const scenario::PointForce& load, const scenario::Scene& /*scene*/, Model& model) {
   RodLayout& rod = model.rod(load.rod);
+  if (load.follower) {
+    ForcePlace place;
+    place.arc_length = arc_length_of(load.at, rod);
+    place.follower = add_follower_force(load.force, place.arc_length, rod, model);
+    rod.force_places.push_back(place);
+    return;
+  }
   const DeadForce force(load.force, model);
   if (load.at.kind == scenario::Location::Kind::All) {
     for (const Index node : rod.nodes) force.act_on(node, 1.0, model);

@@ -44,6 +44,12 @@ Index frame_turned_too_far(const Model& model, const Vector& coordinates, const 
   return -1;
 }
 
+Configuration drawn_configuration(const Model& model) {
+  Configuration here{model.initial_positions, Vector::Zero(model.tables.size())};
+  here.controls.head(model.drawn_frames.size()) = model.drawn_frames;
+  return here;
+}
+
 SectionFrame section_frame(const Model& model, Index edge, const Configuration& here) {
   const SpatialEdge& framed = model.framed_edges[to_size(edge)];
   const FrameBlock block = FrameBlock::of(edge);

@@ -62,10 +62,7 @@ double stored_by_loads(const Model& model, const Vector& controls) {
 
 }  // namespace
 
-MomentPlace& place_of_moments(double s, RodLayout& rod) {
-  if (const MomentPlace* known = rod.moment_place_at(s)) {
-    return rod.moment_places[static_cast<std::size_t>(known - rod.moment_places.data())];
-  }
+MomentPlace moment_place(double s, const RodLayout& rod) {
   std::vector<Weighted> edges = edge_weights(rod, s);
   std::sort(edges.begin(), edges.end(),
             [](const Weighted& a, const Weighted& b) { return a.place < b.place; });
@@ -74,7 +71,14 @@ MomentPlace& place_of_moments(double s, RodLayout& rod) {
   place.first_edge = edges.front().place;
   for (const Weighted& edge : edges) place.weights.push_back(edge.weight);
   place.cell_length = cell_length(rod, place);
-  return rod.moment_places.emplace_back(std::move(place));
+  return place;
+}
+
+MomentPlace& place_of_moments(double s, RodLayout& rod) {
+  if (const MomentPlace* known = rod.moment_place_at(s)) {
+    return rod.moment_places[static_cast<std::size_t>(known - rod.moment_places.data())];
+  }
+  return rod.moment_places.emplace_back(moment_place(s, rod));
 }
 
 double carried_moment(const MomentPlace& place, const RodLayout& rod, const Model& model,

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "der/core/index.hpp"
-#include "output/in_space.hpp"
+#include "der/energies/registry.hpp"
 
 namespace der {
 
@@ -30,8 +30,11 @@ Vec3 SpreadForces::point(std::size_t i, const State& state) const {
 
 Vec3 SpreadForces::value(std::size_t i, const Model& model, const State& state) const {
   const ForcePlace& place = forces_[i].place;
-  const Vec2 stretched = point(i, state).head<2>() - place.anchor;
-  Vec3 value = in_space(-place.stiffness.cwiseProduct(stretched));
+  Vec3 value = -place.stiffness.cwiseProduct(point(i, state) - place.anchor);
+  if (place.follower >= 0) {
+    const CirculatoryLoad& load = model.elements->circulatory[to_size(place.follower)];
+    value += load.force(configuration_of(model, state));
+  }
   for (int c = 0; c < dimension_; ++c) {
     const Index control = place.force[to_size(c)];
     if (control >= 0) value[c] += control_value(model, state, control);

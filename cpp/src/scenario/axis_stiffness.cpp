@@ -4,15 +4,16 @@
 
 namespace der::scenario {
 
-Format<Components> axis_stiffness(const std::string& unit) {
-  const Format<double> both = number(unit, positive());
-  const Format<Components> each = vector(unit);
+namespace {
+
+Format<Components> one_or_each(const Format<double>& both, const Format<Components>& each,
+                               const std::string& example) {
   Shape shape{Shape::Kind::AnyOf};
   shape.unit = both.shape.unit;
   shape.parts = {both.shape, each.shape};
   return {
-      std::move(shape), [both, each](const Shape& /*self*/, const Place& place,
-                                     Diagnostics& diagnostics, Components& out) {
+      std::move(shape), [both, each, example](const Shape& /*self*/, const Place& place,
+                                              Diagnostics& diagnostics, Components& out) {
         if (!place.value->sequence()) {
           double stiffness = 0.0;
           if (!both.read(place, diagnostics, stiffness)) return false;
@@ -26,9 +27,19 @@ Format<Components> axis_stiffness(const std::string& unit) {
           diagnostics.add(place,
                           "a stiffness must not be negative: write 0 for an axis without one");
         if (none)
-          diagnostics.add(place, "one of the stiffnesses must be greater than 0, as in [0, 50]");
+          diagnostics.add(place, "one of the stiffnesses must be greater than 0, as in " + example);
         return !negative && !none;
       }};
+}
+
+}  // namespace
+
+Format<Components> axis_stiffness(const std::string& unit) {
+  return one_or_each(number(unit, positive()), vector(unit), "[0, 50]");
+}
+
+Format<Components> section_stiffness(const std::string& unit) {
+  return one_or_each(number(unit, positive()), space_vector(unit), "[0, 50, 0]");
 }
 
 }  // namespace der::scenario

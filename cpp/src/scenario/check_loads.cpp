@@ -91,7 +91,15 @@ class LoadCheck {
     if (load.rod) context_.find_rod(*load.rod, here / "rod");
   }
 
-  void check_own(const PointForce& load, const Path& /*here*/, const Where& where) {
+  void check_own(const PointForce& load, const Path& here, const Where& where) {
+    if (load.follower) {
+      if (load.at.kind == Location::Kind::All) {
+        report(here / "at",
+               "'all' is not a single place, and a force that turns with the rod acts "
+               "at one");
+      }
+      return;
+    }
     if (!where.nodes.empty()) check_acts(load, where.rod, where.nodes);
   }
 

@@ -21,25 +21,27 @@ class Availability {
         not_available({"rods", i, "closed"}, "closed rods");
       }
     }
-    for_each_load([this](const auto& load, const Path& path) {
-      if (turns_with_rod(load)) {
-        not_available(path / "follower", "loads that turn with the rod");
-      }
+  }
+
+  /// What needs a potential, which some loads have not.
+  void check_potential(ModelChoice kind) {
+    const char* analysis =
+        std::holds_alternative<ModesAnalysis>(scene_.analysis)          ? "modes"
+        : std::holds_alternative<BucklingAnalysis>(scene_.analysis)     ? "buckling loads"
+        : std::holds_alternative<ContinuationAnalysis>(scene_.analysis) ? "paths of equilibria"
+                                                                        : nullptr;
+    if (analysis == nullptr) return;
+    for_each_load([&](const auto& load, const Path& path) {
+      if (!is_circulatory(load, kind)) return;
+      diagnostics_.add(path, std::string(analysis) +
+                                 " are those of a potential, and this load has none, since it "
+                                 "turns with the rod or is a moment in space: write 'analysis: "
+                                 "static', or run over time");
     });
   }
 
   /// Keys that only the planar model has yet.
   void check_spatial_models() {
-    for (int i = 0; i < static_cast<int>(scene_.supports.size()); ++i) {
-      if (scene_.supports[static_cast<std::size_t>(i)].spring) {
-        only_planar({"supports", i, "spring"}, "springs");
-      }
-    }
-    for_each_load([this](const auto& load, const Path& path) {
-      using Kind = std::decay_t<decltype(load)>;
-      if (std::is_same_v<Kind, Moment>) only_planar(path, "moments");
-      if (std::is_same_v<Kind, Foundation>) only_planar(path, "foundations");
-    });
     if (scene_.is_dynamic() && scene_.time.integrator == "energy_momentum") {
       only_planar({"time", "integrator"}, "'energy_momentum'");
     }
@@ -47,11 +49,9 @@ class Availability {
 
  private:
   template <class Load>
-  static bool turns_with_rod(const Load& load) {
-    if constexpr (std::is_same_v<Load, PointForce> || std::is_same_v<Load, Moment>) {
-      return load.follower;
-    }
-    return false;
+  static bool is_circulatory(const Load& load, ModelChoice kind) {
+    if constexpr (std::is_same_v<Load, PointForce>) return load.follower;
+    return std::is_same_v<Load, Moment> && kind != ModelChoice::Planar;
   }
 
   template <class F>
@@ -78,6 +78,7 @@ class Availability {
 void check_availability(const SceneText& scene, ModelChoice kind, Diagnostics& diagnostics) {
   Availability availability(scene, diagnostics);
   availability.check_all_models();
+  availability.check_potential(kind);
   if (kind != ModelChoice::Planar) availability.check_spatial_models();
 }
 

@@ -98,7 +98,7 @@ void check_spring(CheckContext& context, int number) {
     context.diagnostics.add(path / "at", "'all' is not a single place, and a spring holds one");
     return;
   }
-  const bool turns = support.spring->rotational_stiffness > 0.0;
+  const bool turns = !support.spring->rotational_stiffness.empty();
   if (turns && does_not_bend(context.scene.rods[static_cast<std::size_t>(*rod)])) {
     context.diagnostics.add(here / "rotational_stiffness",
                             "the rod has no stiffness against bending, EI: nothing turns it");

@@ -1,6 +1,7 @@
 #include "scenario/conform.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <variant>
 
@@ -79,6 +80,17 @@ class Conform {
     if (!support.spring) return;
     resize(support.spring->stiffness);
     resize(support.spring->anchor);
+    if (planar_) make_planar(support.rod, support.spring->rotational_stiffness);
+  }
+
+  /// The stiffness against turning about z for all three.
+  void make_planar(const std::string& name, Components& stiffness) const {
+    const auto rod = std::find_if(scene_.rods.begin(), scene_.rods.end(),
+                                  [&](const Rod& each) { return each.name == name; });
+    if (stiffness.empty() || rod == scene_.rods.end()) return;
+    const bool towards_first = std::abs(flat_director(*rod).z) < 0.5;
+    const double in_plane = stiffness[towards_first ? 0 : 1];
+    stiffness = in_plane > 0.0 ? Components(3, in_plane) : Components();
   }
 
   static void make_planar(Support& support) {

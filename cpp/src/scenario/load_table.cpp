@@ -32,15 +32,19 @@ Format<Damping> damping_format() {
 }
 
 Format<PointForce> point_force_format() {
-  return mapping(Table<PointForce>("point force", "A force that keeps its direction.")
-                     .required("rod", &PointForce::rod, name(), "Name of the rod.")
-                     .required("at", &PointForce::at, location(),
-                               "Where; any arc length. With `all` it acts on each node. A support "
-                               "takes up the components that it holds there, with a warning.")
-                     .required("force", &PointForce::force, vector_series("N"),
-                               "A constant, or a table over time.")
-                     .optional("follower", &PointForce::follower, boolean(),
-                               "Whether it turns with the rod; not available yet."));
+  return mapping(
+      Table<PointForce>("point force", "A force that keeps its direction, or turns with the rod.")
+          .required("rod", &PointForce::rod, name(), "Name of the rod.")
+          .required("at", &PointForce::at, location(),
+                    "Where; any arc length. With `all` it acts on each node. A support "
+                    "takes up the components that it holds there, with a warning.")
+          .required("force", &PointForce::force, vector_series("N"),
+                    "A constant, or a table over time.")
+          .optional("follower", &PointForce::follower, boolean(),
+                    "Whether it turns with the rod: in space with the section, in a "
+                    "planar scene with the tangent. `force` has its components in the "
+                    "initial shape.",
+                    "false"));
 }
 
 struct MomentValue {
@@ -100,7 +104,9 @@ Format<MomentText> moment_format() {
                     "A number: about z, positive counter-clockwise. A vector in a scene of three "
                     "components. Constant, or a table over time.")
           .optional("follower", &Moment::follower, boolean(),
-                    "Whether it turns with the rod; not available yet."));
+                    "Whether it turns with the section; `moment` has its components in the initial "
+                    "shape. No difference in a planar scene.",
+                    "false"));
 }
 
 /// Where the part of a rod lies on which a load acts: the last keys of its table.

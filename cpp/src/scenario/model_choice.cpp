@@ -42,6 +42,14 @@ bool bends_in_plane(const Rod& rod) {
   return std::min(std::abs(director.normal), std::abs(director.z)) <= kRounding;
 }
 
+/// Whether a spring turns a rod that lies in the plane about z where it turns it at all.
+bool turns_in_plane(const Spring& spring, const Rod& rod) {
+  const Components& k = spring.rotational_stiffness;
+  if (k.empty() || k[0] == k[1]) return true;
+  const FlatDirector director = flat_director(rod);
+  return std::min(std::abs(director.normal), std::abs(director.z)) <= kRounding;
+}
+
 /// Whether the natural curvature of a rod that lies in the plane is about z.
 bool is_curved_in_plane(const Rod& rod) {
   const FlatDirector director = flat_director(rod);
@@ -74,7 +82,7 @@ std::string out_of_plane(const Rod& rod) {
   return {};
 }
 
-std::string out_of_plane(const Support& support, std::size_t number) {
+std::string out_of_plane(const Support& support, std::size_t number, const Scene& scene) {
   for (const Prescribed& motion : support.prescribe) {
     if (motion.component == Component::Z && !is_zero(motion.displacement)) {
       return fmt::format("supports.{} moves along z", number);
@@ -89,6 +97,12 @@ std::string out_of_plane(const Support& support, std::size_t number) {
   if (support.spring && acts_along_z(support.spring->anchor) &&
       acts_along_z(support.spring->stiffness)) {
     return fmt::format("the spring of supports.{} pulls along z", number);
+  }
+  for (const Rod& rod : scene.rods) {
+    if (rod.name != support.rod || !support.spring || turns_in_plane(*support.spring, rod))
+      continue;
+    return fmt::format("the spring of supports.{} does not turn rod '{}' about z", number,
+                       rod.name);
   }
   return {};
 }
@@ -196,7 +210,7 @@ std::string holds_sections(const Rod& rod, const Scene& scene) {
 }
 
 std::string may_twist(const Support& support, std::size_t number) {
-  if (support.spring && support.spring->rotational_stiffness > 0.0) {
+  if (support.spring && !support.spring->rotational_stiffness.empty()) {
     return fmt::format("supports.{} has a spring against rotation", number);
   }
   return {};
@@ -243,8 +257,8 @@ std::string why_not_planar(const Scene& scene) {
   return first_clause(
       {first_of(scene.rods,
                 [](const Rod& rod, std::size_t /*number*/) { return out_of_plane(rod); }),
-       first_of(scene.supports,
-                [](const Support& support, std::size_t i) { return out_of_plane(support, i); }),
+       first_of(scene.supports, [&](const Support& support,
+                                    std::size_t i) { return out_of_plane(support, i, scene); }),
        about_loads<OutOfPlane>(scene), why_it_twists(scene)});
 }
 

@@ -99,10 +99,13 @@ Format<Spring> spring_format() {
                     "Where the place is without a force of the spring.",
                     "where the place is as drawn")
           .optional("rotational_stiffness", &Spring::rotational_stiffness,
-                    number("N m/rad", positive()),
-                    "Moment per angle between the rod's tangent and its drawn direction.", "none")
+                    section_stiffness("N m/rad"),
+                    "Moment per angle between the rod's section and its drawn orientation: one "
+                    "number, or a list of three, against turning towards the director, across it, "
+                    "and about the rod.",
+                    "none")
           .check([](Spring& spring, const Place& place, Diagnostics& diagnostics) {
-            if (spring.stiffness.empty() && spring.rotational_stiffness == 0.0) {
+            if (spring.stiffness.empty() && spring.rotational_stiffness.empty()) {
               diagnostics.add(place, "give 'stiffness', 'rotational_stiffness' or both");
             } else if (spring.stiffness.empty() && !spring.anchor.empty()) {
               diagnostics.add(place.at(*find_entry(*place.value->mapping(), "anchor")),

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "der/core/error.hpp"
+#include "der/energies/registry.hpp"
 #include "der/loads/external_force.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/simulation.hpp"
@@ -71,6 +72,12 @@ EquilibriumReport Simulation::settle(bool leave_saddles) {
 
 std::vector<Mode> Simulation::modes(int count) {
   check_finite_state();
+  if (!model_.elements->has_potential()) {
+    throw Error("model_error",
+                "loads that turn with the rod, and moments in space, have no potential: there are "
+                "no vibration modes with real frequencies to be sure of. A run over time shows "
+                "whether vibrations grow");
+  }
   constexpr double kBalanced = 1e-6;
   const Forces now = forces();
   Stiffness stiffness(model_, assembler_, *solver_.solver);

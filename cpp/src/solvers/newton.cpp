@@ -17,6 +17,7 @@ Newton::Newton(const DofMap& dofs, LinearSolver& solver, Index num_values,
                const NewtonOptions& options)
     : dofs_(dofs),
       solver_(solver),
+      corrected_(solver, dofs.num_free()),
       options_(options),
       residual_(Vector::Zero(dofs.size())),
       values_(Vector::Zero(num_values)),
@@ -57,7 +58,7 @@ NewtonReport Newton::iterate(NewtonProblem& problem, Mode mode) {
   measure(problem, report);
   while (report.iterations < limit) {
     const double residual_before = report.residual;
-    if (!std::isfinite(residual_before) || !find_direction(problem, report)) {
+    if (!std::isfinite(residual_before) || !find_direction(problem, mode, report)) {
       report.worst_dof = worst_dof();
       report.failure = "the forces or the stiffness stopped being numbers";
       return report;
@@ -104,12 +105,12 @@ NewtonReport Newton::iterate(NewtonProblem& problem, Mode mode) {
   return report;
 }
 
-/// Factorises the current matrix, shifted where it is not positive definite. False: its entries are
-/// not numbers.
-bool Newton::factorize_positive(NewtonReport& report) {
+/// Factorises the current matrix, shifted where it is singular or, if it has to be `positive`, not
+/// positive definite. False: its entries are not numbers.
+bool Newton::factorize(bool positive, NewtonReport& report) {
   Inertia inertia = solver_.factorize(values_);
   report.negative_pivots = inertia.negative_pivots;
-  if (inertia.factorised && inertia.negative_pivots == 0) return true;
+  if (inertia.factorised && (!positive || inertia.negative_pivots == 0)) return true;
   // Shift by ever more until positive definite, starting a little below the last shift needed.
   const double largest = values_.lpNorm<Eigen::Infinity>();
   if (!std::isfinite(largest)) return false;
@@ -126,13 +127,19 @@ bool Newton::factorize_positive(NewtonReport& report) {
 }
 
 /// Sets the step, as far as the problem admits. False: there is none, or it is not a number.
-bool Newton::find_direction(NewtonProblem& problem, NewtonReport& report) {
-  if (!factorize_positive(report)) return false;
+bool Newton::find_direction(NewtonProblem& problem, Mode mode, NewtonReport& report) {
+  const LowRank* unsymmetric = problem.low_rank();
+  if (!factorize(unsymmetric == nullptr || mode == Mode::LineSearch, report)) return false;
   const auto& free = dofs_.free();
   for (std::size_t i = 0; i < free.size(); ++i) {
     direction_[static_cast<Index>(i)] = -residual_[free[i]];
   }
-  solver_.solve(direction_);
+  if (unsymmetric == nullptr) {
+    solver_.solve(direction_);
+  } else {
+    corrected_.factorize(*unsymmetric);
+    corrected_.solve(direction_);
+  }
   for (std::size_t i = 0; i < free.size(); ++i) {
     step_[free[i]] = direction_[static_cast<Index>(i)];
   }

@@ -6,6 +6,7 @@
 
 #include "der/assembly/discrete_gradient_assembler.hpp"
 #include "der/core/index.hpp"
+#include "der/energies/registry.hpp"
 #include "der/model/edge_change.hpp"
 #include "der/model/spin.hpp"
 #include "stage_kernels.hpp"
@@ -20,6 +21,21 @@ constexpr double kLargestEdgeChange = 0.7;
 /// A few rounding errors of numbers up to this.
 double rounding(double largest) { return 8.0 * std::numeric_limits<double>::epsilon() * largest; }
 
+/// B of the tangents of all circulatory loads side by side, with N = 0.
+LowRank circulatory_rank(const Model& model) {
+  LowRank result;
+  for (const CirculatoryLoad& load : model.elements->circulatory) {
+    for (const auto& coordinate : load.coordinates) {
+      auto& column = result.columns.emplace_back();
+      for (const auto& [dof, weight] : coordinate) {
+        if (model.dofs.is_free(dof)) column.push_back({model.dofs.free_index(dof), weight});
+      }
+    }
+  }
+  result.core.setZero(result.rank(), result.rank());
+  return result;
+}
+
 }  // namespace
 
 Stage::Stage(const Model& model)
@@ -33,6 +49,7 @@ StageProblem::StageProblem(const Model& model, const Assembler& assembler)
     : model_(model),
       assembler_(assembler),
       tension_(model, assembler),
+      circulatory_(circulatory_rank(model)),
       guess_(Vector::Zero(model.num_dofs())),
       displacement_(Vector::Zero(model.num_dofs())),
       term_(Vector::Zero(model.num_dofs())) {}
@@ -78,6 +95,7 @@ void StageProblem::system(Vector& residual, Vector& values) {
     assembler_.gradient_and_hessian(*here_, residual, values);
   }
   add_stage_forces(residual);
+  set_circulatory_tangent();
   if (stage_->inertia != 0.0) assembler_.add_mass(stage_->mass, stage_->inertia, values);
   if (stage_->velocity_factor != 0.0 && model_.damped) {
     assembler_.add_diagonal(model_.damping, stage_->velocity_factor, values);
@@ -111,6 +129,17 @@ double StageProblem::residual_rounding(Vector& values) {
   return rounding(largest_magnitude(values) * largest_magnitude(here_->coordinates) +
                   stage_->inertia * largest_term(stage_->mass.lumped) +
                   stage_->velocity_factor * largest_term(model_.damping));
+}
+
+/// One block of N for each load.
+void StageProblem::set_circulatory_tangent() {
+  Index first = 0;
+  for (const CirculatoryLoad& load : model_.elements->circulatory) {
+    load.evaluate(*here_, term_of_load_);
+    const Index size = static_cast<Index>(term_of_load_.force.size());
+    circulatory_.core.block(first, first, size, size) = term_of_load_.tangent;
+    first += size;
+  }
 }
 
 /// The forces on nodes by which spinning sections enter a motion, `residual` being the elastic

@@ -9,9 +9,11 @@
 #include "der/energies/point_spring.hpp"
 #include "der/energies/rotational_spring.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "der/model/dimension.hpp"
 #include "der/model/location.hpp"
 #include "der/model/moment_place.hpp"
 #include "der/scenario/support.hpp"
+#include "der/supports/section_spring.hpp"
 
 namespace der {
 namespace {
@@ -24,22 +26,43 @@ Vec2 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
   return drawn_node(rod, edge + 1, model) - drawn_node(rod, edge, model);
 }
 
-template <int Nodes>
+template <int Dim, int Nodes>
 void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s,
                       const std::vector<Weighted>& weights, Model& model) {
-  using Kernel = PointSpring<Nodes>;
+  using Kernel = PointSpring<Dim, Nodes>;
+  using Point = typename Kernel::Point;
   std::array<Index, Kernel::kDofs> dofs{};
   typename Kernel::Constants constants;
-  constants.stiffness = Eigen::Map<const Vec2>(spring.stiffness.data());
+  constants.stiffness = Eigen::Map<const Point>(spring.stiffness.data());
   for (int i = 0; i < Nodes; ++i) {
     const auto& [place, weight] = weights[to_size(i)];
-    for (int c = 0; c < 2; ++c) dofs[to_size(2 * i + c)] = model.dof(rod.nodes[to_size(place)], c);
+    const Index first = model.dof(rod.nodes[to_size(place)], 0);
+    for (int c = 0; c < Dim; ++c) dofs[to_size(Dim * i + c)] = first + c;
     constants.weights[i] = weight;
-    constants.anchor += weight * drawn_node(rod, place, model);
+    constants.anchor += weight * model.initial_positions.segment<Dim>(first);
   }
-  if (!spring.anchor.empty()) constants.anchor = Eigen::Map<const Vec2>(spring.anchor.data());
+  if (!spring.anchor.empty()) constants.anchor = Eigen::Map<const Point>(spring.anchor.data());
   elements_of<Kernel>(*model.elements).add(dofs, constants);
-  rod.force_places.push_back({s, {-1, -1, -1}, constants.stiffness, constants.anchor});
+  ForcePlace place;
+  place.arc_length = s;
+  place.stiffness.head<Dim>() = constants.stiffness;
+  place.anchor.head<Dim>() = constants.anchor;
+  rod.force_places.push_back(place);
+}
+
+template <int Dim>
+void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s, Model& model) {
+  const std::vector<Weighted> weights = node_weights(rod, s);
+  switch (weights.size()) {
+    case 1:
+      return add_point_spring<Dim, 1>(spring, rod, s, weights, model);
+    case 2:
+      return add_point_spring<Dim, 2>(spring, rod, s, weights, model);
+    case 3:
+      return add_point_spring<Dim, 3>(spring, rod, s, weights, model);
+    default:
+      return add_point_spring<Dim, 4>(spring, rod, s, weights, model);
+  }
 }
 
 /// Turn [rad] of the weighted directions, from the initial direction of the first edge, at which
@@ -97,23 +120,14 @@ void add_spring(const scenario::Support& support, Model& model) {
   RodLayout& rod = model.rod(support.rod);
   const double s = arc_length_of(support.at, rod);
   if (!spring.stiffness.empty()) {
-    const std::vector<Weighted> weights = node_weights(rod, s);
-    switch (weights.size()) {
-      case 1:
-        add_point_spring<1>(spring, rod, s, weights, model);
-        break;
-      case 2:
-        add_point_spring<2>(spring, rod, s, weights, model);
-        break;
-      case 3:
-        add_point_spring<3>(spring, rod, s, weights, model);
-        break;
-      default:
-        add_point_spring<4>(spring, rod, s, weights, model);
-    }
+    with_dimension(model, [&](auto dim) { add_point_spring<dim>(spring, rod, s, model); });
   }
-  if (spring.rotational_stiffness == 0.0) return;
-  place_of_moments(s, rod).stiffness += spring.rotational_stiffness;
+  if (spring.rotational_stiffness.empty()) return;
+  if (model.dimension == 2) {
+    place_of_moments(s, rod).stiffness += spring.rotational_stiffness[0];
+  } else {
+    add_to_section_spring(s, Eigen::Map<const Vec3>(spring.rotational_stiffness.data()), rod);
+  }
 }
 
 void add_rotational_springs(RodLayout& rod, Model& model) {

@@ -107,7 +107,9 @@ def room_for_loads(
         corners.append(middle + metres_per_point * outer)
     for part in loads.foundations:
         rod = by_name[part.rod]
-        ground = metres_per_point * FOUNDATION_HEIGHT * ground_direction(part, rod, positions)
+        ground = (
+            metres_per_point * FOUNDATION_HEIGHT * ground_direction(part, rod, positions[:, :2])
+        )
         ends = [place_on(rod, positions, at)[:2] for at in (part.start, part.end)]
         corners.append(np.array(ends) + ground)
     for moment in loads.moments:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from der.film import MODE_SIZE
 from der.plotting.lengths import label_positions
-from der.plotting.supports import HeldPlace
+from der.plotting.supports import HeldPlace, SpringPlace
 from der.scene_loads import ActingLoads, acting_loads
 from der.sections import directors_along, sections_of, seen_half_widths
 
@@ -202,11 +202,23 @@ class Picture:
         }
 
     @cached_property
-    def springs(self) -> list[SpringSupport]:
+    def springs(self) -> list[SpringSupport] | list[SpringPlace]:
         """The spring supports of the scene."""
         from der._core import springs
 
-        return springs(self.result.scenario)
+        found = springs(self.result.scenario)
+        if self.plane.rotation is None:
+            return found
+        return [
+            SpringPlace(
+                spring.rod,
+                spring.nodes,
+                spring.weights,
+                self._seen_stiffness(np.array(spring.stiffness)).tolist(),
+                spring.rotational_stiffness,
+            )
+            for spring in found
+        ]
 
     def held_nodes(self, frame: int) -> list[HeldNode] | list[HeldPlace]:
         """Return the nodes that supports hold at a frame; those held towards the viewer only not.
@@ -230,12 +242,20 @@ class Picture:
             moments=[replace(load, value=turned(load.value)) for load in loads.moments],
             lines=[replace(load, value=turned(load.value)) for load in loads.lines],
             gravity=None if loads.gravity is None else turned(loads.gravity),
-            foundations=loads.foundations,
+            foundations=[
+                replace(part, stiffness=self._seen_stiffness(part.stiffness))
+                for part in loads.foundations
+            ],
         )
 
     def label(self, axes: Axes, low: Array, high: Array) -> None:
         """Title both axes in the unit that suits all between two corners [m], shape (2,)."""
         label_positions(axes, low, high, self.plane.names)
+
+    def _seen_stiffness(self, stiffness: Array) -> Array:
+        """Return stiffnesses along the scene's axes as those along the picture's axes."""
+        assert self.plane.rotation is not None
+        return np.asarray(self.plane.rotation**2 @ stiffness)
 
     def _turned_place(self, held: HeldNode) -> HeldPlace:
         assert self.plane.rotation is not None

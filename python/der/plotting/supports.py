@@ -64,6 +64,20 @@ class HeldPlace:
     tangent_angle: float | None
 
 
+@dataclass(frozen=True, eq=False)
+class SpringPlace:
+    """A spring as a picture of a run in space shows it: with the attributes of a `SpringSupport`.
+
+    The stiffness [N/m] is that along the axes of the picture.
+    """
+
+    rod: str
+    nodes: NDArray[np.int32]
+    weights: NDArray[np.float64]
+    stiffness: list[float]
+    rotational_stiffness: float
+
+
 def draw_supports(
     axes: Axes,
     rods: Iterable[Rod],
@@ -95,7 +109,7 @@ def draw_supports(
 def draw_springs(
     axes: Axes,
     rods: Iterable[Rod],
-    springs: Iterable[SpringSupport],
+    springs: Iterable[SpringSupport | SpringPlace],
     positions: NDArray[np.float64],
 ) -> None:
     """Draw a zigzag line to the ground for each spring, and a spiral for one against turning.
@@ -149,7 +163,7 @@ def draw_foundations(
     by_name = {rod.name: rod for rod in rods}
     for part in parts:
         rod = by_name[part.rod]
-        down = ground_direction(part, rod, positions)
+        down = ground_direction(part, rod, positions[:, :2])
         angle = float(np.arctan2(down[0], -down[1]))
         count = max(2, round(_FOUNDATION_SPRINGS * (part.end - part.start) / rod.length))
         for number, at in enumerate(np.linspace(part.start, part.end, count)):

@@ -28,7 +28,7 @@ template <class Kernel>
 void check_derivatives(Shape shape, Random& random) {
   constexpr int n = Kernel::kDofs;
   using Coordinates = Eigen::Matrix<double, n, 1>;
-  const auto constants = sample_constants(Kernel{}, random);
+  auto constants = sample_constants(Kernel{}, random);
   Configuration here = sample_configuration(random);
   const Coordinates x = sample_positions<Kernel>(shape, random);
   sample_frames(Kernel{}, constants, x, random, here);

@@ -60,20 +60,22 @@ inline PlanarMoment::Constants sample_constants(const PlanarMoment&, Random& ran
   return {uniform(random, 0.1, 1.0), kMoment};
 }
 
-inline Foundation::Constants sample_constants(const Foundation&, Random& random) {
-  Foundation::Constants c;
-  c.stiffness << uniform(random, 0.5, 5.0), uniform(random, 0.0, 5.0);
+template <int Dim>
+typename Foundation<Dim>::Constants sample_constants(const Foundation<Dim>&, Random& random) {
+  typename Foundation<Dim>::Constants c;
+  for (double& stiffness : c.stiffness) stiffness = uniform(random, 0.0, 5.0);
   for (double& coordinate : c.drawn) coordinate = uniform(random, -1.0, 1.0);
   const double shared = uniform(random, 0.0, 0.2);
   c.lengths << uniform(random, 0.2, 0.5), shared, shared, uniform(random, 0.2, 0.5);
   return c;
 }
 
-template <int Nodes>
-typename PointSpring<Nodes>::Constants sample_constants(const PointSpring<Nodes>&, Random& random) {
-  typename PointSpring<Nodes>::Constants c;
-  c.stiffness << uniform(random, 0.5, 5.0), uniform(random, 0.0, 5.0);
-  c.anchor << uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0);
+template <int Dim, int Nodes>
+typename PointSpring<Dim, Nodes>::Constants sample_constants(const PointSpring<Dim, Nodes>&,
+                                                             Random& random) {
+  typename PointSpring<Dim, Nodes>::Constants c;
+  for (double& stiffness : c.stiffness) stiffness = uniform(random, 0.0, 5.0);
+  for (double& coordinate : c.anchor) coordinate = uniform(random, -1.0, 1.0);
   for (int i = 0; i < Nodes; ++i) c.weights[i] = uniform(random, -0.1, 1.0);
   return c;
 }
@@ -150,6 +152,25 @@ typename FromSpatialPivot<Kernel>::Constants sample_constants(const FromSpatialP
     return SpatialPivot{uniform(random, -0.01, 0.01), sample_held_frame(random)};
   };
   return {sample_constants(Kernel{}, random), pivot(), pivot()};
+}
+
+template <int Edges>
+typename SectionSpring<Edges>::Constants sample_constants(const SectionSpring<Edges>&,
+                                                          Random& random) {
+  typename SectionSpring<Edges>::Constants c;
+  for (double& stiffness : c.stiffness) stiffness = uniform(random, 0.0, 5.0);
+  const double across = Edges == 1 ? 1.0 : uniform(random, -0.1, 1.1);
+  const double along = Edges == 1 ? 1.0 : uniform(random, 0.0, 1.0);
+  for (int i = 0; i < Edges; ++i) {
+    auto& held = c.edges[static_cast<std::size_t>(i)];
+    held.block = FrameBlock::of(i);
+    held.first = {uniform(random, -0.01, 0.01), sample_held_frame(random)};
+    held.last = {uniform(random, -0.01, 0.01), sample_held_frame(random)};
+    held.reference_twist = held.block.twist_at_end();
+    held.weights =
+        i == 0 ? Vec3(across, across, along) : Vec3(1.0 - across, 1.0 - across, 1.0 - along);
+  }
+  return c;
 }
 
 enum class Shape { Arbitrary, NearStraight, NearFolded, Stretched };
@@ -258,6 +279,23 @@ void sample_frames(const SpatialClamp<Curvature>& /*kernel*/,
   const SectionFrame held = constants.held.untwisted(here.controls);
   here.controls[constants.edge.twist_at_start()] = twist_between(held, edge);
   here.controls[constants.edge.twist_at_end()] = twist_between(edge, held);
+}
+
+/// The drawn sections are within 2.5 rad of the edges.
+template <int Edges, class Coordinates>
+void sample_frames(const SectionSpring<Edges>& /*kernel*/,
+                   typename SectionSpring<Edges>::Constants& constants, const Coordinates& x,
+                   Random& random, Configuration& here) {
+  for (int i = 0; i < Edges; ++i) {
+    auto& held = constants.edges[static_cast<std::size_t>(i)];
+    const Vec3 e = x.template segment<3>(3 * i + 3) + held.last.offset(here.controls) -
+                   x.template segment<3>(3 * i) - held.first.offset(here.controls);
+    const SectionFrame edge = sample_source(i, e, random, here);
+    const Vec3 axis = made_perpendicular(direction(random), edge.tangent);
+    const Vec3 drawn = Eigen::AngleAxisd(uniform(random, 0.0, 2.5), axis) * edge.tangent;
+    held.drawn = sample_frame(drawn, random);
+    here.controls[held.reference_twist] = twist_between(edge, held.drawn);
+  }
 }
 
 template <class Kernel, class Coordinates>

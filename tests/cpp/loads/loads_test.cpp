@@ -13,6 +13,7 @@
 
 #include "der/building/builder.hpp"
 #include "der/core/error.hpp"
+#include "der/energies/registry.hpp"
 #include "der/loads/external_force.hpp"
 #include "der/scenario/reader.hpp"
 #include "der/scenario/scenario.hpp"
@@ -136,6 +137,18 @@ TEST_CASE("loads: set to zero, each kind leaves no force behind and keeps its ta
     CHECK(unloaded.tables.size() == loaded.tables.size());
     CHECK(unloaded.damped == loaded.damped);
   }
+}
+
+TEST_CASE("loads: a force that follows the rod, set to zero, leaves no force behind") {
+  scenario::Scene scene = samples({{"loads.3.point_force.follower", "true"}}).scene();
+  scene.loads = {scene.loads[3]};
+  const Model loaded = build_model(scene);
+  REQUIRE(loaded.elements->circulatory.size() == 1);
+  set_to_zero(scene.loads[0]);
+  const Model unloaded = build_model(scene);
+  CHECK(largest_force(loaded) > 0.0);
+  CHECK(largest_force(unloaded) == 0.0);
+  CHECK(unloaded.tables.size() == loaded.tables.size());
 }
 
 TEST_CASE("loads: a wrong rod, place or part of a rod is refused for every kind") {

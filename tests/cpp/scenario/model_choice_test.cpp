@@ -84,11 +84,37 @@ TEST_CASE("model: loads in the plane, and out of it") {
       "[{distributed_force: {rod: beam, force: {times: [0, 1], values: [[0, 0, 0], [0, 0, 1]]}}}]";
   CHECK(chosen({{"loads", table}}) == "spatial_bend");
   CHECK(chosen({{"loads", "[{moment: {rod: beam, at: end, moment: [0, 0, 2]}}]"}}) == "planar");
-  // Spatial models have no moments yet: the message names the model.
-  CHECK(contains(
-      test::diagnostics(
-          kInSpace + Overrides{{"loads", "[{moment: {rod: beam, at: end, moment: [0, 1, 0]}}]"}}),
-      "moments: not available yet in the spatial models"));
+  const ChosenModel turned =
+      model_of({{"loads", "[{moment: {rod: beam, at: end, moment: [0, 1, 0]}}]"}});
+  CHECK(turned.kind == ModelChoice::Spatial);
+  CHECK(turned.reason ==
+        "loads.0.moment is about an axis that is not z, and loads.0.moment can twist rod 'beam'");
+}
+
+TEST_CASE("model: loads that turn with the rod in the plane, and out of it") {
+  const auto loads = [](const std::string& kind, const std::string& amount) {
+    return chosen(
+        {{"loads", "[{" + kind + ": {rod: beam, at: end, follower: true, " + amount + "}}]"}});
+  };
+  CHECK(loads("point_force", "force: [0, 1, 0]") == "planar");
+  CHECK(loads("moment", "moment: 1") == "planar");
+  CHECK(loads("point_force", "force: [0, 0, 1]") == "spatial");
+  CHECK(loads("moment", "moment: [1, 0, 0]") == "spatial");
+}
+
+TEST_CASE("model: springs against turning in the plane, and out of it") {
+  const auto spring = [](const std::string& stiffness, const Overrides& more = {}) {
+    return chosen(more + Overrides{{"supports",
+                                    "[{rod: beam, at: start, fix: [x, y, z], spring: "
+                                    "{rotational_stiffness: " +
+                                        stiffness + "}}]"}});
+  };
+  CHECK(spring("2") == "planar");
+  CHECK(spring("[1, 2, 3]") == "planar");
+  const Overrides askew{{"rods.beam.cross_section.director", "[0, 1, 1]"}};
+  CHECK(spring("[2, 2, 3]", askew) == "planar");
+  CHECK(spring("[1, 2, 3]", askew) == "spatial");
+  CHECK(spring("2", kAlongZ) == "spatial");
 }
 
 TEST_CASE("model: supports that move in the plane, and out of it") {

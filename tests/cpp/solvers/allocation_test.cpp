@@ -101,6 +101,27 @@ time: {duration: 1, step: 2e-4}
   }
 }
 
+TEST_CASE("a step under loads without a potential allocates nothing") {
+  Simulation simulation(Scenario::parse(R"(
+rods:
+  - name: rod
+    nodes: 9
+    from: [0, 0, 0]
+    to: [1, 0, 0]
+    cross_section: {circle: {radius: 0.01}}
+    material: {youngs_modulus: 1e6, poissons_ratio: 0.3, density: 1000}
+supports:
+  - {rod: rod, at: start, clamp: true}
+  - {rod: rod, at: 0.4, spring: {stiffness: 0.1, rotational_stiffness: [1e-4, 2e-4, 1e-4]}}
+loads:
+  - point_force: {rod: rod, at: end, force: [0, 1e-3, 1e-3], follower: true}
+  - moment: {rod: rod, at: 0.61, moment: [1e-3, 0, 1e-3]}
+time: {duration: 1, step: 2e-3, integrator: implicit_midpoint}
+)"));
+  CHECK(allocations_of_steps(simulation) == 0);
+  CHECK(simulation.counters().newton_iterations >= 40);
+}
+
 TEST_CASE("an adaptive step allocates nothing, with any stepper, rejected ones included") {
   const std::string scene = falling_cantilever("time: {duration: 1, tolerance: 1e-4}\n");
   for (const StepperInfo& info : stepper_registry()) {

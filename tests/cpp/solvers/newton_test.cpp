@@ -37,13 +37,8 @@ time: {duration: 20, step: 0.05, integrator: implicit_euler}
 /// acting force and above rounding. A solve that takes steps of any length ends at the first
 /// iterate whose residual is below the tolerance: each tolerance is a little below what the one
 /// before has given.
-std::vector<double> residuals_of_newton(const std::string& force, const std::string& EA) {
-  const Model model = build_model(Scenario::parse(kPressed, "scene",
-                                                  {{"time", ""},
-                                                   {"analysis", "static"},
-                                                   {"rods.rod.cross_section.stiffness.EA", EA},
-                                                   {"loads.0.point_force.force", force}})
-                                      .scene());
+std::vector<double> residuals_of_newton(const Scenario& scenario) {
+  const Model model = build_model(scenario.scene());
   const Pattern pattern = build_pattern(model);
   const LinearSolverChoice linear = make_linear_solver("banded", pattern);
   const Assembler assembler(model, linear.solver->layout());
@@ -66,6 +61,25 @@ std::vector<double> residuals_of_newton(const std::string& force, const std::str
     if (residual < 1e-11 || residual >= residuals.back()) return residuals;  // rounding
     residuals.push_back(residual);
   }
+}
+
+Scenario pressed(const std::string& force, const std::string& EA) {
+  return Scenario::parse(kPressed, "scene",
+                         {{"time", ""},
+                          {"analysis", "static"},
+                          {"rods.rod.cross_section.stiffness.EA", EA},
+                          {"loads.0.point_force.force", force}});
+}
+
+/// r(k + 1) <= c r(k)^2, the force being the unit.
+void check_quadratic(const std::vector<double>& residuals, double c) {
+  int checked = 0;
+  for (std::size_t k = 1; k + 1 < residuals.size(); ++k) {
+    if (residuals[k] > 0.1) continue;
+    CHECK(residuals[k + 1] <= c * residuals[k] * residuals[k]);
+    ++checked;
+  }
+  CHECK(checked >= 1);
 }
 
 }  // namespace
@@ -129,18 +143,37 @@ TEST_CASE("Newton's method converges quadratically near the solution") {
     for (const char* EA : {"1", "20"}) {
       CAPTURE(force);
       CAPTURE(EA);
-      const std::vector<double> residuals = residuals_of_newton(force, EA);
-      // r(k + 1) <= c r(k)^2, the force being the unit; measured: c from 0.002 to 1.
-      int checked = 0;
-      for (std::size_t k = 1; k + 1 < residuals.size(); ++k) {
-        if (residuals[k] > 0.1) continue;
-        CHECK(residuals[k + 1] <= 3.0 * residuals[k] * residuals[k]);
-        ++checked;
-      }
-      CHECK(checked >= 1);
+      const std::vector<double> residuals = residuals_of_newton(pressed(force, EA));
+      check_quadratic(residuals, 3.0);  // measured: from 0.002 to 1
       CHECK(residuals.back() < 1e-5);
     }
   }
+}
+
+TEST_CASE("Newton's method converges quadratically under loads without a potential") {
+  const char* const kLoaded = R"(
+rods:
+  - name: rod
+    nodes: 13
+    from: [0, 0, 0]
+    to: [1, 0, 0]
+    cross_section: {stiffness: {EA: 20, EI1: 1, EI2: 2, GJ: 0.8, mass_per_length: 1}, director: [0, 1, 0]}
+supports:
+  - {rod: rod, at: start, clamp: true}
+loads:
+  - point_force: {rod: rod, at: end, force: [-0.2, 0.5, 0.3], follower: true}
+  - point_force: {rod: rod, at: 0.43, force: [0, 0.3, 0.2], follower: true}
+  - moment: {rod: rod, at: end, moment: [0.3, 0.4, -0.2]}
+  - moment: {rod: rod, at: 0.72, moment: [0.2, 0.1, 0.3], follower: true}
+analysis: static
+)";
+  check_quadratic(residuals_of_newton(Scenario::parse(kLoaded)), 3.0);
+  check_quadratic(residuals_of_newton(Scenario::parse(kLoaded, "scene",
+                                                      {{"model", "planar"},
+                                                       {"loads",
+                                                        "[{point_force: {rod: rod, at: end, force: "
+                                                        "[-0.2, 0.8, 0], follower: true}}]"}})),
+                  3.0);
 }
 
 }  // namespace der::test

@@ -26,7 +26,9 @@ class Assembler {
   /// Number of plain stretch elements, those that begin and end at nodes.
   [[nodiscard]] Index num_plain_edges() const;
 
-  /// Sets `gradient` (all degrees of freedom) [N] of the potential energy of all elements.
+  /// Sets `gradient` (all degrees of freedom) [N] of the potential energy of all elements, less the
+  /// forces of circulatory loads. These have no part in the Hessian
+  /// (energies/circulatory_load.hpp).
   void gradient(const Configuration& here, Vector& gradient) const;
   /// Sets `gradient` likewise, and `values` to the Hessian [N/m].
   void gradient_and_hessian(const Configuration& here, Vector& gradient, Vector& values) const;

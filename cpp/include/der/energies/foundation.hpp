@@ -11,13 +11,17 @@ namespace der {
 ///   E = 1/2 integral u^T k u ds = 1/2 k (L00 u0^2 + 2 L01 u0 u1 + L11 u1^2),   k diagonal,
 /// with L_ij the integral of the product of the shape functions over the part that has a
 /// foundation. On a whole edge L is l/6 [2 1; 1 2], the consistent matrix of linear interpolation.
+template <int Dim>
 struct Foundation {
-  static constexpr int kDofs = 4;
+  static constexpr int kDofs = 2 * Dim;
+  static constexpr int kNodes = 2;
+  using Ends = Eigen::Matrix<double, kDofs, 1>;
   static constexpr EnergyTerm kTerm = EnergyTerm::Spring;
   struct Constants {
-    Vec2 stiffness = Vec2::Zero();                      ///< [N/m^2] along x and y
-    Eigen::Vector4d drawn = Eigen::Vector4d::Zero();    ///< positions without force [m]
-    Eigen::Matrix2d lengths = Eigen::Matrix2d::Zero();  ///< L, symmetric [m]
+    /// [N/m^2] along each axis
+    Eigen::Matrix<double, Dim, 1> stiffness = Eigen::Matrix<double, Dim, 1>::Zero();
+    Ends drawn = Ends::Zero();    ///< positions without force [m]
+    Mat2 lengths = Mat2::Zero();  ///< L, symmetric [m]
   };
 
   /// Stiffness [N/m] against moving the edge along an axis; 0: the foundation does not hold it
@@ -27,14 +31,14 @@ struct Foundation {
   }
 
   template <Derivatives D>
-  static void evaluate(const Constants& c, const Configuration& /*here*/, const Eigen::Vector4d& x,
+  static void evaluate(const Constants& c, const Configuration& /*here*/, const Ends& x,
                        LocalTerm<kDofs>& out) {
-    const Eigen::Vector4d displacement = x - c.drawn;
+    using Columns = Eigen::Matrix<double, Dim, 2>;
+    const Ends displacement = x - c.drawn;
     // Column i is the force on node i.
-    const Eigen::Matrix2d force =
-        c.stiffness.asDiagonal() *
-        (Eigen::Map<const Eigen::Matrix2d>(displacement.data()) * c.lengths);
-    const Eigen::Map<const Eigen::Vector4d> gradient(force.data());
+    const Columns force =
+        c.stiffness.asDiagonal() * (Eigen::Map<const Columns>(displacement.data()) * c.lengths);
+    const Eigen::Map<const Ends> gradient(force.data());
     out.energy = 0.5 * gradient.dot(displacement);
     if constexpr (D == Derivatives::Energy) return;
 
@@ -43,7 +47,8 @@ struct Foundation {
 
     for (int i = 0; i < 2; ++i) {
       for (int j = 0; j < 2; ++j) {
-        out.hessian.block<2, 2>(2 * i, 2 * j) = (c.lengths(i, j) * c.stiffness).asDiagonal();
+        out.hessian.template block<Dim, Dim>(Dim * i, Dim * j) =
+            (c.lengths(i, j) * c.stiffness).asDiagonal();
       }
     }
   }

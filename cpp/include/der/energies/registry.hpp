@@ -1,7 +1,9 @@
 #pragma once
 
 #include <tuple>
+#include <vector>
 
+#include "der/energies/circulatory_load.hpp"
 #include "der/energies/element_list.hpp"
 #include "der/energies/foundation.hpp"
 #include "der/energies/from_pivot.hpp"
@@ -11,6 +13,7 @@
 #include "der/energies/planar_moment.hpp"
 #include "der/energies/point_spring.hpp"
 #include "der/energies/rotational_spring.hpp"
+#include "der/energies/section_spring.hpp"
 #include "der/energies/spatial_bend.hpp"
 #include "der/energies/stretch.hpp"
 
@@ -43,14 +46,25 @@ struct ElementLists {
                            ElementList<FromSpatialPivot<SpatialClamp<AngleCurvature>>>,      //
                            ElementList<FromSpatialPivot<SpatialClamp<TangentCurvature>>>,    //
                            ElementList<PlanarMoment>,                                        //
-                           ElementList<Foundation>,                                          //
-                           ElementList<PointSpring<1>>,                                      //
-                           ElementList<PointSpring<2>>,                                      //
-                           ElementList<PointSpring<3>>,                                      //
-                           ElementList<PointSpring<4>>,                                      //
+                           ElementList<Foundation<2>>,                                       //
+                           ElementList<Foundation<3>>,                                       //
+                           ElementList<PointSpring<2, 1>>,                                   //
+                           ElementList<PointSpring<2, 2>>,                                   //
+                           ElementList<PointSpring<2, 3>>,                                   //
+                           ElementList<PointSpring<2, 4>>,                                   //
+                           ElementList<PointSpring<3, 1>>,                                   //
+                           ElementList<PointSpring<3, 2>>,                                   //
+                           ElementList<PointSpring<3, 3>>,                                   //
+                           ElementList<PointSpring<3, 4>>,                                   //
                            ElementList<RotationalSpring<1>>,                                 //
-                           ElementList<RotationalSpring<2>>>;
+                           ElementList<RotationalSpring<2>>,                                 //
+                           ElementList<SectionSpring<1>>,                                    //
+                           ElementList<SectionSpring<2>>>;
   Lists lists;
+  std::vector<CirculatoryLoad> circulatory;  ///< what acts on the rods and is no energy
+
+  /// Whether forces are the gradient of a potential, so that the tangent is symmetric.
+  [[nodiscard]] bool has_potential() const { return circulatory.empty(); }
 };
 
 /// Calls `f(list)` for each kind of element.

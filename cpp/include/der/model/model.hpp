@@ -72,8 +72,15 @@ struct ForcePlace {
   double arc_length = 0.0;  ///< [m]
   /// Controls of the load [N]; -1: there is none, or it is constant and at a node, or planar.
   std::array<Index, 3> force{-1, -1, -1};
-  Vec2 stiffness = Vec2::Zero();  ///< of the spring [N/m]
-  Vec2 anchor = Vec2::Zero();     ///< [m]
+  Vec3 stiffness = Vec3::Zero();  ///< of the spring [N/m]; planar: z is 0
+  Vec3 anchor = Vec3::Zero();     ///< [m]
+  Index follower = -1;  ///< of a load that turns with the rod: number in ElementLists::circulatory
+};
+
+/// A place at which springs hold the section of a rod in space against turning.
+struct SectionSpringPlace {
+  double arc_length = 0.0;        ///< [m]
+  Vec3 stiffness = Vec3::Zero();  ///< towards the two directors, about the tangent [N m/rad]
 };
 
 /// A part of a rod on which a distributed force acts.
@@ -116,9 +123,10 @@ struct RodLayout {
   /// Natural turning angle at each node that bends [rad], at clamped ones of the clamp's cells; 0
   /// at free ends.
   std::vector<double> rest_turning_angle;
-  std::vector<Clamp> clamps;               ///< none on a rod that does not bend
-  std::vector<MomentPlace> moment_places;  ///< no two at the same place
-  std::vector<ForcePlace> force_places;    ///< of forces at single places
+  std::vector<Clamp> clamps;                        ///< none on a rod that does not bend
+  std::vector<MomentPlace> moment_places;           ///< no two at the same place
+  std::vector<ForcePlace> force_places;             ///< of forces at single places
+  std::vector<SectionSpringPlace> section_springs;  ///< no two at the same place
   std::vector<DistributedPlace> distributed_places;
   std::vector<FoundationPlace> foundation_places;
   double draw_radius = 0.0;           ///< half the height of the section [m]; 0 if not known

@@ -20,12 +20,14 @@ struct Prescribed {
   Series displacement;
 };
 
-/// An elastic support: pulls a place of a rod to an anchor, or its tangent to the initial
-/// direction.
+/// An elastic support: pulls a place of a rod to an anchor, or its section to the initial
+/// orientation.
 struct Spring {
-  Components stiffness;               ///< [N/m] along each axis; empty: none
-  Components anchor;                  ///< [m]; empty: the initial position of the place
-  double rotational_stiffness = 0.0;  ///< [N m/rad]; 0: none
+  Components stiffness;  ///< [N/m] along each axis; empty: none
+  Components anchor;     ///< [m]; empty: the initial position of the place
+  /// [N m/rad] Against turning towards the first director, towards the second, and about the
+  /// tangent; in a planar model all three are that in the plane. Empty: none.
+  Components rotational_stiffness;
 };
 
 /// A clamp holds its node, and besides:

@@ -5,6 +5,7 @@
 #include "der/core/types.hpp"
 #include "der/model/dof_map.hpp"
 #include "der/solvers/linear_solver.hpp"
+#include "der/solvers/low_rank.hpp"
 #include "der/solvers/newton_problem.hpp"
 
 namespace der {
@@ -31,7 +32,8 @@ struct NewtonReport {
 /// that turns is first stretched by its step, then springs back), with the matrix that the problem
 /// corrects after them. If they do not get there, again from the guess with a line search on the
 /// slope of the potential along the step. Where the matrix is not positive definite it is shifted
-/// until it is, so that every step leads downhill.
+/// until it is, so that every step leads downhill. The signs of a matrix tell nothing where the
+/// derivative has another, unsymmetric part: full steps then take it as it is.
 class Newton {
  public:
   /// `num_values`: length of the array of values that the problem fills.
@@ -53,8 +55,8 @@ class Newton {
   enum class Mode { FullSteps, LineSearch };
 
   NewtonReport iterate(NewtonProblem& problem, Mode mode);
-  bool find_direction(NewtonProblem& problem, NewtonReport& report);
-  bool factorize_positive(NewtonReport& report);
+  bool find_direction(NewtonProblem& problem, Mode mode, NewtonReport& report);
+  bool factorize(bool positive, NewtonReport& report);
   double line_search(NewtonProblem& problem);
   void move(NewtonProblem& problem, const Vector& start, double factor);
   [[nodiscard]] double slope() const { return residual_.dot(step_); }
@@ -63,6 +65,7 @@ class Newton {
 
   const DofMap& dofs_;
   LinearSolver& solver_;
+  LowRankSolver corrected_;  // of the matrix with the problem's low-rank part
   NewtonOptions options_;
   Vector residual_;      // all degrees of freedom
   Vector values_;        // of the matrix, shifted where need be

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "der/core/types.hpp"
+#include "der/solvers/low_rank.hpp"
 
 namespace der {
 
@@ -13,7 +14,7 @@ struct StepBound {
 
 /// A system of nonlinear equations as Newton's method sees it: a residual [N] and its derivative as
 /// functions of a displacement [m] of all degrees of freedom, held ones included. The residual is
-/// the gradient of a potential, or nearly so.
+/// the gradient of a potential, or nearly so, unless there is a `low_rank` part.
 class NewtonProblem {
  public:
   NewtonProblem() = default;
@@ -33,6 +34,9 @@ class NewtonProblem {
   virtual void residual(Vector& residual) = 0;
   /// Sets `residual` likewise, and `values` to its derivative in the layout of the linear solver.
   virtual void system(Vector& residual, Vector& values) = 0;
+  /// What the last `system` has of the derivative besides `values`: the unsymmetric part of a
+  /// residual without a potential. Null: nothing.
+  [[nodiscard]] virtual const LowRank* low_rank() const { return nullptr; }
   /// May improve the derivative just evaluated after a full `step` (all degrees of freedom) that
   /// led here.
   virtual void correct_after(const Vector& step, Vector& values) = 0;

@@ -2,8 +2,10 @@
 
 #include "der/assembly/assembler.hpp"
 #include "der/core/types.hpp"
+#include "der/energies/circulatory_load.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
+#include "der/solvers/low_rank.hpp"
 #include "der/solvers/newton_problem.hpp"
 #include "der/solvers/predicted_tension.hpp"
 
@@ -14,10 +16,11 @@ class DiscreteGradientAssembler;
 /// The nonlinear system that one stage of an implicit stepper, or a static analysis, has to solve
 /// for the displacement d from the positions `origin`:
 ///   inertia M (d - inertia_target) + velocity_factor C (d - velocity_reference)
-///     + grad E(origin + d) - force = 0
-/// over the free degrees of freedom; M is `mass`, C the model's diagonal damping. All vectors have
-/// one entry a degree of freedom. The velocity that a stepper makes of a displacement has the
-/// rounding error of the displacement; that of a difference of positions grows as steps get short.
+///     + grad E(origin + d) - Q(origin + d) - force = 0
+/// over the free degrees of freedom; Q are the circulatory loads, M is `mass`, C the model's
+/// diagonal damping. All vectors have one entry a degree of freedom. The velocity that a stepper
+/// makes of a displacement has the rounding error of the displacement; that of a difference of
+/// positions grows as steps get short.
 struct Stage {
   explicit Stage(const Model& model);
   double inertia = 0.0;          ///< [1/s^2]; 0: statics
@@ -50,6 +53,9 @@ class StageProblem final : public NewtonProblem {
   void solution_changed(const Vector& displacement) override;
   void residual(Vector& residual) override;
   void system(Vector& residual, Vector& values) override;
+  [[nodiscard]] const LowRank* low_rank() const override {
+    return circulatory_.empty() ? nullptr : &circulatory_;
+  }
   void correct_after(const Vector& step, Vector& values) override;
   StepBound largest_step(const Vector& step) override;
   [[nodiscard]] double acting_force() const override { return acting_; }
@@ -63,6 +69,7 @@ class StageProblem final : public NewtonProblem {
   [[nodiscard]] double velocity(Index dof) const {
     return stage_->velocity_factor * (displacement_[dof] - stage_->velocity_reference[dof]);
   }
+  void set_circulatory_tangent();
   void add_spin_forces(Vector& residual) const;
   void add_stage_forces(Vector& residual);
 
@@ -71,6 +78,8 @@ class StageProblem final : public NewtonProblem {
   const Stage* stage_ = nullptr;
   Configuration* here_ = nullptr;
   PredictedTension tension_;
+  LowRank circulatory_;  // tangent of the circulatory loads
+  CirculatoryTerm term_of_load_;
   Vector guess_;           // coordinates
   Vector displacement_;    // from the stage's origin
   Vector term_;            // one term of the residual

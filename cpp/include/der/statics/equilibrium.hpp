@@ -43,6 +43,9 @@ struct EquilibriumReport {
 /// relaxation, then restarts from bent and from straight shapes. An equilibrium with unstable
 /// directions is left along the softest of them, to both sides, by the gradient flow; the lower of
 /// the equilibria to which the two sides lead is taken, until one is stable.
+///
+/// Circulatory loads (energies/circulatory_load.hpp) have no potential: all loads are then raised
+/// from none, and the equilibrium on that path has no verdict on its stability.
 EquilibriumReport find_equilibrium(const Model& model, const Assembler& assembler,
                                    LinearSolver& solver, const EquilibriumOptions& options,
                                    State& state);

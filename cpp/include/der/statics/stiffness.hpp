@@ -19,7 +19,10 @@ struct Stability {
   /// Directions that the assembled stiffness leaves in doubt, so that they were judged element by
   /// element.
   Index doubtful_directions = 0;
+  /// Whether there is a verdict: not where circulatory loads act, which have no potential.
+  bool judged = true;
   [[nodiscard]] const char* name() const {
+    if (!judged) return "not_judged";
     if (unstable_directions > 0) return "unstable";
     if (unknown_directions > 0) return "unknown";
     return neutral_directions > 0 ? "neutral" : "stable";

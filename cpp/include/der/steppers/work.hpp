@@ -18,7 +18,7 @@ void stage_displacement(const Model& model, const Vector& start, const Vector& e
                         double dt, const Eigen::Ref<const Vector>& velocities,
                         Vector& displacement);
 
-/// Work [J] of moments along `displacement` [m].
+/// Work [J] of moments and circulatory loads along `displacement` [m].
 double moment_work(const Model& model, const Configuration& here, const Vector& displacement);
 
 /// Work [J] of clamps that turn during a step: the energy that turning gives the elements, the mean

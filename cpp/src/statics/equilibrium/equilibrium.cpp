@@ -4,10 +4,12 @@
 #include <utility>
 #include <vector>
 
+#include "der/energies/registry.hpp"
 #include "der/loads/external_force.hpp"
 #include "der/statics/potential.hpp"
 #include "der/statics/rigid_motion.hpp"
 #include "statics/equilibrium/dynamic_relaxation.hpp"
+#include "statics/equilibrium/load_raising.hpp"
 #include "statics/equilibrium/load_steps.hpp"
 #include "statics/equilibrium/moving_supports.hpp"
 #include "statics/equilibrium/polishing.hpp"
@@ -35,6 +37,13 @@ StaticLoads loads_of(const Model& model, const State& state) {
   return loads;
 }
 
+/// The forces of all loads in a shape [N].
+Vector acting_forces(const Model& model, const StaticLoads& loads, const Shape& shape) {
+  Vector forces = loads.force;
+  add_circulatory_forces(model.elements->circulatory, loads.at(model, shape), 1.0, forces);
+  return forces;
+}
+
 /// Whether the structure moved or turned without end: other methods then would, too.
 bool is_unbounded(const FailedSearch& failed) {
   return failed.cause == EquilibriumFailure::DriftsAway ||
@@ -53,6 +62,7 @@ class EquilibriumSearch {
                     const EquilibriumOptions& options, const State& state)
       : model_(model),
         leave_saddles_(options.leave_saddles),
+        has_potential_(model.elements->has_potential()),
         loads_(loads_of(model, state)),
         newton_(model, assembler, solver, options.newton,
                 PlanarAdmissibility(model, loads_.force, state.positions)),
@@ -75,7 +85,8 @@ class EquilibriumSearch {
 
  private:
   std::optional<FailedSearch> search(Shape& shape) {
-    if (std::string unheld = find_unheld_part(model_, loads_.force); !unheld.empty()) {
+    const Vector forces = acting_forces(model_, loads_, shape);
+    if (std::string unheld = find_unheld_part(model_, forces); !unheld.empty()) {
       return FailedSearch{EquilibriumFailure::NotHeld, std::move(unheld)};
     }
     const std::vector<double> whole_turns = move_supports(
@@ -105,13 +116,14 @@ class EquilibriumSearch {
 
   /// Newton's method, then pseudo-transient continuation from where it started.
   std::optional<FailedSearch> find_near(const StaticLoads& loads, Shape& shape) {
+    if (!has_potential_) return raise_loads(model_, loads, newton_, continuation_, shape);
     if (!newton_.balance(loads, shape)) return std::nullopt;
     return continuation_.run(loads, inverse_step(), shape).failed;
   }
 
   /// Moves a shape on the way of the supports to the stable equilibrium near it, if there is one.
   void equilibrate(const StaticLoads& loads, Shape& shape) {
-    if (find_near(loads, shape)) return;
+    if (find_near(loads, shape) || !has_potential_) return;
     stiffness_.evaluate(loads.at(model_, shape));
     if (leave_saddles_ && stiffness_.stability().unstable_directions > 0) {
       go_down(loads, shape);
@@ -129,7 +141,7 @@ class EquilibriumSearch {
   std::optional<FailedSearch> find_any(Shape& shape) {
     const Shape start = shape;
     auto failed = find_near(loads_, shape);
-    if (!failed || is_unbounded(*failed)) return failed;
+    if (!failed || !has_potential_ || is_unbounded(*failed)) return failed;
     shape = start;
     if (step_loads(model_, loads_, newton_.force_scale(), continuation_, shape) ||
         relax_dynamically(model_, loads_, newton_, stiffness_, shape, relaxation_steps_) ||
@@ -163,10 +175,17 @@ class EquilibriumSearch {
   }
 
   /// Enters stability, residual and largest turning angle of an equilibrium into the report, and
-  /// polishes the equilibrium. Fails if round-off hides it.
+  /// polishes the equilibrium. Fails if round-off hides it. Without a potential there is no verdict
+  /// on stability, and Newton's method had the exact tangent.
   std::optional<FailedSearch> assess(Shape& shape) {
     Configuration here = loads_.at(model_, shape);
     stiffness_.evaluate(here);
+    if (!has_potential_) {
+      report_.stability.judged = false;
+      report_.residual = model_.dofs.largest_free_force(loads_.force - stiffness_.gradient());
+      report_.largest_turning_angle = largest_turning_angle(model_, shape.positions);
+      return std::nullopt;
+    }
     report_.stability = stiffness_.stability();
     const bool neutral = report_.stability.neutral_directions > 0;
     bool resolved = neutral || polish(model_, loads_.force, report_.stability, stiffness_, here);
@@ -181,6 +200,7 @@ class EquilibriumSearch {
 
   const Model& model_;
   const bool leave_saddles_;
+  const bool has_potential_;  // of the loads: what goes downhill, and stability, needs one
   const StaticLoads loads_;
   StaticNewton newton_;
   Stiffness stiffness_;

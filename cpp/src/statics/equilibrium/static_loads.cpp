@@ -2,6 +2,7 @@
 
 #include "der/energies/elements_of.hpp"
 #include "der/energies/planar_moment.hpp"
+#include "der/energies/registry.hpp"
 #include "der/statics/potential.hpp"
 
 namespace der::statics {
@@ -11,6 +12,11 @@ StaticLoads scaled(const Model& model, const StaticLoads& loads, double share) {
   result.force = share * loads.force;
   for (const auto& moment : elements_of<PlanarMoment>(*model.elements).constants) {
     result.controls[moment.moment] = share * loads.controls[moment.moment];
+  }
+  for (const CirculatoryLoad& load : model.elements->circulatory) {
+    for (const Index control : load.amount) {
+      if (control >= 0) result.controls[control] = share * loads.controls[control];
+    }
   }
   return result;
 }

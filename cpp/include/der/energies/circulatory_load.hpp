@@ -1,0 +1,127 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <variant>
+#include <vector>
+
+#include "der/core/types.hpp"
+#include "der/energies/effective_edge.hpp"
+#include "der/kinematics/configuration.hpp"
+#include "der/kinematics/edge_frame.hpp"
+#include "der/kinematics/frame_block.hpp"
+#include "der/kinematics/spatial_edge.hpp"
+
+namespace der {
+
+// Circulatory loads (Ziegler, Principles of Structural Stability, 1968): they depend on the shape
+// alone, but their work depends on the way that leads there, so that they have no potential and
+// their tangent is not symmetric. A force that turns with the rod is one, and in space every
+// moment, one of a fixed direction too.
+//
+// Such a load knows the degrees of freedom u by a few local coordinates q only, dq = B' du with a
+// constant B: the point on which it acts, the vectors of one or two edges and their angles. It does
+// the work Q(q) . dq. Forces on u are therefore B Q, and their tangent B (dQ/dq) B' has a low rank
+// (solvers/low_rank.hpp).
+
+/// What a circulatory load does on its local coordinates.
+struct CirculatoryTerm {
+  /// Coordinates of a point, and the vectors and angles of two edges.
+  static constexpr int kMost = 3 + 2 * 4;
+
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1> force;  ///< Q [N, or N m for angles]
+  /// -dQ/dq, as a part of the derivative of the left side of the equations of motion.
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost> tangent;
+
+  void reset(Index size) {
+    force.setZero(size);
+    tangent.setZero(size, size);
+  }
+};
+
+/// A force that turns with a planar rod, F = sum d_i R_i F0: R_i is the rotation of an edge from
+/// its drawn direction, d_i are weights of the one or two edges. Local coordinates: the point on
+/// which it acts, then the vectors of the edges.
+struct PlanarFollowerForce {
+  struct FollowedEdge {
+    EffectiveEdge edge;
+    double weight = 1.0;        ///< d_i [-]
+    Vec2 drawn = Vec2::Zero();  ///< unit vector along the edge as it is drawn
+  };
+  std::vector<FollowedEdge> edges;
+
+  [[nodiscard]] Index size() const { return 2 + 2 * static_cast<Index>(edges.size()); }
+  /// `amount` is F0 [N].
+  void evaluate(const Configuration& here, const Vec3& amount, CirculatoryTerm& out) const;
+};
+
+/// An edge with a section frame that a load follows, or turns.
+struct FramedEdge {
+  SpatialEdge edge;
+  FrameBlock block;
+  SectionFrame drawn;  ///< its frame in the initial shape
+
+  [[nodiscard]] EdgeFrame frame(const Configuration& here) const;
+  /// A vector turned as the frame is from the initial shape.
+  [[nodiscard]] Vec3 turned(const Vec3& vector, const SectionFrame& now) const;
+};
+
+/// A force that turns with a rod in space: PlanarFollowerForce with the rotations of section
+/// frames. Local coordinates: the point, then the vector and the angle of each edge.
+struct FollowerForce {
+  struct FollowedEdge : FramedEdge {
+    double weight = 1.0;  ///< d_i [-]
+  };
+  std::vector<FollowedEdge> edges;
+
+  [[nodiscard]] Index size() const { return 3 + 4 * static_cast<Index>(edges.size()); }
+  /// `amount` is F0 [N].
+  void evaluate(const Configuration& here, const Vec3& amount, CirculatoryTerm& out) const;
+};
+
+/// A moment M on a rod in space, fixed in space or turning with the rod, M = sum d_i R_i M0. Edge i
+/// takes the part across_i of M across the tangent t, and the part along_i along it:
+///   N_i = across_i M + (along_i - across_i) (M . t) t,   with the work sum N_i . omega_i,
+/// t being that of the edge with the larger part along it. The two weights differ beyond the middle
+/// of an outermost edge (model/section_place.hpp). Each of them adds up to 1, so that the whole is
+/// M. Local coordinates: the vector and the angle of each edge.
+struct SpatialMoment {
+  struct TurnedEdge : FramedEdge {
+    double weight = 1.0;  ///< d_i [-]
+    double across = 1.0;  ///< [-]
+    double along = 1.0;   ///< [-]
+  };
+  std::vector<TurnedEdge> edges;
+  bool follower = false;
+
+  [[nodiscard]] Index size() const { return 4 * static_cast<Index>(edges.size()); }
+  /// `amount` is M, or M0 [N m].
+  void evaluate(const Configuration& here, const Vec3& amount, CirculatoryTerm& out) const;
+};
+
+/// One load: what it is, how large, and on which degrees of freedom it acts.
+struct CirculatoryLoad {
+  /// weight * u[dof] is a term of a local coordinate.
+  struct Term {
+    Index dof = 0;
+    double weight = 1.0;
+  };
+
+  std::variant<PlanarFollowerForce, FollowerForce, SpatialMoment> kind;
+  std::array<Index, 3> amount{-1, -1, -1};     ///< controls of its components [N or N m]; -1: 0
+  std::vector<std::vector<Term>> coordinates;  ///< the rows of B'
+
+  void evaluate(const Configuration& here, CirculatoryTerm& out) const;
+  /// The whole force [N]; zero for a moment.
+  [[nodiscard]] Vec3 force(const Configuration& here) const;
+};
+
+/// Adds `factor` times the forces of the loads to `total`, over all degrees of freedom.
+void add_circulatory_forces(const std::vector<CirculatoryLoad>& loads, const Configuration& here,
+                            double factor, Vector& total);
+
+/// Work [J] of the loads along a displacement of all degrees of freedom.
+double circulatory_work(const std::vector<CirculatoryLoad>& loads, const Configuration& here,
+                        const Vector& displacement);
+
+}  // namespace der

@@ -1,0 +1,205 @@
+#include "der/energies/circulatory_load.hpp"
+
+#include <algorithm>
+
+#include "der/core/index.hpp"
+#include "der/energies/spatial_bend.hpp"
+#include "der/kinematics/planar_edge.hpp"
+
+namespace der {
+namespace {
+
+Vec3 amount_of(const CirculatoryLoad& load, const Vector& controls) {
+  Vec3 amount = Vec3::Zero();
+  for (int c = 0; c < 3; ++c) {
+    const Index control = load.amount[to_size(c)];
+    if (control >= 0) amount[c] = controls[control];
+  }
+  return amount;
+}
+
+/// Beyond the middle of an outermost edge, where its weight is above 1: the edge is bent against
+/// the next one over 13/12 of its length, which brings its free end onto the curve
+/// (supports/clamp.hpp). This share of that turn is the true one.
+constexpr double kTrueTurn = 12.0 / 13.0;
+
+bool is_beyond(double weight) { return weight > 1.0; }
+
+/// A vector that turns with edges, and its derivative by their vectors and angles.
+struct FollowingVector {
+  Vec3 value = Vec3::Zero();
+  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 8> slope;
+};
+
+/// sum d_i R_i v0. Beyond an outermost edge, a, bending takes kTrueTurn of d_a. Twisting takes the
+/// whole of d_a: with the small twist rho_t of R_a against R_b this is d_a/13 rho_t (t x R_a v0)
+/// more.
+template <class Edge>
+FollowingVector following(const std::vector<Edge>& edges, const Configuration& here,
+                          const Vec3& drawn) {
+  FollowingVector result;
+  result.slope.setZero(3, 4 * static_cast<Index>(edges.size()));
+  const auto add = [&](std::size_t i, double weight) {
+    const EdgeFrame frame = edges[i].frame(here);
+    const Vec3 part = weight * edges[i].turned(drawn, frame.frame);
+    result.value += part;
+    result.slope.template middleCols<4>(4 * static_cast<Index>(i)) -=
+        cross_matrix(part) * frame.rotation();
+  };
+  const bool has_two = edges.size() == 2;
+  const std::size_t outer = has_two && edges[1].weight > edges[0].weight ? 1 : 0;
+  const double weight = edges[outer].weight;
+  if (!has_two || !is_beyond(weight)) {
+    for (std::size_t i = 0; i < edges.size(); ++i) add(i, edges[i].weight);
+    return result;
+  }
+  const std::size_t next = 1 - outer;
+  add(outer, kTrueTurn * weight);
+  add(next, 1.0 - kTrueTurn * weight);
+
+  const EdgeFrame a = edges[outer].frame(here);
+  const EdgeFrame b = edges[next].frame(here);
+  const Vec3& t = a.frame.tangent;
+  Vec3 turn = Vec3::Zero();  // twice that of R_a against R_b, times its sine
+  Mat3 by_a = Mat3::Zero();
+  Mat3 by_b = Mat3::Zero();
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 in_a = edges[outer].turned(Vec3::Unit(k), a.frame);
+    const Vec3 in_b = edges[next].turned(Vec3::Unit(k), b.frame);
+    turn += in_b.cross(in_a);
+    by_a -= cross_matrix(in_b) * cross_matrix(in_a);
+    by_b += cross_matrix(in_a) * cross_matrix(in_b);
+  }
+  const double twist = 0.5 * t.dot(turn);
+  const Vec3 twist_by_a = 0.5 * (by_a.transpose() * t + t.cross(turn));
+  const Vec3 twist_by_b = 0.5 * by_b.transpose() * t;
+  const Vec3 aside = (1.0 - kTrueTurn) * weight * t.cross(edges[outer].turned(drawn, a.frame));
+  result.value += twist * aside;
+  result.slope.template middleCols<4>(4 * static_cast<Index>(outer)) +=
+      (aside * twist_by_a.transpose() - twist * cross_matrix(aside)) * a.rotation();
+  result.slope.template middleCols<4>(4 * static_cast<Index>(next)) +=
+      aside * twist_by_b.transpose() * b.rotation();
+  return result;
+}
+
+}  // namespace
+
+void PlanarFollowerForce::evaluate(const Configuration& here, const Vec3& amount,
+                                   CirculatoryTerm& out) const {
+  out.reset(size());
+  const Vec2 drawn_force = amount.head<2>();
+  const auto beyond = std::find_if(edges.begin(), edges.end(), [](const FollowedEdge& followed) {
+    return is_beyond(followed.weight);
+  });
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const FollowedEdge& followed = edges[i];
+    double weight = followed.weight;
+    if (beyond != edges.end()) {
+      weight = &*beyond == &followed ? kTrueTurn * weight : 1.0 - kTrueTurn * beyond->weight;
+    }
+    const Vec2 e = followed.edge.vector(here);
+    const Vec2 tangent = e.normalized();
+    const Vec2 force = weight * (followed.drawn.dot(drawn_force) * tangent +
+                                 cross(followed.drawn, drawn_force) * perpendicular(tangent));
+    out.force.head<2>() += force;
+    out.tangent.block<2, 2>(0, 2 + 2 * static_cast<Index>(i)) =
+        -perpendicular(force) * direction_gradient(e, 1.0 / e.squaredNorm()).transpose();
+  }
+}
+
+EdgeFrame FramedEdge::frame(const Configuration& here) const {
+  return {edge.vector(here.coordinates, here.controls), here.coordinates[edge.theta],
+          block.tangent(here.controls), block.director(here.controls)};
+}
+
+Vec3 FramedEdge::turned(const Vec3& vector, const SectionFrame& now) const {
+  return drawn.tangent.dot(vector) * now.tangent + drawn.first.dot(vector) * now.first +
+         drawn.second.dot(vector) * now.second;
+}
+
+void FollowerForce::evaluate(const Configuration& here, const Vec3& amount,
+                             CirculatoryTerm& out) const {
+  out.reset(size());
+  const FollowingVector force = following(edges, here, amount);
+  out.force.head<3>() = force.value;
+  out.tangent.topRightCorner(3, force.slope.cols()) = -force.slope;
+}
+
+void SpatialMoment::evaluate(const Configuration& here, const Vec3& amount,
+                             CirculatoryTerm& out) const {
+  out.reset(size());
+  FollowingVector whole{amount, {}};
+  whole.slope.setZero(3, size());
+  if (follower) whole = following(edges, here, amount);
+  const auto& [moment, turning] = whole;
+
+  const std::size_t axis = edges.size() == 2 && edges[1].along > edges[0].along ? 1 : 0;
+  const EdgeFrame outer = edges[axis].frame(here);
+  const Vec3& t = outer.frame.tangent;
+  const double torque = moment.dot(t);
+  auto leaning = turning;  // of (M . t) t
+  leaning = t * (t.transpose() * turning);
+  leaning.middleCols<4>(4 * static_cast<Index>(axis)) +=
+      (t * t.cross(moment).transpose() - torque * cross_matrix(t)) * outer.rotation();
+
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const Index own = 4 * static_cast<Index>(i);
+    const EdgeFrame frame = edges[i].frame(here);
+    const Eigen::Matrix<double, 3, 4> rotation = frame.rotation();
+    const double across = edges[i].across;
+    const double excess = edges[i].along - across;
+    const Vec3 taken = across * moment + excess * torque * t;
+    out.force.segment<4>(own) = rotation.transpose() * taken;
+    out.tangent.middleRows<4>(own) = -rotation.transpose() * (across * turning + excess * leaning);
+    out.tangent.block<4, 4>(own, own) -=
+        frame.geometric_stiffness(taken) +
+        0.5 * rotation.transpose() * cross_matrix(taken) * rotation;
+  }
+}
+
+void CirculatoryLoad::evaluate(const Configuration& here, CirculatoryTerm& out) const {
+  std::visit([&](const auto& load) { load.evaluate(here, amount_of(*this, here.controls), out); },
+             kind);
+}
+
+Vec3 CirculatoryLoad::force(const Configuration& here) const {
+  Vec3 total = Vec3::Zero();
+  if (std::holds_alternative<SpatialMoment>(kind)) return total;
+  CirculatoryTerm term;
+  evaluate(here, term);
+  if (std::holds_alternative<PlanarFollowerForce>(kind)) {
+    total.head<2>() = term.force.head<2>();
+  } else {
+    total = term.force.head<3>();
+  }
+  return total;
+}
+
+void add_circulatory_forces(const std::vector<CirculatoryLoad>& loads, const Configuration& here,
+                            double factor, Vector& total) {
+  CirculatoryTerm term;
+  for (const CirculatoryLoad& load : loads) {
+    load.evaluate(here, term);
+    for (std::size_t k = 0; k < load.coordinates.size(); ++k) {
+      const double force = factor * term.force[static_cast<Index>(k)];
+      for (const auto& [dof, weight] : load.coordinates[k]) total[dof] += weight * force;
+    }
+  }
+}
+
+double circulatory_work(const std::vector<CirculatoryLoad>& loads, const Configuration& here,
+                        const Vector& displacement) {
+  double work = 0.0;
+  CirculatoryTerm term;
+  for (const CirculatoryLoad& load : loads) {
+    load.evaluate(here, term);
+    for (std::size_t k = 0; k < load.coordinates.size(); ++k) {
+      for (const auto& [dof, weight] : load.coordinates[k]) {
+        work += term.force[static_cast<Index>(k)] * weight * displacement[dof];
+      }
+    }
+  }
+  return work;
+}
+
+}  // namespace der

@@ -1,0 +1,111 @@
+#include "der/loads/circulatory.hpp"
+
+#include <utility>
+
+#include "der/core/index.hpp"
+#include "der/energies/registry.hpp"
+#include "der/model/location.hpp"
+#include "der/model/section_place.hpp"
+#include "der/supports/clamp.hpp"
+
+namespace der {
+namespace {
+
+void set_amount(const scenario::VectorSeries& amount, CirculatoryLoad& load, Model& model) {
+  for (std::size_t c = 0; c < to_size(model.dimension); ++c) {
+    scenario::Series component{amount.times, {}};
+    for (const auto& value : amount.values) component.values.push_back(value[c]);
+    load.amount[c] = model.tables.add(std::move(component));
+  }
+}
+
+/// The point at arc length `s` [m] as a local coordinate.
+void add_point(double s, const RodLayout& rod, const Model& model, CirculatoryLoad& load) {
+  for (int c = 0; c < model.dimension; ++c) {
+    auto& component = load.coordinates.emplace_back();
+    for (const auto& [place, weight] : node_weights(rod, s)) {
+      component.push_back({model.dof(rod.nodes[to_size(place)], c), weight});
+    }
+  }
+}
+
+/// The vector of an edge as a local coordinate, from the first degrees of freedom of its nodes.
+void add_vector(Index start, Index end, const Model& model, CirculatoryLoad& load) {
+  for (int c = 0; c < model.dimension; ++c) {
+    load.coordinates.push_back({{end + c, 1.0}, {start + c, -1.0}});
+  }
+}
+
+FramedEdge framed_edge(Index number, const Model& model) {
+  return {model.framed_edges[to_size(number)], FrameBlock::of(number),
+          section_frame(model, number, drawn_configuration(model))};
+}
+
+PlanarFollowerForce planar_follower(const SectionPlace& place, const RodLayout& rod,
+                                    const Model& model, CirculatoryLoad& load) {
+  PlanarFollowerForce follower;
+  for (std::size_t i = 0; i < place.direction.size(); ++i) {
+    const EffectiveEdge edge = effective_edge(rod, place.first_edge + static_cast<Index>(i), model);
+    const Vec2 drawn = edge.vector(model.initial_positions, 0.0, 0.0).normalized();
+    follower.edges.push_back({edge, place.direction[i], drawn});
+    add_vector(edge.dofs[0], edge.dofs[2], model, load);
+  }
+  return follower;
+}
+
+/// The edges of a place in space, each with what `make` makes of it and of its number among them.
+template <class Kind, class Make>
+Kind with_edges(const SectionPlace& place, const RodLayout& rod, const Model& model,
+                CirculatoryLoad& load, const Make& make) {
+  Kind kind;
+  for (std::size_t i = 0; i < place.direction.size(); ++i) {
+    const FramedEdge framed =
+        framed_edge(rod.first_edge + place.first_edge + static_cast<Index>(i), model);
+    kind.edges.push_back(make(framed, i));
+    add_vector(framed.edge.start, framed.edge.end, model, load);
+    load.coordinates.push_back({{framed.edge.theta, 1.0}});
+  }
+  return kind;
+}
+
+Index add(CirculatoryLoad&& load, Model& model) {
+  auto& loads = model.elements->circulatory;
+  loads.push_back(std::move(load));
+  return static_cast<Index>(loads.size()) - 1;
+}
+
+}  // namespace
+
+Index add_follower_force(const scenario::VectorSeries& force, double s, const RodLayout& rod,
+                         Model& model) {
+  CirculatoryLoad load;
+  set_amount(force, load, model);
+  add_point(s, rod, model, load);
+  const SectionPlace place = section_place(s, rod);
+  if (model.dimension == 2) {
+    load.kind = planar_follower(place, rod, model, load);
+  } else {
+    load.kind = with_edges<FollowerForce>(
+        place, rod, model, load, [&](const FramedEdge& framed, std::size_t i) {
+          return FollowerForce::FollowedEdge{framed, place.direction[i]};
+        });
+  }
+  return add(std::move(load), model);
+}
+
+Index add_spatial_moment(const scenario::VectorSeries& moment, bool follower, double s,
+                         const RodLayout& rod, Model& model) {
+  CirculatoryLoad load;
+  set_amount(moment, load, model);
+  const SectionPlace place = section_place(s, rod);
+  auto kind = with_edges<SpatialMoment>(
+      place, rod, model, load, [&](const FramedEdge& framed, std::size_t i) {
+        return SpatialMoment::TurnedEdge{framed, place.direction[i], place.across[i],
+                                         place.along[i]};
+      });
+  kind.follower = follower;
+  load.kind = std::move(kind);
+  return add(std::move(load), model);
+}
+
+}  // namespace der

@@ -1,0 +1,92 @@
+#include "der/supports/section_spring.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "der/core/index.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/section_spring.hpp"
+#include "der/model/section_place.hpp"
+
+namespace der {
+namespace {
+
+/// Makes the state follow the twist of an edge against its drawn section, and returns the entry; -1
+/// if a clamp at the edge's end has it.
+Index follow_twist(Index number, const SectionFrame& drawn, Model& model) {
+  HeldFrame held;
+  held.drawn = drawn;
+  const FramedJoint followed{number, -1, held};
+  const auto known =
+      std::find_if(model.framed_joints.begin(), model.framed_joints.end(),
+                   [&](const FramedJoint& joint) { return joint.twist() == followed.twist(); });
+  if (known == model.framed_joints.end()) {
+    model.framed_joints.push_back(followed);
+    model.drawn_frames[followed.twist()] =
+        model.initial_positions[model.framed_edges[to_size(number)].theta];
+    return followed.twist();
+  }
+  const bool same = known->held.drawn.tangent == drawn.tangent &&
+                    known->held.drawn.first == drawn.first && known->held.rotation < 0;
+  return same ? followed.twist() : -1;
+}
+
+/// In series with the cell in which the rod turns on to the place.
+double in_series(double stiffness, double cell_length, double stiffness_of_rod) {
+  return stiffness / (1.0 + stiffness * cell_length / stiffness_of_rod);
+}
+
+template <int Edges>
+void add_element(const SectionSpringPlace& spring, const SectionPlace& place, const RodLayout& rod,
+                 Model& model) {
+  using Kernel = SectionSpring<Edges>;
+  const Configuration drawn = drawn_configuration(model);
+  std::array<Index, Kernel::kDofs> dofs{};
+  typename Kernel::Constants constants;
+  constants.stiffness = {in_series(spring.stiffness[0], place.bend_cell, rod.EI_1),
+                         in_series(spring.stiffness[1], place.bend_cell, rod.EI_2),
+                         in_series(spring.stiffness[2], place.twist_cell, rod.GJ)};
+  for (Index i = 0; i < Edges; ++i) {
+    const Index number = rod.first_edge + place.first_edge + i;
+    const SpatialEdge& edge = model.framed_edges[to_size(number)];
+    for (Index c = 0; c < 3; ++c) {
+      dofs[to_size(3 * i + c)] = edge.start + c;
+      dofs[to_size(3 * i + 3 + c)] = edge.end + c;
+    }
+    dofs[to_size(3 * Kernel::kNodes + i)] = edge.theta;
+    const double across = place.across[to_size(i)];
+    typename Kernel::HeldEdge& held = constants.edges[to_size(i)];
+    held.block = FrameBlock::of(number);
+    held.first = edge.first;
+    held.last = edge.last;
+    held.drawn = section_frame(model, number, drawn);
+    held.reference_twist = follow_twist(number, held.drawn, model);
+    held.weights = {across, across, place.along[to_size(i)]};
+  }
+  elements_of<Kernel>(*model.elements).add(dofs, constants);
+}
+
+}  // namespace
+
+void add_to_section_spring(double s, const Vec3& stiffness, RodLayout& rod) {
+  for (SectionSpringPlace& known : rod.section_springs) {
+    if (std::abs(known.arc_length - s) > rod.same_place()) continue;
+    known.stiffness += stiffness;
+    return;
+  }
+  rod.section_springs.push_back({s, stiffness});
+}
+
+void add_section_springs(RodLayout& rod, Model& model) {
+  for (const SectionSpringPlace& spring : rod.section_springs) {
+    const SectionPlace place = section_place(spring.arc_length, rod);
+    if (place.across.size() == 1) {
+      add_element<1>(spring, place, rod, model);
+    } else {
+      add_element<2>(spring, place, rod, model);
+    }
+  }
+}
+
+}  // namespace der

@@ -1,0 +1,243 @@
+"""Loads without a potential: forces and moments that follow the rod, moments fixed in space.
+
+References: `references/helix.py`, `curved_twisted_rod.py` (a dead force, a dead moment and one that
+follows at once) and `follower_loads.py`. Beck's column flutters at P L^2/EI = 20.05 (Beck, Z.
+angew. Math. Phys. 3, 1952).
+"""
+
+import der
+import numpy as np
+import pytest
+from references.curved_twisted_rod import NATURAL
+from references.follower_loads import held_at_start
+from references.kirchhoff_rod import Rod, rotation
+from scenes import END, START
+from spatial_scenes import measured, section, straight_rod
+
+XYZ = ("x", "y", "z")
+SIZES = [16, 32, 64]
+SHARES = (0.25, 0.5, 0.75, 1.0)
+
+
+def force(*components, at="end", follower=True):
+    return {
+        "point_force": {"rod": "rod", "at": at, "force": list(components), "follower": follower}
+    }
+
+
+def moment(*components, at="end", follower=False):
+    return {"moment": {"rod": "rod", "at": at, "moment": list(components), "follower": follower}}
+
+
+def fitted_errors(scene_of, exact, places, fitted_order, sizes=SIZES, axes=XYZ):
+    """Errors of the positions on the finest mesh, after a check of the order of all of them."""
+    errors = []
+    for n in sizes:
+        values, result = measured(scene_of(n), places, axes)
+        assert result.summary["stability"] == "not_judged"
+        errors.append(np.linalg.norm(values - exact, axis=1))
+    errors = np.array(errors)
+    for column in errors.T:
+        assert fitted_order([1 / n for n in sizes], column) > 1.9
+    return errors[-1]
+
+
+@pytest.mark.parametrize("ratio", ["1", "0.667"])
+def test_a_moment_that_follows_winds_a_rod_to_the_exact_helix(
+    spatial_reference, fitted_order, ratio
+):
+    """Radius 10, height 50, two turns; with GJ = 2/3 EI another helix."""
+
+    def value(name):
+        return spatial_reference("helix", f"GJ{ratio}.{name}")
+
+    length = value("length")
+    rod = section([0, 1, 0], EA=1e4, EI=1.0, GJ=1.0 if ratio == "1" else 2 / 3)
+    load = moment(
+        value("follower_moment.d3"), 0, value("follower_moment.d2"), follower=True
+    )  # d3, d1, d2 as drawn
+    exact = np.array([[value(f"{s:g}.{c}") for c in XYZ] for s in SHARES])
+    places = [s * length for s in SHARES]
+    last = fitted_errors(
+        lambda n: straight_rod(n, rod, to=[length, 0, 0], loads=[load]),
+        exact,
+        places,
+        fitted_order,
+        [32, 64, 128],
+    )
+    assert last.max() < 5e-3 * length
+
+
+def test_all_loads_on_a_curved_and_twisted_rod(spatial_reference, fitted_order):
+    """A dead force, a dead moment and one that follows the section at the end, and a weight."""
+    exact = [
+        [spatial_reference("curved_twisted_rod", f"all_loads.s{s:g}.{c}") for c in XYZ]
+        for s in SHARES
+    ]
+    strip = section([1, 0, 0], EA=1e4, EI1=3.0, EI2=1.0, GJ=0.8)
+    curved = {"natural_curvature": [NATURAL[1], -NATURAL[0]], "natural_twist": NATURAL[2]}
+    loads = [
+        force(1, -2, 0.5, follower=False),
+        moment(0.5, 0.4, -0.3),
+        # Drawn straight along z with d1 = x and d2 = y: components along d1, d2, d3.
+        moment(-0.2, 0.6, 0.8, follower=True),
+        {"distributed_force": {"rod": "rod", "force": [0.6, 0.8, -1.5]}},
+    ]
+    last = fitted_errors(
+        lambda n: straight_rod(n, strip, to=[0, 0, 1], rod=curved, loads=loads),
+        np.array(exact),
+        list(SHARES),
+        fitted_order,
+        [32, 64, 128],
+    )
+    assert last.max() < 3e-4
+
+
+def test_a_force_and_a_moment_that_follow_in_space(fitted_order):
+    """A strip that bends by about a right angle and twists."""
+    weak, strong, twisting, stretching = 1.0, 3.0, 0.8, 1e4
+    strip = section([0, 1, 0], EA=stretching, EI1=strong, EI2=weak, GJ=twisting)
+    rod = Rod(1.0, (weak, strong), twisting, stretching)
+    # As drawn: d1 = y, d2 = z, d3 = x.
+    exact = held_at_start(rod, (1.5, 2.0, -1.0), (0.2, 0.5, 0.7), SHARES)
+    loads = [force(-1.0, 1.5, 2.0), moment(0.7, 0.2, 0.5, follower=True)]
+    last = fitted_errors(
+        lambda n: straight_rod(n, strip, loads=loads), exact, list(SHARES), fitted_order
+    )
+    assert last.max() < 1e-3
+
+
+def planar_scene(model, loads, n=32, **more):
+    """A straight cantilever along x that could bend in the plane alone."""
+    return {**straight_rod(n, section(EA=1e4, EI=1.0, GJ=1.0), loads=loads, **more), "model": model}
+
+
+#: Along the tangent and across it: the rod bends beyond half a turn.
+IN_PLANE = force(-2.0, 8.0, 0)
+
+
+@pytest.mark.parametrize("model", ["planar", "spatial"])
+def test_a_force_that_follows_in_the_plane(fitted_order, model):
+    exact = held_at_start(Rod(1.0, (1.0, 1.0), 1.0, 1e4), (8.0, 0.0, -2.0), shares=SHARES)
+    axes = XYZ[:2] if model == "planar" else XYZ
+    last = fitted_errors(
+        lambda n: planar_scene(model, [IN_PLANE], n),
+        exact[:, : len(axes)],
+        list(SHARES),
+        fitted_order,
+        axes=axes,
+    )
+    assert last.max() < 3e-3
+
+
+@pytest.mark.parametrize("stepper", ["static", "implicit_midpoint", "sdirk4", "verlet"])
+@pytest.mark.parametrize(
+    "load",
+    [IN_PLANE, force(0.5, 3.0, 0, at=0.437), moment(0, 0, 2.0), moment(0, 0, 2.0, at=0.437)],
+    ids=["tip force", "force", "tip moment", "moment"],
+)
+def test_a_planar_scene_is_the_same_in_space(stepper, load):
+    more = {}
+    if stepper != "static":
+        time = {"duration": 0.2, "step": 0.01, "integrator": stepper}
+        if stepper == "verlet":
+            time |= {"duration": 0.01, "step": "auto"}
+        more["time"] = time
+    answers, balances = [], []
+    for model in ("planar", "spatial"):
+        rod = section(EA=1e3, EI=1.0, GJ=1.0, rotary_inertia=1e-3)
+        scene = {**straight_rod(12, rod, loads=[load], **more), "model": model}
+        values, result = measured(scene, [0.3, "middle", "end"], ("x", "y", "vx", "vy"))
+        answers.append(values)
+        balances.append([result.energies[k][-1] for k in ("kinetic", "stretch")])
+        balances[-1] += [result.work[k][-1] for k in ("loads", "supports")]
+    assert answers[1] == pytest.approx(answers[0], abs=1e-9)
+    if stepper != "static":  # the ledger of the plane has the energy of the cells besides
+        assert balances[1][0] == pytest.approx(balances[0][0], abs=1e-9)
+
+
+def test_a_turned_scene_gives_the_turned_answer():
+    turn = rotation(np.array([1, 2, -2]) / 3, 1.1)
+
+    def answer(matrix):
+        loads = [
+            force(*(matrix @ [-1.0, 1.5, 2.0])),
+            moment(*(matrix @ [0.7, 0.2, 0.5]), follower=True),
+            moment(*(matrix @ [0.1, -0.4, 0.3]), at=0.3),
+            force(*(matrix @ [0.1, 0.5, -0.4]), at=0.61),
+        ]
+        strip = section(matrix @ [0, 1, 0], EA=1e4, EI1=3.0, EI2=1.0, GJ=0.8)
+        scene = straight_rod(16, strip, to=matrix @ [1, 0, 0], loads=loads)
+        return measured(scene, [0.25, 0.5, "end"], XYZ)[0]
+
+    assert answer(turn) == pytest.approx(answer(np.eye(3)) @ turn.T, abs=1e-10)
+
+
+def test_moments_anywhere_along_a_rod():
+    """Small ones, between nodes, beside the clamp and at a node: beam theory, in every direction.
+
+    A moment M at a moves the end by M a (1 - a/2)/EI. Spread over two edges of length l it keeps a,
+    but a^2 grows by up to l^2/4: the bound is sharp, and the error jumps from mesh to mesh. Within
+    the first edge it bends the whole cell of the clamp, at any place."""
+    weak, strong, twisting = 1.0, 3.0, 0.8
+    strip = section([0, 1, 0], EA=1e6, EI1=strong, EI2=weak, GJ=twisting)
+    small = 1e-6
+    for place in (0.013, 0.29, 0.5, 0.7183, 1.0):
+        for n in SIZES:
+            loads = [moment(2 * small, -small, small, at=place)]
+            scene = straight_rod(n, strip, loads=loads)
+            values, _ = measured(scene, ["end"], ("y", "z"))
+            exact = np.array([1 / strong, 1 / weak]) * small * place * (1 - place / 2)
+            error = np.abs(values[0] - exact).max() / small
+            assert error < (0.126 / n**2 if place > 1 / n else 0.6 / n) + 1e-5
+
+
+def test_the_ledger_closes():
+    """Loads that do work along a closed way: the ledger misses about the square of the step."""
+    strip = section([0, 1, 0], EA=100.0, EI1=3.0, EI2=1.0, GJ=0.8, rotary_inertia=0.05)
+    loads = [
+        force(-0.5, 1.0, 0.5),
+        moment(0.3, 0.2, 0.1, at=0.61),
+        moment(0.2, 0.1, 0.3, follower=True),
+    ]
+    for step in (0.01, 0.005, 0.0025, 0.00125):
+        time = {"duration": 0.4, "step": step, "integrator": "implicit_midpoint"}
+        _, result = measured(straight_rod(6, strip, loads=loads, time=time), ["end"], ["x"])
+        assert abs(result.work["loads"][-1]) > 0.1
+        assert abs(result.work["numerical"][-1]) < 0.2 * step**2
+
+
+@pytest.mark.parametrize(("load", "grows"), [(19.0, False), (21.2, True)])
+def test_becks_column_flutters(load, grows):
+    """At 20.05 EI/L^2 vibrations under a force along the end's tangent begin to grow, though no
+    equilibrium besides the straight one exists."""
+    rod = section(EA=1e5, EI=1.0, GJ=1.0)
+    scene = straight_rod(
+        20,
+        rod,
+        loads=[force(-load, 0, 0)],
+        time={"duration": 5.0, "step": 0.01, "integrator": "implicit_midpoint"},
+        rod={"initial_velocity": [[0, 1e-6 * (k / 20) ** 2, 0] for k in range(21)]},
+    )
+    scene["model"] = "planar"
+    scene["output"] = {"every": 0.05, "probes": {"y": {"rod": "rod", "at": "end", "quantity": "y"}}}
+    y = np.abs(der.run(der.Scenario.from_dict(scene)).probes["y"])
+    later, before = y[len(y) // 2 :].max(), y[: len(y) // 2].max()
+    assert later > 3 * before if grows else later < 1.5 * before
+
+
+def test_what_needs_a_potential_is_refused():
+    scene = planar_scene("planar", [force(-1, 0, 0)], analysis={"modes": {"count": 2}})
+    with pytest.raises(der.SceneError, match="modes are those of a potential"):
+        der.Scenario.from_dict(scene)
+    static = der.Simulation(der.Scenario.from_dict(planar_scene("planar", [IN_PLANE])))
+    assert static.equilibrium().stability == "not_judged"
+    with pytest.raises(der.DerError, match="have no potential"):
+        static.modes(2)
+
+
+def test_a_rod_that_nothing_holds_against_a_force_that_follows():
+    supports = [{**START, "fix": ["y", "z"]}, {**END, "fix": ["y", "z"]}]
+    scene = straight_rod(8, section(EI=1.0, GJ=1.0), supports=supports, loads=[force(1, 0, 0)])
+    with pytest.raises(der.NotConvergedError, match="no support holds rod 'rod' in x"):
+        der.Simulation(der.Scenario.from_dict(scene)).equilibrium()

@@ -1,0 +1,181 @@
+"""Springs and foundations in space.
+
+References: beam theory for small loads; `references/springs.py` for large ones, of an elastically
+clamped elastica; the planar models, whose own references are in test_springs.py and
+test_foundation.py.
+"""
+
+import numpy as np
+import pytest
+from references.kirchhoff_rod import rotation
+from scenes import START
+from spatial_scenes import CLAMPED, measured, section, straight_rod
+
+XYZ = ("x", "y", "z")
+SIZES = [16, 32, 64]
+STRONG, WEAK, TWISTING = 3.0, 1.0, 0.8
+STRIP = section([0, 1, 0], EA=1e6, EI1=STRONG, EI2=WEAK, GJ=TWISTING)  # director 1 = y
+SMALL = 1e-6
+
+
+def force(*components, at="end"):
+    return {"point_force": {"rod": "rod", "at": at, "force": list(components)}}
+
+
+def moment(*components, at="end"):
+    return {"moment": {"rod": "rod", "at": at, "moment": list(components)}}
+
+
+def turning_spring(*stiffness, at="start", **more):
+    return {"rod": "rod", "at": at, "spring": {"rotational_stiffness": list(stiffness)}, **more}
+
+
+def check_order(errors, fitted_order, largest, sizes=SIZES):
+    assert np.max(errors[-1]) < largest
+    for column in np.array(errors).T:
+        if column.max() > 1e-6:  # else exact but for the large deflection and the stretching
+            assert fitted_order([1 / n for n in sizes], column) > 1.9
+
+
+@pytest.mark.parametrize("end", ["start", "end"])
+@pytest.mark.parametrize("k", [(0.5, 2.0, 0.3), (1e6, 1e-1, 1e5)])
+def test_an_elastic_clamp(fitted_order, end, k):
+    """Tip forces across and a torque: EI/L^3 and 1/k in series, about each axis its own."""
+    k1, k2, kt = k
+    load, torque = SMALL * min(k1, k2, 1), SMALL * min(kt, 1)
+    free = "end" if end == "start" else "start"
+    support = turning_spring(k1, k2, kt, at=end, fix=list(XYZ))
+    errors = []
+    for n in SIZES:
+        bent = straight_rod(n, STRIP, supports=[support], loads=[force(0, load, 2 * load, at=free)])
+        values, _ = measured(bent, [free], ("y", "z"))
+        exact = load * np.array([1 / (3 * STRONG) + 1 / k1, 2 / (3 * WEAK) + 2 / k2])
+        errors.append(np.abs(values[0] - exact) / exact)
+        twisted = straight_rod(n, STRIP, supports=[support], loads=[moment(torque, 0, 0, at=free)])
+        _, result = measured(twisted, [free], ["x"])
+        turned = torque * (1 / kt + (1 - 0.5 / n) / TWISTING)
+        assert result.theta[-1][-1 if end == "start" else 0] == pytest.approx(turned, rel=1e-9)
+    check_order(errors, fitted_order, 2e-3)
+
+
+@pytest.mark.parametrize("place", [0.013, 0.29, 0.5, 0.7183])
+def test_a_turning_spring_at_any_place(place):
+    """A cantilever with a spring inside: the redundant moment by beam theory."""
+    k = 5.0
+    supports = [*CLAMPED, turning_spring(k, k, k, at=place)]
+    errors = []
+    for n in SIZES:
+        scene = straight_rod(n, STRIP, supports=supports, loads=[force(0, SMALL, SMALL)])
+        values, _ = measured(scene, ["end"], ("y", "z"))
+        stiffness = np.array([STRONG, WEAK])
+        slope = (place - place**2 / 2) / stiffness  # at the spring, under the force alone
+        reaction = slope / (1 / k + place / stiffness)
+        exact = SMALL * (1 / (3 * stiffness) - reaction * slope)
+        errors.append(np.abs(values[0] - exact) / exact)
+    # Of order 2 with a factor that jumps from mesh to mesh, as the place within the edge does.
+    if place > 2 / SIZES[0]:
+        assert (np.array(errors).max(axis=1) * np.array(SIZES) ** 2 < 1.0).all()
+    assert np.max(errors[-1]) < 5e-3
+
+
+@pytest.mark.parametrize(("stiffness", "load"), [(1, 10), (20, 10)])
+def test_an_elastic_clamp_under_a_large_load(reference, fitted_order, stiffness, load):
+    """The elastica of references/springs.py, in a plane that is none of the coordinate planes."""
+    turn = rotation(np.array([2, 1, -2]) / 3, 0.7)
+    rod = section(turn @ [0, 0.6, 0.8], EA=1e8, EI=1.0, GJ=0.7)
+    label = f"elastic_clamp.{stiffness}.load.{load}"
+    exact = [reference("springs", f"{label}.{axis}") for axis in "xy"]
+    support = turning_spring(stiffness, stiffness, stiffness, fix=list(XYZ))
+    errors = []
+    sizes = [64, 128, 256]
+    for n in sizes:
+        scene = straight_rod(
+            n,
+            rod,
+            to=turn @ [1, 0, 0],
+            supports=[support],
+            loads=[force(*(turn @ [0, load, 0]))],
+        )
+        tip = measured(scene, ["end"], XYZ)[0][0] @ turn
+        errors.append([np.linalg.norm(tip - [*exact, 0])])
+    check_order(errors, fitted_order, 1e-5, sizes)
+
+
+@pytest.mark.parametrize("s", [0.3, 0.3717, 1.0])
+def test_a_spring_along_an_axis_at_any_place(fitted_order, s):
+    k = np.array([20.0, 300.0])
+    spring = {"rod": "rod", "at": s, "spring": {"stiffness": [0, *k.tolist()]}}
+    errors = []
+    for n in SIZES:
+        scene = straight_rod(n, STRIP, supports=[*CLAMPED, spring], loads=[force(0, SMALL, SMALL)])
+        values, _ = measured(scene, ["end"], ("y", "z"))
+        stiffness = np.array([STRONG, WEAK])
+        across = s**2 * (3 - s) / 6 / stiffness
+        exact = SMALL * (1 / (3 * stiffness) - across**2 / (1 / k + s**3 / (3 * stiffness)))
+        errors.append(np.abs(values[0] - exact) / exact)
+    check_order(errors, fitted_order, 2e-3)
+
+
+def held_elastically(model, axis, time=None):
+    """A clamped rod on a foundation and springs, all acting along y or along z."""
+    unit = np.eye(3)[1 if axis == "y" else 2]
+    supports = [
+        *CLAMPED,
+        {"rod": "rod", "at": 0.437, "spring": {"stiffness": (20 * unit).tolist()}},
+        {"rod": "rod", "at": "end", "spring": {"rotational_stiffness": 0.5}},
+    ]
+    foundation = {"rod": "rod", "stiffness": (50 * unit).tolist(), "from": 0.15, "to": 0.77}
+    rod = section(EA=1e4, EI=1.0, GJ=0.7, rotary_inertia=1e-3)
+    more = {} if time is None else {"time": time}
+    scene = straight_rod(
+        12,
+        rod,
+        supports=supports,
+        loads=[{"foundation": foundation}, force(*(8 * unit).tolist())],
+        **more,
+    )
+    quantities = ("x", axis)
+    values, result = measured({**scene, "model": model}, [0.3, "middle", "end"], quantities)
+    return values, [result.energies[k][-1] for k in ("spring", "stretch")], result
+
+
+@pytest.mark.parametrize("time", [None, {"duration": 0.2, "step": 0.01}], ids=["static", "motion"])
+def test_along_z_as_in_the_plane(time):
+    """The spring against turning has the energy of its cell besides in the plane alone."""
+    planar, _, _ = held_elastically("planar", "y", time)
+    for axis in "yz":
+        values, _, result = held_elastically("spatial", axis, time)
+        assert values == pytest.approx(planar, abs=1e-9)
+        if time is None:
+            assert result.summary["stability"] == "stable"
+
+
+def test_a_turned_scene_gives_the_turned_answer():
+    turn = rotation(np.array([1, 2, -2]) / 3, 1.1)
+
+    def answer(matrix):
+        supports = [
+            turning_spring(0.5, 2.0, 0.3, fix=list(XYZ)),
+            {"rod": "rod", "at": 0.61, "spring": {"stiffness": 7.0}},
+        ]
+        loads = [
+            {"foundation": {"rod": "rod", "stiffness": 3.0, "from": 0.2}},
+            force(*(matrix @ [0.5, 1.5, -2.0])),
+        ]
+        strip = section(matrix @ [0, 1, 0], EA=1e4, EI1=STRONG, EI2=WEAK, GJ=TWISTING)
+        scene = straight_rod(16, strip, to=matrix @ [1, 0, 0], supports=supports, loads=loads)
+        return measured(scene, [0.25, 0.5, "end"], XYZ)[0]
+
+    assert answer(turn) == pytest.approx(answer(np.eye(3)) @ turn.T, abs=1e-10)
+
+
+def test_a_twisting_spring_counts_whole_turns():
+    """One end turned three times, the other held by a spring: GJ/L and k in series."""
+    k, turns = 0.4, 3 * 2 * np.pi
+    supports = [
+        {**START, "clamp": True, "prescribe": {"twist": turns}},
+        turning_spring(0, 0, k, at="end", fix=["y", "z"]),
+    ]
+    rod = section(EI=50.0, GJ=TWISTING)
+    values, _ = measured(straight_rod(10, rod, supports=supports), ["middle"], ["torque"])
+    assert abs(values[0, 0]) == pytest.approx(turns / (1 / k + 1 / TWISTING), rel=1e-9)

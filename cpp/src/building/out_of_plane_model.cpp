@@ -10,7 +10,7 @@
 #include "der/building/builder.hpp"
 #include "der/core/index.hpp"
 #include "der/energies/elements_of.hpp"
-#include "der/energies/from_spatial_pivot.hpp"
+#include "der/energies/from_pivot.hpp"
 #include "der/energies/spatial_bend.hpp"
 #include "der/model/location.hpp"
 #include "der/scenario/load.hpp"

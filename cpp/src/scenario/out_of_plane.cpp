@@ -57,7 +57,7 @@ std::string why_not_tested_out_of_plane(const Scene& scene) {
   }
   for (std::size_t i = 0; i < scene.supports.size(); ++i) {
     const auto& spring = scene.supports[i].spring;
-    if (!spring || spring->rotational_stiffness == 0.0) continue;
+    if (!spring || spring->rotational_stiffness.empty()) continue;
     return fmt::format("the spring of supports.{} against rotation is one about z alone", i);
   }
   for (const Rod& rod : scene.rods) {

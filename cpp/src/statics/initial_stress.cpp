@@ -7,7 +7,7 @@
 
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
-#include "der/energies/from_spatial_pivot.hpp"
+#include "der/energies/from_pivot.hpp"
 #include "der/energies/spatial_bend.hpp"
 #include "der/energies/stretched_edges.hpp"
 

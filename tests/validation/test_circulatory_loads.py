@@ -192,19 +192,22 @@ def test_moments_anywhere_along_a_rod():
             assert error < (0.126 / n**2 if place > 1 / n else 0.6 / n) + 1e-5
 
 
-def test_the_ledger_closes():
-    """Loads that do work along a closed way: the ledger misses about the square of the step."""
+def test_the_ledger_closes(fitted_order):
+    """Loads that do work along a closed way: the ledger misses the square of the step."""
     strip = section([0, 1, 0], EA=100.0, EI1=3.0, EI2=1.0, GJ=0.8, rotary_inertia=0.05)
     loads = [
         force(-0.5, 1.0, 0.5),
         moment(0.3, 0.2, 0.1, at=0.61),
         moment(0.2, 0.1, 0.3, follower=True),
     ]
-    for step in (0.01, 0.005, 0.0025, 0.00125):
+    steps = [0.01, 0.005, 0.0025, 0.00125]
+    missed = []
+    for step in steps:
         time = {"duration": 0.4, "step": step, "integrator": "implicit_midpoint"}
         _, result = measured(straight_rod(6, strip, loads=loads, time=time), ["end"], ["x"])
         assert abs(result.work["loads"][-1]) > 0.1
-        assert abs(result.work["numerical"][-1]) < 0.2 * step**2
+        missed.append(result.work["numerical"][-1])
+    assert fitted_order(steps, missed) > 1.9
 
 
 @pytest.mark.parametrize(("load", "grows"), [(19.0, False), (21.2, True)])

@@ -16,8 +16,9 @@ class DeadForce {
   DeadForce(const scenario::VectorSeries& force, Model& model);
   /// Adds `weight` times the force to a node.
   void act_on(Index node, double weight, Model& model) const;
-  /// The controls that hold its components [N], for what reads it off the model: of a constant force
-  /// the tables of one value that a path of loads scales with it. -1: there is no such component.
+  /// The controls that hold its components [N], for what reads it off the model: of a constant
+  /// force the tables of one value that a path of loads scales with it. -1: there is no such
+  /// component.
   [[nodiscard]] std::array<Index, 3> as_controls(Model& model) const;
 
  private:

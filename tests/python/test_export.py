@@ -199,7 +199,7 @@ def test_vtk_of_a_path_counts_its_points(tube, tmp_path):
 
 
 def test_vtk_has_the_surfaces_of_the_sections(helix, tmp_path):
-    """Of a strip: four long sides and two ends, as wide and as high as the section is."""
+    """A strip has four long sides and two ends, as wide and as high as the section is."""
     pytest.importorskip("pyevtk")
     result = der.run(helix)
     shape = result.scenario.to_dict()["rods"][0]["cross_section"]["rectangle"]

@@ -34,7 +34,7 @@ def strip(n, supports, loads, weak, twisting, **more):
 
 
 def planar_verdict(scene):
-    """Of the equilibrium, stable in its plane or not."""
+    """The verdict of the equilibrium, stable in its plane or not."""
     return der.Simulation(scene).equilibrium(leave_saddles=False).out_of_plane
 
 

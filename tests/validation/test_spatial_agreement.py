@@ -112,7 +112,7 @@ def test_turning_a_scene_turns_the_answer(stepper):
             {"point_force": {"rod": "rod", "at": 0.437, "force": turned(0.3, 0.2, 0.1)}},
         ]
         supports = [{**START, "clamp": True, "prescribe": move}]
-        # What Newton's method leaves of the gyroscopic forces is far below the bounds.
+        # Newton's method then leaves a share of the gyroscopic forces far below the bounds.
         solver = {"residual_tolerance": 1e-12, "step_tolerance": 1e-13}
         scene = twisted_scene(turn, {}, supports=supports, loads=loads, solver=solver, **more)
         values, _ = measured(scene, PLACES, ("x", "y", "z", "vx", "vy", "vz", *SECTION))

@@ -72,7 +72,7 @@ def test_a_turning_spring_at_any_place(place):
         reaction = slope / (1 / k + place / stiffness)
         exact = SMALL * (1 / (3 * stiffness) - reaction * slope)
         errors.append(np.abs(values[0] - exact) / exact)
-    # Of order 2 with a factor that jumps from mesh to mesh, as the place within the edge does.
+    # The error is of order 2. Its factor jumps from mesh to mesh with the place within the edge.
     if place > 2 / SIZES[0]:
         assert (np.array(errors).max(axis=1) * np.array(SIZES) ** 2 < 1.0).all()
     assert np.max(errors[-1]) < 5e-3

@@ -139,7 +139,7 @@ std::string equilibrium_lines(const EquilibriumReport& report, const Style& styl
   return text;
 }
 
-/// What the summary says about motion out of the plane, besides its warnings.
+/// The summary of motion out of the plane, but for its warnings.
 std::string out_of_plane_text(const OutOfPlaneVerdict& verdict, const Style& style) {
   if (!verdict.not_tested.empty()) return "not tested out of it, because " + verdict.not_tested;
   if (verdict.load_factor) {

@@ -64,7 +64,7 @@ class EdgewiseField : public RodField {
   /// The straight line of an edge at the first or the last of its two places.
   [[nodiscard]] virtual Value line(Index edge, bool last, const Model& model,
                                    const State& state) const = 0;
-  /// What the loads inside the edge add to it.
+  /// The part that loads inside the edge add to it.
   [[nodiscard]] virtual Value inside(Index edge, const MomentRecovery::Place& place,
                                      const Model& model, const State& state) const = 0;
 

@@ -20,7 +20,7 @@ constexpr std::size_t kStatusLength = 32;
 
 /// The array of a group of modes that has a vector for each node, not one value for each mode.
 constexpr const char* kShapes = "shapes";
-/// Of a path that was tested against motion out of its plane.
+/// The array of a path that was tested against motion out of its plane.
 constexpr const char* kOutOfPlane = "unstable_out_of_plane";
 
 template <class T>

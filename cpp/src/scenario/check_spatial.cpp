@@ -23,7 +23,7 @@ class Availability {
     }
   }
 
-  /// What needs a potential, which some loads have not.
+  /// Some loads have no potential, and some analyses need one.
   void check_potential(ModelChoice kind) {
     const char* analysis =
         std::holds_alternative<ModesAnalysis>(scene_.analysis)          ? "modes"

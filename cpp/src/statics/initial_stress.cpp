@@ -73,7 +73,7 @@ Eigen::Matrix<double, static_cast<int>(N), 1> moved(const std::array<Index, N>& 
   return x;
 }
 
-/// What a displacement does to the joint between two edges, and the moment that it causes.
+/// The turning of the two edges of a joint by a displacement, and the moment that it causes.
 struct StressedJoint {
   TurningEdge a;
   TurningEdge b;

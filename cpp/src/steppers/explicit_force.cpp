@@ -63,7 +63,7 @@ bool ExplicitForce::acceleration(const State& state, const Vector& positions,
     set_couple(mean, next_couple_);
     couple_.swap(next_couple_);
     next_couple_ -= couple_;
-    // What is no number is for `check` to say.
+    // `check` reports a result that is not a number.
     converged = !(model_.dofs.largest_force(next_couple_) > kCoupleTolerance * largest);
     if (!converged) solve();
   }

@@ -1,4 +1,4 @@
-"""What scenes in space share: how a rod lies in it, and its stiffnesses."""
+"""The way a rod lies in space, and its stiffnesses: shared by all scenes in space."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ struct Scene;
 /// z of the nodes and the angles of the sections. At a planar shape the energy in space is even in
 /// these: its Hessian splits into a block of the plane and this one.
 ///
-/// What holds the rods in the plane holds them out of it, too: a clamp holds the tangent and the
+/// Supports of the plane hold the rods out of it, too: a clamp holds the tangent and the
 /// section (or the tangent alone, as the scene says), and every other support, springs included,
 /// holds z of its node and the section against turning about the rod, as a fork does. Loads act on
 /// the centre line, and forces of a constant direction in the plane, springs and foundations

@@ -16,7 +16,7 @@ namespace der {
 // the springs, 1/2 k t^2, and that of their element. Without it the energies are of order 1.
 // docs/mechanics.md derives c.
 
-/// What moments at arc length `s` [m] of a rod act on.
+/// The edges on which moments at arc length `s` [m] of a rod act.
 MomentPlace moment_place(double s, const RodLayout& rod);
 
 /// The place of moments at arc length `s` [m] of a rod, made if it is not there.

@@ -12,7 +12,7 @@ namespace der {
 struct SectionPlace {
   Index first_edge = 0;           ///< number in the rod
   std::vector<double> direction;  ///< of the directions, to second order in the edge length
-  /// Of the rotations on which the parts of a moment across and along the tangent do their work.
+  /// Weights of the rotations on which a moment works by its parts across and along the tangent.
   /// For the part across it they are those of the plane (model/moment_place.hpp). Sections twist at
   /// nodes and lie at the middles of edges without an offset: beyond the outermost middle the
   /// outermost edge has all of the part along the tangent.

@@ -34,8 +34,8 @@ class NewtonProblem {
   virtual void residual(Vector& residual) = 0;
   /// Sets `residual` likewise, and `values` to its derivative in the layout of the linear solver.
   virtual void system(Vector& residual, Vector& values) = 0;
-  /// What the last `system` has of the derivative besides `values`: the unsymmetric part of a
-  /// residual without a potential. Null: nothing.
+  /// The part of the derivative of the last `system` that is not in `values`: the unsymmetric one
+  /// of a residual without a potential. Null: there is none.
   [[nodiscard]] virtual const LowRank* low_rank() const { return nullptr; }
   /// May improve the derivative just evaluated after a full `step` (all degrees of freedom) that
   /// led here.

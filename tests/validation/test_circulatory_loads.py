@@ -244,3 +244,50 @@ def test_a_rod_that_nothing_holds_against_a_force_that_follows():
     scene = straight_rod(8, section(EI=1.0, GJ=1.0), supports=supports, loads=[force(1, 0, 0)])
     with pytest.raises(der.NotConvergedError, match="no support holds rod 'rod' in x"):
         der.Simulation(der.Scenario.from_dict(scene)).equilibrium()
+
+
+@pytest.mark.parametrize(
+    ("factor", "tip"), [(0.25, (0.453, 0.621, 0.428)), (0.35, (0.727, 0.296, 0.507))]
+)
+def test_the_answer_is_on_the_path_from_the_unloaded_rod(factor, tip):
+    """Two equilibria exist; the tips are those of shooting along the path in 280 steps."""
+    along = np.array([1.0, 0.3, -0.2])
+    bar = section([0.2, 0.1, 1.0], EA=1e5, EI1=1.0, EI2=0.6, GJ=0.5)
+    loads = [
+        force(*(factor * np.array([-4.0, 7.0, -4.0]))),
+        moment(*(factor * np.array([1.0, 2.0, 3.0]))),
+    ]
+    scene = straight_rod(80, bar, to=along / np.linalg.norm(along), loads=loads)
+    values, _ = measured({**scene, "analysis": "static"}, ["end"], ("x", "y", "z"))
+    assert values[0] == pytest.approx(tip, abs=2e-3)
+
+
+def test_a_moment_at_a_tangent_clamp_is_refused():
+    strip = section([0, 1, 0], EA=1e5, EI1=1.0, EI2=1.0, GJ=1.0)
+    scene = straight_rod(8, strip, loads=[moment(1.0, 0.0, 0.0, at="start")])
+    scene["supports"] = [{"rod": "rod", "at": "start", "clamp": "tangent"}]
+    with pytest.raises(der.DerError, match=r"clamp: tangent.*at: 0\.01"):
+        der.run({**scene, "analysis": "static"})
+
+
+def test_moment_and_torque_up_to_a_turned_end(fitted_order):
+    """A moment at the end of a rod with EI = GJ bends it to a helix: both are uniform."""
+    strip = section([0, 1, 0], EA=1e5, EI1=1.0, EI2=1.0, GJ=1.0)
+    errors = []
+    for n in SIZES:
+        scene = straight_rod(n, strip, loads=[moment(0.3, 0.0, 0.5)])
+        scene["analysis"] = "static"
+        scene["output"] = {
+            "probes": {
+                f"{quantity}_{reduce}": {"quantity": quantity, "rod": "rod", **where}
+                for quantity in ("moment", "torque")
+                for reduce, where in (
+                    ("end", {"at": "end"}),
+                    ("least", {"over": "rod", "reduce": "min"}),
+                    ("most", {"over": "rod", "reduce": "max"}),
+                )
+            }
+        }
+        values = np.array([probe[-1] for probe in der.run(scene).probes.values()])
+        errors.append(np.abs(values - np.repeat([0.5, 0.3], 3)).max())
+    assert fitted_order(SIZES, errors) < -1.9

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "der/core/error.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/planar_moment.hpp"
 #include "der/loads/circulatory.hpp"
@@ -11,11 +14,12 @@
 namespace der {
 namespace {
 
-/// Whether a support holds the tangent at arc length `s` [m].
-bool is_clamped(const RodLayout& rod, double s) {
-  return std::any_of(rod.clamps.begin(), rod.clamps.end(), [&](const Clamp& clamp) {
+/// The clamp that holds the tangent at arc length `s` [m]; null: none does.
+const Clamp* clamp_there(const RodLayout& rod, double s) {
+  const auto found = std::find_if(rod.clamps.begin(), rod.clamps.end(), [&](const Clamp& clamp) {
     return std::abs(rod.arc_length[static_cast<std::size_t>(clamp.place)] - s) <= rod.same_place();
   });
+  return found == rod.clamps.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -23,15 +27,24 @@ bool is_clamped(const RodLayout& rod, double s) {
 void add_load(const scenario::Moment& load, const scenario::Scene& /*scene*/, Model& model) {
   RodLayout& rod = model.rod(load.rod);
   const double s = arc_length_of(load.at, rod);
+  const Clamp* clamp = clamp_there(rod, s);
   if (model.dimension == 3) {
-    if (!is_clamped(rod, s)) {
+    if (clamp == nullptr) {
       add_spatial_moment(load.moment_vector, load.follower, s, rod, model);
+    } else if (!clamp->holds_section) {
+      throw Error(
+          "model_error",
+          fmt::format("a moment at the node of a 'clamp: tangent' of rod '{}', which takes "
+                      "up a part of it only: this is not available yet. Write a place "
+                      "beside the node, such as 'at: {:.3g}'",
+                      rod.name,
+                      s > 0.5 * rod.rest_length() ? 0.99 * s : s + 0.01 * rod.rest_length()));
     }
     return;
   }
   const Index control = model.tables.add(load.moment);
   // The clamp takes it up; on the edges beside it, it would bend the rod by an error of order 1.
-  if (is_clamped(rod, s)) return;
+  if (clamp != nullptr) return;
   MomentPlace& place = place_of_moments(s, rod);
   place.moments.push_back(control);
   auto& moments = elements_of<PlanarMoment>(*model.elements);

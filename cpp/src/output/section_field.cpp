@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "der/core/index.hpp"
+#include "der/energies/registry.hpp"
 #include "der/output/joint_strain.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spatial_clamp.hpp"
@@ -43,7 +44,8 @@ class SectionField : public EdgewiseField<Vec3> {
     if (!rod.joints.empty()) {
       samples = samples_of(rod, recovery);
       for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-        edges.emplace_back(known(quantity, rod, edge, false), known(quantity, rod, edge, true));
+        edges.emplace_back(known(quantity, rod, edge, false, model),
+                           known(quantity, rod, edge, true, model));
         lines.emplace_back(edges.back().first.arc_length, edges.back().second.arc_length);
       }
     }
@@ -116,12 +118,45 @@ class SectionField : public EdgewiseField<Vec3> {
     return result;
   }
 
-  static Known known(SectionQuantity quantity, const RodLayout& rod, Index edge, bool last) {
+  /// Whether a moment or a spring turns the section at an end: beyond the middle of the outermost
+  /// edge.
+  static bool is_turned_at_end(const RodLayout& rod, bool last, const Model& model) {
+    if (!model.has_sections()) return false;
+    const Index edge = last ? rod.num_edges() - 1 : 0;
+    const Index theta = model.framed_edges[to_size(rod.first_edge + edge)].theta;
+    const auto acts_here = [&](const SpatialMoment::TurnedEdge& turned) {
+      return turned.edge.theta == theta && turned.across > 1.0;
+    };
+    const auto& loads = model.elements->circulatory;
+    const bool by_load = std::any_of(loads.begin(), loads.end(), [&](const CirculatoryLoad& load) {
+      const auto* moment = std::get_if<SpatialMoment>(&load.kind);
+      return moment != nullptr &&
+             std::any_of(moment->edges.begin(), moment->edges.end(), acts_here);
+    });
+    const double middle = rod.edge_middle(edge);
+    const auto& springs = rod.section_springs;
+    return by_load || std::any_of(springs.begin(), springs.end(), [&](const auto& spring) {
+             return last ? spring.arc_length > middle : spring.arc_length < middle;
+           });
+  }
+
+  /// Where something turns an end, the two joints next to it are known, and the line through them
+  /// goes on to the end.
+  static Known known(SectionQuantity quantity, const RodLayout& rod, Index edge, bool last,
+                     const Model& model) {
     Known result;
     result.arc_length = rod.arc_length[to_size(last ? edge + 1 : edge)];
-    const auto joint = std::find_if(
-        rod.joints.begin(), rod.joints.end(),
-        [&](const RodJoint& other) { return (last ? other.before : other.after) == edge; });
+    auto joint = std::find_if(rod.joints.begin(), rod.joints.end(), [&](const RodJoint& other) {
+      return (last ? other.before : other.after) == edge;
+    });
+    if (joint == rod.joints.end() && is_turned_at_end(rod, last, model)) {
+      if (rod.joints.size() == 1) {
+        result.joint = &rod.joints.front();
+        result.natural = natural_of(*result.joint);
+        return result;
+      }
+      joint = last ? rod.joints.end() - 2 : rod.joints.begin() + 1;
+    }
     if (joint == rod.joints.end()) {
       result.natural = natural_at_end(rod, last);
       return result;
@@ -164,9 +199,31 @@ class SectionField : public EdgewiseField<Vec3> {
     return in_section(edge, recovery_.inside(edge, place, model, state), model, state);
   }
 
-  /// Curvatures and twist of a joint beyond the natural ones [1/m].
+  /// Curvatures and twist of a joint beyond the natural ones [1/m]. The joint next to an end that
+  /// is turned bends by l/12 of the end's curvature more (model/moment_place.hpp), which follows
+  /// from that of the next joint.
   [[nodiscard]] Vec3 excess_of(const RodJoint& joint, const Model& model,
                                const State& state) const {
+    Vec3 excess = measured_excess(joint, model, state);
+    const std::vector<RodJoint>& joints = rod_.joints;
+    if (joints.size() < 2 || !model.has_sections()) return excess;
+    for (const bool last : {false, true}) {
+      const RodJoint& near = last ? joints.back() : joints.front();
+      const RodJoint& far = last ? joints[joints.size() - 2] : joints[1];
+      if (joint.before != near.before || joint.clamp >= 0) continue;
+      if (!is_turned_at_end(rod_, last, model)) continue;
+      const double end = last ? rod_.rest_length() : 0.0;
+      const double ratio = (end - near.bend_place) / (near.bend_place - far.bend_place);
+      const double length = rod_.edge_length[to_size(last ? near.after : near.before)];
+      const double share = length / (12.0 * near.bend_length);
+      const Vec3 next = measured_excess(far, model, state);
+      excess.head<2>() = (excess + share * ratio * next).head<2>() / (1.0 + share * (1.0 + ratio));
+    }
+    return excess;
+  }
+
+  [[nodiscard]] Vec3 measured_excess(const RodJoint& joint, const Model& model,
+                                     const State& state) const {
     const JointStrain strain = strain_of(joint, rod_, model, state);
     if (!model.has_sections()) {
       return strain.kappa_1 / joint.bend_length * bend_axis(joint, rod_, model, state);

@@ -52,8 +52,7 @@ says why:
 
 Nothing is rounded to the plane: a node 1e-6 m off it is part of the scene, as a seed of buckling out
 of the plane is. A larger model than needed may be asked for; a smaller one is refused, with the
-reason. The spatial models do not have springs, foundations, moments, buckling loads, continuation and
-`energy_momentum` yet.
+reason. The spatial models do not have the integrator `energy_momentum` yet.
 
 The section of a rod has two directors: director 1 is the direction of its width, director 2 that of
 its height, t x d1 with the tangent t in the direction of growing arc length. `EI1` and `k1` belong to

@@ -10,7 +10,7 @@ namespace der::statics {
 namespace {
 
 /// A step changes no edge by more than this [rad], so that it stays on the path of equilibria.
-constexpr double kLargestChange = 1.0;
+constexpr double kLargestChange = 0.25;
 /// The search gives up when a step has shrunk to this share of the loads.
 constexpr double kSmallestStep = 1.0 / 4096.0;
 

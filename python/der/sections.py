@@ -65,27 +65,27 @@ def sections_of(result: RunData) -> list[Section | None]:
     return [section_of(rod["cross_section"]) for rod in result.scenario.to_dict()["rods"]]
 
 
-def node_directors(edge_directors: Array) -> Array:
-    """Return director 1 at the nodes of a rod from those of its edges, unit vectors.
+def at_nodes(edge_vectors: Array) -> Array:
+    """Return unit vectors at the nodes of a rod from those of its edges.
 
-    At an inner node it is the mean of the two edges there; two opposite directors have no mean, and
+    At an inner node it is the mean of the two edges there; two opposite vectors have no mean, and
     the node has that of the edge after it.
 
     Parameters
     ----------
-    edge_directors
-        Shape (..., edges, 3).
+    edge_vectors
+        Shape (..., edges, dim).
 
     Returns
     -------
     array
-        Shape (..., edges + 1, 3).
+        Shape (..., edges + 1, dim).
     """
-    first, last = edge_directors[..., :1, :], edge_directors[..., -1:, :]
-    inner = edge_directors[..., :-1, :] + edge_directors[..., 1:, :]
+    first, last = edge_vectors[..., :1, :], edge_vectors[..., -1:, :]
+    inner = edge_vectors[..., :-1, :] + edge_vectors[..., 1:, :]
     sums = np.concatenate([first, inner, last], axis=-2)
     sizes = np.linalg.norm(sums, axis=-1, keepdims=True)
-    after = np.concatenate([edge_directors, last], axis=-2)
+    after = np.concatenate([edge_vectors, last], axis=-2)
     return np.where(sizes > 1e-9, sums / np.maximum(sizes, 1e-9), after)
 
 
@@ -114,7 +114,7 @@ def directors_along(result: RunData, edge_directors: Array | None = None) -> lis
     first = 0  # edge of the rod
     for rod in result.rods:
         edges = len(rod.nodes) - 1
-        found.append(node_directors(along[:, first : first + edges]))
+        found.append(at_nodes(along[:, first : first + edges]))
         first += edges
     return found
 
@@ -125,17 +125,18 @@ def _lies_in_the_plane(cross_section: Mapping[str, Any]) -> bool:
     return director is not None and float(np.hypot(*director[:2])) > 0.0
 
 
+def _edge_directions(line: Array) -> Array:
+    """Return unit vectors along the edges of a line, shape (nodes - 1, dim)."""
+    edges = np.diff(line, axis=0)
+    return np.asarray(edges / np.linalg.norm(edges, axis=1, keepdims=True))
+
+
 def tangents_of(line: Array) -> Array:
     """Return unit vectors along a line at its nodes: at inner ones, along the bisector.
 
     `line` has the shape (nodes, dim), and so has the result.
     """
-    edges = np.diff(line, axis=0)
-    edges = edges / np.linalg.norm(edges, axis=1, keepdims=True)
-    sums = np.vstack([edges[:1], edges[:-1] + edges[1:], edges[-1:]])
-    sizes = np.linalg.norm(sums, axis=1, keepdims=True)
-    after = np.vstack([edges, edges[-1:]])
-    return np.where(sizes > 1e-9, sums / np.maximum(sizes, 1e-9), after)
+    return at_nodes(_edge_directions(line))
 
 
 def section_axes(line: Array, directors: Array | None) -> tuple[Array, Array]:
@@ -184,8 +185,7 @@ def swept(line: Array, directors: Array | None, outline: Array) -> Array:
     """
     axes = np.stack(section_axes(line, directors), axis=1)  # nodes, 2, 3
     offsets = outline @ axes
-    edges = np.diff(line, axis=0)
-    edges = edges / np.linalg.norm(edges, axis=1, keepdims=True)
+    edges = _edge_directions(line)
     before, after = np.vstack([edges[:1], edges]), np.vstack([edges, edges[-1:]])
     turn = after - before
     turn = turn / np.maximum(np.linalg.norm(turn, axis=1, keepdims=True), 1e-12)

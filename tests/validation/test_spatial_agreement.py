@@ -4,8 +4,8 @@ import der
 import numpy as np
 import pytest
 from references.kirchhoff_rod import rotation
-from scenes import END, START
-from spatial_scenes import measured, rod_through
+from scenes import END, START, tip_force
+from spatial_scenes import measured, rod_through, section
 
 PLANAR = ("x", "y", "vx", "vy")
 PLACES = [0.3, "middle", "end"]
@@ -62,6 +62,23 @@ def test_planar_scene_is_the_same_in_all_models(stepper, curved):
     for other, balance in zip(answers[1:], balances[1:], strict=True):
         assert other == pytest.approx(answers[0], abs=1e-9)
         assert balance == pytest.approx(balances[0], abs=1e-9)
+
+
+@pytest.mark.parametrize("curvature", ["angle", "tangent"])
+def test_corners_in_their_plane(curvature):
+    """A wire with corners of 90 and 45 degrees: to the tolerance of the equilibria."""
+    points = [(0.1 * i, 0) for i in range(5)] + [(0.4, 0.1 * i) for i in range(1, 5)]
+    points += [(0.4 + 0.07 * i, 0.4 + 0.07 * i) for i in range(1, 4)]
+    answers = []
+    for model in ("planar", "spatial"):
+        wire = rod_through(
+            [(*point, 0.0) for point in points],
+            section(EI=1.0, GJ=0.7),
+            rod={"curvature": curvature},
+            loads=tip_force(0.3, 0.5, 0),
+        )
+        answers.append(measured({**wire, "model": model}, PLACES, PLANAR)[0])
+    assert answers[1] == pytest.approx(answers[0], abs=1e-9)
 
 
 def test_modes_of_the_plane_are_among_those_in_space():

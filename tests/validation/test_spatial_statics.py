@@ -6,12 +6,15 @@ curvatures u1 and u2 turn the section about d1 and d2: towards d1 the rod is cur
 d2 by -u1.
 """
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from references.curved_twisted_rod import NATURAL, rest_position
 from references.kirchhoff_rod import UPRIGHT, Held, Rod, follow, rotation
 from scenes import END, START, tip_force
 from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 from spatial_scenes import measured, rod_through, section, straight_rod
 
 XYZ = ("x", "y", "z")
@@ -251,3 +254,46 @@ def test_list_of_natural_twists(fitted_order):
         assert values[:, 3] == pytest.approx(twist, abs=1e-7)
         assert result.energies["bend"][-1] < 1e-14
     assert fitted_order([1 / n for n in sizes], errors) > 1.9
+
+
+#: Corners of 90, 54 and 70 degrees; legs of 1, 0.8 and 0.6 m.
+CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 0.8, 0], [1, 1.153, 0.485]])
+FORCE = 1e-6 * np.array([0.5, -0.3, 1.0])
+
+
+def tip_of_a_bent_wire(corners, force, EI1, EI2, GJ):
+    """Displacement of the end by the unit-load theorem, with sections that go round corners without
+    twist: the directors turn by the smallest rotation."""
+    moments_per_force = [np.cross(unit, np.eye(3)).T for unit in np.eye(3)]
+    first, before = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0, 0])
+    flexibility = np.zeros((3, 3))
+    for start, end in pairwise(corners):
+        length = np.linalg.norm(end - start)
+        tangent = (end - start) / length
+        first = Rotation.align_vectors([tangent], [before])[0].apply(first)
+        axes = np.array([first, np.cross(tangent, first), tangent])
+        before = tangent
+        # Simpson's rule is exact for squares of moments.
+        for share, weight in ((0.0, 1 / 6), (0.5, 4 / 6), (1.0, 1 / 6)):
+            arm = corners[-1] - (start + share * (end - start))
+            moments = axes @ sum(a * m for a, m in zip(arm, moments_per_force, strict=True))
+            flexibility += (
+                weight * length * moments.T @ np.diag([1 / EI2, 1 / EI1, 1 / GJ]) @ moments
+            )
+    return flexibility @ force
+
+
+@pytest.mark.parametrize("stiffness", [(1.0, 1.0, 1.0), (2.0, 0.5, 0.3)])
+def test_a_wire_with_corners(fitted_order, stiffness):
+    """Cells at corners bend and twist by halves, so that corners keep the order 2."""
+    EI1, EI2, GJ = stiffness
+    exact = tip_of_a_bent_wire(CORNERS, FORCE, EI1, EI2, GJ)
+    wire = section([0, 0, 1], EA=1e6, EI1=EI1, EI2=EI2, GJ=GJ)
+    errors = []
+    for n in SIZES:
+        shares = np.linspace(0, 3, 3 * (n // 2) + 1)
+        points = np.column_stack([np.interp(shares, range(4), CORNERS[:, i]) for i in range(3)])
+        tip, _ = measured(rod_through(points, wire, loads=tip_force(*FORCE)), ["end"], XYZ)
+        errors.append(np.linalg.norm(tip[0] - CORNERS[-1] - exact))
+    assert fitted_order([1 / n for n in SIZES], errors) > 1.9
+    assert errors[-1] < 2e-4 * np.linalg.norm(exact)

@@ -97,17 +97,23 @@ scenario::Scene rods_in_space(const scenario::Scene& planar_scene, const Model& 
   return scene;
 }
 
+void take_out_twist(Joint& joint) { joint.twist = 0.0; }
+void take_out_twist(CoupledJoint& joint) {
+  joint.coefficients.row(2).setZero();
+  joint.coefficients.col(2).setZero();
+}
+
 /// Takes the twist out of the joint at a node, which a fork divides in two.
-template <class Curvature>
+template <class Kernel>
 void divide_joint(Index first_dof, ElementLists& elements) {
-  auto& plain = elements_of<SpatialBend<Curvature>>(elements);
+  auto& plain = elements_of<Kernel>(elements);
   for (std::size_t i = 0; i < plain.size(); ++i) {
-    if (plain.dofs[i][3] == first_dof) plain.constants[i].joint.twist = 0.0;
+    if (plain.dofs[i][3] == first_dof) take_out_twist(plain.constants[i].joint);
   }
-  auto& beside_clamps = elements_of<FromSpatialPivot<SpatialBend<Curvature>>>(elements);
+  auto& beside_clamps = elements_of<FromSpatialPivot<Kernel>>(elements);
   for (std::size_t i = 0; i < beside_clamps.size(); ++i) {
     if (beside_clamps.dofs[i][3] != first_dof) continue;
-    beside_clamps.constants[i].element.joint.twist = 0.0;
+    take_out_twist(beside_clamps.constants[i].element.joint);
   }
 }
 
@@ -116,7 +122,9 @@ void divide_joint(Index first_dof, ElementLists& elements) {
 template <class Curvature>
 void add_fork(const RodLayout& rod, Index place, OutOfPlaneModel& twin) {
   Model& model = twin.model;
-  divide_joint<Curvature>(model.dof(rod.nodes[to_size(place)], 0), *model.elements);
+  const Index first_dof = model.dof(rod.nodes[to_size(place)], 0);
+  divide_joint<SpatialBend<Curvature>>(first_dof, *model.elements);
+  divide_joint<CornerBend>(first_dof, *model.elements);
   for (const Index edge : {place - 1, place}) {
     if (edge < 0 || edge >= rod.num_edges()) continue;
     const Index number = rod.first_edge + edge;

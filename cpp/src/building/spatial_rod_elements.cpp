@@ -1,6 +1,9 @@
 #include <array>
 #include <cmath>
+#include <tuple>
+#include <type_traits>
 
+#include "building/corner.hpp"
 #include "building/spatial_rod_elements.hpp"
 #include "der/core/index.hpp"
 #include "der/energies/elements_of.hpp"
@@ -39,6 +42,10 @@ void add_stretch(const RodLayout& rod, const SpatialEdge& edge, Index number, Mo
 Joint stiffness_of(const RodLayout& rod, const RodJoint& joint, bool holds_section) {
   return {rod.EI_1 / joint.bend_length, rod.EI_2 / joint.bend_length,
           holds_section ? rod.GJ / joint.twist_length : 0.0, joint.rest};
+}
+
+bool resists_everything(const Joint& joint) {
+  return joint.bend_1 > 0.0 && joint.bend_2 > 0.0 && joint.twist > 0.0;
 }
 
 RodJoint joint_at_node(const RodLayout& rod, Index place) {
@@ -133,12 +140,11 @@ void set_rest(const RodLayout& rod, const JointStrain& drawn, RodJoint& joint) {
   }
 }
 
-/// Strain of a joint between two frames that are drawn with `twist` between them.
+/// A joint between two frames that are drawn with `twist` between them.
 template <class Curvature>
-JointStrain drawn_strain(const SectionFrame& before, const SectionFrame& after, double twist) {
-  return JointKinematics<Curvature>(before, after,
-                                    nearest_turn(twist_between(before, after), twist))
-      .strain();
+JointKinematics<Curvature> drawn_joint(const SectionFrame& before, const SectionFrame& after,
+                                       double twist) {
+  return {before, after, nearest_turn(twist_between(before, after), twist)};
 }
 
 /// Makes the elements of a rod whose sections count.
@@ -174,19 +180,33 @@ class SectionElements {
   }
 
   void add_joint(RodJoint& joint) {
+    const double turned = theta(joint.after) - theta(joint.before);
+    const SectionFrame a = frame(joint.before);
+    const SectionFrame b = frame(joint.after);
+    const auto drawn = drawn_joint<Curvature>(a, b, turned);
+    set_rest(rod_, drawn.strain(), joint);
+    Joint stiffness = stiffness_of(rod_, joint, true);
+    if constexpr (std::is_same_v<Curvature, AngleCurvature>) {
+      if (rod_.natural_curvatures.empty() && is_corner(a, b) && resists_everything(stiffness)) {
+        const double length = rod_.edge_length[to_size(joint.before)];
+        const double share = length / (length + rod_.edge_length[to_size(joint.after)]);
+        add_joint_element<CornerBend>(joint, corner_joint(a, b, drawn, share, stiffness));
+        stiffness = {};  // the edges stay a chain (assembly/spatial_chain.hpp)
+      }
+    }
+    add_joint_element<SpatialBend<Curvature>>(joint, stiffness);
+    follow({number(joint.before), number(joint.after), {}}, drawn.strain().twist - turned);
+  }
+
+  template <class Kernel, class AJoint>
+  void add_joint_element(const RodJoint& joint, const AJoint& stiffness) {
     const SpatialEdge& before = edge(joint.before);
     const SpatialEdge& after = edge(joint.after);
-    const double turned = theta(joint.after) - theta(joint.before);
-    const JointStrain drawn =
-        drawn_strain<Curvature>(frame(joint.before), frame(joint.after), turned);
-    set_rest(rod_, drawn, joint);
-    add_element<SpatialBend<Curvature>>(
+    add_element<Kernel>(
         {before.start, before.start + 1, before.start + 2, after.start, after.start + 1,
          after.start + 2, after.end, after.end + 1, after.end + 2, before.theta, after.theta},
-        {stiffness_of(rod_, joint, true), FrameBlock::of(number(joint.before)),
-         FrameBlock::of(number(joint.after))},
+        {stiffness, FrameBlock::of(number(joint.before)), FrameBlock::of(number(joint.after))},
         before.first, after.last, model_);
-    follow({number(joint.before), number(joint.after), {}}, drawn.twist - turned);
   }
 
   void add_clamp(RodJoint& joint) {
@@ -198,8 +218,8 @@ class SectionElements {
     const SectionFrame frame_of_edge = frame(beside);
     const SectionFrame& held = clamp.held.drawn;
     const double beyond = joint.twist_length * rod_.initial_twist;
-    const JointStrain drawn = leaves ? drawn_strain<Curvature>(held, frame_of_edge, beyond)
-                                     : drawn_strain<Curvature>(frame_of_edge, held, beyond);
+    const auto& [a, b] = leaves ? std::tie(held, frame_of_edge) : std::tie(frame_of_edge, held);
+    const JointStrain drawn = drawn_joint<Curvature>(a, b, beyond).strain();
     set_rest(rod_, drawn, joint);
     elements_of<FromSpatialPivot<SpatialClamp<Curvature>>>(*model_.elements)
         .add(

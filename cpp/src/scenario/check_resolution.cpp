@@ -12,10 +12,7 @@ namespace {
 /// arc of this angle is 4 % shorter than the arc.
 constexpr double kCoarse = 1.0;
 
-/// Nodes whose angles differ by less are alike: the first is named.
-constexpr double kRounding = 1e-9;
-
-/// The largest turning angle that a rod's natural shape asks for, and the node of it.
+/// The largest turning angle of a rod, and the first node that has it.
 struct Turning {
   double angle = 0.0;  ///< [rad]
   int node = 0;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
@@ -60,12 +61,12 @@ struct StressedJoint {
   EdgeFrame b;
   Vec3 moment;  ///< [N m]
 
-  template <class Curvature>
+  template <class Curvature, class AJoint>
   static StressedJoint of(const Eigen::Matrix<double, 11, 1>& x,
                           const Eigen::Matrix<double, 11, 1>& d,
-                          const typename SpatialBend<Curvature>::Constants& c,
+                          const typename SpatialBend<Curvature, AJoint>::Constants& c,
                           const Vector& values) {
-    const auto [a, b, twist] = SpatialBend<Curvature>::frames(c, values, x);
+    const auto [a, b, twist] = SpatialBend<Curvature, AJoint>::frames(c, values, x);
     JointResponse response;
     JointKinematics<Curvature>(a.frame, b.frame, twist).template respond<true>(c.joint, response);
     return {a, b, moment_change(response, turned(a, d, 0, 9), turned(b, d, 1, 10))};
@@ -188,15 +189,20 @@ void InitialStress::add_joints(const Model& model, const Configuration& here,
     term.size = size;
     return term;
   };
-  for_each_element<SpatialBend<Curvature>>(
-      model, here, [&](const auto& dofs, const auto& c, const auto& x) {
-        const auto joint =
-            StressedJoint::of<Curvature>(x, gather(dofs, displacement), c, here.controls);
-        Term& term = add_term(joint.moment, 8);
-        term.matrix = joint.stiffness();
-        add_variables(dofs, 0, 9, 0, term);
-        add_variables(dofs, 1, 10, 4, term);
-      });
+  const auto add_joints_of = [&](auto kind) {
+    using AJoint = decltype(kind);
+    for_each_element<SpatialBend<Curvature, AJoint>>(
+        model, here, [&](const auto& dofs, const auto& c, const auto& x) {
+          const auto joint =
+              StressedJoint::of<Curvature, AJoint>(x, gather(dofs, displacement), c, here.controls);
+          Term& term = add_term(joint.moment, 8);
+          term.matrix = joint.stiffness();
+          add_variables(dofs, 0, 9, 0, term);
+          add_variables(dofs, 1, 10, 4, term);
+        });
+  };
+  add_joints_of(Joint{});
+  if constexpr (std::is_same_v<Curvature, AngleCurvature>) add_joints_of(CoupledJoint{});
   for_each_pivoted<SpatialClamp<Curvature>>(
       model, here, [&](const auto& dofs, const auto& c, const auto& x) {
         const auto clamp =

@@ -138,6 +138,14 @@ typename SpatialBend<Curvature>::Constants sample_constants(const SpatialBend<Cu
   return {sample_joint(random), FrameBlock::of(0), FrameBlock::of(1)};
 }
 
+inline CornerBend::Constants sample_constants(const CornerBend&, Random& random) {
+  CoupledJoint joint;
+  const Mat3 root = Mat3::NullaryExpr([&] { return uniform(random, -1.0, 1.0); });
+  joint.coefficients = Mat3::Identity() + root * root.transpose();
+  joint.rest = sample_joint(random).rest;
+  return {joint, FrameBlock::of(0), FrameBlock::of(1)};
+}
+
 template <class Curvature>
 typename SpatialClamp<Curvature>::Constants sample_constants(const SpatialClamp<Curvature>&,
                                                              Random& random) {
@@ -259,9 +267,9 @@ template <class Kernel, class Coordinates>
 void sample_frames(const Kernel& /*kernel*/, const typename Kernel::Constants& /*constants*/,
                    const Coordinates& /*x*/, Random& /*random*/, Configuration& /*here*/) {}
 
-template <class Curvature, class Coordinates>
-void sample_frames(const SpatialBend<Curvature>& /*kernel*/,
-                   const typename SpatialBend<Curvature>::Constants& constants,
+template <class Curvature, class AJoint, class Coordinates>
+void sample_frames(const SpatialBend<Curvature, AJoint>& /*kernel*/,
+                   const typename SpatialBend<Curvature, AJoint>::Constants& constants,
                    const Coordinates& x, Random& random, Configuration& here) {
   const Vec3 a = x.template segment<3>(3) - x.template segment<3>(0);
   const Vec3 b = x.template segment<3>(6) - x.template segment<3>(3);

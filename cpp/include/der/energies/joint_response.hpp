@@ -16,8 +16,37 @@ struct JointOf {
   T bend_2 = 0.0;         ///< EI2 over the cell length [N m]
   T twist = 0.0;          ///< GJ over the cell length [N m]
   JointStrainOf<T> rest;  ///< of natural curvature and twist
+
+  /// The derivative of the energy by the strain [N m].
+  [[nodiscard]] JointStrainOf<T> load(const JointStrainOf<T>& strain) const {
+    return {bend_1 * (strain.kappa_1 - rest.kappa_1), bend_2 * (strain.kappa_2 - rest.kappa_2),
+            twist * (strain.twist - rest.twist)};
+  }
+  /// The stiffness [N m] against rotations whose strains have the gradients g1, g2, gt.
+  [[nodiscard]] Matrix3<T> stiffness(const Vector3<T>& g1, const Vector3<T>& g2,
+                                     const Vector3<T>& gt) const {
+    return bend_1 * g1 * g1.transpose() + bend_2 * g2 * g2.transpose() +
+           twist * gt * gt.transpose();
+  }
 };
 using Joint = JointOf<double>;
+
+/// A joint whose three strains are coupled, as those at a corner are (building/corner.hpp).
+struct CoupledJoint {
+  Mat3 coefficients = Mat3::Zero();  ///< second derivative of the energy by the strain [N m]
+  JointStrain rest;
+
+  [[nodiscard]] JointStrain load(const JointStrain& strain) const {
+    const Vec3 q = coefficients * Vec3(strain.kappa_1 - rest.kappa_1, strain.kappa_2 - rest.kappa_2,
+                                       strain.twist - rest.twist);
+    return {q[0], q[1], q[2]};
+  }
+  [[nodiscard]] Mat3 stiffness(const Vec3& g1, const Vec3& g2, const Vec3& gt) const {
+    Mat3 gradients;
+    gradients << g1, g2, gt;
+    return gradients * coefficients * gradients.transpose();
+  }
+};
 
 /// Energy [J] of a joint and its derivatives with respect to the rotations omega_a, omega_b of its
 /// two frames: dE = M . (omega_b - omega_a), and M changes by
@@ -51,31 +80,44 @@ class JointKinematics {
 
   [[nodiscard]] const JointStrainOf<T>& strain() const { return strain_; }
 
-  [[nodiscard]] T energy(const JointOf<T>& joint) const {
-    const T k1 = strain_.kappa_1 - joint.rest.kappa_1;
-    const T k2 = strain_.kappa_2 - joint.rest.kappa_2;
-    const T k3 = strain_.twist - joint.rest.twist;
-    return 0.5 * (joint.bend_1 * k1 * k1 + joint.bend_2 * k2 * k2 + joint.twist * k3 * k3);
+  /// Energy [J] of a joint, a JointOf<T> or a CoupledJoint.
+  template <class AJoint>
+  [[nodiscard]] T energy(const AJoint& joint) const {
+    const auto [q1, q2, torque] = joint.load(strain_);
+    return 0.5 * (q1 * (strain_.kappa_1 - joint.rest.kappa_1) +
+                  q2 * (strain_.kappa_2 - joint.rest.kappa_2) +
+                  torque * (strain_.twist - joint.rest.twist));
+  }
+
+  /// Derivatives of the strain by omega_b, and by -omega_a.
+  struct Gradients {
+    Vector3<T> kappa_1;
+    Vector3<T> kappa_2;
+    Vector3<T> twist;
+  };
+  [[nodiscard]] Gradients gradients() const {
+    const T h = factor_.log_slope;
+    const Vector3<T> w = tb_.cross(ta_);
+    const Vector3<T> gt = 1.0 / (1.0 + cosine_) * (ta_ + tb_);
+    return {h * strain_.kappa_1 * w + factor_.f * tb_.cross(m1_) + 0.5 * strain_.kappa_2 * gt,
+            h * strain_.kappa_2 * w + factor_.f * tb_.cross(m2_) - 0.5 * strain_.kappa_1 * gt, gt};
   }
 
   /// Sets the energy and M, and S if `with_stiffness`.
-  template <bool with_stiffness>
-  void respond(const JointOf<T>& joint, JointResponseOf<T>& out) const {
-    const auto& [k1, k2, twist] = strain_;
-    const T q1 = joint.bend_1 * (k1 - joint.rest.kappa_1);
-    const T q2 = joint.bend_2 * (k2 - joint.rest.kappa_2);
-    const T torque = joint.twist * (twist - joint.rest.twist);
-    const T h = factor_.log_slope;
-    const T half = 1.0 / (1.0 + cosine_);
-    const Vector3<T> w = tb_.cross(ta_);       // gradient of the cosine by omega_b
-    const Vector3<T> gt = half * (ta_ + tb_);  // of the twist
-    const Vector3<T> g1 = h * k1 * w + factor_.f * tb_.cross(m1_) + 0.5 * k2 * gt;  // of kappa_1
-    const Vector3<T> g2 = h * k2 * w + factor_.f * tb_.cross(m2_) - 0.5 * k1 * gt;  // of kappa_2
+  template <bool with_stiffness, class AJoint = JointOf<T>>
+  void respond(const AJoint& joint, JointResponseOf<T>& out) const {
+    const T& k1 = strain_.kappa_1;
+    const T& k2 = strain_.kappa_2;
+    const auto [q1, q2, torque] = joint.load(strain_);
+    const auto [g1, g2, gt] = gradients();
     const Vector3<T> bend = q1 * g1 + q2 * g2;
     out.energy = energy(joint);
     out.moment = bend + torque * gt;
     if constexpr (!with_stiffness) return;
 
+    const T h = factor_.log_slope;
+    const T half = 1.0 / (1.0 + cosine_);
+    const Vector3<T> w = tb_.cross(ta_);  // gradient of the cosine
     const T in_line = q1 * k1 + q2 * k2;
     const T across = q1 * k2 - q2 * k1;
     const Vector3<T> turned = q1 * g2 - q2 * g1;
@@ -84,10 +126,8 @@ class JointKinematics {
     const Vector3<T> with_w = h * bend + 0.5 * factor_.log_change * in_line * w -
                               (0.5 * half * torque + (0.5 * h + 0.25 * half) * across) * gt;
     const Vector3<T> with_gt = 0.5 * turned + 0.125 * in_line * gt;
-    Matrix3<T> half_sum =
-        0.5 * (joint.bend_1 * g1 * g1.transpose() + joint.bend_2 * g2 * g2.transpose() +
-               joint.twist * gt * gt.transpose()) +
-        w * with_w.transpose() + gt * with_gt.transpose() + 0.5 * tb_ * lean.transpose();
+    Matrix3<T> half_sum = 0.5 * joint.stiffness(g1, g2, gt) + w * with_w.transpose() +
+                          gt * with_gt.transpose() + 0.5 * tb_ * lean.transpose();
     half_sum.diagonal().array() -= 0.5 * in_line * (1.0 + h * cosine_);
     out.stiffness = half_sum + half_sum.transpose();
   }

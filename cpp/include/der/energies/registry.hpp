@@ -43,6 +43,8 @@ struct ElementLists {
                            ElementList<SpatialBend<TangentCurvature>>,                       //
                            ElementList<FromSpatialPivot<SpatialBend<AngleCurvature>>>,       //
                            ElementList<FromSpatialPivot<SpatialBend<TangentCurvature>>>,     //
+                           ElementList<CornerBend>,                                          //
+                           ElementList<FromSpatialPivot<CornerBend>>,                        //
                            ElementList<FromSpatialPivot<SpatialClamp<AngleCurvature>>>,      //
                            ElementList<FromSpatialPivot<SpatialClamp<TangentCurvature>>>,    //
                            ElementList<PlanarMoment>,                                        //

@@ -29,13 +29,13 @@ T whole_twist(const SectionFrameOf<T>& before, const SectionFrameOf<T>& after,
 /// Bending about two axes and twist at a node between two edges (Bergou et al., Discrete Viscous
 /// Threads, SIGGRAPH 2010, section 4.2, with the directors of half the twist; JointKinematics).
 /// Coordinates: the three nodes, then the angles of the two edges.
-template <class Curvature>
+template <class Curvature, class AJoint = Joint>
 struct SpatialBend {
   static constexpr int kDofs = 11;
   static constexpr int kNodes = 3;
   static constexpr EnergyTerm kTerm = EnergyTerm::Bend;
   struct Constants {
-    Joint joint;
+    AJoint joint;
     FrameBlock before;
     FrameBlock after;
   };
@@ -101,6 +101,9 @@ struct SpatialBend {
     h(10, 10) = bb(3, 3);
   }
 };
+
+/// The joint of a corner.
+using CornerBend = SpatialBend<AngleCurvature, CoupledJoint>;
 
 /// Bending and twist of the cell between a held section and the edge next to it. Coordinates: the
 /// two nodes, then the edge's angle. supports/clamp.hpp has the lengths of the cell.

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cmath>
+
+#include "der/energies/joint_response.hpp"
+#include "der/kinematics/section_frame.hpp"
+
+namespace der {
+
+// The cell about a node is half on the edge before it and half on the one after. At a corner these
+// point elsewhere: the cell twists on one and bends on the other where a smooth curve does only one
+// of both. `curvature: tangent` does not resolve corners, not even in their plane.
+
+/// Whether two edges are drawn with a corner between them: a smooth curve on a mesh that resolves
+/// it turns by less.
+inline bool is_corner(const SectionFrame& before, const SectionFrame& after) {
+  constexpr double turn = 0.5;  // [rad]
+  return before.tangent.cross(after.tangent).norm() > std::sin(turn) ||
+         before.tangent.dot(after.tangent) < 0.0;
+}
+
+/// The joint whose compliance at rest is the sum of its two halves. `drawn` is the joint as the
+/// drawn frames `before` and `after` see it, `smooth` that of a smooth curve, with stiffnesses
+/// greater than 0, and `share` the part of the cell that lies before the node.
+inline CoupledJoint corner_joint(const SectionFrame& before, const SectionFrame& after,
+                                 const JointKinematics<AngleCurvature>& drawn, double share,
+                                 const Joint& smooth) {
+  // A curvature towards director 1 is a rotation about director 2.
+  const Vec3 compliance = Vec3(smooth.bend_2, smooth.bend_1, smooth.twist).cwiseInverse();
+  const auto half = [&](const SectionFrame& frame) -> Mat3 {
+    Mat3 axes;
+    axes << frame.first, frame.second, frame.tangent;
+    return axes * compliance.asDiagonal() * axes.transpose();
+  };
+  const auto by_rotation = drawn.gradients();
+  Mat3 gradients;
+  gradients << by_rotation.kappa_1, by_rotation.kappa_2, by_rotation.twist;
+  // Strains are s = G' w of a rotation w = C m under a moment m = G q.
+  const Mat3 sum = share * half(before) + (1.0 - share) * half(after);
+  return {(gradients.transpose() * sum * gradients).inverse(), smooth.rest};
+}
+
+}  // namespace der

@@ -26,6 +26,8 @@ from comparison.scene import (
     steps_per_frame,
 )
 
+__all__ = ("add_sensor", "add_weight", "exudyn", "hold", "items", "run")
+
 sys.exudynFast = True  # type: ignore[attr-defined]  # read by the import: no range checks
 with contextlib.redirect_stdout(io.StringIO()):  # it greets
     import exudyn

@@ -28,7 +28,7 @@ class _AnyStruct:
 
 # Its annotations "Struct | None" are evaluated by Python before 3.14 and fail there.
 if "__or__" not in vars(type(_AnyStruct)):
-    type(_AnyStruct).__or__ = lambda self, other: self
+    type(_AnyStruct).__or__ = lambda self, other: self  # type: ignore[method-assign]
 
 import dismech_newton  # noqa: E402
 import newton  # noqa: E402

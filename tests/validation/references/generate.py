@@ -42,6 +42,7 @@ SPATIAL = (
     "curved_twisted_rod",
     "writhe",
     "spatial_motion",
+    "falling_strip",
 )
 PROBLEMS = PLANAR + SPATIAL
 

@@ -2,6 +2,7 @@
 
 #include "der/core/error.hpp"
 #include "der/solvers/banded_ldlt.hpp"
+#include "der/solvers/bordered_ldlt.hpp"
 #include "der/solvers/sparse_ldlt.hpp"
 
 namespace der {
@@ -12,6 +13,7 @@ namespace {
 constexpr Index kNarrowBand = 32;
 
 std::unique_ptr<LinearSolver> make_banded(const Pattern& pattern) {
+  if (!pattern.borders.empty()) return std::make_unique<BorderedLdlt>(pattern);
   return std::make_unique<BandedLdlt>(pattern);
 }
 

@@ -1,5 +1,4 @@
 #include "der/energies/foundation.hpp"
-#include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/loads/loads.hpp"
@@ -11,8 +10,8 @@ namespace {
 /// Integrals over a part of an edge of the products of its shape functions [m]. The functions are
 /// linear: Simpson's rule has no error.
 Eigen::Matrix2d shape_products(const EdgePart& part, const RodLayout& rod) {
-  const double s0 = rod.arc_length[to_size(part.edge)];
-  const double s1 = rod.arc_length[to_size(part.edge + 1)];
+  const double s0 = rod.arc_length_at(part.edge);
+  const double s1 = rod.arc_length_at(part.edge + 1);
   const auto at = [&](double s) {
     const double share = (s - s0) / (s1 - s0);
     const Vec2 shapes{1.0 - share, share};

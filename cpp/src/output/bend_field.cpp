@@ -39,13 +39,13 @@ double turning_angle(const BendCell& cell, const Model& model, const State& stat
 /// From edge to edge at an inner node, from or to the held tangent at a clamped end.
 BendCell cell_at(const RodLayout& rod, Index node, const Model& model) {
   BendCell cell;
-  if (node > 0) {
-    cell.before = effective_edge(rod, node - 1, model);
+  if (const Index edge = rod.edge_before(node); edge >= 0) {
+    cell.before = effective_edge(rod, edge, model);
   } else {
     cell.start = *rod.clamp_at(node);
   }
-  if (node < rod.num_edges()) {
-    cell.after = effective_edge(rod, node, model);
+  if (const Index edge = rod.edge_after(node); edge >= 0) {
+    cell.after = effective_edge(rod, edge, model);
   } else {
     cell.end = *rod.clamp_at(node);
   }
@@ -83,8 +83,8 @@ class TurnField : public RodField {
 /// Curvature or moment of a rod without bending stiffness.
 std::unique_ptr<RodField> limp_field(bool moment, const RodLayout& rod, const Model& model) {
   std::vector<Weighted> nodes;
-  for (Index i = 1; i < rod.num_edges(); ++i) {
-    nodes.push_back({i, moment ? 0.0 : 1.0 / rod.voronoi_length(i)});
+  for (Index i = 0; i < static_cast<Index>(rod.nodes.size()); ++i) {
+    if (rod.is_inner(i)) nodes.push_back({i, moment ? 0.0 : 1.0 / rod.voronoi_length(i)});
   }
   return std::make_unique<TurnField>(rod, nodes, true, model);
 }
@@ -158,8 +158,8 @@ class BendField : public RodField {
         add(s, true, false);
         if (jumps) add(s, false, false);
       }
-      const bool end = edge + 1 == rod.num_edges();
-      if (end || recovery.jumps_at(edge + 1)) add(rod.arc_length[to_size(edge + 1)], true, false);
+      const bool end = !rod.is_inner(edge + 1);
+      if (end || recovery.jumps_at(edge + 1)) add(rod.arc_length_at(edge + 1), true, false);
     }
     return samples;
   }
@@ -176,7 +176,7 @@ class BendField : public RodField {
     Known result;
     result.last = last;
     result.effective = effective_edge(rod, edge, model);
-    result.arc_length = rod.arc_length[to_size(node)];
+    result.arc_length = rod.arc_length_at(node);
     if (const Clamp* clamp = rod.clamp_at(node)) {
       const double pivot = clamp_pivot_share() * rod.edge_length[to_size(edge)];
       result.arc_length += last ? -pivot : pivot;
@@ -190,10 +190,10 @@ class BendField : public RodField {
       }
       result.length = clamp_cell_length(rod, edge);
       result.rest_angle = clamp_rest_angle(rod, *clamp, edge, model);
-    } else if (node > 0 && node < rod.num_edges()) {
+    } else if (rod.is_inner(node)) {
       result.cell = cell_at(rod, node, model);
       result.length = bend_length(rod, node);
-      result.rest_angle = rod.rest_turning_angle[to_size(node)];
+      result.rest_angle = rod.rest_turning_angle[to_size(rod.position(node))];
     }
     result.natural_curvature = natural.at(result.arc_length);
     return result;
@@ -241,9 +241,8 @@ std::unique_ptr<RodField> make_bend_field(bool moment, const RodLayout& rod, con
 
 std::unique_ptr<RodField> make_turning_angle_field(const RodLayout& rod, const Model& model) {
   std::vector<Weighted> nodes;
-  for (Index i = 0; i <= rod.num_edges(); ++i) {
-    const bool inner = i > 0 && i < rod.num_edges();
-    if (inner || rod.clamp_at(i) != nullptr) nodes.push_back({i, 1.0});
+  for (Index i = 0; i < static_cast<Index>(rod.nodes.size()); ++i) {
+    if (rod.is_inner(i) || rod.clamp_at(i) != nullptr) nodes.push_back({i, 1.0});
   }
   return std::make_unique<TurnField>(rod, nodes, false, model);
 }

@@ -10,7 +10,8 @@
 namespace der {
 
 /// The point forces between the nodes of a rod, of loads and of springs: where they stand, what
-/// they are, and the nodes over which the chain spreads them.
+/// they are, and the nodes over which the chain spreads them. Those of a ring are there three
+/// times, one length of the ring apart (`turns_of`): one of them is where its edges see it.
 class SpreadForces {
  public:
   struct Force {
@@ -31,6 +32,7 @@ class SpreadForces {
   [[nodiscard]] Vec2 value(std::size_t i, const Model& model, const State& state) const;
 
  private:
+  RodLayout rod_;
   std::vector<Index> first_dofs_;  // of each node
   std::vector<Force> forces_;
 };

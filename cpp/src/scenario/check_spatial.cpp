@@ -16,11 +16,6 @@ class Availability {
 
   /// What no model has.
   void check_all_models() {
-    for (int i = 0; i < static_cast<int>(scene_.given_rods.size()); ++i) {
-      if (scene_.given_rods[static_cast<std::size_t>(i)].closed) {
-        not_available({"rods", i, "closed"}, "closed rods");
-      }
-    }
     for_each_load([this](const auto& load, const Path& path) {
       if (turns_with_rod(load)) {
         not_available(path / "follower", "loads that turn with the rod");

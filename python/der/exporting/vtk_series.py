@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from der.fields import RodFields, rod_fields
+from der.fields import RodFields, along_line, rod_fields
 from der.film import mode_shapes
 from der.progress import ProgressFunction
 from der.run_data import RunData
@@ -39,7 +39,7 @@ def write_vtk(result: RunData, out: Path, progress: ProgressFunction) -> list[Pa
     for old in frames.glob("rods_*.vtu"):
         old.unlink()
     rods = rod_fields(result)
-    sizes = np.array([len(fields.rod.nodes) for fields in rods])
+    sizes = np.array([len(fields.rod.line_nodes) for fields in rods])
     lines = np.full(len(rods), VtkPolyLine.tid, dtype=np.uint8)
     # A path has no time: its frames are numbered.
     times = result.times if result.path is None else np.arange(len(result.times), dtype=np.float64)
@@ -70,13 +70,15 @@ def _point_data(rods: list[RodFields], frame: int) -> PointData:
         for name in rods[0].at_nodes
     }
     # Without sections rods do not twist: 0 [rad/m], for programs that read it of all rods.
-    data.setdefault("twist", np.zeros(sum(len(fields.rod.nodes) for fields in rods)))
+    data.setdefault("twist", np.zeros(sum(len(fields.rod.line_nodes) for fields in rods)))
     data["velocity"] = _in_space(np.vstack([fields.velocities[frame] for fields in rods]))
     data["radius"] = np.concatenate(
-        [np.full(len(fields.rod.nodes), fields.rod.radius) for fields in rods]
+        [np.full(len(fields.rod.line_nodes), fields.rod.radius) for fields in rods]
     )
-    data["sphere_radius"] = np.concatenate([fields.rod.sphere_radii for fields in rods])
-    data["arc_length"] = np.concatenate([fields.rod.arc_lengths for fields in rods])
+    data["sphere_radius"] = np.concatenate(
+        [along_line(fields.rod.sphere_radii, fields.rod) for fields in rods]
+    )
+    data["arc_length"] = np.concatenate([fields.rod.line_arc_lengths for fields in rods])
     return data
 
 
@@ -87,12 +89,19 @@ def _section_data(result: RunData, rods: list[RodFields], frame: int) -> PointDa
     found = []
     first = 0  # edge of the rod
     for fields in rods:
-        edges = result.directors[frame, first : first + len(fields.rod.nodes) - 1]
+        edges = result.directors[frame, first : first + len(fields.rod.line_nodes) - 1]
         first += len(edges)
-        sums = np.vstack([edges[:1], edges[:-1] + edges[1:], edges[-1:]])
+        ends = edges[:1] + edges[-1:] if fields.rod.closed else None
+        sums = np.vstack(
+            [
+                edges[:1] if ends is None else ends,
+                edges[:-1] + edges[1:],
+                edges[-1:] if ends is None else ends,
+            ]
+        )
         sizes = np.linalg.norm(sums, axis=1, keepdims=True)
         # Two opposite directors have no mean: the node has that of the edge after it.
-        after = np.vstack([edges, edges[-1:]])
+        after = np.vstack([edges, edges[:1] if fields.rod.closed else edges[-1:]])
         found.append(np.where(sizes > 1e-9, sums / np.maximum(sizes, 1e-9), after))
     return {"director": _in_space(np.vstack(found))}
 
@@ -100,7 +109,7 @@ def _section_data(result: RunData, rods: list[RodFields], frame: int) -> PointDa
 def _mode_data(result: RunData, rods: list[RodFields]) -> PointData:
     """Return the displacements of each mode as vectors, which ParaView warps the rods by."""
     return {
-        f"mode_{number}": _in_space(np.vstack([shape[fields.rod.nodes] for fields in rods]))
+        f"mode_{number}": _in_space(np.vstack([shape[fields.rod.line_nodes] for fields in rods]))
         for number, shape in enumerate(mode_shapes(result), 1)
     }
 

@@ -172,6 +172,11 @@ def helix_spring() -> Figure:
     return der.run(CONFIGS / "helix_spring.yaml").plot()
 
 
+def twisted_ring() -> Figure:
+    """Draw a ring that leaves its plane."""
+    return der.run(CONFIGS / "twisted_ring.yaml").plot()
+
+
 def tutorial_falling_rod() -> Figure:
     """Draw the rod with beads of the first tutorial."""
     return falling_rod.figure(der.run(falling_rod.SCENE))
@@ -343,6 +348,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         euler_buckling,
         snap_through_arch,
         helix_spring,
+        twisted_ring,
         tutorial_falling_rod,
         tutorial_beam_study,
         tutorial_control,

@@ -238,8 +238,8 @@ def value_at(series: Any, time: float) -> Array:
 
 def place_on(rod: Rod, positions: Array, at: float) -> Array:
     """Return the point [m], shape (dim,), at an arc length of a rod in the shape `positions`."""
-    line = positions[rod.nodes]
-    return np.array([np.interp(at, rod.arc_lengths, column) for column in line.T])
+    line = positions[rod.line_nodes]
+    return np.array([np.interp(at, rod.line_arc_lengths, column) for column in line.T])
 
 
 def ground_direction(part: FoundationPart, rod: Rod, positions: Array) -> Array:

@@ -14,15 +14,6 @@ class Availability {
   Availability(const SceneText& scene, Diagnostics& diagnostics)
       : scene_(scene), diagnostics_(diagnostics) {}
 
-  /// Keys that no model has yet.
-  void check_all_models() {
-    for (int i = 0; i < static_cast<int>(scene_.given_rods.size()); ++i) {
-      if (scene_.given_rods[static_cast<std::size_t>(i)].closed) {
-        not_available({"rods", i, "closed"}, "closed rods");
-      }
-    }
-  }
-
   /// Some loads have no potential, and some analyses need one.
   void check_potential(ModelChoice kind) {
     const char* analysis =
@@ -62,9 +53,6 @@ class Availability {
     }
   }
 
-  void not_available(const Path& where, const std::string& what) {
-    diagnostics_.add(where, what + " are not available yet");
-  }
   void only_planar(const Path& where, const std::string& what) {
     diagnostics_.add(where, what + ": not available yet in the spatial models, only in 'planar'");
   }
@@ -77,7 +65,6 @@ class Availability {
 
 void check_availability(const SceneText& scene, ModelChoice kind, Diagnostics& diagnostics) {
   Availability availability(scene, diagnostics);
-  availability.check_all_models();
   availability.check_potential(kind);
   if (kind != ModelChoice::Planar) availability.check_spatial_models();
 }

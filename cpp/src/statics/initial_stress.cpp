@@ -85,7 +85,8 @@ struct StressedJoint {
                           const SpatialPivot& first, const SpatialPivot& last,
                           const Configuration& here, const Vector& displacement) {
     const Vector& values = here.controls;
-    const auto x = moved(dofs, here, first, last, 3);
+    auto x = moved(dofs, here, first, last, 3);
+    x[10] -= c.glued;
     const auto d = gather(dofs, displacement);
     const TurningEdge a = turning_edge(x, d, 0, 9, c.before, values);
     const TurningEdge b = turning_edge(x, d, 1, 10, c.after, values);

@@ -25,6 +25,16 @@ constexpr double kFlat = 1e-3;
 /// release.
 constexpr double kErrorShare = 4.0;
 
+/// By how much a second variation may be negative by rounding in the positions, as a multiple of
+/// that by rounding in its own terms. They are known to their rounding, and with them the tension
+/// of an edge to that times the size over its length: a rigid rotation has the curvature of what is
+/// out of balance.
+double negative_by_rounding(const Model& model) {
+  double shortest = model.size();
+  for (const Edge& edge : model.edges) shortest = std::min(shortest, edge.rest_length);
+  return std::max(1.0, model.size() / (kRoundings * shortest));
+}
+
 }  // namespace
 
 Stiffness::Stiffness(const Model& model, const Assembler& assembler, LinearSolver& solver)
@@ -76,12 +86,14 @@ void Stiffness::judge_doubtful(Stability& stability) {
   const SoftSpace space = softest_space(count);
   // A direction is neutral if it is flat compared with the stiffest of this space.
   const double flat = kFlat * space.curvatures[space.curvatures.size() - 1];
+  const double negative = negative_by_rounding(model_);
   stability.unstable_directions = 0;
   for (Index i = 0; i < count; ++i) {
     const double curvature = space.curvatures[i];
-    if (curvature < -space.rounding[i]) {  // along any direction, this proves it
+    if (curvature < -negative * space.rounding[i]) {  // along any direction, this proves it
       ++stability.unstable_directions;
-    } else if (const double error = space.rounding[i] + space.errors[i]; curvature <= error) {
+    } else if (const double error = std::max(space.rounding[i], -curvature) + space.errors[i];
+               curvature <= error) {
       ++(error <= flat ? stability.neutral_directions : stability.unknown_directions);
     }
   }

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from der.fields import RodFields, rod_fields
+from der.fields import RodFields, along_line, rod_fields
 from der.film import mode_shapes
 from der.progress import ProgressFunction
 from der.run_data import RunData
@@ -44,7 +44,7 @@ def write_vtk(result: RunData, out: Path, progress: ProgressFunction) -> list[Pa
         old.unlink()
     (out / "sections.pvd").unlink(missing_ok=True)
     rods = rod_fields(result)
-    sizes = np.array([len(fields.rod.nodes) for fields in rods])
+    sizes = np.array([len(fields.rod.line_nodes) for fields in rods])
     sections, directors = sections_of(result), directors_along(result)
     surfaces = _Surfaces(sections, sizes.tolist())
     lines = np.full(len(rods), VtkPolyLine.tid, dtype=np.uint8)
@@ -156,13 +156,15 @@ def _point_data(rods: list[RodFields], frame: int) -> PointData:
         for name in rods[0].at_nodes
     }
     # Without sections rods do not twist: 0 [rad/m], for programs that read it of all rods.
-    data.setdefault("twist", np.zeros(sum(len(fields.rod.nodes) for fields in rods)))
+    data.setdefault("twist", np.zeros(sum(len(fields.rod.line_nodes) for fields in rods)))
     data["velocity"] = _in_space(np.vstack([fields.velocities[frame] for fields in rods]))
     data["radius"] = np.concatenate(
-        [np.full(len(fields.rod.nodes), fields.rod.radius) for fields in rods]
+        [np.full(len(fields.rod.line_nodes), fields.rod.radius) for fields in rods]
     )
-    data["sphere_radius"] = np.concatenate([fields.rod.sphere_radii for fields in rods])
-    data["arc_length"] = np.concatenate([fields.rod.arc_lengths for fields in rods])
+    data["sphere_radius"] = np.concatenate(
+        [along_line(fields.rod.sphere_radii, fields.rod) for fields in rods]
+    )
+    data["arc_length"] = np.concatenate([fields.rod.line_arc_lengths for fields in rods])
     return data
 
 
@@ -176,7 +178,7 @@ def _section_data(
 
     Sizes that are not known are 0; only the model ``spatial`` has a director.
     """
-    counts = [len(fields.rod.nodes) for fields in rods]
+    counts = [len(fields.rod.line_nodes) for fields in rods]
     sizes = [(0.0, 0.0) if one is None else (one.width, one.height) for one in sections]
     width, height = np.repeat(np.array(sizes), counts, axis=0).T
     data: PointData = {"width": width.copy(), "height": height.copy()}
@@ -189,7 +191,7 @@ def _section_data(
 def _mode_data(result: RunData, rods: list[RodFields]) -> PointData:
     """Return the displacements of each mode as vectors, which ParaView warps the rods by."""
     return {
-        f"mode_{number}": _in_space(np.vstack([shape[fields.rod.nodes] for fields in rods]))
+        f"mode_{number}": _in_space(np.vstack([shape[fields.rod.line_nodes] for fields in rods]))
         for number, shape in enumerate(mode_shapes(result), 1)
     }
 

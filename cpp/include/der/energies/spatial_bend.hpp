@@ -38,6 +38,7 @@ struct SpatialBend {
     Joint joint;
     FrameBlock before;
     FrameBlock after;
+    double glued = 0.0;  ///< [rad] by which the section after it is turned without strain
   };
 
   template <Derivatives D>
@@ -46,10 +47,11 @@ struct SpatialBend {
     const Vector& values = here.controls;
     const EdgeFrame a(x.segment<3>(3) - x.segment<3>(0), x[9], c.before.tangent(values),
                       c.before.director(values));
-    const EdgeFrame b(x.segment<3>(6) - x.segment<3>(3), x[10], c.after.tangent(values),
+    const double theta_after = x[10] - c.glued;
+    const EdgeFrame b(x.segment<3>(6) - x.segment<3>(3), theta_after, c.after.tangent(values),
                       c.after.director(values));
     const double twist =
-        whole_twist(a.frame, b.frame, x[9], x[10], values[c.after.twist_at_start()]);
+        whole_twist(a.frame, b.frame, x[9], theta_after, values[c.after.twist_at_start()]);
     const JointKinematics<Curvature> kinematics(a.frame, b.frame, twist);
     if constexpr (D == Derivatives::Energy) {
       out.energy = kinematics.energy(c.joint);

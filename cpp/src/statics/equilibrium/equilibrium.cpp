@@ -1,5 +1,6 @@
 #include "der/statics/equilibrium.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -191,8 +192,11 @@ class EquilibriumSearch {
     bool resolved = neutral || polish(model_, loads_.force, report_.stability, stiffness_, here);
     shape.positions = std::move(here.coordinates);
     report_.residual = model_.dofs.largest_free_force(loads_.force - stiffness_.gradient());
-    // A Newton step is meaningless in a neutral equilibrium, so the forces must be in balance.
-    if (neutral && report_.residual > kUnbalanced * newton_.force_scale()) resolved = false;
+    // A Newton step is meaningless in a neutral equilibrium, so the forces must be in balance: to
+    // the rounding errors of their elements where no others act.
+    const double unbalanced =
+        std::max(kUnbalanced * newton_.force_scale(), stiffness_.rounding() * model_.size());
+    if (neutral && report_.residual > unbalanced) resolved = false;
     report_.largest_turning_angle = largest_turning_angle(model_, shape.positions);
     if (resolved) return std::nullopt;
     return FailedSearch{EquilibriumFailure::LostInRoundoff, {}};

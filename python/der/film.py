@@ -174,17 +174,13 @@ def _equilibrium(result: RunData) -> Film:
 
 
 def _modes(result: RunData) -> Film:
-    shapes = mode_shapes(result)
-    if not len(shapes):
+    if not len(mode_shapes(result)):
         raise ValueError("the run has found no modes to show")
     names = [f"mode {number}: {value}" for number, value in enumerate(_mode_values(result), 1)]
     rest = result.positions[-1]
-    size = MODE_SIZE * float(np.max(rest.max(axis=0) - rest.min(axis=0)))
     swing = np.sin(np.linspace(0.0, 2.0 * np.pi, _MODE_FRAMES, endpoint=False))
     positions = [
-        rest + amplitude * size / np.abs(shape).max() * shape
-        for shape in shapes
-        for amplitude in swing
+        rest + amplitude * largest for largest in mode_displacements(result) for amplitude in swing
     ]
     captions = [f"{name}, not to scale" for name in names for _ in swing]
     chapters = [
@@ -203,6 +199,14 @@ def mode_shapes(result: RunData) -> Array:
     """Return vibration or buckling modes, shape (modes, nodes, dim); of other runs none."""
     found = result.modes or result.buckling
     return found.shapes if found is not None else np.zeros((0, *result.positions.shape[1:]))
+
+
+def mode_displacements(result: RunData) -> Array:
+    """Return the largest displacements [m] with which modes are drawn, as `mode_shapes`."""
+    shapes = mode_shapes(result)
+    size = MODE_SIZE * float(np.ptp(result.positions[-1], axis=0).max())
+    largest = np.abs(shapes).max(axis=(1, 2), keepdims=True)
+    return np.asarray(size * shapes / largest)
 
 
 def _mode_values(result: RunData) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import der
@@ -61,3 +61,13 @@ def measured(
     result = der.run(der.Scenario.from_dict({**scene, "output": output}))
     values = [[result.probes[f"{q}_{i}"][-1] for q in quantities] for i in range(len(places))]
     return np.array(values), result
+
+
+def critical(is_unstable: Callable[[float], bool], low: float, high: float, digits: float) -> float:
+    """The load between `low` and `high` where a verdict changes, to `digits`."""
+    assert not is_unstable(low)
+    assert is_unstable(high)
+    while high - low > digits:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if is_unstable(middle) else (middle, high)
+    return 0.5 * (low + high)

@@ -11,7 +11,7 @@ import pytest
 from scenes import END, START, tip_force
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
-from spatial_scenes import measured, section, straight_rod
+from spatial_scenes import critical, measured, section, straight_rod
 
 SIZES = [10, 20, 40]
 STEPS = [1 / n for n in SIZES]
@@ -36,16 +36,6 @@ def strip(n, supports, loads, weak, twisting, **more):
 def planar_verdict(scene):
     """The verdict of the equilibrium, stable in its plane or not."""
     return der.Simulation(scene).equilibrium(leave_saddles=False).out_of_plane
-
-
-def critical(is_unstable, low, high, digits):
-    """The load between `low` and `high` where the verdict changes."""
-    assert not is_unstable(low)
-    assert is_unstable(high)
-    while high - low > digits:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if is_unstable(middle) else (middle, high)
-    return 0.5 * (low + high)
 
 
 def leaves_plane(scene):

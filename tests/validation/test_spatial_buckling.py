@@ -5,20 +5,10 @@ unstable directions. References: `references/spatial_buckling.py`.
 import numpy as np
 import pytest
 from scenes import END, START, tip_force
-from spatial_scenes import measured, section, straight_rod
+from spatial_scenes import critical, measured, section, straight_rod
 
 SIZES = [10, 20, 40]
 SLENDER = 1e7  # EA
-
-
-def critical(is_unstable, low, high, digits):
-    """The load between `low` and `high` where the equilibrium becomes unstable."""
-    assert not is_unstable(low)
-    assert is_unstable(high)
-    while high - low > digits:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if is_unstable(middle) else (middle, high)
-    return 0.5 * (low + high)
 
 
 def unstable(scene):

@@ -13,6 +13,7 @@
 #include "der/energies/elements_of.hpp"
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/spatial_bend.hpp"
+#include "der/model/frames.hpp"
 #include "der/model/location.hpp"
 #include "der/scenario/load.hpp"
 #include "der/scenario/scenario.hpp"
@@ -123,8 +124,7 @@ void add_fork(const RodLayout& rod, Index place, OutOfPlaneModel& twin) {
     const FrameBlock block = FrameBlock::of(number);
     const SpatialEdge& own = model.framed_edges[to_size(number)];
     HeldFrame held;
-    held.drawn =
-        SectionFrame::of(block.tangent(model.drawn_frames), block.director(model.drawn_frames));
+    held.drawn = reference_frame(number, model.drawn_frames);
     held.rotation = model.tables.add({});
     const double half = 0.5 * rod.edge_length[to_size(edge)];
     elements_of<FromSpatialPivot<SpatialClamp<Curvature>>>(*model.elements)

@@ -8,6 +8,7 @@
 #include "der/energies/isotropic_bend.hpp"
 #include "der/energies/spatial_bend.hpp"
 #include "der/energies/stretch.hpp"
+#include "der/model/frames.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/section_spring.hpp"
 #include "der/supports/spatial_clamp.hpp"
@@ -168,11 +169,7 @@ class SectionElements {
   [[nodiscard]] const SpatialEdge& edge(Index edge) const {
     return model_.framed_edges[to_size(number(edge))];
   }
-  [[nodiscard]] SectionFrame frame(Index edge) const {
-    const FrameBlock block = FrameBlock::of(number(edge));
-    return SectionFrame::of(block.tangent(model_.drawn_frames), block.director(model_.drawn_frames))
-        .turned(theta(edge));
-  }
+  [[nodiscard]] SectionFrame frame(Index edge) const { return drawn_frame(model_, number(edge)); }
   [[nodiscard]] double theta(Index edge) const {
     return model_.initial_positions[this->edge(edge).theta];
   }

@@ -4,6 +4,7 @@
 
 #include "der/core/index.hpp"
 #include "der/energies/registry.hpp"
+#include "der/model/frames.hpp"
 #include "der/model/location.hpp"
 #include "der/model/section_place.hpp"
 #include "der/supports/clamp.hpp"
@@ -37,8 +38,7 @@ void add_vector(Index start, Index end, const Model& model, CirculatoryLoad& loa
 }
 
 FramedEdge framed_edge(Index number, const Model& model) {
-  return {model.framed_edges[to_size(number)], FrameBlock::of(number),
-          section_frame(model, number, drawn_configuration(model))};
+  return {model.framed_edges[to_size(number)], FrameBlock::of(number), drawn_frame(model, number)};
 }
 
 PlanarFollowerForce planar_follower(const SectionPlace& place, const RodLayout& rod,

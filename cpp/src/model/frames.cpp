@@ -5,15 +5,11 @@
 #include "der/model/model.hpp"
 
 namespace der {
-namespace {
 
-/// The reference frame of an edge, from its block.
 SectionFrame reference_frame(Index edge, const Eigen::Ref<const Vector>& frames) {
   const FrameBlock block = FrameBlock::of(edge);
   return SectionFrame::of(block.tangent(frames), block.director(frames));
 }
-
-}  // namespace
 
 void follow_frames(const Model& model, const Vector& coordinates, const Vector& controls,
                    Eigen::Ref<Vector> frames) {
@@ -44,10 +40,9 @@ Index frame_turned_too_far(const Model& model, const Vector& coordinates, const 
   return -1;
 }
 
-Configuration drawn_configuration(const Model& model) {
-  Configuration here{model.initial_positions, Vector::Zero(model.tables.size())};
-  here.controls.head(model.drawn_frames.size()) = model.drawn_frames;
-  return here;
+SectionFrame drawn_frame(const Model& model, Index edge) {
+  const double theta = model.initial_positions[model.framed_edges[to_size(edge)].theta];
+  return reference_frame(edge, model.drawn_frames).turned(theta);
 }
 
 SectionFrame section_frame(const Model& model, Index edge, const Configuration& here) {

@@ -5,6 +5,7 @@
 
 #include "der/core/index.hpp"
 #include "der/energies/joint_response.hpp"
+#include "der/model/frames.hpp"
 #include "der/supports/spatial_clamp.hpp"
 
 namespace der {
@@ -107,11 +108,8 @@ SectionFrame held_frame(const HeldFrame& held, const Model& model, const State& 
 }
 
 SectionFrame section_frame(const Model& model, Index edge, const State& state) {
-  const FrameBlock block = FrameBlock::of(edge);
-  const auto first = static_cast<Index>(model.followed_edges.size());
-  const Vec3 tangent = state.followed.segment<3>(first + block.first);
-  const Vec3 director = state.followed.segment<3>(first + block.first + 3);
-  return SectionFrame::of(tangent, director).turned(theta(edge, model, state));
+  return reference_frame(edge, state.followed.tail(model.drawn_frames.size()))
+      .turned(theta(edge, model, state));
 }
 
 Vector directors_of(const Model& model, const State& state) {

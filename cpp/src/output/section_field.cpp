@@ -96,7 +96,8 @@ class SectionField : public EdgewiseField<Vec3> {
         stiffness_(model.has_sections() ? Vec3(rod.EI_1, rod.EI_2, rod.GJ)
                                         : Vec3::Constant(rod.EI_1)),
         recovery_(std::move(recovery)),
-        edges_(std::move(edges)) {}
+        edges_(std::move(edges)),
+        turned_ends_(turned_ends(rod, model)) {}
 
   /// Components towards the two directors of a section that is turned on by an angle [rad].
   static Vec3 turned(const Vec3& parts, double angle) {
@@ -121,18 +122,46 @@ class SectionField : public EdgewiseField<Vec3> {
             joint.rest.twist / joint.twist_length};
   }
 
+  /// The two joints next to an end of a rod that has two, and how much further beyond the nearer
+  /// one the end is, over their distance.
+  struct EndJoints {
+    const RodJoint* near;
+    const RodJoint* far;
+    double ratio;
+
+    EndJoints(const RodLayout& rod, bool last)
+        : near(last ? &rod.joints.back() : &rod.joints.front()),
+          far(last ? near - 1 : near + 1),
+          ratio(((last ? rod.rest_length() : 0.0) - near->bend_place) /
+                (near->bend_place - far->bend_place)) {}
+  };
+
+  /// An end at which a moment or a spring turns the section. The joint next to it bends by l/12 of
+  /// the end's curvature more (model/moment_place.hpp), which follows from that of the next joint.
+  struct TurnedEnd : EndJoints {
+    double share;  ///< l/12 over the length in which the joint bends
+
+    TurnedEnd(const RodLayout& rod, bool last)
+        : EndJoints(rod, last),
+          share(rod.edge_length[to_size(last ? near->after : near->before)] /
+                (12.0 * near->bend_length)) {}
+  };
+
+  static std::vector<TurnedEnd> turned_ends(const RodLayout& rod, const Model& model) {
+    std::vector<TurnedEnd> ends;
+    for (const bool last : {false, true}) {
+      if (rod.joints.size() > 1 && is_turned_at_end(rod, last, model)) ends.emplace_back(rod, last);
+    }
+    return ends;
+  }
+
   /// Natural curvatures and twist at an end of the rod: as given, or those of the drawn rod,
   /// extrapolated.
   static Vec3 natural_at_end(const RodLayout& rod, bool last) {
-    const std::vector<RodJoint>& joints = rod.joints;
-    const RodJoint& near = last ? joints.back() : joints.front();
-    const Vec3 natural = natural_of(near);
-    Vec3 result = natural;
-    if (joints.size() > 1) {
-      const RodJoint& far = last ? joints[joints.size() - 2] : joints[1];
-      const double s = last ? rod.rest_length() : 0.0;
-      result +=
-          (s - near.bend_place) / (near.bend_place - far.bend_place) * (natural - natural_of(far));
+    Vec3 result = natural_of(last ? rod.joints.back() : rod.joints.front());
+    if (rod.joints.size() > 1) {
+      const EndJoints joints(rod, last);
+      result += joints.ratio * (result - natural_of(*joints.far));
     }
     if (!rod.natural_curvatures.empty()) {
       result.head<2>() = last ? rod.natural_curvatures.back() : rod.natural_curvatures.front();
@@ -233,25 +262,15 @@ class SectionField : public EdgewiseField<Vec3> {
     return in_section(edge, recovery_.inside(edge, place, model, state), model, state);
   }
 
-  /// Curvatures and twist of a joint beyond the natural ones [1/m]. The joint next to an end that
-  /// is turned bends by l/12 of the end's curvature more (model/moment_place.hpp), which follows
-  /// from that of the next joint.
+  /// Curvatures and twist of a joint beyond the natural ones [1/m].
   [[nodiscard]] Vec3 excess_of(const RodJoint& joint, const Model& model,
                                const State& state) const {
     Vec3 excess = measured_excess(joint, model, state);
-    const std::vector<RodJoint>& joints = rod_.joints;
-    if (joints.size() < 2 || !model.has_sections()) return excess;
-    for (const bool last : {false, true}) {
-      const RodJoint& near = last ? joints.back() : joints.front();
-      const RodJoint& far = last ? joints[joints.size() - 2] : joints[1];
-      if (joint.before != near.before || joint.clamp >= 0) continue;
-      if (!is_turned_at_end(rod_, last, model)) continue;
-      const double end = last ? rod_.rest_length() : 0.0;
-      const double ratio = (end - near.bend_place) / (near.bend_place - far.bend_place);
-      const double length = rod_.edge_length[to_size(last ? near.after : near.before)];
-      const double share = length / (12.0 * near.bend_length);
-      const Vec3 next = measured_excess(far, model, state);
-      excess.head<2>() = (excess + share * ratio * next).head<2>() / (1.0 + share * (1.0 + ratio));
+    for (const TurnedEnd& end : turned_ends_) {
+      if (joint.before != end.near->before || joint.clamp >= 0) continue;
+      const Vec3 next = measured_excess(*end.far, model, state);
+      excess.head<2>() =
+          (excess + end.share * end.ratio * next).head<2>() / (1.0 + end.share * (1.0 + end.ratio));
     }
     return excess;
   }
@@ -314,6 +333,7 @@ class SectionField : public EdgewiseField<Vec3> {
   Vec3 stiffness_;
   MomentRecovery recovery_;
   std::vector<std::pair<Known, Known>> edges_;  // first and last of each
+  std::vector<TurnedEnd> turned_ends_;          // joints are of the model's rod, as those of edges_
 };
 
 }  // namespace

@@ -31,7 +31,7 @@ std::string why_not_tested_out_of_plane(const scenario::Scene& scene, const Mode
   if (model.dimension != 2) return {};
   std::string why_not = scenario::why_not_tested_out_of_plane(scene);
   if (why_not.empty() && is_held_out_of_plane(scene, model)) {
-    why_not = "supports hold every node there, and there is no section to twist";
+    why_not = "supports hold every node there, and no section can twist";
   }
   return why_not;
 }

@@ -108,58 +108,31 @@ void backward(const Columns& columns, Index any_width, Index any_stride, const d
   }
 }
 
-// Planar rings.
-DER_FOR_EACH_PROCESSOR
-Inertia factorize_planar(const Columns& columns, Index width, Index stride, double* band,
-                         double* border, double* corner, double* scratch) {
-  return factorize<5, 4>(columns, width, stride, band, border, corner, scratch);
+// The usual widths are innermost loops.
+template <Index kWidth, Index kStride>
+DER_FOR_EACH_PROCESSOR Inertia factorize_ring(const Columns& columns, Index /*width*/,
+                                              Index /*stride*/, double* band, double* border,
+                                              double* corner, double* scratch) {
+  return factorize<kWidth, kStride>(columns, kWidth, kStride, band, border, corner, scratch);
 }
-DER_FOR_EACH_PROCESSOR
-void forward_planar(const Columns& columns, Index width, Index stride, const double* band,
-                    const double* border, double* b) {
-  forward<5, 4>(columns, width, stride, band, border, b);
+template <Index kWidth, Index kStride>
+DER_FOR_EACH_PROCESSOR void forward_ring(const Columns& columns, Index /*width*/, Index /*stride*/,
+                                         const double* band, const double* border, double* b) {
+  forward<kWidth, kStride>(columns, kWidth, kStride, band, border, b);
 }
-DER_FOR_EACH_PROCESSOR
-void backward_planar(const Columns& columns, Index width, Index stride, const double* band,
-                     const double* border, double* b) {
-  backward<5, 4>(columns, width, stride, band, border, b);
+template <Index kWidth, Index kStride>
+DER_FOR_EACH_PROCESSOR void backward_ring(const Columns& columns, Index /*width*/, Index /*stride*/,
+                                          const double* band, const double* border, double* b) {
+  backward<kWidth, kStride>(columns, kWidth, kStride, band, border, b);
 }
-// Rings in space without and with angles of sections.
-DER_FOR_EACH_PROCESSOR
-Inertia factorize_bend(const Columns& columns, Index width, Index stride, double* band,
-                       double* border, double* corner, double* scratch) {
-  return factorize<8, 8>(columns, width, stride, band, border, corner, scratch);
-}
-DER_FOR_EACH_PROCESSOR
-void forward_bend(const Columns& columns, Index width, Index stride, const double* band,
-                  const double* border, double* b) {
-  forward<8, 8>(columns, width, stride, band, border, b);
-}
-DER_FOR_EACH_PROCESSOR
-void backward_bend(const Columns& columns, Index width, Index stride, const double* band,
-                   const double* border, double* b) {
-  backward<8, 8>(columns, width, stride, band, border, b);
-}
-DER_FOR_EACH_PROCESSOR
-Inertia factorize_section(const Columns& columns, Index width, Index stride, double* band,
-                          double* border, double* corner, double* scratch) {
-  return factorize<10, 8>(columns, width, stride, band, border, corner, scratch);
-}
-DER_FOR_EACH_PROCESSOR
-void forward_section(const Columns& columns, Index width, Index stride, const double* band,
-                     const double* border, double* b) {
-  forward<10, 8>(columns, width, stride, band, border, b);
-}
-DER_FOR_EACH_PROCESSOR
-void backward_section(const Columns& columns, Index width, Index stride, const double* band,
-                      const double* border, double* b) {
-  backward<10, 8>(columns, width, stride, band, border, b);
-}
+template <Index kWidth, Index kStride>
+constexpr BorderedLdlt::Kernels kRingKernels{
+    factorize_ring<kWidth, kStride>, forward_ring<kWidth, kStride>, backward_ring<kWidth, kStride>};
 
 BorderedLdlt::Kernels kernels_of(Index width, Index stride) {
-  if (width == 5 && stride == 4) return {factorize_planar, forward_planar, backward_planar};
-  if (width == 8 && stride == 8) return {factorize_bend, forward_bend, backward_bend};
-  if (width == 10 && stride == 8) return {factorize_section, forward_section, backward_section};
+  if (width == 5 && stride == 4) return kRingKernels<5, 4>;    // rings in the plane
+  if (width == 8 && stride == 8) return kRingKernels<8, 8>;    // rings in space
+  if (width == 10 && stride == 8) return kRingKernels<10, 8>;  // the same with angles of sections
   return {factorize<kAny, kAny>, forward<kAny, kAny>, backward<kAny, kAny>};
 }
 

@@ -31,22 +31,14 @@ double turned_by(const Vec3& edge, const Vec3& change) {
   return edge.cross(change).norm() / edge.squaredNorm();
 }
 
-/// An edge beside a joint, and the change of its vector and angle.
-struct TurningEdge {
-  EdgeFrame frame;
+/// Rotation [rad] of an edge by a change `d` of the coordinates of its element: of the nodes from
+/// number `node` on, and of the angle, number `angle` of all.
+template <class Change>
+Vec3 turned(const EdgeFrame& edge, const Change& d, int node, int angle) {
+  const int start = 3 * node;
   Eigen::Vector4d change;
-
-  [[nodiscard]] Vec3 turned() const { return frame.rotation() * change; }
-};
-
-template <int N>
-TurningEdge turning_edge(const Eigen::Matrix<double, N, 1>& x, const Eigen::Matrix<double, N, 1>& d,
-                         int first_node, int angle, const FrameBlock& block, const Vector& values) {
-  const int start = 3 * first_node;
-  const Vec3 vector = x.template segment<3>(start + 3) - x.template segment<3>(start);
-  const Vec3 change = d.template segment<3>(start + 3) - d.template segment<3>(start);
-  return {{vector, x[angle], block.tangent(values), block.director(values)},
-          {change.x(), change.y(), change.z(), d[angle]}};
+  change << d.template segment<3>(start + 3) - d.template segment<3>(start), d[angle];
+  return edge.rotation() * change;
 }
 
 /// The change of the moment of a joint as its frames turn.
@@ -62,79 +54,74 @@ Eigen::Matrix4d own_stiffness(const EdgeFrame& edge, const Vec3& moment) {
   return matrix;
 }
 
-template <std::size_t N>
-Eigen::Matrix<double, static_cast<int>(N), 1> moved(const std::array<Index, N>& dofs,
-                                                    const Configuration& here,
-                                                    const SpatialPivot& first,
-                                                    const SpatialPivot& last, int nodes) {
-  auto x = gather(dofs, here.coordinates);
-  x.template segment<3>(0) += first.offset(here.controls);
-  x.template segment<3>(static_cast<Eigen::Index>(3) * (nodes - 1)) += last.offset(here.controls);
-  return x;
-}
-
-/// The turning of the two edges of a joint by a displacement, and the moment that it causes.
+/// The two edges of a joint, and the moment that a displacement causes there.
 struct StressedJoint {
-  TurningEdge a;
-  TurningEdge b;
+  EdgeFrame a;
+  EdgeFrame b;
   Vec3 moment;  ///< [N m]
 
   template <class Curvature>
-  static StressedJoint of(const std::array<Index, 11>& dofs,
+  static StressedJoint of(const Eigen::Matrix<double, 11, 1>& x,
+                          const Eigen::Matrix<double, 11, 1>& d,
                           const typename SpatialBend<Curvature>::Constants& c,
-                          const SpatialPivot& first, const SpatialPivot& last,
-                          const Configuration& here, const Vector& displacement) {
-    const Vector& values = here.controls;
-    auto x = moved(dofs, here, first, last, 3);
-    x[10] -= c.glued;
-    const auto d = gather(dofs, displacement);
-    const TurningEdge a = turning_edge(x, d, 0, 9, c.before, values);
-    const TurningEdge b = turning_edge(x, d, 1, 10, c.after, values);
-    const double twist =
-        whole_twist(a.frame.frame, b.frame.frame, x[9], x[10], values[c.after.twist_at_start()]);
+                          const Vector& values) {
+    const auto [a, b, twist] = SpatialBend<Curvature>::frames(c, values, x);
     JointResponse response;
-    JointKinematics<Curvature>(a.frame.frame, b.frame.frame, twist)
-        .template respond<true>(c.joint, response);
-    return {a, b, moment_change(response, a.turned(), b.turned())};
+    JointKinematics<Curvature>(a.frame, b.frame, twist).template respond<true>(c.joint, response);
+    return {a, b, moment_change(response, turned(a, d, 0, 9), turned(b, d, 1, 10))};
   }
 
   /// By vector and angle of the first edge, then of the second.
   [[nodiscard]] Eigen::Matrix<double, 8, 8> stiffness() const {
     const Eigen::Matrix4d ba =
-        -0.5 * b.frame.rotation().transpose() * cross_matrix(moment) * a.frame.rotation();
+        -0.5 * b.rotation().transpose() * cross_matrix(moment) * a.rotation();
     Eigen::Matrix<double, 8, 8> matrix;
-    matrix << own_stiffness(a.frame, -moment), ba.transpose(), ba, own_stiffness(b.frame, moment);
+    matrix << own_stiffness(a, -moment), ba.transpose(), ba, own_stiffness(b, moment);
     return matrix;
   }
 };
 
 /// The same between an edge and a clamp, which does not turn.
 struct StressedClamp {
-  TurningEdge edge;
+  EdgeFrame edge;
   Vec3 moment;  ///< [N m] on the edge
 
   template <class Curvature>
-  static StressedClamp of(const std::array<Index, 7>& dofs,
+  static StressedClamp of(const Eigen::Matrix<double, 7, 1>& x,
+                          const Eigen::Matrix<double, 7, 1>& d,
                           const typename SpatialClamp<Curvature>::Constants& c,
-                          const SpatialPivot& first, const SpatialPivot& last,
-                          const Configuration& here, const Vector& displacement) {
-    const Vector& values = here.controls;
-    const auto x = moved(dofs, here, first, last, 2);
-    const TurningEdge edge = turning_edge(x, gather(dofs, displacement), 0, 6, c.edge, values);
-    const double turned = c.held.twist_angle(values);
-    const SectionFrame held = c.held.untwisted(values).turned(turned);
-    const bool leaves = c.side > 0.0;
-    const SectionFrame& a = leaves ? held : edge.frame.frame;
-    const SectionFrame& b = leaves ? edge.frame.frame : held;
-    const double twist = leaves ? whole_twist(a, b, turned, x[6], values[c.edge.twist_at_start()])
-                                : whole_twist(a, b, x[6], turned, values[c.edge.twist_at_end()]);
+                          const Vector& values) {
+    const auto [edge, a, b, twist] = SpatialClamp<Curvature>::frames(c, values, x);
     JointResponse response;
     JointKinematics<Curvature>(a, b, twist).template respond<true>(c.joint, response);
     const Vec3 none = Vec3::Zero();
-    return {edge, c.side * (leaves ? moment_change(response, none, edge.turned())
-                                   : moment_change(response, edge.turned(), none))};
+    const Vec3 omega = turned(edge, d, 0, 6);
+    return {edge, c.side * (c.side > 0.0 ? moment_change(response, none, omega)
+                                         : moment_change(response, omega, none))};
   }
 };
+
+/// Calls `f(dofs, constants, x)` for the elements of a kernel between pivots; x are the coordinates
+/// that the kernel sees.
+template <class Kernel, class F>
+void for_each_pivoted(const Model& model, const Configuration& here, const F& f) {
+  const auto& pivoted = elements_of<FromSpatialPivot<Kernel>>(*model.elements);
+  for (std::size_t i = 0; i < pivoted.size(); ++i) {
+    const auto& c = pivoted.constants[i];
+    const auto x = gather(pivoted.dofs[i], here.coordinates);
+    f(pivoted.dofs[i], c.element, FromSpatialPivot<Kernel>::from_pivots(c, here.controls, x));
+  }
+}
+
+/// The same, and for those between nodes.
+template <class Kernel, class F>
+void for_each_element(const Model& model, const Configuration& here, const F& f) {
+  const auto& plain = elements_of<Kernel>(*model.elements);
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    f(plain.dofs[i], plain.constants[i], gather(plain.dofs[i], here.coordinates));
+  }
+  for_each_pivoted<Kernel>(model, here, f);
+}
 
 }  // namespace
 
@@ -177,60 +164,47 @@ void InitialStress::add_planar_edges(const Model& model, const Configuration& he
 
 void InitialStress::add_spatial_edges(const Model& model, const Configuration& here,
                                       const Vector& displacement) {
-  const auto add = [&](const auto& dofs, const Stretch<3>::Constants& c, const SpatialPivot& first,
-                       const SpatialPivot& last) {
-    add_edge<3>(dofs, Stretch<3>::edge(moved(dofs, here, first, last, 2)),
-                Stretch<3>::edge(gather(dofs, displacement)), c.EA, c.rest_length);
-  };
-  const auto& plain = elements_of<Stretch<3>>(*model.elements);
-  for (std::size_t i = 0; i < plain.size(); ++i) add(plain.dofs[i], plain.constants[i], {}, {});
-  const auto& clamped = elements_of<FromSpatialPivot<Stretch<3>>>(*model.elements);
-  for (std::size_t i = 0; i < clamped.size(); ++i) {
-    const auto& c = clamped.constants[i];
-    add(clamped.dofs[i], c.element, c.first, c.last);
-  }
+  for_each_element<Stretch<3>>(
+      model, here, [&](const auto& dofs, const Stretch<3>::Constants& c, const auto& x) {
+        add_edge<3>(dofs, Stretch<3>::edge(x), Stretch<3>::edge(gather(dofs, displacement)), c.EA,
+                    c.rest_length);
+      });
 }
 
 template <class Curvature>
 void InitialStress::add_joints(const Model& model, const Configuration& here,
                                const Vector& displacement) {
-  const auto count = [&](const Vec3& moment) {
-    largest_ = std::max(largest_, moment.norm() / model.size());
-  };
-  const auto add = [&](const auto& dofs, const auto& c, const SpatialPivot& first,
-                       const SpatialPivot& last) {
-    const auto joint = StressedJoint::of<Curvature>(dofs, c, first, last, here, displacement);
-    count(joint.moment);
-    Term& term = terms_.emplace_back();
-    term.size = 8;
-    term.matrix = joint.stiffness();
+  // By the vector and the angle of an edge between nodes `node` and `node + 1` of an element.
+  const auto add_variables = [](const auto& dofs, std::size_t node, std::size_t angle,
+                                std::size_t first, Term& term) {
     for (std::size_t i = 0; i < 3; ++i) {
-      term.variables[i] = {dofs[3 + i], dofs[i]};
-      term.variables[4 + i] = {dofs[6 + i], dofs[3 + i]};
+      term.variables[first + i] = {dofs[3 * node + 3 + i], dofs[3 * node + i]};
     }
-    term.variables[3] = {dofs[9], -1};
-    term.variables[7] = {dofs[10], -1};
+    term.variables[first + 3] = {dofs[angle], -1};
   };
-  const auto& plain = elements_of<SpatialBend<Curvature>>(*model.elements);
-  for (std::size_t i = 0; i < plain.size(); ++i) add(plain.dofs[i], plain.constants[i], {}, {});
-  const auto& pivoted = elements_of<FromSpatialPivot<SpatialBend<Curvature>>>(*model.elements);
-  for (std::size_t i = 0; i < pivoted.size(); ++i) {
-    const auto& c = pivoted.constants[i];
-    add(pivoted.dofs[i], c.element, c.first, c.last);
-  }
-  const auto& clamps = elements_of<FromSpatialPivot<SpatialClamp<Curvature>>>(*model.elements);
-  for (std::size_t i = 0; i < clamps.size(); ++i) {
-    const auto& dofs = clamps.dofs[i];
-    const auto& c = clamps.constants[i];
-    const auto clamp =
-        StressedClamp::of<Curvature>(dofs, c.element, c.first, c.last, here, displacement);
-    count(clamp.moment);
+  const auto add_term = [&](const Vec3& moment, int size) -> Term& {
+    largest_ = std::max(largest_, moment.norm() / model.size());
     Term& term = terms_.emplace_back();
-    term.size = 4;
-    term.matrix = own_stiffness(clamp.edge.frame, clamp.moment);
-    for (std::size_t k = 0; k < 3; ++k) term.variables[k] = {dofs[3 + k], dofs[k]};
-    term.variables[3] = {dofs[6], -1};
-  }
+    term.size = size;
+    return term;
+  };
+  for_each_element<SpatialBend<Curvature>>(
+      model, here, [&](const auto& dofs, const auto& c, const auto& x) {
+        const auto joint =
+            StressedJoint::of<Curvature>(x, gather(dofs, displacement), c, here.controls);
+        Term& term = add_term(joint.moment, 8);
+        term.matrix = joint.stiffness();
+        add_variables(dofs, 0, 9, 0, term);
+        add_variables(dofs, 1, 10, 4, term);
+      });
+  for_each_pivoted<SpatialClamp<Curvature>>(
+      model, here, [&](const auto& dofs, const auto& c, const auto& x) {
+        const auto clamp =
+            StressedClamp::of<Curvature>(x, gather(dofs, displacement), c, here.controls);
+        Term& term = add_term(clamp.moment, 4);
+        term.matrix = own_stiffness(clamp.edge, clamp.moment);
+        add_variables(dofs, 0, 6, 0, term);
+      });
 }
 
 Vector InitialStress::stiffness(const Model& model, const MatrixLayout& layout) const {

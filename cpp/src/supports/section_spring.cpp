@@ -7,6 +7,7 @@
 #include "der/core/index.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/section_spring.hpp"
+#include "der/model/frames.hpp"
 #include "der/model/section_place.hpp"
 
 namespace der {
@@ -41,7 +42,6 @@ template <int Edges>
 void add_element(const SectionSpringPlace& spring, const SectionPlace& place, const RodLayout& rod,
                  Model& model) {
   using Kernel = SectionSpring<Edges>;
-  const Configuration drawn = drawn_configuration(model);
   std::array<Index, Kernel::kDofs> dofs{};
   typename Kernel::Constants constants;
   constants.stiffness = {in_series(spring.stiffness[0], place.bend_cell, rod.EI_1),
@@ -60,7 +60,7 @@ void add_element(const SectionSpringPlace& spring, const SectionPlace& place, co
     held.block = FrameBlock::of(number);
     held.first = edge.first;
     held.last = edge.last;
-    held.drawn = section_frame(model, number, drawn);
+    held.drawn = drawn_frame(model, number);
     held.reference_twist = follow_twist(number, held.drawn, model);
     held.weights = {across, across, place.along[to_size(i)]};
   }

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from der._core import Rod
 from der.fields import RodFields, along_line, rod_fields
 from der.film import mode_shapes
 from der.progress import ProgressFunction
@@ -46,7 +47,7 @@ def write_vtk(result: RunData, out: Path, progress: ProgressFunction) -> list[Pa
     rods = rod_fields(result)
     sizes = np.array([len(fields.rod.line_nodes) for fields in rods])
     sections, directors = sections_of(result), directors_along(result)
-    surfaces = _Surfaces(sections, sizes.tolist())
+    surfaces = _Surfaces(sections, [fields.rod for fields in rods])
     lines = np.full(len(rods), VtkPolyLine.tid, dtype=np.uint8)
     # A path has no time: its frames are numbered.
     times = result.times if result.path is None else np.arange(len(result.times), dtype=np.float64)
@@ -101,12 +102,13 @@ class _Surfaces:
     nodes
         The node, counted along all rods, at which each corner stands, shape (corners,).
     connectivity, offsets
-        The polygons as VTK has them: the sides of each edge, and the two ends of each rod.
+        The polygons as VTK has them: the sides of each edge, and the two ends of each open rod.
     cell_rods
         The rod of each polygon.
     """
 
-    def __init__(self, sections: list[Section | None], sizes: list[int]) -> None:
+    def __init__(self, sections: list[Section | None], rods: list[Rod]) -> None:
+        sizes = [len(rod.line_nodes) for rod in rods]
         self._outlines = [None if section is None else section.outline for section in sections]
         self.rods = [number for number, one in enumerate(self._outlines) if one is not None]
         nodes, cells, owners = [np.zeros(0, dtype=np.int64)], [], []
@@ -120,7 +122,8 @@ class _Surfaces:
             beside = np.roll(numbers, -1, axis=1)
             wide = np.any(np.roll(outline, -1, axis=0) != outline, axis=1)  # sides with a length
             sides = np.stack([numbers[:-1], beside[:-1], beside[1:], numbers[1:]], axis=2)
-            own = [*sides[:, wide].reshape(-1, 4), numbers[0, ::-1], numbers[-1]]
+            ends = [] if rods[number].closed else [numbers[0, ::-1], numbers[-1]]
+            own = [*sides[:, wide].reshape(-1, 4), *ends]
             cells += own
             owners += [number] * len(own)
             corner += size * around

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from der.film import MODE_SIZE
+from der.film import mode_displacements
 from der.plotting.lengths import label_positions
 from der.plotting.supports import HeldPlace, SpringPlace
 from der.scene_loads import ActingLoads, acting_loads
@@ -126,17 +126,6 @@ def _name(axis: Array) -> str:
     return f"along ({', '.join(f'{component + 0.0:.2f}' for component in axis)})"
 
 
-def _modes_as_drawn(result: RunData) -> Array:
-    """Positions at the largest deflection of each mode, shape (modes, nodes, dim)."""
-    modes = result.modes or result.buckling
-    if modes is None:
-        return np.empty((0, *result.positions.shape[1:]))
-    rest = result.positions[-1]
-    size = MODE_SIZE * float(np.ptp(rest, axis=0).max())
-    largest = np.abs(modes.shapes).max(axis=(1, 2), keepdims=True)
-    return np.asarray(rest + size * modes.shapes / largest)
-
-
 class Picture:
     """A run turned into the plane of its pictures, where x is to the right and y upwards.
 
@@ -147,9 +136,8 @@ class Picture:
         self.result = result
         if view is None:
             initial = result.model.initial_positions
-            self.plane = best_plane(
-                np.concatenate([result.positions, initial[np.newaxis], _modes_as_drawn(result)])
-            )
+            modes = result.positions[-1] + mode_displacements(result)
+            self.plane = best_plane(np.concatenate([result.positions, initial[np.newaxis], modes]))
         elif result.model.dimension == 2:
             raise ValueError("a planar run is seen in its plane, and in no other view")
         else:
@@ -181,7 +169,7 @@ class Picture:
         ]
 
     def half_widths(self, frame: int, positions: Array) -> dict[str, Array]:
-        """Return how far rods reach to both sides of their lines [m], by name, shape (nodes,).
+        """Return how far rods reach to both sides of their lines [m], by name, shape (line nodes,).
 
         Parameters
         ----------
@@ -195,7 +183,7 @@ class Picture:
         dict
             Rods with sections alone; the others reach as far as their radius.
         """
-        nodes = {rod.name: rod.nodes for rod in self.rods}
+        nodes = {rod.name: rod.line_nodes for rod in self.rods}
         return {
             name: seen_half_widths(positions[nodes[name]], directors[frame], outline)
             for name, outline, directors in self._sections

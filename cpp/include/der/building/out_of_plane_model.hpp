@@ -38,7 +38,7 @@ struct OutOfPlaneModel {
 /// in this sense, and the stiffness against twisting of every rod that bends is known.
 OutOfPlaneModel build_out_of_plane_model(const scenario::Scene& scene, const Model& planar);
 
-/// Whether supports hold every node, and there is no section to twist.
+/// Whether supports hold every node, and no section can twist.
 bool is_held_out_of_plane(const scenario::Scene& scene, const Model& planar);
 
 }  // namespace der

@@ -24,7 +24,7 @@ namespace der {
 // the work Q(q) . dq. Forces on u are therefore B Q, and their tangent B (dQ/dq) B' has a low rank
 // (solvers/low_rank.hpp).
 
-/// What a circulatory load does on its local coordinates.
+/// The forces of a circulatory load on its local coordinates.
 struct CirculatoryTerm {
   /// Coordinates of a point, and the vectors and angles of two edges.
   static constexpr int kMost = 3 + 2 * 4;

@@ -22,15 +22,20 @@ struct FromPivot {
     PivotKind last;
   };
 
+  /// The coordinates that the element sees.
+  static Eigen::Matrix<double, kDofs, 1> from_pivots(const Constants& c, const Vector& controls,
+                                                     const Eigen::Matrix<double, kDofs, 1>& x) {
+    constexpr int dimension = PivotKind::kDimension;
+    Eigen::Matrix<double, kDofs, 1> moved = x;
+    moved.template head<dimension>() += c.first.offset(controls);
+    moved.template segment<dimension>(dimension * (kNodes - 1)) += c.last.offset(controls);
+    return moved;
+  }
+
   template <Derivatives D>
   static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
-    constexpr int dimension = PivotKind::kDimension;
-    Eigen::Matrix<double, kDofs, 1> moved = x;
-    moved.template head<dimension>() += c.first.offset(here.controls);
-    moved.template segment<dimension>(dimension * (Kernel::kNodes - 1)) +=
-        c.last.offset(here.controls);
-    Kernel::template evaluate<D>(c.element, here, moved, out);
+    Kernel::template evaluate<D>(c.element, here, from_pivots(c, here.controls, x), out);
   }
 };
 

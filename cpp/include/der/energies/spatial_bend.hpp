@@ -41,17 +41,28 @@ struct SpatialBend {
     double glued = 0.0;  ///< [rad] by which the section after it is turned without strain
   };
 
-  template <Derivatives D>
-  static void evaluate(const Constants& c, const Configuration& here,
-                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
-    const Vector& values = here.controls;
+  /// The frames of the two edges, that after a glued joint turned back, and the whole twist between
+  /// them [rad].
+  struct Frames {
+    EdgeFrame a;
+    EdgeFrame b;
+    double twist;
+  };
+  static Frames frames(const Constants& c, const Vector& values,
+                       const Eigen::Matrix<double, kDofs, 1>& x) {
     const EdgeFrame a(x.segment<3>(3) - x.segment<3>(0), x[9], c.before.tangent(values),
                       c.before.director(values));
     const double theta_after = x[10] - c.glued;
     const EdgeFrame b(x.segment<3>(6) - x.segment<3>(3), theta_after, c.after.tangent(values),
                       c.after.director(values));
-    const double twist =
-        whole_twist(a.frame, b.frame, x[9], theta_after, values[c.after.twist_at_start()]);
+    return {a, b,
+            whole_twist(a.frame, b.frame, x[9], theta_after, values[c.after.twist_at_start()])};
+  }
+
+  template <Derivatives D>
+  static void evaluate(const Constants& c, const Configuration& here,
+                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
+    const auto [a, b, twist] = frames(c, here.controls, x);
     const JointKinematics<Curvature> kinematics(a.frame, b.frame, twist);
     if constexpr (D == Derivatives::Energy) {
       out.energy = kinematics.energy(c.joint);
@@ -109,19 +120,32 @@ struct SpatialClamp {
     double side = 1.0;  ///< +1: the edge leaves the clamp, -1: it arrives there
   };
 
-  template <Derivatives D>
-  static void evaluate(const Constants& c, const Configuration& here,
-                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
-    const Vector& values = here.controls;
+  /// The edge, the frames before and after the cell, one of which is the edge's, and the whole
+  /// twist between them [rad].
+  struct Frames {
+    EdgeFrame edge;
+    SectionFrame a;
+    SectionFrame b;
+    double twist;
+  };
+  static Frames frames(const Constants& c, const Vector& values,
+                       const Eigen::Matrix<double, kDofs, 1>& x) {
     const EdgeFrame edge(x.segment<3>(3) - x.segment<3>(0), x[6], c.edge.tangent(values),
                          c.edge.director(values));
     const double turned = c.held.twist_angle(values);
     const SectionFrame held = c.held.untwisted(values).turned(turned);
-    const bool leaves = c.side > 0.0;
-    const SectionFrame& a = leaves ? held : edge.frame;
-    const SectionFrame& b = leaves ? edge.frame : held;
-    const double twist = leaves ? whole_twist(a, b, turned, x[6], values[c.edge.twist_at_start()])
-                                : whole_twist(a, b, x[6], turned, values[c.edge.twist_at_end()]);
+    if (c.side > 0.0) {
+      return {edge, held, edge.frame,
+              whole_twist(held, edge.frame, turned, x[6], values[c.edge.twist_at_start()])};
+    }
+    return {edge, edge.frame, held,
+            whole_twist(edge.frame, held, x[6], turned, values[c.edge.twist_at_end()])};
+  }
+
+  template <Derivatives D>
+  static void evaluate(const Constants& c, const Configuration& here,
+                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
+    const auto [edge, a, b, twist] = frames(c, here.controls, x);
     const JointKinematics<Curvature> kinematics(a, b, twist);
     if constexpr (D == Derivatives::Energy) {
       out.energy = kinematics.energy(c.joint);

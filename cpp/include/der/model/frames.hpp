@@ -33,8 +33,11 @@ void follow_frames(const Model& model, const Vector& coordinates, const Vector& 
 Index frame_turned_too_far(const Model& model, const Vector& coordinates, const Vector& controls,
                            const Eigen::Ref<const Vector>& frames);
 
-/// The initial shape as elements see it. No clamp has turned yet.
-Configuration drawn_configuration(const Model& model);
+/// The reference frame of an edge, from the blocks of all edges.
+SectionFrame reference_frame(Index edge, const Eigen::Ref<const Vector>& frames);
+
+/// The section frame of an edge in the initial shape.
+SectionFrame drawn_frame(const Model& model, Index edge);
 
 /// The section frame of an edge in a configuration.
 SectionFrame section_frame(const Model& model, Index edge, const Configuration& here);

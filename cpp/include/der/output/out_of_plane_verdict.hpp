@@ -8,7 +8,7 @@
 
 namespace der {
 
-/// What the analysis of a planar model says about motion out of the plane
+/// The verdict of the analysis of a planar model on motion out of the plane
 /// (statics/out_of_plane.hpp).
 struct OutOfPlaneVerdict {
   std::string not_tested;              ///< why it was not tested, as a clause; empty if it was

@@ -15,8 +15,8 @@ namespace der {
 /// Called after every step; return false to stop the run early (status "stopped").
 using StepCallback = std::function<bool(const Simulation&)>;
 
-/// What the analysis of a planar model found about motion out of the plane. Of the equilibrium
-/// itself its report tells (EquilibriumReport::out_of_plane), of a path its points do.
+/// Results of the analysis of a planar model for motion out of the plane. The report of the
+/// equilibrium has its own (EquilibriumReport::out_of_plane), and so have the points of a path.
 struct OutOfPlaneAnswer {
   double growth_rate = 0.0;               ///< [1/s] of the fastest motion, of a modes analysis
   std::optional<double> buckling_factor;  ///< the lowest, of a buckling analysis

@@ -30,7 +30,7 @@ struct EquilibriumReport {
   Stability stability;       ///< of the equilibrium found
   /// Largest turning angle at a node [rad]; far above 1 the mesh is too coarse.
   double largest_turning_angle = 0.0;
-  /// Of an equilibrium of a planar model: whether it would leave its plane. `find_equilibrium`
+  /// Whether an equilibrium of a planar model would leave its plane. `find_equilibrium`
   /// leaves it empty (Simulation::equilibrium).
   std::optional<OutOfPlane> out_of_plane;
 };

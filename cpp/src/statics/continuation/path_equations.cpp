@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "der/core/index.hpp"
-#include "der/kinematics/frame_block.hpp"
 #include "der/kinematics/section_frame.hpp"
 #include "der/loads/external_force.hpp"
 #include "der/model/followed.hpp"
+#include "der/model/frames.hpp"
 #include "der/model/prescribed_motion.hpp"
 
 namespace der::statics {
@@ -28,11 +28,7 @@ Vector model_frames(const Model& model, const Vector& followed) {
 /// Angle [rad] about an edge by which its director in the frames `to` is turned against that of
 /// `from`, transported to the same tangent.
 double director_angle(Index edge, const Vector& from, const Vector& to) {
-  const FrameBlock block = FrameBlock::of(edge);
-  const auto frame = [&](const Vector& frames) {
-    return SectionFrame::of(block.tangent(frames), block.director(frames));
-  };
-  return twist_between(frame(from), frame(to));
+  return twist_between(reference_frame(edge, from), reference_frame(edge, to));
 }
 
 }  // namespace

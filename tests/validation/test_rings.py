@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from references.writhe import figure_eight, torus_knot
 from scipy.integrate import solve_bvp
-from spatial_scenes import rod_through, section
+from spatial_scenes import measured, rod_through, section
 
 STRAIGHT = {"natural_curvature": [0, 0], "natural_twist": 0}
 
@@ -290,3 +290,234 @@ def test_start_of_a_ring_is_a_place_like_any_other(shift):
     assert np.abs(here[0] - michell(count, 0.8, 0.0)["rods"][0]["points"]).max() > 0.01
     for one, other in zip(here, there, strict=True):
         assert np.abs(np.roll(other, shift, axis=0) - one).max() < 1e-9
+
+
+# ---- all that acts on rods, on a ring
+
+
+def uneven_ring(count=20):
+    """A ring in the x-y plane with edges of different lengths."""
+    angle = 2 * np.pi * np.arange(count) / count
+    angle += 0.1 * np.sin(2 * angle + 0.3)
+    return np.column_stack([1.2 * np.cos(angle), 0.9 * np.sin(angle), 0 * angle])
+
+
+class Drawn:
+    """A ring drawn from its node `first` on: places are nodes and shares of the edge after them."""
+
+    def __init__(self, points, first):
+        self.count, self.first = len(points), first
+        self.points = np.roll(points, -first, axis=0)
+        self.edges = np.linalg.norm(np.roll(self.points, -1, axis=0) - self.points, axis=1)
+
+    def node(self, number):
+        return (number - self.first) % self.count
+
+    def at(self, number, share):
+        node = self.node(number)
+        return float(self.edges[:node].sum() + share * self.edges[node])
+
+    def from_there(self, values):
+        """A list of one for each node."""
+        return np.roll(values, -self.first, axis=0).tolist()
+
+
+def loaded_ring(first, clamped, model="spatial"):
+    """A strip with supports and loads of all kinds, and the places at which they act."""
+    ring = Drawn(uneven_ring(), first)
+    number = np.arange(ring.count)
+    flat = model == "planar"
+    natural = np.column_stack([0.5 + 0.4 * np.sin(number), 0.3 * np.cos(2 * number)])
+    rod = {
+        "natural_curvature": ring.from_there(natural),
+        "natural_twist": ring.from_there(0.5 * np.cos(number)),
+    }
+    hold = {"clamp": True} if clamped else {"fix": ["x", "y", "z"]}
+    supports = [{"rod": "rod", "at": {"node": ring.node(8)}, **hold}]
+    if not clamped:
+        supports += [
+            {"rod": "rod", "at": {"node": ring.node(i)}, "fix": ["x", "y", "z"]} for i in (2, 15)
+        ]
+    spring = {"stiffness": [1.0, 0.5, 2.0], "rotational_stiffness": [0.3, 0.5, 0.4]}
+    supports.append({"rod": "rod", "at": ring.at(19, 0.4), "spring": spring})
+    loads = [
+        {"gravity": [0, -0.2, -0.1]},
+        {"foundation": {"rod": "rod", "stiffness": [0.1, 0.2, 0.3]}},
+        {"moment": {"rod": "rod", "at": ring.at(3, 0.3), "moment": [0.2, 0.3, -0.4]}},
+        {"point_force": {"rod": "rod", "at": ring.at(11, 0.7), "force": [0.3, 0.2, 0.4]}},
+        {"moment": {"rod": "rod", "at": ring.at(17, 0.8), "moment": [0, 0.2, 0], "follower": True}},
+        {
+            "point_force": {
+                "rod": "rod",
+                "at": ring.at(0, 0.3),
+                "force": [0, 0.3, 0.2],
+                "follower": True,
+            }
+        },
+    ]
+    stiff = strip(director=[0, 0, 1])
+    return ring, ring_through(ring.points, stiff, rod, supports=supports, loads=loads)
+
+
+@pytest.mark.parametrize("clamped", [False, True])
+@pytest.mark.parametrize("first", [1, 4, 8, 9, 18, 19])
+def test_loads_act_on_a_ring_wherever_it_begins(first, clamped):
+    """The start of the drawing beside each of them, within its stencil, and at the clamp."""
+
+    def answer(first):
+        ring, scene = loaded_ring(first, clamped)
+        places = [ring.at(number, 0.5) for number in range(ring.count)]
+        values, result = measured(scene, places)
+        return np.roll(result.positions[-1], first, axis=0), values
+
+    here, there = answer(0), answer(first)
+    assert np.abs(here[0] - uneven_ring()).max() > 0.05
+    assert there[0] == pytest.approx(here[0], abs=1e-9)
+    # Tensions are differences of lengths times EA = 1e4.
+    assert there[1] == pytest.approx(here[1], abs=1e-7)
+
+
+@pytest.mark.parametrize("model", ["planar", "spatial"])
+def test_a_clamped_ring_is_an_open_rod_between_two_clamps(model):
+    """On a circle both have the same held tangent. No stencil reaches the ends of the open rod."""
+    points = circle(18)
+    flat = model == "planar"
+    loads = [
+        {"gravity": [0.1, -0.2, 0 if flat else 0.3]},
+        {"foundation": {"rod": "rod", "stiffness": [0.1, 0.2, 0.3]}},
+        {"point_force": {"rod": "rod", "at": 5.5, "force": [0.3, 0.2, 0 if flat else 0.4]}},
+        {"moment": {"rod": "rod", "at": 2.3, "moment": [0, 0, 0.2] if flat else [0.2, 0.3, -0.4]}},
+        {
+            "point_force": {
+                "rod": "rod",
+                "at": 0.8,
+                "force": [0.2, 0.3, 0 if flat else 0.2],
+                "follower": True,
+            }
+        },
+    ]
+    spring = {"stiffness": [1.0, 0.5, 2.0], "rotational_stiffness": 0.3}
+    springs = [{"rod": "rod", "at": 5.1, "spring": spring}]
+    ends = [{"rod": "rod", "at": at, "clamp": True} for at in ("start", "end")]
+    own = {} if flat else {"initial_twist": 0.7, "natural_twist": 0.2}
+    stiff = strip(director=[0, 0, 1])
+    ring = ring_through(points, stiff, own, supports=ends[:1] + springs, loads=loads, model=model)
+    opened = rod_through(
+        np.vstack([points, points[:1]]), stiff, ends + springs, rod=own, loads=loads, model=model
+    )
+    places = [0.0, 0.1, 0.3, 1.0, 2.2, 2.4, 3.3, 5.2, 5.8, 6.0, 6.2]
+    quantities = ("curvature", "moment", "tension")
+    if not flat:
+        quantities += ("torque", "moment_1", "moment_2", "twist")
+    here, result = measured(ring, places, quantities)
+    there, other = measured(opened, places, quantities)
+    assert np.abs(result.positions[-1] - result.model.initial_positions).max() > 0.02
+    assert result.positions[-1] == pytest.approx(other.positions[-1][:-1], abs=1e-9)
+    assert here == pytest.approx(there, abs=1e-7)
+
+
+def test_loads_in_the_plane_are_the_same_in_space():
+    """Moments and springs against rotation, of which each model has its own elements."""
+    points = uneven_ring(16)
+    supports = [
+        {"rod": "rod", "at": {"node": 5}, "fix": ["x", "y", "z"]},
+        {"rod": "rod", "at": {"node": 12}, "clamp": True},
+        {"rod": "rod", "at": 0.1, "spring": {"rotational_stiffness": 0.4}},
+    ]
+    loads = [
+        {"moment": {"rod": "rod", "at": 6.3, "moment": [0, 0, 0.5]}},
+        {"point_force": {"rod": "rod", "at": 0.2, "force": [0.5, -0.3, 0], "follower": True}},
+    ]
+    stiff = section(EA=1e4, EI=1.0, GJ=0.7)
+    base = ring_through(points, stiff, supports=supports, loads=loads)
+    planar, spatial = (der.run({**base, "model": model}) for model in ("planar", "spatial"))
+    assert np.abs(planar.positions[-1] - points[:, :2]).max() > 0.02
+    assert spatial.positions[-1][:, :2] == pytest.approx(planar.positions[-1], abs=1e-9)
+    assert np.abs(spatial.positions[-1][:, 2]).max() < 1e-12
+
+
+def test_a_spinning_ring_keeps_its_momenta(fitted_order):
+    """A twisted ring, free, thrown, and buckling: the angular one to order 2 in time."""
+    points = np.array(michell(24, 1.0, 0.0)["rods"][0]["points"])
+    stiff = section(EA=1e3, EI=1.0, GJ=1.0, rotary_inertia=0.05)
+    thrown = 0.5 * np.roll(points, 5, axis=0) + [0.1, 0.2, 0.3]
+    thrown[:, 2] += 0.2 * points[:, 0] * points[:, 1]
+    rod = {**STRAIGHT, "initial_twist": 3.0, "initial_velocity": thrown.tolist()}
+    drifts = []
+    for steps in (100, 200, 400):
+        time = {"duration": 1.0, "step": 1.0 / steps, "integrator": "implicit_midpoint"}
+        scene = ring_through(points, stiff, rod, time=time)
+        scene["solver"] = {"residual_tolerance": 1e-13, "step_tolerance": 1e-13}
+        simulation = der.Simulation(der.Scenario.from_dict(scene))
+        simulation.spin[:] = 4.0
+        linear, angular = np.array(simulation.momentum), np.array(simulation.angular_momentum)
+        simulation.run()
+        assert np.ptp(simulation.positions[:, 2]) > 0.01
+        assert simulation.momentum == pytest.approx(linear, rel=1e-11)
+        drifts.append(np.linalg.norm(simulation.angular_momentum - angular))
+    assert fitted_order([1 / 100, 1 / 200, 1 / 400], drifts) > 1.9
+    assert drifts[-1] < 1e-4 * np.linalg.norm(angular)
+
+
+# ---- Goto's ring
+
+
+def deployable(count, share):
+    """The ring of `references/deployable_ring.py`: a share of the way to its three coils."""
+    angle = 2 * np.pi * np.arange(count) / count
+    points = np.column_stack([1 - np.cos(angle), np.sin(angle), 0 * angle])
+    fold = {
+        "x": -4 / 3 * share,
+        "rotation": {"axis": [1, 0, 0], "angle": 2 * np.pi * share},
+    }
+    supports = [
+        {"rod": "rod", "at": "start", "clamp": True},
+        {"rod": "rod", "at": {"node": count // 2}, "clamp": True, "prescribe": fold},
+    ]
+    stiff = section(director=[1, 0, 0], EA=1e4, EI1=1.0, EI2=9.0, GJ=1.2154)
+    return ring_through(points, stiff, supports=supports)
+
+
+FOLDED = ("x", "y", "z", "moment_1", "moment_2", "torque")
+
+
+@pytest.mark.parametrize("share", [0.25, 0.6])
+def test_ring_of_goto_on_its_way(spatial_reference, fitted_order, share):
+    """Two places of one half; the other half is its image under half a turn about x."""
+    exact = np.array(
+        [
+            [spatial_reference("deployable_ring", f"share{share:g}.{at}.{name}") for name in FOLDED]
+            for at in ("quarter", "half")
+        ]
+    )
+    sizes = [64, 96, 144]
+    errors = []
+    for count in sizes:
+        places = [{"node": count // 8}, {"node": count // 4}]
+        values, result = measured(deployable(count, share), places, FOLDED)
+        off = values - exact
+        errors.append([np.linalg.norm(off[:, :3]), np.linalg.norm(off[:, 3:])])
+        line = result.positions[-1]
+        other = np.roll(line[::-1], 1, axis=0) * [1, -1, -1]
+        assert line == pytest.approx(other, abs=1e-8)
+    for of_kind in np.transpose(errors):
+        assert fitted_order([1 / n for n in sizes], of_kind) > 1.9
+    assert np.max(errors[-1]) < 5e-3
+
+
+def test_ring_of_goto_folds_into_three_coils(fitted_order):
+    """The closed form: radius 1/3, a moment of 2 in the plane, nothing else."""
+    sizes = [64, 96, 144]
+    errors = []
+    for count in sizes:
+        places = [{"node": count // 8}, {"node": count // 4}]
+        values, result = measured(deployable(count, 1.0), places, FOLDED)
+        s = 2 * np.pi * np.arange(count) / count
+        coils = np.column_stack([1 - np.cos(3 * s), np.sin(3 * s), 0 * s]) / 3
+        off = np.abs(result.positions[-1] - coils)
+        errors.append([off.max(), np.abs(values[:, 3] - 2).max()])
+        assert np.abs(values[:, 4:]).max() < 1e-6
+        assert off[:, 2].max() < 1e-8
+    for of_quantity in np.transpose(errors):
+        assert fitted_order([1 / n for n in sizes], of_quantity) > 1.9
+    assert np.max(errors[-1]) < 2e-3

@@ -114,8 +114,8 @@ Vec2 free_end_turn(const RodLayout& rod, const RodJoint& joint) {
 double natural_twist_at(const RodLayout& rod, const RodJoint& joint) {
   const Index place = joint.place();
   const Index edge = joint.twist_place < rod.arc_length_at(place) ? place - 1 : place;
-  const double share = (joint.twist_place - rod.arc_length_at(edge)) /
-                       rod.edge_length[to_size(rod.position(edge))];
+  const double share =
+      (joint.twist_place - rod.arc_length_at(edge)) / rod.edge_length[to_size(rod.position(edge))];
   return (1.0 - share) * rod.natural_twist[to_size(rod.position(edge))] +
          share * rod.natural_twist[to_size(rod.position(edge + 1))];
 }

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from references.writhe import figure_eight, torus_knot
 from scipy.integrate import solve_bvp
-from spatial_scenes import measured, rod_through, section
+from spatial_scenes import critical, measured, rod_through, section
 
 STRAIGHT = {"natural_curvature": [0, 0], "natural_twist": 0}
 
@@ -43,27 +43,22 @@ def unstable_directions(scene):
 @pytest.mark.parametrize("ratio", [0.75, 1.0, 1.5])
 def test_ring_of_michell(spatial_reference, ratio):
     """It buckles out of its plane in a pair of modes of two waves."""
-    critical = spatial_reference("spatial_buckling", f"ring.{ratio:g}.twist")
-    assert unstable_directions(michell(200, ratio, 0.999 * critical)) == 0
-    assert unstable_directions(michell(200, ratio, 1.001 * critical)) == 2
+    exact = spatial_reference("spatial_buckling", f"ring.{ratio:g}.twist")
+    assert unstable_directions(michell(200, ratio, 0.999 * exact)) == 0
+    assert unstable_directions(michell(200, ratio, 1.001 * exact)) == 2
 
 
 def test_order_of_the_critical_twist(spatial_reference, fitted_order):
     """The twist at which the pair appears, by bisection."""
-    critical = spatial_reference("spatial_buckling", "ring.1.twist")
-
-    def found(count):
-        low, high = 0.99 * critical, 1.02 * critical
-        while high - low > 2e-5 * critical:
-            middle = 0.5 * (low + high)
-            if unstable_directions(michell(count, 1.0, middle)) >= 2:
-                high = middle
-            else:
-                low = middle
-        return low
-
+    exact = spatial_reference("spatial_buckling", "ring.1.twist")
     sizes = [30, 42, 60]
-    errors = [found(n) / critical - 1 for n in sizes]
+    errors = []
+    for count in sizes:
+        twist = critical(
+            lambda twist, count=count: unstable_directions(michell(count, 1.0, twist)) == 2,
+            *(0.99 * exact, 1.02 * exact, 2e-5 * exact),
+        )
+        errors.append(twist / exact - 1)
     assert fitted_order([1 / n for n in sizes], errors) > 1.9
 
 
@@ -294,6 +289,8 @@ def test_start_of_a_ring_is_a_place_like_any_other(shift):
 
 # ---- all that acts on rods, on a ring
 
+TURNING = {"follower": True}
+
 
 def uneven_ring(count=20):
     """A ring in the x-y plane with edges of different lengths."""
@@ -322,11 +319,10 @@ class Drawn:
         return np.roll(values, -self.first, axis=0).tolist()
 
 
-def loaded_ring(first, clamped, model="spatial"):
-    """A strip with supports and loads of all kinds, and the places at which they act."""
+def loaded_ring(first, clamped):
+    """A strip with supports and loads of all kinds."""
     ring = Drawn(uneven_ring(), first)
     number = np.arange(ring.count)
-    flat = model == "planar"
     natural = np.column_stack([0.5 + 0.4 * np.sin(number), 0.3 * np.cos(2 * number)])
     rod = {
         "natural_curvature": ring.from_there(natural),
@@ -345,15 +341,8 @@ def loaded_ring(first, clamped, model="spatial"):
         {"foundation": {"rod": "rod", "stiffness": [0.1, 0.2, 0.3]}},
         {"moment": {"rod": "rod", "at": ring.at(3, 0.3), "moment": [0.2, 0.3, -0.4]}},
         {"point_force": {"rod": "rod", "at": ring.at(11, 0.7), "force": [0.3, 0.2, 0.4]}},
-        {"moment": {"rod": "rod", "at": ring.at(17, 0.8), "moment": [0, 0.2, 0], "follower": True}},
-        {
-            "point_force": {
-                "rod": "rod",
-                "at": ring.at(0, 0.3),
-                "force": [0, 0.3, 0.2],
-                "follower": True,
-            }
-        },
+        {"moment": {"rod": "rod", "at": ring.at(17, 0.8), "moment": [0, 0.2, 0], **TURNING}},
+        {"point_force": {"rod": "rod", "at": ring.at(0, 0.3), "force": [0, 0.3, 0.2], **TURNING}},
     ]
     stiff = strip(director=[0, 0, 1])
     return ring, ring_through(ring.points, stiff, rod, supports=supports, loads=loads)
@@ -392,7 +381,7 @@ def test_a_clamped_ring_is_an_open_rod_between_two_clamps(model):
                 "rod": "rod",
                 "at": 0.8,
                 "force": [0.2, 0.3, 0 if flat else 0.2],
-                "follower": True,
+                **TURNING,
             }
         },
     ]
@@ -521,3 +510,153 @@ def test_ring_of_goto_folds_into_three_coils(fitted_order):
     for of_quantity in np.transpose(errors):
         assert fitted_order([1 / n for n in sizes], of_quantity) > 1.9
     assert np.max(errors[-1]) < 2e-3
+
+
+# ---- verdicts
+
+
+@pytest.mark.parametrize("count", [5, 8, 12, 20, 31])
+def test_rigid_motions_of_coarse_rings_are_neutral(count):
+    """6 rigid motions, and the turning of all sections of a naturally straight round rod."""
+    for share in (0.0, 0.1, 0.5, 0.9):
+        scene = michell(count, 1.0, share * 2 * np.pi * np.sqrt(3))
+        report = der.Simulation(der.Scenario.from_dict(scene)).equilibrium(leave_saddles=False)
+        assert report.stability == "neutral"
+        assert report.neutral_directions == 7
+
+
+@pytest.mark.parametrize("stretching", [1e3, 1e9])
+def test_free_rods_that_are_not_flat_are_neutral(stretching):
+    """Free of stress: 6 rigid motions, none of them lost in rounding."""
+    knot = torus_knot(2, 3)(2 * np.pi * np.arange(60) / 60).T
+    stiff = section([0.3, 0.2, 1.0], EA=stretching, EI1=3.0, EI2=1.0, GJ=0.6)
+    for scene in (ring_through(knot, stiff), rod_through(knot, stiff, supports=[])):
+        report = der.Simulation(der.Scenario.from_dict(scene)).equilibrium()
+        assert report.stability == "neutral"
+        assert report.neutral_directions == 6
+
+
+def squeezed(count=24, first=0, force=1.0):
+    """A strip that is stiff in the plane of the ring, pressed there by two opposite forces.
+
+    Its foot is held, its head slides towards it, and its sides slide in the plane.
+    """
+    ring = Drawn(circle(count, turn=-np.pi / 2), first)
+    foot, right, head, left = ({"node": ring.node(k * count // 4)} for k in range(4))
+    supports = [
+        {"rod": "rod", "at": foot, "fix": ["x", "y", "z"]},
+        {"rod": "rod", "at": head, "fix": ["x", "z"]},
+        {"rod": "rod", "at": right, "fix": ["z"]},
+        {"rod": "rod", "at": left, "fix": ["z"]},
+    ]
+    loads = [{"point_force": {"rod": "rod", "at": head, "force": [0, -force, 0]}}]
+    stiff = section([0, 0, 1], EA=1e8, EI1=1.0, EI2=1e5, GJ=0.7)
+    return ring_through(ring.points, stiff, supports=supports, loads=loads)
+
+
+def buckling_factor(scene):
+    return der.run({**scene, "analysis": "buckling"}).buckling.load_factors[0]
+
+
+def test_pressed_ring_buckles_out_of_its_plane(fitted_order):
+    """The linear load factor against the load at which the verdict changes."""
+    sizes = [24, 48, 96]
+    errors = []
+    for count in sizes:
+        factor = buckling_factor(squeezed(count))
+        load = critical(
+            lambda force, count=count: unstable_directions(squeezed(count, force=force)) > 0,
+            *(0.98 * factor, 1.02 * factor, 1e-5 * factor),
+        )
+        errors.append(load / factor - 1)
+    assert fitted_order([1 / n for n in sizes], errors) > 1.9
+    assert abs(errors[-1]) < 1e-3
+    for first in (1, 11, 23):
+        assert buckling_factor(squeezed(first=first)) == pytest.approx(
+            buckling_factor(squeezed()), rel=1e-9
+        )
+
+
+def test_path_of_a_ring_is_the_same_in_space():
+    """A naturally straight ring under its load, as planar and spatial models, drawn elsewhere."""
+
+    def path(first, model):
+        ring = Drawn(circle(20, turn=-np.pi / 2), first)
+        foot, head = ({"node": ring.node(number)} for number in (0, 10))
+        scene = ring_through(
+            ring.points,
+            section(EA=1e4, EI=1.0, GJ=1.0),
+            {"natural_curvature": [0, 0]},
+            supports=[
+                {"rod": "rod", "at": foot, "clamp": True},
+                {"rod": "rod", "at": head, "fix": ["x", "z"]},
+            ],
+            loads=[{"point_force": {"rod": "rod", "at": head, "force": [0, -1, 0]}}],
+            analysis={"continuation": {"to": 4.0}},
+            model=model,
+        )
+        result = der.run(scene)
+        assert result.path.factor[-1] == pytest.approx(4.0)
+        return np.roll(result.positions[-1], first, axis=0)
+
+    planar = path(0, "planar")
+    for first in (0, 7, 10):
+        spatial = path(first, "spatial")
+        assert spatial[:, :2] == pytest.approx(planar, abs=1e-7)
+
+
+def test_components_jump_where_a_ring_is_glued_turned():
+    """A Moebius strip, wherever it begins: two components change their signs at the glue."""
+    count = 30
+
+    def drawn(first):
+        ring = Drawn(circle(count), first)
+        tangent = (ring.points[1] - ring.points[0]) / ring.edges[0]
+        angle = np.pi * first / count
+        up = np.eye(3)[2]
+        director = np.cos(angle) * up + np.sin(angle) * np.cross(tangent, up)
+        own = {**STRAIGHT, "initial_twist": np.pi / ring.edges.sum()}
+        instant = {"duration": 1e-9, "step": 1e-9}
+        result = der.run(ring_through(ring.points, strip(director=director), own, time=instant))
+        return ring, result
+
+    ring, result = drawn(0)
+    for name in ("curvature_1", "moment_2", "curvature", "torque", "tension"):
+        places, values = result.along("rod", name)
+        assert places[0] == 0.0
+        assert places[-1] == pytest.approx(ring.edges.sum())
+        sign = -1.0 if name[-1] in "12" else 1.0
+        assert values[0, -1] == pytest.approx(sign * values[0, 0], abs=1e-8)
+
+    def at_nodes(first, name):
+        _, values = drawn(first)[1].along("rod", name)
+        return np.roll(np.abs(values[0, :count]), first)
+
+    for name in ("curvature_1", "moment_2"):
+        here = at_nodes(0, name)
+        for first in (1, 13):
+            assert at_nodes(first, name) == pytest.approx(here, abs=1e-8)
+
+
+def test_planar_rings_know_when_they_leave_their_plane():
+    """The verdict and the load factor of the planar model against those of the spatial one."""
+
+    def factors(scene):
+        planar = der.run({**scene, "model": "planar", "analysis": "buckling"})
+        return planar.summary["out_of_plane"]["load_factor"], buckling_factor(scene)
+
+    scene = squeezed()
+    scene["supports"] = [{"rod": "rod", "at": "start", "clamp": True}]
+    scene["loads"][0]["point_force"]["force"] = [0, -1, 0]
+    with pytest.warns(der.DerWarning, match="unstable out of it"):
+        planar, spatial = factors(scene)
+    assert planar == pytest.approx(spatial, rel=1e-9)
+
+    # Supports that are no clamps hold sections like forks: at the start of a ring, too.
+    def verdict(first):
+        with pytest.warns(der.DerWarning, match="unstable out of it"):
+            return factors(squeezed(first=first))[0]
+
+    expected = verdict(0)
+    for first in (3, 6, 7):
+        assert verdict(first) == pytest.approx(expected, rel=1e-9)

@@ -192,10 +192,12 @@ class EquilibriumSearch {
     bool resolved = neutral || polish(model_, loads_.force, report_.stability, stiffness_, here);
     shape.positions = std::move(here.coordinates);
     report_.residual = model_.dofs.largest_free_force(loads_.force - stiffness_.gradient());
-    // A Newton step is meaningless in a neutral equilibrium, so the forces must be in balance: to
-    // the rounding errors of their elements where no others act.
-    const double unbalanced =
-        std::max(kUnbalanced * newton_.force_scale(), stiffness_.rounding() * model_.size());
+    // A Newton step is meaningless in a neutral equilibrium, so the forces must be in balance. Those
+    // of a structure without loads may be no more than the rounding errors of its elements.
+    double unbalanced = kUnbalanced * newton_.force_scale();
+    if (is_unloaded(model_, loads_)) {
+      unbalanced = std::max(unbalanced, stiffness_.rounding() * model_.size());
+    }
     if (neutral && report_.residual > unbalanced) resolved = false;
     report_.largest_turning_angle = largest_turning_angle(model_, shape.positions);
     if (resolved) return std::nullopt;

@@ -127,6 +127,7 @@ def press(count, force, model="planar"):
     return result.probes["y"][-1] + 1, result
 
 
+@pytest.mark.filterwarnings("ignore:stable in its plane, unstable out of it")
 @pytest.mark.parametrize("force", [0.01, 2.0, 5.0])
 def test_pressed_ring(fitted_order, force):
     exact = pressed_diameter(force)
@@ -648,15 +649,15 @@ def test_planar_rings_know_when_they_leave_their_plane():
     scene = squeezed()
     scene["supports"] = [{"rod": "rod", "at": "start", "clamp": True}]
     scene["loads"][0]["point_force"]["force"] = [0, -1, 0]
-    with pytest.warns(der.DerWarning, match="unstable out of it"):
+    with pytest.warns(der.DerWarning, match="buckles out of its plane first"):
         planar, spatial = factors(scene)
-    assert planar == pytest.approx(spatial, rel=1e-9)
+    assert planar == pytest.approx(spatial, rel=1e-7)
 
     # Supports that are no clamps hold sections like forks: at the start of a ring, too.
     def verdict(first):
-        with pytest.warns(der.DerWarning, match="unstable out of it"):
+        with pytest.warns(der.DerWarning, match="buckles out of its plane first"):
             return factors(squeezed(first=first))[0]
 
     expected = verdict(0)
     for first in (3, 6, 7):
-        assert verdict(first) == pytest.approx(expected, rel=1e-9)
+        assert verdict(first) == pytest.approx(expected, rel=1e-7)

@@ -324,6 +324,33 @@ def test_a_star_of_rods_is_warned_of_a_few_times():
     assert warnings[-1] == "there are more places where rods touch and nothing joins them"
 
 
+@pytest.mark.parametrize(
+    ("natural", "warnings"),
+    [
+        ({"natural_curvature": [5.0, 8.0]}, []),
+        ({"natural_curvature": [0.0, 12.0]}, ["natural_curvature: without stress the edges"]),
+        ({"natural_twist": 12.0}, ["natural_twist: without stress the sections"]),
+        ({"natural_twist": [12.0] + 10 * [9.0]}, []),
+    ],
+)
+def test_meshes_that_hardly_resolve_the_natural_shape_are_warned_of(natural, warnings):
+    """Edges of 0.1 m: warnings begin at a radian."""
+    rod = {
+        "name": "strip",
+        "nodes": 11,
+        "from": [0, 0, 0],
+        "to": [1, 0, 0],
+        "cross_section": {"rectangle": {"width": 0.02, "height": 0.01}},
+        "material": {"youngs_modulus": 1e7, "shear_modulus": 4e6, "density": 1000},
+    }
+    found = der.Scenario.from_dict({"rods": [rod | natural], "analysis": "static"}).warnings
+    expected = [
+        f"too coarse for its {w} turn by 1.2 rad at node 1. Give it about 25" for w in warnings
+    ]
+    assert len(found) == len(expected)
+    assert all(e in f for e, f in zip(expected, found, strict=True))
+
+
 _TAKEN = "a support holds: the support takes it up without any effect on the rod"
 
 

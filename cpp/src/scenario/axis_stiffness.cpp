@@ -39,7 +39,7 @@ Format<Components> axis_stiffness(const std::string& unit) {
 }
 
 Format<Components> section_stiffness(const std::string& unit) {
-  return one_or_each(number(unit, positive()), space_vector(unit), "[0, 50, 0]");
+  return one_or_each(number(unit, positive()), section_triple(unit), "[0, 50, 0]");
 }
 
 }  // namespace der::scenario

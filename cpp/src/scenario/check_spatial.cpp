@@ -31,10 +31,13 @@ class Availability {
     });
   }
 
-  /// Keys that only the planar model has yet.
+  /// The discrete gradients of `energy_momentum` are those of angles in a plane.
   void check_spatial_models() {
     if (scene_.is_dynamic() && scene_.time.integrator == "energy_momentum") {
-      only_planar({"time", "integrator"}, "'energy_momentum'");
+      diagnostics_.add({"time", "integrator"},
+                       "'energy_momentum' is for the planar model only: it keeps the energy of "
+                       "turning angles in a plane. Write 'implicit_midpoint', which keeps momenta, "
+                       "or 'sdirk5' with a 'tolerance'");
     }
   }
 
@@ -51,10 +54,6 @@ class Availability {
       std::visit([&](const auto& load) { f(load, Path{"loads", i, load.kKey}); },
                  scene_.loads[static_cast<std::size_t>(i)].what);
     }
-  }
-
-  void only_planar(const Path& where, const std::string& what) {
-    diagnostics_.add(where, what + ": not available yet in the spatial models, only in 'planar'");
   }
 
   const SceneText& scene_;

@@ -152,6 +152,7 @@ void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   }
   check_springs(context);
   check_free_nodes(context);
+  check_resolution(context);
   check_loads(context);
   check_time(context);
   check_probes(context);

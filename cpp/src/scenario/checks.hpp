@@ -82,6 +82,8 @@ void check_probes(CheckContext& context);
 void check_model(const SceneText& scene, Diagnostics& diagnostics);
 /// Reports what this version does not have in a model (check_spatial.cpp).
 void check_availability(const SceneText& scene, ModelChoice kind, Diagnostics& diagnostics);
+/// Reports natural shapes that a mesh cannot take, and warns of those that it hardly resolves.
+void check_resolution(CheckContext& context);
 /// Warns of ends of rods that lie on a node: nothing joins them, unless supports hold both.
 void warn_of_touching_rods(CheckContext& context);
 

@@ -242,6 +242,12 @@ Format<Components> space_vector(std::string unit) {
   return format;
 }
 
+Format<Components> section_triple(std::string unit) {
+  Format<Components> format = space_vector(std::move(unit));
+  format.shape.kind = Shape::Kind::Triple;
+  return format;
+}
+
 Format<CurvaturePair> pair(std::string unit) {
   Shape shape{Shape::Kind::Pair};
   shape.unit = std::move(unit);

@@ -48,6 +48,8 @@ Format<std::string> one_of(const std::vector<Word>& words, std::vector<ReservedW
 Format<Components> vector(std::string unit);
 /// A vector of three components.
 Format<Components> space_vector(std::string unit);
+/// `[k1, k2, kt]`: toward the two directors, and about the tangent.
+Format<Components> section_triple(std::string unit);
 /// `[k1, k2]`.
 Format<CurvaturePair> pair(std::string unit);
 

@@ -37,6 +37,8 @@ class SchemaBuilder {
         return numbers(shape.min_items, 3);
       case Shape::Kind::Pair:
         return numbers(2, 2);
+      case Shape::Kind::Triple:
+        return numbers(3, 3);
       case Shape::Kind::List:
         return list(shape);
       case Shape::Kind::Table:

@@ -52,7 +52,7 @@ says why:
 
 Nothing is rounded to the plane: a node 1e-6 m off it is part of the scene, as a seed of buckling out
 of the plane is. A larger model than needed may be asked for; a smaller one is refused, with the
-reason. The spatial models do not have the integrator `energy_momentum` yet.
+reason. The integrator `energy_momentum` is for the planar model only.
 
 The section of a rod has two directors: director 1 is the direction of its width, director 2 that of
 its height, t x d1 with the tangent t in the direction of growing arc length. `EI1` and `k1` belong to
@@ -102,6 +102,8 @@ std::string value_text(const Shape& shape) {
       return shape.min_items == 3 ? "`[x, y, z]`" : "`[x, y]`, `[x, y, z]`";
     case Shape::Kind::Pair:
       return "`[k1, k2]`";
+    case Shape::Kind::Triple:
+      return "`[k1, k2, kt]`";
     case Shape::Kind::List:
       return "list of: " + value_text(shape.parts.front());
     case Shape::Kind::Table:

@@ -74,6 +74,8 @@ std::string expected(const Shape& shape) {
                        shape);
     case Shape::Kind::Pair:
       return with_unit("a pair [k1, k2]", shape);
+    case Shape::Kind::Triple:
+      return with_unit("a list [k1, k2, kt]", shape);
     case Shape::Kind::List:
       return "a list";
     case Shape::Kind::Table:

@@ -49,6 +49,7 @@ struct Shape {
     Choice,
     Vector,       ///< [x, y] or [x, y, z]; with `min_items` 3 only the latter
     Pair,         ///< [k1, k2]
+    Triple,       ///< [k1, k2, kt]
     List,         ///< of parts[0]
     Table,        ///< a mapping with the keys of `table`
     NamedTables,  ///< a mapping from free names to `table`

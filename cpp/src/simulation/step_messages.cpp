@@ -43,8 +43,8 @@ std::string Simulation::advice_on_steps() const {
       shorter = "give a step that is smaller than that of 'auto'";
       break;
   }
-  constexpr const char* kConserving = "energy_momentum";
-  if (stepper_info_.name == kConserving) return shorter;
+  constexpr const char* kConserving = "energy_momentum";  // planar only (check_spatial.cpp)
+  if (stepper_info_.name == kConserving || model().dimension != 2) return shorter;
   return fmt::format("{}, or 'integrator: {}', which creates no energy", shorter, kConserving);
 }
 

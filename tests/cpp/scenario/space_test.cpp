@@ -28,8 +28,8 @@ rods:
     points: [[0, 0, 0], [1, 0, 0], [2, 1, 1]]
     cross_section: {ellipse: {width: 0.02, height: 0.001}, director: [0, 1, 1]}
     material: {youngs_modulus: 1e9, poissons_ratio: 0.5, density: 1000}
-    natural_curvature: [[0, 1], [2, 3], [4, 5]]
-    natural_twist: 6
+    natural_curvature: [[0, 0.1], [0.2, 0.3], [0.4, 0.5]]
+    natural_twist: 0.6
     initial_twist: -2
     initial_velocity: [1, 2, 3]
   - name: bar
@@ -69,9 +69,9 @@ TEST_CASE("space: every key") {
   CHECK(strip.director == Components{0, 1, 1});
   CHECK(strip.material->poissons_ratio == 0.5);
   CHECK_FALSE(strip.material->shear_modulus.has_value());
-  CHECK(std::get<std::vector<CurvaturePair>>(strip.natural_curvature)[2].first == 4.0);
-  CHECK(std::get<std::vector<CurvaturePair>>(strip.natural_curvature)[2].second == 5.0);
-  CHECK(std::get<double>(strip.natural_twist) == 6.0);
+  CHECK(std::get<std::vector<CurvaturePair>>(strip.natural_curvature)[2].first == 0.4);
+  CHECK(std::get<std::vector<CurvaturePair>>(strip.natural_curvature)[2].second == 0.5);
+  CHECK(std::get<double>(strip.natural_twist) == 0.6);
   CHECK(strip.initial_twist == -2.0);
   CHECK(strip.initial_velocity[2] == Components{1, 2, 3});
   const scenario::Rod& bar = scene.rods[1];

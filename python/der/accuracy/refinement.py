@@ -85,11 +85,9 @@ def count_elements(scenario: Scenario) -> dict[str, int]:
     return {rod["name"]: _count_elements(rod) for rod in scenario.to_dict()["rods"]}
 
 
-def count_nodes(scenario: Scenario, rod: str) -> int:
-    """Return the number of nodes of a rod: one more than its elements, but of a ring as many."""
-    elements = count_elements(scenario)[rod]
-    (own,) = (each for each in scenario.to_dict()["rods"] if each["name"] == rod)
-    return elements if own.get("closed") else elements + 1
+def count_nodes(scenario: Scenario) -> dict[str, int]:
+    """Return the number of nodes of every rod: one more than its elements, of a ring as many."""
+    return {rod["name"]: _count_nodes(rod) for rod in scenario.to_dict()["rods"]}
 
 
 def with_time(scenario: Scenario, **changes: Any) -> Scenario:
@@ -111,8 +109,12 @@ def _set(table: dict[str, Any], key: str, value: Any) -> None:
         table[key] = value
 
 
+def _count_nodes(rod: dict[str, Any]) -> int:
+    return len(rod["points"]) if "points" in rod else int(rod["nodes"])
+
+
 def _count_elements(rod: dict[str, Any]) -> int:
-    nodes = len(rod["points"]) if "points" in rod else int(rod["nodes"])
+    nodes = _count_nodes(rod)
     return nodes if rod.get("closed") else nodes - 1
 
 

@@ -74,7 +74,7 @@ def choose_meshes(scenario: Scenario, nodes: Sequence[int] | None) -> list[Mesh]
     """
     rod = find_leading_rod(scenario)
     if rod is None:
-        own = count_nodes(scenario, next(iter(count_elements(scenario))))
+        own = next(iter(count_nodes(scenario).values()))
         if nodes is not None and set(nodes) != {own}:
             raise ValueError(
                 f"this scene allows no other number of nodes than its own, {own}: "
@@ -90,7 +90,7 @@ def _mesh(scenario: Scenario, rod: str, nodes: int) -> Mesh:
     if nodes < 2:
         raise ValueError(f"a rod has at least 2 nodes, got {nodes}")
     elements = count_elements(scenario)[rod]
-    ends = count_nodes(scenario, rod) - elements  # 1, and 0 of a ring
+    ends = count_nodes(scenario)[rod] - elements  # 1, and 0 of a ring
     factor = Fraction(nodes - ends, elements)
     try:
         return Mesh(nodes, with_elements(scenario, factor))
@@ -101,7 +101,7 @@ def _mesh(scenario: Scenario, rod: str, nodes: int) -> Mesh:
 def _default_meshes(scenario: Scenario, rod: str) -> list[Mesh]:
     meshes = []
     elements = count_elements(scenario)[rod]
-    ends = count_nodes(scenario, rod) - elements
+    ends = count_nodes(scenario)[rod] - elements
     for factor in _DEFAULT_MESHES:
         count = factor * elements
         if count.denominator != 1 or (factor < 1 and count < _FEWEST_ELEMENTS):
@@ -116,8 +116,9 @@ def _default_meshes(scenario: Scenario, rod: str) -> list[Mesh]:
 def finer(mesh: Mesh, factor: int) -> Mesh:
     """Return a mesh with `factor` times the elements."""
     refined = with_elements(mesh.scenario, factor)
-    rod = find_leading_rod(refined) or next(iter(count_elements(refined)))
-    return Mesh(count_nodes(refined, rod), refined)
+    counts = count_nodes(refined)
+    rod = find_leading_rod(refined) or next(iter(counts))
+    return Mesh(counts[rod], refined)
 
 
 def reference_meshes(scenario: Scenario, meshes: Sequence[Mesh]) -> dict[int, Scenario]:

@@ -192,8 +192,8 @@ class EquilibriumSearch {
     bool resolved = neutral || polish(model_, loads_.force, report_.stability, stiffness_, here);
     shape.positions = std::move(here.coordinates);
     report_.residual = model_.dofs.largest_free_force(loads_.force - stiffness_.gradient());
-    // A Newton step is meaningless in a neutral equilibrium, so the forces must be in balance. Those
-    // of a structure without loads may be no more than the rounding errors of its elements.
+    // A Newton step is meaningless in a neutral equilibrium, so the forces must be in balance.
+    // Those of a structure without loads may be no more than the rounding errors of its elements.
     double unbalanced = kUnbalanced * newton_.force_scale();
     if (is_unloaded(model_, loads_)) {
       unbalanced = std::max(unbalanced, stiffness_.rounding() * model_.size());

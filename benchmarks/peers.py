@@ -1,14 +1,17 @@
-"""Cost against error in der, Exudyn, MuJoCo and PyElastica: a swinging rod, in one run.
+"""Cost against error in der, Exudyn, MuJoCo, PyElastica and DiSMech-Newton, in one run.
 
     pip install .[peers]
-    python benchmarks/peers.py [--peers der exudyn ...] [--quick] [--csv FILE] [--plot FILE]
+    python benchmarks/peers.py [--scene SCENE] [--peers der exudyn ...] [--quick] [--csv FILE]
+                               [--plot FILE]
 
-A soft rod, 1 m long, clamped horizontally at one end, swings down for 1 s. Each code tries many
+A soft rod, 1 m long, is clamped horizontally at one end and falls for 1 s. The scene ``swing`` is a
+round rod, which stays in its plane; ``strip`` is a strip that is clamped askew and therefore bends
+about both axes and twists (DiSMech-Newton runs this one only). Each code tries many
 numbers of elements, time steps and settings; the error is the largest distance of the tip from the
 continuum's at 101 times. Times are CPU seconds of the time loop on one core, the least of several
 runs taken in turns; imports, compilation and the building of models do not count. A peer that is
-not installed is left out. The whole takes about ten minutes; --quick some ten seconds, with so few
-configurations that its numbers say little.
+not installed is left out. The whole takes about ten minutes a scene; --quick some ten seconds, with
+so few configurations that its numbers say little.
 """
 
 from __future__ import annotations
@@ -16,7 +19,8 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from itertools import chain
 
 THREAD_LIMITS = (
     "OMP_NUM_THREADS",
@@ -31,13 +35,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Measure, print the tables, and write what was asked for."""
     use_one_core()
     # Not before: libraries read the thread limits when they are first imported.
+    from comparison import plot, report
+    from comparison.codes import missing_text
+    from comparison.measure import measure
+    from comparison.scenes import SCENES
     from der.progress import progress_on_terminal
-    from swing import plot, report
-    from swing.codes import CODES, missing_text
-    from swing.measure import measure
 
-    options = parse(arguments, [code.key for code in CODES])
-    codes = [code for code in CODES if code.key in options.peers]
+    options = parse(arguments, {s.key: [code.key for code in s.codes] for s in SCENES.values()})
+    scene = SCENES[options.scene]
+    codes = [code for code in scene.codes if code.key in options.peers]
     for code in codes:
         if not code.is_installed():
             print(missing_text(code))
@@ -47,7 +53,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 1
     with progress_on_terminal() as progress:
         repeats = 2 if options.quick else options.repeats
-        points, limits = measure(codes, options.quick, repeats, progress)
+        points, limits = measure(scene, codes, options.quick, repeats, progress)
     series = report.to_series(points)
     print(", ".join(f"{code.title} {code.version()}" for code in codes))
     texts = (report.cost_table(series), report.notes(limits), report.configuration_table(series))
@@ -59,21 +65,30 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def parse(arguments: Sequence[str] | None, keys: Sequence[str]) -> argparse.Namespace:
-    """Read the command line."""
+def parse(
+    arguments: Sequence[str] | None, codes: Mapping[str, Sequence[str]]
+) -> argparse.Namespace:
+    """Read the command line; `codes` are the keys of the codes of each scene."""
     from der.output_paths import output_file, output_picture  # not before: see main
 
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--peers", nargs="+", choices=keys, default=list(keys), metavar="CODE")
+    every = list(dict.fromkeys(chain.from_iterable(codes.values())))
+    parser.add_argument("--scene", choices=list(codes), default="swing")
+    parser.add_argument("--peers", nargs="+", choices=every, metavar="CODE")
     parser.add_argument("--quick", action="store_true", help="few configurations, two runs each")
     parser.add_argument("--repeats", type=int, default=3, help="runs of those that are worth it")
     parser.add_argument("--csv", type=output_file, metavar="FILE", help="write every run")
     parser.add_argument(
         "--plot", type=output_picture, metavar="FILE", help="draw cost against error"
     )
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    options.peers = options.peers or codes[options.scene]
+    for key in options.peers:
+        if key not in codes[options.scene]:
+            parser.error(f"{key} cannot run the scene {options.scene}")
+    return options
 
 
 def use_one_core() -> None:

@@ -268,6 +268,6 @@ def test_pictures_can_be_made(tmp_path, monkeypatch):
     monkeypatch.setattr("sys.argv", ["make_figures.py"])
     make_figures.main()
     made = {path.name for path in (scripts / "images").iterdir()}
-    assert made | {"peers.png", "view.png"} == {
+    assert made | {"peers.png", "peers_strip.png", "view.png"} == {
         path.name for path in (ROOT / "docs" / "images").iterdir()
     }

@@ -11,13 +11,15 @@ import pytest
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 sys.path.insert(0, str(BENCHMARKS))
 
-from swing import codes, measure, problem, report  # noqa: E402
-from swing.codes import CODES, Code  # noqa: E402
-from swing.measure import Point  # noqa: E402
-from swing.problem import RunFailedError  # noqa: E402
-from swing.report import Run, Series  # noqa: E402
+from comparison import codes, measure, report  # noqa: E402
+from comparison.codes import DER, Code  # noqa: E402
+from comparison.measure import Point  # noqa: E402
+from comparison.report import Run, Series  # noqa: E402
+from comparison.scene import FRAMES, RunFailedError, distance, march  # noqa: E402
+from comparison.scenes import SCENES  # noqa: E402
 
-MISSING = Code("none", "None", "no_such_package_of_rods", "none", "swing.no_such_adapter")
+MISSING = Code("none", "None", "no_such_package_of_rods", "none")
+SWING = SCENES["swing"]
 
 
 def run(seconds, error):
@@ -149,7 +151,7 @@ def test_only_runs_that_can_still_win_are_repeated():
 def test_a_run_that_leaves_the_reach_of_the_rod_has_failed():
     for place in ((2.0, 0.0), (np.nan, 0.0)):
         with pytest.raises(RunFailedError, match=r"unstable after 0\.01 s"):
-            problem.march(lambda: None, lambda place=place: place)
+            march(lambda: None, lambda place=place: place)
 
 
 def test_the_path_holds_the_start_and_all_frames():
@@ -158,25 +160,34 @@ def test_the_path_holds_the_start_and_all_frames():
     def advance():
         state["frame"] += 1
 
-    _, path = problem.march(advance, lambda: (1.0, -0.01 * state["frame"], 99.0))
+    _, path = march(advance, lambda: (1.0, -0.01 * state["frame"]))
     np.testing.assert_allclose(path, [(1.0, -0.01 * k) for k in range(101)], atol=1e-15)
 
 
-def test_the_reference_is_the_one_of_the_validation():
-    reference = problem.reference()
-    assert reference.shape == (problem.FRAMES + 1, 2)
-    np.testing.assert_allclose(reference[0], [problem.LENGTH, 0.0])
-    np.testing.assert_allclose(reference[-1], [-0.31392, -0.52705], atol=1e-5)
+@pytest.mark.parametrize(
+    ("key", "end", "accuracy"),
+    [
+        ("swing", [-0.31392, -0.52705], 1e-5),
+        # der with 640 and 1280 elements and 2000 steps of sdirk5, extrapolated at order 2
+        ("strip", [-0.430977, 0.185279, -0.340290], 2e-6),
+    ],
+)
+def test_the_reference_is_the_one_of_the_validation(key, end, accuracy):
+    reference = SCENES[key].reference()
+    assert reference.shape == (FRAMES + 1, len(end))
+    np.testing.assert_allclose(reference[0], np.eye(len(end))[0], atol=1e-15)
+    np.testing.assert_allclose(reference[-1], end, atol=accuracy)
 
 
-def test_der_runs_the_swing_and_converges():
-    ours = CODES[0].adapter()
+@pytest.mark.parametrize("key", SCENES)
+def test_der_runs_the_scenes_and_converges(key):
+    ours = DER.adapter(key)
     errors = []
     for elements in (40, 80):
         config = {"elements": elements, "steps": 10, "integrator": "implicit_midpoint"}
         seconds, path = ours.run(config)
         assert seconds > 0.0
-        errors.append(problem.distance(path, problem.reference()))
+        errors.append(distance(path, SCENES[key].reference()))
     assert errors[0] < 1e-2
     assert errors[1] < 0.5 * errors[0]
 
@@ -184,13 +195,18 @@ def test_der_runs_the_swing_and_converges():
 def test_a_run_of_der_that_diverges_is_reported_as_failed():
     config = {"elements": 40, "steps": 2, "integrator": "verlet"}
     with pytest.raises(RunFailedError):
-        CODES[0].adapter().run(config)
+        DER.adapter("swing").run(config)
 
 
-@pytest.mark.parametrize("code", [c for c in CODES if c.is_installed()], ids=lambda c: c.key)
-def test_the_grids_name_elements_and_steps(code):
+INSTALLED = [(s.key, code) for s in SCENES.values() for code in s.codes if code.is_installed()]
+
+
+@pytest.mark.parametrize(
+    ("key", "code"), INSTALLED, ids=[f"{key}-{code.key}" for key, code in INSTALLED]
+)
+def test_the_grids_name_elements_and_steps(key, code):
     for quick in (True, False):
-        for config in code.adapter().grid(quick):
+        for config in code.adapter(key).grid(quick):
             assert config["elements"] > 0
             assert config["steps"] == measure.FEWEST or config["steps"] > 0
 
@@ -200,10 +216,12 @@ def test_a_missing_peer_is_named_with_what_to_do():
     assert codes.missing_text(MISSING) == "None: not installed: pip install der[peers]"
 
 
-def test_the_program_skips_missing_peers_and_writes_what_is_asked(tmp_path):
-    missing = [code for code in CODES if not code.is_installed()]
+@pytest.mark.parametrize("scene", SCENES.values(), ids=lambda s: s.key)
+def test_the_program_skips_missing_peers_and_writes_what_is_asked(scene, tmp_path):
+    missing = [code for code in scene.codes if not code.is_installed()]
     keys = ["der", *(code.key for code in missing)]
-    done = peers("--quick", "--csv", "out.csv", "--plot", "out.png", "--peers", *keys, cwd=tmp_path)
+    files = ["--csv", "out.csv", "--plot", "out.png"]
+    done = peers("--scene", scene.key, "--quick", *files, "--peers", *keys, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     for code in missing:
         assert codes.missing_text(code) in done.stdout
@@ -219,7 +237,7 @@ def test_the_program_skips_missing_peers_and_writes_what_is_asked(tmp_path):
 
 
 def test_the_program_fails_without_anything_to_measure(tmp_path):
-    missing = [code.key for code in CODES if not code.is_installed()]
+    missing = [code.key for code in SWING.codes if not code.is_installed()]
     if not missing:
         pytest.skip("all peers are installed")
     done = peers("--peers", *missing, "--quick", cwd=tmp_path)
@@ -255,11 +273,11 @@ def test_a_repeat_that_fails_leaves_the_first_time(monkeypatch):
             seconds = next(times)
             if seconds is None:
                 raise RunFailedError("unstable")
-            return seconds, problem.reference()
+            return seconds, SWING.reference()
 
-    code = Code("ours", "Ours", "der", "", "")
-    monkeypatch.setattr(Code, "adapter", lambda self: Adapter)
-    (point,), _ = measure.measure([code], quick=True, repeats=3)
+    code = Code("ours", "Ours", "der", "")
+    monkeypatch.setattr(Code, "adapter", lambda self, scene: Adapter)
+    (point,), _ = measure.measure(SWING, [code], quick=True, repeats=3)
     assert (point.seconds, point.error, point.failure) == (0.125, 0.0, "")
     assert next(times, "none left") == "none left"
 
@@ -268,3 +286,9 @@ def test_an_unknown_peer_is_refused(tmp_path):
     done = peers("--peers", "elastica3000", cwd=tmp_path)
     assert done.returncode == 2
     assert "invalid choice" in done.stderr
+
+
+def test_a_peer_that_cannot_run_the_scene_is_refused(tmp_path):
+    done = peers("--scene", "swing", "--peers", "der", "dismech", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "dismech cannot run the scene swing" in done.stderr

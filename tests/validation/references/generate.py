@@ -43,6 +43,7 @@ SPATIAL = (
     "writhe",
     "deployable_ring",
     "spatial_motion",
+    "falling_strip",
 )
 PROBLEMS = PLANAR + SPATIAL
 

@@ -56,8 +56,8 @@ class Spin:
 
 @dataclass(frozen=True)
 class Case:
-    """A rod from the origin along z with d1 = x, d2 = y, drawn as the helix or arc of the strains
-    `drawn`; it starts from rest.
+    """A rod from the origin along z with d1 = x, d2 = y, drawn as the helix, arc or line of the
+    strains `drawn`; it starts from rest.
     """
 
     rod: Rod
@@ -70,19 +70,25 @@ class Case:
 
     def frames(self, s: Array) -> Array:
         """Drawn frames (len(s), 3, 3), columns d1, d2, d3."""
-        u = np.array(self.drawn)
-        rate = float(np.linalg.norm(u))
-        return np.array([rotation(u / rate, rate * x) for x in s])
+        axis, rate = self._turning()
+        return np.array([rotation(axis, rate * x) for x in s])
 
     def positions(self, s: Array) -> Array:
         """Drawn places (len(s), 3)."""
-        u = np.array(self.drawn)
-        rate = float(np.linalg.norm(u))
-        axis, tangent = u / rate, np.array([0.0, 0.0, 1.0])
+        axis, rate = self._turning()
+        tangent = np.array([0.0, 0.0, 1.0])
+        if rate == 0.0:
+            return np.asarray(s[:, None] * tangent)
         along = axis * (axis @ tangent)
         angle = rate * s[:, None]
         swept = (tangent - along) * np.sin(angle) + np.cross(axis, tangent) * (1 - np.cos(angle))
         return np.asarray(s[:, None] * along + swept / rate)
+
+    def _turning(self) -> tuple[Array, float]:
+        """Axis about which the drawn frame turns along the rod (any if it does not), and rate."""
+        u = np.array(self.drawn)
+        rate = float(np.linalg.norm(u))
+        return (u / rate if rate > 0.0 else np.array([0.0, 0.0, 1.0])), rate
 
     def start(self, elements: int, degree: int) -> tuple[Dynamics, Array]:
         """Mesh with the drawn frames as chart, and the drawn state."""

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from itertools import chain, zip_longest
 from typing import TypeAlias
 
-from swing import problem
-from swing.codes import Code
-from swing.problem import Config, Path2D, RunFailedError
+from comparison.codes import Code
+from comparison.scene import Config, Path, RunFailedError, distance
+from comparison.scenes import Scene
 
-Run: TypeAlias = Callable[[Config], tuple[float, Path2D]]
+Run: TypeAlias = Callable[[Config], tuple[float, Path]]
 Progress: TypeAlias = Callable[[float], None]
 
 #: ``steps`` of a configuration that is to take the largest stable step.
@@ -41,7 +41,7 @@ class Point:
     failure: str = ""  # why it did not get through; then the numbers are infinite
 
 
-def run_stably(run: Run, config: Config) -> tuple[Config, float, Path2D]:
+def run_stably(run: Run, config: Config) -> tuple[Config, float, Path]:
     """Run a configuration, with the fewest steps a frame that get through where it asks for them.
 
     Returns
@@ -62,7 +62,11 @@ def run_stably(run: Run, config: Config) -> tuple[Config, float, Path2D]:
 
 
 def measure(
-    codes: Iterable[Code], quick: bool, repeats: int, progress: Progress | None = None
+    scene: Scene,
+    codes: Iterable[Code],
+    quick: bool,
+    repeats: int,
+    progress: Progress | None = None,
 ) -> tuple[list[Point], dict[str, float]]:
     """Run all configurations of all codes.
 
@@ -71,8 +75,10 @@ def measure(
 
     Parameters
     ----------
+    scene
+        What they simulate.
     codes
-        Installed ones.
+        Installed ones that can run it.
     quick
         Whether to try a few configurations only.
     repeats
@@ -89,10 +95,12 @@ def measure(
         that lies from it [m].
     """
     codes = list(codes)
-    reference = problem.reference()
-    limits = {code.title: code.limit(quick) for code in codes}
-    runs: dict[str, Run] = {code.title: code.adapter().run for code in codes}
-    grids = [[(code.title, config) for config in code.adapter().grid(quick)] for code in codes]
+    reference = scene.reference()
+    limits = {code.title: code.limit(scene.key, quick) for code in codes}
+    runs: dict[str, Run] = {code.title: code.adapter(scene.key).run for code in codes}
+    grids = [
+        [(code.title, config) for config in code.adapter(scene.key).grid(quick)] for code in codes
+    ]
     tasks = list(_in_turns(grids))
     points = []
     for done, (title, config) in enumerate(tasks):
@@ -106,9 +114,7 @@ def measure(
             if id(point) in chosen:
                 points[i] = _again(point, runs[point.code])
     apart = {
-        title: problem.distance(limit, reference)
-        for title, limit in limits.items()
-        if limit is not None
+        title: distance(limit, reference) for title, limit in limits.items() if limit is not None
     }
     return points, apart
 
@@ -129,13 +135,13 @@ def _has_hope(point: Point, others: list[Point]) -> bool:
     )
 
 
-def _first(title: str, config: Config, run: Run, reference: Path2D, limit: Path2D | None) -> Point:
+def _first(title: str, config: Config, run: Run, reference: Path, limit: Path | None) -> Point:
     try:
         config, seconds, path = run_stably(run, config)
     except RunFailedError as error:
         return Point(title, config, math.inf, math.inf, failure=str(error))
-    own_error = None if limit is None else problem.distance(path, limit)
-    return Point(title, config, seconds, problem.distance(path, reference), own_error)
+    own_error = None if limit is None else distance(path, limit)
+    return Point(title, config, seconds, distance(path, reference), own_error)
 
 
 def _again(point: Point, run: Run) -> Point:

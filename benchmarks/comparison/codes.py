@@ -8,13 +8,13 @@ import importlib.util
 from dataclasses import dataclass
 from typing import Protocol, cast
 
-from swing.problem import Config, Path2D
+from comparison.scene import Config, Path
 
 
 class Adapter(Protocol):
     """Interface of a module ``code_*.py``; ``limit`` only if a code solves another continuum."""
 
-    def run(self, config: Config) -> tuple[float, Path2D]:
+    def run(self, config: Config) -> tuple[float, Path]:
         """Run one configuration; return CPU seconds of the time loop and the path of the tip."""
 
     def grid(self, quick: bool) -> list[Config]:
@@ -23,13 +23,12 @@ class Adapter(Protocol):
 
 @dataclass(frozen=True)
 class Code:
-    """A code that can run the swing."""
+    """A code that can run a scene."""
 
-    key: str  # on the command line
+    key: str  # on the command line, and in the name of its adapters
     title: str
     package: str  # imported; found on PyPI as `distribution`
     distribution: str
-    module: str  # its adapter
 
     def is_installed(self) -> bool:
         """Tell whether its package can be imported."""
@@ -42,23 +41,21 @@ class Code:
         except importlib.metadata.PackageNotFoundError:  # not from a package: a build tree
             return str(getattr(importlib.import_module(self.package), "__version__", "unknown"))
 
-    def adapter(self) -> Adapter:
-        """Import its adapter, and with it the code itself."""
-        return cast(Adapter, importlib.import_module(self.module))
+    def adapter(self, scene: str) -> Adapter:
+        """Import its adapter to a scene, and with it the code itself."""
+        return cast(Adapter, importlib.import_module(f"comparison.{scene}.code_{self.key}"))
 
-    def limit(self, quick: bool) -> Path2D | None:
-        """Return what the code converges to, where that is not the reference."""
-        limit = getattr(self.adapter(), "limit", None)
-        return None if limit is None else cast(Path2D, limit(quick))
+    def limit(self, scene: str, quick: bool) -> Path | None:
+        """Return what the code converges to in a scene, where that is not the reference."""
+        limit = getattr(self.adapter(scene), "limit", None)
+        return None if limit is None else cast(Path, limit(quick))
 
 
-#: The first is the one that the others are compared with.
-CODES = (
-    Code("der", "der", "der", "der", "swing.code_der"),
-    Code("exudyn", "Exudyn", "exudyn", "exudyn", "swing.code_exudyn"),
-    Code("mujoco", "MuJoCo", "mujoco", "mujoco", "swing.code_mujoco"),
-    Code("pyelastica", "PyElastica", "elastica", "pyelastica", "swing.code_pyelastica"),
-)
+DER = Code("der", "der", "der", "der")
+EXUDYN = Code("exudyn", "Exudyn", "exudyn", "exudyn")
+MUJOCO = Code("mujoco", "MuJoCo", "mujoco", "mujoco")
+PYELASTICA = Code("pyelastica", "PyElastica", "elastica", "pyelastica")
+DISMECH = Code("dismech", "DiSMech-Newton", "dismech_newton", "dismech-newton")
 
 
 def missing_text(code: Code) -> str:

@@ -12,22 +12,19 @@ is 0.17 m and more, and with it falls the ``discrete`` integrator, which knows n
 from __future__ import annotations
 
 from itertools import product
-from typing import Any
 
 import mujoco
 
-from swing import problem
-from swing.problem import Config, Path2D
+from comparison import run_mujoco
+from comparison.scene import Config, Path
+from comparison.swing import problem
 
-# Nothing touches anything, and an unstable run must stay visible as one.
-FLAGS = '<flag contact="disable" autoreset="disable"/>'
+GRAVITY = (*problem.GRAVITY, 0.0)
 AXIAL = problem.YOUNGS_MODULUS * problem.AREA
 BENDING = problem.YOUNGS_MODULUS * problem.SECOND_MOMENT
 
-mujoco.set_mju_user_warning(lambda _: None)  # else it writes a log file beside the user's work
 
-
-def run(config: Config) -> tuple[float, Path2D]:
+def run(config: Config) -> tuple[float, Path]:
     """Run one configuration; return CPU seconds of the time loop and the path of the tip.
 
     Keys besides ``elements`` and ``steps``: ``model`` and ``integrator``; for links also
@@ -35,23 +32,7 @@ def run(config: Config) -> tuple[float, Path2D]:
     wall on a spring of the half cell there.
     """
     model, tip_body, tip_offset = _links(config) if config["model"] == "links" else _rod(config)
-    data = mujoco.MjData(model)
-    mujoco.mj_forward(model, data)
-    if config["integrator"] == "Euler":
-        # Semi-implicit Euler is the leapfrog scheme, of second order, if the velocities start
-        # half a step before the positions.
-        data.qvel[:] = -0.5 * model.opt.timestep * data.qacc
-    steps = problem.steps_per_frame(config)
-
-    def advance() -> None:
-        mujoco.mj_step(model, data, steps)
-        mujoco.mj_kinematics(model, data)
-
-    def tip() -> Any:
-        axis = data.xmat[tip_body].reshape(3, 3)[:, 0]
-        return data.xpos[tip_body] + tip_offset * axis
-
-    return problem.march(advance, tip)
+    return run_mujoco.run(model, config, tip_body, tip_offset, dimension=2)
 
 
 def grid(quick: bool) -> list[Config]:
@@ -95,13 +76,6 @@ def _rod_config(elements: int, integrator: str) -> Config:
     return {"elements": elements, "model": "rod", "integrator": integrator, "steps": "fewest"}
 
 
-def _option(config: Config) -> str:
-    return (
-        f'<option timestep="{problem.time_step(config)!r}" integrator="{config["integrator"]}" '
-        f'gravity="0 {-problem.GRAVITY} 0">{FLAGS}</option>'
-    )
-
-
 def _links(config: Config) -> tuple[mujoco.MjModel, int, float]:
     """Return a chain of links, its last body, and the distance of the tip from its origin [m]."""
     links = int(config["elements"])
@@ -124,7 +98,7 @@ def _links(config: Config) -> tuple[mujoco.MjModel, int, float]:
             f"{slide if config['stretch'] else ''}"
         )
     model = mujoco.MjModel.from_xml_string(
-        f"<mujoco>{_option(config)}"
+        f"<mujoco>{run_mujoco.option(config, GRAVITY)}"
         f"<worldbody>{''.join(bodies)}{'</body>' * links}</worldbody></mujoco>"
     )
     return model, links, edge
@@ -138,7 +112,7 @@ def _rod(config: Config) -> tuple[mujoco.MjModel, int, float]:
     # All vertices get the same mass; the last one stands for half an edge only.
     mass = problem.DENSITY * problem.AREA * edge
     model = mujoco.MjModel.from_xml_string(
-        f"<mujoco>{_option(config)}<worldbody>"
+        f"<mujoco>{run_mujoco.option(config, GRAVITY)}<worldbody>"
         f'<flexcomp name="rod" type="direct" dim="1" radius="{problem.RADIUS}" '
         f'mass="{mass * (edges + 1)!r}" point="{vertices}" '
         f'element="{" ".join(f"{i} {i + 1}" for i in range(edges))}">'

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from swing.measure import Point
-from swing.problem import Config
+from comparison.measure import Point
+from comparison.scene import Config
 
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-5)  # [m]
 

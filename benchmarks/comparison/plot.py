@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import matplotlib as mpl
 from der.plotting import PALETTE, style
 
-from swing.report import Run, Series, pareto_front
+from comparison.report import Run, Series, pareto_front
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -1,7 +1,7 @@
 // The cost of one Newton iteration (gradient, Hessian, factorisation, solution) of each model
 // against one bare factorisation and solution of the same matrix by Eigen's SimplicialLDLT with its
 // natural ordering, the pattern analysed before. Run it and compare lines of one run: machines
-// differ. Arguments: nodes; model (0: planar, 1: spatial_bend, 2: spatial).
+// differ. Arguments: nodes; model (0: planar, 1: spatial_bend, 2: spatial); 1 of a ring.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/SparseCholesky>
@@ -12,6 +12,7 @@
 
 #include "der/assembly/assembler.hpp"
 #include "der/building/builder.hpp"
+#include "der/core/constants.hpp"
 #include "der/model/state.hpp"
 #include "der/scenario/load.hpp"
 #include "der/scenario/scenario.hpp"
@@ -21,8 +22,8 @@
 namespace der {
 namespace {
 
-/// A cantilever whose shape waves a little, so that no angle is zero.
-scenario::Scene cantilever(int nodes, scenario::ModelChoice model) {
+/// A cantilever whose shape waves a little, so that no angle is zero, or a free ring that does.
+scenario::Scene cantilever(int nodes, scenario::ModelChoice model, bool closed) {
   const bool planar = model == scenario::ModelChoice::Planar;
   scenario::Scene scene;
   scene.model = model;
@@ -30,8 +31,13 @@ scenario::Scene cantilever(int nodes, scenario::ModelChoice model) {
   scenario::Rod rod;
   rod.name = "rod";
   for (int i = 0; i < nodes; ++i) {
-    const double s = static_cast<double>(i) / (nodes - 1);
+    const double s = static_cast<double>(i) / (closed ? nodes : nodes - 1);
     rod.points.push_back({s, 0.01 * std::sin(20.0 * s)});
+    if (closed) {
+      const double angle = 2.0 * kPi * s;
+      const double radius = (1.0 + 0.05 * std::sin(3.0 * angle)) / (2.0 * kPi);
+      rod.points.back() = {radius * std::cos(angle), radius * std::sin(angle)};
+    }
     if (!planar) rod.points.back().push_back(0.01 * std::sin(23.0 * s));
   }
   rod.cross_section = scenario::Circle{0.01};
@@ -44,15 +50,16 @@ scenario::Scene cantilever(int nodes, scenario::ModelChoice model) {
   if (model == scenario::ModelChoice::Spatial) {
     rod.natural_curvature = scenario::CurvaturePair{};
   }
+  rod.closed = closed;
   scene.rods.push_back(rod);
   scenario::Support support;
   support.rod = "rod";
   support.clamp = planar ? scenario::Clamp::Section : scenario::Clamp::Tangent;
   if (model == scenario::ModelChoice::Spatial) support.clamp = scenario::Clamp::Section;
-  scene.supports.push_back(support);
-  scene.loads.push_back({scenario::Gravity{planar ? scenario::Components{0.0, -9.81}
-                                                  : scenario::Components{0.0, -9.81, 0.0}},
-                         {}});
+  if (!closed) scene.supports.push_back(support);
+  scenario::Load& load = scene.loads.emplace_back();
+  load.what = scenario::Gravity{planar ? scenario::Components{0.0, -9.81}
+                                       : scenario::Components{0.0, -9.81, 0.0}};
   return scene;
 }
 
@@ -62,11 +69,11 @@ constexpr std::array kModels{scenario::ModelChoice::Planar, scenario::ModelChoic
 struct Problem {
   explicit Problem(const benchmark::State& state)
       : model(build_model(cantilever(static_cast<int>(state.range(0)),
-                                     kModels[static_cast<std::size_t>(state.range(1))]))),
+                                     kModels[static_cast<std::size_t>(state.range(1))],
+                                     state.range(2) != 0))),
         pattern(build_pattern(model)),
-        solver_memory(make_linear_solver("banded", pattern, Elimination::FromBothEnds).solver),
-        solver(*solver_memory),
-        assembler(model, solver.layout()),
+        solver(make_linear_solver("banded", pattern, Elimination::FromBothEnds).solver),
+        assembler(model, solver->layout()),
         here(configuration_of(model, initial_state(model))),
         stage(model),
         gradient(Vector::Zero(model.num_dofs())),
@@ -83,18 +90,17 @@ struct Problem {
 
   void newton_iteration() {
     assemble();
-    benchmark::DoNotOptimize(solver.factorize(values));
+    benchmark::DoNotOptimize(solver->factorize(values));
     for (Index i = 0; i < model.num_free(); ++i) {
       right_side[i] = -gradient[model.dofs.free()[static_cast<std::size_t>(i)]];
     }
-    solver.solve(right_side);
+    solver->solve(right_side);
     benchmark::DoNotOptimize(right_side.data());
   }
 
   Model model;
   Pattern pattern;
-  std::unique_ptr<LinearSolver> solver_memory;
-  LinearSolver& solver;
+  std::unique_ptr<LinearSolver> solver;
   Assembler assembler;
   Configuration here;
   Stage stage;
@@ -137,8 +143,8 @@ void banded_solve_alone(benchmark::State& state) {
   Problem problem(state);
   problem.assemble();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(problem.solver.factorize(problem.values));
-    problem.solver.solve(problem.right_side);
+    benchmark::DoNotOptimize(problem.solver->factorize(problem.values));
+    problem.solver->solve(problem.right_side);
     benchmark::DoNotOptimize(problem.right_side.data());
   }
   count_nodes(state);
@@ -154,7 +160,7 @@ void eigen_simplicial_ldlt(benchmark::State& state) {
     for (Index k = problem.pattern.outer[static_cast<std::size_t>(j)];
          k < problem.pattern.outer[static_cast<std::size_t>(j) + 1]; ++k) {
       const Index i = problem.pattern.inner[static_cast<std::size_t>(k)];
-      triplets.emplace_back(i, j, problem.values[problem.solver.layout().slot(i, j)]);
+      triplets.emplace_back(i, j, problem.values[problem.solver->layout().slot(i, j)]);
     }
   }
   Matrix matrix(size, size);
@@ -172,8 +178,10 @@ void eigen_simplicial_ldlt(benchmark::State& state) {
 }
 
 void sizes(benchmark::internal::Benchmark* benchmark) {
-  for (const int model : {0, 1, 2}) {
-    for (const int nodes : {51, 101, 401, 1601}) benchmark->Args({nodes, model});
+  for (const int ring : {0, 1}) {
+    for (const int model : {0, 1, 2}) {
+      for (const int nodes : {51, 101, 401, 1601}) benchmark->Args({nodes, model, ring});
+    }
   }
 }
 

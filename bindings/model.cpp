@@ -40,7 +40,7 @@ std::vector<SpringSupport> springs(const Scenario& scenario) {
       spring.rotational_stiffness = std::max(spring.rotational_stiffness, k);
     }
     for (const auto& [place, weight] : node_weights(rod, arc_length_of(support.at, rod))) {
-      spring.nodes.push_back(rod.nodes[to_size(place)]);
+      spring.nodes.push_back(rod.node(place));
       spring.weights.push_back(weight);
     }
   }
@@ -61,6 +61,23 @@ void bind_rod(py::module_& module) {
       .def_property_readonly(
           "arc_lengths", [](const RodLayout& rod) { return to_array(rod.arc_length); },
           "Rest arc length of each node [m].")
+      .def_readonly("closed", &RodLayout::closed, "Whether it is a ring.")
+      .def_property_readonly(
+          "line_nodes",
+          [](const RodLayout& rod) {
+            std::vector<Index> nodes = rod.nodes;
+            if (rod.closed) nodes.push_back(nodes.front());
+            return to_array(nodes);
+          },
+          "Row numbers of the nodes along its line: those of a ring come back to the first one.")
+      .def_property_readonly(
+          "line_arc_lengths",
+          [](const RodLayout& rod) {
+            std::vector<double> places = rod.arc_length;
+            if (rod.closed) places.push_back(rod.rest_length());
+            return to_array(places);
+          },
+          "Rest arc lengths [m] of these, one more than the rod has edges.")
       .def_property_readonly("length", &RodLayout::rest_length, "Rest length [m].")
       .def_property_readonly(
           "rest_turning_angles",

@@ -28,6 +28,8 @@ const char* kind_name(QuantityKind kind) {
       return "edge";
     case QuantityKind::Section:
       return "section";
+    case QuantityKind::Ring:
+      return "ring";
     case QuantityKind::Energy:
       return "energy";
   }

@@ -200,6 +200,11 @@ def helical_buckling() -> Figure:
     return figure
 
 
+def twisted_ring() -> Figure:
+    """Draw a ring that leaves its plane."""
+    return der.run(CONFIGS / "twisted_ring.yaml").plot()
+
+
 def tutorial_falling_rod() -> Figure:
     """Draw the rod with beads of the first tutorial."""
     return falling_rod.figure(der.run(falling_rod.SCENE))
@@ -373,6 +378,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         helix_spring,
         spun_strip,
         helical_buckling,
+        twisted_ring,
         tutorial_falling_rod,
         tutorial_beam_study,
         tutorial_control,

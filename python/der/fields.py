@@ -27,7 +27,7 @@ def fields_of(model: Model) -> dict[str, Quantity]:
         quantity
         for quantity in quantities()
         if quantity.is_available(model)
-        and quantity.kind not in ("turn", "energy")
+        and quantity.kind not in ("turn", "ring", "energy")
         and not quantity.is_component
     ]
     along_rods.sort(key=is_motion)
@@ -48,9 +48,10 @@ class RodFields:
     rod
         The rod.
     positions, velocities
-        Positions [m] and velocities [m/s] of its nodes, shape (frames, nodes of the rod, dim).
+        Positions [m] and velocities [m/s] of the nodes of its line (`Rod.line_nodes`), shape
+        (frames, nodes, dim): a ring comes back to its first node.
     at_nodes
-        Each quantity of `fields_of` by name, in its SI unit, shape (frames, nodes of the rod), as
+        Each quantity of `fields_of` by name, in its SI unit, shape (frames, nodes), as
         its probes have it; where it jumps at a node, the value after it. Without bending stiffness
         curvature and moment are known at inner nodes and carried on linearly to the ends; 0 on such
         a rod of two nodes. Signed in the plane, positive counter-clockwise; in space the total one.
@@ -72,20 +73,25 @@ def rod_fields(result: RunData) -> list[RodFields]:
 
 
 def _fields_along(rod: Rod, result: RunData) -> RodFields:
-    middles = 0.5 * (rod.arc_lengths[1:] + rod.arc_lengths[:-1])
+    middles = 0.5 * (rod.line_arc_lengths[1:] + rod.line_arc_lengths[:-1])
     at_nodes, at_edges = {}, {}
     for name, quantity in fields_of(result.model).items():
         known, values = result.along(rod.name, name)
-        at_nodes[name] = _carry(values, known, rod.arc_lengths)
+        at_nodes[name] = _carry(values, known, rod.line_arc_lengths)
         if quantity.kind == "edge":
             at_edges[name] = _carry(values, known, middles)
     return RodFields(
         rod=rod,
-        positions=result.positions[:, rod.nodes],
-        velocities=result.velocities[:, rod.nodes],
+        positions=result.positions[:, rod.line_nodes],
+        velocities=result.velocities[:, rod.line_nodes],
         at_nodes=at_nodes,
         at_edges=at_edges,
     )
+
+
+def along_line(values: Array, rod: Rod) -> Array:
+    """Return values of the nodes of a rod at the nodes of its line: those of a ring come back."""
+    return np.resize(values, len(rod.line_nodes))
 
 
 def _carry(values: Array, known: Array, wanted: Array) -> Array:

@@ -206,9 +206,9 @@ def _turned_with(result: RunData, frame: int, name: str, at: float, value: Array
 
 def _tangent(rod: Rod, positions: Array, at: float) -> Array:
     """Return the direction of the edges beside an arc length, shape (dim,)."""
-    edges = np.diff(positions[rod.nodes], axis=0)
+    edges = np.diff(positions[rod.line_nodes], axis=0)
     edges /= np.linalg.norm(edges, axis=1)[:, np.newaxis]
-    middles = 0.5 * (rod.arc_lengths[1:] + rod.arc_lengths[:-1])
+    middles = 0.5 * (rod.line_arc_lengths[1:] + rod.line_arc_lengths[:-1])
     if len(edges) == 1:
         return np.asarray(edges[0])
     first = max(0, min(int(np.searchsorted(middles, at)) - 1, len(edges) - 2))
@@ -238,8 +238,8 @@ def value_at(series: Any, time: float) -> Array:
 
 def place_on(rod: Rod, positions: Array, at: float) -> Array:
     """Return the point [m], shape (dim,), at an arc length of a rod in the shape `positions`."""
-    line = positions[rod.nodes]
-    return np.array([np.interp(at, rod.arc_lengths, column) for column in line.T])
+    line = positions[rod.line_nodes]
+    return np.array([np.interp(at, rod.line_arc_lengths, column) for column in line.T])
 
 
 def ground_direction(part: FoundationPart, rod: Rod, positions: Array) -> Array:

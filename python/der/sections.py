@@ -65,7 +65,7 @@ def sections_of(result: RunData) -> list[Section | None]:
     return [section_of(rod["cross_section"]) for rod in result.scenario.to_dict()["rods"]]
 
 
-def at_nodes(edge_vectors: Array) -> Array:
+def at_nodes(edge_vectors: Array, closed: bool = False) -> Array:
     """Return unit vectors at the nodes of a rod from those of its edges.
 
     At an inner node it is the mean of the two edges there; two opposite vectors have no mean, and
@@ -75,6 +75,9 @@ def at_nodes(edge_vectors: Array) -> Array:
     ----------
     edge_vectors
         Shape (..., edges, dim).
+    closed
+        Whether the last edge leads back to the first. Both ends then have the mean of these two,
+        unless they are more than a right angle apart, as directors are that were glued turned.
 
     Returns
     -------
@@ -82,6 +85,9 @@ def at_nodes(edge_vectors: Array) -> Array:
         Shape (..., edges + 1, dim).
     """
     first, last = edge_vectors[..., :1, :], edge_vectors[..., -1:, :]
+    if closed:
+        meets = np.sum(first * last, axis=-1, keepdims=True) > 0.0
+        first, last = (np.where(meets, first + last, own) for own in (first, last))
     inner = edge_vectors[..., :-1, :] + edge_vectors[..., 1:, :]
     sums = np.concatenate([first, inner, last], axis=-2)
     sizes = np.linalg.norm(sums, axis=-1, keepdims=True)
@@ -113,8 +119,8 @@ def directors_along(result: RunData, edge_directors: Array | None = None) -> lis
     found: list[Array | None] = []
     first = 0  # edge of the rod
     for rod in result.rods:
-        edges = len(rod.nodes) - 1
-        found.append(at_nodes(along[:, first : first + edges]))
+        edges = len(rod.line_nodes) - 1
+        found.append(at_nodes(along[:, first : first + edges], rod.closed))
         first += edges
     return found
 
@@ -123,6 +129,11 @@ def _lies_in_the_plane(cross_section: Mapping[str, Any]) -> bool:
     """Return whether a planar scene has the width of a section in its plane."""
     director = cross_section.get("director")
     return director is not None and float(np.hypot(*director[:2])) > 0.0
+
+
+def _is_closed(line: Array) -> bool:
+    """Return whether a line comes back to its first node."""
+    return bool(np.array_equal(line[0], line[-1]))
 
 
 def _edge_directions(line: Array) -> Array:
@@ -134,9 +145,11 @@ def _edge_directions(line: Array) -> Array:
 def tangents_of(line: Array) -> Array:
     """Return unit vectors along a line at its nodes: at inner ones, along the bisector.
 
+    A line that ends where it begins is closed.
+
     `line` has the shape (nodes, dim), and so has the result.
     """
-    return at_nodes(_edge_directions(line))
+    return at_nodes(_edge_directions(line), _is_closed(line))
 
 
 def section_axes(line: Array, directors: Array | None) -> tuple[Array, Array]:
@@ -186,7 +199,8 @@ def swept(line: Array, directors: Array | None, outline: Array) -> Array:
     axes = np.stack(section_axes(line, directors), axis=1)  # nodes, 2, 3
     offsets = outline @ axes
     edges = _edge_directions(line)
-    before, after = np.vstack([edges[:1], edges]), np.vstack([edges, edges[-1:]])
+    outer = (edges[-1:], edges[:1]) if _is_closed(line) else (edges[:1], edges[-1:])
+    before, after = np.vstack([outer[0], edges]), np.vstack([edges, outer[1]])
     turn = after - before
     turn = turn / np.maximum(np.linalg.norm(turn, axis=1, keepdims=True), 1e-12)
     cosine = np.sum(tangents_of(line) * after, axis=1)

@@ -16,8 +16,9 @@ from der.accuracy.static_readings import static_readings
 from der.accuracy.time_levels import find_stepper, fixed_step, save_every_step
 
 CONFIGS = sorted((Path(__file__).resolve().parents[2] / "configs").glob("*.yaml"))
-#: A reference run of these would take minutes; other tests compare them with exact solutions.
-LONG = {"helical_buckling"}
+#: A reference run of these would take minutes, in the ring for the writhe of so many nodes at each
+#: step; other tests compare them with exact solutions.
+LONG = {"helical_buckling", "twisted_ring"}
 MOST_STEPS = {"implicit": 200, "explicit": 100_000}
 
 

@@ -44,12 +44,18 @@ bool choose_model(const scenario::Scene& scene, Model& model) {
 void place_nodes(const scenario::Scene& scene, bool with_sections, Model& model) {
   std::vector<Index> edge_starts;
   for (const auto& rod : scene.rods) {
-    for (std::size_t i = 1; with_sections && i < rod.points.size(); ++i) {
-      edge_starts.push_back(model.num_nodes + static_cast<Index>(i) - 1);
+    for (Index i = 0; with_sections && i < rod.num_edges(); ++i) {
+      edge_starts.push_back(model.num_nodes + i);
     }
     model.num_nodes += static_cast<Index>(rod.points.size());
   }
   model.dofs = DofMap(model.dimension, model.num_nodes, edge_starts);
+  Index first_node = 0;
+  for (const auto& rod : scene.rods) {
+    const Index next = first_node + static_cast<Index>(rod.points.size());
+    if (rod.closed) model.dofs.close(first_node, next - 1);
+    first_node = next;
+  }
   model.drawn_frames.setZero(FrameBlock::kSize * static_cast<Index>(edge_starts.size()));
   model.tables = TimeTables(static_cast<Index>(model.drawn_frames.size()));
   const Index dofs = model.num_dofs();
@@ -90,6 +96,7 @@ RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, In
                   Model& model) {
   RodLayout layout;
   layout.name = rod.name;
+  layout.closed = rod.closed;
   layout.curvature = rod.curvature;
   layout.EA = section.EA;
   layout.EI = section.EI;
@@ -100,7 +107,7 @@ RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, In
   layout.first_edge = static_cast<Index>(model.edges.size());
   layout.draw_radius = section.draw_radius;
 
-  layout.arc_length.push_back(0.0);
+  double s = 0.0;
   for (std::size_t i = 0; i < rod.points.size(); ++i) {
     const Index node = first_node + static_cast<Index>(i);
     layout.nodes.push_back(node);
@@ -110,9 +117,15 @@ RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, In
         model.initial_velocities[model.dof(node, c)] = rod.initial_velocity[i][to_size(c)];
       }
     }
-    if (i == 0) continue;
-    layout.edge_length.push_back((position(model, node) - position(model, node - 1)).norm());
-    layout.arc_length.push_back(layout.arc_length.back() + layout.edge_length.back());
+    if (i > 0) {
+      layout.edge_length.push_back((position(model, node) - position(model, node - 1)).norm());
+      s += layout.edge_length.back();
+    }
+    layout.arc_length.push_back(s);
+  }
+  if (rod.closed) {
+    layout.edge_length.push_back(
+        (position(model, layout.nodes.front()) - position(model, layout.nodes.back())).norm());
   }
   for (Index edge = 0; edge < layout.num_edges(); ++edge) {
     model.edges.push_back(layout.edge(edge, model));
@@ -181,7 +194,7 @@ void couple_masses(const RodLayout& rod, Model& model) {
       const double mass = rod.mass_per_length * rod.edge_length[to_size(edge)] / 6.0;
       for (int c = 0; c < model.dimension; ++c) {
         const Index a = model.dof(rod.nodes[to_size(edge)], c);
-        const Index b = model.dof(rod.nodes[to_size(edge) + 1], c);
+        const Index b = model.dof(rod.node(edge + 1), c);
         if (!model.dofs.is_free(a) || !model.dofs.is_free(b)) continue;
         model.mass.coupling.push_back({a, b, mass});
       }

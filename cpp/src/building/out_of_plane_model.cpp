@@ -9,6 +9,7 @@
 
 #include "der/building/builder.hpp"
 #include "der/core/index.hpp"
+#include "der/core/nearest_node.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/spatial_bend.hpp"
@@ -38,10 +39,10 @@ std::vector<Place> places_of(const scenario::Support& support, const Model& plan
     return places;
   }
   for (const double s : arc_lengths_of(support.at, *rod)) {
-    const auto distance = [s](double a, double b) { return std::abs(a - s) < std::abs(b - s); };
-    const auto& lengths = rod->arc_length;
-    const auto nearest = std::min_element(lengths.begin(), lengths.end(), distance);
-    places.push_back({number, static_cast<Index>(nearest - lengths.begin())});
+    std::vector<double> places_along = rod->arc_length;
+    if (rod->closed) places_along.push_back(rod->rest_length());
+    const int nearest = nearest_node(places_along, s);
+    places.push_back({number, rod->position(nearest)});
   }
   return places;
 }
@@ -125,8 +126,8 @@ void add_fork(const RodLayout& rod, Index place, OutOfPlaneModel& twin) {
   const Index first_dof = model.dof(rod.nodes[to_size(place)], 0);
   divide_joint<SpatialBend<Curvature>>(first_dof, *model.elements);
   divide_joint<CornerBend>(first_dof, *model.elements);
-  for (const Index edge : {place - 1, place}) {
-    if (edge < 0 || edge >= rod.num_edges()) continue;
+  for (const Index edge : {rod.edge_before(place), rod.edge_after(place)}) {
+    if (edge < 0) continue;
     const Index number = rod.first_edge + edge;
     const FrameBlock block = FrameBlock::of(number);
     const SpatialEdge& own = model.framed_edges[to_size(number)];

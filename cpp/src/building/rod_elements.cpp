@@ -44,7 +44,8 @@ double rest_angle_between(const RodLayout& rod, Index place, const EffectiveEdge
                           const EffectiveEdge& after, const Model& model) {
   if (rod.natural_curvature.empty())
     return angle_between(drawn(before, model), drawn(after, model));
-  double angle = rod.natural_curvature[to_size(place)] * bend_length(rod, place);
+  double angle = rod.natural_curvature[to_size(rod.position(place))] * bend_length(rod, place);
+  if (rod.closed) return angle;
   // A free end lies on the curve, the nodes next to it l^2 kappa/12 beside it (supports/clamp.hpp).
   const auto end = [&](Index end_place, Index edge) {
     if (rod.clamp_at(end_place) != nullptr) return;
@@ -57,12 +58,13 @@ double rest_angle_between(const RodLayout& rod, Index place, const EffectiveEdge
 
 template <class Curvature>
 void add_bend(RodLayout& rod, Model& model) {
-  for (Index i = 1; i < rod.num_edges(); ++i) {
-    if (rod.clamp_at(i) != nullptr) continue;
+  // That between the last edge of a ring and its first one stands last.
+  for (Index i = 1; i <= rod.num_edges(); ++i) {
+    if (!rod.is_inner(i) || rod.clamp_at(i) != nullptr) continue;
     const EffectiveEdge before = effective_edge(rod, i - 1, model);
     const EffectiveEdge after = effective_edge(rod, i, model);
     const double rest = rest_angle_between(rod, i, before, after, model);
-    rod.rest_turning_angle[to_size(i)] = rest;
+    rod.rest_turning_angle[to_size(rod.position(i))] = rest;
     add_element<PlanarBend<Curvature>>({before.dofs[0], before.dofs[1], after.dofs[0],
                                         after.dofs[1], after.dofs[2], after.dofs[3]},
                                        {rod.EI / bend_length(rod, i), Curvature::of(rest).kappa},

@@ -1,6 +1,5 @@
 #include <array>
 #include <cmath>
-#include <tuple>
 #include <type_traits>
 
 #include "building/corner.hpp"
@@ -50,25 +49,26 @@ bool resists_everything(const Joint& joint) {
 
 RodJoint joint_at_node(const RodLayout& rod, Index place) {
   RodJoint joint;
-  joint.before = place - 1;
-  joint.after = place;
-  joint.bend_place = rod.arc_length[to_size(place)];
+  joint.before = rod.edge_before(place);
+  joint.after = rod.edge_after(place);
+  joint.bend_place = rod.arc_length_at(place);
   joint.bend_length = bend_length(rod, place);
   joint.twist_place = 0.5 * (rod.edge_middle(place - 1) + rod.edge_middle(place));
   joint.twist_length = rod.voronoi_length(place);
   return joint;
 }
 
-RodJoint joint_at_clamp(const RodLayout& rod, Index clamp, Index edge) {
-  const Index place = rod.clamps[to_size(clamp)].place;
+/// The cell between a clamp at a place and the edge that leaves it, or arrives there.
+RodJoint joint_at_clamp(const RodLayout& rod, Index clamp, Index place, bool leaves) {
+  const Index edge = leaves ? rod.edge_after(place) : rod.edge_before(place);
   const double length = rod.edge_length[to_size(edge)];
-  const double ahead = edge == place ? length : -length;
+  const double ahead = leaves ? length : -length;
   RodJoint joint;
-  (edge == place ? joint.after : joint.before) = edge;
+  (leaves ? joint.after : joint.before) = edge;
   joint.clamp = clamp;
-  joint.bend_place = rod.arc_length[to_size(place)] + clamp_pivot_share() * ahead;
+  joint.bend_place = rod.arc_length_at(place) + clamp_pivot_share() * ahead;
   joint.bend_length = clamp_cell_length(rod, edge);
-  joint.twist_place = rod.arc_length[to_size(place)] + 0.25 * ahead;
+  joint.twist_place = rod.arc_length_at(place) + 0.25 * ahead;
   joint.twist_length = 0.5 * length;
   return joint;
 }
@@ -78,13 +78,16 @@ std::vector<RodJoint> joints_of(const RodLayout& rod) {
   std::vector<RodJoint> joints;
   for (Index place = 0; place <= rod.num_edges(); ++place) {
     const Clamp* clamp = rod.clamp_at(place);
+    // The two sides of a place; those of the first one of a ring are at its two ends.
+    const bool arrives = place > 0;
+    const bool leaves = place < rod.num_edges();
     if (clamp == nullptr) {
-      if (place > 0 && place < rod.num_edges()) joints.push_back(joint_at_node(rod, place));
+      if (arrives && rod.is_inner(place)) joints.push_back(joint_at_node(rod, place));
       continue;
     }
     const auto number = static_cast<Index>(clamp - rod.clamps.data());
-    if (place > 0) joints.push_back(joint_at_clamp(rod, number, place - 1));
-    if (place < rod.num_edges()) joints.push_back(joint_at_clamp(rod, number, place));
+    if (arrives) joints.push_back(joint_at_clamp(rod, number, place, false));
+    if (leaves) joints.push_back(joint_at_clamp(rod, number, place, true));
   }
   return joints;
 }
@@ -93,7 +96,7 @@ std::vector<RodJoint> joints_of(const RodLayout& rod) {
 Vec2 natural_curvature_at(const RodLayout& rod, const RodJoint& joint) {
   if (joint.clamp < 0) return rod.natural_curvatures[to_size(joint.after)];
   const Index clamped = rod.clamps[to_size(joint.clamp)].place;
-  const Index next = joint.after >= 0 ? joint.after + 1 : joint.before;
+  const Index next = joint.after >= 0 ? rod.position(joint.after + 1) : joint.before;
   return (1.0 - clamp_pivot_share()) * rod.natural_curvatures[to_size(clamped)] +
          clamp_pivot_share() * rod.natural_curvatures[to_size(next)];
 }
@@ -102,7 +105,7 @@ Vec2 natural_curvature_at(const RodLayout& rod, const RodJoint& joint) {
 /// by how much the natural turning angle there is larger.
 Vec2 free_end_turn(const RodLayout& rod, const RodJoint& joint) {
   Vec2 turn = Vec2::Zero();
-  if (joint.clamp >= 0) return turn;
+  if (joint.clamp >= 0 || rod.closed) return turn;
   const auto add = [&](Index end, Index edge) {
     if (rod.clamp_at(end) != nullptr) return;
     turn += rod.edge_length[to_size(edge)] / 12.0 * rod.natural_curvatures[to_size(end)];
@@ -115,15 +118,12 @@ Vec2 free_end_turn(const RodLayout& rod, const RodJoint& joint) {
 /// Natural twist at the middle of the length over which a joint twists, its mean there, where the
 /// scene gives it [rad/m].
 double natural_twist_at(const RodLayout& rod, const RodJoint& joint) {
-  const auto edge = [&] {
-    if (joint.before < 0) return joint.after;
-    if (joint.after < 0) return joint.before;
-    return joint.twist_place < rod.arc_length[to_size(joint.after)] ? joint.before : joint.after;
-  }();
+  const Index place = joint.place();
+  const Index edge = joint.twist_place < rod.arc_length_at(place) ? place - 1 : place;
   const double share =
-      (joint.twist_place - rod.arc_length[to_size(edge)]) / rod.edge_length[to_size(edge)];
-  return (1.0 - share) * rod.natural_twist[to_size(edge)] +
-         share * rod.natural_twist[to_size(edge + 1)];
+      (joint.twist_place - rod.arc_length_at(edge)) / rod.edge_length[to_size(rod.position(edge))];
+  return (1.0 - share) * rod.natural_twist[to_size(rod.position(edge))] +
+         share * rod.natural_twist[to_size(rod.position(edge + 1))];
 }
 
 void set_rest(const RodLayout& rod, const JointStrain& drawn, RodJoint& joint) {
@@ -138,6 +138,12 @@ void set_rest(const RodLayout& rod, const JointStrain& drawn, RodJoint& joint) {
   if (!rod.natural_twist.empty()) {
     joint.rest.twist = natural_twist_at(rod, joint) * joint.twist_length;
   }
+}
+
+/// Angle [rad] by which the section `after` was turned when it was glued to the one `before`, in
+/// (-pi, pi]: what is between them besides their `twist`.
+double glued_angle(const SectionFrame& before, const SectionFrame& after, double twist) {
+  return nearest_turn(twist_between(before, after) - twist, 0.0);
 }
 
 /// A joint between two frames that are drawn with `twist` between them.
@@ -173,6 +179,12 @@ class SectionElements {
     return model_.initial_positions[this->edge(edge).theta];
   }
 
+  /// Whether the two ends of a ring meet at a joint.
+  [[nodiscard]] bool closes_ring(const RodJoint& joint) const {
+    const bool at_last_edge = rod_.closed && joint.before == rod_.num_edges() - 1;
+    return at_last_edge && (joint.clamp < 0 || rod_.clamps[to_size(joint.clamp)].place == 0);
+  }
+
   /// Enters a joint with its reference twist, which is what the drawn frames have between them.
   void follow(const FramedJoint& joint, double reference) {
     model_.framed_joints.push_back(joint);
@@ -180,10 +192,17 @@ class SectionElements {
   }
 
   void add_joint(RodJoint& joint) {
-    const double turned = theta(joint.after) - theta(joint.before);
     const SectionFrame a = frame(joint.before);
-    const SectionFrame b = frame(joint.after);
-    const auto drawn = drawn_joint<Curvature>(a, b, turned);
+    SectionFrame b = frame(joint.after);
+    double turned = theta(joint.after) - theta(joint.before);
+    double drawn_twist = turned;
+    if (closes_ring(joint)) {
+      drawn_twist = joint.twist_length * rod_.initial_twist;
+      joint.glued = glued_angle(a, b, drawn_twist);
+      b = b.turned(-joint.glued);
+      turned -= joint.glued;
+    }
+    const auto drawn = drawn_joint<Curvature>(a, b, drawn_twist);
     set_rest(rod_, drawn.strain(), joint);
     Joint stiffness = stiffness_of(rod_, joint, true);
     if constexpr (std::is_same_v<Curvature, AngleCurvature>) {
@@ -205,7 +224,8 @@ class SectionElements {
     add_element<Kernel>(
         {before.start, before.start + 1, before.start + 2, after.start, after.start + 1,
          after.start + 2, after.end, after.end + 1, after.end + 2, before.theta, after.theta},
-        {stiffness, FrameBlock::of(number(joint.before)), FrameBlock::of(number(joint.after))},
+        {stiffness, FrameBlock::of(number(joint.before)), FrameBlock::of(number(joint.after)),
+         joint.glued},
         before.first, after.last, model_);
   }
 
@@ -216,19 +236,25 @@ class SectionElements {
     const SpatialEdge& own = edge(beside);
     const double turned = leaves ? theta(beside) : -theta(beside);
     const SectionFrame frame_of_edge = frame(beside);
-    const SectionFrame& held = clamp.held.drawn;
+    HeldFrame held_frame = clamp.held;
+    SectionFrame& held = held_frame.drawn;
     const double beyond = joint.twist_length * rod_.initial_twist;
-    const auto& [a, b] = leaves ? std::tie(held, frame_of_edge) : std::tie(frame_of_edge, held);
+    if (closes_ring(joint)) {
+      joint.glued = glued_angle(frame_of_edge, held, beyond);
+      held = held.turned(-joint.glued);
+    }
+    const SectionFrame& a = leaves ? held : frame_of_edge;
+    const SectionFrame& b = leaves ? frame_of_edge : held;
     const JointStrain drawn = drawn_joint<Curvature>(a, b, beyond).strain();
     set_rest(rod_, drawn, joint);
     elements_of<FromSpatialPivot<SpatialClamp<Curvature>>>(*model_.elements)
         .add(
             {own.start, own.start + 1, own.start + 2, own.end, own.end + 1, own.end + 2, own.theta},
-            {{stiffness_of(rod_, joint, clamp.holds_section), clamp.held,
+            {{stiffness_of(rod_, joint, clamp.holds_section), held_frame,
               FrameBlock::of(number(beside)), leaves ? 1.0 : -1.0},
              own.first,
              own.last});
-    follow({leaves ? -1 : number(beside), leaves ? number(beside) : -1, clamp.held},
+    follow({leaves ? -1 : number(beside), leaves ? number(beside) : -1, held_frame},
            drawn.twist - turned);
   }
 

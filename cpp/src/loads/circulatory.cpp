@@ -25,7 +25,7 @@ void add_point(double s, const RodLayout& rod, const Model& model, CirculatoryLo
   for (int c = 0; c < model.dimension; ++c) {
     auto& component = load.coordinates.emplace_back();
     for (const auto& [place, weight] : node_weights(rod, s)) {
-      component.push_back({model.dof(rod.nodes[to_size(place)], c), weight});
+      component.push_back({model.dof(rod.node(place), c), weight});
     }
   }
 }
@@ -59,8 +59,8 @@ Kind with_edges(const SectionPlace& place, const RodLayout& rod, const Model& mo
                 CirculatoryLoad& load, const Make& make) {
   Kind kind;
   for (std::size_t i = 0; i < place.direction.size(); ++i) {
-    const FramedEdge framed =
-        framed_edge(rod.first_edge + place.first_edge + static_cast<Index>(i), model);
+    const Index edge = rod.position(place.first_edge + static_cast<Index>(i));
+    const FramedEdge framed = framed_edge(rod.first_edge + edge, model);
     kind.edges.push_back(make(framed, i));
     add_vector(framed.edge.start, framed.edge.end, model, load);
     load.coordinates.push_back({{framed.edge.theta, 1.0}});

@@ -1,4 +1,3 @@
-#include "der/core/index.hpp"
 #include "der/loads/dead_force.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/location.hpp"
@@ -12,8 +11,8 @@ void add_load(const scenario::DistributedForce& load, const scenario::Scene& /*s
   const DeadForce force(load.force, model);
   for (const EdgePart& part : edge_parts(rod, load.from, load.to)) {
     const double at_last = length_at_last_end(part, rod);
-    force.act_on(rod.nodes[to_size(part.edge)], (part.to - part.from) - at_last, model);
-    force.act_on(rod.nodes[to_size(part.edge + 1)], at_last, model);
+    force.act_on(rod.node(part.edge), (part.to - part.from) - at_last, model);
+    force.act_on(rod.node(part.edge + 1), at_last, model);
   }
   rod.distributed_places.push_back({load.from, load.to, force.as_controls(model)});
 }

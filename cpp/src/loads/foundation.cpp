@@ -15,8 +15,8 @@ namespace {
 /// Integrals over a part of an edge of the products of its shape functions [m]. The functions are
 /// linear: Simpson's rule has no error.
 Eigen::Matrix2d shape_products(const EdgePart& part, const RodLayout& rod) {
-  const double s0 = rod.arc_length[to_size(part.edge)];
-  const double s1 = rod.arc_length[to_size(part.edge + 1)];
+  const double s0 = rod.arc_length_at(part.edge);
+  const double s1 = rod.arc_length_at(part.edge + 1);
   const auto at = [&](double s) {
     const double share = (s - s0) / (s1 - s0);
     const Vec2 shapes{1.0 - share, share};
@@ -32,8 +32,8 @@ void add_elements(const scenario::Foundation& load, const RodLayout& rod, Model&
   for (const EdgePart& part : edge_parts(rod, load.from, load.to)) {
     std::array<Index, Kernel::kDofs> dofs{};
     for (Index c = 0; c < Dim; ++c) {
-      dofs[to_size(c)] = model.dof(rod.nodes[to_size(part.edge)], c);
-      dofs[to_size(Dim + c)] = model.dof(rod.nodes[to_size(part.edge + 1)], c);
+      dofs[to_size(c)] = model.dof(rod.node(part.edge), c);
+      dofs[to_size(Dim + c)] = model.dof(rod.node(part.edge + 1), c);
     }
     typename Kernel::Constants constants;
     constants.stiffness = Eigen::Map<const Eigen::Matrix<double, Dim, 1>>(load.stiffness.data());

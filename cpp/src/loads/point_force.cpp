@@ -22,7 +22,7 @@ void add_load(const scenario::PointForce& load, const scenario::Scene& /*scene*/
   const double s = arc_length_of(load.at, rod);
   const std::vector<Weighted> nodes = node_weights(rod, s);
   for (const auto& [place, weight] : nodes) {
-    force.act_on(rod.nodes[static_cast<std::size_t>(place)], weight, model);
+    force.act_on(rod.node(place), weight, model);
   }
   ForcePlace place;
   place.arc_length = s;

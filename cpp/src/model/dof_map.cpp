@@ -26,6 +26,21 @@ Index DofMap::node_of(Index dof) const {
   return what.kind == DofKind::Position ? what.owner : starts_[to_size(what.owner)];
 }
 
+void DofMap::close(Index first_node, Index last_node) {
+  rings_.push_back({first_node, last_node});
+  number_free();
+}
+
+/// Its node; that of the first node of a ring is the last one.
+Index DofMap::eliminated_with(Index dof) const {
+  const Index node = node_of(dof);
+  if (dof >= num_positions()) return node;
+  for (const Ring& ring : rings_) {
+    if (node == ring.first_node) return ring.last_node;
+  }
+  return node;
+}
+
 void DofMap::hold(const std::vector<Index>& held) {
   for (const Index dof : held) free_index_[to_size(dof)] = -1;
   number_free();
@@ -40,9 +55,11 @@ void DofMap::number_free() {
     counts_[dof] = kCounts;
   }
   // Positions of a node come before the angles of edges that begin there, as they do in storage.
-  std::sort(free_.begin(), free_.end(), [this](Index a, Index b) {
-    return std::make_tuple(node_of(a), a) < std::make_tuple(node_of(b), b);
-  });
+  const auto rank = [this](Index dof) {
+    const Index node = eliminated_with(dof);
+    return std::make_tuple(node, node != node_of(dof), dof);
+  };
+  std::sort(free_.begin(), free_.end(), [&](Index a, Index b) { return rank(a) < rank(b); });
   for (Index i = 0; i < num_free(); ++i) free_index_[to_size(free_[to_size(i)])] = i;
 }
 

@@ -16,38 +16,46 @@ namespace {
 constexpr double kEndShare = 1.0 / 12.0;
 
 bool is_node(const RodLayout& rod, Index i, double s) {
-  return std::abs(rod.arc_length[to_size(i)] - s) <= rod.same_place();
+  return std::abs(rod.arc_length_at(i) - s) <= rod.same_place();
 }
 
 }  // namespace
 
+std::vector<Index> turns_of(const RodLayout& rod) {
+  if (!rod.closed) return {0};
+  return {-1, 0, 1};
+}
+
 std::vector<EdgePart> edge_parts(const RodLayout& rod, double from, double to) {
   std::vector<EdgePart> parts;
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-    const double a = std::max(from, rod.arc_length[to_size(edge)]);
-    const double b = std::min(to, rod.arc_length[to_size(edge + 1)]);
+    const double a = std::max(from, rod.arc_length_at(edge));
+    const double b = std::min(to, rod.arc_length_at(edge + 1));
     if (a < b) parts.push_back({edge, a, b});
   }
   return parts;
 }
 
 bool is_cut(const EdgePart& part, const RodLayout& rod) {
-  const double s0 = rod.arc_length[to_size(part.edge)];
-  const double s1 = rod.arc_length[to_size(part.edge + 1)];
+  const double s0 = rod.arc_length_at(part.edge);
+  const double s1 = rod.arc_length_at(part.edge + 1);
   return part.to - part.from < (s1 - s0) - rod.same_place();
 }
 
 double length_at_last_end(const EdgePart& part, const RodLayout& rod) {
-  const double s0 = rod.arc_length[to_size(part.edge)];
-  const double s1 = rod.arc_length[to_size(part.edge + 1)];
+  const double s0 = rod.arc_length_at(part.edge);
+  const double s1 = rod.arc_length_at(part.edge + 1);
   return (part.to - part.from) * (0.5 * (part.from + part.to) - s0) / (s1 - s0);
 }
 
 double beyond_outer_middle(const RodLayout& rod, double s) {
+  if (rod.closed) return 0.0;
   return std::max({0.0, rod.edge_middle(0) - s, s - rod.edge_middle(rod.num_edges() - 1)});
 }
 
-double arc_length_of(const scenario::Location& location, const RodLayout& rod) {
+namespace {
+
+double given_arc_length(const scenario::Location& location, const RodLayout& rod) {
   using Kind = scenario::Location::Kind;
   switch (location.kind) {
     case Kind::Start:
@@ -66,6 +74,14 @@ double arc_length_of(const scenario::Location& location, const RodLayout& rod) {
       break;
   }
   throw Error("model_error", "rod '" + rod.name + "': 'all' does not name one place");
+}
+
+}  // namespace
+
+double arc_length_of(const scenario::Location& location, const RodLayout& rod) {
+  const double s = given_arc_length(location, rod);
+  const bool at_end = rod.closed && s >= rod.rest_length() - rod.same_place();
+  return at_end ? 0.0 : s;
 }
 
 std::vector<double> arc_lengths_of(const scenario::Location& location, const RodLayout& rod) {
@@ -100,12 +116,13 @@ std::vector<Weighted> node_weights(const RodLayout& rod, double s) {
   const auto count = static_cast<Index>(arc.size());
   const auto right = static_cast<Index>(std::upper_bound(arc.begin(), arc.end(), s) - arc.begin());
   const Index stencil = std::min<Index>(4, count);
-  const Index first = std::clamp<Index>(right - 2, 0, count - stencil);
+  const Index first = rod.closed ? right - 2 : std::clamp<Index>(right - 2, 0, count - stencil);
   std::vector<Weighted> weights;
   for (Index i = first; i < first + stencil; ++i) {
     double weight = 1.0;
     for (Index j = first; j < first + stencil; ++j) {
-      if (j != i) weight *= (s - arc[to_size(j)]) / (arc[to_size(i)] - arc[to_size(j)]);
+      if (j == i) continue;
+      weight *= (s - rod.arc_length_at(j)) / (rod.arc_length_at(i) - rod.arc_length_at(j));
     }
     weights.push_back({i, weight});
   }
@@ -119,10 +136,10 @@ std::vector<Weighted> edge_weights(const RodLayout& rod, double s) {
     const double share = kEndShare * distance / (0.5 * rod.edge_length[to_size(last)]);
     return {{last, 1.0 + share}, {before, -share}};
   };
-  if (s <= rod.edge_middle(0)) return beyond(rod.edge_middle(0) - s, 0, 1);
-  if (s >= rod.edge_middle(edges - 1))
+  if (!rod.closed && s <= rod.edge_middle(0)) return beyond(rod.edge_middle(0) - s, 0, 1);
+  if (!rod.closed && s >= rod.edge_middle(edges - 1))
     return beyond(s - rod.edge_middle(edges - 1), edges - 1, edges - 2);
-  Index right = 1;
+  Index right = rod.closed ? 0 : 1;
   while (rod.edge_middle(right) < s) ++right;
   const double share =
       (s - rod.edge_middle(right - 1)) / (rod.edge_middle(right) - rod.edge_middle(right - 1));

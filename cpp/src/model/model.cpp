@@ -7,35 +7,49 @@
 #include <utility>
 
 #include "der/core/error.hpp"
+#include "der/core/index.hpp"
 
 namespace der {
 
+Index RodLayout::position(Index place) const {
+  if (!closed) return place;
+  const auto count = static_cast<Index>(nodes.size());
+  const Index beyond = place % count;
+  return beyond < 0 ? beyond + count : beyond;
+}
+
+double RodLayout::arc_length_at(Index place) const {
+  const Index own = position(place);
+  const double s = arc_length[to_size(own)];
+  if (own == place) return s;
+  const Index turns = (place - own) / static_cast<Index>(nodes.size());
+  return s + turns * rest_length();
+}
+
 double RodLayout::edge_middle(Index edge) const {
-  const auto i = static_cast<std::size_t>(edge);
-  return 0.5 * (arc_length[i] + arc_length[i + 1]);
+  return 0.5 * (arc_length_at(edge) + arc_length_at(edge + 1));
 }
 
 double RodLayout::voronoi_length(Index node) const {
-  const auto i = static_cast<std::size_t>(node);
-  const double before = node > 0 ? edge_length[i - 1] : 0.0;
-  const double after = node < num_edges() ? edge_length[i] : 0.0;
-  return 0.5 * (before + after);
+  const auto length = [this](Index edge) { return edge < 0 ? 0.0 : edge_length[to_size(edge)]; };
+  return 0.5 * (length(edge_before(node)) + length(edge_after(node)));
 }
 
 Edge RodLayout::edge(Index number, const Model& model) const {
-  const auto i = static_cast<std::size_t>(number);
-  return {model.dof(nodes[i], 0), model.dof(nodes[i + 1], 0), edge_length[i]};
+  return {model.dof(node(number), 0), model.dof(node(number + 1), 0),
+          edge_length[to_size(position(number))]};
 }
 
 std::array<Index, 4> RodLayout::edge_dofs(Index edge, const Model& model) const {
-  const Index a = nodes[static_cast<std::size_t>(edge)];
-  const Index b = nodes[static_cast<std::size_t>(edge) + 1];
+  const Index a = node(edge);
+  const Index b = node(edge + 1);
   return {model.dof(a, 0), model.dof(a, 1), model.dof(b, 0), model.dof(b, 1)};
 }
 
 const Clamp* RodLayout::clamp_at(Index place) const {
+  const Index here = position(place);
   for (const Clamp& clamp : clamps) {
-    if (clamp.place == place) return &clamp;
+    if (clamp.place == here) return &clamp;
   }
   return nullptr;
 }

@@ -41,13 +41,13 @@ double turning_angle(const BendCell& cell, const Model& model, const State& stat
 /// From edge to edge at an inner node, from or to the held tangent at a clamped end.
 BendCell cell_at(const RodLayout& rod, Index node, const Model& model) {
   BendCell cell;
-  if (node > 0) {
-    cell.before = effective_edge(rod, node - 1, model);
+  if (const Index edge = rod.edge_before(node); edge >= 0) {
+    cell.before = effective_edge(rod, edge, model);
   } else {
     cell.start = *rod.clamp_at(node);
   }
-  if (node < rod.num_edges()) {
-    cell.after = effective_edge(rod, node, model);
+  if (const Index edge = rod.edge_after(node); edge >= 0) {
+    cell.after = effective_edge(rod, edge, model);
   } else {
     cell.end = *rod.clamp_at(node);
   }
@@ -85,8 +85,8 @@ class TurnField : public RodField {
 /// Curvature or moment of a rod without bending stiffness.
 std::unique_ptr<RodField> limp_field(bool moment, const RodLayout& rod, const Model& model) {
   std::vector<Weighted> nodes;
-  for (Index i = 1; i < rod.num_edges(); ++i) {
-    nodes.push_back({i, moment ? 0.0 : 1.0 / rod.voronoi_length(i)});
+  for (Index i = 0; i < static_cast<Index>(rod.nodes.size()); ++i) {
+    if (rod.is_inner(i)) nodes.push_back({i, moment ? 0.0 : 1.0 / rod.voronoi_length(i)});
   }
   return std::make_unique<TurnField>(rod, nodes, true, model);
 }
@@ -142,7 +142,7 @@ class BendField : public EdgewiseField<double> {
     const Index node = last ? edge + 1 : edge;
     Known result;
     result.effective = effective_edge(rod, edge, model);
-    result.arc_length = rod.arc_length[to_size(node)];
+    result.arc_length = rod.arc_length_at(node);
     if (const Clamp* clamp = rod.clamp_at(node)) {
       const double pivot = clamp_pivot_share() * rod.edge_length[to_size(edge)];
       result.arc_length += last ? -pivot : pivot;
@@ -156,10 +156,10 @@ class BendField : public EdgewiseField<double> {
       }
       result.length = clamp_cell_length(rod, edge);
       result.rest_angle = clamp_rest_angle(rod, *clamp, edge, model);
-    } else if (node > 0 && node < rod.num_edges()) {
+    } else if (rod.is_inner(node)) {
       result.cell = cell_at(rod, node, model);
       result.length = bend_length(rod, node);
-      result.rest_angle = rod.rest_turning_angle[to_size(node)];
+      result.rest_angle = rod.rest_turning_angle[to_size(rod.position(node))];
     }
     result.natural_curvature = natural.at(result.arc_length);
     return result;
@@ -212,9 +212,8 @@ std::unique_ptr<RodField> make_bend_field(bool moment, const RodLayout& rod, con
 
 std::unique_ptr<RodField> make_turning_angle_field(const RodLayout& rod, const Model& model) {
   std::vector<Weighted> nodes;
-  for (Index i = 0; i <= rod.num_edges(); ++i) {
-    const bool inner = i > 0 && i < rod.num_edges();
-    if (inner || rod.clamp_at(i) != nullptr) nodes.push_back({i, 1.0});
+  for (Index i = 0; i < static_cast<Index>(rod.nodes.size()); ++i) {
+    if (rod.is_inner(i) || rod.clamp_at(i) != nullptr) nodes.push_back({i, 1.0});
   }
   return std::make_unique<TurnField>(rod, nodes, false, model);
 }

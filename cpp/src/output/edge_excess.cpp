@@ -40,8 +40,8 @@ void EdgeExcess::add_distributed(std::size_t number) {
 void EdgeExcess::add_foundation(const FoundationPlace& place) {
   for (const EdgePart& part : edge_parts(rod_, place.from, place.to)) {
     if (!is_cut(part, rod_)) continue;
-    const double s0 = rod_.arc_length[to_size(part.edge)];
-    const double s1 = rod_.arc_length[to_size(part.edge + 1)];
+    const double s0 = rod_.arc_length_at(part.edge);
+    const double s1 = rod_.arc_length_at(part.edge + 1);
     edges_[to_size(part.edge)].foundations.push_back(
         {(part.from - s0) / (s1 - s0), (part.to - s0) / (s1 - s0), place.stiffness});
   }

@@ -43,8 +43,8 @@ class EdgewiseField : public RodField {
         add(s, true, false);
         if (jumps) add(s, false, false);
       }
-      const bool end = edge + 1 == rod.num_edges();
-      if (end || recovery.jumps_at(edge + 1)) add(rod.arc_length[to_size(edge + 1)], true, false);
+      const bool end = !rod.is_inner(edge + 1);
+      if (end || recovery.jumps_at(edge + 1)) add(rod.arc_length_at(edge + 1), true, false);
     }
     return samples;
   }

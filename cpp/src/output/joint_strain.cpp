@@ -56,6 +56,10 @@ Sides sides_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
   } else {
     clamped(sides.after, 1.0);
   }
+  if (joint.glued != 0.0) {
+    sides.after = sides.after.turned(-joint.glued);
+    if (joint.after >= 0) sides.turned -= joint.glued;
+  }
   return sides;
 }
 

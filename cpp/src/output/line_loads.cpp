@@ -16,14 +16,14 @@ Vec3 force_per_length(const DistributedPlace& place, const Model& model, const S
 }
 
 Vec2 node_displacement(const RodLayout& rod, Index node, const Model& model, const State& state) {
-  const Index dof = model.dof(rod.nodes[to_size(node)], 0);
+  const Index dof = model.dof(rod.node(node), 0);
   return state.positions.segment<2>(dof) - model.initial_positions.segment<2>(dof);
 }
 
 Vec3 force_per_length(const FoundationPlace& place, double s, const RodLayout& rod,
                       const Model& model, const State& state) {
   const auto& arc = rod.arc_length;
-  const auto beyond = std::upper_bound(arc.begin() + 1, arc.end() - 1, s);
+  const auto beyond = std::upper_bound(arc.begin() + 1, rod.closed ? arc.end() : arc.end() - 1, s);
   const auto last = static_cast<Index>(beyond - arc.begin());
   const double share = (s - arc[to_size(last - 1)]) / rod.edge_length[to_size(last - 1)];
   const Vec2 displacement = (1.0 - share) * node_displacement(rod, last - 1, model, state) +

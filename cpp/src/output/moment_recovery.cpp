@@ -9,20 +9,20 @@
 namespace der {
 namespace {
 
-constexpr Index kNone = -1;
-
-/// The clamped node nearest to an edge on one side, or kNone.
-Index clamp_before(const RodLayout& rod, Index edge) {
-  for (Index node = edge; node >= 0; --node) {
-    if (rod.clamp_at(node) != nullptr) return node;
+/// The clamped place nearest to an edge on one side, if there is one.
+std::optional<Index> clamp_before(const RodLayout& rod, Index edge) {
+  const Index first = rod.closed ? edge - rod.num_edges() + 1 : 0;
+  for (Index place = edge; place >= first; --place) {
+    if (rod.clamp_at(place) != nullptr) return place;
   }
-  return kNone;
+  return std::nullopt;
 }
-Index clamp_beyond(const RodLayout& rod, Index edge) {
-  for (Index node = edge + 1; node <= rod.num_edges(); ++node) {
-    if (rod.clamp_at(node) != nullptr) return node;
+std::optional<Index> clamp_beyond(const RodLayout& rod, Index edge) {
+  const Index last = rod.closed ? edge + rod.num_edges() : rod.num_edges();
+  for (Index place = edge + 1; place <= last; ++place) {
+    if (rod.clamp_at(place) != nullptr) return place;
   }
-  return kNone;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -33,16 +33,16 @@ MomentRecovery::MomentRecovery(const RodLayout& rod, const Model& model)
       edges_(to_size(rod.num_edges())),
       kinks_(loaded_nodes(rod, model)) {
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-    const Index start = clamp_before(rod, edge);
-    const Index end = clamp_beyond(rod, edge);
-    add_moments(edge, start, end);
+    const std::optional<Index> start = clamp_before(rod, edge);
+    const std::optional<Index> end = clamp_beyond(rod, edge);
+    for (const Index turns : turns_of(rod)) add_moments(edge, turns, start, end);
     add_forces(edge, start, end);
   }
 }
 
 MomentRecovery::Where MomentRecovery::where_is(double s, Index edge) const {
-  if (s <= rod_.arc_length[to_size(edge)] + rod_.same_place()) return Where::Before;
-  if (s >= rod_.arc_length[to_size(edge + 1)] - rod_.same_place()) return Where::Beyond;
+  if (s <= rod_.arc_length_at(edge) + rod_.same_place()) return Where::Before;
+  if (s >= rod_.arc_length_at(edge + 1) - rod_.same_place()) return Where::Beyond;
   return Where::Inside;
 }
 
@@ -50,19 +50,22 @@ MomentRecovery::Where MomentRecovery::where_is(double s, Index edge) const {
 // before it. A clamp at `start` or `end` takes what acts on its other side: the sums go to the side
 // on which a load is not spread across a clamp.
 
-void MomentRecovery::add_moments(Index edge, Index start, Index end) {
+void MomentRecovery::add_moments(Index edge, Index turns, std::optional<Index> start,
+                                 std::optional<Index> end) {
   for (std::size_t p = 0; p < rod_.moment_places.size(); ++p) {
     const MomentPlace& place = rod_.moment_places[p];
+    const Index first_edge = place.first_edge + turns * rod_.num_edges();
+    const double s = place.arc_length + turns * rod_.rest_length();
     const auto count = static_cast<Index>(place.weights.size());
-    const bool from_before = end != kNone && place.first_edge + count > end;
-    const Where where = where_is(place.arc_length, edge);
-    MomentTerm term{p, place.arc_length, where == Where::Inside};
+    const bool from_before = end && first_edge + count > *end;
+    const Where where = where_is(s, edge);
+    MomentTerm term{p, s, where == Where::Inside};
     for (Index i = 0; i < count; ++i) {
-      const Index other = place.first_edge + i;
+      const Index other = first_edge + i;
       const double weight = place.weights[to_size(i)];
       if (other == edge) term.own = weight;
-      if (from_before && other < std::max<Index>(start, 0)) continue;
-      if (!from_before && end != kNone && other >= end) continue;
+      if (from_before && other < start.value_or(0)) continue;
+      if (!from_before && end && other >= *end) continue;
       if (from_before) {
         if (other < edge) term.first += weight;
         if (other <= edge) term.last += weight;
@@ -71,8 +74,8 @@ void MomentRecovery::add_moments(Index edge, Index start, Index end) {
         if (other > edge) term.last -= weight;
       }
     }
-    const bool in_span = (start == kNone || place.arc_length >= rod_.arc_length[to_size(start)]) &&
-                         (end == kNone || place.arc_length <= rod_.arc_length[to_size(end)]);
+    const bool in_span =
+        (!start || s >= rod_.arc_length_at(*start)) && (!end || s <= rod_.arc_length_at(*end));
     const double beyond = from_before ? 0.0 : 1.0;
     if (in_span && where != Where::Inside) {
       const double factor = where == Where::Beyond ? beyond : beyond - 1.0;
@@ -91,16 +94,15 @@ void MomentRecovery::add_moments(Index edge, Index start, Index end) {
   }
 }
 
-void MomentRecovery::add_forces(Index edge, Index start, Index end) {
+void MomentRecovery::add_forces(Index edge, std::optional<Index> start, std::optional<Index> end) {
   for (std::size_t f = 0; f < forces_.size(); ++f) {
     const SpreadForces::Force& force = forces_[f];
     if (force.nodes.front().place > edge || force.nodes.back().place <= edge) continue;
-    const bool from_before = end != kNone && force.nodes.back().place > end;
+    const bool from_before = end && force.nodes.back().place > *end;
     ForceTerm term{f, where_is(force.place.arc_length, edge), from_before ? -1.0 : 1.0, {}};
     for (const Weighted& node : force.nodes) {
       const bool before = node.place <= edge;
-      const bool in_span =
-          (start == kNone || node.place >= start) && (end == kNone || node.place <= end);
+      const bool in_span = (!start || node.place >= *start) && (!end || node.place <= *end);
       if (before == from_before && in_span) term.nodes.push_back(node);
     }
     edges_[to_size(edge)].forces.push_back(std::move(term));
@@ -159,7 +161,7 @@ Vec3 MomentRecovery::inside(Index edge, const Place& place, const Model& model,
     const bool counts = term.sign > 0.0 ? there > s : there < s;
     if (!counts) continue;
     const Index end = term.sign > 0.0 ? edge : edge + 1;
-    const double share = (there - s) / (there - rod_.arc_length[to_size(end)]);
+    const double share = (there - s) / (there - rod_.arc_length_at(end));
     const Vec3 arm = share * (forces_.point(term.place, state) - forces_.node_point(end, state));
     moment += term.sign * arm.cross(forces_.value(term.place, model, state));
   }
@@ -199,9 +201,9 @@ std::vector<MomentRecovery::Break> MomentRecovery::breaks(Index edge) const {
 }
 
 bool MomentRecovery::jumps_at(Index node) const {
-  if (node == 0 || node == rod_.num_edges()) return false;
+  if (!rod_.is_inner(node)) return false;
   return rod_.clamp_at(node) != nullptr ||
-         rod_.moment_place_at(rod_.arc_length[to_size(node)]) != nullptr;
+         rod_.moment_place_at(rod_.arc_length[to_size(rod_.position(node))]) != nullptr;
 }
 
 }  // namespace der

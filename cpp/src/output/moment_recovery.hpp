@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "der/core/types.hpp"
@@ -52,7 +53,7 @@ class MomentRecovery {
   [[nodiscard]] bool jumps_at(Index node) const;
   /// Whether a force at a node, of a load or a support, may give the moment a kink there.
   [[nodiscard]] bool has_kink_at(Index node) const {
-    return kinks_[static_cast<std::size_t>(node)];
+    return kinks_[static_cast<std::size_t>(rod_.position(node))];
   }
 
  private:
@@ -80,8 +81,8 @@ class MomentRecovery {
   };
 
   [[nodiscard]] Where where_is(double s, Index edge) const;
-  void add_moments(Index edge, Index start, Index end);
-  void add_forces(Index edge, Index start, Index end);
+  void add_moments(Index edge, Index turns, std::optional<Index> start, std::optional<Index> end);
+  void add_forces(Index edge, std::optional<Index> start, std::optional<Index> end);
   [[nodiscard]] double carried(std::size_t number, const Model& model, const State& state) const;
 
   RodLayout rod_;

@@ -9,8 +9,7 @@ namespace der {
 namespace {
 
 Vec2 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
-  const auto dofs = rod.edge_dofs(edge, model);
-  return model.initial_positions.segment<2>(dofs[2]) - model.initial_positions.segment<2>(dofs[0]);
+  return along_edge(rod.edge(edge, model), model.initial_positions);
 }
 
 }  // namespace
@@ -19,12 +18,17 @@ NaturalCurvature::NaturalCurvature(const RodLayout& rod, const Model& model) {
   if (!rod.natural_curvature.empty()) {
     arc_length_ = rod.arc_length;
     values_ = rod.natural_curvature;
+    if (rod.closed) {
+      arc_length_.push_back(rod.rest_length());
+      values_.push_back(values_.front());
+    }
     return;
   }
-  for (Index i = 1; i < rod.num_edges(); ++i) {
-    const double before = rod.edge_length[der::to_size(i - 1)];
-    const double after = rod.edge_length[der::to_size(i)];
-    arc_length_.push_back(rod.arc_length[der::to_size(i)] + (after - before) / 3.0);
+  for (Index i = 0; i <= rod.num_edges(); ++i) {
+    if (!rod.is_inner(i)) continue;
+    const double before = rod.edge_length[to_size(rod.edge_before(i))];
+    const double after = rod.edge_length[to_size(rod.edge_after(i))];
+    arc_length_.push_back(rod.arc_length_at(i) + (after - before) / 3.0);
     values_.push_back(angle_between(drawn_edge(rod, i - 1, model), drawn_edge(rod, i, model)) /
                       (0.5 * (before + after)));
   }

@@ -1,6 +1,7 @@
 #include "der/output/probe.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <utility>
@@ -86,6 +87,7 @@ class ExtremeReader : public ProbeReader {
       : field_(std::move(field)),
         parabola_at_ends_(parabola_at_ends),
         arc_length_(field_->arc_length()),
+        ring_length_(rod.closed ? rod.rest_length() : 0.0),
         sign_(reduce == scenario::Reduce::Max ? 1.0 : -1.0) {
     if (field_->continuous()) add_ends(rod);
     values_.resize(arc_length_.size());
@@ -96,7 +98,9 @@ class ExtremeReader : public ProbeReader {
     const auto best = static_cast<std::size_t>(std::max_element(values_.begin(), values_.end()) -
                                                values_.begin());
     const std::size_t last = values_.size() - 1;
-    if (best == 0 || best == last) return sign_ * end_extreme(best, best == 0 ? 1 : last - 1);
+    const bool at_end = best == 0 || best == last;
+    if (at_end && ring_length_ > 0.0) return sign_ * seam_extreme(best);
+    if (at_end) return sign_ * end_extreme(best, best == 0 ? 1 : last - 1);
     if (!smooth_at(best)) return sign_ * values_[best];
     return sign_ * parabola_extreme(&arc_length_[best - 1], &values_[best - 1]);
   }
@@ -126,6 +130,16 @@ class ExtremeReader : public ProbeReader {
     return peaks_between(s, f, from, to) ? parabola_extreme(s, f) : values_[end];
   }
 
+  /// The sample at the start of a ring, which is its end, is the largest: that of the parabola
+  /// through it and its neighbours on both sides.
+  [[nodiscard]] double seam_extreme(std::size_t best) const {
+    const std::size_t last = values_.size() - 1;
+    if (last < 2 || !smooth_at(0) || !smooth_at(last)) return values_[best];
+    const std::array s{arc_length_[last - 1] - ring_length_, arc_length_[0], arc_length_[1]};
+    const std::array f{values_[last - 1], values_[0], values_[1]};
+    return parabola_extreme(s.data(), f.data());
+  }
+
   /// Whether a parabola may be laid through a value and its neighbours.
   [[nodiscard]] bool smooth_at(std::size_t i) const {
     return field_->continuous() && field_->smooth_at(start_.empty() ? i : i - 1);
@@ -145,15 +159,29 @@ class ExtremeReader : public ProbeReader {
   std::unique_ptr<RodField> field_;
   bool parabola_at_ends_;           // of fields that are smooth up to the ends: positions
   std::vector<double> arc_length_;  // of the samples and the ends [m]
+  double ring_length_;              // [m]; 0: the rod is open
   SampleWeights start_, end_;       // empty where the end is a sample
   double sign_;
   std::vector<double> values_;  // times sign_, so that the largest one is looked for
 };
 
-SampleWeights sample_weights(const std::vector<Weighted>& weights) {
+/// A number of a ring.
+class RingReader : public ProbeReader {
+ public:
+  RingReader(RodReading read, RodLayout rod) : read_(read), rod_(std::move(rod)) {}
+  double value(const Model& model, const State& state) override {
+    return read_(rod_, model, state);
+  }
+
+ private:
+  RodReading read_;
+  RodLayout rod_;
+};
+
+SampleWeights sample_weights(const std::vector<Weighted>& weights, const RodLayout& rod) {
   SampleWeights result;
   for (const auto& [place, weight] : weights) {
-    result.push_back({static_cast<std::size_t>(place), weight});
+    result.push_back({static_cast<std::size_t>(rod.position(place)), weight});
   }
   return result;
 }
@@ -170,7 +198,7 @@ std::unique_ptr<RodField> make_probed_field(const scenario::Probe& probe, const 
 SampleWeights point_weights(const scenario::Probe& probe, QuantityKind kind, const RodField& field,
                             const RodLayout& rod, double s) {
   if (kind == QuantityKind::Position || kind == QuantityKind::Velocity) {
-    return sample_weights(node_weights(rod, s));
+    return sample_weights(node_weights(rod, s), rod);
   }
   if (can_jump(kind)) {
     return one_sided_weights(field.arc_length(), s, probe.side.value_or(scenario::Side::After),
@@ -185,6 +213,10 @@ std::unique_ptr<ProbeReader> make_reader(const scenario::Probe& probe, const Qua
     return make_energy_reader(quantity.energies, probe.rod, model);
   }
   const RodLayout& rod = model.rod(probe.rod.value());
+  if (quantity.kind == QuantityKind::Ring) {
+    if (!is_available(quantity, model)) throw not_available(quantity, model);
+    return std::make_unique<RingReader>(quantity.read_rod, rod);
+  }
   auto field = make_probed_field(probe, quantity, rod, model);
   if (probe.over != scenario::Reduce::None) {
     return std::make_unique<ExtremeReader>(std::move(field), rod, probe.over,

@@ -7,6 +7,7 @@
 
 #include "output/bend_field.hpp"
 #include "output/motion_field.hpp"
+#include "output/ring_numbers.hpp"
 #include "output/section_field.hpp"
 #include "output/stretch_field.hpp"
 
@@ -86,6 +87,22 @@ std::vector<Quantity> quantities_along_rods() {
   };
 }
 
+Quantity ring_number(std::string name, std::string meaning, RodReading read) {
+  Quantity quantity{std::move(name), "", QuantityKind::Ring, std::move(meaning), nullptr, {}};
+  quantity.read_rod = read;
+  return quantity;
+}
+
+std::vector<Quantity> quantities_of_rings() {
+  return {
+      in(QuantityScope::Space,
+         ring_number("writhe", "how much a ring coils about itself, in whole coils", writhe_of)),
+      in(QuantityScope::Sections,
+         ring_number("link", "turns of the sections of a ring around it: twist and writhe",
+                     link_of)),
+  };
+}
+
 /// Each term by itself, what is stored elastically, and all together.
 std::vector<Quantity> energy_quantities() {
   std::vector<Quantity> rows;
@@ -104,6 +121,7 @@ std::vector<Quantity> energy_quantities() {
 
 std::vector<Quantity> all_quantities() {
   std::vector<Quantity> rows = quantities_along_rods();
+  for (Quantity& row : quantities_of_rings()) rows.push_back(std::move(row));
   for (Quantity& row : energy_quantities()) rows.push_back(std::move(row));
   return rows;
 }

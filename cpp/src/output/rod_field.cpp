@@ -6,6 +6,7 @@
 
 #include "der/catalog/quantities.hpp"
 #include "der/core/error.hpp"
+#include "output/around_ring.hpp"
 
 namespace der {
 namespace {
@@ -26,6 +27,11 @@ std::string quantities_along_rods() {
 
 }  // namespace
 
+Error not_available(const Quantity& quantity, const Model& model) {
+  return {"model_error", fmt::format("the model '{}' has no '{}': {}", model.name, quantity.name,
+                                     kNeeds[static_cast<int>(quantity.scope)])};
+}
+
 double RodField::interpolate(const SampleWeights& weights, const Model& model,
                              const State& state) const {
   double sum = 0.0;
@@ -38,10 +44,10 @@ std::unique_ptr<RodField> make_rod_field(const std::string& quantity, const RodL
   const Quantity* row = find_quantity(quantity);
   if (row != nullptr && row->make_field != nullptr) {
     if (!is_available(*row, model)) {
-      throw Error("model_error", fmt::format("the model '{}' has no '{}': {}", model.name, quantity,
-                                             kNeeds[static_cast<std::size_t>(row->scope)]));
+      throw not_available(*row, model);
     }
-    return row->make_field(rod, model);
+    auto field = row->make_field(rod, model);
+    return rod.closed ? around_ring(std::move(field), rod) : std::move(field);
   }
   throw Error("model_error", fmt::format("'{}' is not a quantity along a rod; these are: {}",
                                          quantity, quantities_along_rods()));

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "der/catalog/quantities.hpp"
+#include "der/core/error.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 
@@ -45,8 +47,11 @@ class RodField {
   std::vector<double> arc_length_;
 };
 
+/// The error of a model that does not have a quantity.
+Error not_available(const Quantity& quantity, const Model& model);
+
 /// The field of a quantity (catalog/quantities.hpp, but for the energies). Throws Error for a name
-/// that is no such quantity.
+/// that is no such quantity. Along a ring it goes all the way around.
 std::unique_ptr<RodField> make_rod_field(const std::string& quantity, const RodLayout& rod,
                                          const Model& model);
 

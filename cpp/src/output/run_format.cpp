@@ -37,6 +37,7 @@ void write_rod(hid_t rods, const RodLayout& rod) {
   const bool is_angle = rod.curvature == scenario::CurvatureMeasure::Angle;
   hdf5::write_attribute(group.id(), "curvature", std::string(is_angle ? "angle" : "tangent"));
   hdf5::write_attribute(group.id(), "radius", rod.draw_radius);
+  if (rod.closed) hdf5::write_attribute(group.id(), "closed", std::int64_t{1});
   hdf5::write_attribute(group.id(), "EA", rod.EA);
   hdf5::write_attribute(group.id(), "EI", rod.EI);
 }
@@ -44,7 +45,8 @@ void write_rod(hid_t rods, const RodLayout& rod) {
 SavedRod read_rod(hid_t rods, const std::string& name) {
   const Handle group = hdf5::open_group(rods, name);
   SavedRod rod{name, read_array<Index>(group.id(), "nodes").values,
-               read_array<double>(group.id(), "arc_length").values};
+               read_array<double>(group.id(), "arc_length").values,
+               hdf5::has_attribute(group.id(), "closed")};
   if (rod.nodes.empty() || rod.nodes.size() != rod.arc_length.size()) {
     throw IoError("rod '" + name + "' has other numbers of nodes and of arc lengths");
   }

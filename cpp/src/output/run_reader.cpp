@@ -33,7 +33,7 @@ Vector joined(const std::vector<double>& nodes, const std::vector<double>& edges
 void check_rods(const std::vector<SavedRod>& rods, const FrameLayout& layout) {
   hsize_t edges = 0;
   for (const SavedRod& rod : rods) {
-    edges += rod.nodes.size() - 1;
+    edges += rod.closed ? rod.nodes.size() : rod.nodes.size() - 1;
     for (const Index node : rod.nodes) {
       if (node < 0 || static_cast<hsize_t>(node) >= layout.nodes) {
         throw IoError("rod '" + rod.name + "' has a node " + std::to_string(node) + " of " +

@@ -1,6 +1,7 @@
 #include "output/section_field.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "der/core/index.hpp"
@@ -43,6 +44,10 @@ class SectionField : public EdgewiseField<Vec3> {
     Lines lines;
     if (!rod.joints.empty()) {
       samples = samples_of(rod, recovery);
+      if (jumps_at_glue(quantity, rod)) {
+        samples.front().smooth = false;
+        samples.push_back({rod.num_edges() - 1, {rod.rest_length(), true}, false});
+      }
       for (Index edge = 0; edge < rod.num_edges(); ++edge) {
         edges.emplace_back(known(quantity, rod, edge, false, model),
                            known(quantity, rod, edge, true, model));
@@ -78,6 +83,8 @@ class SectionField : public EdgewiseField<Vec3> {
     const RodJoint* joint = nullptr;  // of the model's rod; none at an end
     double arc_length = 0.0;          // [m]
     Vec3 natural = Vec3::Zero();      // curvatures and twist
+    double joint_ahead = 0.0;         // [m] by which the joint counts its places further on
+    double glued = 0.0;               // [rad] by which the section is turned against the joint's
   };
 
   SectionField(SectionQuantity quantity, const RodLayout& rod, const Model& model,
@@ -91,6 +98,24 @@ class SectionField : public EdgewiseField<Vec3> {
         recovery_(std::move(recovery)),
         edges_(std::move(edges)),
         turned_ends_(turned_ends(rod, model)) {}
+
+  /// Components towards the two directors of a section that is turned on by an angle [rad].
+  static Vec3 turned(const Vec3& parts, double angle) {
+    const double c = std::cos(angle);
+    const double s = std::sin(angle);
+    return {c * parts[0] + s * parts[1], c * parts[1] - s * parts[0], parts[2]};
+  }
+
+  /// Whether components jump where the two ends of a ring are glued, their sections being turned
+  /// against each other by more than rounding.
+  static bool jumps_at_glue(SectionQuantity quantity, const RodLayout& rod) {
+    const bool is_component =
+        quantity == SectionQuantity::Curvature1 || quantity == SectionQuantity::Curvature2 ||
+        quantity == SectionQuantity::Moment1 || quantity == SectionQuantity::Moment2;
+    constexpr double rounding = 1e-9;  // [rad]
+    const RodJoint& last = rod.joints.back();
+    return rod.closed && is_component && last.clamp < 0 && std::abs(last.glued) > rounding;
+  }
 
   static Vec3 natural_of(const RodJoint& joint) {
     return {joint.natural_curvature[0], joint.natural_curvature[1],
@@ -150,7 +175,7 @@ class SectionField : public EdgewiseField<Vec3> {
   /// Whether a moment or a spring turns the section at an end: beyond the middle of the outermost
   /// edge.
   static bool is_turned_at_end(const RodLayout& rod, bool last, const Model& model) {
-    if (!model.has_sections()) return false;
+    if (!model.has_sections() || rod.closed) return false;
     const Index edge = last ? rod.num_edges() - 1 : 0;
     const Index theta = model.framed_edges[to_size(rod.first_edge + edge)].theta;
     const auto acts_here = [&](const SpatialMoment::TurnedEdge& turned) {
@@ -174,7 +199,7 @@ class SectionField : public EdgewiseField<Vec3> {
   static Known known(SectionQuantity quantity, const RodLayout& rod, Index edge, bool last,
                      const Model& model) {
     Known result;
-    result.arc_length = rod.arc_length[to_size(last ? edge + 1 : edge)];
+    result.arc_length = rod.arc_length_at(last ? edge + 1 : edge);
     auto joint = std::find_if(rod.joints.begin(), rod.joints.end(), [&](const RodJoint& other) {
       return (last ? other.before : other.after) == edge;
     });
@@ -195,7 +220,14 @@ class SectionField : public EdgewiseField<Vec3> {
     const bool lets_turn = joint->clamp >= 0 && !rod.clamps[to_size(joint->clamp)].holds_section;
     if (is_of_twist(quantity) && lets_turn) return result;
     result.joint = &*joint;
-    result.arc_length = is_of_twist(quantity) ? joint->twist_place : joint->bend_place;
+    if (rod.closed && !last && joint->place() > edge) {
+      // The joint at the end of a ring is at its start, too, on the other side of the glue.
+      result.joint_ahead = rod.rest_length();
+      result.glued = joint->glued;
+      result.natural = turned(result.natural, result.glued);
+    }
+    const double place = is_of_twist(quantity) ? joint->twist_place : joint->bend_place;
+    result.arc_length = place - result.joint_ahead;
     return result;
   }
 
@@ -211,14 +243,16 @@ class SectionField : public EdgewiseField<Vec3> {
     const SpatialEdge vector = spatial_edge(rod_, edge, model);
     const Index node = last ? edge + 1 : edge;
     const double share =
-        (known.arc_length - rod_.arc_length[to_size(node)]) / rod_.edge_length[to_size(edge)];
+        (known.arc_length - rod_.arc_length_at(node)) / rod_.edge_length[to_size(edge)];
     const Vec3 along =
         state.positions.segment<3>(vector.end) - state.positions.segment<3>(vector.start);
     const Vec3 point = state.positions.segment<3>(last ? vector.end : vector.start) + share * along;
     const Vec3 recovered =
         in_section(edge, recovery_.smooth(edge, last, point, model, state), model, state);
     Vec3 moment = stiffness_.cwiseProduct(excess);
-    if (model.has_sections()) moment = moved(moment, known, natural_of(*known.joint) + excess);
+    if (model.has_sections()) {
+      moment = turned(moved(moment, known, natural_of(*known.joint) + excess), known.glued);
+    }
     return natural + (is_moment(quantity_) ? moment : Vec3(moment.cwiseQuotient(stiffness_))) +
            recovered;
   }
@@ -257,8 +291,9 @@ class SectionField : public EdgewiseField<Vec3> {
   /// directors are those in the middle of the length over which it twists. At inner nodes of an
   /// even mesh all these places are one.
   [[nodiscard]] Vec3 moved(const Vec3& moment, const Known& known, const Vec3& strains) const {
-    const double tilted = known.arc_length - tangent_place(*known.joint);
-    const double turned = known.arc_length - known.joint->twist_place;
+    const double place = known.arc_length + known.joint_ahead;
+    const double tilted = place - tangent_place(*known.joint);
+    const double turned = place - known.joint->twist_place;
     // Bending towards a director turns about the other one.
     const auto about = [](const Vec3& parts) { return Vec3(-parts[1], parts[0], parts[2]); };
     const Vec3 turn = about({tilted * strains[0], tilted * strains[1], turned * strains[2]});
@@ -270,13 +305,14 @@ class SectionField : public EdgewiseField<Vec3> {
   /// sides of a joint: a clamp, or an edge's middle, which beside a clamp is a little further away
   /// (supports/clamp.hpp).
   [[nodiscard]] double tangent_place(const RodJoint& joint) const {
-    const auto side = [&](Index edge) {
-      if (edge < 0) return rod_.arc_length[to_size(rod_.clamps[to_size(joint.clamp)].place)];
-      const double further = clamp_cell_length(rod_, edge) - 0.5 * rod_.edge_length[to_size(edge)];
+    const Index place = joint.place();
+    const auto side = [&](Index own, Index edge) {
+      if (own < 0) return rod_.arc_length_at(place);  // of the clamp
+      const double further = clamp_cell_length(rod_, own) - 0.5 * rod_.edge_length[to_size(own)];
       return rod_.edge_middle(edge) + (rod_.clamp_at(edge) != nullptr ? further : 0.0) -
              (rod_.clamp_at(edge + 1) != nullptr ? further : 0.0);
     };
-    return 0.5 * (side(joint.before) + side(joint.after));
+    return 0.5 * (side(joint.before, place - 1) + side(joint.after, place));
   }
 
   /// A moment [N m] in fixed axes as the field has it: bending towards a director turns about the

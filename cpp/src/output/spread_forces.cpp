@@ -8,17 +8,24 @@
 
 namespace der {
 
-SpreadForces::SpreadForces(const RodLayout& rod, const Model& model) : dimension_(model.dimension) {
+SpreadForces::SpreadForces(const RodLayout& rod, const Model& model)
+    : dimension_(model.dimension), rod_(rod) {
   for (const Index node : rod.nodes) first_dofs_.push_back(model.dof(node, 0));
   for (const ForcePlace& place : rod.force_places) {
-    std::vector<Weighted> nodes = node_weights(rod, place.arc_length);
-    if (nodes.size() > 1) forces_.push_back({place, std::move(nodes)});
+    const std::vector<Weighted> nodes = node_weights(rod, place.arc_length);
+    if (nodes.size() == 1) continue;
+    for (const Index turns : turns_of(rod)) {
+      Force& force = forces_.emplace_back(Force{place, nodes});
+      force.place.arc_length += turns * rod.rest_length();
+      for (Weighted& node : force.nodes) node.place += turns * static_cast<Index>(rod.nodes.size());
+    }
   }
 }
 
 Vec3 SpreadForces::node_point(Index node, const State& state) const {
+  const Index first = first_dofs_[to_size(rod_.position(node))];
   Vec3 point = Vec3::Zero();
-  for (int c = 0; c < dimension_; ++c) point[c] = state.positions[first_dofs_[to_size(node)] + c];
+  for (int c = 0; c < dimension_; ++c) point[c] = state.positions[first + c];
   return point;
 }
 

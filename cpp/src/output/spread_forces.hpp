@@ -11,6 +11,8 @@ namespace der {
 
 /// The point forces between the nodes of a rod, of loads and of springs: where they stand, what
 /// they are, and the nodes over which the chain spreads them. In a plane all z components are 0.
+/// Those of a ring are there three times, one length of the ring apart (`turns_of`): one of them is
+/// where its edges see it.
 class SpreadForces {
  public:
   struct Force {
@@ -32,6 +34,7 @@ class SpreadForces {
 
  private:
   int dimension_;
+  RodLayout rod_;
   std::vector<Index> first_dofs_;  // of each node
   std::vector<Force> forces_;
 };

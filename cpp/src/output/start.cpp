@@ -43,7 +43,11 @@ std::string difference(const SavedRod& there, const RodLayout& here) {
         "rods in the same order",
         here.name, there.nodes.front(), here.nodes.front());
   }
-  const double length = here.rest_length();
+  if (there.closed != here.closed) {
+    return fmt::format("rod '{}' is {} there and {} here", here.name,
+                       there.closed ? "closed" : "open", here.closed ? "closed" : "open");
+  }
+  const double length = here.arc_length.back();
   const double before = there.arc_length.back();
   const double allowed = kSameLength * length;
   if (std::abs(before - length) > allowed) {

@@ -9,11 +9,10 @@
 #include "der/output/joint_strain.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spatial_clamp.hpp"
-#include "output/bend_field.hpp"
 #include "output/edge_excess.hpp"
 #include "output/in_space.hpp"
 #include "output/line_loads.hpp"
-#include "output/section_field.hpp"
+#include "output/rod_field.hpp"
 #include "output/spread_forces.hpp"
 #include "output/stretch_samples.hpp"
 
@@ -59,8 +58,8 @@ class LeaningEdges {
  public:
   LeaningEdges(const RodLayout& rod, const Model& model) : rod_(rod) {
     for (const Clamp& clamp : rod.clamps) {
-      for (const Index edge : {clamp.place - 1, clamp.place}) {
-        if (edge < 0 || edge >= rod.num_edges()) continue;
+      for (const Index edge : {rod.edge_before(clamp.place), rod.edge_after(clamp.place)}) {
+        if (edge < 0) continue;
         const double further = clamp_cell_length(rod, edge) - 0.5 * rod.edge_length[to_size(edge)];
         add({edge, edge == clamp.place ? further : -further, {}}, model);
       }
@@ -86,7 +85,7 @@ class LeaningEdges {
   };
 
   void add_free_end(bool last, const Model& model) {
-    if (rod_.clamp_at(last ? rod_.num_edges() : 0) != nullptr) return;
+    if (rod_.closed || rod_.clamp_at(last ? rod_.num_edges() : 0) != nullptr) return;
     Vec2 natural = Vec2::Zero();
     if (!rod_.natural_curvature.empty()) {
       natural[0] = last ? rod_.natural_curvature.back() : rod_.natural_curvature.front();
@@ -102,14 +101,13 @@ class LeaningEdges {
   void add(const Lean& lean, const Model& model) {
     leans_.push_back(lean);
     if (!bends_.empty()) return;
+    const auto field = [&](const char* quantity) { return make_rod_field(quantity, rod_, model); };
     if (model.has_sections()) {
-      bends_.push_back({make_section_field(SectionQuantity::Curvature1, rod_, model),
-                        make_section_field(SectionQuantity::Moment1, rod_, model)});
-      bends_.push_back({make_section_field(SectionQuantity::Curvature2, rod_, model),
-                        make_section_field(SectionQuantity::Moment2, rod_, model)});
-      twist_ = make_section_field(SectionQuantity::Twist, rod_, model);
+      bends_.push_back({field("curvature_1"), field("moment_1")});
+      bends_.push_back({field("curvature_2"), field("moment_2")});
+      twist_ = field("twist");
     } else {
-      bends_.push_back({make_curvature_field(rod_, model), make_moment_field(rod_, model)});
+      bends_.push_back({field("curvature"), field("moment")});
     }
   }
 
@@ -139,7 +137,7 @@ class LeaningEdges {
   /// The value of a field at the first or last end of an edge, on the edge's side of a jump.
   [[nodiscard]] double at_end(const RodField& field, Index edge, bool last, const Model& model,
                               const State& state) const {
-    const double place = rod_.arc_length[to_size(last ? edge + 1 : edge)];
+    const double place = rod_.arc_length_at(last ? edge + 1 : edge);
     const std::vector<double>& samples = field.arc_length();
     const auto found =
         last ? std::lower_bound(samples.begin(), samples.end(), place - rod_.same_place())

@@ -56,7 +56,8 @@ class Layout {
         breaks_.push_back(rod_.arc_length[to_size(i)]);
     }
     for (std::size_t f = 0; f < forces_.size(); ++f) {
-      breaks_.push_back(forces_[f].place.arc_length);
+      const double s = forces_[f].place.arc_length;
+      if (0.0 <= s && s <= rod_.rest_length()) breaks_.push_back(s);
     }
     for (const MomentPlace& place : rod_.moment_places) breaks_.push_back(place.arc_length);
     for (const DistributedPlace& place : rod_.distributed_places) {
@@ -85,9 +86,9 @@ class Layout {
   [[nodiscard]] std::size_t part_to_go_on_from(std::size_t part) const {
     const Index edge = std::max<Index>(0, first_middle(part) - 1);
     for (std::size_t before = part + 1; before-- > 0;) {
-      if (breaks_[before + 1] <= rod_.arc_length[to_size(edge)] + rod_.same_place()) break;
+      if (breaks_[before + 1] <= rod_.arc_length_at(edge) + rod_.same_place()) break;
       if (has_middle(before)) {
-        if (breaks_[part] < rod_.arc_length[to_size(edge + 1)] - rod_.same_place()) return before;
+        if (breaks_[part] < rod_.arc_length_at(edge + 1) - rod_.same_place()) return before;
         break;
       }
     }

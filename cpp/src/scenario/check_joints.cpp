@@ -46,8 +46,8 @@ std::vector<Node> nodes_of(const CheckContext& context) {
     for (int i = 0; i <= last; ++i) {
       const Vec3 position =
           in_space(context.scene.rods[number].points[static_cast<std::size_t>(i)]);
-      nodes.push_back(
-          {rod, i, i == 0 || i == last, position, position.dot(oblique), tolerance_at(*line, i)});
+      nodes.push_back({rod, i, !line->closed() && (i == 0 || i == last), position,
+                       position.dot(oblique), tolerance_at(*line, i)});
     }
   }
   std::sort(nodes.begin(), nodes.end(),
@@ -75,8 +75,9 @@ std::string warning_of(const CheckContext& context, const Node& a, const Node& b
     const std::string& rod = context.scene.rods[static_cast<std::size_t>(a.rod)].name;
     return fmt::format(
         "the last point of rod '{}' is its first, {}, but that does not close the rod: it has two "
-        "free ends there, which move apart. This version has no joints: hold both ends by "
-        "supports, or move them apart if that is what you mean",
+        "free ends there, which move apart. For a ring leave the last point out and write "
+        "'closed: true'; or hold both ends by supports, or move them apart if that is what you "
+        "mean",
         rod, place);
   }
   return fmt::format(

@@ -43,20 +43,25 @@ double size_at(const Natural& natural, int node) {
   return std::visit(Visitor{static_cast<std::size_t>(node)}, natural);
 }
 
-/// At inner nodes, each of which stands for half of its two edges.
+/// At nodes with two edges, each of which stands for half of these.
 template <class Natural>
 Turning largest_turning(const Natural& natural, const RestLine& line) {
+  const int last = line.num_nodes() - 1;
+  const int outermost = line.closed() ? 0 : 1;
   Turning largest;
-  for (int node = 1; node + 1 < line.num_nodes(); ++node) {
-    const double length = 0.5 * (line.arc_length(node + 1) - line.arc_length(node - 1));
-    largest.enter(size_at(natural, node) * length, node);
+  for (int node = outermost; node <= last - outermost; ++node) {
+    const double before =
+        node > 0 ? line.arc_length(node - 1) : line.arc_length(last) - line.length();
+    const double after = node < last ? line.arc_length(node + 1) : line.length();
+    largest.enter(size_at(natural, node) * 0.5 * (after - before), node);
   }
   return largest;
 }
 
 /// The number of nodes with which neighbouring edges turn by half of a coarse angle.
 double fine_nodes(const Turning& largest, const RestLine& line) {
-  return 1.0 + std::round((line.num_nodes() - 1) * largest.angle / (0.5 * kCoarse));
+  const int more = line.closed() ? 0 : 1;  // nodes than edges
+  return more + std::round((line.num_nodes() - more) * largest.angle / (0.5 * kCoarse));
 }
 
 class Resolution {

@@ -58,18 +58,26 @@ bool check_polyline(const RodText& rod, const RestLine& line, const Path& path,
   const Path points = path / "points";
   if (!finite_length(line, points, diagnostics)) return false;
   const std::size_t before = diagnostics.size();
+  const int count = line.num_nodes();
   Vec3 before_it = Vec3::Zero();  // the edge before
-  for (int k = 1; k < line.num_nodes(); ++k) {
-    if (line.arc_length(k) - line.arc_length(k - 1) <= line.same_place()) {
-      diagnostics.add(points / k, "coincides with the point before it: an edge needs a length");
+  // A ring goes on along its closing edge to its first one.
+  for (int k = 1; k < (rod.closed ? count + 2 : count); ++k) {
+    const Vec3 from = in_space(rod.points[static_cast<std::size_t>((k - 1) % count)]);
+    const Vec3 edge = in_space(rod.points[static_cast<std::size_t>(k % count)]) - from;
+    if (edge.norm() <= line.same_place()) {
+      if (k < count) {
+        diagnostics.add(points / k, "coincides with the point before it: an edge needs a length");
+      } else if (k == count) {
+        diagnostics.add(points / (count - 1),
+                        "repeats the first point: a closed rod goes back there by itself, so leave "
+                        "this point out");
+      }
       continue;
     }
-    const auto i = static_cast<std::size_t>(k);
-    const Vec3 edge = in_space(rod.points[i]) - in_space(rod.points[i - 1]);
     const double dot = before_it.dot(edge);
     constexpr double straight_back = 1e-9;  // [rad] from a half turn
     if (dot < 0.0 && before_it.cross(edge).norm() <= -dot * straight_back) {
-      diagnostics.add(points / (k - 1),
+      diagnostics.add(points / ((k - 1) % count),
                       "the rod turns straight back here, through 180 degrees: its "
                       "side of bending is not defined");
     }
@@ -78,21 +86,39 @@ bool check_polyline(const RodText& rod, const RestLine& line, const Path& path,
   return diagnostics.size() == before;
 }
 
+/// A ring goes around something.
+bool can_be_closed(const RodText& rod, const Path& path, Diagnostics& diagnostics) {
+  if (!rod.closed) return true;
+  if (rod.given_points.empty()) {
+    diagnostics.add(path / "closed",
+                    "a straight line cannot be closed: draw the ring by 'points', of which the "
+                    "first is not repeated");
+    return false;
+  }
+  if (rod.given_points.size() >= 3) return true;
+  diagnostics.add(path / "points",
+                  fmt::format("a closed rod takes 3 points or more, got {}: the edge from the last "
+                              "one to the first would lie upon another",
+                              rod.given_points.size()));
+  return false;
+}
+
 /// The rod's nodes, as far as the keys that say where they are could be read.
 void check_geometry(CheckContext& context, int i) {
   const Path path = rod_path(i);
-  for (const char* key : {"nodes", "from", "to", "points"}) {
+  for (const char* key : {"nodes", "from", "to", "points", "closed"}) {
     if (context.diagnostics.under(path / key)) return;
   }
   RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
   const bool straight = rod.given_points.empty();
   if (straight && !rod.nodes) return;  // not a mapping at all
+  if (!can_be_closed(rod, path, context.diagnostics)) return;
   if (straight) {
     place_evenly(rod);
   } else {
     rod.points = std::move(rod.given_points);
   }
-  RestLine line(rod.points);
+  RestLine line(rod.points, rod.closed);
   const bool fine = straight ? check_straight(rod, line, path, context.diagnostics)
                              : check_polyline(rod, line, path, context.diagnostics);
   if (fine) context.lines[static_cast<std::size_t>(i)] = std::move(line);

@@ -112,6 +112,8 @@ class ProbeCheck {
     const QuantityKind kind = find_quantity(probe_.quantity)->kind;
     if (kind == QuantityKind::Energy) {
       check_energy();
+    } else if (kind == QuantityKind::Ring) {
+      check_ring();
     } else if (!probe_.rod) {
       report(path_, fmt::format("'{}' belongs to a rod: give 'rod'", probe_.quantity));
     } else if (!probe_.at && probe_.over == Reduce::None) {
@@ -135,6 +137,21 @@ class ProbeCheck {
                          probe_.quantity));
     }
     if (probe_.rod) context_.find_rod(*probe_.rod, path_ / "rod");
+  }
+
+  void check_ring() {
+    if (!probe_.rod) {
+      report(path_, fmt::format("'{}' belongs to a ring: give 'rod'", probe_.quantity));
+    } else if (probe_.at || probe_.over != Reduce::None) {
+      report(path_ / (probe_.at ? "at" : "over"),
+             fmt::format("'{}' is a number of a whole ring: it has no place", probe_.quantity));
+    } else if (const auto rod = context_.find_rod(*probe_.rod, path_ / "rod");
+               rod && !context_.lines[static_cast<std::size_t>(*rod)]->closed()) {
+      report(path_ / "quantity",
+             fmt::format("rod '{}' is open, and only a ring has a '{}': for a ring write 'closed: "
+                         "true'",
+                         *probe_.rod, probe_.quantity));
+    }
   }
 
   void check_along(int rod, QuantityKind kind) {
@@ -165,8 +182,10 @@ class ProbeCheck {
 
   void check_turn(int rod) {
     const int last = context_.lines[static_cast<std::size_t>(rod)]->num_nodes() - 1;
+    const bool closed = context_.lines[static_cast<std::size_t>(rod)]->closed();
     const auto bends = [&](int node) {
-      return (node > 0 && node < last) || !supports_known_ || context_.is_clamped(rod, node);
+      return closed || (node > 0 && node < last) || !supports_known_ ||
+             context_.is_clamped(rod, node);
     };
     if (!probe_.at) {
       if (last < 2 && !bends(0) && !bends(last)) {

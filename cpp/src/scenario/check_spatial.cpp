@@ -14,15 +14,6 @@ class Availability {
   Availability(const SceneText& scene, Diagnostics& diagnostics)
       : scene_(scene), diagnostics_(diagnostics) {}
 
-  /// Keys that no model has yet.
-  void check_all_models() {
-    for (int i = 0; i < static_cast<int>(scene_.given_rods.size()); ++i) {
-      if (scene_.given_rods[static_cast<std::size_t>(i)].closed) {
-        not_available({"rods", i, "closed"}, "closed rods");
-      }
-    }
-  }
-
   /// Some loads have no potential, and some analyses need one.
   void check_potential(ModelChoice kind) {
     const char* analysis =
@@ -65,10 +56,6 @@ class Availability {
     }
   }
 
-  void not_available(const Path& where, const std::string& what) {
-    diagnostics_.add(where, what + " are not available yet");
-  }
-
   const SceneText& scene_;
   Diagnostics& diagnostics_;
 };
@@ -77,7 +64,6 @@ class Availability {
 
 void check_availability(const SceneText& scene, ModelChoice kind, Diagnostics& diagnostics) {
   Availability availability(scene, diagnostics);
-  availability.check_all_models();
   availability.check_potential(kind);
   if (kind != ModelChoice::Planar) availability.check_spatial_models();
 }

@@ -16,12 +16,14 @@ std::string in_words(const Location& at) {
 
 std::string no_node_there(const RestLine& line, const Location& at, double s) {
   const int nearest = line.nearest_node(s);
-  const bool evenly_halved = at.kind == Location::Kind::Middle && line.num_nodes() % 2 == 0;
+  // An even number of edges has a node in the middle.
+  const bool is_odd = (line.num_nodes() - (line.closed() ? 0 : 1)) % 2 != 0;
+  const bool evenly_halved = at.kind == Location::Kind::Middle && is_odd;
   return fmt::format("no node lies {} ({:.9g} m): the nearest is {{node: {}}} at {:.9g} m{}",
                      in_words(at), s, nearest, line.arc_length(nearest),
-                     evenly_halved ? fmt::format("; the rod has {} nodes, an odd number has one in "
+                     evenly_halved ? fmt::format("; the rod has {} nodes, an {} number has one in "
                                                  "the middle",
-                                                 line.num_nodes())
+                                                 line.num_nodes(), line.closed() ? "even" : "odd")
                                    : "");
 }
 
@@ -95,6 +97,12 @@ std::optional<std::vector<int>> CheckContext::nodes_at(int rod, Location& at, co
     case Location::Kind::Start:
       return std::vector<int>{0};
     case Location::Kind::End:
+      if (line.closed()) {
+        diagnostics.add(path,
+                        "a closed rod has no end: it goes back to its start. Write 'start', an arc "
+                        "length or a node");
+        return std::nullopt;
+      }
       return std::vector<int>{count - 1};
     case Location::Kind::All: {
       std::vector<int> all(static_cast<std::size_t>(count));

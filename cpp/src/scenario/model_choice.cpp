@@ -262,9 +262,18 @@ std::string why_not_planar(const Scene& scene) {
        about_loads<OutOfPlane>(scene), why_it_twists(scene)});
 }
 
+/// A ring has no end to let go of the twist that its writhe makes, and writhe needs space.
+std::string writhes(const Scene& scene) {
+  const auto ring = std::find_if(scene.rods.begin(), scene.rods.end(),
+                                 [](const Rod& rod) { return rod.closed && !is_cable(rod); });
+  if (ring == scene.rods.end()) return {};
+  if (why_not_planar(scene).empty()) return {};
+  return fmt::format("rod '{}' is closed, so that its writhe twists it", ring->name);
+}
+
 std::string why_not_spatial_bend(const Scene& scene) {
   return first_clause(
-      {why_it_twists(scene),
+      {why_it_twists(scene), writhes(scene),
        first_of(scene.rods,
                 [&](const Rod& rod, std::size_t /*number*/) { return may_twist(rod, scene); }),
        first_of(scene.rods,

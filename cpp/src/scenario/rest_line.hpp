@@ -13,11 +13,12 @@ double distance(const Components& a, const Components& b);
 /// A rod's rest length as a line with nodes on it.
 class RestLine {
  public:
-  /// `points` [m], at least two.
-  explicit RestLine(const std::vector<Components>& points);
+  /// `points` [m], at least two; of a `closed` rod the last is joined to the first.
+  explicit RestLine(const std::vector<Components>& points, bool closed = false);
 
   [[nodiscard]] int num_nodes() const { return static_cast<int>(arc_length_.size()); }
-  [[nodiscard]] double length() const { return arc_length_.back(); }
+  [[nodiscard]] bool closed() const { return closed_; }
+  [[nodiscard]] double length() const { return length_; }
   [[nodiscard]] double arc_length(int node) const;
   /// As der::nearest_node.
   [[nodiscard]] int nearest_node(double s) const;
@@ -28,6 +29,8 @@ class RestLine {
 
  private:
   std::vector<double> arc_length_;  // of each node [m]
+  double length_ = 0.0;             // [m]
+  bool closed_;
 };
 
 }  // namespace der::scenario

@@ -185,7 +185,8 @@ Format<RodText> rod_format() {
   return mapping(
       Table<RodText>("rod",
                      "An elastic rod, drawn as a straight line or a polyline, with a node at "
-                     "each corner. Its rest length is the length as drawn.")
+                     "each corner, or as a ring of such edges. Its rest length is the length as "
+                     "drawn.")
           .required("name", &Rod::name, name(),
                     "Supports, loads, probes and override paths refer to it.")
           .optional("nodes", &RodText::nodes, integer({2, false, max_nodes}),
@@ -213,8 +214,9 @@ Format<RodText> rod_format() {
                     "as drawn")
           .optional("initial_twist", &Rod::initial_twist, number("rad/m"),
                     "Twist as drawn, right-handed: the director turns about the rod so much.")
-          .optional("closed", &RodText::closed, boolean(),
-                    "Whether the last node is joined to the first; not available yet.")
+          .optional("closed", &Rod::closed, boolean(),
+                    "Whether one more edge joins the last node and the first, so that the rod is a "
+                    "ring; the first node is not repeated.")
           .optional("initial_velocity", &RodText::given_velocity, velocities_format(),
                     "One vector for all nodes, or one for each.", "at rest")
           .optional("spheres", &Rod::spheres, list_of(sphere_format(), 0),

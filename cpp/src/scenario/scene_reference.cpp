@@ -44,9 +44,9 @@ says why:
 - `spatial_bend` has x, y and z of each node. It takes rods that provably do not twist: the two
   bending stiffnesses are equal, the rod is straight without stress (or has no bending stiffness), has
   no initial or natural twist, no moment acts on it, no support twists it or spins its section over
-  time, and at most one support holds its section (`clamp: true`; `clamp: tangent` holds none). The
-  spin inertia of sections is left out; a scene that gives `rotary_inertia` and moves has the next
-  model.
+  time, and at most one support holds its section (`clamp: true`; `clamp: tangent` holds none). A
+  closed rod that leaves the plane is twisted by its writhe, and has the next model. The spin inertia
+  of sections is left out; a scene that gives `rotary_inertia` and moves has the next model, too.
 - `spatial` has x, y and z of each node and the angle of each edge's section. It needs a stiffness
   against twisting: `poissons_ratio` or `shear_modulus` of the material, or `GJ`.
 

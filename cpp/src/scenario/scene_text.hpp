@@ -21,7 +21,6 @@ struct SectionText {
 
 struct RodText : Rod {
   SectionText section;
-  bool closed = false;
   std::vector<Components> given_points;  ///< or:
   std::optional<int> nodes;
   Components from;

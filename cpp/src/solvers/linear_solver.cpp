@@ -2,6 +2,7 @@
 
 #include "der/core/error.hpp"
 #include "der/solvers/banded_ldlt.hpp"
+#include "der/solvers/bordered_ldlt.hpp"
 #include "der/solvers/sparse_ldlt.hpp"
 #include "der/solvers/two_ended_ldlt.hpp"
 
@@ -13,6 +14,7 @@ namespace {
 constexpr Index kNarrowBand = 32;
 
 std::unique_ptr<LinearSolver> make_banded(const Pattern& pattern, Elimination order) {
+  if (!pattern.borders.empty()) return std::make_unique<BorderedLdlt>(pattern);
   if (order == Elimination::FromBothEnds && TwoEndedLdlt::suits(pattern)) {
     return std::make_unique<TwoEndedLdlt>(pattern);
   }

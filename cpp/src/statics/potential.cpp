@@ -144,11 +144,13 @@ namespace {
 
 double largest_spatial_turning_angle(const Model& model, const Vector& positions) {
   double largest = 0.0;
-  for (std::size_t i = 1; i < model.edges.size(); ++i) {
-    if (model.edges[i - 1].last != model.edges[i].first) continue;
-    const Vec3 before = along_edge<3>(model.edges[i - 1], positions);
-    const Vec3 after = along_edge<3>(model.edges[i], positions);
-    largest = std::max(largest, std::atan2(before.cross(after).norm(), before.dot(after)));
+  for (const RodLayout& rod : model.rods) {
+    for (Index place = 0; place < static_cast<Index>(rod.nodes.size()); ++place) {
+      if (!rod.is_inner(place)) continue;
+      const Vec3 before = along_edge<3>(rod.edge(rod.edge_before(place), model), positions);
+      const Vec3 after = along_edge<3>(rod.edge(place, model), positions);
+      largest = std::max(largest, std::atan2(before.cross(after).norm(), before.dot(after)));
+    }
   }
   return largest;
 }

@@ -8,6 +8,7 @@
 #include <random>
 #include <utility>
 
+#include "der/model/dimension.hpp"
 #include "der/statics/potential.hpp"
 
 namespace der {
@@ -24,6 +25,29 @@ constexpr double kFlat = 1e-3;
 /// Error of a curvature, as a multiple of the energy that the residual of its direction can still
 /// release.
 constexpr double kErrorShare = 4.0;
+
+/// Standard deviations of the sum of many small errors that a bar of it holds.
+constexpr double kDeviations = 3.0;
+
+/// Rounding error of a second variation [J] by that of the coordinates. They give the length of an
+/// edge to their rounding, and with it its tension T, of which the second variation has T |d|^2/l
+/// for a change d of the edge. A rigid rotation has no other curvature. The errors of the edges are
+/// independent.
+template <int Dim>
+double tension_rounding(const Model& model, const Configuration& here, const Vector& direction) {
+  const double coordinate =
+      here.coordinates.head(model.dofs.num_positions()).lpNorm<Eigen::Infinity>();
+  double squares = 0.0;
+  for (const RodLayout& rod : model.rods) {
+    for (Index i = 0; i < rod.num_edges(); ++i) {
+      const Edge edge = rod.edge(i, model);
+      const double tension = rod.EA * kEpsilon * coordinate / edge.rest_length;
+      const double change = along_edge<Dim>(edge, direction).squaredNorm();
+      squares += std::pow(tension * change / edge.rest_length, 2);
+    }
+  }
+  return kDeviations * std::sqrt(squares);
+}
 
 }  // namespace
 
@@ -204,6 +228,12 @@ Stiffness::SoftSpace Stiffness::rayleigh_ritz(const Eigen::MatrixXd& basis, Inde
   space.curvatures = final.values.diagonal();
   space.rounding = kRoundings * kEpsilon * final.terms;
   space.rounding.array() += kEpsilon * rounding();  // of the directions' own digits
+  with_dimension(model_, [&](auto dim) {
+    for (Index i = 0; i < count; ++i) {
+      const Vector direction = over_all_dofs(model_, space.directions.col(i));
+      space.rounding[i] += tension_rounding<dim>(model_, here_, direction);
+    }
+  });
   space.errors = Vector::Constant(count, std::numeric_limits<double>::infinity());
   return space;
 }

@@ -27,7 +27,7 @@ double direction(const Vec2& e) { return std::atan2(e.y(), e.x()); }
 /// Turning angle at the node nearest to `place` that has two edges, per metre [1/m].
 double initial_curvature(const RodLayout& rod, Index place, const Model& model) {
   if (rod.num_edges() < 2) return 0.0;
-  const Index inner = std::min(std::max<Index>(place, 1), rod.num_edges() - 1);
+  const Index inner = inner_place_near(rod, place);
   return angle_between(drawn_edge(rod, inner - 1, model), drawn_edge(rod, inner, model)) /
          rod.voronoi_length(inner);
 }
@@ -44,9 +44,18 @@ Pivot pivot_at(const RodLayout& rod, Index place, Index edge) {
 
 }  // namespace
 
+Index edge_beside(const RodLayout& rod, Index place) {
+  return rod.edge_after(place) >= 0 ? place : place - 1;
+}
+
+Index inner_place_near(const RodLayout& rod, Index place) {
+  if (rod.is_inner(place)) return place;
+  return std::clamp<Index>(place, 1, rod.num_edges() - 1);
+}
+
 double initial_tangent_angle(const RodLayout& rod, Index place, const Model& model) {
   const double curvature = initial_curvature(rod, place, model);
-  const bool leaves = place < rod.num_edges();
+  const bool leaves = rod.edge_after(place) >= 0;
   const Index edge = leaves ? place : place - 1;
   const double half = 0.5 * rod.edge_length[to_size(edge)];
   return direction(drawn_edge(rod, edge, model)) + (leaves ? -curvature : curvature) * half;
@@ -60,7 +69,7 @@ double tangent_angle(const Clamp& clamp, const Model& model, const State& state)
 void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod, Model& model) {
   if (rod.EI == 0.0 || rod.clamp_at(place) != nullptr) return;
   const Index rotation = support.rotation ? model.tables.add(*support.rotation) : -1;
-  const Index beside = std::min(place, rod.num_edges() - 1);
+  const Index beside = edge_beside(rod, place);
   const Index followed = support.rotation ? follow_edge(rod, beside, model) : -1;
   rod.clamps.push_back(
       {place, initial_tangent_angle(rod, place, model), rotation, followed, {}, true});
@@ -87,8 +96,9 @@ Vec2 effective_vector(const EffectiveEdge& effective, const Model& model, const 
 double bend_length(const RodLayout& rod, Index place) {
   double length = rod.voronoi_length(place);
   if (rod.clamp_at(place - 1) != nullptr)
-    length -= kNextCellLoss * rod.edge_length[to_size(place - 1)];
-  if (rod.clamp_at(place + 1) != nullptr) length -= kNextCellLoss * rod.edge_length[to_size(place)];
+    length -= kNextCellLoss * rod.edge_length[to_size(rod.edge_before(place))];
+  if (rod.clamp_at(place + 1) != nullptr)
+    length -= kNextCellLoss * rod.edge_length[to_size(rod.edge_after(place))];
   return length;
 }
 
@@ -104,7 +114,7 @@ double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, co
         effective_edge(rod, edge, model).vector(model.initial_positions, 0.0, 0.0);
     return side * angle_between(tangent, effective);
   }
-  const Index next = clamp.place + (side > 0.0 ? 1 : -1);
+  const Index next = rod.position(clamp.place + (side > 0.0 ? 1 : -1));
   const double at_pivot = (1.0 - kPivotShare) * rod.natural_curvature[to_size(clamp.place)] +
                           kPivotShare * rod.natural_curvature[to_size(next)];
   return at_pivot * clamp_cell_length(rod, edge);
@@ -113,8 +123,8 @@ double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, co
 double clamp_pivot_share() { return kPivotShare; }
 
 void add_clamp_cells(const Clamp& clamp, RodLayout& rod, Model& model) {
-  for (const Index edge : {clamp.place - 1, clamp.place}) {
-    if (edge < 0 || edge >= rod.num_edges()) continue;
+  for (const Index edge : {rod.edge_before(clamp.place), rod.edge_after(clamp.place)}) {
+    if (edge < 0) continue;
     const EffectiveEdge effective = effective_edge(rod, edge, model);
     const double rest = clamp_rest_angle(rod, clamp, edge, model);
     rod.rest_turning_angle[to_size(clamp.place)] += rest;

@@ -48,7 +48,7 @@ void add_element(const SectionSpringPlace& spring, const SectionPlace& place, co
                          in_series(spring.stiffness[1], place.bend_cell, rod.EI_2),
                          in_series(spring.stiffness[2], place.twist_cell, rod.GJ)};
   for (Index i = 0; i < Edges; ++i) {
-    const Index number = rod.first_edge + place.first_edge + i;
+    const Index number = rod.first_edge + rod.position(place.first_edge + i);
     const SpatialEdge& edge = model.framed_edges[to_size(number)];
     for (Index c = 0; c < 3; ++c) {
       dofs[to_size(3 * i + c)] = edge.start + c;

@@ -20,18 +20,13 @@ Vec3 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
 /// metre [1/m].
 Vec3 initial_curvature(const RodLayout& rod, Index place, const Model& model) {
   if (rod.num_edges() < 2) return Vec3::Zero();
-  const Index inner = std::min(std::max<Index>(place, 1), rod.num_edges() - 1);
+  const Index inner = inner_place_near(rod, place);
   const Vec3 before = drawn_edge(rod, inner - 1, model);
   const Vec3 after = drawn_edge(rod, inner, model);
   const Vec3 axis = before.cross(after);
   const double sine = axis.norm();
   if (sine == 0.0) return Vec3::Zero();
   return std::atan2(sine, before.dot(after)) / (sine * rod.voronoi_length(inner)) * axis;
-}
-
-/// The edge that leaves a node, or at the end of a rod the one that arrives there.
-Index edge_beside(const RodLayout& rod, Index place) {
-  return std::min(place, rod.num_edges() - 1);
 }
 
 SectionFrame drawn_section(const RodLayout& rod, Index place, const Model& model) {
@@ -48,7 +43,7 @@ SectionFrame drawn_section(const RodLayout& rod, Index place, const Model& model
 SpatialPivot pivot_at(const RodLayout& rod, Index place, Index edge) {
   const Clamp* clamp = rod.clamp_at(place);
   if (clamp == nullptr) return {};
-  const double side = edge == place ? 1.0 : -1.0;
+  const double side = edge == clamp->place ? 1.0 : -1.0;
   return {side * clamp_pivot_share() * rod.edge_length[to_size(edge)], clamp->held};
 }
 
@@ -83,7 +78,7 @@ void hold_section(const scenario::Support& support, Index place, RodLayout& rod,
 
 SpatialEdge spatial_edge(const RodLayout& rod, Index edge, const Model& model) {
   const Index number = rod.first_edge + edge;
-  return {model.dof(rod.nodes[to_size(edge)], 0), model.dof(rod.nodes[to_size(edge + 1)], 0),
+  return {model.dof(rod.node(edge), 0), model.dof(rod.node(edge + 1), 0),
           model.has_sections() ? model.dofs.angle(number) : -1, pivot_at(rod, edge, edge),
           pivot_at(rod, edge + 1, edge)};
 }

@@ -19,7 +19,7 @@ namespace der {
 namespace {
 
 Vec2 drawn_node(const RodLayout& rod, Index place, const Model& model) {
-  return model.initial_positions.segment<2>(model.dof(rod.nodes[to_size(place)], 0));
+  return model.initial_positions.segment<2>(model.dof(rod.node(place), 0));
 }
 
 Vec2 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
@@ -36,7 +36,7 @@ void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s,
   constants.stiffness = Eigen::Map<const Point>(spring.stiffness.data());
   for (int i = 0; i < Nodes; ++i) {
     const auto& [place, weight] = weights[to_size(i)];
-    const Index first = model.dof(rod.nodes[to_size(place)], 0);
+    const Index first = model.dof(rod.node(place), 0);
     for (int c = 0; c < Dim; ++c) dofs[to_size(Dim * i + c)] = first + c;
     constants.weights[i] = weight;
     constants.anchor += weight * model.initial_positions.segment<Dim>(first);
@@ -97,7 +97,7 @@ Index add_element(const RodLayout& rod, MomentPlace& place, Model& model) {
   std::array<Index, Kernel::kDofs> dofs{};
   for (Index i = 0; i <= Edges; ++i) {
     for (int c = 0; c < 2; ++c) {
-      dofs[to_size(2 * i + c)] = model.dof(rod.nodes[to_size(place.first_edge + i)], c);
+      dofs[to_size(2 * i + c)] = model.dof(rod.node(place.first_edge + i), c);
     }
   }
   typename Kernel::Constants constants;

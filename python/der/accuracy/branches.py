@@ -31,9 +31,11 @@ def shape_on(result: Result, scenario: Scenario) -> Array:
     model = Model(scenario)
     shape = np.empty((model.num_nodes, result.positions.shape[2]))
     for coarse, fine in zip(result.rods, model.rods, strict=True):
-        old = np.linspace(0.0, 1.0, len(coarse.nodes))
-        new = np.linspace(0.0, 1.0, len(fine.nodes))
-        shape[fine.nodes] = CubicSpline(old, result.positions[-1][coarse.nodes])(new)
+        old = np.linspace(0.0, 1.0, len(coarse.line_nodes))
+        new = np.linspace(0.0, 1.0, len(fine.line_nodes))
+        line = result.positions[-1][coarse.line_nodes]
+        ends = "periodic" if coarse.closed else "not-a-knot"
+        shape[fine.line_nodes] = CubicSpline(old, line, bc_type=ends)(new)
     return shape
 
 
@@ -70,7 +72,7 @@ def _shared_nodes(coarse: Result, fine: Result) -> tuple[Array, Array]:
     """Return the final positions of both at the nodes of the coarser mesh, shape (nodes, dim)."""
     here, there = [], []
     for few, many in zip(coarse.rods, fine.rods, strict=True):
-        every = (len(many.nodes) - 1) // (len(few.nodes) - 1)
+        every = (len(many.line_nodes) - 1) // (len(few.line_nodes) - 1)
         here.append(coarse.positions[-1][few.nodes])
         there.append(fine.positions[-1][many.nodes[::every]])
     return np.concatenate(here), np.concatenate(there)

@@ -26,7 +26,8 @@ def _probes(scenario: Scenario) -> list[tuple[str, dict[str, Any]]]:
     probes: list[tuple[str, dict[str, Any]]] = []
     for rod in Model(scenario).rods:
         name = rod.name
-        for end, node in (("start", rod.nodes[0]), ("end", rod.nodes[-1])):
+        ends = [("start", rod.nodes[0]), ("end", rod.nodes[-1])]
+        for end, node in ends[:1] if rod.closed else ends:
             probes += [
                 (f"{name}_{end}_{c}", {"rod": name, "at": end, "quantity": c})
                 for c in ("x", "y")

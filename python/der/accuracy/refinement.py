@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from der._core import Scenario
-from der.accuracy.resampling import arc_lengths, resample_line, resample_list
+from der.accuracy.resampling import arc_lengths, resample_line, resample_list, resample_ring
 
 #: Order of the rods in the length of their elements, and of every probe but the turning angle.
 SPACE_ORDER = 2.0
@@ -85,6 +85,11 @@ def count_elements(scenario: Scenario) -> dict[str, int]:
     return {rod["name"]: _count_elements(rod) for rod in scenario.to_dict()["rods"]}
 
 
+def count_nodes(scenario: Scenario) -> dict[str, int]:
+    """Return the number of nodes of every rod: one more than its elements, of a ring as many."""
+    return {rod["name"]: _count_nodes(rod) for rod in scenario.to_dict()["rods"]}
+
+
 def with_time(scenario: Scenario, **changes: Any) -> Scenario:
     """Return the scene with some keys of `time` replaced; None removes a key.
 
@@ -104,8 +109,13 @@ def _set(table: dict[str, Any], key: str, value: Any) -> None:
         table[key] = value
 
 
+def _count_nodes(rod: dict[str, Any]) -> int:
+    return len(rod["points"]) if "points" in rod else int(rod["nodes"])
+
+
 def _count_elements(rod: dict[str, Any]) -> int:
-    return (len(rod["points"]) if "points" in rod else int(rod["nodes"])) - 1
+    nodes = _count_nodes(rod)
+    return nodes if rod.get("closed") else nodes - 1
 
 
 def _loads(scene: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
@@ -119,7 +129,9 @@ def _refine_rod(scene: dict[str, Any], rod: dict[str, Any], factor: Fraction) ->
     places = _Places(rod, factor)
     for key in ("natural_curvature", "natural_twist", "initial_velocity"):
         if _is_per_node(rod, key):
-            rod[key] = resample_list(np.array(rod[key], dtype=float), places.elements).tolist()
+            values = np.array(rod[key], dtype=float)
+            closed = bool(rod.get("closed"))
+            rod[key] = resample_list(values, places.elements, closed=closed).tolist()
     if places.points is not None:
         rod["points"] = places.points.tolist()
     else:
@@ -157,12 +169,14 @@ class _Places:
         before = _count_elements(rod)
         self._name = rod["name"]
         self._factor = factor
+        self._closed = bool(rod.get("closed"))
         self.elements = max(1, round(before * factor))
         self.points = None
         if "points" in rod:
             old = np.array(rod["points"], dtype=float)
-            self.points = resample_line(old, factor)
-            self._old_arc, self._new_arc = arc_lengths(old), arc_lengths(self.points)
+            self.points = (resample_ring if self._closed else resample_line)(old, factor)
+            self._old_arc = arc_lengths(old, closed=self._closed)
+            self._new_arc = arc_lengths(self.points, closed=self._closed)
 
     def moved(self, place: Any) -> Any:
         """Return what names, on the new mesh, the place that `place` names on the old one."""
@@ -183,8 +197,9 @@ class _Places:
         return float(np.interp(s, self._old_arc, self._new_arc[:: self._factor.numerator]))
 
     def _moved_node(self, node: int) -> int:
-        # A negative number counts from the end: -1 is the last.
-        moved = (node if node >= 0 else node + 1) * self._factor
+        # A negative number counts from the end: -1 is the last, which in a ring is no end.
+        from_end = 1 if node < 0 and not self._closed else 0
+        moved = (node + from_end) * self._factor
         if moved.denominator != 1:
             raise ValueError(f"node {node} of rod {self._name!r} falls between two nodes")
-        return int(moved) if node >= 0 else int(moved) - 1
+        return int(moved) - from_end

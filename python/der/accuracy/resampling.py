@@ -73,20 +73,56 @@ def resample_line(points: Array, factor: Fraction) -> Array:
     """
     corners = find_corners(points)
     if factor.numerator == 1:
-        return _every_nth(points, factor.denominator, corners)
+        return _every_nth(points, len(points) - 1, factor.denominator, corners)
+    _demand_whole(factor, len(points) - 1)
+    return _refine_between(points, corners, factor.numerator)
+
+
+def resample_ring(points: Array, factor: Fraction) -> Array:
+    """Put `factor` times as many elements on a closed line, as `resample_line` does on an open one.
+
+    A ring without corners is one periodic spline.
+
+    Parameters
+    ----------
+    points
+        Nodes [m], shape (nodes, dim); the first is not repeated.
+    factor
+        As in `resample_line`.
+
+    Raises
+    ------
+    ValueError
+        As `resample_line`.
+    """
+    count = len(points)
+    around = np.vstack([points[-2:], points, points[:2]])
+    corners = [i - 2 for i in find_corners(around) if 2 <= i < count + 2]
+    if factor.numerator == 1:
+        return _every_nth(points, count, factor.denominator, corners)
+    _demand_whole(factor, count)
+    if not corners:
+        line = np.vstack([points, points[:1]])
+        return _refine_piece(line, factor.numerator, ends="periodic")[:-1]
+    first = corners[0]
+    rolled = np.roll(points, -first, axis=0)
+    inner = [corner - first for corner in corners[1:]]
+    line = _refine_between(np.vstack([rolled, rolled[:1]]), inner, factor.numerator)
+    return np.roll(line[:-1], first * factor.numerator, axis=0)
+
+
+def _demand_whole(factor: Fraction, elements: int) -> None:
     if factor.denominator != 1:
-        raise ValueError(
-            f"a rod drawn by points takes whole multiples of its {len(points) - 1} elements"
-        )
+        raise ValueError(f"a rod drawn by points takes whole multiples of its {elements} elements")
+
+
+def _refine_between(points: Array, corners: list[int], factor: int) -> Array:
     ends = [0, *corners, len(points) - 1]
-    pieces = [
-        _refine_piece(points[a : b + 1], factor.numerator) for a, b in itertools.pairwise(ends)
-    ]
+    pieces = [_refine_piece(points[a : b + 1], factor) for a, b in itertools.pairwise(ends)]
     return np.vstack([*(piece[:-1] for piece in pieces), points[-1:]])
 
 
-def _every_nth(points: Array, step: int, corners: list[int]) -> Array:
-    elements = len(points) - 1
+def _every_nth(points: Array, elements: int, step: int, corners: list[int]) -> Array:
     if elements % step or any(corner % step for corner in corners):
         raise ValueError(
             f"a rod drawn by {len(points)} points cannot do with 1/{step} of its elements"
@@ -94,18 +130,18 @@ def _every_nth(points: Array, step: int, corners: list[int]) -> Array:
     return points[::step]
 
 
-def _refine_piece(points: Array, factor: int) -> Array:
+def _refine_piece(points: Array, factor: int, ends: str = "not-a-knot") -> Array:
     from scipy.interpolate import CubicSpline  # here, because it takes long to load
 
     chord = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     old = np.arange(len(points))
     new = np.arange(factor * (len(points) - 1) + 1) / factor
-    refined: Array = CubicSpline(chord, points)(np.interp(new, old, chord))
+    refined: Array = CubicSpline(chord, points, bc_type=ends)(np.interp(new, old, chord))
     refined[::factor] = points
     return refined
 
 
-def resample_list(values: Array, elements: int) -> Array:
+def resample_list(values: Array, elements: int, *, closed: bool = False) -> Array:
     """Return the values at the nodes of another mesh of evenly divided elements.
 
     Piecewise cubic and monotone between the old nodes (PCHIP), so a jump does not overshoot.
@@ -116,14 +152,25 @@ def resample_list(values: Array, elements: int) -> Array:
         One value for each node, shape (nodes,) or (nodes, dim).
     elements
         Number of elements of the new mesh.
+    closed
+        Whether the first node follows the last one.
     """
     from scipy.interpolate import PchipInterpolator
 
+    if closed:
+        count = len(values)
+        beside = 3  # nodes beyond either end that the interpolation sees
+        around = np.concatenate([values[-beside:], values, values[: beside + 1]])
+        places = np.arange(len(around), dtype=float) - beside
+        ring: Array = PchipInterpolator(places, around)(np.arange(elements) * (count / elements))
+        return ring
     old = np.arange(len(values), dtype=float)
     resampled: Array = PchipInterpolator(old, values)(np.linspace(0.0, old[-1], elements + 1))
     return resampled
 
 
-def arc_lengths(points: Array) -> Array:
-    """Return the arc length of each node [m], shape (nodes,)."""
+def arc_lengths(points: Array, *, closed: bool = False) -> Array:
+    """Return the arc length of each node [m], shape (nodes,); last that back at the first node."""
+    if closed:
+        points = np.vstack([points, points[:1]])
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])

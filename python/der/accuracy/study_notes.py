@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from der._core import Scenario
-from der.accuracy.refinement import count_elements
+from der.accuracy.refinement import count_nodes
 from der.accuracy.study_plan import Mesh, common_interval, find_leading_rod, why_one_mesh
 from der.accuracy.study_row import seconds_text
 from der.accuracy.study_trial import SKIPPED, Trial
@@ -58,8 +58,8 @@ def interval_note(steps: Sequence[float], every: float, frames: float) -> str:
 def mesh_name(scenario: Scenario) -> str:
     """Return what a mesh is called: ``41 nodes``."""
     rod = find_leading_rod(scenario)
-    counts = count_elements(scenario)
-    return f"{(counts[rod] if rod else next(iter(counts.values()))) + 1} nodes"
+    counts = count_nodes(scenario)
+    return f"{counts[rod] if rod else next(iter(counts.values()))} nodes"
 
 
 def missing_notes(trials: Sequence[Trial], meshes: Sequence[Mesh], max_seconds: float) -> list[str]:

@@ -10,6 +10,7 @@ from fractions import Fraction
 from der._core import Scenario, steppers
 from der.accuracy.refinement import (
     count_elements,
+    count_nodes,
     rods_that_cannot_be_refined,
     with_elements,
     with_time,
@@ -73,7 +74,7 @@ def choose_meshes(scenario: Scenario, nodes: Sequence[int] | None) -> list[Mesh]
     """
     rod = find_leading_rod(scenario)
     if rod is None:
-        own = next(iter(count_elements(scenario).values())) + 1
+        own = next(iter(count_nodes(scenario).values()))
         if nodes is not None and set(nodes) != {own}:
             raise ValueError(
                 f"this scene allows no other number of nodes than its own, {own}: "
@@ -88,7 +89,9 @@ def choose_meshes(scenario: Scenario, nodes: Sequence[int] | None) -> list[Mesh]
 def _mesh(scenario: Scenario, rod: str, nodes: int) -> Mesh:
     if nodes < 2:
         raise ValueError(f"a rod has at least 2 nodes, got {nodes}")
-    factor = Fraction(nodes - 1, count_elements(scenario)[rod])
+    elements = count_elements(scenario)[rod]
+    ends = count_nodes(scenario)[rod] - elements  # 1, and 0 of a ring
+    factor = Fraction(nodes - ends, elements)
     try:
         return Mesh(nodes, with_elements(scenario, factor))
     except ValueError as error:
@@ -98,12 +101,13 @@ def _mesh(scenario: Scenario, rod: str, nodes: int) -> Mesh:
 def _default_meshes(scenario: Scenario, rod: str) -> list[Mesh]:
     meshes = []
     elements = count_elements(scenario)[rod]
+    ends = count_nodes(scenario)[rod] - elements
     for factor in _DEFAULT_MESHES:
         count = factor * elements
         if count.denominator != 1 or (factor < 1 and count < _FEWEST_ELEMENTS):
             continue
         try:
-            meshes.append(_mesh(scenario, rod, int(count) + 1))
+            meshes.append(_mesh(scenario, rod, int(count) + ends))
         except ValueError:
             continue  # a support in the middle, say, that has no node on this mesh
     return meshes
@@ -111,7 +115,10 @@ def _default_meshes(scenario: Scenario, rod: str) -> list[Mesh]:
 
 def finer(mesh: Mesh, factor: int) -> Mesh:
     """Return a mesh with `factor` times the elements."""
-    return Mesh(factor * (mesh.nodes - 1) + 1, with_elements(mesh.scenario, factor))
+    refined = with_elements(mesh.scenario, factor)
+    counts = count_nodes(refined)
+    rod = find_leading_rod(refined) or next(iter(counts))
+    return Mesh(counts[rod], refined)
 
 
 def reference_meshes(scenario: Scenario, meshes: Sequence[Mesh]) -> dict[int, Scenario]:

@@ -10,7 +10,7 @@ from der._core import Scenario
 from der.accuracy.branches import are_far_apart, are_mirrored, distance, shape_on
 from der.accuracy.cross_check import CROSS_CHECK_STEPPER, cross_check_halvings, cross_check_scenario
 from der.accuracy.refinement import (
-    count_elements,
+    count_nodes,
     rods_that_cannot_be_refined,
     with_elements,
 )
@@ -167,8 +167,8 @@ def _affordable_levels(runs: VerificationRuns, refined: bool) -> int:
 
 
 def _mesh_label(scenario: Scenario, factor: int) -> str:
-    counts = count_elements(with_elements(scenario, factor))
-    return " + ".join(str(count + 1) for count in counts.values()) + " nodes"
+    counts = count_nodes(with_elements(scenario, factor))
+    return " + ".join(str(count) for count in counts.values()) + " nodes"
 
 
 class Runner:

@@ -55,13 +55,13 @@ def _write_nodes(result: RunData, file: TextIO, progress: ProgressFunction) -> N
         for fields in rods:
             table = np.column_stack(
                 [
-                    fields.rod.arc_lengths,
+                    fields.rod.line_arc_lengths,
                     fields.positions[frame],
                     fields.velocities[frame],
                     *(values[frame] for values in fields.at_nodes.values()),
                 ]
             )
-            rows = zip(fields.rod.nodes.tolist(), table.tolist(), strict=True)
+            rows = zip(fields.rod.line_nodes.tolist(), table.tolist(), strict=True)
             writer.writerows([*start, fields.rod.name, node, *row] for node, row in rows)
         progress((frame + 1) / count)
 
@@ -89,10 +89,10 @@ def _write_modes(result: RunData, file: TextIO) -> None:
     writer.writerow(["mode", kind, "rod", "node", place, *shapes])
     for number, (shape, value) in enumerate(zip(mode_shapes(result), values, strict=True), 1):
         for rod in result.rods:
-            rows = np.column_stack([rod.arc_lengths, shape[rod.nodes]]).tolist()
+            rows = np.column_stack([rod.line_arc_lengths, shape[rod.line_nodes]]).tolist()
             writer.writerows(
                 [number, float(value), rod.name, node, *row]
-                for node, row in zip(rod.nodes.tolist(), rows, strict=True)
+                for node, row in zip(rod.line_nodes.tolist(), rows, strict=True)
             )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der._core import array_units
-from der.fields import fields_of, rod_fields
+from der.fields import along_line, fields_of, rod_fields
 from der.progress import ProgressFunction
 from der.run_data import RunData
 
@@ -45,10 +45,10 @@ def write_npz(result: RunData, out: Path, progress: ProgressFunction) -> list[Pa
     arrays |= result.data
     for fields in rod_fields(result):
         rod: dict[str, NDArray[Any]] = {
-            "nodes": fields.rod.nodes,
-            "arc_lengths": fields.rod.arc_lengths,
+            "nodes": fields.rod.line_nodes,
+            "arc_lengths": fields.rod.line_arc_lengths,
             "radius": np.array(fields.rod.radius),
-            "sphere_radii": fields.rod.sphere_radii,
+            "sphere_radii": along_line(fields.rod.sphere_radii, fields.rod),
             **{f"edge_{name}": values for name, values in fields.at_edges.items()},
             **fields.at_nodes,
         }

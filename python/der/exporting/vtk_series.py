@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from der.fields import RodFields, rod_fields
+from der._core import Rod
+from der.fields import RodFields, along_line, rod_fields
 from der.film import mode_shapes
 from der.progress import ProgressFunction
 from der.run_data import RunData
@@ -44,9 +45,9 @@ def write_vtk(result: RunData, out: Path, progress: ProgressFunction) -> list[Pa
         old.unlink()
     (out / "sections.pvd").unlink(missing_ok=True)
     rods = rod_fields(result)
-    sizes = np.array([len(fields.rod.nodes) for fields in rods])
+    sizes = np.array([len(fields.rod.line_nodes) for fields in rods])
     sections, directors = sections_of(result), directors_along(result)
-    surfaces = _Surfaces(sections, sizes.tolist())
+    surfaces = _Surfaces(sections, [fields.rod for fields in rods])
     lines = np.full(len(rods), VtkPolyLine.tid, dtype=np.uint8)
     # A path has no time: its frames are numbered.
     times = result.times if result.path is None else np.arange(len(result.times), dtype=np.float64)
@@ -101,12 +102,13 @@ class _Surfaces:
     nodes
         The node, counted along all rods, at which each corner stands, shape (corners,).
     connectivity, offsets
-        The polygons as VTK has them: the sides of each edge, and the two ends of each rod.
+        The polygons as VTK has them: the sides of each edge, and the two ends of each open rod.
     cell_rods
         The rod of each polygon.
     """
 
-    def __init__(self, sections: list[Section | None], sizes: list[int]) -> None:
+    def __init__(self, sections: list[Section | None], rods: list[Rod]) -> None:
+        sizes = [len(rod.line_nodes) for rod in rods]
         self._outlines = [None if section is None else section.outline for section in sections]
         self.rods = [number for number, one in enumerate(self._outlines) if one is not None]
         nodes, cells, owners = [np.zeros(0, dtype=np.int64)], [], []
@@ -120,7 +122,8 @@ class _Surfaces:
             beside = np.roll(numbers, -1, axis=1)
             wide = np.any(np.roll(outline, -1, axis=0) != outline, axis=1)  # sides with a length
             sides = np.stack([numbers[:-1], beside[:-1], beside[1:], numbers[1:]], axis=2)
-            own = [*sides[:, wide].reshape(-1, 4), numbers[0, ::-1], numbers[-1]]
+            ends = [] if rods[number].closed else [numbers[0, ::-1], numbers[-1]]
+            own = [*sides[:, wide].reshape(-1, 4), *ends]
             cells += own
             owners += [number] * len(own)
             corner += size * around
@@ -156,13 +159,15 @@ def _point_data(rods: list[RodFields], frame: int) -> PointData:
         for name in rods[0].at_nodes
     }
     # Without sections rods do not twist: 0 [rad/m], for programs that read it of all rods.
-    data.setdefault("twist", np.zeros(sum(len(fields.rod.nodes) for fields in rods)))
+    data.setdefault("twist", np.zeros(sum(len(fields.rod.line_nodes) for fields in rods)))
     data["velocity"] = _in_space(np.vstack([fields.velocities[frame] for fields in rods]))
     data["radius"] = np.concatenate(
-        [np.full(len(fields.rod.nodes), fields.rod.radius) for fields in rods]
+        [np.full(len(fields.rod.line_nodes), fields.rod.radius) for fields in rods]
     )
-    data["sphere_radius"] = np.concatenate([fields.rod.sphere_radii for fields in rods])
-    data["arc_length"] = np.concatenate([fields.rod.arc_lengths for fields in rods])
+    data["sphere_radius"] = np.concatenate(
+        [along_line(fields.rod.sphere_radii, fields.rod) for fields in rods]
+    )
+    data["arc_length"] = np.concatenate([fields.rod.line_arc_lengths for fields in rods])
     return data
 
 
@@ -176,7 +181,7 @@ def _section_data(
 
     Sizes that are not known are 0; only the model ``spatial`` has a director.
     """
-    counts = [len(fields.rod.nodes) for fields in rods]
+    counts = [len(fields.rod.line_nodes) for fields in rods]
     sizes = [(0.0, 0.0) if one is None else (one.width, one.height) for one in sections]
     width, height = np.repeat(np.array(sizes), counts, axis=0).T
     data: PointData = {"width": width.copy(), "height": height.copy()}
@@ -189,7 +194,7 @@ def _section_data(
 def _mode_data(result: RunData, rods: list[RodFields]) -> PointData:
     """Return the displacements of each mode as vectors, which ParaView warps the rods by."""
     return {
-        f"mode_{number}": _in_space(np.vstack([shape[fields.rod.nodes] for fields in rods]))
+        f"mode_{number}": _in_space(np.vstack([shape[fields.rod.line_nodes] for fields in rods]))
         for number, shape in enumerate(mode_shapes(result), 1)
     }
 

@@ -66,7 +66,7 @@ def _draw_mode(axes: Axes, picture: Picture, rest: Array, shape: Array, label: s
     draw_shapes(axes, rods, rest - shape, MUTED, linestyle=":")
     draw_shapes(axes, rods, rest, MUTED, linestyle="--")
     for rod in rods:
-        line = (rest + shape)[rod.nodes]
+        line = (rest + shape)[rod.line_nodes]
         axes.plot(line[:, 0], line[:, 1], color=PALETTE[0], zorder=4)
     draw_supports(axes, rods, picture.held_nodes(0), rest)
     draw_springs(axes, rods, picture.springs, rest)

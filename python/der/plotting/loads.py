@@ -149,6 +149,8 @@ def _draw_force(axes: Axes, rod: Rod, load: PointLoad, positions: Array, text: s
 
 def _outwards(rod: Rod, at: float, positions: Array) -> Array:
     """Return the unit vector that leads out of the rod at one of its ends, else zero."""
+    if rod.closed:
+        return np.zeros(2)
     line = positions[rod.nodes][:, :2]
     if at <= 1e-9 * rod.length:
         edge = line[0] - line[1]

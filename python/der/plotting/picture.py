@@ -169,7 +169,7 @@ class Picture:
         ]
 
     def half_widths(self, frame: int, positions: Array) -> dict[str, Array]:
-        """Return how far rods reach to both sides of their lines [m], by name, shape (nodes,).
+        """Return how far rods reach to both sides of their lines [m], by name, shape (line nodes,).
 
         Parameters
         ----------
@@ -183,7 +183,7 @@ class Picture:
         dict
             Rods with sections alone; the others reach as far as their radius.
         """
-        nodes = {rod.name: rod.nodes for rod in self.rods}
+        nodes = {rod.name: rod.line_nodes for rod in self.rods}
         return {
             name: seen_half_widths(positions[nodes[name]], directors[frame], outline)
             for name, outline, directors in self._sections

@@ -46,7 +46,7 @@ def outline(positions: Array, radius: float | Array) -> Array:
     Parameters
     ----------
     positions
-        Centre line [m], shape (nodes, 2).
+        Centre line [m], shape (nodes, 2); that of a ring ends with its first node.
     radius
         Half the thickness [m], one for all or shape (nodes,).
 
@@ -59,7 +59,10 @@ def outline(positions: Array, radius: float | Array) -> Array:
     tangents = edges / np.linalg.norm(edges, axis=1, keepdims=True)
     # At a node the sides of the two edges meet on the bisector, at 1 / cos(half the turning angle);
     # no farther than twice the radius, or a fold would have an endless spike.
-    sums = np.vstack([2.0 * tangents[:1], tangents[:-1] + tangents[1:], 2.0 * tangents[-1:]])
+    ends = [2.0 * tangents[:1], 2.0 * tangents[-1:]]
+    if np.array_equal(positions[0], positions[-1]):
+        ends = [tangents[:1] + tangents[-1:]] * 2
+    sums = np.vstack([ends[0], tangents[:-1] + tangents[1:], ends[1]])
     along = 2.0 * sums / np.maximum(np.sum(sums**2, axis=1, keepdims=True), 1.0)
     reach = np.broadcast_to(radius, len(positions))[:, np.newaxis]
     offsets = reach * np.column_stack([-along[:, 1], along[:, 0]])
@@ -98,7 +101,7 @@ def draw_shapes(
     """
     half_widths = half_widths or {}
     for rod in rods:
-        line = positions[rod.nodes][:, :2]
+        line = positions[rod.line_nodes][:, :2]
         axes.plot(line[:, 0], line[:, 1], color=colour, linestyle=linestyle, label=label, zorder=3)
         label = None  # once for all rods of the instant
         if linestyle == "-":
@@ -116,7 +119,8 @@ def _draw_thickness(axes: Axes, line: Array, half_width: float | Array, colour: 
 
 def _draw_spheres(axes: Axes, rod: Rod, line: Array, colour: ColorType) -> None:
     radii = rod.sphere_radii
-    circles = [Circle((x, y), r) for (x, y), r in zip(line, radii, strict=True) if r > 0.0]
+    nodes = line[: len(radii)]
+    circles = [Circle((x, y), r) for (x, y), r in zip(nodes, radii, strict=True) if r > 0.0]
     if circles:
         axes.add_collection(
             PatchCollection(circles, facecolor=(*to_rgb(colour), 0.12), edgecolor=colour, zorder=1)

@@ -100,7 +100,7 @@ def draw_supports(
     positions
         Positions of all nodes at that time [m], shape (nodes, dim); the view is along z.
     """
-    ends = {(rod.name, int(rod.nodes[i])): i for rod in rods for i in (0, -1)}
+    ends = {(rod.name, int(rod.nodes[i])): i for rod in rods if not rod.closed for i in (0, -1)}
     for node in held:
         symbol, angle = _symbol(node, ends.get((node.rod, node.node)))
         _draw_symbol(axes, symbol, angle, positions[node.node], f"support-{node.rod}-{node.node}")

@@ -159,9 +159,9 @@ def _rod(rod: Rod, positions: Array, unit: float, fields: dict[str, Array]) -> d
     radii = (rod.sphere_radii / unit).tolist()
     return {
         "name": rod.name,
-        "nodes": len(rod.nodes),
+        "nodes": len(rod.line_nodes),
         "spheres": [(i, radius) for i, radius in enumerate(radii) if radius > 0.0],
-        "positions": _packed(positions[:, rod.nodes]),
+        "positions": _packed(positions[:, rod.line_nodes]),
         "fields": {name: _packed(values) for name, values in fields.items()},
     }
 
@@ -254,8 +254,9 @@ def _load_symbols(result: RunData, loads: ActingLoads) -> list[dict[str, Any]]:
             full[: len(value)] = value
         else:
             full[2] = value  # a planar moment acts about z
-        right = int(np.clip(np.searchsorted(own.arc_lengths, at), 1, len(own.nodes) - 1))
-        left, length = own.arc_lengths[right - 1], np.diff(own.arc_lengths)[right - 1]
+        places = own.line_arc_lengths
+        right = int(np.clip(np.searchsorted(places, at), 1, len(places) - 1))
+        left, length = places[right - 1], np.diff(places)[right - 1]
         return {
             "kind": kind,
             "rod": number,

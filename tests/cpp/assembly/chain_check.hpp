@@ -53,8 +53,8 @@ inline void check_chains(const Model& model) {
     const Derivatives2 expected = sum_of_kernels(model, here);
     const double rounding = 1e-14 * expected.hessian.lpNorm<Eigen::Infinity>();
 
-    for (const MatrixLayout& layout : {MatrixLayout::compressed(pattern),
-                                       MatrixLayout::band(pattern.size, pattern.half_bandwidth)}) {
+    for (const MatrixLayout& layout :
+         {MatrixLayout::compressed(pattern), MatrixLayout::bordered_band(pattern)}) {
       const Assembler assembler(model, layout);
       Vector gradient(model.num_dofs());
       Vector values(assembler.num_values());

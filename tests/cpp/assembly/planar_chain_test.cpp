@@ -20,6 +20,8 @@ rods:
      cross_section: {stiffness: {EA: 50, EI: 2, mass_per_length: 0.1}}}
   - {name: stub, nodes: 4, from: [0, 2], to: [1, 2],
      cross_section: {stiffness: {EA: 50, EI: 2, mass_per_length: 0.1}}}
+  - {name: ring, points: [[0, 4], [1, 4], [1.5, 5], [1.2, 6], [0.2, 6.2], [-0.4, 5]], closed: true,
+     cross_section: {stiffness: {EA: 50, EI: 2, mass_per_length: 0.1}}}
 supports:
   - {rod: arm, at: start, clamp: true}
   - {rod: bow, at: {node: 3}, fix: [y]}
@@ -36,12 +38,15 @@ TEST_CASE("chains are found where edges follow one another") {
   const auto chains = PlanarChain::find(model, MatrixLayout::compressed(pattern));
   // Edges next to a clamp start from its pivot and are no plain stretch elements; the one edge that
   // the clamps of the stub leave is no chain.
-  REQUIRE(chains.size() == 2);
+  REQUIRE(chains.size() == 3);
   CHECK(chains[0].range_of<Stretch<2>>().count == 10);
   CHECK(chains[0].range_of<PlanarBend<AngleCurvature>>().count == 9);
   CHECK(chains[0].range_of<PlanarBend<TangentCurvature>>().count == 0);
-  CHECK(chains[1].range_of<Stretch<2>>().count == 6);
-  CHECK(chains[1].range_of<PlanarBend<TangentCurvature>>().count == 5);
+  // The ring but for its closing edge and the joints at the ends of that.
+  CHECK(chains[1].range_of<Stretch<2>>().count == 5);
+  CHECK(chains[1].range_of<PlanarBend<AngleCurvature>>().count == 4);
+  CHECK(chains[2].range_of<Stretch<2>>().count == 6);
+  CHECK(chains[2].range_of<PlanarBend<TangentCurvature>>().count == 5);
 }
 
 TEST_CASE("a chain gives the gradient and the Hessian of its elements") {

@@ -10,7 +10,7 @@ namespace der::test {
 namespace {
 
 // Rods with different sections, rest shapes and measures of curvature; ends of every kind; one node
-// held in the middle; a rod between clamps that leave no chain.
+// held in the middle; a rod between clamps that leave no chain; a ring.
 const char* const kRods = R"(
 title: Rods
 model: spatial
@@ -29,6 +29,12 @@ rods:
     cross_section: {stiffness: {EA: 50, EI: 2, GJ: 1, mass_per_length: 0.1}}
   - {name: stub, nodes: 4, from: [0, 2, 0], to: [1, 2, 0],
      cross_section: {stiffness: {EA: 50, EI: 2, GJ: 1, mass_per_length: 0.1}}}
+  - name: ring
+    points: [[0, 4, 0], [1, 4, 0.1], [1.5, 5, 0], [1.2, 6, 0.3], [0.2, 6.2, 0], [-0.4, 5, 0]]
+    closed: true
+    initial_twist: 0.4
+    natural_twist: 0.1
+    cross_section: {stiffness: {EA: 50, EI1: 2, EI2: 0.5, GJ: 1, mass_per_length: 0.1}}
 supports:
   - {rod: arm, at: start, clamp: true}
   - {rod: bow, at: {node: 3}, fix: [y]}
@@ -60,11 +66,14 @@ std::vector<SpatialChain> chains_of(const Model& model) {
 
 TEST_CASE("chains in space are found where edges follow one another") {
   const auto sections = chains_of(build_model(Scenario::parse(kRods).scene()));
-  REQUIRE(sections.size() == 2);
+  REQUIRE(sections.size() == 3);
   CHECK(sections[0].range_of<Stretch<3>>().count == 7);
   CHECK(sections[0].range_of<SpatialBend<AngleCurvature>>().count == 6);
   CHECK(sections[0].range_of<SpatialBend<TangentCurvature>>().count == 0);
-  CHECK(sections[1].range_of<SpatialBend<TangentCurvature>>().count == 3);
+  // The ring but for its closing edge and the joints at the ends of that.
+  CHECK(sections[1].range_of<Stretch<3>>().count == 5);
+  CHECK(sections[1].range_of<SpatialBend<AngleCurvature>>().count == 4);
+  CHECK(sections[2].range_of<SpatialBend<TangentCurvature>>().count == 3);
   const auto tangents = chains_of(build_model(Scenario::parse(kBendingRods).scene()));
   REQUIRE(tangents.size() == 2);
   CHECK(tangents[0].range_of<IsotropicBend<AngleCurvature>>().count == 6);

@@ -135,7 +135,7 @@ typename IsotropicClamp<Curvature>::Constants sample_constants(const IsotropicCl
 template <class Curvature>
 typename SpatialBend<Curvature>::Constants sample_constants(const SpatialBend<Curvature>&,
                                                             Random& random) {
-  return {sample_joint(random), FrameBlock::of(0), FrameBlock::of(1)};
+  return {sample_joint(random), FrameBlock::of(0), FrameBlock::of(1), uniform(random, -3.0, 3.0)};
 }
 
 inline CornerBend::Constants sample_constants(const CornerBend&, Random& random) {

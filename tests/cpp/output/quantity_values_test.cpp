@@ -149,7 +149,9 @@ TEST_CASE("every quantity is made in one way") {
   for (const Quantity& quantity : quantities()) {
     CAPTURE(quantity.name);
     const bool is_energy = quantity.kind == QuantityKind::Energy;
-    CHECK((quantity.make_field == nullptr) == is_energy);
+    const bool is_of_ring = quantity.kind == QuantityKind::Ring;
+    CHECK((quantity.make_field == nullptr) == (is_energy || is_of_ring));
+    CHECK((quantity.read_rod != nullptr) == is_of_ring);
     CHECK(quantity.energies.empty() != is_energy);
     CHECK(find_quantity(quantity.name) == &quantity);
   }

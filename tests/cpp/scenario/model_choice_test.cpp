@@ -205,6 +205,23 @@ TEST_CASE("model: bending without twist takes rods that are straight without str
         "spatial_bend");
 }
 
+TEST_CASE("model: a ring that leaves its plane is twisted by its writhe") {
+  const auto ring = [](const std::string& last, const std::string& closed) {
+    return polyline(points(last)) +
+           Overrides{{"rods.beam.closed", closed}, {"rods.beam.natural_curvature", "[0, 0]"}};
+  };
+  CHECK(chosen(ring("[1, 1, 0]", "true")) == "planar");
+  CHECK(chosen(ring("[1, 1, 1]", "false")) == "spatial_bend");
+  const ChosenModel tilted = model_of(ring("[1, 1, 1]", "true"));
+  CHECK(tilted.kind == ModelChoice::Spatial);
+  CHECK(contains(tilted.reason, "rod 'beam' is closed, so that its writhe twists it"));
+  const Overrides cable{
+      {"rods.beam.material", ""},
+      {"rods.beam.cross_section", "{stiffness: {EA: 1, EI: 0, GJ: 1, mass_per_length: 1}}"}};
+  CHECK(chosen(ring("[1, 1, 1]", "true") + cable) == "spatial_bend");
+  CHECK(chosen(ring("[1, 1, 0]", "true") + Overrides{{"model", "spatial_bend"}}) == "spatial_bend");
+}
+
 TEST_CASE("model: bending without twist takes at most one section of a rod that is held") {
   const auto held = [](const std::string& start, const std::string& end) {
     return model_of(kAlongZ +

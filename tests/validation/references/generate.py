@@ -41,6 +41,7 @@ SPATIAL = (
     "spatial_frequencies",
     "curved_twisted_rod",
     "writhe",
+    "deployable_ring",
     "spatial_motion",
     "falling_strip",
 )

@@ -88,7 +88,9 @@ def _crossing(a: Array, b: Array, c: Array, d: Array) -> Array:
         normals.append(normal / np.where(size > 0.0, size, 1.0))
     angle = np.zeros(len(c))
     for first, second in zip(normals, normals[1:] + normals[:1], strict=True):
-        angle += np.arcsin(np.clip((first * second).sum(axis=1), -1.0, 1.0))
+        # The arc sine of the product, which it tells to all digits near a right angle too.
+        size = np.linalg.norm(np.cross(first, second), axis=1)
+        angle += np.arctan2((first * second).sum(axis=1), size)
     sign = np.sign((np.cross(d - c, b - a) * (c - a)).sum(axis=1))
     return np.asarray(angle * sign)
 

@@ -11,6 +11,7 @@ namespace der {
 
 struct Model;
 struct RodLayout;
+struct State;
 class RodField;
 
 /// The object that a quantity belongs to; it determines where a probe of it can be placed.
@@ -21,6 +22,7 @@ enum class QuantityKind {
   Bend,      ///< of the rod's bending: any arc length, with two values where moments jump
   Edge,      ///< of the edges: any arc length, with two values where forces jump
   Section,   ///< of the sections of a rod in space: any arc length
+  Ring,      ///< of a closed rod as a whole: no place
   Energy,    ///< of a rod or of the whole model: no place
 };
 
@@ -40,16 +42,20 @@ enum class QuantityScope {
 /// Makes the reader of a quantity along a rod (output/rod_field.hpp).
 using RodFieldMaker = std::unique_ptr<RodField> (*)(const RodLayout& rod, const Model& model);
 
+/// Reads a quantity of a rod as a whole (output/ring_numbers.hpp).
+using RodReading = double (*)(const RodLayout& rod, const Model& model, const State& state);
+
 /// One row of the table of quantities: probes, `Replay::along`, exports and views follow it.
 struct Quantity {
   std::string name;
   std::string unit;  ///< "" for a pure number
   QuantityKind kind;
   std::string meaning;
-  RodFieldMaker make_field = nullptr;  ///< of energies none
+  RodFieldMaker make_field = nullptr;  ///< of energies and of numbers of rings none
   std::vector<EnergyTerm> energies;    ///< the terms that an energy adds up; else empty
   bool is_component = false;  ///< of the position or velocity, which exports write as vectors
   QuantityScope scope = QuantityScope::All;
+  RodReading read_rod = nullptr;  ///< of numbers of rings
 };
 
 /// The table. It is written in output/quantities.cpp, where the makers are; this header is all that

@@ -38,9 +38,11 @@ struct SpatialBend {
     AJoint joint;
     FrameBlock before;
     FrameBlock after;
+    double glued = 0.0;  ///< [rad] by which the section after it is turned without strain
   };
 
-  /// The frames of the two edges, and the whole twist between them [rad].
+  /// The frames of the two edges, that after a glued joint turned back, and the whole twist between
+  /// them [rad].
   struct Frames {
     EdgeFrame a;
     EdgeFrame b;
@@ -50,9 +52,11 @@ struct SpatialBend {
                        const Eigen::Matrix<double, kDofs, 1>& x) {
     const EdgeFrame a(x.segment<3>(3) - x.segment<3>(0), x[9], c.before.tangent(values),
                       c.before.director(values));
-    const EdgeFrame b(x.segment<3>(6) - x.segment<3>(3), x[10], c.after.tangent(values),
+    const double theta_after = x[10] - c.glued;
+    const EdgeFrame b(x.segment<3>(6) - x.segment<3>(3), theta_after, c.after.tangent(values),
                       c.after.director(values));
-    return {a, b, whole_twist(a.frame, b.frame, x[9], x[10], values[c.after.twist_at_start()])};
+    return {a, b,
+            whole_twist(a.frame, b.frame, x[9], theta_after, values[c.after.twist_at_start()])};
   }
 
   template <Derivatives D>

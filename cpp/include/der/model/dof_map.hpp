@@ -45,6 +45,8 @@ double largest_over(const std::vector<DofBlock>& blocks, const Value& value) {
 /// The positions of all nodes are stored first, then the angles of all edges, so that each of the
 /// two is one contiguous view. Those that the solver finds, the free ones, are eliminated
 /// node by node, an angle after the node at which its edge begins: that makes the matrix a band.
+/// The first node of a ring is eliminated after all of its others, next to the last one: what
+/// couples the ring's end with its start is then in the rows of a few last degrees of freedom.
 class DofMap {
  public:
   DofMap() = default;
@@ -62,6 +64,8 @@ class DofMap {
   /// Its node, or the node at which its edge begins.
   [[nodiscard]] Index node_of(Index dof) const;
 
+  /// Says that the nodes from `first_node` to `last_node` are those of a ring.
+  void close(Index first_node, Index last_node);
   /// Marks the `held` ones as prescribed by supports and renumbers the free ones.
   void hold(const std::vector<Index>& held);
   /// All free ones, in the order of elimination.
@@ -95,12 +99,19 @@ class DofMap {
   [[nodiscard]] double largest_free_force(const Vector& force) const;
 
  private:
+  struct Ring {
+    Index first_node = 0;
+    Index last_node = 0;
+  };
+
   void number_free();
+  [[nodiscard]] Index eliminated_with(Index dof) const;
 
   int dimension_ = 2;
   double length_ = 1.0;
   Index num_nodes_ = 0;
   std::vector<Index> starts_;  // of the edges that have an angle
+  std::vector<Ring> rings_;
   std::vector<DofBlock> blocks_;
   std::vector<Index> free_;
   std::vector<Index> free_index_;

@@ -10,7 +10,7 @@ namespace der {
 
 /// A place along a rod as a weighted sum of its nodes (or of its edges).
 struct Weighted {
-  Index place = 0;  ///< position in RodLayout::nodes, or number of the edge after that position
+  Index place = 0;  ///< of the node (RodLayout::node), or number of the edge after that place
   double weight = 0.0;
 };
 
@@ -19,6 +19,10 @@ struct EdgePart {
   Index edge = 0;
   double from = 0.0, to = 0.0;
 };
+
+/// The turns around a rod after which a place on it may concern an edge (RodLayout: places of a
+/// ring are counted on): 0, and of a ring one to either side.
+std::vector<Index> turns_of(const RodLayout& rod);
 
 /// The parts of a rod's edges that lie between two rest arc lengths [m].
 std::vector<EdgePart> edge_parts(const RodLayout& rod, double from, double to);
@@ -31,7 +35,7 @@ double length_at_last_end(const EdgePart& part, const RodLayout& rod);
 /// Distance [m] from the middle of the outermost edge to a place beyond it; 0 for places inside.
 double beyond_outer_middle(const RodLayout& rod, double s);
 
-/// Rest arc length [m] that a location names (not for Kind::All).
+/// Rest arc length [m] that a location names (not for Kind::All). The end of a ring is its start.
 double arc_length_of(const scenario::Location& location, const RodLayout& rod);
 
 /// Rest arc lengths [m] that a location names: those of every node for Kind::All, else one.

@@ -43,7 +43,12 @@ struct RodJoint {
   double bend_length = 0.0;   ///< [m] over which it does
   double twist_place = 0.0;   ///< arc length [m] at which it twists
   double twist_length = 0.0;  ///< [m] over which it does
+  /// Angle [rad] by which the section after it was turned when it was glued to the one before:
+  /// at the closing joint of a ring. No strain counts it.
+  double glued = 0.0;
   JointStrain rest;
+  /// The place of its node: of the joint that closes a ring, the number of nodes.
+  [[nodiscard]] Index place() const { return before >= 0 ? before + 1 : after; }
   Vec2 natural_curvature = Vec2::Zero();  ///< towards the two directors [1/m]
 };
 
@@ -97,8 +102,13 @@ struct FoundationPlace {
 
 /// Where the nodes and edges of one rod are in the model, and what is known of it for probes and
 /// drawings. Only the builder assumes that a rod is a chain; everybody else reads these lists.
+///
+/// A closed rod, a ring, has as many edges as nodes: the last edge leads back to the first node.
+/// Places along it, which number its nodes, and edges are counted on beyond its end and before its
+/// start: of n nodes place n is place 0, one length of the ring further on.
 struct RodLayout {
   std::string name;
+  bool closed = false;
   std::vector<Index> nodes;         ///< in the order of the arc length
   std::vector<double> arc_length;   ///< rest arc length of each node [m]
   std::vector<double> edge_length;  ///< rest length of each edge [m]
@@ -117,7 +127,9 @@ struct RodLayout {
   double initial_twist = 0.0;            ///< of these frames [rad/m]
   std::vector<Vec2> natural_curvatures;  ///< towards the two directors, at each node [1/m]
   std::vector<double> natural_twist;     ///< at each node [rad/m]; empty: stress-free as drawn
-  std::vector<RodJoint> joints;  ///< of a rod in space that bends, from its start to its end
+  /// Of a rod in space that bends, from its start to its end; that between the last edge of a ring
+  /// and its first one stands last.
+  std::vector<RodJoint> joints;
   /// Natural curvature of a planar rod at each node [1/m]; empty: the initial shape is stress-free.
   std::vector<double> natural_curvature;
   /// Natural turning angle at each node that bends [rad], at clamped ones of the clamp's cells; 0
@@ -132,10 +144,32 @@ struct RodLayout {
   double draw_radius = 0.0;           ///< half the height of the section [m]; 0 if not known
   std::vector<double> sphere_radius;  ///< per node [m]; 0: no sphere
 
-  [[nodiscard]] double rest_length() const { return arc_length.back(); }
+  [[nodiscard]] double rest_length() const { return arc_length.back() + closing_length(); }
   /// Two arc lengths [m] closer than this are the same place.
   [[nodiscard]] double same_place() const { return 1e-9 * rest_length(); }
-  [[nodiscard]] Index num_edges() const { return static_cast<Index>(nodes.size()) - 1; }
+  [[nodiscard]] Index num_edges() const { return static_cast<Index>(edge_length.size()); }
+  /// Length [m] of the edge from the last node of a ring to the first; 0 of an open rod.
+  [[nodiscard]] double closing_length() const { return closed ? edge_length.back() : 0.0; }
+  /// The position in `nodes` of a place; any number of a ring, of an open rod only these.
+  [[nodiscard]] Index position(Index place) const;
+  /// The node at a place.
+  [[nodiscard]] Index node(Index place) const {
+    return nodes[static_cast<std::size_t>(position(place))];
+  }
+  /// Rest arc length [m] of a place.
+  [[nodiscard]] double arc_length_at(Index place) const;
+  /// The edge that arrives at a place; -1: none does.
+  [[nodiscard]] Index edge_before(Index place) const {
+    return closed ? position(place - 1) : place - 1;
+  }
+  /// The edge that leaves a place; -1: none does.
+  [[nodiscard]] Index edge_after(Index place) const {
+    return closed ? position(place) : (place < num_edges() ? place : -1);
+  }
+  /// Whether two edges meet at a place.
+  [[nodiscard]] bool is_inner(Index place) const {
+    return edge_before(place) >= 0 && edge_after(place) >= 0;
+  }
   /// Rest arc length [m] of the middle of an edge.
   [[nodiscard]] double edge_middle(Index edge) const;
   /// Voronoi length [m]: the rod's part that is nearer to this node than to another.
@@ -143,7 +177,7 @@ struct RodLayout {
   [[nodiscard]] Edge edge(Index number, const Model& model) const;
   /// Degrees of freedom (x, y of both ends) of an edge of a planar model.
   [[nodiscard]] std::array<Index, 4> edge_dofs(Index edge, const Model& model) const;
-  /// Null if the tangent at that node is free.
+  /// Null if the tangent at that place is free.
   [[nodiscard]] const Clamp* clamp_at(Index place) const;
   /// Null if no moment acts at that arc length [m].
   [[nodiscard]] const MomentPlace* moment_place_at(double s) const;

@@ -32,6 +32,7 @@ struct SavedRod {
   std::string name;
   std::vector<Index> nodes;
   std::vector<double> arc_length;  ///< rest arc length of each node [m]
+  bool closed = false;
 };
 
 /// The last complete frame of a run file, with its scene and rods.

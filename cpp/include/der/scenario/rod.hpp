@@ -39,6 +39,7 @@ struct Rod {
   std::string name;
   /// Initial node positions [m], one per node (from `points`, or spaced evenly over `from`..`to`).
   std::vector<Components> points;
+  bool closed = false;  ///< whether an edge joins the last node and the first
   CrossSection cross_section;
   /// Direction of director 1, that of the section's width, at the rod's start: any length, three
   /// components, made perpendicular to the first edge. Absent: +z, or where the rod begins along z
@@ -54,6 +55,8 @@ struct Rod {
   std::vector<Components> initial_velocity;
   std::vector<Sphere> spheres;
   Mark mark;
+
+  [[nodiscard]] int num_edges() const { return static_cast<int>(points.size()) - (closed ? 0 : 1); }
 };
 
 }  // namespace der::scenario

@@ -18,6 +18,11 @@ struct Support;
 // against the tangent over 25/48 l, and the next node over 47/48 l (in place of l/2 and l, an edge
 // that starts from the node, and an error of order l^2). docs/mechanics.md derives it.
 
+/// The edge that leaves a place, or at the end of a rod the one that arrives there.
+Index edge_beside(const RodLayout& rod, Index place);
+/// The place nearest to another at which two edges meet, on a rod of two edges or more.
+Index inner_place_near(const RodLayout& rod, Index place);
+
 /// Angle [rad] of the tangent at a node of the initial shape: that of the circle through the node's
 /// neighbourhood, so that a clamp on an arc holds the arc's tangent and not the chord's.
 double initial_tangent_angle(const RodLayout& rod, Index place, const Model& model);

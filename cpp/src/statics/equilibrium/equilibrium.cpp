@@ -1,5 +1,6 @@
 #include "der/statics/equilibrium.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -192,7 +193,12 @@ class EquilibriumSearch {
     shape.positions = std::move(here.coordinates);
     report_.residual = model_.dofs.largest_free_force(loads_.force - stiffness_.gradient());
     // A Newton step is meaningless in a neutral equilibrium, so the forces must be in balance.
-    if (neutral && report_.residual > kUnbalanced * newton_.force_scale()) resolved = false;
+    // Those of a structure without loads may be no more than the rounding errors of its elements.
+    double unbalanced = kUnbalanced * newton_.force_scale();
+    if (is_unloaded(model_, loads_)) {
+      unbalanced = std::max(unbalanced, stiffness_.rounding() * model_.size());
+    }
+    if (neutral && report_.residual > unbalanced) resolved = false;
     report_.largest_turning_angle = largest_turning_angle(model_, shape.positions);
     if (resolved) return std::nullopt;
     return FailedSearch{EquilibriumFailure::LostInRoundoff, {}};

@@ -16,11 +16,13 @@ constexpr std::array<double, 3> kBends{0.3, 1.0, 3.0};
 /// Number of directions of the straight shapes.
 constexpr int kDirections = 8;
 
-/// Every rod straight from its first node in one direction [rad], held degrees of freedom in place.
+/// Every open rod straight from its first node in one direction [rad], held degrees of freedom in
+/// place. A ring has no straight shape: it stays as it is.
 Vector straightened(const Model& model, const StaticLoads& loads, const Shape& start,
                     double direction) {
   Vector positions = start.positions;
   for (const RodLayout& rod : model.rods) {
+    if (rod.closed) continue;
     const Vec2 first = start.positions.segment<2>(model.dof(rod.nodes.front(), 0));
     for (std::size_t i = 0; i < rod.nodes.size(); ++i) {
       positions.segment<2>(model.dof(rod.nodes[i], 0)) =

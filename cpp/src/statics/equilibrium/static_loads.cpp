@@ -21,6 +21,11 @@ StaticLoads scaled(const Model& model, const StaticLoads& loads, double share) {
   return result;
 }
 
+bool is_unloaded(const Model& model, const StaticLoads& loads) {
+  const StaticLoads none = scaled(model, loads, 0.0);
+  return none.force == loads.force && none.controls == loads.controls;
+}
+
 double energy_change(const Model& model, const StaticLoads& loads, const Shape& seen_from,
                      const Vector& from, const Vector& to) {
   return potential_change(model, loads.force, loads.at(model, {from, seen_from.followed}), to);

@@ -28,6 +28,9 @@ struct StaticLoads {
 /// Forces and moments times `share`; supports stay where they are.
 StaticLoads scaled(const Model& model, const StaticLoads& loads, double share);
 
+/// Whether no force or moment acts. Supports may move all the same.
+bool is_unloaded(const Model& model, const StaticLoads& loads);
+
 /// Change of the potential energy [J] between two shapes. The turns are those of `seen_from`.
 double energy_change(const Model& model, const StaticLoads& loads, const Shape& seen_from,
                      const Vector& from, const Vector& to);

@@ -1,0 +1,663 @@
+"""Closed rods: Michell's ring, vibrations, a pressed ring, link and writhe, agreement of models."""
+
+import der
+import numpy as np
+import pytest
+from references.writhe import figure_eight, torus_knot
+from scipy.integrate import solve_bvp
+from spatial_scenes import critical, measured, rod_through, section
+
+STRAIGHT = {"natural_curvature": [0, 0], "natural_twist": 0}
+
+
+def circle(count, turn=0.0, radius=1.0):
+    """The nodes of a ring around z, the first one turned by `turn` [rad] from the x axis."""
+    angle = turn + 2 * np.pi * np.arange(count) / count
+    return radius * np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+
+
+def length_of(points):
+    return np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1).sum()
+
+
+def ring_through(points, cross_section, rod=None, **more):
+    rod = {"closed": True, **(rod or {})}
+    return rod_through(points, cross_section, **{"supports": [], "rod": rod, **more})
+
+
+def michell(count, ratio, twist, wave=0.0):
+    """A naturally straight rod of length 2 pi and EI = 1, bent to a circle, its ends turned against
+    each other by `twist` [rad] and glued; `ratio` is EI/GJ."""
+    stiff = section(EA=1e5, EI=1.0, GJ=1 / ratio, rotary_inertia=1e-3)
+    points = circle(count) * (2 * np.pi / length_of(circle(count)))
+    points[:, 2] = wave * np.cos(2 * np.arctan2(points[:, 1], points[:, 0]))
+    rod = {**STRAIGHT, "initial_twist": twist / length_of(points)}
+    return ring_through(points, stiff, rod)
+
+
+def unstable_directions(scene):
+    simulation = der.Simulation(der.Scenario.from_dict(scene))
+    return simulation.equilibrium(leave_saddles=False).unstable_directions
+
+
+@pytest.mark.parametrize("ratio", [0.75, 1.0, 1.5])
+def test_ring_of_michell(spatial_reference, ratio):
+    """It buckles out of its plane in a pair of modes of two waves."""
+    exact = spatial_reference("spatial_buckling", f"ring.{ratio:g}.twist")
+    assert unstable_directions(michell(200, ratio, 0.999 * exact)) == 0
+    assert unstable_directions(michell(200, ratio, 1.001 * exact)) == 2
+
+
+def test_order_of_the_critical_twist(spatial_reference, fitted_order):
+    """The twist at which the pair appears, by bisection."""
+    exact = spatial_reference("spatial_buckling", "ring.1.twist")
+    sizes = [30, 42, 60]
+    errors = []
+    for count in sizes:
+        twist = critical(
+            lambda twist, count=count: unstable_directions(michell(count, 1.0, twist)) == 2,
+            *(0.99 * exact, 1.02 * exact, 2e-5 * exact),
+        )
+        errors.append(twist / exact - 1)
+    assert fitted_order([1 / n for n in sizes], errors) > 1.9
+
+
+@pytest.mark.parametrize("plane", ["in_plane", "out_of_plane"])
+def test_frequencies(spatial_reference, fitted_order, plane):
+    """Pairs of modes of n = 2, 3 waves of a ring without stress; 6 rigid motions."""
+    radius = 0.01  # of the section
+    stiff = section(EA=4 / radius**2, EI=1.0, GJ=1 / 1.3, rotary_inertia=radius**2 / 2)
+    names = [f"ring.{plane}.{waves}.radius0.01.omega" for waves in (2, 3)]
+    exact = np.repeat([spatial_reference("spatial_frequencies", name) for name in names], 2)
+    sizes = [36, 54, 81]
+    errors = []
+    for count in sizes:
+        scene = ring_through(circle(count), stiff, analysis={"modes": {"count": 14}})
+        found = 2 * np.pi * np.array(der.run(scene).summary["frequencies_hz"])
+        assert np.all(found[:6] == 0.0)
+        assert np.all(found[6:] > 1.0)
+        # Out of the plane the ring is a little softer than in it (not on coarser meshes).
+        own = found[6:].reshape(2, 2, 2)[:, 1 if plane == "in_plane" else 0].ravel()
+        errors.append(own / exact - 1)
+    for of_mode in np.array(errors).T:
+        assert fitted_order([1 / n for n in sizes], of_mode) > 1.9
+    assert np.abs(errors[-1]).max() < 1e-2
+
+
+def pressed_diameter(force):
+    """Diameter along two opposite forces that press an inextensible ring of EI = 1 and R = 1.
+
+    A quarter, from a force to the side: theta'' = -n cos(theta) with the force n = -F/2 across the
+    force-free horizontal, theta = 0 and pi/2 at its ends.
+    """
+
+    def slopes(s, y):
+        theta, curvature, _ = y
+        return np.stack([curvature, 0.5 * force * np.cos(theta), np.sin(theta)])
+
+    def ends(a, b):
+        return np.array([a[0], b[0] - np.pi / 2, a[2]])
+
+    s = np.linspace(0, np.pi / 2, 101)
+    found = solve_bvp(
+        slopes, ends, s, np.stack([s, 1 + 0 * s, 1 - np.cos(s)]), tol=1e-8, max_nodes=10000
+    )
+    assert found.success
+    return 2 * found.y[2, -1]
+
+
+def press(count, force, model="planar"):
+    """A ring held at its foot; its head is pressed down."""
+    points = circle(count, turn=-np.pi / 2)
+    stiff = section(EA=1e8, EI=1.0, GJ=1.0)
+    head = {"node": count // 2}
+    scene = ring_through(
+        points,
+        stiff,
+        supports=[
+            {"rod": "rod", "at": "start", "fix": ["x", "y", "z"]},
+            {"rod": "rod", "at": head, "fix": ["x", "z"]},
+            {"rod": "rod", "at": {"node": count // 4}, "fix": ["z"]},
+        ],
+        loads=[{"point_force": {"rod": "rod", "at": head, "force": [0, -force, 0]}}],
+        output={"probes": {"y": {"rod": "rod", "at": head, "quantity": "y"}}},
+    )
+    scene["model"] = model
+    result = der.run(scene)
+    return result.probes["y"][-1] + 1, result
+
+
+@pytest.mark.filterwarnings("ignore:stable in its plane, unstable out of it")
+@pytest.mark.parametrize("force", [0.01, 2.0, 5.0])
+def test_pressed_ring(fitted_order, force):
+    exact = pressed_diameter(force)
+    if force < 0.1:  # (pi/4 - 2/pi) F R^3/EI
+        assert 2 - exact == pytest.approx((np.pi / 4 - 2 / np.pi) * force, rel=5e-3)
+    sizes = [20, 40, 80]
+    errors = [press(n, force)[0] - exact for n in sizes]
+    assert fitted_order([1 / n for n in sizes], errors) > 1.9
+    assert abs(errors[-1]) < 5e-3
+
+
+@pytest.mark.parametrize("model", ["spatial_bend", "spatial"])
+def test_planar_ring_is_the_same_in_all_models(model):
+    """Statics of a bent ring that is straight without stress, and a motion of it."""
+    points = circle(24)
+    points[:, 1] *= 0.8
+    stiff = section(EA=1e4, EI=1.0, GJ=0.7)
+    base = ring_through(
+        points,
+        stiff,
+        {"natural_curvature": [0, 0]},
+        supports=[{"rod": "rod", "at": {"node": 5}, "fix": ["x", "y", "z"]}],
+        loads=[
+            {"point_force": {"rod": "rod", "at": 0.03, "force": [0.2, -0.3, 0]}},
+            {"distributed_force": {"rod": "rod", "force": [0, 0.1, 0], "from": 3.5}},
+        ],
+        time={"duration": 0.5, "step": 0.01, "integrator": "sdirk4"},
+    )
+    runs = [der.run({**base, "model": each}) for each in ("planar", model)]
+    here, there = (run.positions[-1] for run in runs)
+    assert np.abs(here - points[:, :2]).max() > 0.01  # it has moved
+    assert np.abs(there[:, :2] - here).max() < 1e-9
+    assert np.abs(there[:, 2]).max() < 1e-12
+
+
+def test_pressed_ring_is_the_same_in_space():
+    planar = press(24, 3.0)[1]
+    spatial = press(24, 3.0, model="spatial")[1]
+    assert np.abs(spatial.positions[-1][:, :2] - planar.positions[-1]).max() < 1e-9
+
+
+CURVES = {
+    "figure_eight.0.5": figure_eight(0.5),
+    "torus2.3": torus_knot(2, 3),
+    "torus1.8": torus_knot(1, 8),
+}
+
+
+@pytest.mark.parametrize("count", [20, 40, 80])
+@pytest.mark.parametrize("name", list(CURVES))
+def test_writhe_of_polygons(spatial_reference, name, count):
+    points = CURVES[name](2 * np.pi * np.arange(count) / count).T
+    scene = ring_through(
+        points,
+        section(EI=1.0, GJ=1.0),
+        output={"probes": {"writhe": {"rod": "rod", "quantity": "writhe"}}},
+    )
+    exact = spatial_reference("writhe", f"{name}.polygon{count}.writhe")
+    assert der.run(scene).probes["writhe"][-1] == pytest.approx(exact, abs=1e-11)
+
+
+def test_link_is_kept():
+    """A twisted ring that buckles in a motion: its twist becomes writhe."""
+    turns = 3
+    scene = michell(40, 1.0, 2 * np.pi * turns, wave=0.02)
+    del scene["analysis"]
+    names = ("link", "writhe")
+    scene |= {
+        "time": {"duration": 1.9, "step": 0.01, "integrator": "implicit_midpoint"},
+        "output": {"probes": {name: {"rod": "rod", "quantity": name} for name in names}},
+    }
+    result = der.run(scene)
+    link, writhe = (np.asarray(result.probes[name]) for name in names)
+    assert np.abs(link - link[0]).max() < 1e-11
+    assert writhe[0] < 0.01
+    assert np.abs(writhe).max() > 0.5
+
+
+def test_link_of_directors_that_close():
+    """A ring drawn flat, its sections turned 2 times on the way around: a whole number."""
+    points = circle(30)
+    for turns in (0, 2, -5):
+        scene = ring_through(
+            points,
+            section(EI=1.0, GJ=1.0),
+            {"initial_twist": 2 * np.pi * turns / length_of(points)},
+            output={"probes": {"link": {"rod": "rod", "quantity": "link"}}},
+        )
+        assert der.run(scene).probes["link"][-1] == pytest.approx(turns, abs=1e-12)
+
+
+def strip(**stiffnesses):
+    return section(EA=1e4, EI1=3.0, EI2=1.0, GJ=0.6, rotary_inertia=0.01, **stiffnesses)
+
+
+def test_twisted_ring_stays_at_rest():
+    """A knot without stress as it is drawn, whatever the mismatch of its directors: 1e4 steps."""
+    points = torus_knot(2, 3)(2 * np.pi * np.arange(16) / 16).T
+    turn, _ = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))
+    scene = ring_through(
+        points @ turn,
+        strip(director=[0.3, 0.2, 1.0]),
+        {"initial_twist": 1.3},
+        time={"duration": 10.0, "step": 0.001, "integrator": "implicit_midpoint"},
+        output={"every": 10.0},
+    )
+    result = der.run(scene)
+    assert np.abs(result.positions[-1] - points @ turn).max() < 1e-11
+
+
+def test_glue_of_a_moebius_strip_is_a_joint_as_the_others():
+    """A straight strip, half a turn twisted and glued: where the glue is does not matter.
+
+    There the section meets itself the other way up, which is the same section.
+    """
+    count = 20
+    points = circle(count)
+    twist = np.pi / length_of(points)
+    energies = []
+    for first in (0, 1, 5, 13):
+        start = np.roll(points, -first, axis=0)
+        tangent = (start[1] - start[0]) / np.linalg.norm(start[1] - start[0])
+        angle = np.pi * first / count
+        director = np.cos(angle) * np.eye(3)[2] + np.sin(angle) * np.cross(tangent, np.eye(3)[2])
+        scene = ring_through(start, strip(director=director), {**STRAIGHT, "initial_twist": twist})
+        energies.append(der.Simulation(der.Scenario.from_dict(scene)).energies.bend)
+    assert energies == pytest.approx(energies[:1] * 4, rel=1e-12)
+
+
+@pytest.mark.parametrize("shift", [1, 7, 23])
+def test_start_of_a_ring_is_a_place_like_any_other(shift):
+    """The same ring drawn from another node on: statics of a twisted ring under its weight."""
+    count = 24
+    twist = 0.7
+
+    def run(first):
+        points = np.roll(michell(count, 0.8, 0.0)["rods"][0]["points"], -first, axis=0)
+        nodes = [(node - first) % count for node in (2, 9, 16)]
+        scene = ring_through(
+            points,
+            section(EA=1e4, EI=1.0, GJ=0.8),
+            {**STRAIGHT, "initial_twist": twist},
+            supports=[
+                {"rod": "rod", "at": {"node": node}, "fix": ["x", "y", "z"]} for node in nodes
+            ],
+            loads=[
+                {"gravity": [0, 0, -1]},
+                {"point_force": {"rod": "rod", "at": {"node": nodes[1] - 3}, "force": [0, 2, 1]}},
+            ],
+        )
+        result = der.run(scene)
+        _, moments = result.along("rod", "moment")
+        return result.positions[-1], moments[-1][:-1]
+
+    here, there = run(0), run(shift)
+    assert np.abs(here[0] - michell(count, 0.8, 0.0)["rods"][0]["points"]).max() > 0.01
+    for one, other in zip(here, there, strict=True):
+        assert np.abs(np.roll(other, shift, axis=0) - one).max() < 1e-9
+
+
+# ---- all that acts on rods, on a ring
+
+TURNING = {"follower": True}
+
+
+def uneven_ring(count=20):
+    """A ring in the x-y plane with edges of different lengths."""
+    angle = 2 * np.pi * np.arange(count) / count
+    angle += 0.1 * np.sin(2 * angle + 0.3)
+    return np.column_stack([1.2 * np.cos(angle), 0.9 * np.sin(angle), 0 * angle])
+
+
+class Drawn:
+    """A ring drawn from its node `first` on: places are nodes and shares of the edge after them."""
+
+    def __init__(self, points, first):
+        self.count, self.first = len(points), first
+        self.points = np.roll(points, -first, axis=0)
+        self.edges = np.linalg.norm(np.roll(self.points, -1, axis=0) - self.points, axis=1)
+
+    def node(self, number):
+        return (number - self.first) % self.count
+
+    def at(self, number, share):
+        node = self.node(number)
+        return float(self.edges[:node].sum() + share * self.edges[node])
+
+    def from_there(self, values):
+        """A list of one for each node."""
+        return np.roll(values, -self.first, axis=0).tolist()
+
+
+def loaded_ring(first, clamped):
+    """A strip with supports and loads of all kinds."""
+    ring = Drawn(uneven_ring(), first)
+    number = np.arange(ring.count)
+    natural = np.column_stack([0.5 + 0.4 * np.sin(number), 0.3 * np.cos(2 * number)])
+    rod = {
+        "natural_curvature": ring.from_there(natural),
+        "natural_twist": ring.from_there(0.5 * np.cos(number)),
+    }
+    hold = {"clamp": True} if clamped else {"fix": ["x", "y", "z"]}
+    supports = [{"rod": "rod", "at": {"node": ring.node(8)}, **hold}]
+    if not clamped:
+        supports += [
+            {"rod": "rod", "at": {"node": ring.node(i)}, "fix": ["x", "y", "z"]} for i in (2, 15)
+        ]
+    spring = {"stiffness": [1.0, 0.5, 2.0], "rotational_stiffness": [0.3, 0.5, 0.4]}
+    supports.append({"rod": "rod", "at": ring.at(19, 0.4), "spring": spring})
+    loads = [
+        {"gravity": [0, -0.2, -0.1]},
+        {"foundation": {"rod": "rod", "stiffness": [0.1, 0.2, 0.3]}},
+        {"moment": {"rod": "rod", "at": ring.at(3, 0.3), "moment": [0.2, 0.3, -0.4]}},
+        {"point_force": {"rod": "rod", "at": ring.at(11, 0.7), "force": [0.3, 0.2, 0.4]}},
+        {"moment": {"rod": "rod", "at": ring.at(17, 0.8), "moment": [0, 0.2, 0], **TURNING}},
+        {"point_force": {"rod": "rod", "at": ring.at(0, 0.3), "force": [0, 0.3, 0.2], **TURNING}},
+    ]
+    stiff = strip(director=[0, 0, 1])
+    return ring, ring_through(ring.points, stiff, rod, supports=supports, loads=loads)
+
+
+@pytest.mark.parametrize("clamped", [False, True])
+@pytest.mark.parametrize("first", [1, 4, 8, 9, 18, 19])
+def test_loads_act_on_a_ring_wherever_it_begins(first, clamped):
+    """The start of the drawing beside each of them, within its stencil, and at the clamp."""
+
+    def answer(first):
+        ring, scene = loaded_ring(first, clamped)
+        places = [ring.at(number, 0.5) for number in range(ring.count)]
+        values, result = measured(scene, places)
+        return np.roll(result.positions[-1], first, axis=0), values
+
+    here, there = answer(0), answer(first)
+    assert np.abs(here[0] - uneven_ring()).max() > 0.05
+    assert there[0] == pytest.approx(here[0], abs=1e-9)
+    # Tensions are differences of lengths times EA = 1e4.
+    assert there[1] == pytest.approx(here[1], abs=1e-7)
+
+
+@pytest.mark.parametrize("model", ["planar", "spatial"])
+def test_a_clamped_ring_is_an_open_rod_between_two_clamps(model):
+    """On a circle both have the same held tangent. No stencil reaches the ends of the open rod."""
+    points = circle(18)
+    flat = model == "planar"
+    loads = [
+        {"gravity": [0.1, -0.2, 0 if flat else 0.3]},
+        {"foundation": {"rod": "rod", "stiffness": [0.1, 0.2, 0.3]}},
+        {"point_force": {"rod": "rod", "at": 5.5, "force": [0.3, 0.2, 0 if flat else 0.4]}},
+        {"moment": {"rod": "rod", "at": 2.3, "moment": [0, 0, 0.2] if flat else [0.2, 0.3, -0.4]}},
+        {
+            "point_force": {
+                "rod": "rod",
+                "at": 0.8,
+                "force": [0.2, 0.3, 0 if flat else 0.2],
+                **TURNING,
+            }
+        },
+    ]
+    spring = {"stiffness": [1.0, 0.5, 2.0], "rotational_stiffness": 0.3}
+    springs = [{"rod": "rod", "at": 5.1, "spring": spring}]
+    ends = [{"rod": "rod", "at": at, "clamp": True} for at in ("start", "end")]
+    own = {} if flat else {"initial_twist": 0.7, "natural_twist": 0.2}
+    stiff = strip(director=[0, 0, 1])
+    ring = ring_through(points, stiff, own, supports=ends[:1] + springs, loads=loads, model=model)
+    opened = rod_through(
+        np.vstack([points, points[:1]]), stiff, ends + springs, rod=own, loads=loads, model=model
+    )
+    places = [0.0, 0.1, 0.3, 1.0, 2.2, 2.4, 3.3, 5.2, 5.8, 6.0, 6.2]
+    quantities = ("curvature", "moment", "tension")
+    if not flat:
+        quantities += ("torque", "moment_1", "moment_2", "twist")
+    here, result = measured(ring, places, quantities)
+    there, other = measured(opened, places, quantities)
+    assert np.abs(result.positions[-1] - result.model.initial_positions).max() > 0.02
+    assert result.positions[-1] == pytest.approx(other.positions[-1][:-1], abs=1e-9)
+    assert here == pytest.approx(there, abs=1e-7)
+
+
+def test_loads_in_the_plane_are_the_same_in_space():
+    """Moments and springs against rotation, of which each model has its own elements."""
+    points = uneven_ring(16)
+    supports = [
+        {"rod": "rod", "at": {"node": 5}, "fix": ["x", "y", "z"]},
+        {"rod": "rod", "at": {"node": 12}, "clamp": True},
+        {"rod": "rod", "at": 0.1, "spring": {"rotational_stiffness": 0.4}},
+    ]
+    loads = [
+        {"moment": {"rod": "rod", "at": 6.3, "moment": [0, 0, 0.5]}},
+        {"point_force": {"rod": "rod", "at": 0.2, "force": [0.5, -0.3, 0], "follower": True}},
+    ]
+    stiff = section(EA=1e4, EI=1.0, GJ=0.7)
+    base = ring_through(points, stiff, supports=supports, loads=loads)
+    planar, spatial = (der.run({**base, "model": model}) for model in ("planar", "spatial"))
+    assert np.abs(planar.positions[-1] - points[:, :2]).max() > 0.02
+    assert spatial.positions[-1][:, :2] == pytest.approx(planar.positions[-1], abs=1e-9)
+    assert np.abs(spatial.positions[-1][:, 2]).max() < 1e-12
+
+
+def test_a_spinning_ring_keeps_its_momenta(fitted_order):
+    """A twisted ring, free, thrown, and buckling: the angular one to order 2 in time."""
+    points = np.array(michell(24, 1.0, 0.0)["rods"][0]["points"])
+    stiff = section(EA=1e3, EI=1.0, GJ=1.0, rotary_inertia=0.05)
+    thrown = 0.5 * np.roll(points, 5, axis=0) + [0.1, 0.2, 0.3]
+    thrown[:, 2] += 0.2 * points[:, 0] * points[:, 1]
+    rod = {**STRAIGHT, "initial_twist": 3.0, "initial_velocity": thrown.tolist()}
+    drifts = []
+    for steps in (100, 200, 400):
+        time = {"duration": 1.0, "step": 1.0 / steps, "integrator": "implicit_midpoint"}
+        scene = ring_through(points, stiff, rod, time=time)
+        scene["solver"] = {"residual_tolerance": 1e-13, "step_tolerance": 1e-13}
+        simulation = der.Simulation(der.Scenario.from_dict(scene))
+        simulation.spin[:] = 4.0
+        linear, angular = np.array(simulation.momentum), np.array(simulation.angular_momentum)
+        simulation.run()
+        assert np.ptp(simulation.positions[:, 2]) > 0.01
+        assert simulation.momentum == pytest.approx(linear, rel=1e-11)
+        drifts.append(np.linalg.norm(simulation.angular_momentum - angular))
+    assert fitted_order([1 / 100, 1 / 200, 1 / 400], drifts) > 1.9
+    assert drifts[-1] < 1e-4 * np.linalg.norm(angular)
+
+
+# ---- Goto's ring
+
+
+def deployable(count, share):
+    """The ring of `references/deployable_ring.py`: a share of the way to its three coils."""
+    angle = 2 * np.pi * np.arange(count) / count
+    points = np.column_stack([1 - np.cos(angle), np.sin(angle), 0 * angle])
+    fold = {
+        "x": -4 / 3 * share,
+        "rotation": {"axis": [1, 0, 0], "angle": 2 * np.pi * share},
+    }
+    supports = [
+        {"rod": "rod", "at": "start", "clamp": True},
+        {"rod": "rod", "at": {"node": count // 2}, "clamp": True, "prescribe": fold},
+    ]
+    stiff = section(director=[1, 0, 0], EA=1e4, EI1=1.0, EI2=9.0, GJ=1.2154)
+    return ring_through(points, stiff, supports=supports)
+
+
+FOLDED = ("x", "y", "z", "moment_1", "moment_2", "torque")
+
+
+@pytest.mark.parametrize("share", [0.25, 0.6])
+def test_ring_of_goto_on_its_way(spatial_reference, fitted_order, share):
+    """Two places of one half; the other half is its image under half a turn about x."""
+    exact = np.array(
+        [
+            [spatial_reference("deployable_ring", f"share{share:g}.{at}.{name}") for name in FOLDED]
+            for at in ("quarter", "half")
+        ]
+    )
+    sizes = [64, 96, 144]
+    errors = []
+    for count in sizes:
+        places = [{"node": count // 8}, {"node": count // 4}]
+        values, result = measured(deployable(count, share), places, FOLDED)
+        off = values - exact
+        errors.append([np.linalg.norm(off[:, :3]), np.linalg.norm(off[:, 3:])])
+        line = result.positions[-1]
+        other = np.roll(line[::-1], 1, axis=0) * [1, -1, -1]
+        assert line == pytest.approx(other, abs=1e-8)
+    for of_kind in np.transpose(errors):
+        assert fitted_order([1 / n for n in sizes], of_kind) > 1.9
+    assert np.max(errors[-1]) < 5e-3
+
+
+def test_ring_of_goto_folds_into_three_coils(fitted_order):
+    """The closed form: radius 1/3, a moment of 2 in the plane, nothing else."""
+    sizes = [64, 96, 144]
+    errors = []
+    for count in sizes:
+        places = [{"node": count // 8}, {"node": count // 4}]
+        values, result = measured(deployable(count, 1.0), places, FOLDED)
+        s = 2 * np.pi * np.arange(count) / count
+        coils = np.column_stack([1 - np.cos(3 * s), np.sin(3 * s), 0 * s]) / 3
+        off = np.abs(result.positions[-1] - coils)
+        errors.append([off.max(), np.abs(values[:, 3] - 2).max()])
+        assert np.abs(values[:, 4:]).max() < 1e-6
+        assert off[:, 2].max() < 1e-8
+    for of_quantity in np.transpose(errors):
+        assert fitted_order([1 / n for n in sizes], of_quantity) > 1.9
+    assert np.max(errors[-1]) < 2e-3
+
+
+# ---- verdicts
+
+
+@pytest.mark.parametrize("count", [5, 8, 12, 20, 31])
+def test_rigid_motions_of_coarse_rings_are_neutral(count):
+    """6 rigid motions, and the turning of all sections of a naturally straight round rod."""
+    for share in (0.0, 0.1, 0.5, 0.9):
+        scene = michell(count, 1.0, share * 2 * np.pi * np.sqrt(3))
+        report = der.Simulation(der.Scenario.from_dict(scene)).equilibrium(leave_saddles=False)
+        assert report.stability == "neutral"
+        assert report.neutral_directions == 7
+
+
+@pytest.mark.parametrize("stretching", [1e3, 1e9])
+def test_free_rods_that_are_not_flat_are_neutral(stretching):
+    """Free of stress: 6 rigid motions, none of them lost in rounding."""
+    knot = torus_knot(2, 3)(2 * np.pi * np.arange(60) / 60).T
+    stiff = section([0.3, 0.2, 1.0], EA=stretching, EI1=3.0, EI2=1.0, GJ=0.6)
+    for scene in (ring_through(knot, stiff), rod_through(knot, stiff, supports=[])):
+        report = der.Simulation(der.Scenario.from_dict(scene)).equilibrium()
+        assert report.stability == "neutral"
+        assert report.neutral_directions == 6
+
+
+def squeezed(count=24, first=0, force=1.0):
+    """A strip that is stiff in the plane of the ring, pressed there by two opposite forces.
+
+    Its foot is held, its head slides towards it, and its sides slide in the plane.
+    """
+    ring = Drawn(circle(count, turn=-np.pi / 2), first)
+    foot, right, head, left = ({"node": ring.node(k * count // 4)} for k in range(4))
+    supports = [
+        {"rod": "rod", "at": foot, "fix": ["x", "y", "z"]},
+        {"rod": "rod", "at": head, "fix": ["x", "z"]},
+        {"rod": "rod", "at": right, "fix": ["z"]},
+        {"rod": "rod", "at": left, "fix": ["z"]},
+    ]
+    loads = [{"point_force": {"rod": "rod", "at": head, "force": [0, -force, 0]}}]
+    stiff = section([0, 0, 1], EA=1e8, EI1=1.0, EI2=1e5, GJ=0.7)
+    return ring_through(ring.points, stiff, supports=supports, loads=loads)
+
+
+def buckling_factor(scene):
+    return der.run({**scene, "analysis": "buckling"}).buckling.load_factors[0]
+
+
+def test_pressed_ring_buckles_out_of_its_plane(fitted_order):
+    """The linear load factor against the load at which the verdict changes."""
+    sizes = [24, 48, 96]
+    errors = []
+    for count in sizes:
+        factor = buckling_factor(squeezed(count))
+        load = critical(
+            lambda force, count=count: unstable_directions(squeezed(count, force=force)) > 0,
+            *(0.98 * factor, 1.02 * factor, 1e-5 * factor),
+        )
+        errors.append(load / factor - 1)
+    assert fitted_order([1 / n for n in sizes], errors) > 1.9
+    assert abs(errors[-1]) < 1e-3
+    for first in (1, 11, 23):
+        assert buckling_factor(squeezed(first=first)) == pytest.approx(
+            buckling_factor(squeezed()), rel=1e-9
+        )
+
+
+def test_path_of_a_ring_is_the_same_in_space():
+    """A naturally straight ring under its load, as planar and spatial models, drawn elsewhere."""
+
+    def path(first, model):
+        ring = Drawn(circle(20, turn=-np.pi / 2), first)
+        foot, head = ({"node": ring.node(number)} for number in (0, 10))
+        scene = ring_through(
+            ring.points,
+            section(EA=1e4, EI=1.0, GJ=1.0),
+            {"natural_curvature": [0, 0]},
+            supports=[
+                {"rod": "rod", "at": foot, "clamp": True},
+                {"rod": "rod", "at": head, "fix": ["x", "z"]},
+            ],
+            loads=[{"point_force": {"rod": "rod", "at": head, "force": [0, -1, 0]}}],
+            analysis={"continuation": {"to": 4.0}},
+            model=model,
+        )
+        result = der.run(scene)
+        assert result.path.factor[-1] == pytest.approx(4.0)
+        return np.roll(result.positions[-1], first, axis=0)
+
+    planar = path(0, "planar")
+    for first in (0, 7, 10):
+        spatial = path(first, "spatial")
+        assert spatial[:, :2] == pytest.approx(planar, abs=1e-7)
+
+
+def test_components_jump_where_a_ring_is_glued_turned():
+    """A Moebius strip, wherever it begins: two components change their signs at the glue."""
+    count = 30
+
+    def drawn(first):
+        ring = Drawn(circle(count), first)
+        tangent = (ring.points[1] - ring.points[0]) / ring.edges[0]
+        angle = np.pi * first / count
+        up = np.eye(3)[2]
+        director = np.cos(angle) * up + np.sin(angle) * np.cross(tangent, up)
+        own = {**STRAIGHT, "initial_twist": np.pi / ring.edges.sum()}
+        instant = {"duration": 1e-9, "step": 1e-9}
+        result = der.run(ring_through(ring.points, strip(director=director), own, time=instant))
+        return ring, result
+
+    ring, result = drawn(0)
+    for name in ("curvature_1", "moment_2", "curvature", "torque", "tension"):
+        places, values = result.along("rod", name)
+        assert places[0] == 0.0
+        assert places[-1] == pytest.approx(ring.edges.sum())
+        sign = -1.0 if name[-1] in "12" else 1.0
+        assert values[0, -1] == pytest.approx(sign * values[0, 0], abs=1e-8)
+
+    def at_nodes(first, name):
+        _, values = drawn(first)[1].along("rod", name)
+        return np.roll(np.abs(values[0, :count]), first)
+
+    for name in ("curvature_1", "moment_2"):
+        here = at_nodes(0, name)
+        for first in (1, 13):
+            assert at_nodes(first, name) == pytest.approx(here, abs=1e-8)
+
+
+def test_planar_rings_know_when_they_leave_their_plane():
+    """The verdict and the load factor of the planar model against those of the spatial one."""
+
+    def factors(scene):
+        planar = der.run({**scene, "model": "planar", "analysis": "buckling"})
+        return planar.summary["out_of_plane"]["load_factor"], buckling_factor(scene)
+
+    scene = squeezed()
+    scene["supports"] = [{"rod": "rod", "at": "start", "clamp": True}]
+    scene["loads"][0]["point_force"]["force"] = [0, -1, 0]
+    with pytest.warns(der.DerWarning, match="buckles out of its plane first"):
+        planar, spatial = factors(scene)
+    assert planar == pytest.approx(spatial, rel=1e-7)
+
+    # Supports that are no clamps hold sections like forks: at the start of a ring, too.
+    def verdict(first):
+        with pytest.warns(der.DerWarning, match="buckles out of its plane first"):
+            return factors(squeezed(first=first))[0]
+
+    expected = verdict(0)
+    for first in (3, 6, 7):
+        assert verdict(first) == pytest.approx(expected, rel=1e-7)

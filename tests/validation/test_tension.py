@@ -1,10 +1,9 @@
 """Strain and tension beside the loads that give them jumps and kinks, against statics by hand."""
 
-from itertools import pairwise
-
 import der
 import numpy as np
 import pytest
+from references.pulled_bar import pulled_bar
 from scenes import Scene, straight, tip_force
 
 SCENE = """
@@ -118,27 +117,6 @@ def test_distributed_forces_that_begin_and_end_anywhere(held, parts, edges):
             beyond = b - np.clip(places, a, b)
             expected += q * (beyond if held == "start" else beyond - (b - a))
         assert stiffness * found[-1] == pytest.approx(expected, abs=1e-6)
-
-
-def pulled_bar(places: np.ndarray, parts: list[tuple[float, float, float]]) -> np.ndarray:
-    """Tension of a free bar on springs (stiffness, from, to) that 1 N pulls at its end, EA = 100.
-
-    (u, N)' = (N/EA, k u), with k constant between the borders of the parts.
-    """
-    EA = 100.0
-    stops = np.unique([0.0, 1.0, *places, *(s for part in parts for s in part[1:])])
-    transfers = {0.0: np.eye(2)}
-    for before, s in pairwise(stops):
-        k = sum(stiffness for stiffness, a, b in parts if a <= before < b)
-        r, h = np.sqrt(k / EA), s - before
-        step = (
-            [[np.cosh(r * h), np.sinh(r * h) / (EA * r)], [EA * r * np.sinh(r * h), np.cosh(r * h)]]
-            if k
-            else [[1.0, h / EA], [0.0, 1.0]]
-        )
-        transfers[s] = step @ transfers[before]
-    start = 1.0 / transfers[1.0][1, 0]
-    return np.array([start * transfers[s][1, 0] for s in places])
 
 
 @pytest.mark.parametrize("border", [0.1, 0.25, 0.45])

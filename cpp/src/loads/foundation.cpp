@@ -1,5 +1,6 @@
 #include "der/energies/foundation.hpp"
 
+#include <algorithm>
 #include <array>
 
 #include "der/core/index.hpp"
@@ -50,8 +51,9 @@ void add_elements(const scenario::Foundation& load, const RodLayout& rod, Model&
 void add_load(const scenario::Foundation& load, const scenario::Scene& /*scene*/, Model& model) {
   RodLayout& rod = model.rod(load.rod);
   with_dimension(model, [&](auto dim) { add_elements<dim>(load, rod, model); });
-  const Eigen::Map<const Vec2> in_plane(load.stiffness.data());
-  rod.foundation_places.push_back({load.from, load.to, in_plane});
+  FoundationPlace place{load.from, load.to, {}};
+  std::copy(load.stiffness.begin(), load.stiffness.end(), place.stiffness.begin());
+  rod.foundation_places.push_back(place);
 }
 
 }  // namespace der

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "der/core/index.hpp"
-#include "output/in_space.hpp"
 #include "output/line_loads.hpp"
 
 namespace der {
@@ -63,21 +62,21 @@ Vec3 EdgeExcess::force(Index edge, const SpreadForces& forces, const Model& mode
     sum += amount * force_per_length(rod_.distributed_places[number], model, state);
   }
   for (const CutFoundation& foundation : loads.foundations) {
-    sum += in_space(foundation_force(edge, foundation, model, state));
+    sum += foundation_force(edge, foundation, model, state);
   }
   return sum;
 }
 
-Vec2 EdgeExcess::foundation_force(Index edge, const CutFoundation& foundation, const Model& model,
+Vec3 EdgeExcess::foundation_force(Index edge, const CutFoundation& foundation, const Model& model,
                                   const State& state) const {
-  const Vec2 first = node_displacement(rod_, edge, model, state);
-  const Vec2 change = node_displacement(rod_, edge + 1, model, state) - first;
+  const Vec3 first = node_displacement(rod_, edge, model, state);
+  const Vec3 change = node_displacement(rod_, edge + 1, model, state) - first;
   // Integrals from `a` to `b` of the displacement, and of its product with the shape function of
   // the edge's end.
-  const auto all = [&](double a, double b) -> Vec2 {
+  const auto all = [&](double a, double b) -> Vec3 {
     return (b - a) * first + 0.5 * (b * b - a * a) * change;
   };
-  const auto at_end = [&](double a, double b) -> Vec2 {
+  const auto at_end = [&](double a, double b) -> Vec3 {
     return 0.5 * (b * b - a * a) * first + (b * b * b - a * a * a) / 3.0 * change;
   };
   const auto& [start, end, stiffness] = foundation;

@@ -30,7 +30,7 @@ class EdgeExcess {
   /// A foundation that begins or ends within the edge.
   struct CutFoundation {
     double start = 0.0, end = 1.0;  // shares of the edge
-    Vec2 stiffness;                 // [N/m^2]
+    Vec3 stiffness;                 // [N/m^2]
   };
   struct Loads {
     std::vector<Amount> forces;
@@ -41,7 +41,7 @@ class EdgeExcess {
   void add_forces(Index edge, const SpreadForces& forces);
   void add_distributed(std::size_t number);
   void add_foundation(const FoundationPlace& place);
-  [[nodiscard]] Vec2 foundation_force(Index edge, const CutFoundation& foundation,
+  [[nodiscard]] Vec3 foundation_force(Index edge, const CutFoundation& foundation,
                                       const Model& model, const State& state) const;
 
   RodLayout rod_;

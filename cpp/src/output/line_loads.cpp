@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "der/core/index.hpp"
-#include "output/in_space.hpp"
 
 namespace der {
 
@@ -15,9 +14,13 @@ Vec3 force_per_length(const DistributedPlace& place, const Model& model, const S
   return force;
 }
 
-Vec2 node_displacement(const RodLayout& rod, Index node, const Model& model, const State& state) {
+Vec3 node_displacement(const RodLayout& rod, Index node, const Model& model, const State& state) {
   const Index dof = model.dof(rod.nodes[to_size(node)], 0);
-  return state.positions.segment<2>(dof) - model.initial_positions.segment<2>(dof);
+  Vec3 displacement = Vec3::Zero();
+  for (int c = 0; c < model.dimension; ++c) {
+    displacement[c] = state.positions[dof + c] - model.initial_positions[dof + c];
+  }
+  return displacement;
 }
 
 Vec3 force_per_length(const FoundationPlace& place, double s, const RodLayout& rod,
@@ -26,9 +29,9 @@ Vec3 force_per_length(const FoundationPlace& place, double s, const RodLayout& r
   const auto beyond = std::upper_bound(arc.begin() + 1, arc.end() - 1, s);
   const auto last = static_cast<Index>(beyond - arc.begin());
   const double share = (s - arc[to_size(last - 1)]) / rod.edge_length[to_size(last - 1)];
-  const Vec2 displacement = (1.0 - share) * node_displacement(rod, last - 1, model, state) +
+  const Vec3 displacement = (1.0 - share) * node_displacement(rod, last - 1, model, state) +
                             share * node_displacement(rod, last, model, state);
-  return in_space(-place.stiffness.cwiseProduct(displacement));
+  return -place.stiffness.cwiseProduct(displacement);
 }
 
 }  // namespace der

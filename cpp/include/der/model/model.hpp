@@ -92,7 +92,7 @@ struct DistributedPlace {
 /// A part of a rod under which there is an elastic foundation.
 struct FoundationPlace {
   double from = 0.0, to = 0.0;    ///< rest arc length [m]
-  Vec2 stiffness = Vec2::Zero();  ///< [N/m^2] along x and y
+  Vec3 stiffness = Vec3::Zero();  ///< [N/m^2] along the axes; planar: z is 0
 };
 
 /// Where the nodes and edges of one rod are in the model, and what is known of it for probes and

@@ -78,10 +78,15 @@ std::vector<Index> rod_dofs(const RodLayout& rod, const Model& model) {
   for (const Index node : rod.nodes) {
     for (int c = 0; c < model.dimension; ++c) dofs.push_back(model.dof(node, c));
   }
+  if (model.has_sections()) {
+    for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+      dofs.push_back(model.dofs.angle(rod.first_edge + edge));
+    }
+  }
   return dofs;
 }
 
-/// The nodes of a rod, and everything between them.
+/// The nodes and edges of a rod, and everything between them.
 Part part_of(const RodLayout& rod, const Model& model) {
   std::vector<Index> dofs = rod_dofs(rod, model);
   std::sort(dofs.begin(), dofs.end());

@@ -5,13 +5,15 @@ follows at once) and `follower_loads.py`. Beck's column flutters at P L^2/EI = 2
 angew. Math. Phys. 3, 1952).
 """
 
+import re
+
 import der
 import numpy as np
 import pytest
 from references.curved_twisted_rod import NATURAL
 from references.follower_loads import held_at_start
 from references.kirchhoff_rod import Rod, rotation
-from scenes import END, START
+from scenes import END, START, arch
 from spatial_scenes import measured, section, straight_rod
 
 XYZ = ("x", "y", "z")
@@ -291,3 +293,32 @@ def test_moment_and_torque_up_to_a_turned_end(fitted_order):
         values = np.array([probe[-1] for probe in der.run(scene).probes.values()])
         errors.append(np.abs(values - np.repeat([0.5, 0.3], 3)).max())
     assert fitted_order(SIZES, errors) < -1.9
+
+
+def test_a_failure_says_how_far_the_loads_could_be_raised():
+    """A shallow arch under a force that follows its middle, which stays horizontal: it snaps at the
+    fold of the path under the dead force."""
+    scene = arch(24, 0.1)
+    path = der.run({**scene, "analysis": {"continuation": {"to": 200.0}}}).path
+    fold = path.factor[path.rows("fold")[0]]
+    load = {"rod": "rod", "at": "middle", "force": [0, -2.0 * fold], "follower": True}
+    with pytest.raises(der.NotConvergedError, match="no equilibrium found: the path of") as failure:
+        der.run({**scene, "loads": [{"point_force": load}]})
+    share = float(re.search(r"up to ([0-9.]+) times the loads", str(failure.value)).group(1))
+    assert share == pytest.approx(0.5, abs=2e-3)
+
+
+@pytest.mark.parametrize("follower", [True, False])
+def test_a_force_at_a_clamped_node_is_warned_of(follower):
+    scene = planar_scene("planar", [force(0, 1.0, 0, at="start", follower=follower)], n=8)
+    warnings = der.run(scene).summary["warnings"]
+    assert len(warnings) == 1
+    assert "point_force" in warnings[0]
+    assert "the support takes it up" in warnings[0]
+
+
+def test_a_force_that_follows_a_hinged_end_across_its_free_axis_is_no_mistake():
+    supports = [{**START, "fix": ["x", "y"]}, {**END, "fix": ["y"]}]
+    loads = [force(-1.0, 0.2, 0)]
+    scene = planar_scene("planar", loads, n=8, supports=supports)
+    assert der.run(scene).summary["warnings"] == []

@@ -11,6 +11,8 @@
 namespace der::scenario {
 namespace {
 
+constexpr std::array kAxes{Hold::X, Hold::Y, Hold::Z};
+
 /// Where a load acts: its rod, and the nodes at its place.
 struct Where {
   int rod = -1;
@@ -97,6 +99,8 @@ class LoadCheck {
         report(here / "at",
                "'all' is not a single place, and a force that turns with the rod acts "
                "at one");
+      } else if (!where.nodes.empty() && is_held(load, where)) {
+        warn_of_taken(fmt::format("loads.{}.point_force", number_), load.rod, "position");
       }
       return;
     }
@@ -112,19 +116,26 @@ class LoadCheck {
     context_.diagnostics.add(where, message);
   }
 
+  /// Whether supports hold a node along all axes, wherever a force turns.
+  [[nodiscard]] bool is_held(const PointForce& load, const Where& where) const {
+    const HeldNode* holding = context_.held_at(where.rod, where.nodes.front());
+    const auto components = static_cast<std::ptrdiff_t>(load.force.values.front().size());
+    return holding != nullptr && std::all_of(kAxes.begin(), kAxes.begin() + components,
+                                             [&](Hold axis) { return holding->holds(axis); });
+  }
+
   /// Warns of a force on a held component: the support takes it.
   void check_acts(const PointForce& load, int rod, const std::vector<int>& nodes) {
-    constexpr std::array axes{Hold::X, Hold::Y, Hold::Z};
     const std::size_t components = load.force.values.front().size();
     for (std::size_t c = 0; c < components; ++c) {
       const auto is_zero = [c](const Components& force) { return force[c] == 0.0; };
       if (std::all_of(load.force.values.begin(), load.force.values.end(), is_zero)) continue;
       const bool held = std::all_of(nodes.begin(), nodes.end(), [&](int node) {
         const HeldNode* holding = context_.held_at(rod, node);
-        return holding && holding->holds(axes[c]);
+        return holding && holding->holds(kAxes[c]);
       });
       if (held) {
-        const char* axis = name_of(axes[c]);
+        const char* axis = name_of(kAxes[c]);
         warn_of_taken(fmt::format("the {} component of loads.{}.point_force", axis, number_),
                       load.rod, axis);
       }

@@ -60,7 +60,8 @@ EquilibriumReport Simulation::settle(bool leave_saddles) {
   counters_.newton_iterations += report.newton_iterations;
   if (report.failed) {
     throw NotConvergedError(
-        fmt::format("no stable equilibrium found: {}. {}", message_of(*report.failed),
+        fmt::format("no {}equilibrium found: {}. {}",
+                    model_.elements->has_potential() ? "stable " : "", message_of(*report.failed),
                     advice_for(report.failed->cause)),
         status_of(report.failed->cause));
   }

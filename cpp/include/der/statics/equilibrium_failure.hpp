@@ -8,6 +8,7 @@ namespace der {
 enum class EquilibriumFailure {
   NewtonFailed,     ///< Newton's method did not converge; the detail is Newton's own message
   StepsUsedUp,      ///< the pseudo-time steps ran out before the forces were in balance
+  PathLost,         ///< loads without a potential could not be raised further; the detail says when
   OnlySaddles,      ///< every equilibrium found is unstable
   NotHeld,          ///< a load moves a part as a rigid body; the detail names the part
   HeldTooWeakly,    ///< round-off hides what holds a part; the detail names the part

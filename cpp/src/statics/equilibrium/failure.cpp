@@ -24,6 +24,10 @@ FailureInfo info(EquilibriumFailure cause) {
     case EquilibriumFailure::StepsUsedUp:
       return {"not_converged", "the pseudo-time steps ran out before the forces were in balance",
               kSearchFurther};
+    case EquilibriumFailure::PathLost:
+      return {"not_converged", "",
+              "The path may turn back there, or the shape change fast. A finer mesh or a run over "
+              "time with damping may show what the rod does beyond."};
     case EquilibriumFailure::OnlySaddles:
       return {"not_converged", "only unstable equilibria were found", kSearchFurther};
     case EquilibriumFailure::NotHeld:

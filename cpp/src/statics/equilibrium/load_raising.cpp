@@ -1,5 +1,7 @@
 #include "statics/equilibrium/load_raising.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -31,6 +33,16 @@ bool take_step(const Model& model, const StaticLoads& loads, double share, Stati
   return true;
 }
 
+/// The failure of a search that has raised the loads to this share of them; `last` is the last
+/// reason that stopped a step, if it was not the change of the shape alone.
+FailedSearch lost(double share, const std::optional<FailedSearch>& last) {
+  if (last && last->cause != EquilibriumFailure::NewtonFailed) return *last;
+  return {EquilibriumFailure::PathLost,
+          fmt::format("the path of equilibria from the unloaded shape could be followed up to "
+                      "{:.3f} times the loads only{}",
+                      share, last ? ": " + last->detail : "")};
+}
+
 }  // namespace
 
 std::optional<FailedSearch> raise_loads(const Model& model, const StaticLoads& loads,
@@ -51,7 +63,7 @@ std::optional<FailedSearch> raise_loads(const Model& model, const StaticLoads& l
       done += step;
       step = std::min(2.0 * step, 1.0 - done);
     } else if (step *= 0.5; step < kSmallestStep) {
-      return failed ? failed : FailedSearch{EquilibriumFailure::StepsUsedUp, {}};
+      return lost(done, failed);
     }
   }
   shape = std::move(now);

@@ -58,7 +58,7 @@ class Layout {
     for (std::size_t f = 0; f < forces_.size(); ++f) {
       breaks_.push_back(forces_[f].place.arc_length);
     }
-    for (const MomentPlace& place : rod_.moment_places) breaks_.push_back(place.arc_length);
+    for (const double place : rod_.moment_arc_lengths()) breaks_.push_back(place);
     for (const DistributedPlace& place : rod_.distributed_places) {
       breaks_.push_back(place.from);
       breaks_.push_back(place.to);

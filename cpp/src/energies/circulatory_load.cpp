@@ -82,6 +82,22 @@ FollowingVector following(const std::vector<Edge>& edges, const Configuration& h
   return result;
 }
 
+/// Number of the edge along which a moment counts as a torque.
+std::size_t torque_axis(const std::vector<SpatialMoment::TurnedEdge>& edges) {
+  return edges.size() == 2 && edges[1].along > edges[0].along ? 1 : 0;
+}
+
+/// M0 as the edges turn it.
+Vec3 drawn_moment(const SpatialMoment& load, const Vec3& amount) {
+  return amount + (load.compliance * amount).cross(amount);
+}
+
+/// N_i: what an edge takes of a moment with a part `torque` along `t` [N m].
+Vec3 taken_by(const SpatialMoment::TurnedEdge& edge, const Vec3& moment, double torque,
+              const Vec3& t) {
+  return edge.across * moment + (edge.along - edge.across) * torque * t;
+}
+
 }  // namespace
 
 void PlanarFollowerForce::evaluate(const Configuration& here, const Vec3& amount,
@@ -125,15 +141,27 @@ void FollowerForce::evaluate(const Configuration& here, const Vec3& amount,
   out.tangent.topRightCorner(3, force.slope.cols()) = -force.slope;
 }
 
+EdgeMoments SpatialMoment::moments(const Configuration& here, const Vec3& amount) const {
+  EdgeMoments result;
+  result.whole = amount;
+  if (follower) result.whole = following(edges, here, drawn_moment(*this, amount)).value;
+  const Vec3 t = edges[torque_axis(edges)].frame(here).frame.tangent;
+  const double torque = result.whole.dot(t);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    result.on_edge[i] = taken_by(edges[i], result.whole, torque, t);
+  }
+  return result;
+}
+
 void SpatialMoment::evaluate(const Configuration& here, const Vec3& amount,
                              CirculatoryTerm& out) const {
   out.reset(size());
   FollowingVector whole{amount, {}};
   whole.slope.setZero(3, size());
-  if (follower) whole = following(edges, here, amount);
+  if (follower) whole = following(edges, here, drawn_moment(*this, amount));
   const auto& [moment, turning] = whole;
 
-  const std::size_t axis = edges.size() == 2 && edges[1].along > edges[0].along ? 1 : 0;
+  const std::size_t axis = torque_axis(edges);
   const EdgeFrame outer = edges[axis].frame(here);
   const Vec3& t = outer.frame.tangent;
   const double torque = moment.dot(t);
@@ -148,7 +176,7 @@ void SpatialMoment::evaluate(const Configuration& here, const Vec3& amount,
     const Eigen::Matrix<double, 3, 4> rotation = frame.rotation();
     const double across = edges[i].across;
     const double excess = edges[i].along - across;
-    const Vec3 taken = across * moment + excess * torque * t;
+    const Vec3 taken = taken_by(edges[i], moment, torque, t);
     out.force.segment<4>(own) = rotation.transpose() * taken;
     out.tangent.middleRows<4>(own) = -rotation.transpose() * (across * turning + excess * leaning);
     out.tangent.block<4, 4>(own, own) -=
@@ -173,6 +201,11 @@ Vec3 CirculatoryLoad::force(const Configuration& here) const {
     total = term.force.head<3>();
   }
   return total;
+}
+
+EdgeMoments CirculatoryLoad::moments(const Configuration& here) const {
+  const auto* moment = std::get_if<SpatialMoment>(&kind);
+  return moment == nullptr ? EdgeMoments{} : moment->moments(here, amount_of(*this, here.controls));
 }
 
 void add_circulatory_forces(const std::vector<CirculatoryLoad>& loads, const Configuration& here,

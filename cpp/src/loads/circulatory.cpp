@@ -68,6 +68,19 @@ Kind with_edges(const SectionPlace& place, const RodLayout& rod, const Model& mo
   return kind;
 }
 
+/// How far the section at a place turns further than its edges under a moment [rad/(N m)], in the
+/// axes of the drawn section.
+Mat3 compliance_of(const SectionPlace& place, const SpatialMoment& moment, const RodLayout& rod) {
+  const auto along = [](const Vec3& axis, double cell, double stiffness) -> Mat3 {
+    if (stiffness == 0.0) return Mat3::Zero();
+    return cell / stiffness * axis * axis.transpose();
+  };
+  const SectionFrame& drawn = moment.edges.front().drawn;
+  return along(drawn.first, place.bend_cell, rod.EI_2) +
+         along(drawn.second, place.bend_cell, rod.EI_1) +
+         along(drawn.tangent, place.twist_cell, rod.GJ);
+}
+
 Index add(CirculatoryLoad&& load, Model& model) {
   auto& loads = model.elements->circulatory;
   loads.push_back(std::move(load));
@@ -93,8 +106,8 @@ Index add_follower_force(const scenario::VectorSeries& force, double s, const Ro
   return add(std::move(load), model);
 }
 
-Index add_spatial_moment(const scenario::VectorSeries& moment, bool follower, double s,
-                         const RodLayout& rod, Model& model) {
+void add_spatial_moment(const scenario::VectorSeries& moment, bool follower, double s,
+                        RodLayout& rod, Model& model) {
   CirculatoryLoad load;
   set_amount(moment, load, model);
   const SectionPlace place = section_place(s, rod);
@@ -104,8 +117,10 @@ Index add_spatial_moment(const scenario::VectorSeries& moment, bool follower, do
                                          place.along[i]};
       });
   kind.follower = follower;
+  if (!place_beside_clamp(rod, s) && beyond_outer_middle(rod, s) == 0.0)
+    kind.compliance = compliance_of(place, kind, rod);
   load.kind = std::move(kind);
-  return add(std::move(load), model);
+  rod.spatial_moments.push_back({s, add(std::move(load), model)});
 }
 
 }  // namespace der

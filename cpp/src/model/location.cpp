@@ -6,6 +6,7 @@
 #include "der/core/error.hpp"
 #include "der/core/index.hpp"
 #include "der/core/nearest_node.hpp"
+#include "der/model/clamp_cell.hpp"
 
 namespace der {
 namespace {
@@ -48,8 +49,29 @@ double length_at_last_end(const EdgePart& part, const RodLayout& rod) {
   return (part.to - part.from) * (0.5 * (part.from + part.to) - s0) / (s1 - s0);
 }
 
+double tangent_place(const RodLayout& rod, Index edge) {
+  const double further = (kCellShare - 0.5) * rod.edge_length[to_size(rod.position(edge))];
+  return rod.edge_middle(edge) + (rod.clamp_at(edge) != nullptr ? further : 0.0) -
+         (rod.clamp_at(edge + 1) != nullptr ? further : 0.0);
+}
+
+std::optional<PlaceBesideClamp> place_beside_clamp(const RodLayout& rod, double s) {
+  for (std::size_t i = 0; i < rod.clamps.size(); ++i) {
+    for (const Index turns : turns_of(rod)) {
+      const Index node = rod.clamps[i].place + turns * rod.num_edges();
+      const double from = rod.arc_length_at(node);
+      const Index edge = s < from ? node - 1 : node;
+      if (!rod.closed && (edge < 0 || edge >= rod.num_edges())) continue;
+      const PlaceBesideClamp place{static_cast<Index>(i), rod.position(edge), std::abs(s - from),
+                                   std::abs(tangent_place(rod, edge) - from)};
+      if (place.distance < place.reach) return place;
+    }
+  }
+  return std::nullopt;
+}
+
 double beyond_outer_middle(const RodLayout& rod, double s) {
-  if (rod.closed) return 0.0;
+  if (rod.closed || place_beside_clamp(rod, s)) return 0.0;
   return std::max({0.0, rod.edge_middle(0) - s, s - rod.edge_middle(rod.num_edges() - 1)});
 }
 
@@ -130,19 +152,20 @@ std::vector<Weighted> node_weights(const RodLayout& rod, double s) {
 }
 
 std::vector<Weighted> edge_weights(const RodLayout& rod, double s) {
+  if (const auto beside = place_beside_clamp(rod, s)) return {{beside->edge, beside->share()}};
   const Index edges = rod.num_edges();
   const auto beyond = [&](double distance, Index last, Index before) -> std::vector<Weighted> {
     if (edges == 1) return {{last, 1.0}};
     const double share = kEndShare * distance / (0.5 * rod.edge_length[to_size(last)]);
     return {{last, 1.0 + share}, {before, -share}};
   };
-  if (!rod.closed && s <= rod.edge_middle(0)) return beyond(rod.edge_middle(0) - s, 0, 1);
-  if (!rod.closed && s >= rod.edge_middle(edges - 1))
+  if (!rod.closed && s <= tangent_place(rod, 0)) return beyond(rod.edge_middle(0) - s, 0, 1);
+  if (!rod.closed && s >= tangent_place(rod, edges - 1))
     return beyond(s - rod.edge_middle(edges - 1), edges - 1, edges - 2);
   Index right = rod.closed ? 0 : 1;
-  while (rod.edge_middle(right) < s) ++right;
-  const double share =
-      (s - rod.edge_middle(right - 1)) / (rod.edge_middle(right) - rod.edge_middle(right - 1));
+  while (tangent_place(rod, right) < s) ++right;
+  const double before = tangent_place(rod, right - 1);
+  const double share = (s - before) / (tangent_place(rod, right) - before);
   return {{right - 1, 1.0 - share}, {right, share}};
 }
 

@@ -54,6 +54,14 @@ const Clamp* RodLayout::clamp_at(Index place) const {
   return nullptr;
 }
 
+std::vector<double> RodLayout::moment_arc_lengths() const {
+  std::vector<double> places;
+  for (const MomentPlace& place : moment_places) places.push_back(place.arc_length);
+  for (const SpatialMomentPlace& place : spatial_moments) places.push_back(place.arc_length);
+  for (const SectionSpringPlace& place : section_springs) places.push_back(place.arc_length);
+  return places;
+}
+
 const MomentPlace* RodLayout::moment_place_at(double s) const {
   for (const MomentPlace& place : moment_places) {
     if (std::abs(place.arc_length - s) <= same_place()) return &place;

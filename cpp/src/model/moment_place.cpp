@@ -6,15 +6,20 @@
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/rotational_spring.hpp"
+#include "der/model/clamp_cell.hpp"
 #include "der/model/location.hpp"
 
 namespace der {
 namespace {
 
 double cell_length(const RodLayout& rod, const MomentPlace& place) {
+  if (const auto beside = place_beside_clamp(rod, place.arc_length)) {
+    return beside->share() * (1.0 - beside->share()) * beside->reach;
+  }
   const double beyond = beyond_outer_middle(rod, place.arc_length);
   if (place.weights.size() == 1) return 2.0 / 3.0 * beyond;
-  const double spacing = rod.edge_middle(place.first_edge + 1) - rod.edge_middle(place.first_edge);
+  const double spacing =
+      tangent_place(rod, place.first_edge + 1) - tangent_place(rod, place.first_edge);
   if (beyond == 0.0) return place.weights[0] * place.weights[1] * spacing;
   const double share = -std::min(place.weights[0], place.weights[1]);
   return beyond - share * (2.0 + share) * spacing;
@@ -74,11 +79,27 @@ MomentPlace moment_place(double s, const RodLayout& rod) {
   return place;
 }
 
+MomentPlace planar_moment_place(double s, const RodLayout& rod) {
+  MomentPlace place = moment_place(s, rod);
+  for (std::size_t i = 0; i < place.weights.size(); ++i) {
+    place.weights[i] /= turn_of_line(rod, place.first_edge + static_cast<Index>(i));
+  }
+  return place;
+}
+
+double turn_of_line(const RodLayout& rod, Index edge) {
+  double turn = 1.0;
+  for (const Index node : {edge, edge + 1}) {
+    if (rod.clamp_at(node) != nullptr) turn -= kPivotShare;
+  }
+  return turn;
+}
+
 MomentPlace& place_of_moments(double s, RodLayout& rod) {
   if (const MomentPlace* known = rod.moment_place_at(s)) {
     return rod.moment_places[static_cast<std::size_t>(known - rod.moment_places.data())];
   }
-  return rod.moment_places.emplace_back(moment_place(s, rod));
+  return rod.moment_places.emplace_back(planar_moment_place(s, rod));
 }
 
 double carried_moment(const MomentPlace& place, const RodLayout& rod, const Model& model,

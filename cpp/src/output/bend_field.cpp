@@ -113,7 +113,7 @@ class BendField : public EdgewiseField<double> {
 
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
-    return value(i, model, state);
+    return value(sample_at(i).edge, sample_at(i).place, model, state);
   }
 
  private:
@@ -172,7 +172,7 @@ class BendField : public EdgewiseField<double> {
     if (!known.cell) {
       const MomentRecovery::Place end{known.arc_length, last};
       const double moment =
-          recovery_.at_end(last, model, state) - recovery_.inside(edge, end, model, state).z();
+          recovery_.at_end(last, model, state).z() - recovery_.inside(edge, end, model, state).z();
       return moment / per_moment_ + (moment_ ? 0.0 : known.natural_curvature);
     }
     const double angle = turning_angle(*known.cell, model, state);

@@ -49,9 +49,11 @@ class EdgewiseField : public RodField {
     return samples;
   }
 
-  /// The value of sample number `i`.
-  [[nodiscard]] Value value(std::size_t i, const Model& model, const State& state) const {
-    const auto& [edge, place, smooth] = samples_[i];
+  [[nodiscard]] const Sample& sample_at(std::size_t i) const { return samples_[i]; }
+
+  /// The value at a place of an edge.
+  [[nodiscard]] Value value(Index edge, const MomentRecovery::Place& place, const Model& model,
+                            const State& state) const {
     const auto& [first, last] = lines_[to_size(edge)];
     const double share = (place.arc_length - first) / (last - first);
     Value value = inside(edge, place, model, state);

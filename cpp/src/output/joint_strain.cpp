@@ -64,8 +64,8 @@ Sides sides_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
 }
 
 template <class Curvature>
-JointStrain section_strain(const RodJoint& joint, const RodLayout& rod, const Model& model,
-                           const State& state) {
+JointKinematics<Curvature> kinematics_of(const RodJoint& joint, const RodLayout& rod,
+                                         const Model& model, const State& state) {
   const Sides sides = sides_of(joint, rod, model, state);
   const FrameBlock block =
       FrameBlock::of(rod.first_edge + (joint.after >= 0 ? joint.after : joint.before));
@@ -73,7 +73,19 @@ JointStrain section_strain(const RodJoint& joint, const RodLayout& rod, const Mo
   const Index first = static_cast<Index>(model.followed_edges.size());
   const double twist = nearest_turn(twist_between(sides.before, sides.after),
                                     sides.turned + state.followed[first + entry]);
-  return JointKinematics<Curvature>(sides.before, sides.after, twist).strain();
+  return {sides.before, sides.after, twist};
+}
+
+template <class Curvature>
+Vec3 response_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
+                 const State& state) {
+  const bool twists = joint.clamp < 0 || rod.clamps[to_size(joint.clamp)].holds_section;
+  JointResponse response;
+  kinematics_of<Curvature>(joint, rod, model, state)
+      .template respond<false>({rod.EI_1 / joint.bend_length, rod.EI_2 / joint.bend_length,
+                                twists ? rod.GJ / joint.twist_length : 0.0, joint.rest},
+                               response);
+  return response.moment;
 }
 
 /// The edges or held tangents before and after a joint.
@@ -97,7 +109,7 @@ JointStrain bend_strain(const RodJoint& joint, const RodLayout& rod, const Model
 template <class Curvature>
 JointStrain measured(const RodJoint& joint, const RodLayout& rod, const Model& model,
                      const State& state) {
-  return model.has_sections() ? section_strain<Curvature>(joint, rod, model, state)
+  return model.has_sections() ? kinematics_of<Curvature>(joint, rod, model, state).strain()
                               : bend_strain<Curvature>(joint, rod, model, state);
 }
 
@@ -127,6 +139,13 @@ JointStrain strain_of(const RodJoint& joint, const RodLayout& rod, const Model& 
   return rod.curvature == scenario::CurvatureMeasure::Angle
              ? measured<AngleCurvature>(joint, rod, model, state)
              : measured<TangentCurvature>(joint, rod, model, state);
+}
+
+Vec3 moment_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
+               const State& state) {
+  return rod.curvature == scenario::CurvatureMeasure::Angle
+             ? response_of<AngleCurvature>(joint, rod, model, state)
+             : response_of<TangentCurvature>(joint, rod, model, state);
 }
 
 Vec3 bend_axis(const RodJoint& joint, const RodLayout& rod, const Model& model,

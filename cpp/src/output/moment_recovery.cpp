@@ -30,6 +30,7 @@ std::optional<Index> clamp_beyond(const RodLayout& rod, Index edge) {
 MomentRecovery::MomentRecovery(const RodLayout& rod, const Model& model)
     : rod_(rod),
       forces_(rod, model),
+      moments_(rod, model),
       edges_(to_size(rod.num_edges())),
       kinks_(loaded_nodes(rod, model)) {
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
@@ -52,43 +53,51 @@ MomentRecovery::Where MomentRecovery::where_is(double s, Index edge) const {
 
 void MomentRecovery::add_moments(Index edge, Index turns, std::optional<Index> start,
                                  std::optional<Index> end) {
-  for (std::size_t p = 0; p < rod_.moment_places.size(); ++p) {
-    const MomentPlace& place = rod_.moment_places[p];
-    const Index first_edge = place.first_edge + turns * rod_.num_edges();
-    const double s = place.arc_length + turns * rod_.rest_length();
-    const auto count = static_cast<Index>(place.weights.size());
-    const bool from_before = end && first_edge + count > *end;
+  for (std::size_t m = 0; m < moments_.size(); ++m) {
+    const SpreadMoments::Moment& moment = moments_[m];
+    const Index ahead = turns * rod_.num_edges();
+    const Index first_edge = moment.first_edge + ahead;
+    const double s = moment.arc_length + turns * rod_.rest_length();
+    const auto count = static_cast<Index>(moment.weights.size());
+    const auto beside = place_beside_clamp(rod_, moment.arc_length);
+    const bool is_taken_at_end = beside && end && beside->edge + ahead + 1 == *end;
+    const bool from_before = end && (first_edge + count > *end || is_taken_at_end);
     const Where where = where_is(s, edge);
-    MomentTerm term{p, s, where == Where::Inside};
+    MomentTerm term{m, s, where == Where::Inside, {}, {}};
     for (Index i = 0; i < count; ++i) {
       const Index other = first_edge + i;
-      const double weight = place.weights[to_size(i)];
-      if (other == edge) term.own = weight;
+      if (other == edge) term.own = static_cast<int>(i);
       if (from_before && other < start.value_or(0)) continue;
       if (!from_before && end && other >= *end) continue;
+      double& first = term.first.on_edge[to_size(i)];
+      double& last = term.last.on_edge[to_size(i)];
       if (from_before) {
-        if (other < edge) term.first += weight;
-        if (other <= edge) term.last += weight;
+        if (other < edge) first = 1.0;
+        if (other <= edge) last = 1.0;
       } else {
-        if (other >= edge) term.first -= weight;
-        if (other > edge) term.last -= weight;
+        if (other >= edge) first = -1.0;
+        if (other > edge) last = -1.0;
       }
     }
     const bool in_span =
         (!start || s >= rod_.arc_length_at(*start)) && (!end || s <= rod_.arc_length_at(*end));
     const double beyond = from_before ? 0.0 : 1.0;
     if (in_span && where != Where::Inside) {
-      const double factor = where == Where::Beyond ? beyond : beyond - 1.0;
-      term.first += factor;
-      term.last += factor;
+      term.first.whole = term.last.whole = where == Where::Beyond ? beyond : beyond - 1.0;
     }
     if (term.inside) {
       term.before = beyond;
       term.after = beyond - 1.0;
     }
-    constexpr double kRounding = 1e-12;
-    if (term.inside || term.own != 0.0 || std::abs(term.first) > kRounding ||
-        std::abs(term.last) > kRounding) {
+    const auto vanishes = [&](const MomentFactors& factors) {
+      constexpr double kRounding = 1e-12;
+      double sum = factors.whole;
+      for (std::size_t i = 0; i < moment.weights.size(); ++i) {
+        sum += factors.on_edge[i] * moment.weights[i];
+      }
+      return std::abs(sum) <= kRounding;
+    };
+    if (term.inside || term.own >= 0 || !vanishes(term.first) || !vanishes(term.last)) {
       edges_[to_size(edge)].moments.push_back(term);
     }
   }
@@ -109,27 +118,28 @@ void MomentRecovery::add_forces(Index edge, std::optional<Index> start, std::opt
   }
 }
 
-double MomentRecovery::carried(std::size_t number, const Model& model, const State& state) const {
-  const MomentPlace& place = rod_.moment_places[number];
-  double applied = 0.0;
-  for (const Index moment : place.moments) {
-    applied += control_value(model, state, moment);
-  }
-  return carried_moment(place, rod_, model, state, applied);
+bool MomentRecovery::is_same_place(double a, double b) const {
+  return std::abs(a - b) <= rod_.same_place();
 }
 
 Vec3 MomentRecovery::smooth(Index edge, bool last, const Vec3& point, const Model& model,
                             const State& state) const {
   const EdgeTerms& terms = edges_[to_size(edge)];
   Vec3 moment = Vec3::Zero();
-  // A moment is a couple at the nodes of its edge: a pivot between them sees the nearer one's force
-  // taken by the clamp.
-  const Vec3 along = forces_.node_point(edge + 1, state) - forces_.node_point(edge, state);
-  const double pivot =
-      (point - forces_.node_point(last ? edge + 1 : edge, state)).dot(along) / along.squaredNorm();
+  // In a plane a moment is a couple at the nodes of its edge: a pivot between them sees the nearer
+  // one's force taken by the clamp. In space it is one at the pivot.
+  double missing = 0.0;
+  if (const Index node = last ? edge + 1 : edge;
+      model.dimension == 2 && rod_.clamp_at(node) != nullptr) {
+    const Vec3 along = forces_.node_point(edge + 1, state) - forces_.node_point(edge, state);
+    const double arm =
+        1.0 - std::abs((point - forces_.node_point(node, state)).dot(along)) / along.squaredNorm();
+    missing = (last ? -1.0 : 1.0) * (1.0 - arm / turn_of_line(rod_, edge));
+  }
   for (const MomentTerm& term : terms.moments) {
-    const double factor = (last ? term.last : term.first) + term.own * pivot;
-    if (factor != 0.0) moment.z() += factor * carried(term.place, model, state);
+    const EdgeMoments value = moments_.value(term.number, model, state);
+    moment += (last ? term.last : term.first).times(value);
+    if (term.own >= 0) moment += missing * value.on_edge[to_size(term.own)];
   }
   for (const ForceTerm& term : terms.forces) {
     const Vec3 stands = forces_.point(term.place, state);
@@ -149,11 +159,10 @@ Vec3 MomentRecovery::inside(Index edge, const Place& place, const Model& model,
   Vec3 moment = Vec3::Zero();
   for (const MomentTerm& term : terms.moments) {
     if (!term.inside) continue;
-    const bool beyond = std::abs(term.arc_length - s) <= rod_.same_place()
-                            ? place.loads_here_are_beyond
-                            : term.arc_length > s;
+    const bool beyond =
+        is_same_place(term.arc_length, s) ? place.loads_here_are_beyond : term.arc_length > s;
     const double factor = beyond ? term.before : term.after;
-    if (factor != 0.0) moment.z() += factor * carried(term.place, model, state);
+    if (factor != 0.0) moment += factor * moments_.value(term.number, model, state).whole;
   }
   for (const ForceTerm& term : terms.forces) {
     if (term.where != Where::Inside) continue;
@@ -168,11 +177,24 @@ Vec3 MomentRecovery::inside(Index edge, const Place& place, const Model& model,
   return moment;
 }
 
-double MomentRecovery::at_end(bool last, const Model& model, const State& state) const {
-  const MomentPlace* place = rod_.moment_place_at(last ? rod_.rest_length() : 0.0);
-  if (place == nullptr) return 0.0;
-  const auto number = static_cast<std::size_t>(place - rod_.moment_places.data());
-  return last ? carried(number, model, state) : -carried(number, model, state);
+Vec3 MomentRecovery::at_end(bool last, const Model& model, const State& state) const {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t m = 0; m < moments_.size(); ++m) {
+    if (is_same_place(moments_[m].arc_length, last ? rod_.rest_length() : 0.0)) {
+      sum += (last ? 1.0 : -1.0) * moments_.value(m, model, state).whole;
+    }
+  }
+  return sum;
+}
+
+Vec3 MomentRecovery::excess(Index edge, const Model& model, const State& state) const {
+  Vec3 sum = Vec3::Zero();
+  for (const MomentTerm& term : edges_[to_size(edge)].moments) {
+    if (term.own < 0 || moments_[term.number].weights[to_size(term.own)] <= 1.0) continue;
+    const EdgeMoments value = moments_.value(term.number, model, state);
+    sum += value.on_edge[to_size(term.own)] - value.whole;
+  }
+  return sum;
 }
 
 std::vector<MomentRecovery::Break> MomentRecovery::breaks(Index edge) const {
@@ -187,14 +209,12 @@ std::vector<MomentRecovery::Break> MomentRecovery::breaks(Index edge) const {
   }
   // One of each place: the one with a jump, where there is one.
   std::sort(found.begin(), found.end(), [&](const Break& a, const Break& b) {
-    if (std::abs(a.arc_length - b.arc_length) > rod_.same_place()) {
-      return a.arc_length < b.arc_length;
-    }
+    if (!is_same_place(a.arc_length, b.arc_length)) return a.arc_length < b.arc_length;
     return a.jumps && !b.jumps;
   });
   found.erase(std::unique(found.begin(), found.end(),
                           [&](const Break& a, const Break& b) {
-                            return std::abs(a.arc_length - b.arc_length) <= rod_.same_place();
+                            return is_same_place(a.arc_length, b.arc_length);
                           }),
               found.end());
   return found;
@@ -202,8 +222,11 @@ std::vector<MomentRecovery::Break> MomentRecovery::breaks(Index edge) const {
 
 bool MomentRecovery::jumps_at(Index node) const {
   if (!rod_.is_inner(node)) return false;
-  return rod_.clamp_at(node) != nullptr ||
-         rod_.moment_place_at(rod_.arc_length[to_size(rod_.position(node))]) != nullptr;
+  const auto stands_here = [&](double s) {
+    return is_same_place(s, rod_.arc_length[to_size(rod_.position(node))]);
+  };
+  const std::vector<double> places = rod_.moment_arc_lengths();
+  return rod_.clamp_at(node) != nullptr || std::any_of(places.begin(), places.end(), stands_here);
 }
 
 }  // namespace der

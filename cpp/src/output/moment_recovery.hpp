@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 #include "output/spread_forces.hpp"
+#include "output/spread_moments.hpp"
 
 namespace der {
 
@@ -45,8 +47,15 @@ class MomentRecovery {
   /// Correction [N m] of the straight line at a place of an edge.
   [[nodiscard]] Vec3 inside(Index edge, const Place& place, const Model& model,
                             const State& state) const;
-  /// Moment [N m] about z in a planar rod at its start or its end, which are not clamped.
-  [[nodiscard]] double at_end(bool last, const Model& model, const State& state) const;
+  /// Moment [N m] at the start or the end of the rod, which are not clamped.
+  [[nodiscard]] Vec3 at_end(bool last, const Model& model, const State& state) const;
+
+  /// What an edge takes of moments beyond the whole of them [N m], next to an end.
+  [[nodiscard]] Vec3 excess(Index edge, const Model& model, const State& state) const;
+  /// Whether moments of loads and springs make a difference on an edge.
+  [[nodiscard]] bool has_moments(Index edge) const {
+    return !edges_[static_cast<std::size_t>(edge)].moments.empty();
+  }
 
   /// Inside an edge, in the order of the arc length.
   [[nodiscard]] std::vector<Break> breaks(Index edge) const;
@@ -59,13 +68,22 @@ class MomentRecovery {
  private:
   enum class Where { Before, Inside, Beyond };  // of a load, as seen from an edge
 
-  /// How the moment at a place enters an edge: times these factors.
+  /// Factors of a moment, and of what its edges take of it.
+  struct MomentFactors {
+    double whole = 0.0;
+    std::array<double, 2> on_edge{};
+
+    [[nodiscard]] Vec3 times(const EdgeMoments& moment) const {
+      return whole * moment.whole + on_edge[0] * moment.on_edge[0] + on_edge[1] * moment.on_edge[1];
+    }
+  };
+  /// How the moment at a place enters an edge.
   struct MomentTerm {
-    std::size_t place = 0;  // in RodLayout::moment_places
+    std::size_t number = 0;  // in `moments_`
     double arc_length = 0.0;
     bool inside = false;
-    double first = 0.0, last = 0.0;    // of `smooth`
-    double own = 0.0;                  // weight of this edge
+    MomentFactors first, last;         // of `smooth`
+    int own = -1;                      // which edge of the moment this one is; -1: none
     double before = 0.0, after = 0.0;  // of `inside`, on either side of the place
   };
   /// How a force between nodes enters an edge whose ends part its nodes.
@@ -83,10 +101,11 @@ class MomentRecovery {
   [[nodiscard]] Where where_is(double s, Index edge) const;
   void add_moments(Index edge, Index turns, std::optional<Index> start, std::optional<Index> end);
   void add_forces(Index edge, std::optional<Index> start, std::optional<Index> end);
-  [[nodiscard]] double carried(std::size_t number, const Model& model, const State& state) const;
+  [[nodiscard]] bool is_same_place(double a, double b) const;
 
   RodLayout rod_;
   SpreadForces forces_;
+  SpreadMoments moments_;
   std::vector<EdgeTerms> edges_;
   std::vector<bool> kinks_;
 };

@@ -1,13 +1,13 @@
 #include "output/section_field.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "der/core/index.hpp"
-#include "der/energies/registry.hpp"
+#include "der/model/location.hpp"
 #include "der/output/joint_strain.hpp"
-#include "der/supports/clamp.hpp"
 #include "der/supports/spatial_clamp.hpp"
 #include "output/edgewise_field.hpp"
 #include "output/moment_recovery.hpp"
@@ -34,6 +34,10 @@ bool is_moment(SectionQuantity quantity) {
 /// Bending towards the two directors and twist, of a rod with sections: curvatures and twist, or
 /// the two moments and the torque. Of a rod without sections the vector about which it bends, in
 /// fixed axes.
+///
+/// Beside moments inside the rod the section turns at rates that differ on their two sides, and
+/// components along it have a kink. Along the edges there the field is the vector of the moment in
+/// fixed axes, which has none, and the section at each place takes its components.
 class SectionField : public EdgewiseField<Vec3> {
  public:
   static std::unique_ptr<RodField> make(SectionQuantity quantity, const RodLayout& rod,
@@ -49,8 +53,8 @@ class SectionField : public EdgewiseField<Vec3> {
         samples.push_back({rod.num_edges() - 1, {rod.rest_length(), true}, false});
       }
       for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-        edges.emplace_back(known(quantity, rod, edge, false, model),
-                           known(quantity, rod, edge, true, model));
+        const bool by_twist = is_of_twist(quantity) && !recovery.has_moments(edge);
+        edges.emplace_back(known(by_twist, rod, edge, false), known(by_twist, rod, edge, true));
         lines.emplace_back(edges.back().first.arc_length, edges.back().second.arc_length);
       }
     }
@@ -61,7 +65,9 @@ class SectionField : public EdgewiseField<Vec3> {
 
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
-    const Vec3 all = value(i, model, state);
+    const auto& [edge, place, smooth] = sample_at(i);
+    Vec3 all = value(edge, place, model, state);
+    if (is_vector(edge, model)) all = in_turned_section(edge, place, all, model, state);
     switch (quantity_) {
       case SectionQuantity::Curvature1:
       case SectionQuantity::Moment1:
@@ -82,6 +88,7 @@ class SectionField : public EdgewiseField<Vec3> {
   struct Known {
     const RodJoint* joint = nullptr;  // of the model's rod; none at an end
     double arc_length = 0.0;          // [m]
+    double twist_place = 0.0;         // where it twists [m]
     Vec3 natural = Vec3::Zero();      // curvatures and twist
     double joint_ahead = 0.0;         // [m] by which the joint counts its places further on
     double glued = 0.0;               // [rad] by which the section is turned against the joint's
@@ -96,8 +103,7 @@ class SectionField : public EdgewiseField<Vec3> {
         stiffness_(model.has_sections() ? Vec3(rod.EI_1, rod.EI_2, rod.GJ)
                                         : Vec3::Constant(rod.EI_1)),
         recovery_(std::move(recovery)),
-        edges_(std::move(edges)),
-        turned_ends_(turned_ends(rod, model)) {}
+        edges_(std::move(edges)) {}
 
   /// Components towards the two directors of a section that is turned on by an angle [rad].
   static Vec3 turned(const Vec3& parts, double angle) {
@@ -122,46 +128,15 @@ class SectionField : public EdgewiseField<Vec3> {
             joint.rest.twist / joint.twist_length};
   }
 
-  /// The two joints next to an end of a rod that has two, and how much further beyond the nearer
-  /// one the end is, over their distance.
-  struct EndJoints {
-    const RodJoint* near;
-    const RodJoint* far;
-    double ratio;
-
-    EndJoints(const RodLayout& rod, bool last)
-        : near(last ? &rod.joints.back() : &rod.joints.front()),
-          far(last ? near - 1 : near + 1),
-          ratio(((last ? rod.rest_length() : 0.0) - near->bend_place) /
-                (near->bend_place - far->bend_place)) {}
-  };
-
-  /// An end at which a moment or a spring turns the section. The joint next to it bends by l/12 of
-  /// the end's curvature more (model/moment_place.hpp), which follows from that of the next joint.
-  struct TurnedEnd : EndJoints {
-    double share;  ///< l/12 over the length in which the joint bends
-
-    TurnedEnd(const RodLayout& rod, bool last)
-        : EndJoints(rod, last),
-          share(rod.edge_length[to_size(last ? near->after : near->before)] /
-                (12.0 * near->bend_length)) {}
-  };
-
-  static std::vector<TurnedEnd> turned_ends(const RodLayout& rod, const Model& model) {
-    std::vector<TurnedEnd> ends;
-    for (const bool last : {false, true}) {
-      if (rod.joints.size() > 1 && is_turned_at_end(rod, last, model)) ends.emplace_back(rod, last);
-    }
-    return ends;
-  }
-
   /// Natural curvatures and twist at an end of the rod: as given, or those of the drawn rod,
   /// extrapolated.
   static Vec3 natural_at_end(const RodLayout& rod, bool last) {
     Vec3 result = natural_of(last ? rod.joints.back() : rod.joints.front());
     if (rod.joints.size() > 1) {
-      const EndJoints joints(rod, last);
-      result += joints.ratio * (result - natural_of(*joints.far));
+      const RodJoint& near = last ? rod.joints.back() : rod.joints.front();
+      const RodJoint& far = last ? rod.joints.end()[-2] : rod.joints[1];
+      const double beyond = (last ? rod.rest_length() : 0.0) - near.bend_place;
+      result += beyond / (near.bend_place - far.bend_place) * (result - natural_of(far));
     }
     if (!rod.natural_curvatures.empty()) {
       result.head<2>() = last ? rod.natural_curvatures.back() : rod.natural_curvatures.front();
@@ -172,63 +147,36 @@ class SectionField : public EdgewiseField<Vec3> {
     return result;
   }
 
-  /// Whether a moment or a spring turns the section at an end: beyond the middle of the outermost
-  /// edge.
-  static bool is_turned_at_end(const RodLayout& rod, bool last, const Model& model) {
-    if (!model.has_sections() || rod.closed) return false;
-    const Index edge = last ? rod.num_edges() - 1 : 0;
-    const Index theta = model.framed_edges[to_size(rod.first_edge + edge)].theta;
-    const auto acts_here = [&](const SpatialMoment::TurnedEdge& turned) {
-      return turned.edge.theta == theta && turned.across > 1.0;
-    };
-    const auto& loads = model.elements->circulatory;
-    const bool by_load = std::any_of(loads.begin(), loads.end(), [&](const CirculatoryLoad& load) {
-      const auto* moment = std::get_if<SpatialMoment>(&load.kind);
-      return moment != nullptr &&
-             std::any_of(moment->edges.begin(), moment->edges.end(), acts_here);
-    });
-    const double middle = rod.edge_middle(edge);
-    const auto& springs = rod.section_springs;
-    return by_load || std::any_of(springs.begin(), springs.end(), [&](const auto& spring) {
-             return last ? spring.arc_length > middle : spring.arc_length < middle;
-           });
-  }
-
-  /// Where something turns an end, the two joints next to it are known, and the line through them
-  /// goes on to the end.
-  static Known known(SectionQuantity quantity, const RodLayout& rod, Index edge, bool last,
-                     const Model& model) {
+  /// `by_twist`: where the chain twists, in place of where it bends.
+  static Known known(bool by_twist, const RodLayout& rod, Index edge, bool last) {
     Known result;
-    result.arc_length = rod.arc_length_at(last ? edge + 1 : edge);
-    auto joint = std::find_if(rod.joints.begin(), rod.joints.end(), [&](const RodJoint& other) {
+    result.arc_length = result.twist_place = rod.arc_length_at(last ? edge + 1 : edge);
+    const auto joint = std::find_if(rod.joints.begin(), rod.joints.end(), [&](const auto& other) {
       return (last ? other.before : other.after) == edge;
     });
-    if (joint == rod.joints.end() && is_turned_at_end(rod, last, model)) {
-      if (rod.joints.size() == 1) {
-        result.joint = &rod.joints.front();
-        result.natural = natural_of(*result.joint);
-        return result;
-      }
-      joint = last ? rod.joints.end() - 2 : rod.joints.begin() + 1;
-    }
     if (joint == rod.joints.end()) {
       result.natural = natural_at_end(rod, last);
       return result;
     }
     result.natural = natural_of(*joint);
-    // A clamp that holds the tangent alone lets the section turn.
-    const bool lets_turn = joint->clamp >= 0 && !rod.clamps[to_size(joint->clamp)].holds_section;
-    if (is_of_twist(quantity) && lets_turn) return result;
-    result.joint = &*joint;
     if (rod.closed && !last && joint->place() > edge) {
       // The joint at the end of a ring is at its start, too, on the other side of the glue.
       result.joint_ahead = rod.rest_length();
       result.glued = joint->glued;
       result.natural = turned(result.natural, result.glued);
     }
-    const double place = is_of_twist(quantity) ? joint->twist_place : joint->bend_place;
-    result.arc_length = place - result.joint_ahead;
+    result.twist_place = joint->twist_place - result.joint_ahead;
+    // A clamp that holds the tangent alone lets the section turn.
+    const bool lets_turn = joint->clamp >= 0 && !rod.clamps[to_size(joint->clamp)].holds_section;
+    if (by_twist && lets_turn) return result;
+    result.joint = &*joint;
+    result.arc_length = (by_twist ? joint->twist_place : joint->bend_place) - result.joint_ahead;
     return result;
+  }
+
+  /// Whether the field is a vector in fixed axes along an edge.
+  [[nodiscard]] bool is_vector(Index edge, const Model& model) const {
+    return model.has_sections() && recovery_.has_moments(edge);
   }
 
   [[nodiscard]] Vec3 line(Index edge, bool last, const Model& model,
@@ -236,47 +184,44 @@ class SectionField : public EdgewiseField<Vec3> {
     const auto& ends = edges_[to_size(edge)];
     const Known& known = last ? ends.second : ends.first;
     const Vec3 natural = is_moment(quantity_) ? Vec3::Zero() : known.natural;
+    const bool vector = is_vector(edge, model);
     if (known.joint == nullptr) {
-      return natural - inside(edge, {known.arc_length, last}, model, state);
+      const Vec3 beyond = inside(edge, {known.arc_length, last}, model, state);
+      return (vector ? recovery_.at_end(last, model, state) : natural) - beyond;
     }
+    const Vec3 missing =
+        recovery_.smooth(edge, last, point_at(edge, last, model, state), model, state);
+    if (vector) return moment_of(*known.joint, rod_, model, state) + missing;
     const Vec3 excess = excess_of(*known.joint, model, state);
-    const SpatialEdge vector = spatial_edge(rod_, edge, model);
-    const Index node = last ? edge + 1 : edge;
-    const double share =
-        (known.arc_length - rod_.arc_length_at(node)) / rod_.edge_length[to_size(edge)];
-    const Vec3 along =
-        state.positions.segment<3>(vector.end) - state.positions.segment<3>(vector.start);
-    const Vec3 point = state.positions.segment<3>(last ? vector.end : vector.start) + share * along;
-    const Vec3 recovered =
-        in_section(edge, recovery_.smooth(edge, last, point, model, state), model, state);
     Vec3 moment = stiffness_.cwiseProduct(excess);
     if (model.has_sections()) {
       moment = turned(moved(moment, known, natural_of(*known.joint) + excess), known.glued);
     }
     return natural + (is_moment(quantity_) ? moment : Vec3(moment.cwiseQuotient(stiffness_))) +
-           recovered;
+           in_section(edge, missing, model, state);
+  }
+
+  /// The point [m] where the first or the last moment of an edge is known.
+  [[nodiscard]] Vec3 point_at(Index edge, bool last, const Model& model, const State& state) const {
+    const auto& ends = edges_[to_size(edge)];
+    const double place = (last ? ends.second : ends.first).arc_length;
+    const SpatialEdge vector = spatial_edge(rod_, edge, model);
+    const double share =
+        (place - rod_.arc_length_at(last ? edge + 1 : edge)) / rod_.edge_length[to_size(edge)];
+    const Vec3 along =
+        state.positions.segment<3>(vector.end) - state.positions.segment<3>(vector.start);
+    return state.positions.segment<3>(last ? vector.end : vector.start) + share * along;
   }
 
   [[nodiscard]] Vec3 inside(Index edge, const MomentRecovery::Place& place, const Model& model,
                             const State& state) const override {
-    return in_section(edge, recovery_.inside(edge, place, model, state), model, state);
+    const Vec3 moment = recovery_.inside(edge, place, model, state);
+    return is_vector(edge, model) ? moment : in_section(edge, moment, model, state);
   }
 
   /// Curvatures and twist of a joint beyond the natural ones [1/m].
   [[nodiscard]] Vec3 excess_of(const RodJoint& joint, const Model& model,
                                const State& state) const {
-    Vec3 excess = measured_excess(joint, model, state);
-    for (const TurnedEnd& end : turned_ends_) {
-      if (joint.before != end.near->before || joint.clamp >= 0) continue;
-      const Vec3 next = measured_excess(*end.far, model, state);
-      excess.head<2>() =
-          (excess + end.share * end.ratio * next).head<2>() / (1.0 + end.share * (1.0 + end.ratio));
-    }
-    return excess;
-  }
-
-  [[nodiscard]] Vec3 measured_excess(const RodJoint& joint, const Model& model,
-                                     const State& state) const {
     const JointStrain strain = strain_of(joint, rod_, model, state);
     if (!model.has_sections()) {
       return strain.kappa_1 / joint.bend_length * bend_axis(joint, rod_, model, state);
@@ -308,22 +253,95 @@ class SectionField : public EdgewiseField<Vec3> {
     const Index place = joint.place();
     const auto side = [&](Index own, Index edge) {
       if (own < 0) return rod_.arc_length_at(place);  // of the clamp
-      const double further = clamp_cell_length(rod_, own) - 0.5 * rod_.edge_length[to_size(own)];
-      return rod_.edge_middle(edge) + (rod_.clamp_at(edge) != nullptr ? further : 0.0) -
-             (rod_.clamp_at(edge + 1) != nullptr ? further : 0.0);
+      return der::tangent_place(rod_, edge);
     };
     return 0.5 * (side(joint.before, place - 1) + side(joint.after, place));
   }
 
-  /// A moment [N m] in fixed axes as the field has it: bending towards a director turns about the
-  /// other one.
+  /// The moment `moment` [N m] in fixed axes at a place of an edge as the field has it, in the
+  /// section there: that of the edge, turned by the strains on the way to the place.
+  [[nodiscard]] Vec3 in_turned_section(Index edge, const MomentRecovery::Place& place,
+                                       const Vec3& moment, const Model& model,
+                                       const State& state) const {
+    const SectionFrame frame = section_frame(model, rod_.first_edge + edge, state);
+    const double s = place.arc_length;
+    Vec3 turn = turn_between(edge, frame, der::tangent_place(rod_, edge), s, model, state);
+    turn[2] = turn_between(edge, frame, rod_.edge_middle(edge), s, model, state)[2];
+    turn -= lean(edge, frame, model, state);
+    const Vec3 axis = turn[0] * frame.second - turn[1] * frame.first + turn[2] * frame.tangent;
+    const double angle = axis.norm();
+    Vec3 seen = moment;
+    if (angle > 0.0) seen = Eigen::AngleAxisd(-angle, axis / angle) * moment;
+    const Vec3 parts = components(seen, frame);
+    return is_moment(quantity_) ? parts
+                                : Vec3(natural_at(edge, s) + parts.cwiseQuotient(stiffness_));
+  }
+
+  /// How far an edge's section turns from one place to another [rad]: the strains, in the middle of
+  /// each part between moments.
+  [[nodiscard]] Vec3 turn_between(Index edge, const SectionFrame& frame, double from, double to,
+                                  const Model& model, const State& state) const {
+    const auto [low, high] = std::minmax(from, to);
+    Vec3 turn = Vec3::Zero();
+    double a = low;
+    const auto pass = [&](double b) {
+      const MomentRecovery::Place middle{0.5 * (a + b), false};
+      const Vec3 moment = components(value(edge, middle, model, state), frame);
+      turn +=
+          (b - a) * (natural_at(edge, middle.arc_length) + Vec3(moment.cwiseQuotient(stiffness_)));
+      a = b;
+    };
+    for (const auto& [s, jumps] : recovery_.breaks(edge)) {
+      if (jumps && low < s && s < high) pass(s);
+    }
+    pass(high);
+    return from < to ? turn : Vec3(-turn);
+  }
+
+  /// How far an outermost edge is turned beyond the curve [rad]: its free end lies on the curve and
+  /// its other node beside it (model/location.hpp).
+  [[nodiscard]] Vec3 lean(Index edge, const SectionFrame& frame, const Model& model,
+                          const State& state) const {
+    Vec3 turn = Vec3::Zero();
+    if (rod_.closed) return turn;
+    for (const bool last : {false, true}) {
+      const Index node = last ? rod_.num_edges() : 0;
+      if (edge != (last ? node - 1 : node) || rod_.clamp_at(node) != nullptr) continue;
+      const Vec3 excess = components(recovery_.excess(edge, model, state), frame);
+      const RodJoint& joint = last ? rod_.joints.back() : rod_.joints.front();
+      turn = joint.bend_length * excess.cwiseQuotient(stiffness_);
+      if (!rod_.natural_curvatures.empty()) {
+        const double twelfth = rod_.edge_length[to_size(edge)] / 12.0;
+        turn.head<2>() += (last ? twelfth : -twelfth) * rod_.natural_curvatures[to_size(node)];
+      }
+    }
+    return {turn[0], turn[1], 0.0};
+  }
+
+  /// Natural curvatures and twist at a place of an edge [1/m].
+  [[nodiscard]] Vec3 natural_at(Index edge, double s) const {
+    const auto& [first, last] = edges_[to_size(edge)];
+    const auto between = [&, &a = first.natural, &b = last.natural](double from, double to) {
+      const double share = (s - from) / (to - from);
+      return Vec3((1.0 - share) * a + share * b);
+    };
+    Vec3 natural = between(first.arc_length, last.arc_length);
+    natural[2] = between(first.twist_place, last.twist_place)[2];
+    return natural;
+  }
+
+  /// Bending towards a director turns about the other one.
+  static Vec3 components(const Vec3& moment, const SectionFrame& frame) {
+    return {moment.dot(frame.second), -moment.dot(frame.first), moment.dot(frame.tangent)};
+  }
+
+  /// A moment [N m] in fixed axes as the field has it.
   [[nodiscard]] Vec3 in_section(Index edge, const Vec3& moment, const Model& model,
                                 const State& state) const {
     if (moment.isZero(0.0)) return moment;
     Vec3 parts = moment;
     if (model.has_sections()) {
-      const SectionFrame frame = section_frame(model, rod_.first_edge + edge, state);
-      parts = {moment.dot(frame.second), -moment.dot(frame.first), moment.dot(frame.tangent)};
+      parts = components(moment, section_frame(model, rod_.first_edge + edge, state));
     }
     return is_moment(quantity_) ? parts : Vec3(parts.cwiseQuotient(stiffness_));
   }
@@ -333,7 +351,6 @@ class SectionField : public EdgewiseField<Vec3> {
   Vec3 stiffness_;
   MomentRecovery recovery_;
   std::vector<std::pair<Known, Known>> edges_;  // first and last of each
-  std::vector<TurnedEnd> turned_ends_;          // joints are of the model's rod, as those of edges_
 };
 
 }  // namespace

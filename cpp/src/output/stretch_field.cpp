@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "der/core/index.hpp"
+#include "der/model/moment_place.hpp"
 #include "der/output/joint_strain.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spatial_clamp.hpp"
@@ -14,6 +15,7 @@
 #include "output/line_loads.hpp"
 #include "output/rod_field.hpp"
 #include "output/spread_forces.hpp"
+#include "output/spread_moments.hpp"
 #include "output/stretch_samples.hpp"
 
 namespace der {
@@ -126,23 +128,37 @@ class LeaningEdges {
       const auto component = static_cast<Index>(k);
       curvature[component] = mean(*bends_[k].curvature);
       moment[component] = mean(*bends_[k].moment);
-      force[component] = (at_end(*bends_[k].moment, lean.edge, false, model, state) -
-                          at_end(*bends_[k].moment, lean.edge, true, model, state)) /
+      force[component] = -change(*bends_[k].moment, lean.edge, model, state) /
                          rod_.edge_length[to_size(lean.edge)];
     }
     if (twist_) force += mean(*twist_) * Vec2(moment[1], -moment[0]);
     return lean.natural_curvature.value_or(curvature).dot(force);
   }
 
-  /// The value of a field at the first or last end of an edge, on the edge's side of a jump.
-  [[nodiscard]] double at_end(const RodField& field, Index edge, bool last, const Model& model,
-                              const State& state) const {
+  /// The sample of a field at the first or last end of an edge, on the edge's side of a jump.
+  [[nodiscard]] std::size_t sample_at_end(const RodField& field, Index edge, bool last) const {
     const double place = rod_.arc_length_at(last ? edge + 1 : edge);
     const std::vector<double>& samples = field.arc_length();
     const auto found =
         last ? std::lower_bound(samples.begin(), samples.end(), place - rod_.same_place())
              : std::upper_bound(samples.begin(), samples.end(), place + rod_.same_place()) - 1;
-    return field.sample(static_cast<std::size_t>(found - samples.begin()), model, state);
+    return static_cast<std::size_t>(found - samples.begin());
+  }
+  [[nodiscard]] double at_end(const RodField& field, Index edge, bool last, const Model& model,
+                              const State& state) const {
+    return field.sample(sample_at_end(field, edge, last), model, state);
+  }
+  /// By how much a field changes along an edge, but for its jumps.
+  [[nodiscard]] double change(const RodField& field, Index edge, const Model& model,
+                              const State& state) const {
+    const std::vector<double>& samples = field.arc_length();
+    double change = 0.0;
+    for (std::size_t i = sample_at_end(field, edge, false); i < sample_at_end(field, edge, true);
+         ++i) {
+      if (samples[i + 1] - samples[i] <= rod_.same_place()) continue;
+      change += field.sample(i + 1, model, state) - field.sample(i, model, state);
+    }
+    return change;
   }
 
   struct Bend {
@@ -154,6 +170,35 @@ class LeaningEdges {
   std::vector<Lean> leans_;
   std::vector<Bend> bends_;  // towards each director, or in the plane; empty where no edge leans
   std::unique_ptr<RodField> twist_;  // of sections
+};
+
+/// The tension that edges next to a clamp have in excess in a plane, where a moment is a couple
+/// across the line between the nodes: the edge from the clamp's pivot has another direction, and
+/// the clamp takes the force of the couple on the node that it holds.
+class Couples {
+ public:
+  Couples(const RodLayout& rod, const Model& model) : rod_(rod), moments_(rod, model) {}
+
+  /// [N] along `effective`, an edge's vector as its elements see it.
+  [[nodiscard]] double excess(Index edge, const Vec3& effective, const Model& model,
+                              const State& state) const {
+    if (model.dimension != 2) return 0.0;
+    double excess = 0.0;
+    for (std::size_t m = 0; m < moments_.size(); ++m) {
+      const Index number = edge - moments_[m].first_edge;
+      if (number < 0 || number >= static_cast<Index>(moments_[m].weights.size())) continue;
+      const Vec2 along = along_edge(rod_.edge(edge, model), state.positions);
+      const double moment =
+          moments_.value(m, model, state).on_edge[to_size(number)].z() / turn_of_line(rod_, edge);
+      excess +=
+          moment * in_space(along).cross(effective).z() / (along.squaredNorm() * effective.norm());
+    }
+    return excess;
+  }
+
+ private:
+  const RodLayout& rod_;
+  SpreadMoments moments_;
 };
 
 /// The strain, times a stiffness [N] (1: the strain itself).
@@ -206,6 +251,7 @@ class StretchField : public RodField {
         forces_(std::move(forces)),
         vectors_(rod, model),
         leans_(rod, model),
+        couples_(rod, model),
         excess_(rod, forces_),
         samples_(std::move(samples)) {}
 
@@ -219,7 +265,9 @@ class StretchField : public RodField {
     const Vec3 effective = vectors_.at(edge, model, state);
     const double length = effective.norm();
     const double chain = (length - vectors_.rest_length(edge)) / rod_.edge_length[to_size(edge)];
-    const double upright = chain - leans_.excess(edge, model, state) / rod_.EA;
+    const double excess =
+        leans_.excess(edge, model, state) + couples_.excess(edge, effective, model, state);
+    const double upright = chain - excess / rod_.EA;
     if (excess_.none(edge)) return upright;
     return upright + effective.dot(excess_.force(edge, forces_, model, state)) / (length * rod_.EA);
   }
@@ -229,6 +277,7 @@ class StretchField : public RodField {
   SpreadForces forces_;
   EffectiveVectors vectors_;
   LeaningEdges leans_;
+  Couples couples_;
   EdgeExcess excess_;
   std::vector<StretchSample> samples_;
 };

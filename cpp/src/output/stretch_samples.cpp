@@ -59,7 +59,7 @@ class Layout {
       const double s = forces_[f].place.arc_length;
       if (0.0 <= s && s <= rod_.rest_length()) breaks_.push_back(s);
     }
-    for (const MomentPlace& place : rod_.moment_places) breaks_.push_back(place.arc_length);
+    for (const double place : rod_.moment_arc_lengths()) breaks_.push_back(place);
     for (const DistributedPlace& place : rod_.distributed_places) {
       breaks_.push_back(place.from);
       breaks_.push_back(place.to);

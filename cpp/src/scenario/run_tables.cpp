@@ -51,13 +51,14 @@ Table<ProbeText> probe_table() {
                 choice<Reduce>({{{"min", "the least value"}, Reduce::Min},
                                 {{"max", "the greatest value"}, Reduce::Max}}),
                 "Which extreme; with `over`.")
-      .optional(
-          "side", &Probe::side,
-          choice<Side>({{{"before", "toward the start of the rod"}, Side::Before},
-                        {{"after", "toward its end"}, Side::After}}),
-          "With `at`: on which side of a place where the quantity jumps: curvature and moment at "
-          "an interior clamp, moment or spring against turning, strain and tension at a "
-          "force, support or sphere; without it, after the place.")
+      .optional("side", &Probe::side,
+                choice<Side>({{{"before", "toward the start of the rod"}, Side::Before},
+                              {{"after", "toward its end"}, Side::After}}),
+                "With `at`: on which side of a place where the quantity jumps: curvatures, twist, "
+                "moments "
+                "and torque at an interior clamp, moment or spring against turning, strain and "
+                "tension at "
+                "a force, support or sphere; without it, after the place.")
       .at_most_one({{"at"}, {"over", "reduce"}});
 }
 

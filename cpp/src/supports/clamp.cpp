@@ -8,14 +8,12 @@
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/planar_clamp.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "der/model/clamp_cell.hpp"
+#include "der/model/location.hpp"
 #include "der/scenario/support.hpp"
 
 namespace der {
 namespace {
-
-constexpr double kPivotShare = 1.0 / 5.0;
-constexpr double kCellShare = 25.0 / 48.0;
-constexpr double kNextCellLoss = 1.0 / 48.0;
 
 /// From node to node in the initial shape.
 Vec2 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
@@ -64,6 +62,15 @@ double initial_tangent_angle(const RodLayout& rod, Index place, const Model& mod
 double tangent_angle(const Clamp& clamp, const Model& model, const State& state) {
   if (clamp.rotation < 0) return clamp.direction;
   return clamp.direction + control_value(model, state, clamp.rotation);
+}
+
+bool is_beside_turning_clamp(const RodLayout& rod, double s) {
+  const auto beside = place_beside_clamp(rod, s);
+  bool turns = false;
+  if (beside) {
+    for_each_turning_control(rod.clamps[to_size(beside->clamp)], [&](Index) { turns = true; });
+  }
+  return turns;
 }
 
 void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod, Model& model) {

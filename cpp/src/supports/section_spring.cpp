@@ -9,6 +9,7 @@
 #include "der/energies/section_spring.hpp"
 #include "der/model/frames.hpp"
 #include "der/model/section_place.hpp"
+#include "der/supports/clamp.hpp"
 
 namespace der {
 namespace {
@@ -38,9 +39,10 @@ double in_series(double stiffness, double cell_length, double stiffness_of_rod) 
   return stiffness / (1.0 + stiffness * cell_length / stiffness_of_rod);
 }
 
+/// Returns the number of the element in its list.
 template <int Edges>
-void add_element(const SectionSpringPlace& spring, const SectionPlace& place, const RodLayout& rod,
-                 Model& model) {
+Index add_element(const SectionSpringPlace& spring, const SectionPlace& place, const RodLayout& rod,
+                  Model& model) {
   using Kernel = SectionSpring<Edges>;
   std::array<Index, Kernel::kDofs> dofs{};
   typename Kernel::Constants constants;
@@ -64,7 +66,9 @@ void add_element(const SectionSpringPlace& spring, const SectionPlace& place, co
     held.reference_twist = follow_twist(number, held.drawn, model);
     held.weights = {across, across, place.along[to_size(i)]};
   }
-  elements_of<Kernel>(*model.elements).add(dofs, constants);
+  auto& springs = elements_of<Kernel>(*model.elements);
+  springs.add(dofs, constants);
+  return static_cast<Index>(springs.size()) - 1;
 }
 
 }  // namespace
@@ -75,17 +79,19 @@ void add_to_section_spring(double s, const Vec3& stiffness, RodLayout& rod) {
     known.stiffness += stiffness;
     return;
   }
-  rod.section_springs.push_back({s, stiffness});
+  rod.section_springs.push_back({s, stiffness, -1});
 }
 
 void add_section_springs(RodLayout& rod, Model& model) {
-  for (const SectionSpringPlace& spring : rod.section_springs) {
-    const SectionPlace place = section_place(spring.arc_length, rod);
-    if (place.across.size() == 1) {
-      add_element<1>(spring, place, rod, model);
-    } else {
-      add_element<2>(spring, place, rod, model);
+  for (SectionSpringPlace& spring : rod.section_springs) {
+    SectionPlace place = section_place(spring.arc_length, rod);
+    if (is_beside_turning_clamp(rod, spring.arc_length)) {
+      // The clamp's turn is not among the coordinates of the spring, which acts on the edge alone.
+      place.across = place.along = {1.0};
+      place.bend_cell = place.twist_cell = 0.0;
     }
+    spring.element = place.across.size() == 1 ? add_element<1>(spring, place, rod, model)
+                                              : add_element<2>(spring, place, rod, model);
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "der/core/index.hpp"
@@ -13,6 +15,7 @@
 #include "der/model/location.hpp"
 #include "der/model/moment_place.hpp"
 #include "der/scenario/support.hpp"
+#include "der/supports/clamp.hpp"
 #include "der/supports/section_spring.hpp"
 
 namespace der {
@@ -90,6 +93,13 @@ double rest_turn(const RodLayout& rod, const MomentPlace& place, const Model& mo
   return tangent + (start ? cell : -cell) * rod.natural_curvature[to_size(end)];
 }
 
+/// The spring of a place beside a clamp that turns acts on the edge alone: the clamp's turn is not
+/// among its coordinates.
+void act_on_edge(MomentPlace& place) {
+  place.weights = {1.0};
+  place.cell_length = 0.0;
+}
+
 /// Returns the number of the element in its list.
 template <int Edges>
 Index add_element(const RodLayout& rod, MomentPlace& place, Model& model) {
@@ -107,7 +117,8 @@ Index add_element(const RodLayout& rod, MomentPlace& place, Model& model) {
   constants.direction = first.direction;
   constants.turn = first.turn;
   constants.rest = rest_turn(rod, place, model);
-  for (std::size_t i = 0; i < Edges; ++i) constants.weights[i] = place.weights[i];
+  std::copy(place.weights.begin(), place.weights.end(), constants.weights.begin());
+  constants.total = std::accumulate(place.weights.begin(), place.weights.end(), 0.0);
   auto& springs = elements_of<Kernel>(*model.elements);
   springs.add(dofs, constants);
   return static_cast<Index>(springs.size()) - 1;
@@ -132,6 +143,11 @@ void add_spring(const scenario::Support& support, Model& model) {
 
 void add_rotational_springs(RodLayout& rod, Model& model) {
   for (MomentPlace& place : rod.moment_places) {
+    // Clamps may have come since.
+    const double stiffness = place.stiffness;
+    place = planar_moment_place(place.arc_length, rod);
+    place.stiffness = stiffness;
+    if (is_beside_turning_clamp(rod, place.arc_length)) act_on_edge(place);
     place.spring = place.weights.size() == 1 ? add_element<1>(rod, place, model)
                                              : add_element<2>(rod, place, model);
   }

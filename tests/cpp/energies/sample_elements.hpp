@@ -88,8 +88,9 @@ typename RotationalSpring<Edges>::Constants sample_constants(const RotationalSpr
   c.direction = uniform(random, -0.5, 0.5);
   c.rest = uniform(random, -1.0, 1.0);
   c.turn = kTurn;
-  c.weights.back() = Edges == 1 ? 1.0 : uniform(random, -0.1, 1.1);
-  c.weights.front() = Edges == 1 ? 1.0 : 1.0 - c.weights.back();
+  c.total = uniform(random, 0.2, 1.2);
+  c.weights.back() = Edges == 1 ? c.total : uniform(random, -0.1, 1.1);
+  if constexpr (Edges == 2) c.weights.front() = c.total - c.weights.back();
   return c;
 }
 

@@ -33,8 +33,12 @@ from .collocation import Boundary, Numbers, Solution, constant_start
 from .record import Array, Reference
 
 Vector: TypeAlias = Sequence[float] | Array
-PointForces: TypeAlias = Sequence[tuple[int, Vector]]
-"""Dead forces inside a rod, each at the border with that number between segments, from 0 on."""
+Wrench: TypeAlias = Callable[[Numbers, float], Numbers]
+"""Force and moment (6 numbers, fixed axes) on a section with the frame d, columns d1, d2, d3, at a
+share of the loads."""
+Inside: TypeAlias = Sequence[tuple[int, Vector | Wrench]]
+"""Loads inside a rod, each at the border with that number between segments, from 0 on: a dead
+force, or a wrench."""
 UPRIGHT = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 """Frame of a rod along x: columns d1 = y, d2 = z, d3 = x."""
 
@@ -155,9 +159,12 @@ def problem(
     start: Held,
     end: Held | Loaded,
     weight: Vector = (0, 0, 0),
-    inside: PointForces = (),
+    inside: Inside = (),
+    share: float = 1.0,
 ) -> Boundary:
-    """The boundary value problem in the units of `rod.units`; `weight` is f."""
+    """The boundary value problem in the units of `rod.units`; `weight` is f, and the loads inside
+    are at this share.
+    """
     length = rod.length
     stiffness = (rod.stiffness / rod.bending[0])[:, None]
     compliance = rod.compliance[:, None] * rod.bending[0] / length**2
@@ -173,8 +180,12 @@ def problem(
 
     def ends(left: Numbers, right: Numbers, _p: Numbers) -> Numbers:
         joints = right[:-1] - left[1:]
-        for border, force in inside:
-            joints[border, 7:10] -= np.asarray(force) / rod.units[7]
+        for border, load in inside:
+            if callable(load):
+                wrench = load(directors(right[border, 3:7]), share)
+                joints[border, 7:] -= wrench / rod.units[7:]
+            else:
+                joints[border, 7:10] -= share * np.asarray(load) / rod.units[7]
         joints = joints.ravel()
         return np.concatenate([left[0, :7] - first, _end(rod, end, right[-1]), joints])
 
@@ -260,10 +271,11 @@ def solve(
     end: Held | Loaded,
     guess: Solution,
     weight: Vector = (0.0, 0.0, 0.0),
-    inside: PointForces = (),
+    inside: Inside = (),
+    share: float = 1.0,
 ) -> Equilibrium:
     """The equilibrium near `guess`."""
-    boundary = problem(rod, start, end, weight, inside)
+    boundary = problem(rod, start, end, weight, inside, share)
     load = np.asarray(weight, dtype=float)
     return Equilibrium(rod, boundary, boundary.solve(guess, tolerance=1e-11), load)
 
@@ -274,23 +286,25 @@ def follow(
     end: Callable[[float], Held | Loaded],
     steps: int,
     weight: Vector = (0.0, 0.0, 0.0),
-    segments: int = 3,
+    segments: int | Array = 3,
     degree: int = 24,
-    inside: PointForces = (),
+    inside: Inside = (),
 ) -> Equilibrium:
     """The equilibrium reached from the natural shape when `end(share)`, `share * weight` and that
-    share of the forces `inside` go from share 0 to 1 in `steps` steps.
+    share of the loads `inside` go from share 0 to 1 in `steps` steps.
 
-    Shooting, and so `checked`, does not know the forces inside.
+    `segments`: their number, or their borders as shares of the length, the ends among them.
+    Shooting, and so `checked`, does not know the loads inside.
     """
-    solution = natural_shape(rod, start, np.linspace(0.0, 1.0, segments + 1), degree)
+    borders = np.linspace(0.0, 1.0, segments + 1) if isinstance(segments, int) else segments
+    solution = natural_shape(rod, start, borders, degree)
     previous = solution
     load = np.asarray(weight, dtype=float)
     for share in np.arange(1, steps + 1) / steps:
         ahead = replace(solution, values=2.0 * solution.values - previous.values)
         previous = solution
-        forces = [(border, share * np.asarray(force)) for border, force in inside]
-        found = solve(rod, start, end(float(share)), ahead, float(share) * load, forces)
+        part = float(share)
+        found = solve(rod, start, end(part), ahead, part * load, inside, part)
         solution = found.solution
     return found
 

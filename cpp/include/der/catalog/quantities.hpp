@@ -21,14 +21,14 @@ enum class QuantityKind {
   Turn,      ///< of the nodes that bend: inner nodes, and ends that are clamped
   Bend,      ///< of the rod's bending: any arc length, with two values where moments jump
   Edge,      ///< of the edges: any arc length, with two values where forces jump
-  Section,   ///< of the sections of a rod in space: any arc length
+  Section,   ///< of the sections of a rod in space: as of its bending
   Ring,      ///< of a closed rod as a whole: no place
   Energy,    ///< of a rod or of the whole model: no place
 };
 
 /// Whether a quantity has two values at the places where it jumps.
 constexpr bool can_jump(QuantityKind kind) {
-  return kind == QuantityKind::Bend || kind == QuantityKind::Edge;
+  return kind == QuantityKind::Bend || kind == QuantityKind::Edge || kind == QuantityKind::Section;
 }
 
 /// The models that have a quantity.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "der/core/types.hpp"
+#include "der/energies/edge_moments.hpp"
 #include "der/energies/effective_edge.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/kinematics/edge_frame.hpp"
@@ -85,6 +86,10 @@ struct FollowerForce {
 /// t being that of the edge with the larger part along it. The two weights differ beyond the middle
 /// of an outermost edge (model/section_place.hpp). Each of them adds up to 1, so that the whole is
 /// M. Local coordinates: the vector and the angle of each edge.
+///
+/// Under M the section at its place turns further than the edges tell, by c M with c = `compliance`
+/// in the axes of the drawn section, since the rod between them bends and twists. So the moment
+/// that turns with the section is that sum of M0 + c M0 x M0, to the same order.
 struct SpatialMoment {
   struct TurnedEdge : FramedEdge {
     double weight = 1.0;  ///< d_i [-]
@@ -93,9 +98,11 @@ struct SpatialMoment {
   };
   std::vector<TurnedEdge> edges;
   bool follower = false;
+  Mat3 compliance = Mat3::Zero();  ///< c [rad/(N m)]
 
   [[nodiscard]] Index size() const { return 4 * static_cast<Index>(edges.size()); }
-  /// `amount` is M, or M0 [N m].
+  /// `amount` is M, or M0 [N m], here and below.
+  [[nodiscard]] EdgeMoments moments(const Configuration& here, const Vec3& amount) const;
   void evaluate(const Configuration& here, const Vec3& amount, CirculatoryTerm& out) const;
 };
 
@@ -114,6 +121,8 @@ struct CirculatoryLoad {
   void evaluate(const Configuration& here, CirculatoryTerm& out) const;
   /// The whole force [N]; zero for a moment.
   [[nodiscard]] Vec3 force(const Configuration& here) const;
+  /// The whole moment [N m], and the parts of its edges; zero for a force.
+  [[nodiscard]] EdgeMoments moments(const Configuration& here) const;
 };
 
 /// Adds `factor` times the forces of the loads to `total`, over all degrees of freedom.

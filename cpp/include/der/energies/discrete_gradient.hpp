@@ -198,14 +198,14 @@ void discrete_gradient(KernelTag<RotationalSpring<Edges>> /*kernel*/,
   const Vec2 a0 = edge(start, 0);
   const Vec2 a1 = edge(end, 0);
   const Turn first(a0, a1);
-  double change = first.angle;
-  double known = first.angle;
+  double change = c.total * first.angle;
+  double known = change;
   gradient.setZero();
   const auto act = [&gradient](int i, const Vec2& slope) {
     gradient.template segment<2>(2 * i) -= slope;
     gradient.template segment<2>(2 * i + 2) += slope;
   };
-  act(0, discrete_direction_gradient(first, a0, a1));
+  act(0, c.total * discrete_direction_gradient(first, a0, a1));
   if constexpr (Edges == 2) {
     const Vec2 b0 = edge(start, 1);
     const Vec2 b1 = edge(end, 1);

@@ -11,10 +11,10 @@
 namespace der {
 
 /// A spring against turning: E = 1/2 k (sum w_i theta_i - rest)^2, theta the direction angles of
-/// one edge, or of two that share a node, from the drawn direction of the first; the weights w add
-/// up to 1. supports/spring.hpp says how the tangent of a rod is such a sum. The first edge is
-/// within half a turn of where the state has followed it to (model/followed.hpp), so that the
-/// spring winds up without an end.
+/// one edge, or of two that share a node, from the drawn direction of the first.
+/// supports/spring.hpp says how the tangent of a rod is such a sum. The weights add up to 1 but
+/// beside a clamp, whose tangent has the rest. The first edge is within half a turn of where the
+/// state has followed it to (model/followed.hpp), so that the spring winds up without an end.
 template <int Edges>
 struct RotationalSpring {
   static_assert(Edges == 1 || Edges == 2);
@@ -25,6 +25,7 @@ struct RotationalSpring {
     double direction = 0.0;               ///< of the first edge as drawn [rad]
     double rest = 0.0;                    ///< [rad]
     std::array<double, Edges> weights{};  ///< [-]
+    double total = 1.0;                   ///< of the weights
     Index turn = -1;  ///< control that holds how far the first edge has turned [rad]
   };
 
@@ -32,7 +33,7 @@ struct RotationalSpring {
   static double turn(const Constants& c, double before, const Eigen::Matrix<double, kDofs, 1>& x) {
     const Vec2 then{std::cos(c.direction + before), std::sin(c.direction + before)};
     const Vec2 first = x.template segment<2>(2) - x.template segment<2>(0);
-    double turn = before + angle_between(then, first) - c.rest;
+    double turn = c.total * (before + angle_between(then, first)) - c.rest;
     if constexpr (Edges == 2) {
       const Vec2 second = x.template segment<2>(4) - x.template segment<2>(2);
       turn += c.weights[1] * angle_between(first, second);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "der/core/types.hpp"
+#include "der/energies/edge_moments.hpp"
 #include "der/energies/spatial_bend.hpp"
 #include "der/kinematics/held_frame.hpp"
 
@@ -36,14 +37,25 @@ struct SectionSpring {
     std::array<HeldEdge, Edges> edges;
   };
 
+  /// The moments that the spring exerts on its edges, and their sum.
+  static EdgeMoments moments(const Constants& c, const Configuration& here,
+                             const Eigen::Matrix<double, kDofs, 1>& x) {
+    std::array<Measured, Edges> measured = measure(c, here, x, std::make_index_sequence<Edges>{});
+    const Vec3 moment = c.stiffness.cwiseProduct(weighted_rotation(c, measured));
+    EdgeMoments result;
+    for (std::size_t i = 0; i < Edges; ++i) {
+      measured[i].find_slopes(c.edges[i].weights);
+      result.on_edge[i] = -(measured[i].slopes * moment);
+      result.whole += result.on_edge[i];
+    }
+    return result;
+  }
+
   template <Derivatives D>
   static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     std::array<Measured, Edges> measured = measure(c, here, x, std::make_index_sequence<Edges>{});
-    Vec3 rotation = Vec3::Zero();
-    for (std::size_t i = 0; i < Edges; ++i) {
-      rotation += c.edges[i].weights.cwiseProduct(measured[i].strain());
-    }
+    const Vec3 rotation = weighted_rotation(c, measured);
     const Vec3 moment = c.stiffness.cwiseProduct(rotation);
     out.energy = 0.5 * moment.dot(rotation);
     if constexpr (D == Derivatives::Energy) return;
@@ -114,6 +126,15 @@ struct SectionSpring {
       return map.transpose() * whole.stiffness * map + edge.geometric_stiffness(whole.moment);
     }
   };
+
+  /// sum_i w_i kappa_i, one component for each axis.
+  static Vec3 weighted_rotation(const Constants& c, const std::array<Measured, Edges>& measured) {
+    Vec3 rotation = Vec3::Zero();
+    for (std::size_t i = 0; i < Edges; ++i) {
+      rotation += c.edges[i].weights.cwiseProduct(measured[i].strain());
+    }
+    return rotation;
+  }
 
   template <std::size_t... i>
   static std::array<Measured, Edges> measure(const Constants& c, const Configuration& here,

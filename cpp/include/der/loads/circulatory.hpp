@@ -7,16 +7,17 @@
 namespace der {
 
 // Loads that have no potential (energies/circulatory_load.hpp). The rod's elements have to be there
-// before. Both return the number of the load in ElementLists::circulatory.
+// before.
 
 /// Adds a force [N] at arc length `s` [m] that turns with the rod: in space with its section, in a
-/// plane with its tangent. Its components are those in the initial shape.
+/// plane with its tangent. Its components are those in the initial shape. Returns the number of the
+/// load in ElementLists::circulatory.
 Index add_follower_force(const scenario::VectorSeries& force, double s, const RodLayout& rod,
                          Model& model);
 
 /// Adds a moment [N m] at arc length `s` [m] of a rod whose sections count. It keeps its direction,
 /// or it turns with the section; its components are then those in the initial shape.
-Index add_spatial_moment(const scenario::VectorSeries& moment, bool follower, double s,
-                         const RodLayout& rod, Model& model);
+void add_spatial_moment(const scenario::VectorSeries& moment, bool follower, double s,
+                        RodLayout& rod, Model& model);
 
 }  // namespace der

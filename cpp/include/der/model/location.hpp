@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "der/core/types.hpp"
@@ -32,7 +33,26 @@ bool is_cut(const EdgePart& part, const RodLayout& rod);
 /// of (s - s0)/(s1 - s0) over it, the consistent load of linear interpolation.
 double length_at_last_end(const EdgePart& part, const RodLayout& rod);
 
-/// Distance [m] from the middle of the outermost edge to a place beyond it; 0 for places inside.
+/// Rest arc length [m] at which the rod's tangent has the direction of an edge: the edge's middle,
+/// or next to a clamp a little further away from it (model/clamp_cell.hpp).
+double tangent_place(const RodLayout& rod, Index edge);
+
+/// A place between a clamp and where the tangent has the direction of the edge beside it.
+struct PlaceBesideClamp {
+  Index clamp = 0;        ///< number in RodLayout::clamps
+  Index edge = 0;         ///< number in the rod
+  double distance = 0.0;  ///< from the clamp to the place [m]
+  double reach = 0.0;     ///< from the clamp to where the tangent has the edge's direction [m]
+
+  /// The weight of the edge's direction in the tangent at the place; the held one has the rest.
+  [[nodiscard]] double share() const { return distance / reach; }
+};
+
+/// None for a place that is not beside a clamp.
+std::optional<PlaceBesideClamp> place_beside_clamp(const RodLayout& rod, double s);
+
+/// Distance [m] from the middle of the outermost edge to a place beyond it; 0 for places
+/// inside, and beside a clamp.
 double beyond_outer_middle(const RodLayout& rod, double s);
 
 /// Rest arc length [m] that a location names (not for Kind::All). The end of a ring is its start.
@@ -54,9 +74,10 @@ std::vector<Index> nodes_at(const scenario::Location& location, const RodLayout&
 /// l^2 that jumps from mesh to mesh; the cubic keeps the first three moments.
 std::vector<Weighted> node_weights(const RodLayout& rod, double s);
 
-/// Weights of the edges whose direction angles, linearly interpolated between edge midpoints, give
-/// the direction at arc length `s`. For a moment within half an edge of an end the weights go on to
-/// 13/12 and -1/12, which brings the end from the chain's place beside the curve onto it.
+/// Weights of the edges whose direction angles, linearly interpolated between the places where the
+/// tangent has them, give the direction at arc length `s`. Beside a clamp they add up to less than
+/// 1, as the clamp takes the rest. For a moment within half an edge of a free end the weights go on
+/// to 13/12 and -1/12, which brings the end from the chain's place beside the curve onto it.
 std::vector<Weighted> edge_weights(const RodLayout& rod, double s);
 
 }  // namespace der

@@ -82,10 +82,17 @@ struct ForcePlace {
   Index follower = -1;  ///< of a load that turns with the rod: number in ElementLists::circulatory
 };
 
+/// A place at which the moment of a load acts on a rod in space.
+struct SpatialMomentPlace {
+  double arc_length = 0.0;  ///< [m]
+  Index load = 0;           ///< number in ElementLists::circulatory
+};
+
 /// A place at which springs hold the section of a rod in space against turning.
 struct SectionSpringPlace {
   double arc_length = 0.0;        ///< [m]
   Vec3 stiffness = Vec3::Zero();  ///< towards the two directors, about the tangent [N m/rad]
+  Index element = -1;             ///< number of their element in its list
 };
 
 /// A part of a rod on which a distributed force acts.
@@ -135,9 +142,10 @@ struct RodLayout {
   /// Natural turning angle at each node that bends [rad], at clamped ones of the clamp's cells; 0
   /// at free ends.
   std::vector<double> rest_turning_angle;
-  std::vector<Clamp> clamps;                        ///< none on a rod that does not bend
-  std::vector<MomentPlace> moment_places;           ///< no two at the same place
-  std::vector<ForcePlace> force_places;             ///< of forces at single places
+  std::vector<Clamp> clamps;               ///< none on a rod that does not bend
+  std::vector<MomentPlace> moment_places;  ///< no two at the same place
+  std::vector<ForcePlace> force_places;    ///< of forces at single places
+  std::vector<SpatialMomentPlace> spatial_moments;
   std::vector<SectionSpringPlace> section_springs;  ///< no two at the same place
   std::vector<DistributedPlace> distributed_places;
   std::vector<FoundationPlace> foundation_places;
@@ -179,7 +187,9 @@ struct RodLayout {
   [[nodiscard]] std::array<Index, 4> edge_dofs(Index edge, const Model& model) const;
   /// Null if the tangent at that place is free.
   [[nodiscard]] const Clamp* clamp_at(Index place) const;
-  /// Null if no moment acts at that arc length [m].
+  /// Places at which moments act, of loads and of springs against turning [m].
+  [[nodiscard]] std::vector<double> moment_arc_lengths() const;
+  /// Of a planar rod; null if no moment acts at that arc length [m].
   [[nodiscard]] const MomentPlace* moment_place_at(double s) const;
 };
 

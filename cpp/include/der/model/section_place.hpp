@@ -8,7 +8,8 @@
 namespace der {
 
 /// How the section of a rod in space at a place is known by those of its edges: weights of one
-/// edge, or of two neighbours, which add up to 1 each.
+/// edge, or of two neighbours, which add up to 1 each. Beside a clamp those of moments add up to
+/// less, as the clamp takes the rest, and the direction is that of the one edge.
 struct SectionPlace {
   Index first_edge = 0;           ///< number in the rod
   std::vector<double> direction;  ///< of the directions, to second order in the edge length

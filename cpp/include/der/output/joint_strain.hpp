@@ -22,6 +22,9 @@ SectionFrame held_frame(const HeldFrame& held, const Model& model, const State& 
 JointStrain strain_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
                       const State& state);
 
+/// Moment [N m] in a joint of a rod whose sections count, exerted on the side before it.
+Vec3 moment_of(const RodJoint& joint, const RodLayout& rod, const Model& model, const State& state);
+
 /// Unit vector about which a rod in space bends at a joint; zero where it does not.
 Vec3 bend_axis(const RodJoint& joint, const RodLayout& rod, const Model& model, const State& state);
 

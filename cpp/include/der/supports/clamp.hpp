@@ -38,6 +38,9 @@ void for_each_turning_control(const Clamp& clamp, const Use& use) {
   }
 }
 
+/// Whether a place is beside a clamp that turns (model/location.hpp).
+bool is_beside_turning_clamp(const RodLayout& rod, double s);
+
 /// Enters a clamp into the layout of `rod`, which is one of the model's. The rod's elements are
 /// made after it. Without effect on a rod that does not bend.
 void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod, Model& model);

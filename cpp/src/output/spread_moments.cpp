@@ -1,0 +1,99 @@
+#include "output/spread_moments.hpp"
+
+#include <utility>
+
+#include "der/core/index.hpp"
+#include "der/energies/element_energy.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/registry.hpp"
+#include "der/model/moment_place.hpp"
+#include "der/model/section_place.hpp"
+#include "der/output/joint_strain.hpp"
+
+namespace der {
+namespace {
+
+/// What a spring exerts on its edges, and the sum of it.
+template <int Edges>
+EdgeMoments moments_of_spring(std::size_t number, const Model& model, const State& state) {
+  using Kernel = SectionSpring<Edges>;
+  const auto& springs = elements_of<Kernel>(*model.elements);
+  const Configuration here = configuration_of(model, state);
+  return Kernel::moments(springs.constants[number], here,
+                         gather(springs.dofs[number], here.coordinates));
+}
+
+}  // namespace
+
+SpreadMoments::SpreadMoments(const RodLayout& rod, const Model& model) : rod_(rod) {
+  for (std::size_t i = 0; i < rod.moment_places.size(); ++i) {
+    const MomentPlace& place = rod.moment_places[i];
+    Moment moment{place.arc_length, place.first_edge, place.weights};
+    for (std::size_t k = 0; k < moment.weights.size(); ++k) {
+      moment.weights[k] *= turn_of_line(rod, place.first_edge + static_cast<Index>(k));
+    }
+    moments_.push_back(std::move(moment));
+    sources_.emplace_back(PlanarPlace{i});
+  }
+  if (!model.has_sections()) return;
+  const auto add = [&](double s) -> const Moment& {
+    const SectionPlace place = section_place(s, rod);
+    moments_.push_back({s, place.first_edge, place.across});
+    return moments_.back();
+  };
+  for (const SpatialMomentPlace& place : rod.spatial_moments) {
+    add(place.arc_length);
+    sources_.emplace_back(SpatialLoad{to_size(place.load)});
+  }
+  for (const SectionSpringPlace& spring : rod.section_springs) {
+    if (add(spring.arc_length).weights.size() == 1) {
+      sources_.emplace_back(SpatialSpring<1>{to_size(spring.element)});
+    } else {
+      sources_.emplace_back(SpatialSpring<2>{to_size(spring.element)});
+    }
+  }
+}
+
+EdgeMoments SpreadMoments::value(std::size_t i, const Model& model, const State& state) const {
+  return std::visit([&](const auto& source) { return value_of(source, model, state); },
+                    sources_[i]);
+}
+
+EdgeMoments SpreadMoments::value_of(PlanarPlace place, const Model& model,
+                                    const State& state) const {
+  const MomentPlace& moments = rod_.moment_places[place.number];
+  double applied = 0.0;
+  for (const Index moment : moments.moments) applied += control_value(model, state, moment);
+  const double carried = carried_moment(moments, rod_, model, state, applied);
+  EdgeMoments result;
+  result.whole.z() = carried;
+  const std::vector<double>& weights = moments_[place.number].weights;  // planar ones come first
+  for (std::size_t k = 0; k < weights.size(); ++k) result.on_edge[k].z() = weights[k] * carried;
+  return result;
+}
+
+EdgeMoments SpreadMoments::value_of(SpatialLoad load, const Model& model, const State& state) {
+  return model.elements->circulatory[load.number].moments(configuration_of(model, state));
+}
+
+EdgeMoments SpreadMoments::value_of(SpatialSpring<1> spring, const Model& model,
+                                    const State& state) {
+  const auto& held =
+      elements_of<SectionSpring<1>>(*model.elements).constants[spring.number].edges.front();
+  EdgeMoments moments = moments_of_spring<1>(spring.number, model, state);
+  // Beside a clamp the edge takes a part of it, and the clamp the rest.
+  const Vec3 t = section_frame(model, held.block.first / FrameBlock::kSize, state).tangent;
+  const Vec3 torque = moments.whole.dot(t) * t;
+  const auto whole = [](const Vec3& part, double weight) -> Vec3 {
+    return weight > 0.0 ? Vec3(part / weight) : Vec3(Vec3::Zero());
+  };
+  moments.whole = whole(moments.whole - torque, held.weights[0]) + whole(torque, held.weights[2]);
+  return moments;
+}
+
+EdgeMoments SpreadMoments::value_of(SpatialSpring<2> spring, const Model& model,
+                                    const State& state) {
+  return moments_of_spring<2>(spring.number, model, state);
+}
+
+}  // namespace der

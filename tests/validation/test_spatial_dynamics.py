@@ -297,6 +297,32 @@ def test_a_strip_that_is_clamped_askew_leaves_its_plane_and_twists(spatial_refer
     assert errors[-1] < 6e-5
 
 
+def elbow(edges):
+    """Paths of elbow and tip of references/elbow.py, with this number of edges in each leg."""
+    leg = np.linspace(0, 10, edges + 1)
+    points = np.zeros((2 * edges + 1, 3))
+    points[:, 0], points[edges:, 1] = [*leg, *np.full(edges, 10.0)], leg
+    bar = section(EI=1e3, GJ=1e3, rotary_inertia=0.02)
+    force = {"times": [0, 1, 2], "values": [[0, 0, 0], [0, 0, 50], [0, 0, 0]]}
+    loads = [{"point_force": {"rod": "rod", "at": "middle", "force": force}}]
+    time = {"duration": 8.0, "step": 0.1 / edges, "integrator": "generalized_alpha"}
+    scene = rod_through(points, bar, loads=loads, time=time)
+    return histories(scene, ["middle", "end"], XYZ, 0.5)[0]
+
+
+def test_elbow_of_simo_and_vu_quoc(spatial_reference, fitted_order):
+    """Elbow and tip sweep through 9 and 11 m, while the legs bend and twist."""
+    series = [[spatial_reference("elbow", f"{p}.{c}") for c in XYZ] for p in ("elbow", "tip")]
+    beams = np.moveaxis(np.array(series), 2, 0)
+    edges = [20, 40, 80]
+    paths = [elbow(n) for n in edges]
+    errors = [np.sqrt(np.mean((path - beams) ** 2)) for path in paths]
+    assert fitted_order([1 / n for n in edges], errors) > 1.9
+    # The paths extrapolated with order 2 are within the errors that the reference states.
+    extrapolated = (4 * paths[-1] - paths[-2]) / 3
+    assert (np.abs(extrapolated - beams).max(axis=(0, 2)) < [2.9e-4, 6.6e-4]).all()
+
+
 def test_sections_without_inertia_are_refused_in_a_motion():
     with pytest.raises(der.DerError, match="no inertia against spin"):
         strip_in_motion("dropped", 10, 800, "tr_bdf2", spins=False)

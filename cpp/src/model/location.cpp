@@ -50,7 +50,7 @@ double length_at_last_end(const EdgePart& part, const RodLayout& rod) {
 }
 
 double tangent_place(const RodLayout& rod, Index edge) {
-  const double further = (kCellShare - 0.5) * rod.edge_length[to_size(rod.position(edge))];
+  const double further = kNextCellLoss * rod.edge_length[to_size(rod.position(edge))];
   return rod.edge_middle(edge) + (rod.clamp_at(edge) != nullptr ? further : 0.0) -
          (rod.clamp_at(edge + 1) != nullptr ? further : 0.0);
 }

@@ -58,9 +58,9 @@ struct Sections {
     const JointOf<T> joint{each([](const C& c) { return c.joint.bend_1; }),
                            each([](const C& c) { return c.joint.bend_2; }),
                            each([](const C& c) { return c.joint.twist; }),
-                           {each([](const C& c) { return c.joint.rest.kappa_1; }),
-                            each([](const C& c) { return c.joint.rest.kappa_2; }),
-                            each([](const C& c) { return c.joint.rest.twist; })}};
+                           {each([&](const C& c) { return c.actuated_joint(values).rest.kappa_1; }),
+                            each([&](const C& c) { return c.actuated_joint(values).rest.kappa_2; }),
+                            each([&](const C& c) { return c.actuated_joint(values).rest.twist; })}};
     const T reference = each([&](const C& c) { return values[c.after.twist_at_start()]; });
     const T twist =
         whole_twist<T>(edge.frame.frame, next.frame.frame, edge.theta, next.theta, reference);
@@ -309,9 +309,12 @@ void SpatialChain::add_part(const LaneStarts<Terms>& first, std::ptrdiff_t count
     const auto constant = [&](double Stretch<3>::Constants::* member) {
       return in_lanes<T>([&](int lane) { return stretches[first[to_size(lane)] + j].*member; });
     };
+    const T elongation = in_lanes<T>([&](int lane) {
+      return stretches[first[to_size(lane)] + j].elongation.value(here.controls);
+    });
     const StretchResponseOf<T> stretch =
         stretch_response(constant(&Stretch<3>::Constants::EA),
-                         constant(&Stretch<3>::Constants::rest_length), edge.length);
+                         constant(&Stretch<3>::Constants::rest_length), elongation, edge.length);
     const typename Terms::Variables slope = Terms::force(edge, start, end);
     const Vector3<T> force = stretch.tension * edge.tangent + slope.template head<3>();
     add_force(j, force_before - force);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "building/actuation.hpp"
 #include "building/load_variation.hpp"
 #include "building/spatial_rod_elements.hpp"
 #include "der/building/rod_elements.hpp"
@@ -57,7 +58,9 @@ void place_nodes(const scenario::Scene& scene, bool with_sections, Model& model)
     first_node = next;
   }
   model.drawn_frames.setZero(FrameBlock::kSize * static_cast<Index>(edge_starts.size()));
-  model.tables = TimeTables(static_cast<Index>(model.drawn_frames.size()));
+  model.rest_shape = RestShape(static_cast<Index>(model.drawn_frames.size()),
+                               num_rest_entries(scene, model.dimension));
+  model.tables = TimeTables(model.rest_shape.end());
   const Index dofs = model.num_dofs();
   for (Vector* v : {&model.initial_positions, &model.initial_velocities, &model.mass.lumped,
                     &model.damping, &model.gravity_force, &model.dead_force}) {
@@ -217,6 +220,7 @@ void lay_out_rods(const scenario::Scene& scene, Model& model) {
     model.rods.push_back(std::move(layout));
   }
   model.dofs.set_length(size);
+  set_rest_entries(scene, model);
 }
 
 void check_spin_inertia(const Model& model) {
@@ -260,6 +264,7 @@ Model build_model(const scenario::Scene& scene) {
       add_spatial_rod_elements(rod, model);
     }
   }
+  for (const auto& actuation : scene.actuations) add_actuation(actuation, model);
   for (const auto& load : scene.loads) {
     std::visit([&](const auto& l) { add_load(l, scene, model); }, load.what);
   }

@@ -17,10 +17,14 @@ void hold_still(scenario::Support& support) {
       support, [](const char* /*key*/, scenario::Series& motion) { set_to_zero(motion); });
 }
 
+void release(scenario::Actuation& actuation) {
+  for (scenario::Series& value : actuation.values) set_to_zero(value);
+}
+
 /// The quantities that the load factor of a scene scales.
 struct Varying {
   scenario::Varied what = scenario::Varied::Loads;
-  std::optional<int> number;  // of the one load or support; none: all
+  std::optional<int> number;  // of the one load, support or actuation; none: all
 };
 
 std::optional<Varying> varying(const scenario::Analysis& analysis) {
@@ -40,9 +44,13 @@ scenario::Scene without(scenario::Scene scene, const Varying& varying) {
     for (std::size_t i = 0; i < scene.loads.size(); ++i) {
       if (chosen(i)) set_to_zero(scene.loads[i]);
     }
-  } else {
+  } else if (varying.what == scenario::Varied::Supports) {
     for (std::size_t i = 0; i < scene.supports.size(); ++i) {
       if (chosen(i)) hold_still(scene.supports[i]);
+    }
+  } else {
+    for (std::size_t i = 0; i < scene.actuations.size(); ++i) {
+      if (chosen(i)) release(scene.actuations[i]);
     }
   }
   scene.analysis = scenario::StaticAnalysis{};
@@ -63,6 +71,8 @@ std::optional<LoadVariation> load_variation(const scenario::Scene& scene, const 
   Vector controls_at_one;
   unloaded.tables.evaluate(0.0, controls_at_zero);
   model.tables.evaluate(0.0, controls_at_one);
+  unloaded.rest_shape.enter(controls_at_zero);
+  model.rest_shape.enter(controls_at_one);
   return LoadVariation{between(unloaded.gravity_force, model.gravity_force),
                        between(unloaded.dead_force, model.dead_force),
                        between(controls_at_zero, controls_at_one),

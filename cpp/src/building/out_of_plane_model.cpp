@@ -18,6 +18,7 @@
 #include "der/scenario/load.hpp"
 #include "der/scenario/scenario.hpp"
 #include "scenario/conform.hpp"
+#include "scenario/directions.hpp"
 
 namespace der {
 namespace {
@@ -154,6 +155,22 @@ void add_fork(const RodLayout& rod, Index place, OutOfPlaneModel& twin) {
   }
 }
 
+void follow_actuations(const scenario::Rod& rod, std::size_t number, const Model& planar,
+                       OutOfPlaneModel& twin) {
+  const auto& stretches = planar.rods[number].actuated_stretches;
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    const auto& own = twin.model.rods[number].actuated_stretches[i].controls;
+    const Index control = stretches[i].controls[0];
+    if (stretches[i].what == scenario::Actuated::Elongation) {
+      twin.actuations.push_back({control, own[0], 1.0});
+      continue;
+    }
+    const auto [first, second] = scenario::flat_director(rod).pair(1.0);
+    twin.actuations.push_back({control, own[0], first});
+    twin.actuations.push_back({control, own[1], second});
+  }
+}
+
 /// Angle [rad] about z from one tangent in the plane to another.
 double angle_about_z(const Vec3& from, const Vec3& to) {
   return std::atan2(from.cross(to).z(), from.dot(to));
@@ -178,6 +195,10 @@ Configuration OutOfPlaneModel::at(const Model& planar, const Configuration& here
       controls[model.rods[rod].clamps[i].held.rotation] = here.controls[rotation];
     }
   }
+  for (const Follower& table : actuations) {
+    controls[table.control] = table.factor * here.controls[table.planar];
+  }
+  model.rest_shape.enter(controls);
   controls.head(model.drawn_frames.size()) = model.drawn_frames;
   const auto drawn_tangent = [&](Index edge) -> Vec3 {
     return FrameBlock::of(edge).tangent(model.drawn_frames);
@@ -200,8 +221,9 @@ Configuration OutOfPlaneModel::at(const Model& planar, const Configuration& here
 
 OutOfPlaneModel build_out_of_plane_model(const scenario::Scene& scene, const Model& planar) {
   const std::vector<Place> places = fork_places(scene, planar);
-  OutOfPlaneModel twin{build_model(rods_in_space(scene, planar, places)), {}};
+  OutOfPlaneModel twin{build_model(rods_in_space(scene, planar, places)), {}, {}};
   hold_plane(twin.model);
+  for (std::size_t i = 0; i < planar.rods.size(); ++i) follow_actuations(scene.rods[i], i, planar, twin);
   std::vector<char> has_fork(to_size(planar.num_nodes), 0);
   for (const auto& [rod, place] : places) {
     const RodLayout& layout = twin.model.rods[to_size(rod)];

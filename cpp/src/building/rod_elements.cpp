@@ -36,7 +36,7 @@ void add_stretch(const RodLayout& rod, Model& model) {
     const double length =
         effective.has_pivot() ? drawn(effective, model).norm() : rod.edge_length[to_size(edge)];
     const double EA = rod.EA * (length / rod.edge_length[to_size(edge)]);
-    add_element<Stretch<2>>(effective.dofs, {EA, length}, effective.first, effective.last, model);
+    add_element<Stretch<2>>(effective.dofs, {EA, length, rod.rest_entries.edge(edge)}, effective.first, effective.last, model);
   }
 }
 
@@ -67,7 +67,8 @@ void add_bend(RodLayout& rod, Model& model) {
     rod.rest_turning_angle[to_size(rod.position(i))] = rest;
     add_element<PlanarBend<Curvature>>({before.dofs[0], before.dofs[1], after.dofs[0],
                                         after.dofs[1], after.dofs[2], after.dofs[3]},
-                                       {rod.EI / bend_length(rod, i), Curvature::of(rest).kappa},
+                                       {rod.EI / bend_length(rod, i), Curvature::of(rest).kappa,
+                                        rod.rest_entries.cell(rod.position(i), false)},
                                        before.first, after.last, model);
   }
 }

@@ -35,7 +35,7 @@ void add_stretch(const RodLayout& rod, const SpatialEdge& edge, Index number, Mo
   const double length = edge.has_pivot() ? edge.drawn(model.initial_positions).norm() : whole;
   add_element<Stretch<3>>(
       {edge.start, edge.start + 1, edge.start + 2, edge.end, edge.end + 1, edge.end + 2},
-      {rod.EA * (length / whole), length}, edge.first, edge.last, model);
+      {rod.EA * (length / whole), length, rod.rest_entries.edge(number)}, edge.first, edge.last, model);
 }
 
 Joint stiffness_of(const RodLayout& rod, const RodJoint& joint, bool holds_section) {
@@ -225,7 +225,7 @@ class SectionElements {
         {before.start, before.start + 1, before.start + 2, after.start, after.start + 1,
          after.start + 2, after.end, after.end + 1, after.end + 2, before.theta, after.theta},
         {stiffness, FrameBlock::of(number(joint.before)), FrameBlock::of(number(joint.after)),
-         joint.glued},
+         joint.glued, rest_shift(rod_, joint)},
         before.first, after.last, model_);
   }
 
@@ -251,7 +251,7 @@ class SectionElements {
         .add(
             {own.start, own.start + 1, own.start + 2, own.end, own.end + 1, own.end + 2, own.theta},
             {{stiffness_of(rod_, joint, clamp.holds_section), held_frame,
-              FrameBlock::of(number(beside)), leaves ? 1.0 : -1.0},
+              FrameBlock::of(number(beside)), leaves ? 1.0 : -1.0, rest_shift(rod_, joint)},
              own.first,
              own.last});
     follow({leaves ? -1 : number(beside), leaves ? number(beside) : -1, held_frame},

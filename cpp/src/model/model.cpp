@@ -99,6 +99,10 @@ NodePlace place_of(const Model& model, Index node) {
   return {};
 }
 
+RestShift rest_shift(const RodLayout& rod, const RodJoint& joint) {
+  return rod.rest_entries.cell(rod.position(joint.place()), joint.leaves_clamp());
+}
+
 Vector over_all_dofs(const Model& model, const Vector& free) {
   Vector full = Vector::Zero(model.num_dofs());
   full(model.dofs.free()) = free;

@@ -41,6 +41,7 @@ void evaluate_controls(const Model& model, const State& state, double time, Vect
     model.tables.evaluate(time, controls);
   }
   for (const Ramp& ramp : state.ramps) controls[ramp.control] = ramp.at(time);
+  model.rest_shape.enter(controls);
   enter_followed(model, state.followed, controls);
 }
 
@@ -106,7 +107,7 @@ void start_ledger(const Model& model, State& state) {
 }
 
 double numerical_loss(const Work& work, const Energies& now) {
-  return work.start + work.loads + work.supports + work.solver - work.drag - now.total();
+  return work.start + work.loads + work.supports + work.actuation + work.solver - work.drag - now.total();
 }
 
 std::array<double, kLedger.size()> ledger(const Work& work, const Energies& now) {

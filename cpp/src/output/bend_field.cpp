@@ -8,6 +8,7 @@
 #include "der/energies/planar_bend.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/supports/clamp.hpp"
+#include "output/actuated_shape.hpp"
 #include "output/edgewise_field.hpp"
 #include "output/in_space.hpp"
 #include "output/moment_recovery.hpp"
@@ -113,7 +114,10 @@ class BendField : public EdgewiseField<double> {
 
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
-    return value(sample_at(i).edge, sample_at(i).place, model, state);
+    const auto& [edge, place, smooth] = sample_at(i);
+    const double own = value(edge, place, model, state);
+    if (moment_) return own;
+    return own + actuated_.strains(place.arc_length, place.loads_here_are_beyond, model, state)[0];
   }
 
  private:
@@ -124,7 +128,8 @@ class BendField : public EdgewiseField<double> {
     double natural_curvature = 0.0;  // [1/m]
     std::optional<BendCell> cell;    // none at an end
     double length = 0.0;             // over which the cell turns [m]
-    double rest_angle = 0.0;         // of the cell [rad]
+    double rest_angle = 0.0;         // of the cell, without actuations [rad]
+    ActuatedRest actuated;           // [rad]
     EffectiveEdge effective;         // of the edge
   };
 
@@ -134,6 +139,7 @@ class BendField : public EdgewiseField<double> {
         moment_(moment),
         EI_(rod.EI),
         per_moment_(moment ? 1.0 : rod.EI),
+        actuated_(rod),
         recovery_(std::move(recovery)),
         edges_(std::move(edges)) {}
 
@@ -156,10 +162,12 @@ class BendField : public EdgewiseField<double> {
       }
       result.length = clamp_cell_length(rod, edge);
       result.rest_angle = clamp_rest_angle(rod, *clamp, edge, model);
+      result.actuated = ActuatedRest(rod.rest_entries.cell(clamp->place, !last), 1, model);
     } else if (rod.is_inner(node)) {
       result.cell = cell_at(rod, node, model);
       result.length = bend_length(rod, node);
       result.rest_angle = rod.rest_turning_angle[to_size(rod.position(node))];
+      result.actuated = ActuatedRest(rod.rest_entries.cell(rod.position(node), false), 1, model);
     }
     result.natural_curvature = natural.at(result.arc_length);
     return result;
@@ -177,7 +185,7 @@ class BendField : public EdgewiseField<double> {
     }
     const double angle = turning_angle(*known.cell, model, state);
     const Vec3 point = in_space(effective_end(known.effective, last, model, state));
-    return chain(known, angle) +
+    return chain(known, angle, known.actuated.value(0, model, state)) +
            recovery_.smooth(edge, last, point, model, state).z() / per_moment_;
   }
 
@@ -186,16 +194,20 @@ class BendField : public EdgewiseField<double> {
     return recovery_.inside(edge, place, model, state).z() / per_moment_;
   }
 
-  /// Moment or curvature of the chain at this turning angle.
-  [[nodiscard]] double chain(const Known& known, double angle) const {
-    if (!moment_) return (angle - known.rest_angle) / known.length + known.natural_curvature;
-    const double rest_kappa = Measure::of(known.rest_angle).kappa;
+  /// Moment of the chain at this turning angle, or its curvature less that of actuations, which add
+  /// `actuated` to the rest angle.
+  [[nodiscard]] double chain(const Known& known, double angle, double actuated) const {
+    if (!moment_) {
+      return (angle - known.rest_angle - actuated) / known.length + known.natural_curvature;
+    }
+    const double rest_kappa = Measure::of(known.rest_angle).kappa + actuated;
     return bend_response<Measure>(EI_ / known.length, rest_kappa, angle).moment;
   }
 
   bool moment_;
   double EI_;
   double per_moment_;  // 1, or EI to make curvatures of moments
+  ActuatedShape actuated_;
   MomentRecovery recovery_;
   std::vector<std::pair<Known, Known>> edges_;  // first and last of each
 };

@@ -7,6 +7,7 @@
 #include "der/energies/joint_response.hpp"
 #include "der/model/frames.hpp"
 #include "der/supports/spatial_clamp.hpp"
+#include "output/actuated_shape.hpp"
 
 namespace der {
 namespace {
@@ -80,10 +81,11 @@ template <class Curvature>
 Vec3 response_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
                  const State& state) {
   const bool twists = joint.clamp < 0 || rod.clamps[to_size(joint.clamp)].holds_section;
+  const JointStrain rest = rest_strain(joint, rod, model, state);
   JointResponse response;
   kinematics_of<Curvature>(joint, rod, model, state)
       .template respond<false>({rod.EI_1 / joint.bend_length, rod.EI_2 / joint.bend_length,
-                                twists ? rod.GJ / joint.twist_length : 0.0, joint.rest},
+                                twists ? rod.GJ / joint.twist_length : 0.0, rest},
                                response);
   return response.moment;
 }
@@ -132,6 +134,14 @@ Vector directors_of(const Model& model, const State& state) {
     directors.segment<3>(3 * edge) = section_frame(model, edge, here).first;
   }
   return directors;
+}
+
+JointStrain rest_strain(const RodJoint& joint, const RodLayout& rod, const Model& model,
+                        const State& state) {
+  const ActuatedRest actuated(rest_shift(rod, joint), 3, model);
+  const Vec3 change = actuated.strains(model, state);
+  return {joint.rest.kappa_1 + change[0], joint.rest.kappa_2 + change[1],
+          joint.rest.twist + change[2]};
 }
 
 JointStrain strain_of(const RodJoint& joint, const RodLayout& rod, const Model& model,

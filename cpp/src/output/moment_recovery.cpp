@@ -207,6 +207,13 @@ std::vector<MomentRecovery::Break> MomentRecovery::breaks(Index edge) const {
       found.push_back({forces_[term.place].place.arc_length, false});
     }
   }
+  for (const ActuatedStretch& stretch : rod_.actuated_stretches) {
+    if (!stretch.strains()) continue;
+    for (const bool end : {false, true}) {
+      const double s = end ? stretch.to : stretch.from;
+      if (where_is(s, edge) == Where::Inside) found.push_back({s, stretch.jumps(end)});
+    }
+  }
   // One of each place: the one with a jump, where there is one.
   std::sort(found.begin(), found.end(), [&](const Break& a, const Break& b) {
     if (!is_same_place(a.arc_length, b.arc_length)) return a.arc_length < b.arc_length;
@@ -226,7 +233,13 @@ bool MomentRecovery::jumps_at(Index node) const {
     return is_same_place(s, rod_.arc_length[to_size(rod_.position(node))]);
   };
   const std::vector<double> places = rod_.moment_arc_lengths();
-  return rod_.clamp_at(node) != nullptr || std::any_of(places.begin(), places.end(), stands_here);
+  const auto& stretches = rod_.actuated_stretches;
+  return rod_.clamp_at(node) != nullptr ||
+         std::any_of(places.begin(), places.end(), stands_here) ||
+         std::any_of(stretches.begin(), stretches.end(), [&](const ActuatedStretch& stretch) {
+           return stretch.strains() && ((stretch.jumps(false) && stands_here(stretch.from)) ||
+                                        (stretch.jumps(true) && stands_here(stretch.to)));
+         });
 }
 
 }  // namespace der

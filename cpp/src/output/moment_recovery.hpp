@@ -34,7 +34,7 @@ class MomentRecovery {
     double arc_length = 0.0;  ///< [m]
     bool loads_here_are_beyond = false;
   };
-  /// A place inside an edge at which the moment has a kink, or jumps.
+  /// A place inside an edge at which the moment or the natural curvature has a kink, or jumps.
   struct Break {
     double arc_length = 0.0;  ///< [m]
     bool jumps = false;

@@ -9,6 +9,7 @@
 #include "der/model/location.hpp"
 #include "der/output/joint_strain.hpp"
 #include "der/supports/spatial_clamp.hpp"
+#include "output/actuated_shape.hpp"
 #include "output/edgewise_field.hpp"
 #include "output/moment_recovery.hpp"
 
@@ -67,7 +68,11 @@ class SectionField : public EdgewiseField<Vec3> {
                               const State& state) const override {
     const auto& [edge, place, smooth] = sample_at(i);
     Vec3 all = value(edge, place, model, state);
-    if (is_vector(edge, model)) all = in_turned_section(edge, place, all, model, state);
+    if (is_vector(edge, model)) {
+      all = in_turned_section(edge, place, all, model, state);
+    } else if (!is_moment(quantity_)) {
+      all += actuated_.strains(place.arc_length, place.loads_here_are_beyond, model, state);
+    }
     switch (quantity_) {
       case SectionQuantity::Curvature1:
       case SectionQuantity::Moment1:
@@ -102,6 +107,7 @@ class SectionField : public EdgewiseField<Vec3> {
         rod_(rod),
         stiffness_(model.has_sections() ? Vec3(rod.EI_1, rod.EI_2, rod.GJ)
                                         : Vec3::Constant(rod.EI_1)),
+        actuated_(rod),
         recovery_(std::move(recovery)),
         edges_(std::move(edges)) {}
 
@@ -195,7 +201,8 @@ class SectionField : public EdgewiseField<Vec3> {
     const Vec3 excess = excess_of(*known.joint, model, state);
     Vec3 moment = stiffness_.cwiseProduct(excess);
     if (model.has_sections()) {
-      moment = turned(moved(moment, known, natural_of(*known.joint) + excess), known.glued);
+      const Vec3 rest = natural_of(*known.joint) + actuated_mean(*known.joint, model, state);
+      moment = turned(moved(moment, known, rest + excess), known.glued);
     }
     return natural + (is_moment(quantity_) ? moment : Vec3(moment.cwiseQuotient(stiffness_))) +
            in_section(edge, missing, model, state);
@@ -226,9 +233,20 @@ class SectionField : public EdgewiseField<Vec3> {
     if (!model.has_sections()) {
       return strain.kappa_1 / joint.bend_length * bend_axis(joint, rod_, model, state);
     }
-    return {(strain.kappa_1 - joint.rest.kappa_1) / joint.bend_length,
-            (strain.kappa_2 - joint.rest.kappa_2) / joint.bend_length,
-            (strain.twist - joint.rest.twist) / joint.twist_length};
+    const JointStrain rest = rest_strain(joint, rod_, model, state);
+    return {(strain.kappa_1 - rest.kappa_1) / joint.bend_length,
+            (strain.kappa_2 - rest.kappa_2) / joint.bend_length,
+            (strain.twist - rest.twist) / joint.twist_length};
+  }
+
+  /// The natural curvatures and twist that actuations give a joint [1/m].
+  [[nodiscard]] Vec3 actuated_mean(const RodJoint& joint, const Model& model,
+                                   const State& state) const {
+    if (!actuated_.is_strained()) return Vec3::Zero();
+    const JointStrain rest = rest_strain(joint, rod_, model, state);
+    return {(rest.kappa_1 - joint.rest.kappa_1) / joint.bend_length,
+            (rest.kappa_2 - joint.rest.kappa_2) / joint.bend_length,
+            (rest.twist - joint.rest.twist) / joint.twist_length};
   }
 
   /// The moments of a joint and its torque [N m], which it has in its own frame, in the section's
@@ -274,7 +292,10 @@ class SectionField : public EdgewiseField<Vec3> {
     if (angle > 0.0) seen = Eigen::AngleAxisd(-angle, axis / angle) * moment;
     const Vec3 parts = components(seen, frame);
     return is_moment(quantity_) ? parts
-                                : Vec3(natural_at(edge, s) + parts.cwiseQuotient(stiffness_));
+                                : Vec3(natural_at(edge, s) +
+                                       actuated_.strains(s, place.loads_here_are_beyond, model,
+                                                         state) +
+                                       parts.cwiseQuotient(stiffness_));
   }
 
   /// How far an edge's section turns from one place to another [rad]: the strains, in the middle of
@@ -287,8 +308,9 @@ class SectionField : public EdgewiseField<Vec3> {
     const auto pass = [&](double b) {
       const MomentRecovery::Place middle{0.5 * (a + b), false};
       const Vec3 moment = components(value(edge, middle, model, state), frame);
-      turn +=
-          (b - a) * (natural_at(edge, middle.arc_length) + Vec3(moment.cwiseQuotient(stiffness_)));
+      turn += (b - a) * (natural_at(edge, middle.arc_length) +
+                         actuated_.strains(middle.arc_length, false, model, state) +
+                         Vec3(moment.cwiseQuotient(stiffness_)));
       a = b;
     };
     for (const auto& [s, jumps] : recovery_.breaks(edge)) {
@@ -310,10 +332,13 @@ class SectionField : public EdgewiseField<Vec3> {
       const Vec3 excess = components(recovery_.excess(edge, model, state), frame);
       const RodJoint& joint = last ? rod_.joints.back() : rod_.joints.front();
       turn = joint.bend_length * excess.cwiseQuotient(stiffness_);
+      const double twelfth = (last ? 1.0 : -1.0) * rod_.edge_length[to_size(edge)] / 12.0;
       if (!rod_.natural_curvatures.empty()) {
-        const double twelfth = rod_.edge_length[to_size(edge)] / 12.0;
-        turn.head<2>() += (last ? twelfth : -twelfth) * rod_.natural_curvatures[to_size(node)];
+        turn.head<2>() += twelfth * rod_.natural_curvatures[to_size(node)];
       }
+      turn.head<2>() +=
+          twelfth *
+          actuated_.strains(rod_.arc_length_at(node), last, model, state).head<2>();
     }
     return {turn[0], turn[1], 0.0};
   }
@@ -349,6 +374,7 @@ class SectionField : public EdgewiseField<Vec3> {
   SectionQuantity quantity_;
   RodLayout rod_;
   Vec3 stiffness_;
+  ActuatedShape actuated_;
   MomentRecovery recovery_;
   std::vector<std::pair<Known, Known>> edges_;  // first and last of each
 };

@@ -10,6 +10,7 @@
 #include "der/output/joint_strain.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spatial_clamp.hpp"
+#include "output/actuated_shape.hpp"
 #include "output/edge_excess.hpp"
 #include "output/in_space.hpp"
 #include "output/line_loads.hpp"
@@ -35,6 +36,7 @@ class EffectiveVectors {
         planar_.push_back(effective_edge(rod, edge, model));
         rest_length_.push_back(planar_.back().vector(model.initial_positions, 0.0, 0.0).norm());
       }
+      actuated_.emplace_back(rod.rest_entries.edge(edge), 1, model);
     }
   }
 
@@ -44,12 +46,15 @@ class EffectiveVectors {
     return in_space(effective_vector(planar_[to_size(edge)], model, state));
   }
   /// [m]
-  [[nodiscard]] double rest_length(Index edge) const { return rest_length_[to_size(edge)]; }
+  [[nodiscard]] double rest_length(Index edge, const Model& model, const State& state) const {
+    return rest_length_[to_size(edge)] + actuated_[to_size(edge)].value(0, model, state);
+  }
 
  private:
   std::vector<EffectiveEdge> planar_;
   std::vector<SpatialEdge> in_space_;  // one of the two lists is empty
-  std::vector<double> rest_length_;
+  std::vector<double> rest_length_;  // without actuations
+  std::vector<ActuatedRest> actuated_;
 };
 
 /// The tension that edges have in excess because they lean: an edge next to a clamp, and one at a
@@ -58,7 +63,7 @@ class EffectiveVectors {
 /// times k . F, with the curvature k and the force F in the rod across it.
 class LeaningEdges {
  public:
-  LeaningEdges(const RodLayout& rod, const Model& model) : rod_(rod) {
+  LeaningEdges(const RodLayout& rod, const Model& model) : rod_(rod), actuated_(rod) {
     for (const Clamp& clamp : rod.clamps) {
       for (const Index edge : {rod.edge_before(clamp.place), rod.edge_after(clamp.place)}) {
         if (edge < 0) continue;
@@ -94,7 +99,7 @@ class LeaningEdges {
     } else if (!rod_.natural_curvatures.empty()) {
       natural = last ? rod_.natural_curvatures.back() : rod_.natural_curvatures.front();
     }
-    if (natural.isZero(0.0)) return;
+    if (natural.isZero(0.0) && !actuated_.is_strained()) return;
     const Index edge = last ? rod_.num_edges() - 1 : 0;
     const double twelfth = rod_.edge_length[to_size(edge)] / 12.0;
     add({edge, last ? twelfth : -twelfth, natural}, model);
@@ -132,7 +137,11 @@ class LeaningEdges {
                          rod_.edge_length[to_size(lean.edge)];
     }
     if (twist_) force += mean(*twist_) * Vec2(moment[1], -moment[0]);
-    return lean.natural_curvature.value_or(curvature).dot(force);
+    if (!lean.natural_curvature) return curvature.dot(force);
+    const bool last = lean.beyond > 0.0;
+    const double end = last ? rod_.rest_length() : 0.0;
+    const Vec2 actuated = actuated_.strains(end, last, model, state).head<2>();
+    return (*lean.natural_curvature + actuated).dot(force);
   }
 
   /// The sample of a field at the first or last end of an edge, on the edge's side of a jump.
@@ -167,6 +176,7 @@ class LeaningEdges {
   };
 
   const RodLayout& rod_;
+  ActuatedShape actuated_;
   std::vector<Lean> leans_;
   std::vector<Bend> bends_;  // towards each director, or in the plane; empty where no edge leans
   std::unique_ptr<RodField> twist_;  // of sections
@@ -264,7 +274,7 @@ class StretchField : public RodField {
   [[nodiscard]] double middle_strain(Index edge, const Model& model, const State& state) const {
     const Vec3 effective = vectors_.at(edge, model, state);
     const double length = effective.norm();
-    const double chain = (length - vectors_.rest_length(edge)) / rod_.edge_length[to_size(edge)];
+    const double chain = (length - vectors_.rest_length(edge, model, state)) / rod_.edge_length[to_size(edge)];
     const double excess =
         leans_.excess(edge, model, state) + couples_.excess(edge, effective, model, state);
     const double upright = chain - excess / rod_.EA;

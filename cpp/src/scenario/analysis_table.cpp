@@ -20,14 +20,21 @@ constexpr auto assign_continuation = [](Analysis& analysis, ContinuationText&& t
   analysis = static_cast<ContinuationAnalysis&&>(text);
 };
 
-/// Reads `loads`, `supports` or one of them with its number; false if it is neither.
+/// Reads `loads`, `supports`, `actuation`, or one of them with its number or, of actuations, its
+/// name; false if it is none of these.
 bool read_varied(const std::string& text, ContinuationAnalysis& out) {
   const auto dot = text.find('.');
   const std::string kind = text.substr(0, dot);
-  if (kind != "loads" && kind != "supports") return false;
-  out.vary = kind == "loads" ? Varied::Loads : Varied::Supports;
+  if (kind != "loads" && kind != "supports" && kind != "actuation") return false;
+  out.vary = kind == "loads"      ? Varied::Loads
+             : kind == "supports" ? Varied::Supports
+                                  : Varied::Actuations;
   if (dot == std::string::npos) return true;
   const std::string digits = text.substr(dot + 1);
+  if (out.vary == Varied::Actuations && is_name(digits)) {
+    out.name = digits;
+    return true;
+  }
   const bool leading_zero = digits.size() > 1 && digits.front() == '0';
   if (digits.empty() || digits.size() > 6 || leading_zero ||
       digits.find_first_not_of("0123456789") != std::string::npos) {
@@ -46,8 +53,9 @@ void check_continuation(ContinuationText& text, const Place& place, Diagnostics&
   }
   if (!read_varied(text.given_vary, text)) {
     diagnostics.add(place.at(*find_entry(entries, "vary")),
-                    fmt::format("expected 'loads', 'supports', or one by its number, as 'loads.0', "
-                                "got '{}'",
+                    fmt::format("expected 'loads', 'supports', 'actuation', or one by its number, "
+                                "as 'loads.0', of actuations by its name, as 'actuation.bend', got "
+                                "'{}'",
                                 text.given_vary));
   }
 }
@@ -86,8 +94,8 @@ Format<ContinuationText> continuation_format() {
                               "through limit points; its folds and bifurcations.")
           .optional("vary", &ContinuationText::given_vary, text(),
                     "Quantities that the factor scales: `loads` (all of them), `supports` (all "
-                    "prescribed "
-                    "motions), or one by its number, as `loads.0`.",
+                    "prescribed motions), `actuation` (all changes of rest shapes), or one by its "
+                    "number, as `loads.0`; an actuation also by its name, as `actuation.bend`.",
                     "`loads`")
           .optional("from", &ContinuationAnalysis::from, number(""), "First factor.", "0")
           .optional("to", &ContinuationAnalysis::to, number(""),

@@ -11,6 +11,7 @@
 #include "der/catalog/steppers.hpp"
 #include "der/scenario/load.hpp"
 #include "scenario/checks.hpp"
+#include "scenario/suggestion.hpp"
 
 namespace der::scenario {
 namespace {
@@ -222,19 +223,75 @@ bool moves(const Support& support) {
 std::string item_in_words(const Scene& scene, const ContinuationAnalysis& path) {
   if (!path.number) return "the scene";
   if (path.vary == Varied::Supports) return fmt::format("supports.{}", *path.number);
+  if (path.vary == Varied::Actuations) return fmt::format("actuation.{}", *path.number);
   const Load& load = scene.loads[static_cast<std::size_t>(*path.number)];
   return fmt::format("loads.{} ({})", *path.number, load_kinds()[load.what.index()]);
 }
 
+/// What a continuation can vary.
+struct VariedKind {
+  const char* key;      ///< of the list in the scene
+  const char* scaled;   ///< what the factor scales, in words
+  const char* remedy;   ///< where no item of the list has that
+  std::size_t count;    ///< of the list's items
+};
+
+VariedKind varied_kind(const Scene& scene, Varied vary) {
+  switch (vary) {
+    case Varied::Loads:
+      return {"loads", "force or moment", "add a force, a moment or gravity", scene.loads.size()};
+    case Varied::Supports:
+      return {"supports", "prescribed motion", "give a support 'prescribe'", scene.supports.size()};
+    case Varied::Actuations:
+      break;
+  }
+  return {"actuation", "change of a rest shape", "add an item to 'actuation'",
+          scene.actuations.size()};
+}
+
+bool can_vary(const Scene& scene, Varied vary, std::size_t number) {
+  switch (vary) {
+    case Varied::Loads:
+      return has_amounts(scene.loads[number]);
+    case Varied::Supports:
+      return moves(scene.supports[number]);
+    case Varied::Actuations:
+      break;
+  }
+  return true;
+}
+
+/// Puts the number of an actuation in place of its name; false, with a diagnostic, if there is
+/// none of that name.
+bool find_actuation(CheckContext& context, const Path& path, ContinuationAnalysis& continuation) {
+  if (continuation.name.empty()) return true;
+  const auto& all = context.scene.actuations;
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Actuation& actuation) {
+    return actuation.name == continuation.name;
+  });
+  if (found != all.end()) {
+    continuation.number = static_cast<int>(found - all.begin());
+    return true;
+  }
+  std::vector<std::string> names;
+  for (const Actuation& actuation : all) names.push_back(actuation.name);
+  const std::string near = did_you_mean(continuation.name, names);
+  context.diagnostics.add(
+      path, fmt::format("there is no actuation '{}'{}", continuation.name,
+                        !near.empty()   ? near
+                        : names.empty() ? "; the scene has none"
+                                        : "; there is " + listed(names)));
+  return false;
+}
+
 /// Whether what a continuation varies is there.
 void check_continuation(CheckContext& context) {
-  const auto* continuation = std::get_if<ContinuationAnalysis>(&context.scene.analysis);
+  auto* continuation = std::get_if<ContinuationAnalysis>(&context.scene.analysis);
   if (!continuation || context.diagnostics.under({"analysis"})) return;
-  const bool loads = continuation->vary == Varied::Loads;
-  const char* const kind = loads ? "loads" : "supports";
+  const auto [kind, scaled, remedy, count] = varied_kind(context.scene, continuation->vary);
   if (context.diagnostics.under({kind})) return;
-  const std::size_t count = loads ? context.scene.loads.size() : context.scene.supports.size();
   const Path path{"analysis", "continuation", "vary"};
+  if (!find_actuation(context, path, *continuation)) return;
   if (continuation->number && static_cast<std::size_t>(*continuation->number) >= count) {
     context.diagnostics.add(path,
                             fmt::format("there is no {}.{}: the scene has {} of them, counted "
@@ -244,16 +301,15 @@ void check_continuation(CheckContext& context) {
   }
   std::vector<std::string> others;
   for (std::size_t i = 0; i < count; ++i) {
-    if (!(loads ? has_amounts(context.scene.loads[i]) : moves(context.scene.supports[i]))) continue;
+    if (!can_vary(context.scene, continuation->vary, i)) continue;
     if (!continuation->number || static_cast<std::size_t>(*continuation->number) == i) return;
     others.push_back(fmt::format("{}.{}", kind, i));
   }
-  const std::string hint = !others.empty() ? fmt::format("write {}", fmt::join(others, " or "))
-                           : loads         ? "add a force, a moment or gravity"
-                                           : "give a support 'prescribe'";
+  const std::string hint =
+      others.empty() ? remedy : fmt::format("write {}", fmt::join(others, " or "));
   context.diagnostics.add(path, fmt::format("{} has no {} that the load factor could scale: {}",
                                             item_in_words(context.scene, *continuation),
-                                            loads ? "force or moment" : "prescribed motion", hint));
+                                            scaled, hint));
 }
 
 }  // namespace

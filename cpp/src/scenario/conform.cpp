@@ -21,6 +21,7 @@ class Conform {
     scene_.dimension = planar_ ? 2 : 3;
     for (Rod& rod : scene_.rods) conform(rod);
     for (Support& support : scene_.supports) conform(support);
+    for (Actuation& actuation : scene_.actuations) conform(actuation);
     for (Load& load : scene_.loads) {
       std::visit([this](auto& what) { conform(what); }, load.what);
     }
@@ -68,6 +69,26 @@ class Conform {
       std::transform(list->begin(), list->end(), pairs.begin(), pair_of);
       rod.natural_curvature = std::move(pairs);
     }
+  }
+
+  void conform(Actuation& actuation) const {
+    if (actuation.what != Actuated::NaturalCurvature) return;
+    const auto rod = std::find_if(scene_.rods.begin(), scene_.rods.end(),
+                                  [&](const Rod& each) { return each.name == actuation.rod; });
+    std::vector<Series>& values = actuation.values;
+    if (planar_ && values.size() == 2) {
+      const auto [first, second] = flat_director(*rod).pair(1.0);
+      const bool toward_first = std::abs(first) > std::abs(second);
+      values = {scaled(values[toward_first ? 0 : 1], toward_first ? first : second)};
+    } else if (!planar_ && values.size() == 1) {
+      const auto [first, second] = flat_director(*rod).pair(1.0);
+      values = {scaled(values[0], first), scaled(values[0], second)};
+    }
+  }
+
+  static Series scaled(Series series, double factor) {
+    for (double& value : series.values) value *= factor;
+    return series;
   }
 
   void conform(Support& support) const {

@@ -130,6 +130,23 @@ struct OutOfPlane {
   }
 };
 
+std::string out_of_plane(const Actuation& actuation, const Scene& scene) {
+  if (actuation.what != Actuated::NaturalCurvature || actuation.values.size() != 2) return {};
+  for (const Rod& rod : scene.rods) {
+    if (rod.name != actuation.rod) continue;
+    const FlatDirector director = flat_director(rod);
+    // A program may drive what is 0 in the scene, but for the one that stays beside another.
+    const bool toward_first = std::abs(director.normal) > kRounding;
+    const bool toward_second = std::abs(director.z) > kRounding;
+    const bool in_plane = (toward_first && !toward_second && is_zero(actuation.values[1]) &&
+                           !is_zero(actuation.values[0])) ||
+                          (toward_second && !toward_first && is_zero(actuation.values[0]) &&
+                           !is_zero(actuation.values[1]));
+    if (!in_plane) return fmt::format("actuation.{} bends rod '{}' to two sides", actuation.name, rod.name);
+  }
+  return {};
+}
+
 // ---- no twist
 
 struct IsZero {
@@ -152,6 +169,17 @@ std::string own_twist(const Rod& rod) {
     return fmt::format("rod '{}' has a natural twist", rod.name);
   }
   return {};
+}
+
+std::string actuated_twist(const Actuation& actuation) {
+  if (actuation.what != Actuated::NaturalTwist) return {};
+  return fmt::format("actuation.{} twists rod '{}'", actuation.name, actuation.rod);
+}
+
+/// A rod that an actuation bends has a natural curvature.
+std::string actuated_bend(const Actuation& actuation) {
+  if (actuation.what != Actuated::NaturalCurvature) return {};
+  return fmt::format("actuation.{} curves rod '{}' without stress", actuation.name, actuation.rod);
 }
 
 std::string prescribed_twist(const Support& support, std::size_t number) {
@@ -250,7 +278,10 @@ std::string first_clause(std::initializer_list<std::string> clauses) {
 std::string why_it_twists(const Scene& scene) {
   return first_clause(
       {first_of(scene.rods, [](const Rod& rod, std::size_t /*number*/) { return own_twist(rod); }),
-       first_of(scene.supports, prescribed_twist)});
+       first_of(scene.supports, prescribed_twist),
+       first_of(scene.actuations, [](const Actuation& each, std::size_t /*number*/) {
+         return actuated_twist(each);
+       })});
 }
 
 std::string why_not_planar(const Scene& scene) {
@@ -259,7 +290,10 @@ std::string why_not_planar(const Scene& scene) {
                 [](const Rod& rod, std::size_t /*number*/) { return out_of_plane(rod); }),
        first_of(scene.supports, [&](const Support& support,
                                     std::size_t i) { return out_of_plane(support, i, scene); }),
-       about_loads<OutOfPlane>(scene), why_it_twists(scene)});
+       about_loads<OutOfPlane>(scene),
+       first_of(scene.actuations, [&](const Actuation& each,
+                                      std::size_t /*number*/) { return out_of_plane(each, scene); }),
+       why_it_twists(scene)});
 }
 
 /// A ring has no end to let go of the twist that its writhe makes, and writhe needs space.
@@ -276,6 +310,9 @@ std::string why_not_spatial_bend(const Scene& scene) {
       {why_it_twists(scene), writhes(scene),
        first_of(scene.rods,
                 [&](const Rod& rod, std::size_t /*number*/) { return may_twist(rod, scene); }),
+       first_of(scene.actuations, [](const Actuation& each, std::size_t /*number*/) {
+         return actuated_bend(each);
+       }),
        first_of(scene.rods,
                 [&](const Rod& rod, std::size_t /*number*/) { return holds_sections(rod, scene); }),
        first_of(scene.supports,

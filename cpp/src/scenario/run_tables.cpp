@@ -188,6 +188,8 @@ const Format<SceneText>& scene_format() {
           .optional("supports", &Scene::supports, list_of(support_format(), 0),
                     "Supports that hold or move the rods.")
           .optional("loads", &Scene::loads, list_of(load_format(), 0), "Loads on the rods.")
+          .optional("actuation", &Scene::actuations, list_of(actuation_format(), 0),
+                    "Changes of the rods' rest shapes.")
           .optional("time", &SceneText::given_time, time_format(), "A run over time.")
           .optional("analysis", &Scene::analysis, analysis_format(),
                     "In place of `time`: an analysis without it.")

@@ -51,8 +51,10 @@ struct SceneText : Scene {
 
 Format<RodText> rod_format();
 Format<Support> support_format();
-/// A part of a rod without `to` reaches to infinity until the checks know the rod.
+/// A part of a rod without `to` reaches to infinity until the checks know the rod, as the stretch
+/// of an actuation does.
 Format<Load> load_format();
+Format<Actuation> actuation_format();
 Format<TimeText> time_format();
 Format<Analysis> analysis_format();
 Format<Solver> solver_format();

@@ -54,7 +54,8 @@ void DenseOutput::evaluate(double time, const State& start, const State& end, St
   }
   const Work power_start = powers(start, start, end);
   const Work power_end = powers(end, start, end);
-  for (double Work::* part : {&Work::loads, &Work::supports, &Work::drag, &Work::solver}) {
+  for (double Work::* part : {&Work::loads, &Work::supports, &Work::actuation, &Work::drag,
+                             &Work::solver}) {
     result.work.*part = weight.x0 * (work_start.*part) + weight.x1 * (end.work.*part) +
                         weight.v0 * (power_start.*part) + weight.v1 * (power_end.*part);
   }
@@ -89,7 +90,9 @@ void DenseOutput::add_table_powers(const State& where, const State& start, const
   const double dt = end.time - start.time;
   before_.coordinates = where.positions;
   after_.coordinates = where.positions;
-  power.supports += rotation_work(model_, before_, after_) / dt;
+  const ControlWork work = control_work(model_, before_, after_);
+  power.supports += work.supports / dt;
+  power.actuation += work.actuation / dt;
   power.loads += cell_work(model_, before_.controls, after_.controls) / dt;
 }
 

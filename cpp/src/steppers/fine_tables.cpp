@@ -32,6 +32,13 @@ void add_tables(const Load& load, const std::string& path, std::vector<Table>& t
   });
 }
 
+void add_tables(const scenario::Actuation& actuation, std::vector<Table>& tables) {
+  for (const scenario::Series& series : actuation.values) {
+    tables.push_back({fmt::format("actuation.{}.{}", actuation.name, key_of(actuation.what)),
+                      series.times});
+  }
+}
+
 std::vector<Table> tables(const scenario::Scene& scene) {
   std::vector<Table> found;
   for (std::size_t i = 0; i < scene.supports.size(); ++i) {
@@ -41,6 +48,7 @@ std::vector<Table> tables(const scenario::Scene& scene) {
     std::visit([&](const auto& load) { add_tables(load, fmt::format("loads.{}", i), found); },
                scene.loads[i].what);
   }
+  for (const scenario::Actuation& actuation : scene.actuations) add_tables(actuation, found);
   return found;
 }
 

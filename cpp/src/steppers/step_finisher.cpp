@@ -15,7 +15,9 @@ void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector
   configuration_of(model_, state, start_);
   end_.coordinates = positions;
   evaluate_controls(model_, state, state.time + dt, end_.controls);
-  state.work.supports += rotation_work(model_, start_, end_);
+  const ControlWork work = control_work(model_, start_, end_);
+  state.work.supports += work.supports;
+  state.work.actuation += work.actuation;
   state.work.loads += cell_work(model_, start_.controls, end_.controls);
   for (const HeldDof& held : model_.held) {
     const double before = state.velocities[held.dof];

@@ -19,6 +19,23 @@ bool any_clamp_turns(const Model& model) {
   return any;
 }
 
+/// Energy [J] that elements take up as the controls change from those of `before` to those of
+/// `after`: the mean of that at the coordinates of the ends of a step.
+double energy_given(const Model& model, const Configuration& before, const Configuration& after,
+                    const Configuration& start, const Configuration& end) {
+  double energy = 0.0;
+  for_each_list(*model.elements, [&](const auto& list) {
+    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+    if constexpr (Kernel::kTerm != EnergyTerm::Load) {
+      for (const Configuration* there : {&start, &end}) {
+        energy += 0.5 * (element_energy(list, after, there->coordinates) -
+                         element_energy(list, before, there->coordinates));
+      }
+    }
+  });
+  return energy;
+}
+
 }  // namespace
 
 void stage_displacement(const Model& model, const Vector& start, const Vector& end, double share,
@@ -46,19 +63,21 @@ double moment_work(const Model& model, const Configuration& here, const Vector& 
   return work;
 }
 
-double rotation_work(const Model& model, const Configuration& start, const Configuration& end) {
-  if (!any_clamp_turns(model)) return 0.0;
-  double work = 0.0;
-  for_each_list(*model.elements, [&](const auto& list) {
-    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
-    if constexpr (Kernel::kTerm != EnergyTerm::Load) {
-      for (const Configuration* there : {&start, &end}) {
-        work += 0.5 * (element_energy(list, end, there->coordinates) -
-                       element_energy(list, start, there->coordinates));
-      }
-    }
-  });
-  return work;
+ControlWork control_work(const Model& model, const Configuration& start, const Configuration& end) {
+  const bool turns = any_clamp_turns(model);
+  if (!model.rest_shape.is_actuated()) {
+    return {turns ? energy_given(model, start, end, start, end) : 0.0, 0.0};
+  }
+  if (!turns) return {0.0, energy_given(model, start, end, start, end)};
+  // Each of the two changes first, and after the other.
+  Configuration turned = end;
+  model.rest_shape.copy(start.controls, turned.controls);
+  Configuration actuated = start;
+  model.rest_shape.copy(end.controls, actuated.controls);
+  const auto given = [&](const Configuration& before, const Configuration& after) {
+    return 0.5 * energy_given(model, before, after, start, end);
+  };
+  return {given(start, turned) + given(actuated, end), given(start, actuated) + given(turned, end)};
 }
 
 }  // namespace der

@@ -139,7 +139,8 @@ void add_clamp_cells(const Clamp& clamp, RodLayout& rod, Model& model) {
       using Measure = decltype(measure);
       auto& list = elements_of<FromPivot<PlanarClamp<Measure>>>(*model.elements);
       list.add(effective.dofs, {{rod.EI / clamp_cell_length(rod, edge), Measure::of(rest).kappa,
-                                 clamp.direction, side_of(clamp, edge), clamp.rotation},
+                                 clamp.direction, side_of(clamp, edge), clamp.rotation,
+                                 rod.rest_entries.cell(clamp.place, side_of(clamp, edge) > 0.0)},
                                 effective.first,
                                 effective.last});
     };

@@ -26,8 +26,15 @@ struct OutOfPlaneModel {
     Index edge = 0;
     Index rotation = 0;  ///< control that turns it [rad]
   };
+  /// A table of an actuation, which follows that of the planar model.
+  struct Follower {
+    Index planar = 0;     ///< its control
+    Index control = 0;    ///< that of this model
+    double factor = 1.0;  ///< of the planar value
+  };
   Model model;
   std::vector<Fork> forks;
+  std::vector<Follower> actuations;
 
   /// The shape and the controls of the planar model in this one. Frames are those of the edges as
   /// they lie there.

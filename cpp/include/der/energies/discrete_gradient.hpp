@@ -113,15 +113,16 @@ double secant_moment(double stiffness_per_length, double rest_kappa, double befo
 
 template <int Dim>
 void discrete_gradient(KernelTag<Stretch<Dim>> /*kernel*/,
-                       const typename Stretch<Dim>::Constants& c, const Configuration& /*here*/,
+                       const typename Stretch<Dim>::Constants& c, const Configuration& here,
                        const Local<2 * Dim>& start, const Local<2 * Dim>& end,
                        Local<2 * Dim>& gradient) {
   using Vec = Eigen::Matrix<double, Dim, 1>;
   const Vec before = Stretch<Dim>::edge(start);
   const Vec after = Stretch<Dim>::edge(end);
   const double lengths = before.norm() + after.norm();
+  const double natural = c.rest_length + c.elongation.value(here.controls);
   const Vec force =
-      c.EA / c.rest_length * (lengths - 2.0 * c.rest_length) / lengths * 0.5 * (before + after);
+      c.EA / c.rest_length * (lengths - 2.0 * natural) / lengths * 0.5 * (before + after);
   gradient.template head<Dim>() = -force;
   gradient.template tail<Dim>() = force;
 }
@@ -129,13 +130,13 @@ void discrete_gradient(KernelTag<Stretch<Dim>> /*kernel*/,
 template <class Curvature>
 void discrete_gradient(KernelTag<PlanarBend<Curvature>> /*kernel*/,
                        const typename PlanarBend<Curvature>::Constants& c,
-                       const Configuration& /*here*/, const Local<6>& start, const Local<6>& end,
+                       const Configuration& here, const Local<6>& start, const Local<6>& end,
                        Local<6>& gradient) {
   const auto [a0, b0] = PlanarBend<Curvature>::edges(start);
   const auto [a1, b1] = PlanarBend<Curvature>::edges(end);
   const TurningAngleGradient angle(a0, b0, a1, b1);
   const double moment =
-      secant_moment<Curvature>(c.stiffness_per_length, c.rest_kappa, angle_between(a0, b0),
+      secant_moment<Curvature>(c.stiffness_per_length, c.natural(here.controls), angle_between(a0, b0),
                                angle_between(a1, b1), angle.change);
   gradient.segment<2>(0) = -moment * angle.by_a;
   gradient.segment<2>(2) = moment * (angle.by_a - angle.by_b);
@@ -153,7 +154,7 @@ void discrete_gradient(KernelTag<PlanarClamp<Curvature>> /*kernel*/,
   const Vec2 after = end.tail<2>() - end.head<2>();
   const Turn turn(before, after);
   const double moment = secant_moment<Curvature>(
-      c.stiffness_per_length, c.rest_kappa, c.side * angle_between(tangent, before),
+      c.stiffness_per_length, c.natural(here.controls), c.side * angle_between(tangent, before),
       c.side * angle_between(tangent, after), c.side * turn.angle);
   const Vec2 force = c.side * moment * discrete_direction_gradient(turn, before, after);
   gradient.head<2>() = -force;

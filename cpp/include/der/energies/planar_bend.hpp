@@ -9,6 +9,7 @@
 #include "der/kinematics/configuration.hpp"
 #include "der/kinematics/curvature_measure.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "der/kinematics/rest_shift.hpp"
 
 namespace der {
 
@@ -38,6 +39,11 @@ struct PlanarBend {
   struct Constants {
     double stiffness_per_length = 0.0;  ///< EI / l_v [N m]
     double rest_kappa = 0.0;            ///< integrated natural curvature [-]
+    RestShift actuated{};               ///< of `rest_kappa`
+
+    [[nodiscard]] double natural(const Vector& controls) const {
+      return rest_kappa + actuated.value(controls);
+    }
   };
 
   /// The vectors of the edges before and after the node, from the values at their ends.
@@ -46,11 +52,11 @@ struct PlanarBend {
   }
 
   template <Derivatives D>
-  static void evaluate(const Constants& c, const Configuration& /*here*/,
+  static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     const auto [e0, e1] = edges(x);
     const BendResponse bend =
-        bend_response<Curvature>(c.stiffness_per_length, c.rest_kappa, angle_between(e0, e1));
+        bend_response<Curvature>(c.stiffness_per_length, c.natural(here.controls), angle_between(e0, e1));
     out.energy = bend.energy;
     if constexpr (D == Derivatives::Energy) return;
 

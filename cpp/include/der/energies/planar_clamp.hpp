@@ -7,6 +7,7 @@
 #include "der/energies/local_term.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/kinematics/configuration.hpp"
+#include "der/kinematics/rest_shift.hpp"
 #include "der/kinematics/planar_edge.hpp"
 
 namespace der {
@@ -25,6 +26,11 @@ struct PlanarClamp {
     double direction = 0.0;             ///< initial angle of the clamped tangent [rad]
     double side = 1.0;                  ///< +1: the edge leaves the clamp, -1: it arrives there
     Index rotation = -1;                ///< control that turns the tangent [rad]; -1: none
+    RestShift actuated{};               ///< of `rest_kappa`
+
+    [[nodiscard]] double natural(const Vector& controls) const {
+      return rest_kappa + actuated.value(controls);
+    }
   };
 
   template <Derivatives D>
@@ -33,7 +39,7 @@ struct PlanarClamp {
     const double direction = c.direction + (c.rotation >= 0 ? here.controls[c.rotation] : 0.0);
     const Vec2 tangent{std::cos(direction), std::sin(direction)};
     const Vec2 e = x.tail<2>() - x.head<2>();
-    const BendResponse bend = bend_response<Curvature>(c.stiffness_per_length, c.rest_kappa,
+    const BendResponse bend = bend_response<Curvature>(c.stiffness_per_length, c.natural(here.controls),
                                                        c.side * angle_between(tangent, e));
     out.energy = bend.energy;
     if constexpr (D == Derivatives::Energy) return;

@@ -7,6 +7,7 @@
 #include "der/kinematics/configuration.hpp"
 #include "der/kinematics/edge_frame.hpp"
 #include "der/kinematics/frame_block.hpp"
+#include "der/kinematics/rest_shift.hpp"
 
 namespace der {
 
@@ -26,6 +27,16 @@ T whole_twist(const SectionFrameOf<T>& before, const SectionFrameOf<T>& after,
   return nearest_turn(twist_between(before, after), theta_after - theta_before + reference);
 }
 
+/// The joint at this moment: its natural shape changes by actuations.
+template <class AJoint>
+AJoint actuated_joint(AJoint joint, const RestShift& shift, const Vector& controls) {
+  const JointStrain change = shift.strain(controls);
+  joint.rest.kappa_1 += change.kappa_1;
+  joint.rest.kappa_2 += change.kappa_2;
+  joint.rest.twist += change.twist;
+  return joint;
+}
+
 /// Bending about two axes and twist at a node between two edges (Bergou et al., Discrete Viscous
 /// Threads, SIGGRAPH 2010, section 4.2, with the directors of half the twist; JointKinematics).
 /// Coordinates: the three nodes, then the angles of the two edges.
@@ -39,6 +50,11 @@ struct SpatialBend {
     FrameBlock before;
     FrameBlock after;
     double glued = 0.0;  ///< [rad] by which the section after it is turned without strain
+    RestShift actuated{};
+
+    [[nodiscard]] AJoint actuated_joint(const Vector& controls) const {
+      return der::actuated_joint(joint, actuated, controls);
+    }
   };
 
   /// The frames of the two edges, that after a glued joint turned back, and the whole twist between
@@ -64,12 +80,13 @@ struct SpatialBend {
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     const auto [a, b, twist] = frames(c, here.controls, x);
     const JointKinematics<Curvature> kinematics(a.frame, b.frame, twist);
+    const AJoint joint = c.actuated_joint(here.controls);
     if constexpr (D == Derivatives::Energy) {
-      out.energy = kinematics.energy(c.joint);
+      out.energy = kinematics.energy(joint);
       return;
     }
     JointResponse response;
-    kinematics.template respond<D == Derivatives::Hessian>(c.joint, response);
+    kinematics.template respond<D == Derivatives::Hessian>(joint, response);
     out.energy = response.energy;
     const Eigen::Matrix<double, 3, 4> turn_a = a.rotation();
     const Eigen::Matrix<double, 3, 4> turn_b = b.rotation();
@@ -121,6 +138,11 @@ struct SpatialClamp {
     HeldFrame held;
     FrameBlock edge;
     double side = 1.0;  ///< +1: the edge leaves the clamp, -1: it arrives there
+    RestShift actuated{};
+
+    [[nodiscard]] Joint actuated_joint(const Vector& controls) const {
+      return der::actuated_joint(joint, actuated, controls);
+    }
   };
 
   /// The edge, the frames before and after the cell, one of which is the edge's, and the whole
@@ -150,12 +172,13 @@ struct SpatialClamp {
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     const auto [edge, a, b, twist] = frames(c, here.controls, x);
     const JointKinematics<Curvature> kinematics(a, b, twist);
+    const Joint joint = c.actuated_joint(here.controls);
     if constexpr (D == Derivatives::Energy) {
-      out.energy = kinematics.energy(c.joint);
+      out.energy = kinematics.energy(joint);
       return;
     }
     JointResponse response;
-    kinematics.template respond<D == Derivatives::Hessian>(c.joint, response);
+    kinematics.template respond<D == Derivatives::Hessian>(joint, response);
     out.energy = response.energy;
     const Vec3 moment = c.side * response.moment;
     const Eigen::Matrix<double, 3, 4> turn = edge.rotation();

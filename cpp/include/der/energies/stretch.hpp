@@ -6,6 +6,7 @@
 #include "der/energies/edge_blocks.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/configuration.hpp"
+#include "der/kinematics/rest_shift.hpp"
 
 namespace der {
 
@@ -19,16 +20,19 @@ struct StretchResponseOf {
 };
 using StretchResponse = StretchResponseOf<double>;
 
+/// `elongation` [m] of the edge without stress does not change its stiffness.
 template <class T>
-StretchResponseOf<T> stretch_response(const T& EA, const T& rest_length, const T& length) {
-  const T extension = length - rest_length;
+StretchResponseOf<T> stretch_response(const T& EA, const T& rest_length, const T& elongation,
+                                      const T& length) {
+  const T extension = length - rest_length - elongation;
   const T along = EA / rest_length;
   const T tension = along * extension;
   return {extension, tension, along, tension / length};
 }
 
-/// Axial stretching of an edge: E = 1/2 EA (|e|/l - 1)^2 l with e = x1 - x0 and rest length l
-/// (Bergou et al., Discrete Viscous Threads, SIGGRAPH 2010, eq. 3).
+/// Axial stretching of an edge: E = 1/2 EA (|e|/l - 1 - a)^2 l with e = x1 - x0, rest length l
+/// (Bergou et al., Discrete Viscous Threads, SIGGRAPH 2010, eq. 3) and the elongation a by
+/// actuations, which acts as a thermal strain does.
 template <int Dim>
 struct Stretch {
   static constexpr int kDofs = 2 * Dim;
@@ -37,6 +41,7 @@ struct Stretch {
   struct Constants {
     double EA = 0.0;           ///< [N]
     double rest_length = 0.0;  ///< [m]
+    RestShift elongation{};    ///< [m]
   };
 
   /// The edge's vector, or the change of it, from the values at its ends.
@@ -44,18 +49,18 @@ struct Stretch {
     return x.template tail<Dim>() - x.template head<Dim>();
   }
 
-  static StretchResponse response(const Constants& c, double length) {
-    return stretch_response(c.EA, c.rest_length, length);
+  static StretchResponse response(const Constants& c, const Vector& controls, double length) {
+    return stretch_response(c.EA, c.rest_length, c.elongation.value(controls), length);
   }
 
   template <Derivatives D>
-  static void evaluate(const Constants& c, const Configuration& /*here*/,
+  static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     using Vec = Eigen::Matrix<double, Dim, 1>;
     using Mat = Eigen::Matrix<double, Dim, Dim>;
     const Vec e = edge(x);
     const double length = e.norm();
-    const StretchResponse stretch = response(c, length);
+    const StretchResponse stretch = response(c, here.controls, length);
     out.energy = 0.5 * stretch.tension * stretch.extension;
     if constexpr (D == Derivatives::Energy) return;
 

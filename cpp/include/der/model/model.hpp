@@ -10,12 +10,14 @@
 #include "der/core/types.hpp"
 #include "der/kinematics/held_frame.hpp"
 #include "der/kinematics/joint_strain.hpp"
+#include "der/model/actuated_stretch.hpp"
 #include "der/model/dof_map.hpp"
 #include "der/model/edge.hpp"
 #include "der/model/followed.hpp"
 #include "der/model/frames.hpp"
 #include "der/model/load_variation.hpp"
 #include "der/model/mass.hpp"
+#include "der/model/rest_shape.hpp"
 #include "der/model/time_tables.hpp"
 #include "der/scenario/curvature_measure.hpp"
 
@@ -49,6 +51,8 @@ struct RodJoint {
   JointStrain rest;
   /// The place of its node: of the joint that closes a ring, the number of nodes.
   [[nodiscard]] Index place() const { return before >= 0 ? before + 1 : after; }
+  /// Whether it is the cell between a clamp and the edge that leaves it.
+  [[nodiscard]] bool leaves_clamp() const { return clamp >= 0 && after >= 0; }
   Vec2 natural_curvature = Vec2::Zero();  ///< towards the two directors [1/m]
 };
 
@@ -149,6 +153,8 @@ struct RodLayout {
   std::vector<SectionSpringPlace> section_springs;  ///< no two at the same place
   std::vector<DistributedPlace> distributed_places;
   std::vector<FoundationPlace> foundation_places;
+  std::vector<ActuatedStretch> actuated_stretches;  ///< in the order of the scene
+  RestEntries rest_entries;
   double draw_radius = 0.0;           ///< half the height of the section [m]; 0 if not known
   std::vector<double> sphere_radius;  ///< per node [m]; 0: no sphere
 
@@ -231,7 +237,8 @@ struct Model {
   bool damped = false;   ///< whether any of that is there
   Vector gravity_force;  ///< [N] weight without buoyancy
   Vector dead_force;     ///< [N] every constant force but weight: buoyancy, constant loads
-  TimeTables tables;     ///< tables over time that forces and supports follow
+  RestShape rest_shape;  ///< what actuations make of the rest shape
+  TimeTables tables;     ///< tables over time that forces, supports and actuations follow
   /// If the scene varies its loads or motions: their dependence on the load factor. It replaces
   /// `gravity_force`, `dead_force` and `tables` for states whose factor is not 1.
   std::optional<LoadVariation> load_variation;
@@ -270,6 +277,9 @@ NodePlace place_of(const Model& model, Index node);
 
 /// Number in Model::followed_edges of an edge of `rod`, which is followed from now on.
 Index follow_edge(const RodLayout& rod, Index edge, Model& model);
+
+/// Where the controls have what actuations add to the rest strains of a joint.
+RestShift rest_shift(const RodLayout& rod, const RodJoint& joint);
 
 /// A vector over the free degrees of freedom as one over all, zero on held ones.
 Vector over_all_dofs(const Model& model, const Vector& free);

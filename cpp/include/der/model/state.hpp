@@ -22,12 +22,14 @@ struct Work {
   double start = 0.0;     ///< energy at the start, of all kinds
   double loads = 0.0;     ///< done by forces and moments but for weight
   double supports = 0.0;  ///< done by supports that move
+  double actuation = 0.0;  ///< done by changes of the rest shape
   double drag = 0.0;      ///< taken by drag and linear damping
   double solver = 0.0;    ///< done by the residual forces that the solver leaves
 
   static constexpr auto fields() {
     return std::make_tuple(field("start", "J", &Work::start), field("loads", "J", &Work::loads),
-                           field("supports", "J", &Work::supports), field("drag", "J", &Work::drag),
+                           field("supports", "J", &Work::supports),
+                           field("actuation", "J", &Work::actuation), field("drag", "J", &Work::drag),
                            field("solver", "J", &Work::solver));
   }
 };
@@ -154,6 +156,7 @@ struct LedgerEntry {
 inline constexpr std::array kLedger{
     LedgerEntry{"loads", [](const Work& work, const Energies&) { return work.loads; }},
     LedgerEntry{"supports", [](const Work& work, const Energies&) { return work.supports; }},
+    LedgerEntry{"actuation", [](const Work& work, const Energies&) { return work.actuation; }},
     LedgerEntry{"drag", [](const Work& work, const Energies&) { return work.drag; }},
     LedgerEntry{"numerical", &numerical_loss},
     LedgerEntry{"solver", [](const Work& work, const Energies&) { return work.solver; }},

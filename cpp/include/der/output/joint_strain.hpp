@@ -22,6 +22,10 @@ SectionFrame held_frame(const HeldFrame& held, const Model& model, const State& 
 JointStrain strain_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
                       const State& state);
 
+/// Those of a joint without stress, as actuations have them at a state.
+JointStrain rest_strain(const RodJoint& joint, const RodLayout& rod, const Model& model,
+                        const State& state);
+
 /// Moment [N m] in a joint of a rod whose sections count, exerted on the side before it.
 Vec3 moment_of(const RodJoint& joint, const RodLayout& rod, const Model& model, const State& state);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <variant>
 
 namespace der::scenario {
@@ -26,13 +27,16 @@ struct BucklingAnalysis {
   static constexpr const char* kName = "buckling";
   int count = 3;
 };
-/// The quantities that a continuation scales: loads, or prescribed motions of supports.
-enum class Varied { Loads, Supports };
-/// The path of equilibria as a factor of loads or prescribed motions changes.
+/// The quantities that a continuation scales: loads, prescribed motions of supports, or changes of
+/// the rest shape.
+enum class Varied { Loads, Supports, Actuations };
+/// The path of equilibria as a factor of these changes.
 struct ContinuationAnalysis {
   static constexpr const char* kName = "continuation";
   Varied vary = Varied::Loads;
-  std::optional<int> number;  ///< of the one load or support that varies; absent: all
+  /// Of the one load, support or actuation that varies; absent: all.
+  std::optional<int> number;
+  std::string name;  ///< of the one actuation, until the checks find its number
   double from = 0.0;          ///< first factor
   double to = 1.0;            ///< last factor
   double step = 0.05;         ///< largest distance of two points

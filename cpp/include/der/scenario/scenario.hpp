@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "der/scenario/actuation.hpp"
 #include "der/scenario/analysis.hpp"
 #include "der/scenario/output.hpp"
 #include "der/scenario/rod.hpp"
@@ -44,6 +45,7 @@ struct Scene {
   std::vector<Rod> rods;
   std::vector<Support> supports;
   std::vector<Load> loads;
+  std::vector<Actuation> actuations;
   Time time;  ///< of a dynamic analysis
   /// "equilibrium", or the folder of a run whose last frame is the start; empty: undeformed.
   std::string start_from;

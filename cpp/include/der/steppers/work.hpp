@@ -21,8 +21,13 @@ void stage_displacement(const Model& model, const Vector& start, const Vector& e
 /// Work [J] of moments and circulatory loads along `displacement` [m].
 double moment_work(const Model& model, const Configuration& here, const Vector& displacement);
 
-/// Work [J] of clamps that turn during a step: the energy that turning gives the elements, the mean
-/// of that at both ends.
-double rotation_work(const Model& model, const Configuration& start, const Configuration& end);
+/// Works [J] that controls do on elements without a displacement.
+struct ControlWork {
+  double supports = 0.0;   ///< by clamps that turn
+  double actuation = 0.0;  ///< by changes of the rest shape
+};
+/// The works of a step: the energy that the change of the controls gives the elements, the mean of
+/// that at both ends.
+ControlWork control_work(const Model& model, const Configuration& start, const Configuration& end);
 
 }  // namespace der

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "der/core/types.hpp"
+#include "der/kinematics/joint_strain.hpp"
+
+namespace der {
+
+/// Where the controls have what actuations add to the rest shape of an element (model/rest_shape.hpp).
+struct RestShift {
+  Index entry = -1;  ///< -1: no actuation reaches the element
+
+  /// Of an extension [m] or a turning angle [-].
+  template <class Values>
+  [[nodiscard]] double value(const Values& controls) const {
+    return entry < 0 ? 0.0 : controls[entry];
+  }
+  /// Of two integrated curvatures and a twist, which are three entries [-].
+  template <class Values>
+  [[nodiscard]] JointStrain strain(const Values& controls) const {
+    if (entry < 0) return {};
+    return {controls[entry], controls[entry + 1], controls[entry + 2]};
+  }
+};
+
+}  // namespace der

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "der/core/types.hpp"
+#include "der/kinematics/rest_shift.hpp"
+#include "der/scenario/actuation.hpp"
+
+namespace der {
+
+/// A stretch of a rod on which an actuation changes the rest shape.
+struct ActuatedStretch {
+  std::string name;
+  scenario::Actuated what = scenario::Actuated::NaturalCurvature;
+  scenario::Profile profile = scenario::Profile::Constant;
+  double from = 0.0, to = 0.0;            ///< rest arc length [m]
+  std::array<Index, 2> controls{-1, -1};  ///< tables; the second of curvatures in space alone
+
+  /// Whether it bends or twists the rod.
+  [[nodiscard]] bool strains() const { return what != scenario::Actuated::Elongation; }
+  /// The profile right before arc length `s` [m], or right after it.
+  [[nodiscard]] double profile_at(double s, bool before) const;
+  /// Integral [m] of the profile over a part of the rod.
+  [[nodiscard]] double integral(double a, double b) const;
+  /// Whether the profile jumps at the end of the stretch, or at its start.
+  [[nodiscard]] bool jumps(bool at_end) const;
+};
+
+/// Where the controls have the shifts of the rest shape of a rod's elements: of each edge, and of
+/// each cell in which it bends.
+struct RestEntries {
+  Index edges = -1;   ///< entry of the first edge; -1: no actuation changes lengths
+  Index cells = -1;   ///< entry of the first cell; -1: none changes curvatures or twist
+  Index strains = 1;  ///< entries of a cell: 1 in a plane, 3 in space
+
+  /// Of the length of an edge.
+  [[nodiscard]] RestShift edge(Index number) const { return {edges < 0 ? -1 : edges + number}; }
+  /// Of the cell about the node at a position in the rod, or of that on one side of a clamp there:
+  /// between it and the edge that leaves it (`leaves`) or that arrives.
+  [[nodiscard]] RestShift cell(Index position, bool leaves) const {
+    return {cells < 0 ? -1 : cells + strains * (2 * position + (leaves ? 1 : 0))};
+  }
+};
+
+}  // namespace der

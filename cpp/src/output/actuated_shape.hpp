@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+#include "der/kinematics/rest_shift.hpp"
+#include "der/model/model.hpp"
+#include "der/model/state.hpp"
+
+namespace der {
+
+/// What actuations add to the rest shape of one element, at a state.
+class ActuatedRest {
+ public:
+  ActuatedRest() = default;
+  ActuatedRest(const RestShift& shift, Index size, const Model& model);
+  /// Entry number `i` of the shift: an extension [m] or turning angle, or two integrated curvatures
+  /// and a twist.
+  [[nodiscard]] double value(Index i, const Model& model, const State& state) const;
+  [[nodiscard]] Vec3 strains(const Model& model, const State& state) const;
+
+ private:
+  std::vector<RestShape::Term> terms_;  // entries counted from that of the shift
+};
+
+/// The natural curvatures and twist that actuations give a rod, at any place.
+class ActuatedShape {
+ public:
+  explicit ActuatedShape(const RodLayout& rod) : stretches_(rod.actuated_stretches) {}
+
+  /// Right before arc length `s` [m], or right after it [1/m]: in a plane the first component is
+  /// the curvature, in space they are those towards the two directors and the twist.
+  [[nodiscard]] Vec3 strains(double s, bool before, const Model& model, const State& state) const;
+
+  /// Whether any actuation bends or twists the rod.
+  [[nodiscard]] bool is_strained() const;
+
+ private:
+  std::vector<ActuatedStretch> stretches_;
+};
+
+}  // namespace der

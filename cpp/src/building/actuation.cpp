@@ -5,8 +5,7 @@
 #include <vector>
 
 #include "der/core/index.hpp"
-#include "der/model/location.hpp"
-#include "der/supports/clamp.hpp"
+#include "der/model/clamp_cell.hpp"
 
 namespace der {
 namespace {
@@ -38,7 +37,7 @@ double on_node(const RodLayout& rod, double s) {
   return s;
 }
 
-/// The part of one actuation in the rest shape.
+/// The part of one actuation in the rest shape of the elements.
 class Weights {
  public:
   Weights(const ActuatedStretch& stretch, const RodLayout& rod) : stretch_(stretch), rod_(rod) {}
@@ -47,66 +46,59 @@ class Weights {
 
   void add_elongation() {
     for (Index edge = 0; edge < rod_.num_edges(); ++edge) {
-      add(rod_.rest_entries.edge(edge), 0,
-          integral(rod_.arc_length_at(edge), rod_.arc_length_at(edge + 1)));
+      add(rod_.rest_entries.edge(edge), stretch_.integral(start(edge), end(edge)),
+          stretch_.controls[0]);
     }
   }
 
-  /// Changes the strain number `strain` of a cell by a table: the curvatures are 0 and 1, the twist
-  /// 2.
-  void add_strain(Index strain, std::size_t table) {
-    for (Index place = 0; place <= rod_.num_edges(); ++place) {
-      const bool arrives = place > 0;
-      const bool leaves = place < rod_.num_edges();
-      if (rod_.clamp_at(place) != nullptr) {
-        if (arrives) add_cell(place, false, strain, table, from_edge(place - 1, strain), at(place));
-        if (leaves) add_cell(place, true, strain, table, at(place), from_edge(place, strain));
-      } else if (arrives && rod_.is_inner(place)) {
-        add_cell(place, false, strain, table, from_edge(place - 1, strain), from_edge(place, strain));
-        if (strain < 2) add_free_ends(place, strain, table);
-      }
+  /// Sections turn from the middle of one edge to that of the next.
+  void add_twist() {
+    for (Index edge = 0; edge < rod_.num_edges(); ++edge) {
+      const double middle = rod_.edge_middle(edge);
+      add_strain(2, cell_at_start(edge), stretch_.integral(start(edge), middle), 0);
+      add_strain(2, cell_at_end(edge), stretch_.integral(middle, end(edge)), 0);
+    }
+  }
+
+  /// Towards director `strain`, or in the plane, by table number `strain`.
+  void add_curvature(std::size_t strain) {
+    for (Index edge = 0; edge < rod_.num_edges(); ++edge) {
+      // The edge turns against the tangent at its start by the first of these on average, and the
+      // tangent at its end against the edge by the second.
+      const double last =
+          stretch_.first_moment(start(edge), end(edge)) / rod_.edge_length[to_size(edge)];
+      const double first = stretch_.integral(start(edge), end(edge)) - last;
+      // From a clamp's pivot on the edge is shorter and turns by more.
+      const double a = rod_.clamp_at(edge) != nullptr ? kPivotShare : 0.0;
+      const double b = rod_.clamp_at(edge + 1) != nullptr ? kPivotShare : 0.0;
+      const double turn = (b * last - a * first) / (1.0 - a - b);
+      add_strain(static_cast<Index>(strain), cell_at_start(edge), first - turn, strain);
+      add_strain(static_cast<Index>(strain), cell_at_end(edge), last + turn, strain);
     }
   }
 
  private:
-  [[nodiscard]] double at(Index place) const { return rod_.arc_length_at(place); }
+  [[nodiscard]] double start(Index edge) const { return rod_.arc_length_at(edge); }
+  [[nodiscard]] double end(Index edge) const { return rod_.arc_length_at(edge + 1); }
 
-  /// Where the rod has the direction of an edge, or its section.
-  [[nodiscard]] double from_edge(Index edge, Index strain) const {
-    return strain < 2 ? tangent_place(rod_, edge) : rod_.edge_middle(edge);
+  /// The cell between an edge and what is before it; none at a free end.
+  [[nodiscard]] RestShift cell_at_start(Index edge) const {
+    const bool leaves = rod_.clamp_at(edge) != nullptr;
+    if (!leaves && !rod_.is_inner(edge)) return {};
+    return rod_.rest_entries.cell(rod_.position(edge), leaves);
+  }
+  /// The cell between an edge and what is after it.
+  [[nodiscard]] RestShift cell_at_end(Index edge) const {
+    if (rod_.clamp_at(edge + 1) == nullptr && !rod_.is_inner(edge + 1)) return {};
+    return rod_.rest_entries.cell(rod_.position(edge + 1), false);
   }
 
-  /// Integral [m] of the profile; around a ring, over parts beyond its ends too.
-  [[nodiscard]] double integral(double a, double b) const {
-    double sum = stretch_.integral(a, b);
-    if (rod_.closed) {
-      const double turn = rod_.rest_length();
-      sum += stretch_.integral(a - turn, b - turn) + stretch_.integral(a + turn, b + turn);
-    }
-    return sum;
+  void add_strain(Index strain, const RestShift& cell, double weight, std::size_t table) {
+    if (cell.entry < 0) return;
+    add({cell.entry + strain}, weight, stretch_.controls[table]);
   }
-
-  void add_cell(Index place, bool leaves, Index strain, std::size_t table, double a, double b) {
-    add(rod_.rest_entries.cell(rod_.position(place), leaves), strain, integral(a, b), table);
-  }
-
-  /// A free end lies on the curve, the node next to it l^2 kappa/12 beside it (supports/clamp.hpp).
-  void add_free_ends(Index place, Index strain, std::size_t table) {
-    if (rod_.closed) return;
-    const Index last = rod_.num_edges();
-    const RestShift cell = rod_.rest_entries.cell(place, false);
-    if (place == 1 && rod_.clamp_at(0) == nullptr) {
-      add(cell, strain, stretch_.profile_at(0.0, false) * rod_.edge_length.front() / 12.0, table);
-    }
-    if (place == last - 1 && rod_.clamp_at(last) == nullptr) {
-      add(cell, strain, stretch_.profile_at(at(last), true) * rod_.edge_length.back() / 12.0,
-          table);
-    }
-  }
-
-  void add(const RestShift& shift, Index strain, double weight, std::size_t table = 0) {
-    if (weight == 0.0) return;
-    terms_.push_back({shift.entry + strain, stretch_.controls[table], weight});
+  void add(const RestShift& shift, double weight, Index control) {
+    if (weight != 0.0) terms_.push_back({shift.entry, control, weight});
   }
 
   const ActuatedStretch& stretch_;
@@ -144,8 +136,12 @@ void set_rest_entries(const scenario::Scene& scene, Model& model) {
 
 void add_actuation(const scenario::Actuation& actuation, Model& model) {
   RodLayout& rod = model.rod(actuation.rod);
-  ActuatedStretch stretch{actuation.name, actuation.what, actuation.profile,
-                          on_node(rod, actuation.from), on_node(rod, actuation.to), {-1, -1}};
+  ActuatedStretch stretch{actuation.name,
+                          actuation.what,
+                          actuation.profile,
+                          on_node(rod, actuation.from),
+                          on_node(rod, actuation.to),
+                          {-1, -1}};
   for (std::size_t i = 0; i < actuation.values.size(); ++i) {
     stretch.controls[i] = model.tables.add(actuation.values[i]);
   }
@@ -155,11 +151,11 @@ void add_actuation(const scenario::Actuation& actuation, Model& model) {
       weights.add_elongation();
       break;
     case Actuated::NaturalTwist:
-      weights.add_strain(2, 0);
+      weights.add_twist();
       break;
     case Actuated::NaturalCurvature:
       for (std::size_t i = 0; i < actuation.values.size(); ++i) {
-        weights.add_strain(static_cast<Index>(i), i);
+        weights.add_curvature(i);
       }
       break;
   }

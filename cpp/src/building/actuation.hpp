@@ -13,10 +13,10 @@ Index num_rest_entries(const scenario::Scene& scene, int dimension);
 /// Tells the rods of the model where these entries are.
 void set_rest_entries(const scenario::Scene& scene, Model& model);
 
-/// Adds an actuation to a model whose rods have their supports. The change of the rest shape of an
-/// edge or of a cell is the integral of the profile over it: cells reach from where the rod has the
-/// direction of one edge to where it has that of the next (`tangent_place`), so that ends of the
-/// stretch between nodes lose no order.
+/// Adds an actuation to a model whose rods have their supports. Elongations and twists of an edge
+/// or a cell are integrals of the profile over it. Curvatures turn each edge to the mean direction
+/// that the curve has along it, so that without stress the nodes of a flat curve lie on it,
+/// wherever the stretch ends (docs/actuation.md).
 void add_actuation(const scenario::Actuation& actuation, Model& model);
 
 }  // namespace der

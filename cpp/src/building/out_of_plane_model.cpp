@@ -223,7 +223,8 @@ OutOfPlaneModel build_out_of_plane_model(const scenario::Scene& scene, const Mod
   const std::vector<Place> places = fork_places(scene, planar);
   OutOfPlaneModel twin{build_model(rods_in_space(scene, planar, places)), {}, {}};
   hold_plane(twin.model);
-  for (std::size_t i = 0; i < planar.rods.size(); ++i) follow_actuations(scene.rods[i], i, planar, twin);
+  for (std::size_t i = 0; i < planar.rods.size(); ++i)
+    follow_actuations(scene.rods[i], i, planar, twin);
   std::vector<char> has_fork(to_size(planar.num_nodes), 0);
   for (const auto& [rod, place] : places) {
     const RodLayout& layout = twin.model.rods[to_size(rod)];

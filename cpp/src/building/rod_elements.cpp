@@ -36,7 +36,8 @@ void add_stretch(const RodLayout& rod, Model& model) {
     const double length =
         effective.has_pivot() ? drawn(effective, model).norm() : rod.edge_length[to_size(edge)];
     const double EA = rod.EA * (length / rod.edge_length[to_size(edge)]);
-    add_element<Stretch<2>>(effective.dofs, {EA, length, rod.rest_entries.edge(edge)}, effective.first, effective.last, model);
+    add_element<Stretch<2>>(effective.dofs, {EA, length, rod.rest_entries.edge(edge)},
+                            effective.first, effective.last, model);
   }
 }
 

@@ -35,7 +35,8 @@ void add_stretch(const RodLayout& rod, const SpatialEdge& edge, Index number, Mo
   const double length = edge.has_pivot() ? edge.drawn(model.initial_positions).norm() : whole;
   add_element<Stretch<3>>(
       {edge.start, edge.start + 1, edge.start + 2, edge.end, edge.end + 1, edge.end + 2},
-      {rod.EA * (length / whole), length, rod.rest_entries.edge(number)}, edge.first, edge.last, model);
+      {rod.EA * (length / whole), length, rod.rest_entries.edge(number)}, edge.first, edge.last,
+      model);
 }
 
 Joint stiffness_of(const RodLayout& rod, const RodJoint& joint, bool holds_section) {

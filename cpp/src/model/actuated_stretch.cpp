@@ -35,6 +35,20 @@ double integrated(scenario::Profile kind, double u) {
   return 0.5 * u - std::sin(2.0 * kPi * u) / (4.0 * kPi);
 }
 
+/// Integral of u times the profile from 0 to `u`.
+double integrated_moment(scenario::Profile kind, double u) {
+  switch (kind) {
+    case scenario::Profile::Constant:
+      return 0.5 * u * u;
+    case scenario::Profile::Linear:
+      return u * u * u / 3.0;
+    case scenario::Profile::Smooth:
+      break;
+  }
+  const double sine = std::sin(kPi * u);
+  return 0.25 * u * u - u * std::sin(2.0 * kPi * u) / (4.0 * kPi) + sine * sine / (4.0 * kPi * kPi);
+}
+
 }  // namespace
 
 double ActuatedStretch::profile_at(double s, bool before) const {
@@ -50,9 +64,16 @@ double ActuatedStretch::integral(double a, double b) const {
   return up_to(b) - up_to(a);
 }
 
+double ActuatedStretch::first_moment(double a, double b) const {
+  const double length = to - from;
+  const auto up_to = [&](double s) {
+    return length * length * integrated_moment(profile, (std::clamp(s, from, to) - from) / length);
+  };
+  return up_to(b) - up_to(a) - (a - from) * integral(a, b);
+}
+
 bool ActuatedStretch::jumps(bool at_end) const {
-  return profile == scenario::Profile::Constant ||
-         (profile == scenario::Profile::Linear && at_end);
+  return profile == scenario::Profile::Constant || (profile == scenario::Profile::Linear && at_end);
 }
 
 }  // namespace der

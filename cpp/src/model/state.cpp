@@ -107,7 +107,8 @@ void start_ledger(const Model& model, State& state) {
 }
 
 double numerical_loss(const Work& work, const Energies& now) {
-  return work.start + work.loads + work.supports + work.actuation + work.solver - work.drag - now.total();
+  return work.start + work.loads + work.supports + work.actuation + work.solver - work.drag -
+         now.total();
 }
 
 std::array<double, kLedger.size()> ledger(const Work& work, const Energies& now) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "der/core/index.hpp"
+#include "der/model/clamp_cell.hpp"
+#include "der/model/location.hpp"
 
 namespace der {
 
@@ -50,6 +52,15 @@ Vec3 ActuatedShape::strains(double s, bool before, const Model& model, const Sta
 bool ActuatedShape::is_strained() const {
   return std::any_of(stretches_.begin(), stretches_.end(),
                      [](const ActuatedStretch& stretch) { return stretch.strains(); });
+}
+
+double actuated_lean(const RodLayout& rod, Index edge) {
+  // A uniform curvature turns half of itself over half of an edge, on to its middle.
+  const double a = rod.clamp_at(edge) != nullptr ? kPivotShare : 0.0;
+  const double b = rod.clamp_at(edge + 1) != nullptr ? kPivotShare : 0.0;
+  const double direction = 0.5 + 0.5 * (a - b) / (1.0 - a - b);
+  const double length = rod.edge_length[to_size(edge)];
+  return rod.arc_length_at(edge) + direction * length - tangent_place(rod, edge);
 }
 
 }  // namespace der

@@ -38,4 +38,8 @@ class ActuatedShape {
   std::vector<ActuatedStretch> stretches_;
 };
 
+/// How much further along the rod [m] an edge beside a clamp has the direction of the curve by its
+/// actuated curvature than by the rest of it (building/actuation.hpp); 0 elsewhere.
+double actuated_lean(const RodLayout& rod, Index edge);
+
 }  // namespace der

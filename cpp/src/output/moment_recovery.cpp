@@ -234,8 +234,7 @@ bool MomentRecovery::jumps_at(Index node) const {
   };
   const std::vector<double> places = rod_.moment_arc_lengths();
   const auto& stretches = rod_.actuated_stretches;
-  return rod_.clamp_at(node) != nullptr ||
-         std::any_of(places.begin(), places.end(), stands_here) ||
+  return rod_.clamp_at(node) != nullptr || std::any_of(places.begin(), places.end(), stands_here) ||
          std::any_of(stretches.begin(), stretches.end(), [&](const ActuatedStretch& stretch) {
            return stretch.strains() && ((stretch.jumps(false) && stands_here(stretch.from)) ||
                                         (stretch.jumps(true) && stands_here(stretch.to)));

@@ -291,11 +291,11 @@ class SectionField : public EdgewiseField<Vec3> {
     Vec3 seen = moment;
     if (angle > 0.0) seen = Eigen::AngleAxisd(-angle, axis / angle) * moment;
     const Vec3 parts = components(seen, frame);
-    return is_moment(quantity_) ? parts
-                                : Vec3(natural_at(edge, s) +
-                                       actuated_.strains(s, place.loads_here_are_beyond, model,
-                                                         state) +
-                                       parts.cwiseQuotient(stiffness_));
+    return is_moment(quantity_)
+               ? parts
+               : Vec3(natural_at(edge, s) +
+                      actuated_.strains(s, place.loads_here_are_beyond, model, state) +
+                      parts.cwiseQuotient(stiffness_));
   }
 
   /// How far an edge's section turns from one place to another [rad]: the strains, in the middle of
@@ -325,8 +325,8 @@ class SectionField : public EdgewiseField<Vec3> {
   [[nodiscard]] Vec3 lean(Index edge, const SectionFrame& frame, const Model& model,
                           const State& state) const {
     Vec3 turn = Vec3::Zero();
-    if (rod_.closed) return turn;
     for (const bool last : {false, true}) {
+      if (rod_.closed) break;
       const Index node = last ? rod_.num_edges() : 0;
       if (edge != (last ? node - 1 : node) || rod_.clamp_at(node) != nullptr) continue;
       const Vec3 excess = components(recovery_.excess(edge, model, state), frame);
@@ -336,11 +336,10 @@ class SectionField : public EdgewiseField<Vec3> {
       if (!rod_.natural_curvatures.empty()) {
         turn.head<2>() += twelfth * rod_.natural_curvatures[to_size(node)];
       }
-      turn.head<2>() +=
-          twelfth *
-          actuated_.strains(rod_.arc_length_at(node), last, model, state).head<2>();
     }
-    return {turn[0], turn[1], 0.0};
+    const Vec3 actuated =
+        actuated_lean(rod_, edge) * actuated_.strains(rod_.edge_middle(edge), false, model, state);
+    return {turn[0] + actuated[0], turn[1] + actuated[1], 0.0};
   }
 
   /// Natural curvatures and twist at a place of an edge [1/m].

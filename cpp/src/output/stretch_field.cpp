@@ -53,7 +53,7 @@ class EffectiveVectors {
  private:
   std::vector<EffectiveEdge> planar_;
   std::vector<SpatialEdge> in_space_;  // one of the two lists is empty
-  std::vector<double> rest_length_;  // without actuations
+  std::vector<double> rest_length_;    // without actuations
   std::vector<ActuatedRest> actuated_;
 };
 
@@ -79,7 +79,7 @@ class LeaningEdges {
   [[nodiscard]] double excess(Index edge, const Model& model, const State& state) const {
     double excess = 0.0;
     for (const Lean& lean : leans_) {
-      if (lean.edge == edge) excess += lean.beyond * curvature_times_force(lean, model, state);
+      if (lean.edge == edge) excess += excess_of(lean, model, state);
     }
     return excess;
   }
@@ -99,7 +99,7 @@ class LeaningEdges {
     } else if (!rod_.natural_curvatures.empty()) {
       natural = last ? rod_.natural_curvatures.back() : rod_.natural_curvatures.front();
     }
-    if (natural.isZero(0.0) && !actuated_.is_strained()) return;
+    if (natural.isZero(0.0)) return;
     const Index edge = last ? rod_.num_edges() - 1 : 0;
     const double twelfth = rod_.edge_length[to_size(edge)] / 12.0;
     add({edge, last ? twelfth : -twelfth, natural}, model);
@@ -118,10 +118,9 @@ class LeaningEdges {
     }
   }
 
-  /// F = -M', with the components of M along directors that turn with the twist u as
-  /// F1 = -M1' + u M2, F2 = -M2' - u M1; the torque's part falls out of k . F.
-  [[nodiscard]] double curvature_times_force(const Lean& lean, const Model& model,
-                                             const State& state) const {
+  /// Distances times k . F [N], with F = -M' and the components of M along directors that turn with
+  /// the twist u as F1 = -M1' + u M2, F2 = -M2' - u M1; the torque's part falls out of k . F.
+  [[nodiscard]] double excess_of(const Lean& lean, const Model& model, const State& state) const {
     const auto mean = [&](const RodField& field) {
       return 0.5 * (at_end(field, lean.edge, false, model, state) +
                     at_end(field, lean.edge, true, model, state));
@@ -137,11 +136,10 @@ class LeaningEdges {
                          rod_.edge_length[to_size(lean.edge)];
     }
     if (twist_) force += mean(*twist_) * Vec2(moment[1], -moment[0]);
-    if (!lean.natural_curvature) return curvature.dot(force);
-    const bool last = lean.beyond > 0.0;
-    const double end = last ? rod_.rest_length() : 0.0;
-    const Vec2 actuated = actuated_.strains(end, last, model, state).head<2>();
-    return (*lean.natural_curvature + actuated).dot(force);
+    if (lean.natural_curvature) return lean.beyond * lean.natural_curvature->dot(force);
+    const Vec3 actuated = actuated_.strains(rod_.edge_middle(lean.edge), false, model, state);
+    return (lean.beyond * curvature + actuated_lean(rod_, lean.edge) * actuated.head<2>())
+        .dot(force);
   }
 
   /// The sample of a field at the first or last end of an edge, on the edge's side of a jump.
@@ -274,7 +272,8 @@ class StretchField : public RodField {
   [[nodiscard]] double middle_strain(Index edge, const Model& model, const State& state) const {
     const Vec3 effective = vectors_.at(edge, model, state);
     const double length = effective.norm();
-    const double chain = (length - vectors_.rest_length(edge, model, state)) / rod_.edge_length[to_size(edge)];
+    const double chain =
+        (length - vectors_.rest_length(edge, model, state)) / rod_.edge_length[to_size(edge)];
     const double excess =
         leans_.excess(edge, model, state) + couples_.excess(edge, effective, model, state);
     const double upright = chain - excess / rod_.EA;

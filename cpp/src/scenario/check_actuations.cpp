@@ -48,9 +48,9 @@ class ActuationCheck {
       const Actuation& other = all[static_cast<std::size_t>(i)];
       if (other.name.empty() || other.name != actuation_.name) continue;
       report(path_of(number_) / "name",
-             fmt::format("there is already an actuation '{}'{}", other.name,
-                         other.mark.line > 0 ? fmt::format(" (line {})", other.mark.line)
-                                             : std::string()));
+             fmt::format(
+                 "there is already an actuation '{}'{}", other.name,
+                 other.mark.line > 0 ? fmt::format(" (line {})", other.mark.line) : std::string()));
       return;
     }
   }

@@ -230,10 +230,10 @@ std::string item_in_words(const Scene& scene, const ContinuationAnalysis& path) 
 
 /// What a continuation can vary.
 struct VariedKind {
-  const char* key;      ///< of the list in the scene
-  const char* scaled;   ///< what the factor scales, in words
-  const char* remedy;   ///< where no item of the list has that
-  std::size_t count;    ///< of the list's items
+  const char* key;     ///< of the list in the scene
+  const char* scaled;  ///< what the factor scales, in words
+  const char* remedy;  ///< where no item of the list has that
+  std::size_t count;   ///< of the list's items
 };
 
 VariedKind varied_kind(const Scene& scene, Varied vary) {
@@ -276,11 +276,10 @@ bool find_actuation(CheckContext& context, const Path& path, ContinuationAnalysi
   std::vector<std::string> names;
   for (const Actuation& actuation : all) names.push_back(actuation.name);
   const std::string near = did_you_mean(continuation.name, names);
-  context.diagnostics.add(
-      path, fmt::format("there is no actuation '{}'{}", continuation.name,
-                        !near.empty()   ? near
-                        : names.empty() ? "; the scene has none"
-                                        : "; there is " + listed(names)));
+  context.diagnostics.add(path, fmt::format("there is no actuation '{}'{}", continuation.name,
+                                            !near.empty()   ? near
+                                            : names.empty() ? "; the scene has none"
+                                                            : "; there is " + listed(names)));
   return false;
 }
 
@@ -307,9 +306,9 @@ void check_continuation(CheckContext& context) {
   }
   const std::string hint =
       others.empty() ? remedy : fmt::format("write {}", fmt::join(others, " or "));
-  context.diagnostics.add(path, fmt::format("{} has no {} that the load factor could scale: {}",
-                                            item_in_words(context.scene, *continuation),
-                                            scaled, hint));
+  context.diagnostics.add(path,
+                          fmt::format("{} has no {} that the load factor could scale: {}",
+                                      item_in_words(context.scene, *continuation), scaled, hint));
 }
 
 }  // namespace

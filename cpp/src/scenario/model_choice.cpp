@@ -142,7 +142,8 @@ std::string out_of_plane(const Actuation& actuation, const Scene& scene) {
                            !is_zero(actuation.values[0])) ||
                           (toward_second && !toward_first && is_zero(actuation.values[0]) &&
                            !is_zero(actuation.values[1]));
-    if (!in_plane) return fmt::format("actuation.{} bends rod '{}' to two sides", actuation.name, rod.name);
+    if (!in_plane)
+      return fmt::format("actuation.{} bends rod '{}' to two sides", actuation.name, rod.name);
   }
   return {};
 }
@@ -291,8 +292,10 @@ std::string why_not_planar(const Scene& scene) {
        first_of(scene.supports, [&](const Support& support,
                                     std::size_t i) { return out_of_plane(support, i, scene); }),
        about_loads<OutOfPlane>(scene),
-       first_of(scene.actuations, [&](const Actuation& each,
-                                      std::size_t /*number*/) { return out_of_plane(each, scene); }),
+       first_of(scene.actuations,
+                [&](const Actuation& each, std::size_t /*number*/) {
+                  return out_of_plane(each, scene);
+                }),
        why_it_twists(scene)});
 }
 
@@ -310,9 +313,8 @@ std::string why_not_spatial_bend(const Scene& scene) {
       {why_it_twists(scene), writhes(scene),
        first_of(scene.rods,
                 [&](const Rod& rod, std::size_t /*number*/) { return may_twist(rod, scene); }),
-       first_of(scene.actuations, [](const Actuation& each, std::size_t /*number*/) {
-         return actuated_bend(each);
-       }),
+       first_of(scene.actuations,
+                [](const Actuation& each, std::size_t /*number*/) { return actuated_bend(each); }),
        first_of(scene.rods,
                 [&](const Rod& rod, std::size_t /*number*/) { return holds_sections(rod, scene); }),
        first_of(scene.supports,

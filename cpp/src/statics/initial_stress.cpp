@@ -68,7 +68,8 @@ struct StressedJoint {
                           const Vector& values) {
     const auto [a, b, twist] = SpatialBend<Curvature, AJoint>::frames(c, values, x);
     JointResponse response;
-    JointKinematics<Curvature>(a.frame, b.frame, twist).template respond<true>(c.actuated_joint(values), response);
+    JointKinematics<Curvature>(a.frame, b.frame, twist)
+        .template respond<true>(c.actuated_joint(values), response);
     return {a, b, moment_change(response, turned(a, d, 0, 9), turned(b, d, 1, 10))};
   }
 
@@ -94,7 +95,8 @@ struct StressedClamp {
                           const Vector& values) {
     const auto [edge, a, b, twist] = SpatialClamp<Curvature>::frames(c, values, x);
     JointResponse response;
-    JointKinematics<Curvature>(a, b, twist).template respond<true>(c.actuated_joint(values), response);
+    JointKinematics<Curvature>(a, b, twist)
+        .template respond<true>(c.actuated_joint(values), response);
     const Vec3 none = Vec3::Zero();
     const Vec3 omega = turned(edge, d, 0, 6);
     return {edge, c.side * (c.side > 0.0 ? moment_change(response, none, omega)

@@ -54,8 +54,8 @@ void DenseOutput::evaluate(double time, const State& start, const State& end, St
   }
   const Work power_start = powers(start, start, end);
   const Work power_end = powers(end, start, end);
-  for (double Work::* part : {&Work::loads, &Work::supports, &Work::actuation, &Work::drag,
-                             &Work::solver}) {
+  for (double Work::* part :
+       {&Work::loads, &Work::supports, &Work::actuation, &Work::drag, &Work::solver}) {
     result.work.*part = weight.x0 * (work_start.*part) + weight.x1 * (end.work.*part) +
                         weight.v0 * (power_start.*part) + weight.v1 * (power_end.*part);
   }

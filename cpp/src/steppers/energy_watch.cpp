@@ -125,9 +125,9 @@ void EnergyWatch::look(State& state) {
   EnergyAudit& audit = state.audit;
   const double created = -numerical_loss(work, now) - audit.written;
   const double out_of_nothing = std::max(created, 0.0);
-  audit.exchanged = std::max({audit.exchanged, kinetic - out_of_nothing, work.drag - out_of_nothing,
-                              std::abs(work.loads), std::abs(work.supports),
-                              std::abs(work.actuation)});
+  audit.exchanged =
+      std::max({audit.exchanged, kinetic - out_of_nothing, work.drag - out_of_nothing,
+                std::abs(work.loads), std::abs(work.supports), std::abs(work.actuation)});
   const double held =
       std::abs(work.start) + kinetic + now.elastic() + std::abs(now[EnergyTerm::Gravity]);
   if (!(created > std::max(kRounding * held, rounding_))) return;

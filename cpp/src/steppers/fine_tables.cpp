@@ -34,8 +34,8 @@ void add_tables(const Load& load, const std::string& path, std::vector<Table>& t
 
 void add_tables(const scenario::Actuation& actuation, std::vector<Table>& tables) {
   for (const scenario::Series& series : actuation.values) {
-    tables.push_back({fmt::format("actuation.{}.{}", actuation.name, key_of(actuation.what)),
-                      series.times});
+    tables.push_back(
+        {fmt::format("actuation.{}.{}", actuation.name, key_of(actuation.what)), series.times});
   }
 }
 

@@ -136,8 +136,8 @@ void discrete_gradient(KernelTag<PlanarBend<Curvature>> /*kernel*/,
   const auto [a1, b1] = PlanarBend<Curvature>::edges(end);
   const TurningAngleGradient angle(a0, b0, a1, b1);
   const double moment =
-      secant_moment<Curvature>(c.stiffness_per_length, c.natural(here.controls), angle_between(a0, b0),
-                               angle_between(a1, b1), angle.change);
+      secant_moment<Curvature>(c.stiffness_per_length, c.natural(here.controls),
+                               angle_between(a0, b0), angle_between(a1, b1), angle.change);
   gradient.segment<2>(0) = -moment * angle.by_a;
   gradient.segment<2>(2) = moment * (angle.by_a - angle.by_b);
   gradient.segment<2>(4) = moment * angle.by_b;

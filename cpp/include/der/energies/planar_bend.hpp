@@ -55,8 +55,8 @@ struct PlanarBend {
   static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     const auto [e0, e1] = edges(x);
-    const BendResponse bend =
-        bend_response<Curvature>(c.stiffness_per_length, c.natural(here.controls), angle_between(e0, e1));
+    const BendResponse bend = bend_response<Curvature>(
+        c.stiffness_per_length, c.natural(here.controls), angle_between(e0, e1));
     out.energy = bend.energy;
     if constexpr (D == Derivatives::Energy) return;
 

@@ -7,8 +7,8 @@
 #include "der/energies/local_term.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/kinematics/configuration.hpp"
-#include "der/kinematics/rest_shift.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "der/kinematics/rest_shift.hpp"
 
 namespace der {
 
@@ -39,8 +39,8 @@ struct PlanarClamp {
     const double direction = c.direction + (c.rotation >= 0 ? here.controls[c.rotation] : 0.0);
     const Vec2 tangent{std::cos(direction), std::sin(direction)};
     const Vec2 e = x.tail<2>() - x.head<2>();
-    const BendResponse bend = bend_response<Curvature>(c.stiffness_per_length, c.natural(here.controls),
-                                                       c.side * angle_between(tangent, e));
+    const BendResponse bend = bend_response<Curvature>(
+        c.stiffness_per_length, c.natural(here.controls), c.side * angle_between(tangent, e));
     out.energy = bend.energy;
     if constexpr (D == Derivatives::Energy) return;
 

@@ -5,7 +5,8 @@
 
 namespace der {
 
-/// Where the controls have what actuations add to the rest shape of an element (model/rest_shape.hpp).
+/// Where the controls have what actuations add to the rest shape of an element
+/// (model/rest_shape.hpp).
 struct RestShift {
   Index entry = -1;  ///< -1: no actuation reaches the element
 

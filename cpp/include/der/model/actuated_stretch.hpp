@@ -23,6 +23,8 @@ struct ActuatedStretch {
   [[nodiscard]] double profile_at(double s, bool before) const;
   /// Integral [m] of the profile over a part of the rod.
   [[nodiscard]] double integral(double a, double b) const;
+  /// Integral [m^2] of the profile times the distance from `a`.
+  [[nodiscard]] double first_moment(double a, double b) const;
   /// Whether the profile jumps at the end of the stretch, or at its start.
   [[nodiscard]] bool jumps(bool at_end) const;
 };

@@ -19,18 +19,18 @@ struct Model;
 
 /// The energy at the start of a run, and the works done since [J] (docs/energy.md).
 struct Work {
-  double start = 0.0;     ///< energy at the start, of all kinds
-  double loads = 0.0;     ///< done by forces and moments but for weight
-  double supports = 0.0;  ///< done by supports that move
+  double start = 0.0;      ///< energy at the start, of all kinds
+  double loads = 0.0;      ///< done by forces and moments but for weight
+  double supports = 0.0;   ///< done by supports that move
   double actuation = 0.0;  ///< done by changes of the rest shape
-  double drag = 0.0;      ///< taken by drag and linear damping
-  double solver = 0.0;    ///< done by the residual forces that the solver leaves
+  double drag = 0.0;       ///< taken by drag and linear damping
+  double solver = 0.0;     ///< done by the residual forces that the solver leaves
 
   static constexpr auto fields() {
     return std::make_tuple(field("start", "J", &Work::start), field("loads", "J", &Work::loads),
                            field("supports", "J", &Work::supports),
-                           field("actuation", "J", &Work::actuation), field("drag", "J", &Work::drag),
-                           field("solver", "J", &Work::solver));
+                           field("actuation", "J", &Work::actuation),
+                           field("drag", "J", &Work::drag), field("solver", "J", &Work::solver));
   }
 };
 static_assert(lists_all_members<Work>());

@@ -36,12 +36,12 @@ struct ContinuationAnalysis {
   Varied vary = Varied::Loads;
   /// Of the one load, support or actuation that varies; absent: all.
   std::optional<int> number;
-  std::string name;  ///< of the one actuation, until the checks find its number
-  double from = 0.0;          ///< first factor
-  double to = 1.0;            ///< last factor
-  double step = 0.05;         ///< largest distance of two points
-  int points = 500;           ///< largest number of points of a branch
-  int branches = 0;           ///< how many bifurcations deep other branches are followed
+  std::string name;    ///< of the one actuation, until the checks find its number
+  double from = 0.0;   ///< first factor
+  double to = 1.0;     ///< last factor
+  double step = 0.05;  ///< largest distance of two points
+  int points = 500;    ///< largest number of points of a branch
+  int branches = 0;    ///< how many bifurcations deep other branches are followed
 };
 /// The analysis that the scene asks for.
 using Analysis = std::variant<DynamicAnalysis, StaticAnalysis, ModesAnalysis, BucklingAnalysis,

@@ -154,6 +154,7 @@ void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   check_free_nodes(context);
   check_resolution(context);
   check_loads(context);
+  check_names(context);
   check_time(context);
   check_probes(context);
   if (diagnostics.size() == 0) check_model(scene, diagnostics);

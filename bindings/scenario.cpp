@@ -141,13 +141,25 @@ void bind_scenario(py::module_& module) {
   bind_facts(cls);
   module.def(
       "table_value",
-      [](std::vector<double> times, std::vector<double> values, double time) {
-        return scenario::value_at({std::move(times), std::move(values)}, time);
+      [](std::vector<double> times, std::vector<double> values, double time, bool smooth) {
+        scenario::Series table{std::move(times), std::move(values)};
+        if (smooth) table.course.kind = scenario::Course::Kind::Smooth;
+        return scenario::value_at(table, time);
       },
-      py::arg("times"), py::arg("values"), py::arg("time"),
-      "Return the value of a table over time at `time` [s]: linear between entries, constant "
-      "beyond "
-      "both ends.");
+      py::arg("times"), py::arg("values"), py::arg("time"), py::arg("smooth") = false,
+      "Return the value of a table over time at `time` [s]: linear between entries, or smooth, and "
+      "constant beyond both ends.");
+  module.def(
+      "sine_value",
+      [](double amplitude, double frequency, double phase, double offset, double time) {
+        const scenario::Series sine{
+            {}, {offset, amplitude}, {scenario::Course::Kind::Sine, frequency, phase}};
+        return scenario::value_at(sine, time);
+      },
+      py::arg("amplitude"), py::arg("frequency"), py::arg("phase"), py::arg("offset"),
+      py::arg("time"),
+      "Return offset + amplitude sin(2 pi frequency t + phase) at `time` [s]; `frequency` in Hz, "
+      "`phase` in rad.");
   module.def("json_schema", &json_schema,
              "Return the JSON Schema of a scene file, as text, for editors.");
   module.def("scene_reference", &scene_reference,

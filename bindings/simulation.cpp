@@ -12,6 +12,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "controls.hpp"
 #include "der/core/error.hpp"
 #include "der/model/momentum.hpp"
 #include "der/output/joint_strain.hpp"
@@ -313,49 +314,6 @@ void bind_actions(PySimulationClass& cls) {
           "equilibrium is left for a stable one, unless `leave_saddles` is false. Raises\n"
           "NotConvergedError.")
       .def(
-          "prescribe",
-          [](PySimulation& simulation, std::size_t support, std::optional<double> x,
-             std::optional<double> y, std::optional<double> z, std::optional<double> angle,
-             std::optional<double> twist) {
-            Simulation& engine = simulation.engine();
-            const std::vector<Ramp> before = engine.state().ramps;
-            try {
-              if (x) engine.prescribe(support, "x", *x);
-              if (y) engine.prescribe(support, "y", *y);
-              if (z) engine.prescribe(support, "z", *z);
-              if (angle) engine.prescribe(support, "angle", *angle);
-              if (twist) engine.prescribe(support, "twist", *twist);
-            } catch (...) {  // all of them or none
-              engine.state().ramps = before;
-              throw;
-            }
-          },
-          py::arg("support"), py::kw_only(), py::arg("x") = py::none(), py::arg("y") = py::none(),
-          py::arg("z") = py::none(), py::arg("angle") = py::none(), py::arg("twist") = py::none(),
-          "Move a support, by its number in the scene, in place of the table that it has there.\n\n"
-          "`x`, `y`, `z` [m] count from its initial place, `angle` [rad] from the initial "
-          "direction, in space\nabout the axis of the clamp's rotation, `twist` [rad] about the "
-          "held "
-          "tangent. They are\nreached evenly, at the end of the next step, and kept until they are "
-          "moved "
-          "again; `equilibrium`\nand static scenes take them at once. The scene has to prescribe "
-          "them (``prescribe: {angle: 0}``)\nand to have steps of one length: DerError if not.")
-      .def(
-          "prescribed",
-          [](const PySimulation& simulation, std::size_t support) {
-            const Simulation& engine = simulation.engine();
-            py::dict values;
-            for (const PrescribedControl& moved : engine.model().prescribed) {
-              if (moved.support != support) continue;
-              values[py::str(moved.component)] = engine.prescribed(support, moved.component);
-            }
-            return values;
-          },
-          py::arg("support"),
-          "Present values of what a support prescribes, by name: ``x``, ``y``, ``z`` [m], "
-          "``angle``,\n"
-          "``twist`` [rad].")
-      .def(
           "vibration_modes",
           [](PySimulation& simulation, int count) {
             if (count < 1) throw py::value_error("the number of modes must be at least 1");
@@ -439,6 +397,7 @@ void bind_simulation(py::module_& module) {
   bind_progress(cls);
   bind_facts(cls);
   bind_actions(cls);
+  bind_controls(cls);
 }
 
 }  // namespace der::python

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from der._core import Rod, table_value
+from der._core import Rod, sine_value, table_value
 from der.run_data import RunData
 
 Array = NDArray[np.float64]
@@ -82,7 +82,7 @@ def acting_loads(result: RunData, frame: int) -> ActingLoads:
         lambda rod, at, value: _turned_with(result, frame, rod, at, value),
     )
     for number, load in enumerate(result.scenario.to_dict().get("loads") or []):
-        ((kind, content),) = load.items()
+        kind, content = kind_of(load)
         collect = _COLLECTORS[kind]
         if collect is not None:
             arc_lengths = result.load_arc_lengths(number)
@@ -217,22 +217,42 @@ def _tangent(rod: Rod, positions: Array, at: float) -> Array:
     return np.asarray(tangent / np.linalg.norm(tangent))
 
 
+def kind_of(load: Mapping[str, Any]) -> tuple[str, Any]:
+    """Return the kind of a load of a scene file, and what stands under it."""
+    ((kind, content),) = ((key, value) for key, value in load.items() if key != "name")
+    return kind, content
+
+
+def follows_time(part: Any) -> bool:
+    """Whether a part of a scene file is a table or a sine, which `value_at` reads."""
+    return isinstance(part, Mapping) and ("times" in part or "sine" in part)
+
+
 def value_at(series: Any, time: float) -> Array:
-    """Return a value of a scene file at a time [s].
+    """Return a value of a scene file at a time [s], as the engine reads it.
 
     Parameters
     ----------
     series
-        A number, a vector, or a mapping of ``times`` and ``values``: linear between the times and
-        constant outside, as the engine reads it.
+        A number, a vector, a mapping of ``times`` and ``values``, or one with a ``sine``.
     time
         When [s].
     """
     if not isinstance(series, Mapping):
         return np.asarray(series, dtype=np.float64)
+    if "sine" in series:
+        sine = {"phase": 0.0, **series["sine"]}
+        amplitudes = np.asarray(sine["amplitude"], dtype=np.float64)
+        offsets = np.broadcast_to(np.asarray(sine.get("offset", 0.0)), amplitudes.shape)
+        swing = [
+            sine_value(amplitude, sine["frequency"], sine["phase"], offset, time)
+            for amplitude, offset in zip(amplitudes.flat, offsets.flat, strict=True)
+        ]
+        return np.reshape(swing, amplitudes.shape)
     values = np.array(series["values"], dtype=np.float64)
     columns = values.reshape(len(values), -1).T
-    found = np.array([table_value(series["times"], column, time) for column in columns])
+    smooth = series.get("smooth", False)
+    found = np.array([table_value(series["times"], column, time, smooth) for column in columns])
     return found.reshape(values.shape[1:])
 
 

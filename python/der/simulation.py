@@ -16,7 +16,7 @@ from der.analyses import Modes
 from der.errors import UnreliableResultWarning, error_for, warn
 from der.progress import ProgressFunction, ProgressLine
 from der.result import Result, to_result
-from der.scene_loads import value_at
+from der.scene_loads import follows_time, value_at
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -341,9 +341,9 @@ def _with_analysis(scenario: Scenario, analysis: Any) -> Scenario:
 
 
 def _at_time_0(part: Any) -> Any:
+    if follows_time(part):
+        return value_at(part, 0.0).tolist()
     if isinstance(part, Mapping):
-        if "times" in part:
-            return value_at(part, 0.0).tolist()
         return {key: _at_time_0(value) for key, value in part.items()}
     if isinstance(part, list):
         return [_at_time_0(value) for value in part]

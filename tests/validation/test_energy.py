@@ -49,16 +49,27 @@ SECOND_ORDER = pytest.mark.parametrize(
 STEPS = [1e-3, 5e-4, 2.5e-4]
 
 
-def driven(integrator, step):
+SWING = 5.0  # of gravity, where it swings [m/s^2]
+SWING_RATE = 4 * np.pi  # [rad/s]
+
+
+def driven(integrator, step, swing=0.0):
     time = {"duration": 0.4, "step": step, "integrator": integrator}
-    return der.run(der.Scenario.from_dict({**DRIVEN, "time": time, "output": {"every": step}}))
+    scene = {**DRIVEN, "time": time, "output": {"every": step}}
+    if swing:
+        sine = {"amplitude": [0, -swing], "frequency": SWING_RATE / (2 * np.pi)}
+        gravity = {"gravity": {"sine": {**sine, "offset": [0, -9.81]}}}
+        scene["loads"] = [gravity, *DRIVEN["loads"][1:]]
+    return der.run(der.Scenario.from_dict(scene))
 
 
 class CrossCheck:
     """The energies and the ledger of DRIVEN, from positions and velocities alone."""
 
-    def __init__(self, result):
+    def __init__(self, result, swing=0.0):
         self.times, self.x, self.v = result.times, result.positions, result.velocities
+        self.gravity = 9.81 + swing * np.sin(SWING_RATE * self.times)
+        self.gravity_rate = swing * SWING_RATE * np.cos(SWING_RATE * self.times)
         edges = np.diff(np.array(DRIVEN["rods"][0]["points"]), axis=0)
         self.rest = np.linalg.norm(edges, axis=1)
         self.voronoi = 0.5 * (np.append(self.rest, 0) + np.append(0, self.rest))
@@ -89,14 +100,19 @@ class CrossCheck:
         turned = self.angles(edges) - self.rest_angles[:, None]
         stretch = 0.5 * 20 * np.sum(strain**2 * self.rest[:, None], axis=0)
         bend = 0.5 * 0.05 * np.sum(turned**2 / self.voronoi[1:-1, None], axis=0)
-        return stretch + bend + 9.81 * np.sum(self.mass * x[..., 1], axis=1)
+        return stretch + bend + self.gravity * self.height(x)
+
+    def height(self, x):
+        """Mass times height [kg m]."""
+        return np.sum(self.mass * x[..., 1], axis=1)
 
     def trapezoids(self, power):
         return 0.5 * np.diff(self.times) * (power[1:] + power[:-1])
 
     def loads(self):
         pull = np.column_stack([2 * self.times, 4 * self.times])
-        return self.trapezoids(np.sum(pull * self.v[:, -1], axis=1))
+        power = np.sum(pull * self.v[:, -1], axis=1)
+        return self.trapezoids(power + self.gravity_rate * self.height(self.x))
 
     def drag(self):
         free = 0.2 * np.sum(self.voronoi[1:, None] * self.v[:, 1:] ** 2, axis=(1, 2))
@@ -126,10 +142,11 @@ def test_the_solver_leaves_little(info):
 
 
 @STEPPERS
-def test_the_ledger_is_that_of_positions_and_velocities_alone(fitted_order, info):
+@pytest.mark.parametrize("swing", [0.0, SWING], ids=["weight", "swinging_gravity"])
+def test_the_ledger_is_that_of_positions_and_velocities_alone(fitted_order, info, swing):
     """A work in the wrong account, and so a wrong loss, would not go away with the step."""
-    runs = [driven(info.name, step) for step in STEPS]
-    checks = [CrossCheck(run) for run in runs]
+    runs = [driven(info.name, step, swing) for step in STEPS]
+    checks = [CrossCheck(run, swing) for run in runs]
     total = sum(runs[0].energies.values())
     mine = checks[0].kinetic() + checks[0].potential(checks[0].x)
     assert np.abs(total - mine).max() < 1e-12 * np.ptp(mine)

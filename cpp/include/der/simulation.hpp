@@ -2,9 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -92,10 +95,28 @@ class Simulation {
   /// The same without that test, as the start of something else.
   EquilibriumReport settle(bool leave_saddles = true);
 
-  /// Moves what support number `support` prescribes, in place of its table: `component` ("x", "y"
-  /// [m] from the initial place, or "angle" [rad]) comes to `value` at the end of the next step,
-  /// evenly, and stays there until it is moved again; `equilibrium` and static scenes take it at
-  /// once. Throws Error where the scene does not prescribe that, and where steps adapt.
+  /// Sets what has a name in the scene, in place of its table: each component comes to its value
+  /// evenly and stays there until it is set again. `name` is that of a load or support, or of one
+  /// component, as "wall.x"; `values` are as many as it has components (`settable`), in their unit.
+  /// They are reached at the end of the next step, or after the time `over` [s]; `equilibrium` and
+  /// static scenes take them at once. Throws Error where nothing of that name can be set, where
+  /// the load factor of an analysis scales it, and for values that do not fit.
+  void set(std::string_view name, const std::vector<double>& values,
+           std::optional<double> over = std::nullopt);
+  /// Present values of what has a name, one for each component. Throws Error as `set`.
+  [[nodiscard]] std::vector<double> value(std::string_view name) const;
+  /// What a name stands for. Throws Error as `set`.
+  struct Settable {
+    const NamedControl* whole = nullptr;
+    /// The components that are meant: all of them, or one.
+    const ControlComponent* begin = nullptr;
+    const ControlComponent* end = nullptr;
+    [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(end - begin); }
+  };
+  [[nodiscard]] const Settable& settable(std::string_view name) const;
+
+  /// Sets what support number `support` prescribes, named or not: `component` is "x", "y", "z" [m]
+  /// from the initial place, "angle" or "twist" [rad]. Otherwise as `set`.
   void prescribe(std::size_t support, const std::string& component, double value);
   /// Present value of a component that a support prescribes. Throws Error if it does not.
   [[nodiscard]] double prescribed(std::size_t support, const std::string& component) const;
@@ -153,6 +174,13 @@ class Simulation {
   [[nodiscard]] const std::string& linear_solver_reason() const { return solver_.reason; }
 
  private:
+  void check_values(const Settable& found, const std::vector<double>& values) const;
+  /// Why a control cannot take a value, as the end of a sentence; empty if it can.
+  [[nodiscard]] std::string why_not(Index control, double value) const;
+  /// Time [s] at which a value that is set now is reached.
+  [[nodiscard]] double end_of_ramp(std::optional<double> over) const;
+  /// Lets a control come to `value` at the time `end` [s].
+  void drive(Index control, double value, double end);
   /// Time [s] at the end of the next step of equal ones.
   [[nodiscard]] double next_time() const;
   void advance_to(double target);
@@ -182,6 +210,7 @@ class Simulation {
 
   Scenario scenario_;
   const Model model_;
+  std::map<std::string, Settable, std::less<>> settable_;  // parts of `model_`, by name
   Pattern pattern_;
   LinearSolverChoice solver_;
   Assembler assembler_;

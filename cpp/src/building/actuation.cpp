@@ -106,6 +106,19 @@ class Weights {
   std::vector<RestShape::Term> terms_;
 };
 
+NamedControl named_control(const ActuatedStretch& stretch) {
+  const char* unit = stretch.what == Actuated::Elongation     ? ""
+                     : stretch.what == Actuated::NaturalTwist ? "rad/m"
+                                                              : "1/m";
+  const std::string key = key_of(stretch.what);
+  if (stretch.controls[1] < 0) return {stretch.name, false, {{key, unit, {stretch.controls[0]}}}};
+  NamedControl pair{stretch.name, true, {}};
+  for (std::size_t i = 0; i < stretch.controls.size(); ++i) {
+    pair.components.push_back({i == 0 ? "k1" : "k2", unit, {stretch.controls[i]}});
+  }
+  return pair;
+}
+
 }  // namespace
 
 Index num_rest_entries(const scenario::Scene& scene, int dimension) {
@@ -160,6 +173,7 @@ void add_actuation(const scenario::Actuation& actuation, Model& model) {
       break;
   }
   model.rest_shape.add(weights.terms());
+  model.named.push_back(named_control(stretch));
   rod.actuated_stretches.push_back(stretch);
 }
 

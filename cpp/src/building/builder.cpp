@@ -266,7 +266,8 @@ Model build_model(const scenario::Scene& scene) {
   }
   for (const auto& actuation : scene.actuations) add_actuation(actuation, model);
   for (const auto& load : scene.loads) {
-    std::visit([&](const auto& l) { add_load(l, scene, model); }, load.what);
+    std::visit([&](const auto& l) { add_load(l, LoadContext{scene, load.name}, model); },
+               load.what);
   }
   model.damped = (model.damping.array() != 0.0).any();
   hold_dofs(model);

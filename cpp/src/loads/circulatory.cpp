@@ -14,9 +14,7 @@ namespace {
 
 void set_amount(const scenario::VectorSeries& amount, CirculatoryLoad& load, Model& model) {
   for (std::size_t c = 0; c < to_size(model.dimension); ++c) {
-    scenario::Series component{amount.times, {}};
-    for (const auto& value : amount.values) component.values.push_back(value[c]);
-    load.amount[c] = model.tables.add(std::move(component));
+    load.amount[c] = model.tables.add(component_of(amount, c));
   }
 }
 

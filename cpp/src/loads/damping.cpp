@@ -2,7 +2,7 @@
 
 namespace der {
 
-void add_load(const scenario::Damping& load, const scenario::Scene& /*scene*/, Model& model) {
+void add_load(const scenario::Damping& load, const LoadContext& /*context*/, Model& model) {
   for (const RodLayout& rod : model.rods) {
     if (load.rod && *load.rod != rod.name) continue;
     for (std::size_t i = 0; i < rod.nodes.size(); ++i) {

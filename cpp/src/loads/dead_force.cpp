@@ -1,18 +1,14 @@
-#include <utility>
-
 #include "der/loads/dead_force.hpp"
 
 namespace der {
 
-DeadForce::DeadForce(const scenario::VectorSeries& force, Model& model) {
-  if (force.constant()) {
+DeadForce::DeadForce(const scenario::VectorSeries& force, bool is_set, Model& model) {
+  if (force.constant() && !is_set) {
     constant_ = force.values.front();
     return;
   }
   for (std::size_t c = 0; c < static_cast<std::size_t>(model.dimension); ++c) {
-    scenario::Series series{force.times, {}};
-    for (const auto& value : force.values) series.values.push_back(value[c]);
-    controls_.push_back(model.tables.add(std::move(series)));
+    controls_.push_back(model.tables.add(component_of(force, c)));
   }
 }
 

@@ -48,7 +48,7 @@ void add_elements(const scenario::Foundation& load, const RodLayout& rod, Model&
 
 // Nodes lie beside the curve by l^2/12 of its curvature, and edges as far on its other side in the
 // mean: the linear interpolation has the displacement of the curve up to order 4.
-void add_load(const scenario::Foundation& load, const scenario::Scene& /*scene*/, Model& model) {
+void add_load(const scenario::Foundation& load, const LoadContext& /*context*/, Model& model) {
   RodLayout& rod = model.rod(load.rod);
   with_dimension(model, [&](auto dim) { add_elements<dim>(load, rod, model); });
   FoundationPlace place{load.from, load.to, {}};

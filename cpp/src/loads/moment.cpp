@@ -6,6 +6,7 @@
 #include "der/core/error.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/planar_moment.hpp"
+#include "der/energies/registry.hpp"
 #include "der/loads/circulatory.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/location.hpp"
@@ -24,13 +25,17 @@ const Clamp* clamp_there(const RodLayout& rod, double s) {
 
 }  // namespace
 
-void add_load(const scenario::Moment& load, const scenario::Scene& /*scene*/, Model& model) {
+void add_load(const scenario::Moment& load, const LoadContext& context, Model& model) {
   RodLayout& rod = model.rod(load.rod);
   const double s = arc_length_of(load.at, rod);
   const Clamp* clamp = clamp_there(rod, s);
   if (model.dimension == 3) {
     if (clamp == nullptr) {
       add_spatial_moment(load.moment_vector, load.follower, s, rod, model);
+      if (!context.name.empty()) {
+        const auto& controls = model.elements->circulatory.back().amount;
+        model.named.push_back(vector_control(context.name, "N m", controls));
+      }
     } else if (!clamp->holds_section) {
       throw Error(
           "model_error",
@@ -43,6 +48,9 @@ void add_load(const scenario::Moment& load, const scenario::Scene& /*scene*/, Mo
     return;
   }
   const Index control = model.tables.add(load.moment);
+  if (!context.name.empty()) {
+    model.named.push_back({context.name, false, {{"z", "N m", {control}}}});
+  }
   // The clamp takes it up; on the edges beside it, it would bend the rod by an error of order 1.
   if (clamp != nullptr) return;
   MomentPlace& place = place_of_moments(s, rod);

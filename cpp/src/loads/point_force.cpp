@@ -1,3 +1,5 @@
+#include "der/core/index.hpp"
+#include "der/energies/registry.hpp"
 #include "der/loads/circulatory.hpp"
 #include "der/loads/dead_force.hpp"
 #include "der/loads/loads.hpp"
@@ -5,16 +7,21 @@
 
 namespace der {
 
-void add_load(const scenario::PointForce& load, const scenario::Scene& /*scene*/, Model& model) {
+void add_load(const scenario::PointForce& load, const LoadContext& context, Model& model) {
   RodLayout& rod = model.rod(load.rod);
+  const auto name_it = [&](const std::array<Index, 3>& controls) {
+    if (!context.name.empty()) model.named.push_back(vector_control(context.name, "N", controls));
+  };
   if (load.follower) {
     ForcePlace place;
     place.arc_length = arc_length_of(load.at, rod);
     place.follower = add_follower_force(load.force, place.arc_length, rod, model);
     rod.force_places.push_back(place);
+    name_it(model.elements->circulatory[to_size(place.follower)].amount);
     return;
   }
-  const DeadForce force(load.force, model);
+  const DeadForce force(load.force, !context.name.empty(), model);
+  if (!context.name.empty()) name_it(force.as_controls(model));
   if (load.at.kind == scenario::Location::Kind::All) {
     for (const Index node : rod.nodes) force.act_on(node, 1.0, model);
     return;

@@ -49,14 +49,11 @@ void check_sizes(const Model& model, const State& state) {
 
 void check_ramps(const Model& model, const std::vector<Ramp>& ramps) {
   for (const Ramp& ramp : ramps) {
-    const bool known =
-        std::any_of(model.prescribed.begin(), model.prescribed.end(),
-                    [&](const PrescribedControl& moved) { return moved.control == ramp.control; });
-    demand(known,
-           "the state moves a support that this scene does not prescribe: a state can only be "
-           "restored into a simulation of the same rods and supports");
+    demand(model.can_set(ramp.control),
+           "the state sets a value that this scene neither prescribes nor names: a state can only "
+           "be restored into a simulation of the same rods, supports and loads");
     demand(ramp.start <= ramp.end,
-           fmt::format("the state moves a support between t = {} and {} s: these must be in order",
+           fmt::format("the state sets a value between t = {} and {} s: these must be in order",
                        ramp.start, ramp.end));
   }
 }

@@ -89,6 +89,18 @@ Index follow_edge(const RodLayout& rod, Index edge, Model& model) {
   return static_cast<Index>(model.followed_edges.size()) - 1;
 }
 
+bool Model::can_set(Index control) const {
+  const auto is_it = [&](const PrescribedControl& moved) { return moved.control == control; };
+  if (std::any_of(prescribed.begin(), prescribed.end(), is_it)) return true;
+  for (const NamedControl& each : named) {
+    for (const ControlComponent& component : each.components) {
+      const auto& controls = component.controls;
+      if (std::find(controls.begin(), controls.end(), control) != controls.end()) return true;
+    }
+  }
+  return false;
+}
+
 NodePlace place_of(const Model& model, Index node) {
   for (const RodLayout& rod : model.rods) {
     const auto found = std::find(rod.nodes.begin(), rod.nodes.end(), node);

@@ -1,25 +1,17 @@
 #include "der/model/state.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <type_traits>
 
 #include "der/energies/element_energy.hpp"
 #include "der/energies/registry.hpp"
+#include "der/model/gravity.hpp"
 #include "der/model/model.hpp"
 #include "der/model/moment_place.hpp"
 #include "der/model/prescribed_motion.hpp"
 
 namespace der {
-namespace {
-
-/// Zero at the origin [J].
-double gravity_energy(const Model& model, const Configuration& here) {
-  if (!model.load_variation) return -model.gravity_force.dot(here.coordinates);
-  return -model.load_variation->gravity_force.at(here.load_factor).dot(here.coordinates);
-}
-
-}  // namespace
-
 State initial_state(const Model& model) {
   State state;
   state.positions = model.initial_positions;
@@ -52,10 +44,14 @@ void follow(const Model& model, State& state) {
   follow(model, state.positions, controls, state.followed);
 }
 
+const Ramp* find_ramp(const State& state, Index control) {
+  const auto found = std::find_if(state.ramps.begin(), state.ramps.end(),
+                                  [control](const Ramp& ramp) { return ramp.control == control; });
+  return found == state.ramps.end() ? nullptr : &*found;
+}
+
 double control_value(const Model& model, const State& state, Index control) {
-  for (const Ramp& ramp : state.ramps) {
-    if (ramp.control == control) return ramp.at(state.time);
-  }
+  if (const Ramp* ramp = find_ramp(state, control)) return ramp->at(state.time);
   if (!model.load_variation) return value_at(model.tables[control], state.time);
   return model.load_variation->controls.at(state.load_factor)[control];
 }

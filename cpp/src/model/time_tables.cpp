@@ -5,8 +5,11 @@
 namespace der {
 
 Index TimeTables::add(scenario::Series series) {
+  const bool has_kinks = series.course.kind == scenario::Course::Kind::Linear;
   series_.push_back(std::move(series));
-  return size() - 1;
+  const Index number = size() - 1;
+  if (!has_kinks) without_kinks_.push_back(number);
+  return number;
 }
 
 void TimeTables::evaluate(double t, Vector& values) const {

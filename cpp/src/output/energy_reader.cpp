@@ -8,13 +8,14 @@
 
 #include "der/energies/element_energy.hpp"
 #include "der/energies/registry.hpp"
+#include "der/model/gravity.hpp"
 #include "der/model/moment_place.hpp"
 
 namespace der {
 namespace {
 
 /// The part of a model whose energy is read, or the whole model. Its weight is not kept, as it
-/// follows the load factor of the state.
+/// follows the load factor and the controls of the state.
 struct Part {
   Mass mass;
   std::vector<Index> dofs;
@@ -27,8 +28,12 @@ struct Part {
       for (const Index dof : dofs) energy -= weight[dof] * state.positions[dof];
       return energy;
     };
-    if (!model.load_variation) return energy_in(model.gravity_force);
-    return energy_in(model.load_variation->gravity_force.at(state.load_factor));
+    const double driven =
+        model.gravity_controls[0] < 0
+            ? 0.0
+            : driven_gravity_energy(model, mass.lumped, configuration_of(model, state));
+    if (!model.load_variation) return driven + energy_in(model.gravity_force);
+    return driven + energy_in(model.load_variation->gravity_force.at(state.load_factor));
   }
 };
 

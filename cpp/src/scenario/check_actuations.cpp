@@ -10,7 +10,11 @@ namespace {
 
 Path path_of(int number) { return {"actuation", number}; }
 
+/// The least value that a table has at any time.
 double least(const Series& series) {
+  if (series.course.kind == Course::Kind::Sine) {
+    return series.values[0] - std::abs(series.values[1]);
+  }
   return *std::min_element(series.values.begin(), series.values.end());
 }
 
@@ -28,7 +32,6 @@ class ActuationCheck {
         value_path_(path_of(number) / key_of(actuation_.what)) {}
 
   void run() {
-    check_name();
     check_tables();
     const auto rod = context_.find_rod(actuation_.rod, path_of(number_) / "rod");
     if (!rod) return;
@@ -40,19 +43,6 @@ class ActuationCheck {
  private:
   void report(const Path& where, const std::string& message) {
     context_.diagnostics.add(where, message);
-  }
-
-  void check_name() {
-    const auto& all = context_.scene.actuations;
-    for (int i = 0; i < number_; ++i) {
-      const Actuation& other = all[static_cast<std::size_t>(i)];
-      if (other.name.empty() || other.name != actuation_.name) continue;
-      report(path_of(number_) / "name",
-             fmt::format(
-                 "there is already an actuation '{}'{}", other.name,
-                 other.mark.line > 0 ? fmt::format(" (line {})", other.mark.line) : std::string()));
-      return;
-    }
   }
 
   void check_tables() {

@@ -44,10 +44,9 @@ class LoadCheck {
   void check_tables(const Kind& load, const Path& here) {
     if (context_.scene.is_dynamic()) return;
     for_each_amount(load, [&](const char* key, const auto& amount) {
-      if constexpr (!std::is_same_v<std::decay_t<decltype(amount)>, Components>) {
-        if (amount.constant()) return;
-        report(here / key, "a static analysis has no time: give a constant in place of a table");
-      }
+      if (amount.constant()) return;
+      report(*key == '\0' ? here : here / key,
+             "a static analysis has no time: give a constant in place of a table");
     });
   }
 

@@ -155,6 +155,7 @@ void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   check_resolution(context);
   check_loads(context);
   check_actuations(context);
+  check_names(context);
   check_time(context);
   check_probes(context);
   if (diagnostics.size() == 0) check_model(scene, diagnostics);

@@ -141,11 +141,10 @@ class Conform {
   void conform(Moment& load) const {
     VectorSeries& vector = load.moment_vector;
     if (planar_ && !vector.values.empty()) {
-      load.moment = {std::move(vector.times), {}};
-      for (const Components& value : vector.values) load.moment.values.push_back(value[2]);
+      load.moment = component_of(vector, 2);
       vector = {};
     } else if (!planar_ && vector.values.empty()) {
-      vector = {std::move(load.moment.times), {}};
+      vector = {std::move(load.moment.times), {}, load.moment.course};
       for (const double about_z : load.moment.values) vector.values.push_back({0.0, 0.0, about_z});
       load.moment = {};
     }

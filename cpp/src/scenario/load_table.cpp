@@ -65,7 +65,13 @@ constexpr auto assign_moment = [](Load& load, MomentText&& text) {
 /// Whether a value is written as a vector, or as a table of such.
 bool is_vector(const Value& value) {
   if (value.sequence()) return true;
-  const Entry* values = value.mapping() ? find_entry(*value.mapping(), "values") : nullptr;
+  const Mapping* table = value.mapping();
+  if (!table) return false;
+  if (const Entry* sine = find_entry(*table, "sine"); sine && sine->value.mapping()) {
+    const Entry* amplitude = find_entry(*sine->value.mapping(), "amplitude");
+    return amplitude && amplitude->value.sequence();
+  }
+  const Entry* values = find_entry(*table, "values");
   const Sequence* items = values ? values->value.sequence() : nullptr;
   return items && !items->empty() && items->front().sequence();
 }
@@ -148,11 +154,13 @@ Format<Foundation> foundation_format() {
 
 Format<Load> load_format() {
   return mapping(
-      Table<Load>("load", "Exactly one of these keys.")
+      Table<Load>("load", "Exactly one of these keys, and a name if it is to have one.")
+          .optional("name", &Load::name, name(), "A name, by which a program sets the load.",
+                    "none")
           .kind(
-              Gravity::kKey, vector("m/s^2"),
-              [](Load& load, Components&& g) { load.what = Gravity{std::move(g)}; },
-              "Acceleration of gravity.")
+              Gravity::kKey, vector_series("m/s^2"),
+              [](Load& load, VectorSeries&& g) { load.what = Gravity{std::move(g)}; },
+              "Acceleration of gravity: a constant, or a table over time.")
           .kind(Fluid::kKey, fluid_format(), assign_load, "A viscous fluid around the spheres.")
           .kind(Damping::kKey, damping_format(), assign_load, "Linear damping along rods.")
           .kind(PointForce::kKey, point_force_format(), assign_load, "A force at a place.")

@@ -208,10 +208,11 @@ std::string may_twist(const Rod& rod, const Scene& scene) {
   return {};
 }
 
-/// Whether the rotation of a clamp over time spins the section about the rod. A rotation about an
-/// axis across the held tangent does not.
+/// Whether the rotation of a clamp over time, or by a program, spins the section about the rod. A
+/// rotation about an axis across the held tangent does not.
 bool spins(const Support& support, const Rod& rod) {
-  if (!support.axis_rotation || support.axis_rotation->angle.constant()) return false;
+  if (!support.axis_rotation) return false;
+  if (support.axis_rotation->angle.constant() && support.name.empty()) return false;
   if (!is_straight(rod)) return true;
   const Vec3 axis = in_space(support.axis_rotation->axis);
   const Vec3 along = in_space(rod.points.back()) - in_space(rod.points.front());

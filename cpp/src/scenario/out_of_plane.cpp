@@ -33,13 +33,14 @@ std::string unknown_twisting(const Rod& rod) {
 
 struct WithoutPotential {
   std::size_t number;
+  bool is_set;  ///< by a program, to any value
 
   std::string operator()(const Moment& load) const {
-    if (is_zero(load.moment)) return {};
+    if (!is_set && is_zero(load.moment)) return {};
     return fmt::format("loads.{}.moment has no potential in space", number);
   }
   std::string operator()(const PointForce& load) const {
-    if (!load.follower || is_zero_over_time(load.force)) return {};
+    if (!load.follower || (!is_set && is_zero_over_time(load.force))) return {};
     return fmt::format("loads.{}.point_force turns with the rod and has no potential", number);
   }
   template <class Kind>
@@ -52,7 +53,8 @@ struct WithoutPotential {
 
 std::string why_not_tested_out_of_plane(const Scene& scene) {
   for (std::size_t i = 0; i < scene.loads.size(); ++i) {
-    std::string clause = std::visit(WithoutPotential{i}, scene.loads[i].what);
+    std::string clause =
+        std::visit(WithoutPotential{i, !scene.loads[i].name.empty()}, scene.loads[i].what);
     if (!clause.empty()) return clause;
   }
   for (std::size_t i = 0; i < scene.supports.size(); ++i) {

@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
 #include <set>
 #include <string>
 #include <vector>
@@ -147,6 +149,12 @@ std::string words_text(const FieldInfo& field) {
   return text.empty() ? text : fmt::format("\nAllowed values of `{}`:\n\n{}", field.key, text);
 }
 
+/// Of a table whose unit is that of the key above it: whether a field is one of its values.
+bool takes_unit_of_the_key(const FieldInfo& field) {
+  constexpr std::array keys{"values", "amplitude", "offset"};
+  return std::find(keys.begin(), keys.end(), field.key) != keys.end();
+}
+
 /// Writes a table, then the tables that it refers to, each once.
 class ReferenceWriter {
  public:
@@ -157,7 +165,7 @@ class ReferenceWriter {
     text_ += fmt::format("\n<a id=\"{}\"></a>\n\n## {}\n\n{}\n\n", anchor(table), title, table.doc);
     text_ += "| key | value | unit | default | meaning |\n|---|---|---|---|---|\n";
     for (FieldInfo field : table.fields) {
-      if (table.unit_of_the_key && field.key == "values") field.shape.unit = "of the key";
+      if (table.unit_of_the_key && takes_unit_of_the_key(field)) field.shape.unit = "of the key";
       text_ += row(field);
     }
     for (const Alternatives& alternatives : table.alternatives) {

@@ -1,18 +1,45 @@
 #include "der/scenario/series.hpp"
 
 #include <algorithm>
-#include <cstddef>
+#include <cmath>
+#include <limits>
+
+#include "der/core/constants.hpp"
 
 namespace der::scenario {
 
+namespace {
+
+constexpr double kStepsPerPeriod = 4.0;
+
+}  // namespace
+
+double smooth_share(double u) { return u * u * u * (10.0 + u * (6.0 * u - 15.0)); }
+
 double value_at(const Series& series, double t) {
-  const auto& times = series.times;
+  const auto& [times, values, course] = series;
+  if (course.kind == Course::Kind::Sine) {
+    return values[0] + values[1] * std::sin(2.0 * kPi * course.frequency * t + course.phase);
+  }
   const auto after = std::upper_bound(times.begin(), times.end(), t);
-  if (after == times.begin()) return series.values.front();
-  if (after == times.end()) return series.values.back();
+  if (after == times.begin()) return values.front();
+  if (after == times.end()) return values.back();
   const auto i = static_cast<std::size_t>(after - times.begin());
-  const double share = (t - times[i - 1]) / (times[i] - times[i - 1]);
-  return series.values[i - 1] + share * (series.values[i] - series.values[i - 1]);
+  const double done = (t - times[i - 1]) / (times[i] - times[i - 1]);
+  const double share = course.kind == Course::Kind::Linear ? done : smooth_share(done);
+  return values[i - 1] + share * (values[i] - values[i - 1]);
+}
+
+Series component_of(const VectorSeries& series, std::size_t component) {
+  Series result{series.times, {}, series.course};
+  result.values.reserve(series.values.size());
+  for (const Components& value : series.values) result.values.push_back(value[component]);
+  return result;
+}
+
+double longest_resolving_step(const Course& course) {
+  if (course.kind != Course::Kind::Sine) return std::numeric_limits<double>::infinity();
+  return 1.0 / (kStepsPerPeriod * course.frequency);
 }
 
 bool is_zero(const Components& components) {

@@ -1,11 +1,33 @@
+#include <optional>
+#include <utility>
+
 #include "scenario/table.hpp"
 
 namespace der::scenario {
 namespace {
 
+/// `sine:`; `Constant` is the type of one value.
+template <class Constant>
+struct SineText {
+  Constant amplitude{};
+  double frequency = 1.0;
+  double phase = 0.0;
+  std::optional<Constant> offset;
+};
+
+/// `Result` is the type of the series.
+template <class Result, class Constant>
+struct TableText : Result {
+  bool smooth = false;
+  std::optional<SineText<Constant>> sine;
+};
+
+Components zero_like(const Components& vector) { return Components(vector.size(), 0.0); }
+double zero_like(double /*number*/) { return 0.0; }
+
 /// Times that increase, and a value for each.
 template <class Table>
-void check_table(const Table& table, const Place& place, Diagnostics& diagnostics) {
+void check_entries(const Table& table, const Place& place, Diagnostics& diagnostics) {
   const Mapping& entries = *place.value->mapping();
   const Place times = place.at(*find_entry(entries, "times"));
   for (std::size_t i = 1; i < table.times.size(); ++i) {
@@ -22,23 +44,78 @@ void check_table(const Table& table, const Place& place, Diagnostics& diagnostic
   }
 }
 
-/// A constant or a table: `Constant` is the type of one value, `Result` that of the series.
+template <class Text>
+void check_table(const Text& text, const Place& place, Diagnostics& diagnostics) {
+  if (!text.sine) {
+    check_entries(text, place, diagnostics);
+  } else if (const Entry* smooth = find_entry(*place.value->mapping(), "smooth")) {
+    diagnostics.add(place.at(*smooth), "a sine is smooth by itself: remove the key");
+  }
+}
+
 template <class Result, class Constant>
-Format<Result> constant_or_table(const Format<Constant>& constant, const std::string& name) {
-  const Format<Result> table = mapping(
-      Table<Result>(name,
-                    "A value over time: linear between the times of the list, constant "
-                    "before the first and after the last.")
-          .required("times", &Result::times, list_of(number("s"), 1), "Increasing times.")
-          .required("values", &Result::values, list_of(constant, 1), "One value for each time.")
+Result completed(TableText<Result, Constant> text) {
+  Result result = static_cast<Result&&>(text);
+  if (text.smooth) result.course.kind = Course::Kind::Smooth;
+  if (!text.sine) return result;
+  auto& [amplitude, frequency, phase, offset] = *text.sine;
+  result.course = {Course::Kind::Sine, frequency, phase};
+  result.times.clear();
+  result.values = {offset.value_or(zero_like(amplitude)), std::move(amplitude)};
+  return result;
+}
+
+template <class Constant>
+Format<SineText<Constant>> sine_format(const Format<Constant>& constant, const std::string& name) {
+  using Text = SineText<Constant>;
+  return mapping(
+      Table<Text>(name, "offset + amplitude sin(2 pi frequency t + phase) at every time t.")
+          .required("amplitude", &Text::amplitude, constant, "Amplitude.")
+          .required("frequency", &Text::frequency, number("Hz", positive()), "Frequency.")
+          .optional("phase", &Text::phase, number("rad"), "Phase at time 0.", "0")
+          .optional("offset", &Text::offset, constant, "Mean value.", "0")
           .in_unit_of_the_key()
-          .check(check_table<Result>));
+          .check([](Text& text, const Place& place, Diagnostics& diagnostics) {
+            if constexpr (std::is_same_v<Constant, Components>) {
+              if (!text.offset || text.offset->size() == text.amplitude.size()) return;
+              diagnostics.add(place.at(*find_entry(*place.value->mapping(), "offset")),
+                              fmt::format("must have as many components as the amplitude, {}",
+                                          text.amplitude.size()));
+            }
+          }));
+}
+
+/// A constant or a table: `Constant` is the type of one value. `of_what` completes the names of the
+/// tables.
+template <class Result, class Constant>
+Format<Result> constant_or_table(const Format<Constant>& constant, const std::string& of_what) {
+  using Text = TableText<Result, Constant>;
+  const Format<Text> table = mapping(
+      Table<Text>("table" + of_what,
+                  "A value over time: linear between the times of the list, constant before the "
+                  "first and after the last; or a sine.")
+          .optional("times", &Result::times, list_of(number("s"), 1), "Increasing times.")
+          .optional("values", &Result::values, list_of(constant, 1), "One value for each time.")
+          .optional("smooth", &Text::smooth, boolean(),
+                    "Whether the value goes smoothly from entry to entry, with zero slope and "
+                    "curvature at each: by 10 u^3 - 15 u^4 + 6 u^5 of the change after the share u "
+                    "of the time.")
+          .optional("sine", &Text::sine, sine_format(constant, "sine" + of_what),
+                    "A sine at all times.")
+          .either({{"times", "values"}, {"sine"}})
+          .in_unit_of_the_key()
+          .check(check_table<Text>));
   Shape shape{Shape::Kind::AnyOf};
   shape.unit = constant.shape.unit;
   shape.parts = {constant.shape, table.shape};
   return {std::move(shape), [constant, table](const Shape& self, const Place& place,
                                               Diagnostics& diagnostics, Result& out) {
-            if (place.value->mapping()) return table.read(place, diagnostics, out);
+            if (place.value->mapping()) {
+              Text text;
+              const bool fine = table.read(place, diagnostics, text);
+              out = completed(std::move(text));
+              return fine;
+            }
             if (place.value->sequence() && constant.shape.kind == Shape::Kind::Number) {
               report_expected(expected(self), place, diagnostics);
               return false;
@@ -54,15 +131,15 @@ Format<Result> constant_or_table(const Format<Constant>& constant, const std::st
 }  // namespace
 
 Format<Series> series(const std::string& unit) {
-  return constant_or_table<Series>(number(unit), "table");
+  return constant_or_table<Series>(number(unit), "");
 }
 
 Format<VectorSeries> vector_series(const std::string& unit) {
-  return constant_or_table<VectorSeries>(vector(unit), "table of vectors");
+  return constant_or_table<VectorSeries>(vector(unit), " of vectors");
 }
 
 Format<VectorSeries> space_vector_series(const std::string& unit) {
-  return constant_or_table<VectorSeries>(space_vector(unit), "table of vectors in space");
+  return constant_or_table<VectorSeries>(space_vector(unit), " of vectors in space");
 }
 
 }  // namespace der::scenario

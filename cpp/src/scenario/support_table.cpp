@@ -171,6 +171,8 @@ Support completed(SupportText text) {
 Format<Support> support_format() {
   Format<SupportText> as_written = mapping(
       Table<SupportText>("support", "Holds or moves nodes of a rod, or holds a place by springs.")
+          .optional("name", &Support::name, name(),
+                    "A name, by which a program sets what the support prescribes.", "none")
           .required("rod", &Support::rod, name(), "Name of the rod.")
           .required("at", &Support::at, location(),
                     "The node, or all; there has to be a node. For a spring alone: any arc length.")

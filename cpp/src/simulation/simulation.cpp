@@ -27,6 +27,20 @@ std::string find_nonfinite(const Model& model, const Vector& values, const std::
       what, describe_dof(model, dof), values[dof]);
 }
 
+/// Every name with what it stands for: that of each control, and those of its components.
+std::map<std::string, Simulation::Settable, std::less<>> settable_in(const Model& model) {
+  std::map<std::string, Simulation::Settable, std::less<>> all;
+  for (const NamedControl& control : model.named) {
+    const ControlComponent* const begin = control.components.data();
+    const ControlComponent* const end = begin + control.components.size();
+    all[control.name] = {&control, begin, end};
+    for (const ControlComponent* each = begin; each != end; ++each) {
+      all[control.name + "." + each->name] = {&control, each, each + 1};
+    }
+  }
+  return all;
+}
+
 std::string why_not_tested_out_of_plane(const scenario::Scene& scene, const Model& model) {
   if (model.dimension != 2) return {};
   std::string why_not = scenario::why_not_tested_out_of_plane(scene);
@@ -41,6 +55,7 @@ std::string why_not_tested_out_of_plane(const scenario::Scene& scene, const Mode
 Simulation::Simulation(Scenario scenario)
     : scenario_(std::move(scenario)),
       model_(build_model(scenario_.scene())),
+      settable_(settable_in(model_)),
       pattern_(build_pattern(model_)),
       solver_(make_linear_solver(
           scenario_.scene().solver.linear, pattern_,

@@ -32,6 +32,14 @@ std::vector<double> table_entries(const Model& model) {
   return times;
 }
 
+/// With steps no longer than see every sine swing.
+AdaptiveOptions resolving_sines(AdaptiveOptions options, const Model& model) {
+  for (const scenario::Series& series : model.tables.all()) {
+    options.largest_step = std::min(options.largest_step, longest_resolving_step(series.course));
+  }
+  return options;
+}
+
 }  // namespace
 
 AdaptiveStepper::AdaptiveStepper(const Model& model, const Assembler& assembler, Stepper& stepper,
@@ -40,7 +48,7 @@ AdaptiveStepper::AdaptiveStepper(const Model& model, const Assembler& assembler,
       stepper_(stepper),
       order_(info.order),
       error_factor_(info.error_factor),
-      options_(options),
+      options_(resolving_sines(options, model)),
       breakpoints_(table_entries(model)),
       support_motion_(model),
       start_(initial_state(model)),
@@ -51,9 +59,9 @@ AdaptiveStepper::AdaptiveStepper(const Model& model, const Assembler& assembler,
 AdaptiveReport AdaptiveStepper::advance(State& state, double horizon) {
   AdaptiveReport report;
   start_ = state;
-  const double stop = next_stop(state.time, horizon);
+  const double stop = next_stop(state, horizon);
   const double longest = support_motion_.longest_step(state);
-  double wanted = state.next_step > 0.0 ? state.next_step : first_step(state);
+  double wanted = wanted_step(state);
   while (true) {
     wanted = std::min({std::max(wanted, options_.minimum_step), options_.largest_step, longest});
     const double left = stop - start_.time;
@@ -129,11 +137,25 @@ double AdaptiveStepper::first_step(const State& state) const {
   return speed > 0.0 ? std::min(longest, distance / speed) : 1e-2 * longest;
 }
 
-double AdaptiveStepper::next_stop(double time, double horizon) const {
+double AdaptiveStepper::wanted_step(const State& state) const {
+  return state.next_step > 0.0 ? state.next_step : first_step(state);
+}
+
+double AdaptiveStepper::end_of_next_step(const State& state, double horizon) const {
+  const double wanted = std::max(wanted_step(state), options_.minimum_step);
+  return std::min(state.time + std::min(wanted, options_.largest_step), next_stop(state, horizon));
+}
+
+double AdaptiveStepper::next_stop(const State& state, double horizon) const {
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon();
+  const double time = state.time;
   const double later = time + rounding * std::max(options_.duration, std::abs(time));
   const auto next = std::upper_bound(breakpoints_.begin(), breakpoints_.end(), later);
-  return next == breakpoints_.end() ? horizon : std::min(horizon, *next);
+  double stop = next == breakpoints_.end() ? horizon : std::min(horizon, *next);
+  for (const Ramp& ramp : state.ramps) {
+    if (ramp.end > later) stop = std::min(stop, ramp.end);
+  }
+  return stop;
 }
 
 void AdaptiveStepper::interpolate(double time, const State& state, State& result) {

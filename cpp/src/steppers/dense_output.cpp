@@ -1,5 +1,6 @@
 #include "der/steppers/dense_output.hpp"
 
+#include "der/model/gravity.hpp"
 #include "der/model/moment_place.hpp"
 #include "der/model/prescribed_motion.hpp"
 #include "der/steppers/work.hpp"
@@ -75,6 +76,9 @@ Work DenseOutput::powers(const State& where, const State& start, const State& en
   }
   force_.evaluate_works(start, where.positions, velocities_, where.time);
   force_.accumulate(velocities_, velocities_, power);
+  before_.coordinates = velocities_;
+  evaluate_controls(model_, end, where.time, before_.controls);
+  power.loads += driven_gravity_energy(model_, before_);
   return power;
 }
 
@@ -93,7 +97,9 @@ void DenseOutput::add_table_powers(const State& where, const State& start, const
   const ControlWork work = control_work(model_, before_, after_);
   power.supports += work.supports / dt;
   power.actuation += work.actuation / dt;
-  power.loads += cell_work(model_, before_.controls, after_.controls) / dt;
+  power.loads += (cell_work(model_, before_.controls, after_.controls) +
+                  driven_gravity_energy(model_, after_) - driven_gravity_energy(model_, before_)) /
+                 dt;
 }
 
 }  // namespace der

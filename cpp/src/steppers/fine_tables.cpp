@@ -13,29 +13,29 @@ namespace {
 struct Table {
   std::string path;  ///< as in `--set`
   const std::vector<double>& times;
+  const scenario::Course& course;
 };
 
 void add_tables(const scenario::Support& support, const std::string& path,
                 std::vector<Table>& tables) {
   scenario::for_each_motion(support, [&](const char* key, const scenario::Series& motion) {
-    tables.push_back({fmt::format("{}.prescribe.{}", path, key), motion.times});
+    tables.push_back({fmt::format("{}.prescribe.{}", path, key), motion.times, motion.course});
   });
 }
 
 template <class Load>
 void add_tables(const Load& load, const std::string& path, std::vector<Table>& tables) {
   scenario::for_each_amount(load, [&](const char* key, const auto& amount) {
-    using Value = std::decay_t<decltype(amount)>;
-    if constexpr (!std::is_same_v<Value, scenario::Components>) {
-      tables.push_back({fmt::format("{}.{}.{}", path, Load::kKey, key), amount.times});
-    }
+    const char* dot = *key == '\0' ? "" : ".";
+    tables.push_back(
+        {fmt::format("{}.{}{}{}", path, Load::kKey, dot, key), amount.times, amount.course});
   });
 }
 
 void add_tables(const scenario::Actuation& actuation, std::vector<Table>& tables) {
   for (const scenario::Series& series : actuation.values) {
-    tables.push_back(
-        {fmt::format("actuation.{}.{}", actuation.name, key_of(actuation.what)), series.times});
+    tables.push_back({fmt::format("actuation.{}.{}", actuation.name, key_of(actuation.what)),
+                      series.times, series.course});
   }
 }
 
@@ -56,7 +56,14 @@ std::vector<Table> tables(const scenario::Scene& scene) {
 
 std::vector<std::string> fine_table_warnings(const scenario::Scene& scene, double step) {
   std::vector<std::string> warnings;
-  for (const auto& [path, times] : tables(scene)) {
+  for (const auto& [path, times, course] : tables(scene)) {
+    if (step > longest_resolving_step(course) * (1.0 + 1e-9)) {
+      warnings.push_back(
+          fmt::format("the sine {} has a period of {:g} s, which steps of {:g} s hardly see: take "
+                      "at least four "
+                      "steps in a period, better twenty, or a time.tolerance",
+                      path, 1.0 / course.frequency, step));
+    }
     std::size_t closest = 0;
     for (std::size_t i = 1; i < times.size(); ++i) {
       if (times[i] <= 0.0 || times[i - 1] >= scene.time.duration) continue;

@@ -40,6 +40,11 @@ void ImplicitStage::evaluate_controls(const State& state, double time, Vector& c
   der::evaluate_controls(model_, state, state.time, start_controls_);
   const double beyond = (time - step_end_) / (step_end_ - state.time);
   controls += beyond * (controls - start_controls_);
+  for (const Index control : model_.tables.without_kinks()) {
+    if (find_ramp(state, control) != nullptr) continue;
+    controls[control] = value_at(model_.tables[control], time);
+  }
+  model_.rest_shape.enter(controls);
 }
 
 StepReport ImplicitStage::solve(const State& state, double time) {

@@ -1,5 +1,6 @@
 #include "der/steppers/step_finisher.hpp"
 
+#include "der/model/gravity.hpp"
 #include "der/model/moment_place.hpp"
 #include "der/steppers/work.hpp"
 
@@ -18,7 +19,8 @@ void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector
   const ControlWork work = control_work(model_, start_, end_);
   state.work.supports += work.supports;
   state.work.actuation += work.actuation;
-  state.work.loads += cell_work(model_, start_.controls, end_.controls);
+  state.work.loads += cell_work(model_, start_.controls, end_.controls) +
+                      driven_gravity_energy(model_, end_) - driven_gravity_energy(model_, start_);
   for (const HeldDof& held : model_.held) {
     const double before = state.velocities[held.dof];
     const double after = (positions[held.dof] - state.positions[held.dof]) / dt;

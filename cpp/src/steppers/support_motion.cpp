@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "der/core/constants.hpp"
 #include "der/supports/clamp.hpp"
 
 namespace der {
@@ -16,6 +17,8 @@ constexpr double kLargestTurn = 1.0;  // [rad]
 class Odometer {
  public:
   explicit Odometer(double limit) : left_(limit) {}
+  /// What is left to the limit.
+  [[nodiscard]] double left() const { return left_; }
   /// The time at which the limit is reached, on the way from one time and value to others.
   double time_of_limit(double start, double from, double end, double to) {
     const double change = std::abs(to - from);
@@ -34,15 +37,55 @@ double time_of_limit(const Ramp& ramp, double limit, double time) {
                                        ramp.to);
 }
 
+/// The share of its time after which a smooth piece has done a share of its change.
+double time_share(double done) {
+  constexpr int halvings = 40;
+  double low = 0.0;
+  double high = 1.0;
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = 0.5 * (low + high);
+    (scenario::smooth_share(middle) < done ? low : high) = middle;
+  }
+  return low;
+}
+
+/// How far sin(angle) moves as the angle [rad] goes from 0 to `angle`, and the angle from that.
+double sine_path(double angle) {
+  const double swings = std::floor(angle / kPi + 0.5);
+  return 2.0 * swings + std::sin(angle - swings * kPi);
+}
+double sine_angle(double path) {
+  const double swings = std::floor(0.5 * (path + 1.0));
+  return swings * kPi + std::asin(std::clamp(path - 2.0 * swings, -1.0, 1.0));
+}
+
+double time_of_sine_limit(const scenario::Series& series, double limit, double time) {
+  const double amplitude = std::abs(series.values[1]);
+  if (amplitude == 0.0) return kNever;
+  const double rate = 2.0 * kPi * series.course.frequency;
+  const double angle = rate * time + series.course.phase;
+  return time + (sine_angle(sine_path(angle) + limit / amplitude) - angle) / rate;
+}
+
 double time_of_limit(const scenario::Series& series, double limit, double time) {
+  using Kind = scenario::Course::Kind;
+  const auto& [times, values, course] = series;
+  if (course.kind == Kind::Sine) return time_of_sine_limit(series, limit, time);
   Odometer odometer(limit);
   double before = time;
   double from = value_at(series, time);
-  const auto later = std::upper_bound(series.times.begin(), series.times.end(), time);
-  for (auto entry = later; entry != series.times.end(); ++entry) {
-    const double to = series.values[static_cast<std::size_t>(entry - series.times.begin())];
+  const auto later = std::upper_bound(times.begin(), times.end(), time);
+  for (auto entry = later; entry != times.end(); ++entry) {
+    const auto number = static_cast<std::size_t>(entry - times.begin());
+    const double to = values[number];
+    const double left = odometer.left();
     const double reached = odometer.time_of_limit(before, from, *entry, to);
-    if (reached < kNever) return reached;
+    if (reached < kNever) {
+      if (course.kind == Kind::Linear) return reached;
+      const double start = values[number - 1];
+      const double done = (from + std::copysign(left, to - from) - start) / (to - start);
+      return times[number - 1] + time_share(done) * (*entry - times[number - 1]);
+    }
     before = *entry;
     from = to;
   }

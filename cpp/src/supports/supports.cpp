@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+#include <utility>
 
 #include "der/model/location.hpp"
 #include "der/scenario/support.hpp"
@@ -20,11 +22,27 @@ void hold(Model& model, Index dof, Index displacement) {
   if (known == model.held.end()) model.held.push_back({dof, displacement});
 }
 
-}  // namespace
+/// What a support moves, by component, each with the controls of all its nodes.
+NamedControl named_motion(const std::string& name, std::size_t number, const Model& model) {
+  NamedControl result{name, false, {}};
+  auto& components = result.components;
+  for (const PrescribedControl& moved : model.prescribed) {
+    if (moved.support != number) continue;
+    const auto known = std::find_if(
+        components.begin(), components.end(),
+        [&](const ControlComponent& component) { return component.name == moved.component; });
+    if (known != components.end()) {
+      known->controls.push_back(moved.control);
+      continue;
+    }
+    const bool turns = moved.component == "angle" || moved.component == "twist";
+    components.push_back({moved.component, turns ? "rad" : "m", {moved.control}});
+  }
+  return result;
+}
 
-void add_support(const scenario::Support& support, std::size_t number, Model& model) {
-  if (support.spring) add_spring(support, model);
-  if (!support.holds()) return;
+/// Holds or moves the nodes of a support.
+void hold_nodes(const scenario::Support& support, std::size_t number, Model& model) {
   RodLayout& rod = model.rod(support.rod);
   for (const Index place : nodes_at(support.at, rod)) {
     const Index node = rod.nodes[static_cast<std::size_t>(place)];
@@ -58,6 +76,17 @@ void add_support(const scenario::Support& support, std::size_t number, Model& mo
       }
     }
   }
+}
+
+}  // namespace
+
+void add_support(const scenario::Support& support, std::size_t number, Model& model) {
+  if (support.spring) add_spring(support, model);
+  if (!support.holds()) return;
+  hold_nodes(support, number, model);
+  if (support.name.empty()) return;
+  NamedControl motion = named_motion(support.name, number, model);
+  if (!motion.components.empty()) model.named.push_back(std::move(motion));
 }
 
 }  // namespace der

@@ -10,6 +10,7 @@ import numpy as np
 
 from der._core import Scenario
 from der.accuracy.resampling import arc_lengths, resample_line, resample_list, resample_ring
+from der.scene_loads import kind_of
 
 #: Order of the rods in the length of their elements, and of every probe but the turning angle.
 SPACE_ORDER = 2.0
@@ -120,7 +121,7 @@ def _count_elements(rod: dict[str, Any]) -> int:
 
 def _loads(scene: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
     for load in scene.get("loads") or []:
-        ((kind, what),) = load.items()
+        kind, what = kind_of(load)
         if isinstance(what, dict):
             yield kind, what
 

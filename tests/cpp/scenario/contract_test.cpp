@@ -137,7 +137,7 @@ TEST_CASE("contract: the falling spheres") {
   CHECK(rod.spheres[0].at.kind == Location::Kind::All);
   CHECK(rod.spheres[1].at.kind == Location::Kind::Middle);
   CHECK(rod.spheres[1].radius == 0.025);
-  CHECK(std::get<scenario::Gravity>(scene.loads[0].what).acceleration[1] == -9.8);
+  CHECK(std::get<scenario::Gravity>(scene.loads[0].what).acceleration.values.front()[1] == -9.8);
   CHECK(std::get<scenario::Fluid>(scene.loads[1].what).viscosity == 1000.0);
   CHECK(scene.output.every == 0.01);  // a thousandth of 10 s
   CHECK(scene.output.probes[2].quantity == "turning_angle");

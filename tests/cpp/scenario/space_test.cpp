@@ -92,7 +92,8 @@ TEST_CASE("space: every key") {
   CHECK_FALSE(scene.supports[1].rotation.has_value());
   CHECK(scene.supports[2].clamp == Clamp::None);
   CHECK(scene.supports[2].fix == std::vector<Component>{Component::Z, Component::X});
-  CHECK(std::get<scenario::Gravity>(scene.loads[0].what).acceleration == Components{0, 0, -9.81});
+  CHECK(std::get<scenario::Gravity>(scene.loads[0].what).acceleration.values.front() ==
+        Components{0, 0, -9.81});
   const auto& force = std::get<scenario::PointForce>(scene.loads[1].what);
   CHECK(force.force.values[1] == Components{1, 2, 3});
   CHECK_FALSE(force.follower);
@@ -149,7 +150,8 @@ TEST_CASE("space: a scene of three components in the plane is a planar scene") {
   CHECK(scene.supports[1].fix == std::vector<Component>{Component::Y});
   CHECK(scene.supports[2].spring->stiffness == Components{5, 5});
   CHECK(scene.supports[2].spring->anchor == Components{1, 2});
-  CHECK(std::get<scenario::Gravity>(scene.loads[0].what).acceleration == Components{1, 2});
+  CHECK(std::get<scenario::Gravity>(scene.loads[0].what).acceleration.values.front() ==
+        Components{1, 2});
   const auto& constant = std::get<scenario::Moment>(scene.loads[1].what);
   CHECK(constant.moment.values == std::vector<double>{3});
   CHECK(constant.moment_vector.values.empty());

@@ -9,11 +9,12 @@
 
 namespace der {
 
-/// A force that keeps its direction and may follow a table over time. Its tables are entered into
-/// the model once, however many nodes share it.
+/// A force that keeps its direction and may follow a table over time, or a program. Its tables are
+/// entered into the model once, however many nodes share it.
 class DeadForce {
  public:
-  DeadForce(const scenario::VectorSeries& force, Model& model);
+  /// `is_set`: whether a program may set it, so that even a constant one is a table.
+  DeadForce(const scenario::VectorSeries& force, bool is_set, Model& model);
   /// Adds `weight` times the force to a node.
   void act_on(Index node, double weight, Model& model) const;
   /// The controls that hold its components [N], for what reads it off the model: of a constant

@@ -17,6 +17,7 @@
 #include "der/model/frames.hpp"
 #include "der/model/load_variation.hpp"
 #include "der/model/mass.hpp"
+#include "der/model/named_control.hpp"
 #include "der/model/rest_shape.hpp"
 #include "der/model/time_tables.hpp"
 #include "der/scenario/curvature_measure.hpp"
@@ -235,7 +236,10 @@ struct Model {
   Mass mass;
   Vector damping;        ///< [N s/m], one entry a degree of freedom: drag and linear damping
   bool damped = false;   ///< whether any of that is there
-  Vector gravity_force;  ///< [N] weight without buoyancy
+  Vector gravity_force;  ///< [N] constant weight without buoyancy
+  /// Controls of the acceleration of gravity [m/s^2], where it follows any; its weight is then
+  /// among the controlled forces (model/gravity.hpp). -1: there is none, or it is constant.
+  std::array<Index, 3> gravity_controls{-1, -1, -1};
   Vector dead_force;     ///< [N] every constant force but weight: buoyancy, constant loads
   RestShape rest_shape;  ///< what actuations make of the rest shape
   TimeTables tables;     ///< tables over time that forces, supports and actuations follow
@@ -246,6 +250,7 @@ struct Model {
 
   std::vector<HeldDof> held;
   std::vector<PrescribedControl> prescribed;  ///< of all supports, in their order
+  std::vector<NamedControl> named;            ///< what programs can set by its name
 
   std::vector<Edge> edges;  ///< of all rods
   std::vector<FollowedEdge> followed_edges;
@@ -254,6 +259,8 @@ struct Model {
   Vector drawn_frames;                     ///< blocks of these in the initial shape
   Hidden<ElementLists> elements;
 
+  /// Whether a program may set a control in place of its table.
+  [[nodiscard]] bool can_set(Index control) const;
   [[nodiscard]] Index num_dofs() const { return dofs.size(); }
   [[nodiscard]] Index num_free() const { return dofs.num_free(); }
   /// Whether edges have angles of their sections as degrees of freedom.

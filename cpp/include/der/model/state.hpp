@@ -121,6 +121,8 @@ std::string find_wrong_value(const State& state);
 /// step that begins at `state`: the tables, or their values at the load factor, the ramps in place
 /// of them, and the turns.
 void evaluate_controls(const Model& model, const State& state, double time, Vector& controls);
+/// The ramp that a program has set in place of a control's table; null: none.
+const Ramp* find_ramp(const State& state, Index control);
 /// Moves what a state follows to its positions, which a program may have written.
 void follow(const Model& model, State& state);
 /// Value of a control that is not a turn, at the time of `state`.

@@ -25,6 +25,8 @@ class TimeTables {
   /// Writes the value of every table at time `t` into `values`, whose size it sets; the entries
   /// before those of the tables are zero where it had another.
   void evaluate(double t, Vector& values) const;
+  /// The numbers of those without kinks: sines and smooth tables.
+  [[nodiscard]] const std::vector<Index>& without_kinks() const { return without_kinks_; }
   [[nodiscard]] const scenario::Series& operator[](Index i) const {
     return series_[static_cast<std::size_t>(i - first_)];
   }
@@ -32,6 +34,7 @@ class TimeTables {
  private:
   Index first_ = 0;
   std::vector<scenario::Series> series_;
+  std::vector<Index> without_kinks_;
 };
 
 }  // namespace der

@@ -52,7 +52,7 @@ constexpr auto single_amount(const char* key, Value Load::* member) {
 
 struct Gravity {
   static constexpr const char* kKey = "gravity";
-  Components acceleration;  ///< [m/s^2]
+  VectorSeries acceleration;  ///< [m/s^2]
   static constexpr auto kAmounts = single_amount("", &Gravity::acceleration);
 };
 /// Stokes drag 6 pi mu R u and buoyancy on the spheres. The buoyancy follows gravity.
@@ -100,6 +100,7 @@ using AnyLoad =
     std::variant<Gravity, Fluid, Damping, PointForce, Moment, DistributedForce, Foundation>;
 
 struct Load {
+  std::string name;  ///< by which programs set it and overrides find it; empty: none
   AnyLoad what;
   Mark mark;
 };

@@ -44,6 +44,7 @@ struct AxisRotation {
 };
 
 struct Support {
+  std::string name;  ///< by which programs set it and overrides find it; empty: none
   std::string rod;
   Location at;
   std::vector<Component> fix;         ///< held at their initial value

@@ -37,7 +37,8 @@ struct AdaptiveReport {
 /// its share of the duration, so that the sum of all estimates stays below `tolerance * size` and
 /// the error follows the tolerance in proportion. The next length comes from a
 /// proportional-integral controller (Gustafsson, ACM Trans. Math. Softw. 17, 1991). Entries of
-/// tables over time, where forces have kinks, are hit exactly.
+/// tables over time and ends of ramps, where forces have kinks, are hit exactly, and no step is
+/// longer than a quarter of the period of a sine.
 class AdaptiveStepper {
  public:
   AdaptiveStepper(const Model& model, const Assembler& assembler, Stepper& stepper,
@@ -46,6 +47,9 @@ class AdaptiveStepper {
   /// Advances `state` by one step that ends at `horizon` [s] or before it. The state is untouched
   /// if the report says that it was not done.
   AdaptiveReport advance(State& state, double horizon);
+
+  /// The time [s] at which the next step will end if its error is no larger than expected.
+  [[nodiscard]] double end_of_next_step(const State& state, double horizon) const;
 
   /// Positions, velocities and works at `time` within the last step, by `DenseOutput` over its
   /// halves; everything else as in `state`, which is the state at the end of that step.
@@ -56,7 +60,8 @@ class AdaptiveStepper {
 
  private:
   [[nodiscard]] double first_step(const State& state) const;
-  [[nodiscard]] double next_stop(double time, double horizon) const;
+  [[nodiscard]] double wanted_step(const State& state) const;
+  [[nodiscard]] double next_stop(const State& state, double horizon) const;
   StepReport attempt(State& state, double length);
   void measure(const State& state, AdaptiveReport& report);
 

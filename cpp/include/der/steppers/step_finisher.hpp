@@ -15,8 +15,8 @@ class StepFinisher {
   /// Moves `state`, still at the start of a step of `dt` [s], to its end. Held degrees of freedom
   /// get the velocity of their motion over the step, free ones that of `velocities` [m/s].
   /// Accumulates the work of clamps that turn, of moments on their cells (model/moment_place.hpp),
-  /// and of what moves held nodes against their inertia and drag; all else is the stepper's to
-  /// accumulate.
+  /// of a change of gravity, and of what moves held nodes against their inertia and drag; all else
+  /// is the stepper's to accumulate.
   void finish(const Vector& positions, const Eigen::Ref<const Vector>& velocities, double dt,
               State& state);
 

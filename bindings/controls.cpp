@@ -1,0 +1,170 @@
+// What a program sets in place of the tables of a scene.
+#include "controls.hpp"
+
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "arrays.hpp"
+
+namespace der::python {
+namespace {
+
+[[noreturn]] void refuse(const std::string& name, py::handle value, const char* expected) {
+  throw py::type_error(
+      py::str("{!r} takes {}, not {!r}").format(name, expected, value).cast<std::string>());
+}
+
+double to_number(py::handle value, std::string_view name, const char* expected) {
+  const double number = PyFloat_AsDouble(value.ptr());
+  if (number == -1.0 && PyErr_Occurred() != nullptr) {
+    PyErr_Clear();
+    refuse(std::string(name), value, expected);
+  }
+  return number;
+}
+
+/// The text of a str without a copy; it lives as long as that.
+std::string_view text_of(const py::str& name) {
+  Py_ssize_t length = 0;
+  const char* text = PyUnicode_AsUTF8AndSize(name.ptr(), &length);
+  if (text == nullptr) throw py::error_already_set();
+  return {text, static_cast<std::size_t>(length)};
+}
+
+void set_components(Simulation& engine, const std::string& name, const py::dict& values,
+                    std::optional<double> over) {
+  const std::vector<Ramp> before = engine.state().ramps;
+  try {
+    for (const auto& [component, value] : values) {
+      const auto full = name + "." + py::str(component).cast<std::string>();
+      engine.set(full, {to_number(value, full, "a number")}, over);
+    }
+  } catch (...) {  // all of them or none
+    engine.state().ramps = before;
+    throw;
+  }
+}
+
+std::vector<double> to_numbers(py::handle values, std::string_view name) {
+  constexpr const char* expected = "a number, a list of numbers or a dict of them";
+  // A list of what is iterable, and the list or tuple itself without a copy.
+  const auto items =
+      py::reinterpret_steal<py::object>(PySequence_Fast(values.ptr(), "no sequence"));
+  if (!items || PyUnicode_Check(values.ptr())) {
+    PyErr_Clear();
+    refuse(std::string(name), values, expected);
+  }
+  const Py_ssize_t count = PySequence_Fast_GET_SIZE(items.ptr());
+  std::vector<double> numbers(static_cast<std::size_t>(count));
+  for (Py_ssize_t i = 0; i < count; ++i) {
+    numbers[static_cast<std::size_t>(i)] =
+        to_number(PySequence_Fast_GET_ITEM(items.ptr(), i), name, expected);
+  }
+  return numbers;
+}
+
+void set(PySimulation& simulation, const py::str& name, const py::object& value,
+         std::optional<double> over) {
+  Simulation& engine = simulation.engine();
+  const std::string_view text = text_of(name);
+  const bool is_number = PyFloat_Check(value.ptr()) || PyLong_Check(value.ptr());
+  if (is_number) {
+    engine.set(text, {to_number(value, text, "a number")}, over);
+  } else if (PyDict_Check(value.ptr())) {
+    set_components(engine, std::string(text), value, over);
+  } else {
+    engine.set(text, to_numbers(value, text), over);
+  }
+}
+
+py::object value(const PySimulation& simulation, const py::str& name) {
+  const Simulation& engine = simulation.engine();
+  const Simulation::Settable& found = engine.settable(text_of(name));
+  const std::vector<double> values = engine.value(text_of(name));
+  if (found.size() == 1) return py::float_(values.front());
+  if (found.whole->is_vector) return Array(static_cast<py::ssize_t>(values.size()), values.data());
+  py::dict by_component;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    by_component[py::str(found.begin[i].name)] = values[i];
+  }
+  return by_component;
+}
+
+py::dict names(const PySimulation& simulation) {
+  py::dict all;
+  for (const NamedControl& control : simulation.engine().model().named) {
+    py::dict units;
+    for (const ControlComponent& component : control.components) {
+      units[py::str(component.name)] = component.unit;
+    }
+    all[py::str(control.name)] = units;
+  }
+  return all;
+}
+
+void prescribe(PySimulation& simulation, std::size_t support, std::optional<double> x,
+               std::optional<double> y, std::optional<double> z, std::optional<double> angle,
+               std::optional<double> twist) {
+  Simulation& engine = simulation.engine();
+  const std::vector<Ramp> before = engine.state().ramps;
+  try {
+    if (x) engine.prescribe(support, "x", *x);
+    if (y) engine.prescribe(support, "y", *y);
+    if (z) engine.prescribe(support, "z", *z);
+    if (angle) engine.prescribe(support, "angle", *angle);
+    if (twist) engine.prescribe(support, "twist", *twist);
+  } catch (...) {  // all of them or none
+    engine.state().ramps = before;
+    throw;
+  }
+}
+
+py::dict prescribed(const PySimulation& simulation, std::size_t support) {
+  const Simulation& engine = simulation.engine();
+  py::dict values;
+  for (const PrescribedControl& moved : engine.model().prescribed) {
+    if (moved.support != support) continue;
+    values[py::str(moved.component)] = engine.prescribed(support, moved.component);
+  }
+  return values;
+}
+
+}  // namespace
+
+void bind_controls(py::class_<PySimulation>& cls) {
+  cls.def("set", &set, py::arg("name"), py::arg("value"), py::arg("over") = py::none(),
+          "Set a load or the motion of a support that has a name in the scene, in place of its "
+          "table.\n\n"
+          "`value` is a number, a list with one for each component, or a dict of some components; "
+          "`name` may\nname one component, as ``\"wall.x\"``. `names` has all of them with their "
+          "units. The value is reached\nevenly, at the end of the next step or after `over` "
+          "seconds, and kept until it is set again;\n`equilibrium` and static scenes take it at "
+          "once. DerError where it cannot be set, and nothing is then\nchanged; TypeError for what "
+          "is no number.")
+      .def("value", &value, py::arg("name"),
+           "Present value of what has a name: a number if it has one component, otherwise an array "
+           "for a vector\nand a dict by component for a support. DerError as `set`.")
+      .def_property_readonly("names", &names,
+                             "What `set` can set: by name, the unit of each component, as "
+                             "``{\"push\": {\"x\": \"N\", \"y\": \"N\"}}``.")
+      .def(
+          "prescribe", &prescribe, py::arg("support"), py::kw_only(), py::arg("x") = py::none(),
+          py::arg("y") = py::none(), py::arg("z") = py::none(), py::arg("angle") = py::none(),
+          py::arg("twist") = py::none(),
+          "Move a support, by its number in the scene, in place of the table that it has there.\n\n"
+          "`x`, `y`, `z` [m] count from its initial place, `angle` [rad] from the initial "
+          "direction, in space\nabout the axis of the clamp's rotation, `twist` [rad] about the "
+          "held tangent. They are\nreached as values that are `set`, which takes supports by "
+          "their name. The scene has to prescribe\nthem (``prescribe: {angle: 0}``): DerError if "
+          "not.")
+      .def("prescribed", &prescribed, py::arg("support"),
+           "Present values of what a support prescribes, by name: ``x``, ``y``, ``z`` [m], "
+           "``angle``,\n``twist`` [rad].");
+}
+
+}  // namespace der::python

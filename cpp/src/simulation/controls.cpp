@@ -1,0 +1,227 @@
+// What a program sets in place of tables: loads and prescribed motions.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "der/core/error.hpp"
+#include "der/core/printable.hpp"
+#include "der/scenario/load.hpp"
+#include "der/scenario/scenario.hpp"
+#include "der/simulation.hpp"
+#include "scenario/suggestion.hpp"
+
+namespace der {
+namespace {
+
+using scenario::listed;
+
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+
+std::vector<std::string> names_of(const std::vector<ControlComponent>& components) {
+  std::vector<std::string> names;
+  for (const ControlComponent& component : components) names.push_back(component.name);
+  return names;
+}
+
+/// Why a part of the scene that has a name has nothing to set, and what to write.
+struct WhyNothing {
+  std::string operator()(const scenario::Moment& /*load*/) const {
+    return "the clamp at its node takes it up";
+  }
+  template <class Kind>
+  std::string operator()(const Kind& /*load*/) const {
+    return fmt::format("a load of the kind '{}' has no value that a program sets", Kind::kKey);
+  }
+};
+
+/// The same by the name; "" if the scene has no such name.
+std::string why_nothing(const scenario::Scene& scene, const std::string& name) {
+  for (const auto& support : scene.supports) {
+    if (support.name != name) continue;
+    return "this support prescribes nothing: give it 'prescribe', as in 'prescribe: {x: 0}'";
+  }
+  for (const auto& load : scene.loads) {
+    if (load.name == name) return std::visit(WhyNothing{}, load.what);
+  }
+  return {};
+}
+
+/// What to write in the scene for a name that it does not have.
+std::string how_to_name(const scenario::Scene& scene, const std::string& name,
+                        const std::vector<NamedControl>& named) {
+  const auto is_kind = [&](const auto& load) {
+    return scenario::load_kinds()[load.what.index()] == name;
+  };
+  if (std::any_of(scene.loads.begin(), scene.loads.end(), is_kind)) {
+    return fmt::format(". Give that load a name: '- {{name: {}, {}: ...}}'", name, name);
+  }
+  if (named.empty()) {
+    return ". Give a load a name, as '- {name: push, point_force: {...}}', or a support with "
+           "'prescribe'";
+  }
+  std::vector<std::string> names;
+  for (const NamedControl& control : named) names.push_back(control.name);
+  const std::string near = scenario::did_you_mean(name, names);
+  return near.empty() ? "; there is " + listed(names) : near;
+}
+
+std::string unknown_component(const NamedControl& control, const std::string& component,
+                              const Model& model) {
+  const char* hint = "";
+  if (!control.is_vector) {
+    hint = ". To set it, give it a value under 'prescribe' in the scene";
+  } else if (model.dimension == 2 && component == "z") {
+    hint = ". This model is planar: to leave the plane, write 'model: spatial'";
+  }
+  return fmt::format("'{}' has no component '{}'; it has {}{}", control.name, component,
+                     listed(names_of(control.components)), hint);
+}
+
+std::string not_settable(std::string_view given, const Model& model, const scenario::Scene& scene) {
+  const std::string name = printable(given);
+  const std::size_t dot = name.find('.');
+  const std::string first = name.substr(0, dot);
+  if (dot != std::string::npos) {
+    for (const NamedControl& control : model.named) {
+      if (control.name == first) return unknown_component(control, name.substr(dot + 1), model);
+    }
+  }
+  const std::string why = why_nothing(scene, first);
+  if (!why.empty()) return fmt::format("'{}' cannot be set: {}", first, why);
+  return fmt::format("nothing that could be set has the name '{}'{}", first,
+                     how_to_name(scene, first, model.named));
+}
+
+/// The first control that moves this component; Error if the scene prescribes none.
+const PrescribedControl& check_prescribed(const Model& model, std::size_t support,
+                                          const std::string& component) {
+  std::string known;
+  for (const PrescribedControl& candidate : model.prescribed) {
+    if (candidate.support == support && candidate.component == component) return candidate;
+    const std::string name =
+        fmt::format("{} of support {}", candidate.component, candidate.support);
+    if (known.find(name) == std::string::npos) known += (known.empty() ? "" : ", ") + name;
+  }
+  throw Error(
+      "model_error",
+      fmt::format("the scene does not prescribe {} of support {} (counted from 0): give that "
+                  "support 'prescribe: {{{}: 0}}'; it prescribes {}",
+                  component, support, component, known.empty() ? "nothing" : known));
+}
+
+bool is_elongation(const Model& model, Index control) {
+  return std::any_of(model.rods.begin(), model.rods.end(), [control](const RodLayout& rod) {
+    return std::any_of(rod.actuated_stretches.begin(), rod.actuated_stretches.end(),
+                       [control](const ActuatedStretch& stretch) {
+                         return stretch.what == scenario::Actuated::Elongation &&
+                                stretch.controls[0] == control;
+                       });
+  });
+}
+
+}  // namespace
+
+const Simulation::Settable& Simulation::settable(std::string_view name) const {
+  const auto found = settable_.find(name);
+  if (found != settable_.end()) return found->second;
+  throw Error("model_error", not_settable(name, model_, scenario_.scene()));
+}
+
+void Simulation::set(std::string_view name, const std::vector<double>& values,
+                     std::optional<double> over) {
+  const Settable& found = settable(name);
+  check_values(found, values);
+  const double end = end_of_ramp(over);
+  const double* value = values.data();
+  for (const ControlComponent* each = found.begin; each != found.end; ++each, ++value) {
+    for (const Index control : each->controls) drive(control, *value, end);
+  }
+}
+
+std::vector<double> Simulation::value(std::string_view name) const {
+  const Settable& found = settable(name);
+  std::vector<double> values;
+  values.reserve(found.size());
+  for (const ControlComponent* each = found.begin; each != found.end; ++each) {
+    values.push_back(control_value(model_, state_, each->controls.front()));
+  }
+  return values;
+}
+
+void Simulation::check_values(const Settable& found, const std::vector<double>& values) const {
+  const std::string& name = found.whole->name;
+  if (values.size() != found.size()) {
+    throw Error("model_error", fmt::format("'{}' takes {} value{}, for {}, but here {} {}", name,
+                                           found.size(), found.size() == 1 ? "" : "s",
+                                           listed(names_of({found.begin, found.end})),
+                                           values.size() == 1 ? "is" : "are", values.size()));
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const ControlComponent& component = found.begin[i];
+    for (const Index control : component.controls) {
+      const std::string problem = why_not(control, values[i]);
+      if (problem.empty()) continue;
+      throw Error("model_error", fmt::format("'{}': {} {}", name, component.name, problem));
+    }
+  }
+}
+
+std::string Simulation::why_not(Index control, double value) const {
+  if (!std::isfinite(value)) return fmt::format("must be finite, got {}", value);
+  if (model_.load_variation && model_.load_variation->controls.change[control] != 0.0) {
+    return "follows the load factor of the scene's analysis: set it in a scene that does not vary "
+           "it, such as one with 'analysis: static'";
+  }
+  if (value <= -1.0 && is_elongation(model_, control)) {
+    return fmt::format("must be greater than -1, at which the stretch has no length left, got {:g}",
+                       value);
+  }
+  return {};
+}
+
+double Simulation::end_of_ramp(std::optional<double> over) const {
+  if (!scenario_.scene().is_dynamic()) return state_.time;
+  if (over) {
+    if (*over > 0.0 && std::isfinite(*over)) return state_.time + *over;
+    throw Error("model_error",
+                fmt::format("the time over which a value is reached must be greater than 0 s and "
+                            "finite, got {} s",
+                            *over));
+  }
+  if (!adaptive_) return next_time();
+  const bool beyond = state_.time >= horizon_;
+  return adaptive_->end_of_next_step(state_, beyond ? kEndless : horizon_);
+}
+
+void Simulation::drive(Index control, double value, double end) {
+  const Ramp ramp{control, state_.time, end, control_value(model_, state_, control), value};
+  const auto known =
+      std::find_if(state_.ramps.begin(), state_.ramps.end(),
+                   [control](const Ramp& earlier) { return earlier.control == control; });
+  if (known == state_.ramps.end()) {
+    state_.ramps.push_back(ramp);
+  } else {
+    *known = ramp;
+  }
+}
+
+void Simulation::prescribe(std::size_t support, const std::string& component, double value) {
+  check_prescribed(model_, support, component);
+  const double end = end_of_ramp(std::nullopt);
+  for (const PrescribedControl& moved : model_.prescribed) {
+    if (moved.support != support || moved.component != component) continue;
+    if (const std::string problem = why_not(moved.control, value); !problem.empty()) {
+      throw Error("model_error", fmt::format("support {}: {} {}", support, component, problem));
+    }
+    drive(moved.control, value, end);
+  }
+}
+
+double Simulation::prescribed(std::size_t support, const std::string& component) const {
+  const PrescribedControl& found = check_prescribed(model_, support, component);
+  return control_value(model_, state_, found.control);
+}
+
+}  // namespace der

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include "der/core/constants.hpp"
 #include "scenario/checks.hpp"
 #include "scenario/directions.hpp"
 
@@ -16,6 +17,28 @@ double least(const Series& series) {
     return series.values[0] - std::abs(series.values[1]);
   }
   return *std::min_element(series.values.begin(), series.values.end());
+}
+
+/// The largest magnitude that a table has at any time.
+double largest(const Series& series) {
+  if (series.course.kind == Course::Kind::Sine) {
+    return std::abs(series.values[0]) + std::abs(series.values[1]);
+  }
+  double size = 0.0;
+  for (const double value : series.values) size = std::max(size, std::abs(value));
+  return size;
+}
+
+/// The longest edge of a stretch [m].
+double longest_edge(const RestLine& line, const Actuation& actuation) {
+  double longest = 0.0;
+  for (int node = 0; node < line.num_nodes(); ++node) {
+    const bool last = node + 1 == line.num_nodes();
+    const double start = line.arc_length(node);
+    const double end = last ? line.length() : line.arc_length(node + 1);
+    if (start < actuation.to && actuation.from < end) longest = std::max(longest, end - start);
+  }
+  return longest;
 }
 
 bool overlap(const Actuation& a, const Actuation& b) {
@@ -38,6 +61,8 @@ class ActuationCheck {
     const auto number = static_cast<std::size_t>(*rod);
     check_stretch(*context_.lines[number]);
     check_value(context_.scene.rods[number]);
+    if (context_.diagnostics.under(path_of(number_))) return;
+    check_resolution(context_.scene.rods[number], *context_.lines[number]);
   }
 
  private:
@@ -114,6 +139,29 @@ class ActuationCheck {
     report(value_path_,
            "a number is a curvature about z, of a rod drawn without twist at one z: give a pair "
            "[k1, k2], the curvatures toward the director and across it");
+  }
+
+  /// Edges turn by less than half a turn, and a mesh is coarse from 1 rad on
+  /// (check_resolution.cpp).
+  void check_resolution(const Rod& rod, const RestLine& line) {
+    if (actuation_.what != Actuated::NaturalCurvature) return;
+    double squares = 0.0;
+    for (const Series& series : actuation_.values) squares += std::pow(largest(series), 2);
+    const double angle = std::sqrt(squares) * longest_edge(line, actuation_);
+    const auto enough = [&] {
+      return std::round(2.0 * angle * static_cast<double>(line.num_nodes()));
+    };
+    if (rod.curvature == CurvatureMeasure::Angle && angle >= kPi) {
+      report(value_path_,
+             fmt::format("asks for a turn of {:.3g} rad between edges, and edges turn by less than "
+                         "half a turn: give the rod more nodes, about {:g} for this curvature",
+                         angle, enough()));
+    } else if (angle > 1.0) {
+      context_.scene.warnings.push_back(
+          fmt::format("rod '{}' is too coarse for actuation.{}: without stress the edges turn by "
+                      "{:.2g} rad. Give it about {:g} nodes",
+                      rod.name, actuation_.name, angle, enough()));
+    }
   }
 
   CheckContext& context_;

@@ -13,7 +13,7 @@
 
 #include "der/building/builder.hpp"
 #include "der/core/error.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/circulatory_load.hpp"
 #include "der/loads/external_force.hpp"
 #include "der/scenario/reader.hpp"
 #include "der/scenario/scenario.hpp"
@@ -143,7 +143,7 @@ TEST_CASE("loads: a force that follows the rod, set to zero, leaves no force beh
   scenario::Scene scene = samples({{"loads.3.point_force.follower", "true"}}).scene();
   scene.loads = {scene.loads[3]};
   const Model loaded = build_model(scene);
-  REQUIRE(loaded.elements->circulatory.size() == 1);
+  REQUIRE(circulatory_loads(*loaded.elements).size() == 1);
   set_to_zero(scene.loads[0]);
   const Model unloaded = build_model(scene);
   CHECK(largest_force(loaded) > 0.0);

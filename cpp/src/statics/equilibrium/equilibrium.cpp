@@ -66,7 +66,7 @@ class EquilibriumSearch {
         has_potential_(has_potential(*model.elements)),
         loads_(loads_of(model, state)),
         newton_(model, assembler, solver, options.newton,
-                PlanarAdmissibility(model, loads_.force, state.positions)),
+                Admissibility(model, loads_.force, state.positions)),
         stiffness_(model, assembler, solver),
         continuation_(model, newton_) {}
 
@@ -153,7 +153,7 @@ class EquilibriumSearch {
   }
 
   bool start_elsewhere(Shape& shape) {
-    for (Shape& restart : planar_restarts(model_, loads_, stiffness_, shape)) {
+    for (Shape& restart : restarts(model_, loads_, stiffness_, shape)) {
       if (!continuation_.run(loads_, inverse_step(), restart).failed) {
         shape = std::move(restart);
         return true;

@@ -14,7 +14,7 @@
 namespace der {
 namespace {
 
-/// What a spring exerts on its edges, and the sum of it.
+/// The moments that a spring exerts on its edges, and their sum.
 template <int Edges>
 EdgeMoments moments_of_spring(std::size_t number, const Model& model, const State& state) {
   using Kernel = SectionSpring<Edges>;

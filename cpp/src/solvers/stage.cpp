@@ -9,7 +9,7 @@
 #include "der/energies/circulatory_load.hpp"
 #include "der/model/edge_change.hpp"
 #include "der/model/spin.hpp"
-#include "stage_kernels.hpp"
+#include "solvers/stage_kernels.hpp"
 
 namespace der {
 namespace {

@@ -93,9 +93,10 @@ class Simulation {
   EquilibriumReport settle(bool leave_saddles = true);
 
   /// Moves what support number `support` prescribes, in place of its table: `component` ("x", "y"
-  /// or "z" [m] from the initial place, "angle" or "twist" [rad]) comes to `value` at the end of the
-  /// next step, evenly, and stays there until it is moved again; `equilibrium` and static scenes
-  /// take it at once. Throws Error where the scene does not prescribe that, and where steps adapt.
+  /// or "z" [m] from the initial place, "angle" or "twist" [rad]) comes to `value` at the end of
+  /// the next step, evenly, and stays there until it is moved again; `equilibrium` and static
+  /// scenes take it at once. Throws Error where the scene does not prescribe that, and where steps
+  /// adapt.
   void prescribe(std::size_t support, const std::string& component, double value);
   /// Present value of a component that a support prescribes. Throws Error if it does not.
   [[nodiscard]] double prescribed(std::size_t support, const std::string& component) const;

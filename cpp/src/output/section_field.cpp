@@ -33,8 +33,8 @@ bool is_moment(SectionQuantity quantity) {
 }
 
 /// Bending towards the two directors and twist, of a rod with sections: curvatures and twist, or
-/// the two moments and the torque. Of a rod without sections the vector about which it bends, in
-/// fixed axes.
+/// the two moments and the torque. For a rod without sections it is the vector about which the rod
+/// bends, in fixed axes.
 ///
 /// Beside moments inside the rod the section turns at rates that differ on their two sides, and
 /// components along it have a kink. Along the edges there the field is the vector of the moment in

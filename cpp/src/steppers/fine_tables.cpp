@@ -74,7 +74,8 @@ std::vector<std::string> fine_table_warnings(const scenario::Scene& scene, doubl
     if (closest == 0 || times[closest] - times[closest - 1] >= step * (1.0 - 1e-9)) continue;
     warnings.push_back(fmt::format(
         "the table {} has entries at {} and {} s, closer together than the step of {:g} s: equal "
-        "steps do not stop at entries, so the answer hangs on where they fall. Take smaller steps, "
+        "steps do not stop at entries, so the answer depends on where they fall. Take smaller "
+        "steps, "
         "or a time.tolerance, with which steps end at every entry",
         path, times[closest - 1], times[closest], step));
   }

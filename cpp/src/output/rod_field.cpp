@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cstddef>
 
 #include "der/catalog/quantities.hpp"
 #include "der/core/error.hpp"
@@ -29,7 +30,7 @@ std::string quantities_along_rods() {
 
 Error not_available(const Quantity& quantity, const Model& model) {
   return {"model_error", fmt::format("the model '{}' has no '{}': {}", model.name, quantity.name,
-                                     kNeeds[static_cast<int>(quantity.scope)])};
+                                     kNeeds[static_cast<std::size_t>(quantity.scope)])};
 }
 
 double RodField::interpolate(const SampleWeights& weights, const Model& model,

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <type_traits>
 #include <cstddef>
-#include <type_traits>
 
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"

@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 #include <cstddef>
+#include <type_traits>
 
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"

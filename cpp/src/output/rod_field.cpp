@@ -12,7 +12,7 @@ namespace der {
 namespace {
 
 /// The advice to whoever asks for a quantity that the model lacks, by the scope of the quantity.
-constexpr std::array kNeeds{"", "it has a sign in a plane only, take 'curvature'",
+constexpr std::array kNeeds{"", "it is one of planar rods",
                             "write 'model: spatial', or 'spatial_bend' for a rod that cannot twist",
                             "write 'model: spatial', in which sections count"};
 
@@ -28,8 +28,14 @@ std::string quantities_along_rods() {
 }  // namespace
 
 Error not_available(const Quantity& quantity, const Model& model) {
-  return {"model_error", fmt::format("the model '{}' has no '{}': {}", model.name, quantity.name,
-                                     kNeeds[static_cast<int>(quantity.scope)])};
+  const std::string& advice = quantity.advice;
+  return {"model_error",
+          fmt::format("the model '{}' has no '{}': {}", model.name, quantity.name,
+                      advice.empty() ? kNeeds[static_cast<std::size_t>(quantity.scope)] : advice)};
+}
+
+void RodField::sample_all(const Model& model, const State& state, double* values) const {
+  for (std::size_t i = 0; i < arc_length_.size(); ++i) values[i] = sample(i, model, state);
 }
 
 double RodField::interpolate(const SampleWeights& weights, const Model& model,

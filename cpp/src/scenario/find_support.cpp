@@ -1,0 +1,14 @@
+#include "der/scenario/find_support.hpp"
+
+#include "der/scenario/scenario.hpp"
+
+namespace der::scenario {
+
+std::optional<std::size_t> find_support(const Scene& scene, const std::string& word) {
+  for (std::size_t i = 0; i < scene.supports.size(); ++i) {
+    if (word == std::to_string(i)) return i;
+  }
+  return std::nullopt;
+}
+
+}  // namespace der::scenario

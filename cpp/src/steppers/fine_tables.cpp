@@ -60,8 +60,7 @@ std::vector<std::string> fine_table_warnings(const scenario::Scene& scene, doubl
     if (step > longest_resolving_step(course) * (1.0 + 1e-9)) {
       warnings.push_back(
           fmt::format("the sine {} has a period of {:g} s, which steps of {:g} s hardly see: take "
-                      "at least four "
-                      "steps in a period, better twenty, or a time.tolerance",
+                      "at least four steps in a period, better twenty, or a time.tolerance",
                       path, 1.0 / course.frequency, step));
     }
     std::size_t closest = 0;

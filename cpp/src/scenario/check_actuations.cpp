@@ -155,7 +155,7 @@ class ActuationCheck {
   [[nodiscard]] double least_together() const {
     std::vector<const Actuation*> all;
     std::vector<double> places{actuation_.from, actuation_.to};
-    std::vector<double> times;
+    std::vector<double> times{0.0};
     for (int i = 0; i <= number_; ++i) {
       const Actuation& other = context_.scene.actuations[static_cast<std::size_t>(i)];
       if (other.what != Actuated::Elongation || other.rod != actuation_.rod) continue;

@@ -287,7 +287,8 @@ def continuation(
         A scenario, the path of a scene file, or a dict with the keys of a scene file; its `time` or
         `analysis` does not count. Tables over time have their value at time 0.
     vary
-        ``loads``, ``supports`` (prescribed motions), or one of them by number, as ``loads.0``.
+        ``loads``, ``supports`` (prescribed motions), ``actuation`` (changes of rest shapes), or one
+        of them by number, as ``loads.0``; an actuation also by its name, as ``actuation.bend``.
     start, to
         First and last factor.
     step
@@ -334,7 +335,7 @@ def _with_analysis(scenario: Scenario, analysis: Any) -> Scenario:
     scene.get("output", {}).pop("every", None)
     if scene.get("start_from") == "equilibrium":
         del scene["start_from"]  # it is looked for anyway
-    for key in ("loads", "supports"):
+    for key in ("loads", "supports", "actuation"):
         if key in scene:
             scene[key] = _at_time_0(scene[key])
     return Scenario.from_dict({**scene, "analysis": analysis})

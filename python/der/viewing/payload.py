@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der._core import Rod, springs
+from der.actuated_stretches import ActuatedStretch, actuated_stretches
 from der.fields import fields_of
 from der.film import Film, failure_text, make_film, mode_shapes, round_speed, speed_text
 from der.natural_sizes import natural_size
@@ -90,6 +91,7 @@ def make_payload(result: RunData) -> dict[str, Any]:
         "supports": _supports(result, film.source[frames]),
         "springs": found_springs,
         **loads,
+        "actuation": _actuation(result, film.source[frames]),
         "symbol": symbol,
         "low": low.tolist(),
         "high": high.tolist(),
@@ -355,3 +357,39 @@ def _springs(result: RunData) -> list[dict[str, Any]]:
             }
         )
     return found
+
+
+def _actuation(result: RunData, source: NDArray[np.int64]) -> list[dict[str, Any]]:
+    """Return the band of each actuated stretch.
+
+    Its line goes through points at a ``share`` of the edge after a ``place``, each with the
+    ``profile`` there. Every frame of the page, which is frame ``source`` of the result, has the
+    value as a ``text`` and its ``size`` against the largest.
+    """
+    numbers = {rod.name: number for number, rod in enumerate(result.rods)}
+    found = []
+    for stretch in actuated_stretches(result):
+        rod = numbers[stretch.rod]
+        texts = [stretch.value_text(frame) for frame in source.tolist()]
+        found.append(
+            {
+                "name": stretch.name,
+                "rod": rod,
+                "level": stretch.level,
+                "points": _band(stretch, result.rods[rod]),
+                "sizes": stretch.shares[source].tolist(),
+                "texts": texts if any(text != texts[0] for text in texts) else texts[:1],
+            }
+        )
+    return found
+
+
+def _band(stretch: ActuatedStretch, rod: Rod) -> list[tuple[int, float, float]]:
+    """Return place, share and profile of the points of a stretch."""
+    at = stretch.samples(rod)
+    nodes = rod.line_arc_lengths
+    right = np.clip(np.searchsorted(nodes, at), 1, len(nodes) - 1)
+    shares = (at - nodes[right - 1]) / np.diff(nodes)[right - 1]
+    # The last point is where the stretch ends: it has the value before the jump there.
+    profile = stretch.profile_at(np.minimum(at, np.nextafter(stretch.end, stretch.start)))
+    return list(zip((right - 1).tolist(), shares.tolist(), profile.tolist(), strict=True))

@@ -25,6 +25,8 @@ QUANTITIES = {
 _SAMPLES = 33
 #: A value that is smaller than this share of the largest is 0: a sine that ends at half a period.
 _ROUNDING = 1e-12
+#: An arc length is on the end of a stretch if it is off by less than this share of its length.
+_SAME_PLACE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,9 +74,9 @@ class ActuatedStretch:
         return np.asarray(sizes / largest if largest > 0.0 else 0.0 * sizes)
 
     def profile_at(self, arc_lengths: Array) -> Array:
-        """Return the profile, from 0 to 1, at arc lengths [m]; after a jump, and 0 outside."""
+        """Return the profile, from 0 to 1, at arc lengths [m]: 0 outside, and not at the ends."""
         along = (arc_lengths - self.start) / (self.end - self.start)
-        covered = (along >= 0.0) & (along < 1.0)
+        covered = (along >= -_SAME_PLACE) & (along <= 1.0 + _SAME_PLACE)
         if self.profile == "constant":
             return covered.astype(np.float64)
         inside = along if self.profile == "linear" else np.sin(np.pi * along) ** 2

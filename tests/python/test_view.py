@@ -499,6 +499,25 @@ def test_browser_draws_loads_and_supports(browser, tube, tmp_path):
     assert_no_errors(browser)
 
 
+def test_browser_draws_actuated_stretches(browser, swing, tmp_path):
+    """A sleeve around the stretch, and its value above the scene."""
+    table = {"times": [0, 0.2], "values": [0, -4]}
+    part = {"name": "bend", "rod": "arm", "from": 0.35, "to": 0.75}
+    swing["actuation"] = [{**part, "natural_curvature": table}]
+    swing["loads"] = []
+    open_page(browser, der.run(swing).view(tmp_path / "view.html"))
+    legend = "document.getElementById('legend').textContent"
+    assert browser.execute_script(f"return {legend}") == "bend: curvature 0 1/m"
+    sleeve = "document.getElementById('scene').data.at(-2)"
+    x = np.array(browser.execute_script(f"return {sleeve}.x"))
+    assert [x.min(), x.max()] == pytest.approx([0.35, 0.75], abs=1e-6)
+    move_slider(browser, 20)
+    wait_for(browser, f"{legend} == 'bend: curvature -4 1/m'")
+    values = browser.execute_script(f"return {sleeve}.intensity")
+    assert set(values) == {-1}
+    assert_no_errors(browser)
+
+
 def labels(browser):
     """Places on the screen [pixels] of the texts in the scene besides ticks, by text."""
     return browser.execute_script(

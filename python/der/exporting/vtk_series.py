@@ -205,7 +205,7 @@ def _mode_data(result: RunData, rods: list[RodFields]) -> PointData:
 def _actuation_data(
     stretches: list[ActuatedStretch], rods: list[RodFields], frame: int
 ) -> PointData:
-    """Return what each actuation adds to the rest shape at the nodes; where it jumps, after it."""
+    """Return what each actuation adds to the rest shape at the nodes, also those at its ends."""
     data: PointData = {}
     for stretch in stretches:
         profile = np.concatenate(

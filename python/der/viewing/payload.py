@@ -390,6 +390,5 @@ def _band(stretch: ActuatedStretch, rod: Rod) -> list[tuple[int, float, float]]:
     nodes = rod.line_arc_lengths
     right = np.clip(np.searchsorted(nodes, at), 1, len(nodes) - 1)
     shares = (at - nodes[right - 1]) / np.diff(nodes)[right - 1]
-    # The last point is where the stretch ends: it has the value before the jump there.
-    profile = stretch.profile_at(np.minimum(at, np.nextafter(stretch.end, stretch.start)))
+    profile = stretch.profile_at(at)
     return list(zip((right - 1).tolist(), shares.tolist(), profile.tolist(), strict=True))

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-ANGLES = np.deg2rad([90.0, 210.0, 330.0])  # where the chambers are in the section
+ANGLES = np.deg2rad([90.0, 210.0, 330.0])  # towards which each chamber bends
 BENDS = 0.25  # 1/(m kPa): curvature by the pressure in one chamber
 STRETCHES = 0.001  # 1/kPa: elongation by the pressure in one chamber
 

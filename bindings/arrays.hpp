@@ -2,7 +2,10 @@
 
 #include <pybind11/numpy.h>
 
+#include <vector>
+
 #include "der/core/types.hpp"
+#include "der/output/reactions.hpp"
 
 namespace der::python {
 
@@ -20,6 +23,15 @@ inline Array read_only_view(const Vector& data, Index rows, Index columns, py::h
   Array view({py::ssize_t{rows}, py::ssize_t{columns}}, data.data(), owner);
   view.attr("setflags")(false);
   return view;
+}
+
+/// The places of reactions: number of the support, name of the rod, rest arc length [m].
+inline py::list places_of(const std::vector<Reaction>& reactions) {
+  py::list places;
+  for (const Reaction& reaction : reactions) {
+    places.append(py::make_tuple(reaction.support, reaction.rod, reaction.arc_length));
+  }
+  return places;
 }
 
 }  // namespace der::python

@@ -20,6 +20,8 @@ const char* kind_name(QuantityKind kind) {
       return "position";
     case QuantityKind::Velocity:
       return "velocity";
+    case QuantityKind::Tangent:
+      return "tangent";
     case QuantityKind::Turn:
       return "turn";
     case QuantityKind::Bend:
@@ -30,6 +32,8 @@ const char* kind_name(QuantityKind kind) {
       return "section";
     case QuantityKind::Ring:
       return "ring";
+    case QuantityKind::Support:
+      return "support";
     case QuantityKind::Energy:
       return "energy";
   }
@@ -55,10 +59,12 @@ void bind_quantities(py::module_& module) {
       .def_readonly("unit", &Quantity::unit, "SI unit; empty for a pure number.")
       .def_property_readonly(
           "kind", [](const Quantity& quantity) { return kind_name(quantity.kind); },
-          "Where it is known: position, velocity (at nodes), turn (at nodes that bend), section "
+          "Where it is known: position, velocity (at nodes), tangent (at any arc length), turn (at "
+          "nodes that bend), section "
           "(where "
           "sections bend or twist), bend, edge "
-          "(at any arc length, with jumps), energy (of a rod or the whole model, at no place).")
+          "(at any arc length, with jumps), ring (of a whole ring), support (of a support), "
+          "energy (of a rod or the whole model, at no place).")
       .def_readonly("meaning", &Quantity::meaning, "In words.")
       .def_readonly("is_component", &Quantity::is_component,
                     "Whether it is a component of the position or of the velocity.")

@@ -152,11 +152,11 @@ void bind_recording(py::module_& module) {
       .def_property_readonly("velocities", &vectors<&FrameData::velocities>,
                              "Node velocities [m/s], shape (frames, nodes, dim).")
       .def_property_readonly("sections", &sections,
-                             "Of the model ``spatial``: angles of the edges [rad], their rates "
-                             "[rad/s], both of shape\n"
-                             "(frames, edges), and the frames that they count from, shape (frames, "
-                             "edges, 8). None of\n"
-                             "other models.")
+                             "Angles of the edges [rad] and their rates [rad/s], both of shape "
+                             "(frames, edges), and\n"
+                             "the frames that they count from, shape (frames, edges, 8), in the "
+                             "model ``spatial``;\n"
+                             "None in other models.")
       .def_property_readonly("energies", &energy_columns, "Energies [J] by name, shape (frames,).")
       .def_property_readonly("work", &work_columns,
                              "Works done and energy lost since the start [J] by name, "

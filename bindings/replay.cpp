@@ -143,6 +143,21 @@ Array directors(Replay& replay, const Frames& positions, const Frames& velocitie
                table.data());
 }
 
+py::tuple reactions(Replay& replay, const Frames& positions, const Frames& velocities,
+                    const Frames& theta, const Frames& section_frames, const Frames& spin) {
+  const SavedFrames frames = to_frames(replay, positions, velocities, theta, section_frames);
+  const Index edges = replay.model().num_dofs() - replay.model().dofs.num_positions();
+  const ReactionSeries series = replay.reactions(
+      frames,
+      to_table(spin, "spin", "(frames, edges)", py::make_tuple(replay.num_frames(), edges)));
+  const auto vectors = [](const FrameTable& table) {
+    return Array({py::ssize_t{table.rows()}, py::ssize_t{table.cols() / 3}, py::ssize_t{3}},
+                 table.data());
+  };
+  return py::make_tuple(places_of(series.places), vectors(series.points), vectors(series.forces),
+                        vectors(series.moments));
+}
+
 void bind_held_node(py::module_& module) {
   py::class_<HeldNode>(module, "HeldNode", "A node that a support of the scene holds.")
       .def_readonly("rod", &HeldNode::rod, "Name of the rod.")
@@ -195,6 +210,11 @@ void bind_replay(py::module_& module) {
            py::arg("section_frames"),
            "Return director 1 of the section of each edge, shape (frames, edges, 3); the arrays as "
            "for\n`along`.")
+      .def("reactions", &reactions, py::arg("positions"), py::arg("velocities"), py::arg("theta"),
+           py::arg("section_frames"), py::arg("spin"),
+           "Return places of supports, and points [m], forces [N] and moments [N m] on the rods "
+           "there,\neach of shape (frames, places, 3); the arrays as for `along`, `spin` [rad/s] "
+           "of shape (frames, edges).")
       .def("held_nodes", &held_nodes, py::arg("frame"),
            "Return every node that a support of the scene holds, with the angle of clamps at a "
            "frame.\n\nRaises DerError if there is no such frame.")

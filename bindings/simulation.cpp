@@ -70,6 +70,22 @@ Array present_directors(const PySimulation& simulation) {
   return result;
 }
 
+py::tuple reaction_vectors(const PySimulation& simulation) {
+  const Simulation& engine = simulation.engine();
+  Reactions reader(engine.scenario().scene(), engine.model());
+  const std::vector<Reaction>& reactions = reader.evaluate(engine.model(), engine.state());
+  const auto vectors = [&](Vec3 Reaction::* vector) {
+    Array table({static_cast<py::ssize_t>(reactions.size()), py::ssize_t{3}});
+    for (std::size_t i = 0; i < reactions.size(); ++i) {
+      const Vec3& from = reactions[i].*vector;
+      std::copy_n(from.data(), 3, table.mutable_data(static_cast<py::ssize_t>(i), 0));
+    }
+    return table;
+  };
+  return py::make_tuple(places_of(reactions), vectors(&Reaction::point), vectors(&Reaction::force),
+                        vectors(&Reaction::moment));
+}
+
 py::dict probe_values(const PySimulation& simulation) {
   const Simulation& engine = simulation.engine();
   py::dict values;
@@ -289,6 +305,10 @@ void bind_facts(PySimulationClass& cls) {
           "energies",
           [](const PySimulation& s) { return energies(s.engine().model(), s.engine().state()); },
           "Energies of the present state [J].")
+      .def("reaction_vectors", &reaction_vectors,
+           "Places of the supports (number, rod, arc length [m]), and points [m], forces [N] and "
+           "moments [N m]\non the rods there, each of shape (places, 3); `reactions` makes objects "
+           "of them.")
       .def_property_readonly("probes", &probe_values,
                              "Present value of each probe of the scene, by name, in its SI unit.");
 }

@@ -1,4 +1,4 @@
-"""What all scenes share: the second that is simulated, and the result of a run of a code."""
+"""The common parts of all scenes: the simulated second, and the result of a run of a code."""
 
 from __future__ import annotations
 

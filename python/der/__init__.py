@@ -64,6 +64,7 @@ from der.errors import (
 )
 from der.exporting import export
 from der.probe_series import ProbeSeries
+from der.reactions import Reaction
 from der.result import Result
 from der.run_folder_reader import open_run
 from der.simulation import Simulation, continuation, equilibrium, run
@@ -93,6 +94,7 @@ __all__ = [
     "Path",
     "ProbeSeries",
     "Quantity",
+    "Reaction",
     "Result",
     "Rod",
     "Scenario",

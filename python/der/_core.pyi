@@ -122,6 +122,19 @@ class Replay:
         theta: ArrayLike,
         section_frames: ArrayLike,
     ) -> NDArray[np.float64]: ...
+    def reactions(
+        self,
+        positions: ArrayLike,
+        velocities: ArrayLike,
+        theta: ArrayLike,
+        section_frames: ArrayLike,
+        spin: ArrayLike,
+    ) -> tuple[
+        list[tuple[int, str, float]],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+    ]: ...
     def held_nodes(self, frame: int) -> list[HeldNode]: ...
     def load_arc_lengths(self, number: int) -> list[float]: ...
 
@@ -296,6 +309,14 @@ class Simulation:
     def directors(self) -> NDArray[np.float64]: ...
     @property
     def extra_force(self) -> NDArray[np.float64]: ...
+    def reaction_vectors(
+        self,
+    ) -> tuple[
+        list[tuple[int, str, float]],
+        NDArray[np.float64],
+        NDArray[np.float64],
+        NDArray[np.float64],
+    ]: ...
     @property
     def node_masses(self) -> NDArray[np.float64]: ...
     @property

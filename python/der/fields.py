@@ -27,7 +27,7 @@ def fields_of(model: Model) -> dict[str, Quantity]:
         quantity
         for quantity in quantities()
         if quantity.is_available(model)
-        and quantity.kind not in ("turn", "ring", "energy")
+        and quantity.kind not in ("turn", "ring", "support", "energy")
         and not quantity.is_component
     ]
     along_rods.sort(key=is_motion)

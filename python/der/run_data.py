@@ -19,6 +19,7 @@ from der.analyses import (
     make_path,
 )
 from der.probe_series import ProbeSeries
+from der.reactions import Reaction, make_reactions
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,6 +193,23 @@ class RunData:
         frames do not tell; this concerns the values at the clamp and at the node or edge beside it.
         """
         return self._replay.along(rod, quantity, *self._frames)
+
+    def reactions(self) -> list[Reaction]:
+        """Return what the supports bear at every frame, one for each place of each.
+
+        Forces and moments are those that the supports exert on the rods, as
+        `Simulation.reactions` gives them.
+
+        Notes
+        -----
+        Frames do not tell of forces that a program added, nor of supports that
+        `Simulation.prescribe` moved: these stand as the scene has them.
+        """
+        count = len(self.positions)
+        spin = np.empty((count, 0)) if self.sections is None else self.sections.spin
+        positions, velocities, theta, frames = self._frames
+        vectors = self._replay.reactions(positions, velocities, theta, frames, spin)
+        return make_reactions(*vectors, self.model.dimension)
 
     def held_nodes(self, frame: int) -> list[HeldNode]:
         """Return every node that a support of the scene holds, clamps turned as at a frame.

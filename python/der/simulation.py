@@ -15,6 +15,7 @@ from der._core import RunRecording, Scenario
 from der.analyses import Modes
 from der.errors import UnreliableResultWarning, error_for, warn
 from der.progress import ProgressFunction, ProgressLine
+from der.reactions import Reaction, make_reactions
 from der.result import Result, to_result
 from der.scene_loads import follows_time, value_at
 
@@ -164,6 +165,20 @@ class Simulation(_core.Simulation):
         two nodes.
         """
         return _symmetric(*self.lower_mass())
+
+    def reactions(self) -> list[Reaction]:
+        """Return what the supports bear at the present state, one for each place of each.
+
+        Forces and moments are those that the supports exert on the rods: of components that are
+        held or moved, of clamps and of springs. In a motion they hold the inertia of held nodes and
+        the drag on them. See docs/mechanics.md, "Reactions".
+
+        Examples
+        --------
+        >>> wall = simulation.reactions()[0]
+        >>> wall.force, wall.moment
+        """
+        return make_reactions(*self.reaction_vectors(), self.model.dimension)
 
     def _end_time(self, until: float | None) -> float:
         if until is None:

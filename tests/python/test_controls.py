@@ -1,8 +1,10 @@
 """What a program sets by its name: the calls of Python, and that a run keeps it."""
 
 import json
+import os
 import pickle
 import subprocess
+import sys
 from pathlib import Path
 
 import der
@@ -10,6 +12,7 @@ import numpy as np
 import pytest
 from der.scene_loads import acting_loads, value_at
 
+DER_RUN = os.environ.get("DER_RUN", str(Path(sys.executable).with_name("der_run")))
 SCENE = {
     "title": "Controlled rod",
     "rods": [
@@ -137,7 +140,7 @@ def test_a_run_goes_on_from_a_checkpoint_with_what_was_set(tmp_path):
     scene = tmp_path / "part" / "scene.yaml"
     command = [DER_RUN, scene, "--out", tmp_path / "part", "--resume"]
     subprocess.run(command, check=True, capture_output=True)
-    resumed = der.Result.load(tmp_path / "part")
+    resumed = der.open_run(tmp_path / "part")
     assert np.array_equal(resumed.positions[-1], whole.positions[-1])
     assert resumed.work["loads"][-1] == whole.work["loads"][-1]
 

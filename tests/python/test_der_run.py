@@ -318,7 +318,7 @@ def test_an_edited_scene_in_the_run_folder_is_not_replaced(scene: Path, tmp_path
 
 
 def test_check_says_how_large_the_results_will_be(scene: Path, tmp_path: Path) -> None:
-    assert "1,001 frames, about 247 kB" in der_run(scene, "--check").stdout
+    assert "1,001 frames, about 255 kB" in der_run(scene, "--check").stdout
     changes = ("time.duration=9e6", "output.every=0.01", "rods.0.nodes=10001")
     endless = [word for change in changes for word in ("--set", change)]
     assert "900,000,001 frames, about 288 TB" in der_run(scene, "--check", *endless).stdout

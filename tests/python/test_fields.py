@@ -84,13 +84,13 @@ def test_every_quantity_where_the_rod_has_it(swing):
     model = der.Model(der.Scenario.from_dict(swing))
     rod = model.rods[0]
     middles = 0.5 * (rod.arc_lengths[1:] + rod.arc_lengths[:-1])
-    of_kind = dict.fromkeys(("position", "velocity", "bend"), rod.arc_lengths)
+    of_kind = dict.fromkeys(("position", "velocity", "bend", "tangent"), rod.arc_lengths)
     of_kind["turn"] = rod.arc_lengths[:-1]
     of_kind["edge"] = np.r_[0.0, middles, rod.arc_lengths[-1]]
     places = {
         one.name: of_kind[one.kind]
         for one in der.quantities()
-        if one.kind != "energy" and one.is_available(model)
+        if one.kind not in ("energy", "support") and one.is_available(model)
     }
     assert len(places) >= 10
     swing["output"]["probes"] = {
@@ -109,15 +109,16 @@ def test_every_quantity_where_the_rod_has_it(swing):
 
 def test_exports_have_every_quantity_with_a_value_at_all_nodes(swing):
     """Components are exported as vectors; a turning angle has no value between nodes that bend."""
-    along_rods = [q.name for q in der.quantities() if q.kind not in ("ring", "energy")]
-    left_out = {"x", "y", "z", "vx", "vy", "vz", "turning_angle"}
+    of_whole = ("ring", "energy", "support")
+    along_rods = [q.name for q in der.quantities() if q.kind not in of_whole]
+    left_out = {"x", "y", "z", "vx", "vy", "vz", "turning_angle", "tz"}
     of_sections = {quantity.name for quantity in der.quantities() if quantity.kind == "section"}
     fields = fields_of(der.Model(der.Scenario.from_dict(swing)))
     assert set(fields) == set(along_rods) - left_out - of_sections
     assert [name for name in fields if fields[name].kind == "velocity"] == list(fields)[-1:]
     swing["rods"][0]["material"]["poissons_ratio"] = 0.3
     spatial = fields_of(der.Model(der.Scenario.from_dict(swing | {"model": "spatial"})))
-    assert set(spatial) == set(fields) | of_sections
+    assert set(spatial) == (set(fields) | of_sections | {"tz"}) - {"slope"}
 
 
 def test_every_quantity_has_a_natural_size(swing):

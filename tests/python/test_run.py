@@ -25,7 +25,7 @@ def test_result_holds_what_the_scene_asks_for(tube):
     assert result.positions.shape == result.velocities.shape == (26, 21, 2)
     assert set(result.energies) == {"kinetic", "stretch", "bend", "spring", "gravity"}
     assert all(values.shape == (26,) for values in result.energies.values())
-    assert set(result.work) == {"loads", "supports", "drag", "numerical", "solver"}
+    assert set(result.work) == {"loads", "supports", "actuation", "drag", "numerical", "solver"}
     assert all(values.shape == (26,) for values in result.work.values())
     assert list(result.probes) == ["deflection", "roller"]
     assert result.probes["roller"] == pytest.approx(result.positions[:, -1, 0])

@@ -16,7 +16,7 @@ def dumped(simulation) -> bytes:
 @pytest.fixture
 def moving(swing):
     """A swing whose clamp a program turns, in the middle of its run."""
-    swing["supports"][0]["prescribe"] = {"y": 0, "angle": 0}
+    swing["supports"][0] |= {"name": "pin", "prescribe": {"y": 0, "angle": 0}}
     swing["time"]["integrator"] = "bdf2"
     simulation = der.Simulation(swing)
     simulation.extra_force[-1] = [0.1, 0.2]
@@ -110,6 +110,14 @@ FAILURES = {
         (nothing, lambda s: s.prescribe(0, y=1.0, angle=math.nan)),
         (nothing, lambda s: s.prescribe(0, y=0.5, x=1.0)),
     ],
+    "set": [
+        (nothing, lambda s: s.set("pni", 1.0)),
+        (nothing, lambda s: s.set("pin", {"y": 0.5, "angle": math.nan})),
+        (nothing, lambda s: s.set("pin", [1.0])),
+        (nothing, lambda s: s.set("pin.angle", "left")),
+        (nothing, lambda s: s.set("pin.angle", 1.0, over=-1.0)),
+    ],
+    "value": [(nothing, lambda s: s.value("pin.x"))],
     "modes": [
         (nothing, lambda s: s.modes()),
         (nothing, lambda s: s.modes(0)),

@@ -76,8 +76,8 @@ def held(at):
     return {"rod": "rod", "at": at, "spring": {"rotational_stiffness": SPRINGS.tolist()}}
 
 
-#: What acts inside: for the reference, as a load of the scene or as a support, and the natural
-#: shape. (A spring assumes that the drawn shape is the natural one.)
+#: The action inside the rod: for the reference, as a load of the scene or as a support, and the
+#: natural shape. (A spring assumes that the drawn shape is the natural one.)
 CASES = {
     "fixed": (fixed, lambda at: moment(at, False), None, CURVED),
     "follower": (following, lambda at: moment(at, True), None, CURVED),

@@ -177,7 +177,7 @@ void Assembler::ScatterMaps::assemble(const Model& model, const Configuration& h
         }
       },
       kKinds);
-  add_circulatory_forces(model.elements->circulatory, here, -1.0, gradient);
+  add_circulatory_forces(circulatory_loads(*model.elements), here, -1.0, gradient);
 }
 
 void Assembler::gradient(const Configuration& here, Vector& gradient) const {

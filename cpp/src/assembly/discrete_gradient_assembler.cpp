@@ -46,7 +46,7 @@ void DiscreteGradientAssembler::gradient(const Configuration& middle, Vector& gr
       }
     }
   });
-  add_circulatory_forces(model_.elements->circulatory, middle, -1.0, gradient);
+  add_circulatory_forces(circulatory_loads(*model_.elements), middle, -1.0, gradient);
 }
 
 void DiscreteGradientAssembler::gradient_and_hessian(const Configuration& middle, Vector& gradient,
@@ -69,7 +69,7 @@ void DiscreteGradientAssembler::gradient_and_hessian(const Configuration& middle
 double DiscreteGradientAssembler::moment_work(const Configuration& middle,
                                               const Vector& displacement) {
   reach_end(middle);
-  double work = circulatory_work(model_.elements->circulatory, middle, displacement);
+  double work = circulatory_work(circulatory_loads(*model_.elements), middle, displacement);
   for_each_list(*model_.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if constexpr (Kernel::kTerm == EnergyTerm::Load) {

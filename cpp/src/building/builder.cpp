@@ -1,5 +1,6 @@
 #include "der/building/builder.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -7,6 +8,7 @@
 #include "building/load_variation.hpp"
 #include "building/spatial_rod_elements.hpp"
 #include "der/building/rod_elements.hpp"
+#include "der/catalog/quantities.hpp"
 #include "der/core/constants.hpp"
 #include "der/core/error.hpp"
 #include "der/core/index.hpp"
@@ -234,6 +236,20 @@ void check_spin_inertia(const Model& model) {
   }
 }
 
+/// Lets the state follow whole turns of planar rods whose slope is probed and which no clamp holds.
+void follow_slopes(const scenario::Scene& scene, Model& model) {
+  if (model.dimension != 2) return;
+  for (const auto& probe : scene.output.probes) {
+    if (probe.quantity != kSlope) continue;
+    const RodLayout& rod = model.rod(probe.rod.value());
+    const Edge first = rod.edge(0, model);
+    const bool followed =
+        std::any_of(model.followed_edges.begin(), model.followed_edges.end(),
+                    [&](const FollowedEdge& other) { return other.edge.first == first.first; });
+    if (rod.clamps.empty() && !followed) follow_edge(rod, 0, model);
+  }
+}
+
 void hold_dofs(Model& model) {
   std::vector<Index> held;
   for (const HeldDof& support : model.held) {
@@ -269,6 +285,7 @@ Model build_model(const scenario::Scene& scene) {
     std::visit([&](const auto& l) { add_load(l, LoadContext{scene, load.name}, model); },
                load.what);
   }
+  follow_slopes(scene, model);
   model.damped = (model.damping.array() != 0.0).any();
   hold_dofs(model);
   if (scene.is_dynamic()) check_spin_inertia(model);

@@ -7,6 +7,14 @@
 
 namespace der {
 
+std::vector<CirculatoryLoad>& circulatory_loads(ElementLists& elements) {
+  return elements.circulatory;
+}
+
+const std::vector<CirculatoryLoad>& circulatory_loads(const ElementLists& elements) {
+  return elements.circulatory;
+}
+
 template <class Kernel>
 ElementList<Kernel>& elements_of(ElementLists& elements) {
   return std::get<ElementList<Kernel>>(elements.lists);

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "der/core/index.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/circulatory_load.hpp"
 #include "der/model/frames.hpp"
 #include "der/model/location.hpp"
 #include "der/model/section_place.hpp"
@@ -80,7 +80,7 @@ Mat3 compliance_of(const SectionPlace& place, const SpatialMoment& moment, const
 }
 
 Index add(CirculatoryLoad&& load, Model& model) {
-  auto& loads = model.elements->circulatory;
+  auto& loads = circulatory_loads(*model.elements);
   loads.push_back(std::move(load));
   return static_cast<Index>(loads.size()) - 1;
 }

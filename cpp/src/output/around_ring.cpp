@@ -64,6 +64,15 @@ class RingField : public RodField {
     return weights.size() == 1 ? own_->sample(weights.front().sample, model, state)
                                : own_->interpolate(weights, model, state);
   }
+  void sample_all(const Model& model, const State& state, double* values) const override {
+    own_values_.resize(own_->arc_length().size());
+    own_->sample_all(model, state, own_values_.data());
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const SampleWeights& weights = samples_[i].own;
+      values[i] = weights.size() == 1 ? own_values_[weights.front().sample]
+                                      : own_->interpolate(weights, model, state);
+    }
+  }
   [[nodiscard]] double interpolate(const SampleWeights& weights, const Model& model,
                                    const State& state) const override {
     own_weights_.clear();
@@ -90,6 +99,7 @@ class RingField : public RodField {
   std::unique_ptr<RodField> own_;
   std::vector<Sample> samples_;
   mutable SampleWeights own_weights_;  // kept, so that reading allocates nothing
+  mutable std::vector<double> own_values_;
 };
 
 }  // namespace

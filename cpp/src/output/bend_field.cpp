@@ -120,6 +120,13 @@ class BendField : public EdgewiseField<double> {
     return own + actuated_.strains(place.arc_length, place.loads_here_are_beyond, model, state)[0];
   }
 
+  /// The actuated curvature is what its profile has at the place, not a line between samples.
+  [[nodiscard]] double interpolate(const SampleWeights& weights, const Model& model,
+                                   const State& state) const override {
+    const double own = RodField::interpolate(weights, model, state);
+    return moment_ ? own : own + bulge(actuated_, weights, model, state)[0];
+  }
+
  private:
   /// Where the chain has a moment: at a node, at the pivot of a clamp, and, as it must be, at an
   /// end that is not clamped.

@@ -6,6 +6,7 @@
 #include "der/core/index.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
+#include "output/actuated_shape.hpp"
 #include "output/moment_recovery.hpp"
 #include "output/rod_field.hpp"
 
@@ -50,6 +51,22 @@ class EdgewiseField : public RodField {
   }
 
   [[nodiscard]] const Sample& sample_at(std::size_t i) const { return samples_[i]; }
+
+  /// By how much the actuated strains at a place between samples differ from the line between
+  /// these.
+  [[nodiscard]] Vec3 bulge(const ActuatedShape& actuated, const SampleWeights& weights,
+                           const Model& model, const State& state) const {
+    Vec3 line = Vec3::Zero();
+    if (weights.size() < 2 || !actuated.is_strained()) return line;
+    double s = 0.0;
+    for (const auto& [sample, weight] : weights) {
+      const MomentRecovery::Place& place = samples_[sample].place;
+      s += weight * place.arc_length;
+      line +=
+          weight * actuated.strains(place.arc_length, place.loads_here_are_beyond, model, state);
+    }
+    return actuated.strains(s, false, model, state) - line;
+  }
 
   /// The value at a place of an edge.
   [[nodiscard]] Value value(Index edge, const MomentRecovery::Place& place, const Model& model,

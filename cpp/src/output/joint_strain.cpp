@@ -158,6 +158,19 @@ Vec3 moment_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
              : response_of<TangentCurvature>(joint, rod, model, state);
 }
 
+Vec3 cell_moment(const RodJoint& joint, const RodLayout& rod, const Model& model,
+                 const State& state) {
+  if (model.has_sections()) return moment_of(joint, rod, model, state);
+  const auto [before, after] = directions(joint, rod, model, state);
+  const Vec3 axis = before.cross(after);
+  const double angle = std::atan2(axis.norm(), before.dot(after));
+  const CurvatureValue curvature = rod.curvature == scenario::CurvatureMeasure::Angle
+                                       ? AngleCurvature::of(angle)
+                                       : TangentCurvature::of(angle);
+  const double moment = rod.EI_1 / joint.bend_length * curvature.kappa * curvature.first;
+  return moment * axis.normalized();
+}
+
 Vec3 bend_axis(const RodJoint& joint, const RodLayout& rod, const Model& model,
                const State& state) {
   const auto [before, after] = directions(joint, rod, model, state);

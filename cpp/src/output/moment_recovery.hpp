@@ -50,7 +50,7 @@ class MomentRecovery {
   /// Moment [N m] at the start or the end of the rod, which are not clamped.
   [[nodiscard]] Vec3 at_end(bool last, const Model& model, const State& state) const;
 
-  /// What an edge takes of moments beyond the whole of them [N m], next to an end.
+  /// The moment [N m] that an edge next to an end takes beyond the whole of the moments on it.
   [[nodiscard]] Vec3 excess(Index edge, const Model& model, const State& state) const;
   /// Whether moments of loads and springs make a difference on an edge.
   [[nodiscard]] bool has_moments(Index edge) const {

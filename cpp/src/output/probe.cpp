@@ -9,6 +9,8 @@
 #include "der/catalog/quantities.hpp"
 #include "der/core/error.hpp"
 #include "der/model/location.hpp"
+#include "der/output/reactions.hpp"
+#include "der/scenario/find_support.hpp"
 #include "der/scenario/scenario.hpp"
 #include "output/energy_reader.hpp"
 #include "output/rod_field.hpp"
@@ -150,9 +152,8 @@ class ExtremeReader : public ProbeReader {
     if (!start_.empty()) {
       values_[next++] = sign_ * field_->interpolate(start_, model, state);
     }
-    for (std::size_t i = 0; i < field_->arc_length().size(); ++i) {
-      values_[next++] = sign_ * field_->sample(i, model, state);
-    }
+    field_->sample_all(model, state, &values_[next]);
+    for (std::size_t i = 0; i < field_->arc_length().size(); ++i) values_[next++] *= sign_;
     if (!end_.empty()) values_[next] = sign_ * field_->interpolate(end_, model, state);
   }
 
@@ -176,6 +177,26 @@ class RingReader : public ProbeReader {
  private:
   RodReading read_;
   RodLayout rod_;
+};
+
+/// What a support bears, at all of its places together.
+class SupportReader : public ProbeReader {
+ public:
+  SupportReader(ReactionReading read, std::size_t support, const scenario::Scene& scene,
+                const Model& model)
+      : read_(read), reactions_(scene, model, support) {}
+  double value(const Model& model, const State& state) override {
+    Reaction sum;
+    for (const Reaction& reaction : reactions_.evaluate(model, state)) {
+      sum.force += reaction.force;
+      sum.moment += reaction.moment;
+    }
+    return read_(sum);
+  }
+
+ private:
+  ReactionReading read_;
+  Reactions reactions_;
 };
 
 SampleWeights sample_weights(const std::vector<Weighted>& weights, const RodLayout& rod) {
@@ -208,13 +229,17 @@ SampleWeights point_weights(const scenario::Probe& probe, QuantityKind kind, con
 }
 
 std::unique_ptr<ProbeReader> make_reader(const scenario::Probe& probe, const Quantity& quantity,
-                                         const Model& model) {
+                                         const scenario::Scene& scene, const Model& model) {
   if (quantity.kind == QuantityKind::Energy) {
     return make_energy_reader(quantity.energies, probe.rod, model);
   }
+  if (!is_available(quantity, model)) throw not_available(quantity, model);
+  if (quantity.kind == QuantityKind::Support) {
+    const std::size_t support = scenario::find_support(scene, probe.support.value()).value();
+    return std::make_unique<SupportReader>(quantity.read_reaction, support, scene, model);
+  }
   const RodLayout& rod = model.rod(probe.rod.value());
   if (quantity.kind == QuantityKind::Ring) {
-    if (!is_available(quantity, model)) throw not_available(quantity, model);
     return std::make_unique<RingReader>(quantity.read_rod, rod);
   }
   auto field = make_probed_field(probe, quantity, rod, model);
@@ -229,19 +254,20 @@ std::unique_ptr<ProbeReader> make_reader(const scenario::Probe& probe, const Qua
 
 }  // namespace
 
-Probe::Probe(const scenario::Probe& probe, const Model& model) : name_(probe.name) {
+Probe::Probe(const scenario::Probe& probe, const scenario::Scene& scene, const Model& model)
+    : name_(probe.name) {
   const Quantity* quantity = find_quantity(probe.quantity);
   if (quantity == nullptr) {
     throw Error("model_error",
                 "probe '" + probe.name + "': there is no quantity '" + probe.quantity + "'");
   }
   unit_ = quantity->unit;
-  reader_ = make_reader(probe, *quantity, model);
+  reader_ = make_reader(probe, *quantity, scene, model);
 }
 
 std::vector<Probe> make_probes(const scenario::Scene& scene, const Model& model) {
   std::vector<Probe> probes;
-  for (const auto& probe : scene.output.probes) probes.emplace_back(probe, model);
+  for (const auto& probe : scene.output.probes) probes.emplace_back(probe, scene, model);
   return probes;
 }
 

@@ -5,11 +5,13 @@
 
 #include "der/model/model.hpp"
 
+#include "der/output/reactions.hpp"
 #include "output/bend_field.hpp"
 #include "output/motion_field.hpp"
 #include "output/ring_numbers.hpp"
 #include "output/section_field.hpp"
 #include "output/stretch_field.hpp"
+#include "output/tangent_field.hpp"
 
 namespace der {
 namespace {
@@ -34,9 +36,20 @@ Quantity field(std::string name, std::string unit, QuantityKind kind, std::strin
   return {std::move(name), std::move(unit), kind, std::move(meaning), maker, {}, false};
 }
 
-Quantity in(QuantityScope scope, Quantity quantity) {
+/// `advice` tells what to take in other models.
+Quantity in(QuantityScope scope, Quantity quantity, std::string advice = {}) {
   quantity.scope = scope;
+  quantity.advice = std::move(advice);
   return quantity;
+}
+
+template <int number>
+Quantity tangent(std::string name, std::string meaning) {
+  const RodFieldMaker maker = [](const RodLayout& rod, const Model& model) {
+    return make_tangent_field(number, rod, model);
+  };
+  return in(number < 2 ? QuantityScope::All : QuantityScope::Space,
+            field(std::move(name), "", QuantityKind::Tangent, std::move(meaning), maker));
 }
 
 template <SectionQuantity quantity>
@@ -66,7 +79,16 @@ std::vector<Quantity> quantities_along_rods() {
       in(QuantityScope::Planar,
          field("turning_angle", "rad", Kind::Turn,
                "angle from the edge before a node to the edge after it, positive counter-clockwise",
-               make_turning_angle_field)),
+               make_turning_angle_field),
+         "it has a sign in a plane only, take 'curvature'"),
+      in(QuantityScope::Planar,
+         field(std::string(kSlope), "rad", Kind::Tangent,
+               "angle of the tangent from the x axis, counter-clockwise, whole turns included",
+               make_slope_field),
+         "an angle from an axis tells no direction in space, take 'tx', 'ty' and 'tz'"),
+      tangent<0>("tx", "x component of the unit tangent, toward the end of the rod"),
+      tangent<1>("ty", "y component of the unit tangent"),
+      tangent<2>("tz", "z component of the unit tangent, in space"),
       field("curvature", "1/m", Kind::Bend, "turning angle per length; its magnitude in space",
             make_curvature_field),
       field("moment", "N m", Kind::Bend,
@@ -103,6 +125,44 @@ std::vector<Quantity> quantities_of_rings() {
   };
 }
 
+/// A component of what a support exerts on the rod.
+template <Vec3 Reaction::* vector, Index number>
+Quantity reaction(std::string name, std::string unit, std::string meaning) {
+  Quantity quantity{std::move(name),    std::move(unit), QuantityKind::Support,
+                    std::move(meaning), nullptr,         {}};
+  quantity.read_reaction = [](const Reaction& sum) { return (sum.*vector)[number]; };
+  return quantity;
+}
+
+template <Index number>
+Quantity moment_in_space(const std::string& axis) {
+  return in(QuantityScope::Space,
+            reaction<&Reaction::moment, number>(
+                "reaction_moment_" + axis, "N m",
+                axis + " component of the moment that a support exerts on the rod, in space"),
+            "in a plane take 'reaction_moment'");
+}
+
+std::vector<Quantity> quantities_of_supports() {
+  constexpr auto force = &Reaction::force;
+  constexpr auto moment = &Reaction::moment;
+  return {
+      reaction<force, 0>("reaction_x", "N",
+                         "x component of the force that a support exerts on the rod"),
+      reaction<force, 1>("reaction_y", "N", "y component of that force"),
+      in(QuantityScope::Space,
+         reaction<force, 2>("reaction_z", "N", "z component of that force, in space")),
+      in(QuantityScope::Planar,
+         reaction<moment, 2>("reaction_moment", "N m",
+                             "moment that a support exerts on the rod, counter-clockwise"),
+         "a moment in space is a vector, take 'reaction_moment_x', 'reaction_moment_y' and "
+         "'reaction_moment_z'"),
+      moment_in_space<0>("x"),
+      moment_in_space<1>("y"),
+      moment_in_space<2>("z"),
+  };
+}
+
 /// Each term by itself, what is stored elastically, and all together.
 std::vector<Quantity> energy_quantities() {
   std::vector<Quantity> rows;
@@ -122,6 +182,7 @@ std::vector<Quantity> energy_quantities() {
 std::vector<Quantity> all_quantities() {
   std::vector<Quantity> rows = quantities_along_rods();
   for (Quantity& row : quantities_of_rings()) rows.push_back(std::move(row));
+  for (Quantity& row : quantities_of_supports()) rows.push_back(std::move(row));
   for (Quantity& row : energy_quantities()) rows.push_back(std::move(row));
   return rows;
 }

@@ -6,16 +6,31 @@
 #include <variant>
 
 #include "der/building/builder.hpp"
+#include "der/catalog/quantities.hpp"
 #include "der/core/error.hpp"
 #include "der/output/joint_strain.hpp"
 #include "der/scenario/scenario.hpp"
 #include "output/rod_field.hpp"
 
 namespace der {
+namespace {
+
+/// The scene with a probe of the slope of each rod, so that whole turns are followed.
+scenario::Scene with_slopes(scenario::Scene scene) {
+  for (const scenario::Rod& rod : scene.rods) {
+    scenario::Probe probe;
+    probe.quantity = kSlope;
+    probe.rod = rod.name;
+    scene.output.probes.push_back(std::move(probe));
+  }
+  return scene;
+}
+
+}  // namespace
 
 Replay::Replay(Scenario scenario, std::vector<double> instants, bool on_path)
     : scenario_(std::move(scenario)),
-      model_(build_model(scenario_.scene())),
+      model_(build_model(with_slopes(scenario_.scene()))),
       state_(initial_state(model_)),
       instants_(std::move(instants)),
       on_path_(on_path) {
@@ -33,6 +48,16 @@ void Replay::show(std::size_t frame) {
                                            frame, num_frames()));
   }
   (on_path_ ? state_.load_factor : state_.time) = instants_[frame];
+  state_.last_step = step_before(frame);
+}
+
+/// The length of the step [s] that led to a frame; where steps are not equal, the time from the
+/// frame before it. 0: no step did.
+double Replay::step_before(std::size_t frame) const {
+  const scenario::Scene& scene = scenario_.scene();
+  if (frame == 0 || !scene.is_dynamic()) return 0.0;
+  if (scene.time.stepping == scenario::Stepping::Fixed) return scene.time.step;
+  return instants_[frame] - instants_[frame - 1];
 }
 
 void Replay::go_to(std::size_t frame, const SavedFrames& frames) {
@@ -55,8 +80,29 @@ RodSeries Replay::along(const std::string& rod, const std::string& quantity,
                    FrameTable(frames.positions.rows(), static_cast<Eigen::Index>(samples))};
   for (Eigen::Index frame = 0; frame < frames.positions.rows(); ++frame) {
     go_to(static_cast<std::size_t>(frame), frames);
-    for (std::size_t i = 0; i < samples; ++i) {
-      series.values(frame, static_cast<Eigen::Index>(i)) = field->sample(i, model_, state_);
+    field->sample_all(model_, state_, series.values.row(frame).data());
+  }
+  return series;
+}
+
+ReactionSeries Replay::reactions(const SavedFrames& frames,
+                                 const Eigen::Ref<const FrameTable>& spin) {
+  Reactions reader(scenario_.scene(), model_);
+  ReactionSeries series;
+  for (Eigen::Index frame = 0; frame < frames.positions.rows(); ++frame) {
+    go_to(static_cast<std::size_t>(frame), frames);
+    state_.velocities.tail(spin.cols()) = spin.row(frame);
+    series.places = reader.evaluate(model_, state_);
+    const auto columns = 3 * static_cast<Eigen::Index>(series.places.size());
+    for (FrameTable* table : {&series.points, &series.forces, &series.moments}) {
+      if (frame == 0) table->resize(frames.positions.rows(), columns);
+    }
+    for (std::size_t i = 0; i < series.places.size(); ++i) {
+      const Reaction& place = series.places[i];
+      const auto first = 3 * static_cast<Eigen::Index>(i);
+      series.points.block<1, 3>(frame, first) = place.point.transpose();
+      series.forces.block<1, 3>(frame, first) = place.force.transpose();
+      series.moments.block<1, 3>(frame, first) = place.moment.transpose();
     }
   }
   return series;

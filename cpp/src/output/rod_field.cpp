@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 #include "der/catalog/quantities.hpp"
 #include "der/core/error.hpp"
 #include "output/around_ring.hpp"
@@ -11,10 +9,20 @@
 namespace der {
 namespace {
 
-/// The advice to whoever asks for a quantity that the model lacks, by the scope of the quantity.
-constexpr std::array kNeeds{"", "it has a sign in a plane only, take 'curvature'",
-                            "write 'model: spatial', or 'spatial_bend' for a rod that cannot twist",
-                            "write 'model: spatial', in which sections count"};
+/// The advice to whoever asks for a quantity that the model lacks.
+const char* advice_on(QuantityScope scope) {
+  switch (scope) {
+    case QuantityScope::All:
+      break;
+    case QuantityScope::Planar:
+      return "it is one of planar rods";
+    case QuantityScope::Space:
+      return "write 'model: spatial', or 'spatial_bend' for a rod that cannot twist";
+    case QuantityScope::Sections:
+      return "write 'model: spatial', in which sections count";
+  }
+  return "";
+}
 
 std::string quantities_along_rods() {
   std::string names;
@@ -28,8 +36,13 @@ std::string quantities_along_rods() {
 }  // namespace
 
 Error not_available(const Quantity& quantity, const Model& model) {
+  const std::string& advice = quantity.advice;
   return {"model_error", fmt::format("the model '{}' has no '{}': {}", model.name, quantity.name,
-                                     kNeeds[static_cast<int>(quantity.scope)])};
+                                     advice.empty() ? advice_on(quantity.scope) : advice)};
+}
+
+void RodField::sample_all(const Model& model, const State& state, double* values) const {
+  for (std::size_t i = 0; i < arc_length_.size(); ++i) values[i] = sample(i, model, state);
 }
 
 double RodField::interpolate(const SampleWeights& weights, const Model& model,

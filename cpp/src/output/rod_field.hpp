@@ -35,6 +35,8 @@ class RodField {
   /// The value of sample number `i`.
   [[nodiscard]] virtual double sample(std::size_t i, const Model& model,
                                       const State& state) const = 0;
+  /// Sets `values` to all samples, in one pass where they depend on one another.
+  virtual void sample_all(const Model& model, const State& state, double* values) const;
   /// The value at a place between samples, or beyond them: their weighted sum.
   [[nodiscard]] virtual double interpolate(const SampleWeights& weights, const Model& model,
                                            const State& state) const;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "der/core/index.hpp"
@@ -33,8 +34,8 @@ bool is_moment(SectionQuantity quantity) {
 }
 
 /// Bending towards the two directors and twist, of a rod with sections: curvatures and twist, or
-/// the two moments and the torque. Of a rod without sections the vector about which it bends, in
-/// fixed axes.
+/// the two moments and the torque. For a rod without sections it is the vector about which the rod
+/// bends, in fixed axes.
 ///
 /// Beside moments inside the rod the section turns at rates that differ on their two sides, and
 /// components along it have a kink. Along the edges there the field is the vector of the moment in
@@ -73,22 +74,38 @@ class SectionField : public EdgewiseField<Vec3> {
     } else if (!is_moment(quantity_)) {
       all += actuated_.strains(place.arc_length, place.loads_here_are_beyond, model, state);
     }
-    switch (quantity_) {
-      case SectionQuantity::Curvature1:
-      case SectionQuantity::Moment1:
-        return all[0];
-      case SectionQuantity::Curvature2:
-      case SectionQuantity::Moment2:
-        return all[1];
-      case SectionQuantity::Twist:
-      case SectionQuantity::Torque:
-        return all[2];
-      default:
-        return model.has_sections() ? all.head<2>().norm() : all.norm();
-    }
+    if (const auto part = component()) return all[*part];
+    return model.has_sections() ? all.head<2>().norm() : all.norm();
+  }
+
+  /// Actuated curvatures and twist are what their profiles have at the place, not lines between
+  /// samples; the magnitude of a curvature is a line.
+  [[nodiscard]] double interpolate(const SampleWeights& weights, const Model& model,
+                                   const State& state) const override {
+    const double own = RodField::interpolate(weights, model, state);
+    const auto part = component();
+    if (is_moment(quantity_) || !part) return own;
+    return own + bulge(actuated_, weights, model, state)[*part];
   }
 
  private:
+  /// Which of the two bendings and the twist the quantity is; none: a magnitude.
+  [[nodiscard]] std::optional<Index> component() const {
+    switch (quantity_) {
+      case SectionQuantity::Curvature1:
+      case SectionQuantity::Moment1:
+        return 0;
+      case SectionQuantity::Curvature2:
+      case SectionQuantity::Moment2:
+        return 1;
+      case SectionQuantity::Twist:
+      case SectionQuantity::Torque:
+        return 2;
+      default:
+        return std::nullopt;
+    }
+  }
+
   /// Where the chain has a moment: at a joint, or, as it must be, at an end that is free to turn.
   struct Known {
     const RodJoint* joint = nullptr;  // of the model's rod; none at an end

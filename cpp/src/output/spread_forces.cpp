@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "der/core/index.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/circulatory_load.hpp"
 
 namespace der {
 
@@ -39,7 +39,7 @@ Vec3 SpreadForces::value(std::size_t i, const Model& model, const State& state) 
   const ForcePlace& place = forces_[i].place;
   Vec3 value = -place.stiffness.cwiseProduct(point(i, state) - place.anchor);
   if (place.follower >= 0) {
-    const CirculatoryLoad& load = model.elements->circulatory[to_size(place.follower)];
+    const CirculatoryLoad& load = circulatory_loads(*model.elements)[to_size(place.follower)];
     value += load.force(configuration_of(model, state));
   }
   for (int c = 0; c < dimension_; ++c) {

@@ -3,9 +3,10 @@
 #include <utility>
 
 #include "der/core/index.hpp"
+#include "der/energies/circulatory_load.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/section_spring.hpp"
 #include "der/model/moment_place.hpp"
 #include "der/model/section_place.hpp"
 #include "der/output/joint_strain.hpp"
@@ -13,7 +14,7 @@
 namespace der {
 namespace {
 
-/// What a spring exerts on its edges, and the sum of it.
+/// The moments that a spring exerts on its edges, and their sum.
 template <int Edges>
 EdgeMoments moments_of_spring(std::size_t number, const Model& model, const State& state) {
   using Kernel = SectionSpring<Edges>;
@@ -73,7 +74,7 @@ EdgeMoments SpreadMoments::value_of(PlanarPlace place, const Model& model,
 }
 
 EdgeMoments SpreadMoments::value_of(SpatialLoad load, const Model& model, const State& state) {
-  return model.elements->circulatory[load.number].moments(configuration_of(model, state));
+  return circulatory_loads(*model.elements)[load.number].moments(configuration_of(model, state));
 }
 
 EdgeMoments SpreadMoments::value_of(SpatialSpring<1> spring, const Model& model,

@@ -29,8 +29,9 @@ class SpreadMoments {
   [[nodiscard]] EdgeMoments value(std::size_t i, const Model& model, const State& state) const;
 
  private:
-  // What a moment is of: all at a place of a planar rod, or in space a load or a spring. The number
-  // is that in RodLayout::moment_places, in ElementLists::circulatory, or of the spring's element.
+  // The source of a moment: all moments at a place of a planar rod, or in space one load or one
+  // spring. The number is that in RodLayout::moment_places, in ElementLists::circulatory, or of the
+  // spring's element.
   struct PlanarPlace {
     std::size_t number = 0;
   };

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include "der/core/constants.hpp"
 #include "scenario/checks.hpp"
 #include "scenario/directions.hpp"
 
@@ -18,9 +19,44 @@ double least(const Series& series) {
   return *std::min_element(series.values.begin(), series.values.end());
 }
 
-bool overlap(const Actuation& a, const Actuation& b) {
-  return a.rod == b.rod && a.from < b.to && b.from < a.to;
+/// The largest magnitude that a table has at any time.
+double largest(const Series& series) {
+  if (series.course.kind == Course::Kind::Sine) {
+    return std::abs(series.values[0]) + std::abs(series.values[1]);
+  }
+  double size = 0.0;
+  for (const double value : series.values) size = std::max(size, std::abs(value));
+  return size;
 }
+
+/// The longest edge of a stretch [m].
+double longest_edge(const RestLine& line, const Actuation& actuation) {
+  double longest = 0.0;
+  for (int node = 0; node < line.num_nodes(); ++node) {
+    const bool last = node + 1 == line.num_nodes();
+    const double start = line.arc_length(node);
+    const double end = last ? line.length() : line.arc_length(node + 1);
+    if (start < actuation.to && actuation.from < end) longest = std::max(longest, end - start);
+  }
+  return longest;
+}
+
+/// The profile at an arc length [m] of the stretch.
+double profile_at(const Actuation& actuation, double s) {
+  const double u = (s - actuation.from) / (actuation.to - actuation.from);
+  switch (actuation.profile) {
+    case Profile::Constant:
+      return 1.0;
+    case Profile::Linear:
+      return u;
+    case Profile::Smooth:
+      break;
+  }
+  return std::pow(std::sin(kPi * u), 2);
+}
+
+/// Elongation that leaves the edge beside a clamp a length from its pivot on.
+constexpr double kLeastAtClamp = -0.75;
 
 /// The checks of one actuation.
 class ActuationCheck {
@@ -37,7 +73,9 @@ class ActuationCheck {
     if (!rod) return;
     const auto number = static_cast<std::size_t>(*rod);
     check_stretch(*context_.lines[number]);
-    check_value(context_.scene.rods[number]);
+    check_value(context_.scene.rods[number], *context_.lines[number], *rod);
+    if (context_.diagnostics.under(path_of(number_))) return;
+    check_resolution(context_.scene.rods[number], *context_.lines[number]);
   }
 
  private:
@@ -68,9 +106,9 @@ class ActuationCheck {
     actuation_.to = std::min(actuation_.to, line.length());
   }
 
-  void check_value(const Rod& rod) {
+  void check_value(const Rod& rod, const RestLine& line, int number) {
     if (actuation_.what == Actuated::Elongation) {
-      check_elongation();
+      check_elongation(line, number);
     } else if (does_not_bend(rod)) {
       report(value_path_, fmt::format("has no effect: rod '{}' does not resist bending (EI is 0), "
                                       "only 'elongation' acts on it",
@@ -80,25 +118,70 @@ class ActuationCheck {
     }
   }
 
-  void check_elongation() {
+  void check_elongation(const RestLine& line, int rod) {
     const double own = least(actuation_.values.front());
-    if (own <= -1.0) {
-      report(value_path_, fmt::format("must be greater than -1, at which the stretch has no length "
-                                      "left, got {:g}",
-                                      own));
+    const bool clamped = is_beside_clamp(line, rod);
+    if (own <= (clamped ? kLeastAtClamp : -1.0)) {
+      report(value_path_,
+             clamped
+                 ? fmt::format("must be greater than {:g} beside a clamp, whose edge starts from "
+                               "a pivot at a fifth of its length, got {:g}",
+                               kLeastAtClamp, own)
+                 : fmt::format("must be greater than -1, at which the stretch has no length "
+                               "left, got {:g}",
+                               own));
       return;
     }
-    double sum = own;
-    for (int i = 0; i < number_; ++i) {
-      const Actuation& other = context_.scene.actuations[static_cast<std::size_t>(i)];
-      if (context_.diagnostics.under(path_of(i)) || other.what != Actuated::Elongation) continue;
-      if (overlap(other, actuation_)) sum += std::min(0.0, least(other.values.front()));
-    }
-    if (sum > -1.0) return;
+    const double together = least_together();
+    if (together > -1.0) return;
     report(value_path_, fmt::format("the actuations that overlap here shorten the rod by {:g} of "
-                                    "its length or more: give smaller elongations, or stretches "
-                                    "that do not overlap",
-                                    -sum));
+                                    "its length: give smaller elongations, or stretches that do "
+                                    "not overlap",
+                                    -together));
+  }
+
+  [[nodiscard]] bool is_beside_clamp(const RestLine& line, int rod) const {
+    const int count = line.num_nodes();
+    for (int node = 0; node < count; ++node) {
+      if (!context_.is_clamped(rod, node)) continue;
+      const double before = line.arc_length(std::max(0, node - 1));
+      const double after = node + 1 < count ? line.arc_length(node + 1) : line.length();
+      if (before < actuation_.to && actuation_.from < after) return true;
+    }
+    return false;
+  }
+
+  /// The least sum of this elongation and of those before it in the scene, at one place and time.
+  [[nodiscard]] double least_together() const {
+    std::vector<const Actuation*> all;
+    std::vector<double> places{actuation_.from, actuation_.to};
+    std::vector<double> times{0.0};
+    for (int i = 0; i <= number_; ++i) {
+      const Actuation& other = context_.scene.actuations[static_cast<std::size_t>(i)];
+      if (other.what != Actuated::Elongation || other.rod != actuation_.rod) continue;
+      all.push_back(&other);
+      places.insert(places.end(), {other.from, 0.5 * (other.from + other.to), other.to});
+      const std::vector<double>& own = other.values.front().times;
+      times.insert(times.end(), own.begin(), own.end());
+    }
+    std::sort(places.begin(), places.end());
+    double least_sum = 0.0;
+    for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+      for (const double s : {places[k], 0.5 * (places[k] + places[k + 1]), places[k + 1]}) {
+        for (const double time : times) {
+          double sum = 0.0;
+          for (const Actuation* each : all) {
+            // The part between two places is in a stretch, or outside.
+            if (each->from > places[k] || each->to < places[k + 1]) continue;
+            const Series& series = each->values.front();
+            const bool sine = series.course.kind == Course::Kind::Sine;
+            sum += profile_at(*each, s) * (sine ? least(series) : value_at(series, time));
+          }
+          least_sum = std::min(least_sum, sum);
+        }
+      }
+    }
+    return least_sum;
   }
 
   void check_curvature(const Rod& rod) {
@@ -114,6 +197,29 @@ class ActuationCheck {
     report(value_path_,
            "a number is a curvature about z, of a rod drawn without twist at one z: give a pair "
            "[k1, k2], the curvatures toward the director and across it");
+  }
+
+  /// Edges turn by less than half a turn, and a mesh is coarse from 1 rad on
+  /// (check_resolution.cpp).
+  void check_resolution(const Rod& rod, const RestLine& line) {
+    if (actuation_.what != Actuated::NaturalCurvature) return;
+    double squares = 0.0;
+    for (const Series& series : actuation_.values) squares += std::pow(largest(series), 2);
+    const double angle = std::sqrt(squares) * longest_edge(line, actuation_);
+    const auto enough = [&] {
+      return std::round(2.0 * angle * static_cast<double>(line.num_nodes()));
+    };
+    if (rod.curvature == CurvatureMeasure::Angle && angle >= kPi) {
+      report(value_path_,
+             fmt::format("asks for a turn of {:.3g} rad between edges, and edges turn by less than "
+                         "half a turn: give the rod more nodes, about {:g} for this curvature",
+                         angle, enough()));
+    } else if (angle > 1.0) {
+      context_.scene.warnings.push_back(
+          fmt::format("rod '{}' is too coarse for actuation.{}: without stress the edges turn by "
+                      "{:.2g} rad. Give it about {:g} nodes",
+                      rod.name, actuation_.name, angle, enough()));
+    }
   }
 
   CheckContext& context_;

@@ -9,6 +9,7 @@
 
 #include "der/catalog/quantities.hpp"
 #include "der/catalog/steppers.hpp"
+#include "der/scenario/find_support.hpp"
 #include "der/scenario/load.hpp"
 #include "scenario/checks.hpp"
 #include "scenario/suggestion.hpp"
@@ -90,6 +91,14 @@ void check_integrator(const TimeText& given, Time& time, Diagnostics& diagnostic
   }
 }
 
+std::vector<std::string> quantities_of(QuantityKind kind) {
+  std::vector<std::string> names;
+  for (const Quantity& quantity : quantities()) {
+    if (quantity.kind == kind) names.push_back(quantity.name);
+  }
+  return names;
+}
+
 /// "curvature, moment, strain and tension".
 std::string quantities_that_jump() {
   std::vector<std::string> names;
@@ -111,7 +120,13 @@ class ProbeCheck {
 
   void run() {
     const QuantityKind kind = find_quantity(probe_.quantity)->kind;
-    if (kind == QuantityKind::Energy) {
+    if (kind == QuantityKind::Support) {
+      check_reaction();
+    } else if (probe_.support) {
+      report(path_ / "support",
+             fmt::format("'{}' is no quantity of a support: those are {}", probe_.quantity,
+                         fmt::join(quantities_of(QuantityKind::Support), ", ")));
+    } else if (kind == QuantityKind::Energy) {
       check_energy();
     } else if (kind == QuantityKind::Ring) {
       check_ring();
@@ -129,6 +144,23 @@ class ProbeCheck {
  private:
   void report(const Path& where, const std::string& message) {
     context_.diagnostics.add(where, message);
+  }
+
+  void check_reaction() {
+    const std::size_t count = context_.scene.supports.size();
+    if (!probe_.support) {
+      report(path_, fmt::format("'{}' belongs to a support: give 'support', its number{}",
+                                probe_.quantity, probe_.rod ? " in place of 'rod'" : ""));
+    } else if (probe_.at || probe_.over != Reduce::None || probe_.side) {
+      report(path_ / (probe_.at     ? "at"
+                      : probe_.side ? "side"
+                                    : "over"),
+             fmt::format("'{}' has the place of its support: leave this out", probe_.quantity));
+    } else if (supports_known_ && !find_support(context_.scene, *probe_.support)) {
+      report(path_ / "support",
+             fmt::format("there is no support '{}': the scene has {} of them{}", *probe_.support,
+                         count, count > 0 ? ", counted from 0" : ""));
+    }
   }
 
   void check_energy() {

@@ -31,6 +31,23 @@ Format<std::string> quantity_format() {
 /// `over: rod`: the only span there is.
 Format<bool> over_format() { return choice<bool>({{{"rod", "the whole rod"}, true}}); }
 
+/// A support by its number, or by a name.
+Format<std::string> named_support_format() {
+  const Format<int> number = integer(at_least(0));
+  const Format<std::string> word = name();
+  Shape shape{Shape::Kind::AnyOf};
+  shape.parts = {number.shape, word.shape};
+  return {std::move(shape), [number, word](const Shape& /*self*/, const Place& place,
+                                           Diagnostics& diagnostics, std::string& out) {
+            const std::string* text = text_of(*place.value);
+            if (text != nullptr && is_name(*text)) return word.read(place, diagnostics, out);
+            int which = 0;
+            if (!number.read(place, diagnostics, which)) return false;
+            out = std::to_string(which);
+            return true;
+          }};
+}
+
 struct ProbeText : Probe {
   bool over_rod = false;
 };
@@ -47,6 +64,8 @@ Table<ProbeText> probe_table() {
                 "Where along the rod.")
       .optional("over", &ProbeText::over_rod, over_format(),
                 "In place of `at`: the extreme along the rod.")
+      .optional("support", &Probe::support, named_support_format(),
+                "In place of `rod`, for reactions: the number of the support, counted from 0.")
       .optional("reduce", &Probe::over,
                 choice<Reduce>({{{"min", "the least value"}, Reduce::Min},
                                 {{"max", "the greatest value"}, Reduce::Max}}),
@@ -58,8 +77,10 @@ Table<ProbeText> probe_table() {
                 "moments "
                 "and torque at an interior clamp, moment or spring against turning, strain and "
                 "tension at "
-                "a force, support or sphere; without it, after the place.")
-      .at_most_one({{"at"}, {"over", "reduce"}});
+                "a force, support or sphere, slope and tangent at a corner as drawn; without it, "
+                "after the place.")
+      .at_most_one({{"at"}, {"over", "reduce"}})
+      .at_most_one({{"rod"}, {"support"}});
 }
 
 /// A mapping from free names to probes.

@@ -74,15 +74,7 @@ Format<SineText<Constant>> sine_format(const Format<Constant>& constant, const s
           .required("frequency", &Text::frequency, number("Hz", positive()), "Frequency.")
           .optional("phase", &Text::phase, number("rad"), "Phase at time 0.", "0")
           .optional("offset", &Text::offset, constant, "Mean value.", "0")
-          .in_unit_of_the_key()
-          .check([](Text& text, const Place& place, Diagnostics& diagnostics) {
-            if constexpr (std::is_same_v<Constant, Components>) {
-              if (!text.offset || text.offset->size() == text.amplitude.size()) return;
-              diagnostics.add(place.at(*find_entry(*place.value->mapping(), "offset")),
-                              fmt::format("must have as many components as the amplitude, {}",
-                                          text.amplitude.size()));
-            }
-          }));
+          .in_unit_of_the_key());
 }
 
 /// A constant or a table: `Constant` is the type of one value. `of_what` completes the names of the

@@ -68,9 +68,12 @@ std::string how_to_name(const scenario::Scene& scene, const std::string& name,
 }
 
 std::string unknown_component(const NamedControl& control, const std::string& component,
-                              const Model& model) {
+                              const Model& model, const scenario::Scene& scene) {
   const char* hint = "";
-  if (!control.is_vector) {
+  const bool is_support =
+      std::any_of(scene.supports.begin(), scene.supports.end(),
+                  [&](const scenario::Support& support) { return support.name == control.name; });
+  if (is_support) {
     hint = ". To set it, give it a value under 'prescribe' in the scene";
   } else if (model.dimension == 2 && component == "z") {
     hint = ". This model is planar: to leave the plane, write 'model: spatial'";
@@ -85,7 +88,8 @@ std::string not_settable(std::string_view given, const Model& model, const scena
   const std::string first = name.substr(0, dot);
   if (dot != std::string::npos) {
     for (const NamedControl& control : model.named) {
-      if (control.name == first) return unknown_component(control, name.substr(dot + 1), model);
+      if (control.name == first)
+        return unknown_component(control, name.substr(dot + 1), model, scene);
     }
   }
   const std::string why = why_nothing(scene, first);

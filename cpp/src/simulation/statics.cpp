@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "der/core/error.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/circulatory_load.hpp"
 #include "der/loads/external_force.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/simulation.hpp"
@@ -61,7 +61,7 @@ EquilibriumReport Simulation::settle(bool leave_saddles) {
   if (report.failed) {
     throw NotConvergedError(
         fmt::format("no {}equilibrium found: {}. {}",
-                    model_.elements->has_potential() ? "stable " : "", message_of(*report.failed),
+                    has_potential(*model_.elements) ? "stable " : "", message_of(*report.failed),
                     advice_for(report.failed->cause)),
         status_of(report.failed->cause));
   }
@@ -73,7 +73,7 @@ EquilibriumReport Simulation::settle(bool leave_saddles) {
 
 std::vector<Mode> Simulation::modes(int count) {
   check_finite_state();
-  if (!model_.elements->has_potential()) {
+  if (!has_potential(*model_.elements)) {
     throw Error("model_error",
                 "loads that turn with the rod, and moments in space, have no potential: there are "
                 "no vibration modes with real frequencies to be sure of. A run over time shows "

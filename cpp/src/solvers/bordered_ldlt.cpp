@@ -12,7 +12,7 @@ namespace {
 
 using Columns = BorderedLdlt::Columns;
 
-/// Of a half-bandwidth or a stride that is only known at run time.
+/// Stands for a half-bandwidth or a stride that is only known at run time.
 constexpr Index kAny = -1;
 
 /// An array of a length that is known, in registers, or of `scratch`.

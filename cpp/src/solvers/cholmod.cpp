@@ -5,7 +5,7 @@
 #include <Eigen/CholmodSupport>
 #include <cmath>
 
-#include "compressed_matrix.hpp"
+#include "solvers/compressed_matrix.hpp"
 #endif
 
 namespace der {

@@ -1,7 +1,7 @@
 #include <Eigen/SparseCholesky>
 
-#include "compressed_matrix.hpp"
 #include "der/solvers/sparse_ldlt.hpp"
+#include "solvers/compressed_matrix.hpp"
 
 namespace der {
 namespace {

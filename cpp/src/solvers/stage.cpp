@@ -6,10 +6,10 @@
 
 #include "der/assembly/discrete_gradient_assembler.hpp"
 #include "der/core/index.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/circulatory_load.hpp"
 #include "der/model/edge_change.hpp"
 #include "der/model/spin.hpp"
-#include "stage_kernels.hpp"
+#include "solvers/stage_kernels.hpp"
 
 namespace der {
 namespace {
@@ -24,7 +24,7 @@ double rounding(double largest) { return 8.0 * std::numeric_limits<double>::epsi
 /// B of the tangents of all circulatory loads side by side, with N = 0.
 LowRank circulatory_rank(const Model& model) {
   LowRank result;
-  for (const CirculatoryLoad& load : model.elements->circulatory) {
+  for (const CirculatoryLoad& load : circulatory_loads(*model.elements)) {
     for (const auto& coordinate : load.coordinates) {
       auto& column = result.columns.emplace_back();
       for (const auto& [dof, weight] : coordinate) {
@@ -134,7 +134,7 @@ double StageProblem::residual_rounding(Vector& values) {
 /// One block of N for each load.
 void StageProblem::set_circulatory_tangent() {
   Index first = 0;
-  for (const CirculatoryLoad& load : model_.elements->circulatory) {
+  for (const CirculatoryLoad& load : circulatory_loads(*model_.elements)) {
     load.evaluate(*here_, term_of_load_);
     const Index size = static_cast<Index>(term_of_load_.force.size());
     circulatory_.core.block(first, first, size, size) = term_of_load_.tangent;

@@ -1,4 +1,4 @@
-#include "stage_kernels.hpp"
+#include "solvers/stage_kernels.hpp"
 
 #include <algorithm>
 

@@ -191,8 +191,8 @@ void InitialStress::add_joints(const Model& model, const Configuration& here,
     term.size = size;
     return term;
   };
-  const auto add_joints_of = [&](auto kind) {
-    using AJoint = decltype(kind);
+  const auto add_joints_of = [&](const auto& kind) {
+    using AJoint = std::decay_t<decltype(kind)>;
     for_each_element<SpatialBend<Curvature, AJoint>>(
         model, here, [&](const auto& dofs, const auto& c, const auto& x) {
           const auto joint =

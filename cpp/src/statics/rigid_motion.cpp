@@ -111,7 +111,7 @@ const char* motion_in_words(const Eigen::Vector3d& combination) {
 }  // namespace
 
 std::string find_weakly_held_part(const Model& model, const Configuration& here, double rounding) {
-  if (model.dimension != 2) return "";  // springs and foundations are planar
+  if (model.dimension != 2) return "";  // `rigid_motions` has those of the plane alone
   const std::vector<Index> part = connected_parts(model);
   std::map<Index, std::vector<Index>> nodes_of_part;
   for (Index node = 0; node < model.num_nodes; ++node) {

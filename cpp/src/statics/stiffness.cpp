@@ -26,7 +26,7 @@ constexpr double kFlat = 1e-3;
 /// release.
 constexpr double kErrorShare = 4.0;
 
-/// Standard deviations of the sum of many small errors that a bar of it holds.
+/// The error bar of a sum of many small errors is so many of its standard deviations.
 constexpr double kDeviations = 3.0;
 
 /// Rounding error of a second variation [J] by that of the coordinates. They give the length of an

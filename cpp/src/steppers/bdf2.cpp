@@ -2,7 +2,7 @@
 
 #include "der/steppers/explicit_force.hpp"
 #include "der/steppers/implicit_stage.hpp"
-#include "steppers.hpp"
+#include "steppers/steppers.hpp"
 
 namespace der {
 namespace {

@@ -1,7 +1,7 @@
 #include "der/assembly/discrete_gradient_assembler.hpp"
 #include "der/steppers/implicit_stage.hpp"
-#include "step_guess.hpp"
-#include "steppers.hpp"
+#include "steppers/step_guess.hpp"
+#include "steppers/steppers.hpp"
 
 namespace der {
 namespace {

@@ -1,6 +1,6 @@
 #include "der/steppers/explicit_force.hpp"
 #include "der/steppers/step_finisher.hpp"
-#include "steppers.hpp"
+#include "steppers/steppers.hpp"
 
 namespace der {
 namespace {

@@ -60,8 +60,7 @@ std::vector<std::string> fine_table_warnings(const scenario::Scene& scene, doubl
     if (step > longest_resolving_step(course) * (1.0 + 1e-9)) {
       warnings.push_back(
           fmt::format("the sine {} has a period of {:g} s, which steps of {:g} s hardly see: take "
-                      "at least four "
-                      "steps in a period, better twenty, or a time.tolerance",
+                      "at least four steps in a period, better twenty, or a time.tolerance",
                       path, 1.0 / course.frequency, step));
     }
     std::size_t closest = 0;
@@ -74,7 +73,8 @@ std::vector<std::string> fine_table_warnings(const scenario::Scene& scene, doubl
     if (closest == 0 || times[closest] - times[closest - 1] >= step * (1.0 - 1e-9)) continue;
     warnings.push_back(fmt::format(
         "the table {} has entries at {} and {} s, closer together than the step of {:g} s: equal "
-        "steps do not stop at entries, so the answer hangs on where they fall. Take smaller steps, "
+        "steps do not stop at entries, so the answer depends on where they fall. Take smaller "
+        "steps, "
         "or a time.tolerance, with which steps end at every entry",
         path, times[closest - 1], times[closest], step));
   }

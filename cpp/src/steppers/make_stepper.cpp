@@ -2,7 +2,7 @@
 
 #include "der/core/error.hpp"
 #include "der/steppers/stepper.hpp"
-#include "steppers.hpp"
+#include "steppers/steppers.hpp"
 
 namespace der {
 namespace {

@@ -5,7 +5,7 @@
 #include "der/steppers/implicit_stage.hpp"
 #include "der/steppers/tableau.hpp"
 #include "der/steppers/work.hpp"
-#include "steppers.hpp"
+#include "steppers/steppers.hpp"
 
 namespace der {
 namespace {

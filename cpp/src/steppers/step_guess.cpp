@@ -1,4 +1,4 @@
-#include "step_guess.hpp"
+#include "steppers/step_guess.hpp"
 
 #include "der/model/edge_change.hpp"
 

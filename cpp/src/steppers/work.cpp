@@ -48,7 +48,7 @@ void stage_displacement(const Model& model, const Vector& start, const Vector& e
 }
 
 double moment_work(const Model& model, const Configuration& here, const Vector& displacement) {
-  double work = circulatory_work(model.elements->circulatory, here, displacement);
+  double work = circulatory_work(circulatory_loads(*model.elements), here, displacement);
   for_each_list(*model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if constexpr (Kernel::kTerm == EnergyTerm::Load) {

@@ -117,8 +117,8 @@ def deflection_by_load(m: Measurements) -> Figure:
         markerfacecolor="white",
         label="ours",
     )
-    bars = np.array([m.deflections[load].error_bar for load in LOADS])
-    right.loglog(loads, bars / exact, ":", color=PALETTE[0], label="our error bar")
+    error_bars = np.array([m.deflections[load].error_bar for load in LOADS])
+    right.loglog(loads, error_bars / exact, ":", color=PALETTE[0], label="our error bar")
     right.set_ylabel("relative error [-]")
     right.legend()
     for axes in (left, right):

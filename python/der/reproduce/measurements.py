@@ -122,7 +122,7 @@ class Measurements:
     ----------
     runs
         Results by name.
-    bars
+    verifications
         Error bars by `der.verify` for the scenes of some of them.
     speeds_by_nodes, speeds_by_step
         Speed of the middle sphere after 50 s [m/s], downward, by number of nodes or step [s], and
@@ -142,7 +142,7 @@ class Measurements:
     """
 
     runs: dict[str, Result]
-    bars: dict[str, Verification]
+    verifications: dict[str, Verification]
     speeds_by_nodes: dict[tuple[int, float], float]
     speeds_by_step: dict[tuple[float, float], float]
     deflections: dict[float, Deflection]
@@ -177,16 +177,16 @@ def measure(jobs: int | None, stages: Stages) -> Measurements:
     runs = {name: _result(outcomes[name], fails=name == _FAILS) for name in _RUNS}
     runs["three_explicit"] = explicit
     tell = stages.of("error bars", 0, 2)
-    bars = {}
+    verifications = {}
     for i, name in enumerate(_VERIFIED):
-        bars[name] = verify(_scene(*_RUNS[name]), jobs=jobs)
+        verifications[name] = verify(_scene(*_RUNS[name]), jobs=jobs)
         tell((i + 1) / len(_VERIFIED))
     deflections, middles = _deflections(outcomes, jobs, stages)
     exact_falls, exact_start = _solve_falls(runs, stages)
     exact_beams = _solve_beams(stages)
     return Measurements(
         runs=runs,
-        bars=bars,
+        verifications=verifications,
         speeds_by_nodes={
             (n, density): _speed(outcomes["nodes", n, density])
             for n in NODES

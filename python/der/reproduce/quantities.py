@@ -180,7 +180,7 @@ def speeds_csv(m: Measurements) -> str:
 
 def _final(m: Measurements, run: str, probe: str) -> tuple[float, float]:
     """Return a probe's last value without its sign, and its error bar."""
-    found: VerifiedValue = m.bars[run][probe]
+    found: VerifiedValue = m.verifications[run][probe]
     return abs(float(m.runs[run].summary["probes"][probe]["final"])), found.error_bar
 
 
@@ -192,7 +192,9 @@ def _three_nodes(m: Measurements) -> list[Quantity]:
     balance = FallingChain(3, WATER).terminal_speed
     late = percent(float(exact.speed[-1]) / balance - 1.0)
     angle = m.runs["three_equal"].summary["probes"]["angle"]
-    angle_bars = [m.bars["three_equal"]["angle", what].error_bar for what in ("min", "max")]
+    angle_error_bars = [
+        m.verifications["three_equal"]["angle", what].error_bar for what in ("min", "max")
+    ]
     return [
         Quantity(
             "speed_3",
@@ -238,7 +240,7 @@ def _three_nodes(m: Measurements) -> list[Quantity]:
             "rad",
             "small fluctuations",
             max(abs(angle["min"]), abs(angle["max"])),
-            max(angle_bars),
+            max(angle_error_bars),
             0.0,
             "Equal spheres fall alike, so that the angle is zero. Fluctuations can only be "
             "rounding, or what Newton's method leaves; they are not a trait of implicit schemes.",

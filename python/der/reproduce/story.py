@@ -43,7 +43,7 @@ def write_story(m: Measurements, rows: Sequence[Quantity]) -> Document:
                 "at here."
             ),
             Paragraph(
-                "`der reproduce` ran all of this anew, the exact solutions included. Nothing but "
+                "`der reproduce` ran all of this again, the exact solutions included. Nothing but "
                 "the report's own numbers was written down beforehand."
             ),
         ],

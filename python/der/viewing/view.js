@@ -81,9 +81,9 @@
     });
   const addTube = (mesh, line, radius, values) => addSwept(mesh, line, circle(radius), null, values);
 
-  // What an outline sweeps along a line, its corners being given along director 1 and across it; at
-  // a node the surfaces of two edges meet on the bisecting plane. Without directors the outline is
-  // carried along.
+  // Adds the surface that an outline sweeps along a line, its corners being given along director 1
+  // and across it; at a node the surfaces of two edges meet on the bisecting plane. Without
+  // directors the outline is carried along.
   const addSwept = (mesh, line, outline, directors, values) => {
     const sides = outline.length;
     const edges = [];

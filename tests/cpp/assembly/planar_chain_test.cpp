@@ -27,6 +27,11 @@ supports:
   - {rod: bow, at: {node: 3}, fix: [y]}
   - {rod: stub, at: start, clamp: true}
   - {rod: stub, at: end, clamp: true}
+actuation:
+  - {name: bend, rod: arm, from: 0.21, to: 0.7, natural_curvature: 2}
+  - {name: stretch, rod: arm, from: 0.1, profile: smooth, elongation: 0.1}
+  - {name: bow, rod: bow, profile: linear, natural_curvature: -1}
+  - {name: ring, rod: ring, from: 0.5, natural_curvature: 1}
 time: {duration: 1, step: 0.1}
 )";
 

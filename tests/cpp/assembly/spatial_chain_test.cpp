@@ -40,6 +40,11 @@ supports:
   - {rod: bow, at: {node: 3}, fix: [y]}
   - {rod: stub, at: start, clamp: true}
   - {rod: stub, at: end, clamp: true}
+actuation:
+  - {name: bend, rod: arm, from: 0.21, to: 0.7, natural_curvature: [2, -1]}
+  - {name: stretch, rod: arm, from: 0.1, profile: smooth, elongation: 0.1}
+  - {name: twist, rod: bow, profile: linear, natural_twist: -1}
+  - {name: ring, rod: ring, from: 0.5, natural_curvature: [1, 0.3]}
 time: {duration: 1, step: 0.1}
 )";
 
@@ -54,6 +59,8 @@ rods:
 supports:
   - {rod: arm, at: start, clamp: true}
   - {rod: bow, at: {node: 3}, fix: [y]}
+actuation:
+  - {name: stretch, rod: arm, from: 0.1, profile: smooth, elongation: 0.1}
 time: {duration: 1, step: 0.1}
 )";
 

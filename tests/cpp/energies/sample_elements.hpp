@@ -17,7 +17,14 @@ inline double uniform(Random& random, double low, double high) {
 }
 
 /// The controls that the sampled constants refer to, behind the frames of two edges.
-enum Control : Index { kMoment = 2 * FrameBlock::kSize, kRotation, kTurn, kNumControls };
+enum Control : Index {
+  kMoment = 2 * FrameBlock::kSize,
+  kRotation,
+  kTurn,
+  kElongation,
+  kStrains,
+  kNumControls = kStrains + 3
+};
 
 inline Vec3 direction(Random& random) {
   return Vec3(uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0))
@@ -35,25 +42,31 @@ inline Configuration sample_configuration(Random& random) {
   here.controls[kMoment] = uniform(random, -2.0, 2.0);
   here.controls[kRotation] = uniform(random, -1.0, 1.0);
   here.controls[kTurn] = uniform(random, -1.0, 1.0);
+  here.controls[kElongation] = uniform(random, -0.1, 0.1);
+  for (Index i = kStrains; i < kNumControls; ++i) here.controls[i] = uniform(random, -0.5, 0.5);
   return here;
 }
 
 template <int Dim>
 typename Stretch<Dim>::Constants sample_constants(const Stretch<Dim>&, Random& random) {
-  return {uniform(random, 1.0, 100.0), uniform(random, 0.5, 2.0)};
+  return {uniform(random, 1.0, 100.0), uniform(random, 0.5, 2.0), {kElongation}};
 }
 
 template <class Curvature>
 typename PlanarBend<Curvature>::Constants sample_constants(const PlanarBend<Curvature>&,
                                                            Random& random) {
-  return {uniform(random, 0.5, 5.0), uniform(random, -1.0, 1.0)};
+  return {uniform(random, 0.5, 5.0), uniform(random, -1.0, 1.0), {kStrains}};
 }
 
 template <class Curvature>
 typename PlanarClamp<Curvature>::Constants sample_constants(const PlanarClamp<Curvature>&,
                                                             Random& random) {
-  return {uniform(random, 0.5, 5.0), uniform(random, -1.0, 1.0), uniform(random, -0.5, 0.5),
-          uniform(random, 0.0, 1.0) < 0.5 ? -1.0 : 1.0, kRotation};
+  return {uniform(random, 0.5, 5.0),
+          uniform(random, -1.0, 1.0),
+          uniform(random, -0.5, 0.5),
+          uniform(random, 0.0, 1.0) < 0.5 ? -1.0 : 1.0,
+          kRotation,
+          {kStrains}};
 }
 
 inline PlanarMoment::Constants sample_constants(const PlanarMoment&, Random& random) {
@@ -136,7 +149,11 @@ typename IsotropicClamp<Curvature>::Constants sample_constants(const IsotropicCl
 template <class Curvature>
 typename SpatialBend<Curvature>::Constants sample_constants(const SpatialBend<Curvature>&,
                                                             Random& random) {
-  return {sample_joint(random), FrameBlock::of(0), FrameBlock::of(1), uniform(random, -3.0, 3.0)};
+  return {sample_joint(random),
+          FrameBlock::of(0),
+          FrameBlock::of(1),
+          uniform(random, -3.0, 3.0),
+          {kStrains}};
 }
 
 inline CornerBend::Constants sample_constants(const CornerBend&, Random& random) {
@@ -144,14 +161,14 @@ inline CornerBend::Constants sample_constants(const CornerBend&, Random& random)
   const Mat3 root = Mat3::NullaryExpr([&] { return uniform(random, -1.0, 1.0); });
   joint.coefficients = Mat3::Identity() + root * root.transpose();
   joint.rest = sample_joint(random).rest;
-  return {joint, FrameBlock::of(0), FrameBlock::of(1)};
+  return {joint, FrameBlock::of(0), FrameBlock::of(1), 0.0, {kStrains}};
 }
 
 template <class Curvature>
 typename SpatialClamp<Curvature>::Constants sample_constants(const SpatialClamp<Curvature>&,
                                                              Random& random) {
   const double side = uniform(random, 0.0, 1.0) < 0.5 ? -1.0 : 1.0;
-  return {sample_joint(random), sample_held_frame(random), FrameBlock::of(0), side};
+  return {sample_joint(random), sample_held_frame(random), FrameBlock::of(0), side, {kStrains}};
 }
 
 template <class Kernel>

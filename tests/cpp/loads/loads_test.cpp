@@ -13,8 +13,9 @@
 
 #include "der/building/builder.hpp"
 #include "der/core/error.hpp"
-#include "der/energies/registry.hpp"
+#include "der/energies/circulatory_load.hpp"
 #include "der/loads/external_force.hpp"
+#include "der/model/state.hpp"
 #include "der/scenario/reader.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/steppers/fine_tables.hpp"
@@ -56,6 +57,16 @@ std::vector<std::string> paths_of_tables(std::string_view kind) {
     if (may_be_table(property)) paths.push_back(name + "." + key);
   }
   return paths;
+}
+
+/// External forces [N] of a model at rest at a time [s].
+Vector force_at(double t, const Model& model) {
+  State state = initial_state(model);
+  Vector force;
+  Configuration here = configuration_of(model, state);
+  evaluate_controls(model, state, t, here.controls);
+  external_force(model, here, state.extra_force, force);
+  return force;
 }
 
 /// Largest force [N] of the model's loads at rest, or moment [N m] of an element, over time.
@@ -150,12 +161,36 @@ TEST_CASE("loads: a force that follows the rod, set to zero, leaves no force beh
   scenario::Scene scene = samples({{"loads.3.point_force.follower", "true"}}).scene();
   scene.loads = {scene.loads[3]};
   const Model loaded = build_model(scene);
-  REQUIRE(loaded.elements->circulatory.size() == 1);
+  REQUIRE(circulatory_loads(*loaded.elements).size() == 1);
   set_to_zero(scene.loads[0]);
   const Model unloaded = build_model(scene);
   CHECK(largest_force(loaded) > 0.0);
   CHECK(largest_force(unloaded) == 0.0);
   CHECK(unloaded.tables.size() == loaded.tables.size());
+}
+
+// The sanitizers see here, too, whether a vector of two components is read as one of three.
+TEST_CASE("loads: every kind has the forces and the drag in space that it has in the plane") {
+  const scenario::Scene in_space =
+      samples({{"model", "spatial"}, {"rods.rod.cross_section.stiffness.GJ", "0.4"}}).scene();
+  for (std::size_t i = 0; i < in_space.loads.size(); ++i) {
+    CAPTURE(kind_of(in_space.loads[i]));
+    scenario::Scene scene = in_space;
+    scene.loads = {scene.loads[i]};
+    const Model spatial = build_model(scene);
+    const Model planar = build_model(with_only(i));
+    REQUIRE(spatial.dimension == 3);
+    for (const double t : {0.0, 0.1}) {
+      const Vector expected = force_at(t, planar);
+      const Vector found = force_at(t, spatial);
+      for (Index node = 0; node < planar.num_nodes; ++node) {
+        const Index first = spatial.dof(node, 0);
+        CHECK(found.segment<2>(first) == expected.segment<2>(planar.dof(node, 0)));
+        CHECK(found[first + 2] == 0.0);
+        CHECK(spatial.damping.segment<2>(first) == planar.damping.segment<2>(planar.dof(node, 0)));
+      }
+    }
+  }
 }
 
 TEST_CASE("loads: a wrong rod, place or part of a rod is refused for every kind") {

@@ -23,6 +23,7 @@ constexpr double kMassPerLength = 3.0;
 constexpr double kGravity = 9.81;
 constexpr double kSpringX = 40.0;
 constexpr double kSpringY = 60.0;
+constexpr double kWrist = 5.0;  // against turning at the start, where its moment is read
 
 // The configuration: a stretched polygon whose corners all turn by the same angle, in rigid motion.
 constexpr double kStrain = 0.03;
@@ -76,6 +77,9 @@ std::map<std::string, double> expected_values() {
       {"vy", velocity_at(here).y()},
       {"speed", velocity_at(here).norm()},
       {"turning_angle", kTurn},
+      {"slope", kDirection + (kNode - 0.5) * kTurn},
+      {"tx", std::cos(kDirection + (kNode - 0.5) * kTurn)},
+      {"ty", std::sin(kDirection + (kNode - 0.5) * kTurn)},
       {"curvature", kTurn / edge_length},
       {"moment", kEI * kTurn / edge_length},
       {"strain", kStrain},
@@ -99,6 +103,19 @@ std::map<std::string, double> expected_values() {
   const Vec2 pulled = points.back() - Vec2{kLength, 0.0};  // from where the spring is slack
   const double spring =
       0.5 * (kSpringX * pulled.x() * pulled.x() + kSpringY * pulled.y() * pulled.y());
+  // The pin pulls the first edge and carries the shear of the joint behind it, and the weight of
+  // half an edge. At the start of a run it has no acceleration.
+  const Vec2 along = (points[1] - points[0]).normalized();
+  const Vec2 across{-along.y(), along.x()};
+  const double length = (1.0 + kStrain) * edge_length;
+  const Vec2 pull = -kEA * kStrain * along + kEI * kTurn / edge_length / length * across;
+  values["reaction_x"] = pull.x();
+  values["reaction_y"] = pull.y() + 0.5 * bar * kGravity;
+  // A spring against turning at the start is in series with the rod up to the edges that it turns
+  // (docs/mechanics.md, "Springs").
+  const double turned = 13.0 / 12.0 * kDirection - 1.0 / 12.0 * (kDirection + kTurn);
+  const double cell = 47.0 / 144.0 * edge_length;
+  values["reaction_moment"] = -turned / (1.0 / kWrist + cell / kEI);
   values["kinetic_energy"] = kinetic;
   values["stretch_energy"] = stretch;
   values["bend_energy"] = bend;
@@ -109,9 +126,11 @@ std::map<std::string, double> expected_values() {
   return values;
 }
 
-/// The value that a probe reads in the configuration.
-double probe_value(const std::string& probe) {
-  Simulation simulation(Scenario::parse(kScene + probe + "}}}\n"));
+/// The value that a probe reads in the configuration, of a rod with more supports.
+double probe_value(const std::string& probe, const std::string& supports = {}) {
+  std::string scene = kScene + probe + "}}}\n";
+  scene.insert(scene.find("loads:"), supports);
+  Simulation simulation(Scenario::parse(scene));
   const std::vector<Vec2> points = corners();
   const RodLayout& rod = simulation.model().rods.at(0);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -138,6 +157,13 @@ TEST_CASE("every quantity of a planar rod has the value worked out by hand") {
     if (quantity.kind == QuantityKind::Energy) {
       CHECK(probe_value(probe) == doctest::Approx(value->second).epsilon(1e-12));
       probe += ", rod: arm";
+    } else if (quantity.name == "reaction_moment") {
+      const std::string wrist = "  - {rod: arm, at: start, spring: {rotational_stiffness: 5}}\n";
+      CHECK(probe_value(probe + ", support: 2", wrist) ==
+            doctest::Approx(value->second).epsilon(1e-12));
+      continue;
+    } else if (quantity.kind == QuantityKind::Support) {
+      probe += ", support: 0";
     } else {
       probe += ", rod: arm, at: {node: " + std::to_string(kNode) + "}";
     }
@@ -150,7 +176,9 @@ TEST_CASE("every quantity is made in one way") {
     CAPTURE(quantity.name);
     const bool is_energy = quantity.kind == QuantityKind::Energy;
     const bool is_of_ring = quantity.kind == QuantityKind::Ring;
-    CHECK((quantity.make_field == nullptr) == (is_energy || is_of_ring));
+    const bool is_of_support = quantity.kind == QuantityKind::Support;
+    CHECK((quantity.make_field == nullptr) == (is_energy || is_of_ring || is_of_support));
+    CHECK((quantity.read_reaction != nullptr) == is_of_support);
     CHECK((quantity.read_rod != nullptr) == is_of_ring);
     CHECK(quantity.energies.empty() != is_energy);
     CHECK(find_quantity(quantity.name) == &quantity);

@@ -25,8 +25,9 @@ TEST_CASE("schema: has the keys of the contract and no others") {
   CHECK(schema["$schema"] == "https://json-schema.org/draft/2020-12/schema");
   CHECK(schema["additionalProperties"] == false);
   CHECK(schema["required"] == Json::array({"rods"}));
-  const std::set<std::string> keys{"title", "model",    "rods",       "supports", "loads",
-                                   "time",  "analysis", "start_from", "solver",   "output"};
+  const std::set<std::string> keys{"title",      "model",     "rods",  "supports",
+                                   "loads",      "actuation", "time",  "analysis",
+                                   "start_from", "solver",    "output"};
   std::set<std::string> found;
   for (const auto& [key, value] : schema["properties"].items()) found.insert(key);
   CHECK(found == keys);
@@ -36,7 +37,9 @@ TEST_CASE("schema: has the keys of the contract and no others") {
   CHECK(rod["allOf"][0]["oneOf"][0]["required"] == Json::array({"nodes", "from", "to"}));
   CHECK(rod["allOf"][0]["oneOf"][1]["properties"]["nodes"] == false);
   CHECK(schema["$defs"]["tube"]["properties"]["outer_radius"]["exclusiveMinimum"] == 0);
-  CHECK(schema["$defs"]["load"]["maxProperties"] == 1);
+  const Json& load = schema["$defs"]["load"];  // one of the kinds beside a name
+  CHECK(load["oneOf"].size() + 1 == load["properties"].size());
+  CHECK(load["oneOf"][0] == Json{{"required", {"gravity"}}});
   const Json& section = schema["$defs"]["cross-section"];  // one of the kinds beside a director
   CHECK(section["oneOf"].size() == 5);
   CHECK(section["oneOf"][0] == Json{{"required", {"circle"}}});

@@ -100,7 +100,7 @@ TEST_CASE("buckling loads of a column, and shapes whose largest displacement is 
   CHECK(buckling.rotation == 0.0);
   CHECK(buckling.strain == doctest::Approx(1e-6));
   for (std::size_t i = 0; i < 3; ++i) {
-    // of the chain, exactly
+    // The exact factor of the chain.
     const double k = 80.0 * std::sin(kPi * static_cast<double>(i + 1) / 80.0);
     CHECK(modes[i].load_factor == doctest::Approx(k * k).epsilon(1e-8));
     CHECK(modes[i].shape.lpNorm<Eigen::Infinity>() == doctest::Approx(1.0));

@@ -88,7 +88,7 @@ def references() -> Problem:
     cases = {"tip_force": tip_force(), "all_loads": all_loads(), "turned": turned()}
     for label, case in cases.items():
         found = case.equilibrium
-        bar = 10.0 * max(case.error, 1e-12)  # of curvatures and forces of order 10
+        error_bar = 10.0 * max(case.error, 1e-12)  # of curvatures and forces of order 10
         for share in SHARES:
             key = f"{label}.s{share:g}"
             for axis, entry in zip("xyz", case.point(share, "L"), strict=True):
@@ -100,13 +100,13 @@ def references() -> Problem:
                     values[f"{key}.d{k + 1}.{axis}"] = value
             u = found.strains(np.array([share]))[:, 0]
             for name, x in zip(("curvature_1", "curvature_2", "twist"), u[:3], strict=True):
-                values[f"{key}.{name}"] = Reference(float(x), bar, "1/L")
-            values[f"{key}.strain"] = Reference(float(u[3]), bar / found.rod.stretching, "1")
+                values[f"{key}.{name}"] = Reference(float(x), error_bar, "1/L")
+            values[f"{key}.strain"] = Reference(float(u[3]), error_bar / found.rod.stretching, "1")
         wrench = found.at(np.zeros(1))[7:, 0]
         names = [f"{kind}.{axis}" for kind in ("force", "moment") for axis in "xyz"]
         for name, x in zip(names, wrench, strict=True):
             unit = "EI1/L^2" if name.startswith("force") else "EI1/L"
-            values[f"{label}.start.{name}"] = Reference(float(x), 10.0 * bar, unit)
+            values[f"{label}.start.{name}"] = Reference(float(x), 10.0 * error_bar, unit)
     return Problem(
         "curved_twisted_rod",
         "rod of length 1 with EI1 = 1, EI2 = 3, GJ = 0.8, EA = 1e4, natural curvatures 1 and 2 "

@@ -175,13 +175,13 @@ def references() -> Problem:
             new = refined(
                 getattr(fine, name), getattr(coarse, name), "rad" if name == "angle" else "1"
             )
-            bar = max(new.error, fine.gap, 1e-12)
-            values[f"{label}.{name}"] = Reference(new.value, bar, new.unit)
+            error_bar = max(new.error, fine.gap, 1e-12)
+            values[f"{label}.{name}"] = Reference(new.value, error_bar, new.unit)
         for s in (0.0, 5.0, 10.0, 20.0):
             here, there = fine.at(s), coarse.at(s)
             for k, axis in enumerate("xyz"):
-                bar = max(2.0 * float(np.abs(here - there).max()), LENGTH * fine.gap, 1e-11)
-                values[f"{label}.s{s:g}.{axis}"] = Reference(float(here[k]), bar, "1")
+                error_bar = max(2.0 * float(np.abs(here - there).max()), LENGTH * fine.gap, 1e-11)
+                values[f"{label}.s{s:g}.{axis}"] = Reference(float(here[k]), error_bar, "1")
     return Problem(
         "helical_buckling",
         "straight rod of length 100, EI 1.345, GJ 0.789, clamped along x; one end turned by 27 "

@@ -112,8 +112,8 @@ def references() -> Problem:
                 values[key] = Reference(float(x), max(error, 1e-13 * helix.length), "length")
         for k in range(3):
             for axis, x in zip("xyz", helix.frame(helix.length)[:, k], strict=True):
-                bar = max(error / helix.length, 1e-14)
-                values[f"{label}.tip.d{k + 1}.{axis}"] = Reference(float(x), bar, "1")
+                error_bar = max(error / helix.length, 1e-14)
+                values[f"{label}.tip.d{k + 1}.{axis}"] = Reference(float(x), error_bar, "1")
     return Problem(
         "helix",
         "straight rod, EI = 1, clamped along x with d1 = y, d2 = z, under an end moment that "

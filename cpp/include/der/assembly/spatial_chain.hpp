@@ -19,7 +19,7 @@
 namespace der {
 
 /// PlanarChain in space: a run of plain stretch elements with the bend elements between them,
-/// assembled by edges. What the energy of an edge's two joints needs of its frame is worked out
+/// assembled by edges. Frame terms that the energies of an edge's two joints share are worked out
 /// once, and blocks of edges are differenced into those of nodes. The sums equal those of the
 /// kernels Stretch<3> and SpatialBend or IsotropicBend to rounding.
 class SpatialChain {

@@ -13,22 +13,26 @@ struct Model;
 struct RodLayout;
 struct State;
 class RodField;
+struct Reaction;
 
 /// The object that a quantity belongs to; it determines where a probe of it can be placed.
 enum class QuantityKind {
   Position,  ///< of the rod's points: known at nodes, read at any arc length
   Velocity,  ///< of the rod's points: known at nodes, read at any arc length
+  Tangent,   ///< of the rod's tangent: any arc length, with two values at corners as drawn
   Turn,      ///< of the nodes that bend: inner nodes, and ends that are clamped
   Bend,      ///< of the rod's bending: any arc length, with two values where moments jump
   Edge,      ///< of the edges: any arc length, with two values where forces jump
   Section,   ///< of the sections of a rod in space: as of its bending
   Ring,      ///< of a closed rod as a whole: no place
+  Support,   ///< of a support: no place but that of the support
   Energy,    ///< of a rod or of the whole model: no place
 };
 
 /// Whether a quantity has two values at the places where it jumps.
 constexpr bool can_jump(QuantityKind kind) {
-  return kind == QuantityKind::Bend || kind == QuantityKind::Edge || kind == QuantityKind::Section;
+  return kind == QuantityKind::Bend || kind == QuantityKind::Edge ||
+         kind == QuantityKind::Section || kind == QuantityKind::Tangent;
 }
 
 /// The models that have a quantity.
@@ -45,6 +49,9 @@ using RodFieldMaker = std::unique_ptr<RodField> (*)(const RodLayout& rod, const 
 /// Reads a quantity of a rod as a whole (output/ring_numbers.hpp).
 using RodReading = double (*)(const RodLayout& rod, const Model& model, const State& state);
 
+/// Reads a quantity of a support off the sum of what it bears at its places (output/reactions.hpp).
+using ReactionReading = double (*)(const Reaction& sum);
+
 /// One row of the table of quantities: probes, `Replay::along`, exports and views follow it.
 struct Quantity {
   std::string name;
@@ -55,8 +62,13 @@ struct Quantity {
   std::vector<EnergyTerm> energies;    ///< the terms that an energy adds up; else empty
   bool is_component = false;  ///< of the position or velocity, which exports write as vectors
   QuantityScope scope = QuantityScope::All;
-  RodReading read_rod = nullptr;  ///< of numbers of rings
+  RodReading read_rod = nullptr;            ///< of numbers of rings
+  ReactionReading read_reaction = nullptr;  ///< of supports
+  std::string advice{};  ///< what to take in its place in a model that lacks it; may be empty
 };
+
+/// The quantity whose whole turns the state of a planar rod follows where a probe asks for it.
+inline constexpr std::string_view kSlope = "slope";
 
 /// The table. It is written in output/quantities.cpp, where the makers are; this header is all that
 /// the reader of scenes knows of it.

@@ -15,6 +15,8 @@
 
 namespace der {
 
+struct ElementLists;  // energies/registry.hpp
+
 // Circulatory loads (Ziegler, Principles of Structural Stability, 1968): they depend on the shape
 // alone, but their work depends on the way that leads there, so that they have no potential and
 // their tangent is not symmetric. A force that turns with the rod is one, and in space every
@@ -124,6 +126,16 @@ struct CirculatoryLoad {
   /// The whole moment [N m], and the parts of its edges; zero for a force.
   [[nodiscard]] EdgeMoments moments(const Configuration& here) const;
 };
+
+/// Those of a model. Files that use no other elements include this header alone, so that a new
+/// kernel does not recompile them.
+std::vector<CirculatoryLoad>& circulatory_loads(ElementLists& elements);
+const std::vector<CirculatoryLoad>& circulatory_loads(const ElementLists& elements);
+
+/// Whether forces are the gradient of a potential, so that the tangent is symmetric.
+inline bool has_potential(const ElementLists& elements) {
+  return circulatory_loads(elements).empty();
+}
 
 /// Adds `factor` times the forces of the loads to `total`, over all degrees of freedom.
 void add_circulatory_forces(const std::vector<CirculatoryLoad>& loads, const Configuration& here,

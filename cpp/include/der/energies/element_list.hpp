@@ -21,7 +21,8 @@ namespace der {
 ///   static void evaluate(const Constants&, const Configuration& here,
 ///                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out);
 /// and, if its energy changes with a translation of the element, so that statics count it as a
-/// support, the stiffness [N/m] against moving along x (0) or y (1), 0 where it does not hold:
+/// support, the stiffness [N/m] against moving along x (0), y (1) or z (2), 0 where it does not
+/// hold:
 ///   static double holding_stiffness(const Constants&, int component);
 template <class Kernel>
 struct ElementList {

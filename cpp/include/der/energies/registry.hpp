@@ -63,10 +63,7 @@ struct ElementLists {
                            ElementList<SectionSpring<1>>,                                    //
                            ElementList<SectionSpring<2>>>;
   Lists lists;
-  std::vector<CirculatoryLoad> circulatory;  ///< what acts on the rods and is no energy
-
-  /// Whether forces are the gradient of a potential, so that the tangent is symmetric.
-  [[nodiscard]] bool has_potential() const { return circulatory.empty(); }
+  std::vector<CirculatoryLoad> circulatory;  ///< loads without an energy
 };
 
 /// Calls `f(list)` for each kind of element.

@@ -14,7 +14,7 @@ namespace der {
 /// RotationalSpring in space: E = 1/2 sum_c k_c (sum_i w_ic kappa_ic)^2, with kappa_i the rotation
 /// of edge i from its drawn section, as a joint between the two would measure it (JointKinematics):
 /// towards the first director, towards the second, and the twist about the tangent, whole turns
-/// included. Of two edges, the weights of one component add up to 1; supports/spring.hpp says how
+/// included. The weights of two edges add up to 1 in each component; supports/spring.hpp says how
 /// the section of a rod at a place is such a sum. Coordinates: the nodes, then the angles.
 template <int Edges>
 struct SectionSpring {

@@ -139,8 +139,8 @@ struct RodLayout {
   double initial_twist = 0.0;            ///< of these frames [rad/m]
   std::vector<Vec2> natural_curvatures;  ///< towards the two directors, at each node [1/m]
   std::vector<double> natural_twist;     ///< at each node [rad/m]; empty: stress-free as drawn
-  /// Of a rod in space that bends, from its start to its end; that between the last edge of a ring
-  /// and its first one stands last.
+  /// The joints of a rod in space that bends, from its start to its end; the one between the last
+  /// edge of a ring and its first one stands last.
   std::vector<RodJoint> joints;
   /// Natural curvature of a planar rod at each node [1/m]; empty: the initial shape is stress-free.
   std::vector<double> natural_curvature;
@@ -196,7 +196,7 @@ struct RodLayout {
   [[nodiscard]] const Clamp* clamp_at(Index place) const;
   /// Places at which moments act, of loads and of springs against turning [m].
   [[nodiscard]] std::vector<double> moment_arc_lengths() const;
-  /// Of a planar rod; null if no moment acts at that arc length [m].
+  /// The place of a planar rod's moments at an arc length [m]; null if none act there.
   [[nodiscard]] const MomentPlace* moment_place_at(double s) const;
 };
 
@@ -209,7 +209,7 @@ struct HeldDof {
 /// A control that moves what a support prescribes.
 struct PrescribedControl {
   std::size_t support = 0;  ///< its number in the scene
-  std::string component;    ///< as in the scene: "x", "y" or "angle"
+  std::string component;    ///< "x", "y", "z", "angle" or "twist"
   Index control = 0;
 };
 
@@ -224,7 +224,7 @@ struct ControlledForce {
 /// several threads can share it. Vectors have one entry a degree of freedom, in the order of
 /// `dofs`.
 struct Model {
-  std::string name;    ///< "planar"
+  std::string name;    ///< "planar", "spatial_bend" or "spatial"
   std::string reason;  ///< why this model, in words
   int dimension = 2;
   Index num_nodes = 0;

@@ -29,6 +29,10 @@ JointStrain rest_strain(const RodJoint& joint, const RodLayout& rod, const Model
 /// Moment [N m] in a joint of a rod whose sections count, exerted on the side before it.
 Vec3 moment_of(const RodJoint& joint, const RodLayout& rod, const Model& model, const State& state);
 
+/// The same of any rod in space: without sections, the vector about which it bends there.
+Vec3 cell_moment(const RodJoint& joint, const RodLayout& rod, const Model& model,
+                 const State& state);
+
 /// Unit vector about which a rod in space bends at a joint; zero where it does not.
 Vec3 bend_axis(const RodJoint& joint, const RodLayout& rod, const Model& model, const State& state);
 

@@ -32,15 +32,18 @@ class ProbeReader {
 /// - strain and tension, which belong to the middles of the edges, linearly between those and
 ///   beyond the outermost ones;
 /// - turning angles at the nodes that bend;
+/// - slope and tangent linearly between nodes and places where moments act
+///   (output/tangent_line.hpp);
 /// - curvature and moment linearly between nodes, with the kinks and jumps that loads cause
 ///   there (output/moment_recovery.hpp); at a clamp they are extrapolated from its cells to the
 ///   node, so that the moment is the clamp's reaction;
 /// - an extreme over a rod is that of the parabola through the three samples around the extreme
 ///   one, where there is no kink; not for the turning angle, a sum over a cell;
+/// - what a support bears, summed over its places (output/reactions.hpp);
 /// - the energies of a rod count a node that rods share in each of them.
 class Probe {
  public:
-  Probe(const scenario::Probe& probe, const Model& model);
+  Probe(const scenario::Probe& probe, const scenario::Scene& scene, const Model& model);
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const std::string& unit() const { return unit_; }
   [[nodiscard]] double value(const Model& model, const State& state) const {

@@ -7,6 +7,7 @@
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
+#include "der/output/reactions.hpp"
 #include "der/scenario/reader.hpp"
 
 namespace der {
@@ -18,6 +19,14 @@ using FrameTable = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::
 struct RodSeries {
   std::vector<double> arc_length;  ///< [m] of each sample, ascending; none if there is no sample
   FrameTable values;               ///< frames x samples
+};
+
+/// What supports bear at every frame.
+struct ReactionSeries {
+  std::vector<Reaction> places;  ///< of the last frame; the tables follow them
+  FrameTable points;             ///< frames x (places * 3) [m]
+  FrameTable forces;             ///< frames x (places * 3) [N]
+  FrameTable moments;            ///< frames x (places * 3) [N m]
 };
 
 /// The saved frames of a run: tables with one frame a row.
@@ -51,10 +60,15 @@ class Replay {
   /// also where they have a kink, and twice where they jump. Throws Error for an unknown rod or
   /// quantity, and for one that the model has not.
   RodSeries along(const std::string& rod, const std::string& quantity, const SavedFrames& frames);
+  /// What the supports bear at every frame, at each place of each support: force and moment that
+  /// they exert on the rod. Forces that a program added to those of the scene are not known.
+  /// `spin` [rad/s]: frames x edges, or x 0 without sections.
+  ReactionSeries reactions(const SavedFrames& frames, const Eigen::Ref<const FrameTable>& spin);
   /// Director 1 of the section of each edge at every frame: frames x (edges * 3).
   FrameTable directors(const SavedFrames& frames);
 
  private:
+  [[nodiscard]] double step_before(std::size_t frame) const;
   /// Puts the state to a frame.
   void go_to(std::size_t frame, const SavedFrames& frames);
 

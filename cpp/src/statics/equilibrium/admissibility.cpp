@@ -79,12 +79,12 @@ bool planar_is_turned_inside_out(const Model& model, const Vector& positions) {
 
 }  // namespace
 
-PlanarAdmissibility::PlanarAdmissibility(const Model& model, const Vector& force, Vector origin)
+Admissibility::Admissibility(const Model& model, const Vector& force, Vector origin)
     : model_(model),
       origin_(std::move(origin)),
       largest_drift_(kDrift * (model.size() + spring_travel(model, force.lpNorm<1>()))) {}
 
-std::optional<FailedSearch> PlanarAdmissibility::check(const Configuration& here) const {
+std::optional<FailedSearch> Admissibility::check(const Configuration& here) const {
   if (model_.dofs.largest_motion(here.coordinates - origin_) > largest_drift_) {
     return FailedSearch{EquilibriumFailure::DriftsAway, {}};
   }

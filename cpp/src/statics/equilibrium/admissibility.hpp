@@ -11,11 +11,10 @@
 namespace der::statics {
 
 /// Rejects shapes that solve the equations but that no rod can have, or that nothing holds.
-/// Planar models only.
-class PlanarAdmissibility {
+class Admissibility {
  public:
   /// `force` [N] is the whole external force. Drift is measured from `origin` [m].
-  PlanarAdmissibility(const Model& model, const Vector& force, Vector origin);
+  Admissibility(const Model& model, const Vector& force, Vector origin);
 
   void measure_drift_from(Vector origin) { origin_ = std::move(origin); }
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "der/energies/registry.hpp"
+#include "der/energies/circulatory_load.hpp"
 #include "der/loads/external_force.hpp"
 #include "der/statics/potential.hpp"
 #include "der/statics/rigid_motion.hpp"
@@ -41,7 +41,7 @@ StaticLoads loads_of(const Model& model, const State& state) {
 /// The forces of all loads in a shape [N].
 Vector acting_forces(const Model& model, const StaticLoads& loads, const Shape& shape) {
   Vector forces = loads.force;
-  add_circulatory_forces(model.elements->circulatory, loads.at(model, shape), 1.0, forces);
+  add_circulatory_forces(circulatory_loads(*model.elements), loads.at(model, shape), 1.0, forces);
   return forces;
 }
 
@@ -63,10 +63,10 @@ class EquilibriumSearch {
                     const EquilibriumOptions& options, const State& state)
       : model_(model),
         leave_saddles_(options.leave_saddles),
-        has_potential_(model.elements->has_potential()),
+        has_potential_(has_potential(*model.elements)),
         loads_(loads_of(model, state)),
         newton_(model, assembler, solver, options.newton,
-                PlanarAdmissibility(model, loads_.force, state.positions)),
+                Admissibility(model, loads_.force, state.positions)),
         stiffness_(model, assembler, solver),
         continuation_(model, newton_) {}
 
@@ -153,7 +153,7 @@ class EquilibriumSearch {
   }
 
   bool start_elsewhere(Shape& shape) {
-    for (Shape& restart : planar_restarts(model_, loads_, stiffness_, shape)) {
+    for (Shape& restart : restarts(model_, loads_, stiffness_, shape)) {
       if (!continuation_.run(loads_, inverse_step(), restart).failed) {
         shape = std::move(restart);
         return true;

@@ -16,17 +16,20 @@ constexpr std::array<double, 3> kBends{0.3, 1.0, 3.0};
 /// Number of directions of the straight shapes.
 constexpr int kDirections = 8;
 
-/// Every open rod straight from its first node in one direction [rad], held degrees of freedom in
-/// place. A ring has no straight shape: it stays as it is.
+/// Every open rod straight from its first node in one direction of the x-y plane [rad], held
+/// degrees of freedom in place. A ring has no straight shape: it stays as it is.
 Vector straightened(const Model& model, const StaticLoads& loads, const Shape& start,
                     double direction) {
+  const Vec3 along(std::cos(direction), std::sin(direction), 0.0);
   Vector positions = start.positions;
   for (const RodLayout& rod : model.rods) {
     if (rod.closed) continue;
-    const Vec2 first = start.positions.segment<2>(model.dof(rod.nodes.front(), 0));
+    const auto position = [&](std::size_t i) {
+      return positions.segment(model.dof(rod.nodes[i], 0), model.dimension);
+    };
+    const Vector first = position(0);
     for (std::size_t i = 0; i < rod.nodes.size(); ++i) {
-      positions.segment<2>(model.dof(rod.nodes[i], 0)) =
-          first + rod.arc_length[i] * Vec2(std::cos(direction), std::sin(direction));
+      position(i) = first + rod.arc_length[i] * along.head(model.dimension);
     }
   }
   apply_prescribed_motion(model, loads.controls, positions);
@@ -35,14 +38,14 @@ Vector straightened(const Model& model, const StaticLoads& loads, const Shape& s
 
 }  // namespace
 
-std::vector<Shape> planar_restarts(const Model& model, const StaticLoads& loads,
-                                   Stiffness& stiffness, const Shape& start) {
+std::vector<Shape> restarts(const Model& model, const StaticLoads& loads, Stiffness& stiffness,
+                            const Shape& start) {
   stiffness.evaluate(loads.at(model, start));
   const Vector bend = unit_displacement(model, stiffness.softest());
-  std::vector<Shape> restarts;
+  std::vector<Shape> shapes;
   const auto add = [&](Vector positions) {
-    restarts.push_back({std::move(positions), start.followed});
-    loads.follow(model, restarts.back());
+    shapes.push_back({std::move(positions), start.followed});
+    loads.follow(model, shapes.back());
   };
   for (const double size : kBends) {
     for (const double side : {1.0, -1.0}) add(start.positions + side * size * bend);
@@ -50,7 +53,7 @@ std::vector<Shape> planar_restarts(const Model& model, const StaticLoads& loads,
   for (int i = 0; i < kDirections; ++i) {
     add(straightened(model, loads, start, 2.0 * kPi * i / kDirections));
   }
-  return restarts;
+  return shapes;
 }
 
 }  // namespace der::statics

@@ -12,9 +12,9 @@ namespace der::statics {
 
 /// Shapes from which a search for an equilibrium can start again after the one from `start` has
 /// failed. Bent along the softest direction to both sides: a load that crushes a straight rod may
-/// buckle a bent one. Then with every rod straight, in several directions: that undoes folds.
-/// Planar models only.
-std::vector<Shape> planar_restarts(const Model& model, const StaticLoads& loads,
-                                   Stiffness& stiffness, const Shape& start);
+/// buckle a bent one. Then with every rod straight, in several directions of the x-y plane: that
+/// undoes folds.
+std::vector<Shape> restarts(const Model& model, const StaticLoads& loads, Stiffness& stiffness,
+                            const Shape& start);
 
 }  // namespace der::statics

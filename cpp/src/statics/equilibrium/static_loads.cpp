@@ -1,8 +1,8 @@
 #include "statics/equilibrium/static_loads.hpp"
 
+#include "der/energies/circulatory_load.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/planar_moment.hpp"
-#include "der/energies/registry.hpp"
 #include "der/statics/potential.hpp"
 
 namespace der::statics {
@@ -13,7 +13,7 @@ StaticLoads scaled(const Model& model, const StaticLoads& loads, double share) {
   for (const auto& moment : elements_of<PlanarMoment>(*model.elements).constants) {
     result.controls[moment.moment] = share * loads.controls[moment.moment];
   }
-  for (const CirculatoryLoad& load : model.elements->circulatory) {
+  for (const CirculatoryLoad& load : circulatory_loads(*model.elements)) {
     for (const Index control : load.amount) {
       if (control >= 0) result.controls[control] = share * loads.controls[control];
     }

@@ -16,7 +16,7 @@ constexpr double kLargestLastChange = 0.5;
 }  // namespace
 
 StaticNewton::StaticNewton(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                           const NewtonOptions& options, PlanarAdmissibility admissibility)
+                           const NewtonOptions& options, Admissibility admissibility)
     : model_(model),
       problem_(model, assembler),
       newton_(model.dofs, solver, assembler.num_values(), options),

@@ -20,7 +20,7 @@ namespace der::statics {
 class StaticNewton {
  public:
   StaticNewton(const Model& model, const Assembler& assembler, LinearSolver& solver,
-               const NewtonOptions& options, PlanarAdmissibility admissibility);
+               const NewtonOptions& options, Admissibility admissibility);
 
   /// Moves `shape` to the equilibrium to which Newton's method leads from it.
   /// On failure the shape stays as it is.
@@ -57,7 +57,7 @@ class StaticNewton {
   const Model& model_;
   StageProblem problem_;
   Newton newton_;
-  PlanarAdmissibility admissibility_;
+  Admissibility admissibility_;
   int iterations_ = 0;
   double force_scale_ = 0.0;
 };

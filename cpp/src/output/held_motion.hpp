@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+#include "der/model/state.hpp"
+
+namespace der {
+
+namespace scenario {
+struct Scene;
+}
+
+/// Velocity and acceleration of degrees of freedom that supports move, at the end of a step.
+///
+/// Tables are straight between their entries, and a motion in pieces has no acceleration but at its
+/// kinks. A table that samples a smooth motion has it in the mean: over the step before an instant
+/// and one of the same length after it, to second order in the step. At the end of the run the
+/// three steps before count. A support that a program moves is moved evenly within each step,
+/// without acceleration.
+class HeldMotion {
+ public:
+  explicit HeldMotion(const scenario::Scene& scene);
+
+  struct Rates {
+    double velocity = 0.0;      ///< [m/s]
+    double acceleration = 0.0;  ///< [m/s^2]
+  };
+
+  void evaluate(const Model& model, const State& state);
+  /// At the state of the last `evaluate`.
+  [[nodiscard]] Rates of(const HeldDof& held, const State& state) const;
+
+ private:
+  double duration_;  // [s]; 0: there is no time
+  bool moves_ = false;
+  bool at_end_ = false;
+  double step_ = 0.0;
+  std::array<Vector, 4> controls_;  // at one step after the instant and so many before
+};
+
+}  // namespace der

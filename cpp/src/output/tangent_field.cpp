@@ -1,0 +1,320 @@
+#include "output/tangent_field.hpp"
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "der/core/index.hpp"
+#include "der/kinematics/planar_edge.hpp"
+#include "der/model/followed.hpp"
+#include "der/output/joint_strain.hpp"
+#include "der/supports/clamp.hpp"
+#include "der/supports/spatial_clamp.hpp"
+#include "output/moment_recovery.hpp"
+#include "output/tangent_line.hpp"
+
+namespace der {
+namespace {
+
+std::vector<double> arc_lengths(const std::vector<TangentLine::Sample>& samples) {
+  std::vector<double> result;
+  for (const auto& sample : samples) result.push_back(sample.arc_length);
+  return result;
+}
+
+/// The free end of a rod, whose edge leans against the curve: it lies on the curve and the next
+/// node beside it (model/location.hpp).
+struct FreeEnd {
+  bool last = false;
+  Index edge = 0;
+  double bend_length = 0.0;  ///< [m] of the node beside it
+};
+
+std::vector<FreeEnd> free_ends(const RodLayout& rod) {
+  std::vector<FreeEnd> ends;
+  if (rod.closed || rod.num_edges() < 2) return ends;
+  for (const bool last : {false, true}) {
+    const Index node = last ? rod.num_edges() : 0;
+    const Index next = last ? node - 1 : 1;
+    if (rod.clamp_at(node) != nullptr || rod.clamp_at(next) != nullptr) continue;
+    ends.push_back({last, last ? node - 1 : 0, bend_length(rod, next)});
+  }
+  return ends;
+}
+
+/// The direction of a rod as a `Value` that is linear along it: an angle in a plane, the tangent in
+/// space.
+template <class Value>
+class DirectionField : public RodField {
+ public:
+  [[nodiscard]] double sample(std::size_t i, const Model& model,
+                              const State& state) const override {
+    read_knots(model, state);
+    return number_of(value(i));
+  }
+  void sample_all(const Model& model, const State& state, double* values) const override {
+    read_knots(model, state);
+    for (std::size_t i = 0; i < line_.samples().size(); ++i) values[i] = number_of(value(i));
+  }
+  [[nodiscard]] double interpolate(const SampleWeights& weights, const Model& model,
+                                   const State& state) const override {
+    read_knots(model, state);
+    Value sum = weights.front().weight * value(weights.front().sample);
+    for (std::size_t i = 1; i < weights.size(); ++i) {
+      sum += weights[i].weight * value(weights[i].sample);
+    }
+    return number_of(sum);
+  }
+  [[nodiscard]] bool smooth_at(std::size_t i) const override { return line_.samples()[i].smooth; }
+
+ protected:
+  explicit DirectionField(TangentLine line)
+      : RodField(arc_lengths(line.samples())), line_(std::move(line)) {}
+
+  [[nodiscard]] const TangentLine& line() const { return line_; }
+
+ private:
+  /// Sets `knots` to the directions there, and `kinks` to the jumps of their derivative [1/m].
+  virtual void read(const Model& model, const State& state, std::vector<Value>& knots,
+                    std::vector<Value>& kinks) const = 0;
+  /// The quantity in a direction.
+  [[nodiscard]] virtual double number_of(const Value& direction) const = 0;
+
+  void read_knots(const Model& model, const State& state) const {
+    knots_.clear();
+    kinks_.clear();
+    read(model, state, knots_, kinks_);
+  }
+  [[nodiscard]] Value value(std::size_t i) const {
+    const TangentLine::Sample& sample = line_.samples()[i];
+    Value sum = sample.knots.front().factor * knots_[sample.knots.front().number];
+    if (sample.knots.size() > 1) sum += sample.knots[1].factor * knots_[sample.knots[1].number];
+    for (const auto& [kink, factor] : sample.kinks) sum += factor * kinks_[kink];
+    return sum;
+  }
+
+  TangentLine line_;
+  mutable std::vector<Value> knots_;  // kept, so that reading allocates nothing
+  mutable std::vector<Value> kinks_;
+};
+
+class PlanarDirection : public DirectionField<double> {
+ public:
+  /// `component`: of the tangent; none: the angle itself.
+  static std::unique_ptr<RodField> make(std::optional<int> component, const RodLayout& rod,
+                                        const Model& model) {
+    std::vector<double> kinks;
+    if (rod.EI > 0.0) {
+      for (const MomentPlace& place : rod.moment_places) kinks.push_back(place.arc_length);
+    }
+    return std::unique_ptr<RodField>(
+        new PlanarDirection(component, rod, model, TangentLine(rod, std::move(kinks), model)));
+  }
+
+ private:
+  PlanarDirection(std::optional<int> component, const RodLayout& rod, const Model& model,
+                  TangentLine line)
+      : DirectionField(std::move(line)), component_(component), rod_(rod) {
+    if (rod.EI > 0.0) ends_ = free_ends(rod);
+    if (!ends_.empty() && !rod.moment_places.empty()) spread_.emplace(rod, model);
+    if (!rod.moment_places.empty() && rod.EI > 0.0) moments_.emplace(rod, model);
+    for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+      edges_.push_back(effective_edge(rod, edge, model));
+    }
+    find_reference(model);
+  }
+
+  /// The knot from which whole turns count: a clamp, an edge that the state follows, or the first
+  /// one.
+  void find_reference(const Model& model) {
+    const auto& knots = line().knots();
+    for (std::size_t i = 0; i < knots.size(); ++i) {
+      if (knots[i].clamp >= 0) {
+        reference_ = i;
+        return;
+      }
+    }
+    for (std::size_t i = 0; i < knots.size(); ++i) {
+      const Edge edge = rod_.edge(rod_.position(knots[i].edge), model);
+      for (std::size_t k = 0; k < model.followed_edges.size(); ++k) {
+        const Edge& followed = model.followed_edges[k].edge;
+        if (followed.first != edge.first || followed.last != edge.last) continue;
+        reference_ = i;
+        followed_ = static_cast<Index>(k);
+        return;
+      }
+    }
+  }
+
+  [[nodiscard]] Vec2 direction(const TangentLine::Knot& knot, const Model& model,
+                               const State& state) const {
+    if (knot.clamp < 0)
+      return effective_vector(edges_[to_size(rod_.position(knot.edge))], model, state);
+    const double angle = tangent_angle(rod_.clamps[to_size(knot.clamp)], model, state);
+    return {std::cos(angle), std::sin(angle)};
+  }
+
+  /// Angle [rad] of the reference, whole turns included.
+  [[nodiscard]] double reference_angle(const Vec2& direction, const Model& model,
+                                       const State& state) const {
+    const TangentLine::Knot& knot = line().knots()[reference_];
+    if (knot.clamp >= 0) return tangent_angle(rod_.clamps[to_size(knot.clamp)], model, state);
+    if (followed_ < 0) return std::atan2(direction.y(), direction.x());
+    const double before =
+        model.followed_edges[to_size(followed_)].direction + state.followed[followed_];
+    return before + angle_between({std::cos(before), std::sin(before)}, direction);
+  }
+
+  void read(const Model& model, const State& state, std::vector<double>& knots,
+            std::vector<double>& kinks) const override {
+    const auto& places = line().knots();
+    Vec2 before = direction(places.front(), model, state);
+    double angle = 0.0;
+    double offset = 0.0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const Vec2 here = direction(places[i], model, state);
+      angle += angle_between(before, here);
+      before = here;
+      knots.push_back(angle);
+      if (i == reference_) offset = reference_angle(here, model, state) - angle;
+    }
+    for (double& knot : knots) knot += offset;
+    for (const FreeEnd& end : ends_) {
+      (end.last ? knots.back() : knots.front()) -= lean(end, model, state);
+    }
+    if (!moments_) return;
+    for (std::size_t i = 0; i < moments_->size(); ++i) {
+      kinks.push_back(-moments_->value(i, model, state).whole.z() / rod_.EI);
+    }
+  }
+
+  /// How far the outermost edge is turned beyond the curve [rad].
+  [[nodiscard]] double lean(const FreeEnd& end, const Model& model, const State& state) const {
+    double turn = 0.0;
+    if (spread_) turn += end.bend_length / rod_.EI * spread_->excess(end.edge, model, state).z();
+    if (!rod_.natural_curvature.empty()) {
+      const double twelfth = rod_.edge_length[to_size(end.edge)] / 12.0;
+      turn += (end.last ? twelfth * rod_.natural_curvature.back()
+                        : -twelfth * rod_.natural_curvature.front());
+    }
+    return turn;
+  }
+
+  [[nodiscard]] double number_of(const double& angle) const override {
+    if (!component_) return angle;
+    return *component_ == 0 ? std::cos(angle) : std::sin(angle);
+  }
+
+  std::optional<int> component_;
+  RodLayout rod_;
+  std::vector<EffectiveEdge> edges_;
+  std::vector<FreeEnd> ends_;
+  std::optional<MomentRecovery> spread_;  // where moments at free ends may matter
+  std::optional<SpreadMoments> moments_;
+  std::size_t reference_ = 0;
+  Index followed_ = -1;  // in Model::followed_edges
+};
+
+class SpatialDirection : public DirectionField<Vec3> {
+ public:
+  static std::unique_ptr<RodField> make(int component, const RodLayout& rod, const Model& model) {
+    std::optional<SpreadMoments> moments;
+    std::vector<double> kinks;
+    if (model.has_sections() && !rod.joints.empty()) {
+      moments.emplace(rod, model);
+      for (std::size_t i = 0; i < moments->size(); ++i) kinks.push_back((*moments)[i].arc_length);
+      if (kinks.empty()) moments.reset();
+    }
+    TangentLine line(rod, std::move(kinks), model);
+    return std::unique_ptr<RodField>(
+        new SpatialDirection(component, rod, model, std::move(line), std::move(moments)));
+  }
+
+ private:
+  SpatialDirection(int component, const RodLayout& rod, const Model& model, TangentLine line,
+                   std::optional<SpreadMoments> moments)
+      : DirectionField(std::move(line)),
+        component_(component),
+        rod_(rod),
+        moments_(std::move(moments)) {
+    for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+      edges_.push_back(spatial_edge(rod, edge, model));
+    }
+    if (!model.has_sections() || rod.joints.empty()) return;
+    ends_ = free_ends(rod);
+    if (moments_ && !ends_.empty()) spread_.emplace(rod, model);
+  }
+
+  void read(const Model& model, const State& state, std::vector<Vec3>& knots,
+            std::vector<Vec3>& kinks) const override {
+    for (const TangentLine::Knot& knot : line().knots()) {
+      knots.push_back(
+          knot.clamp >= 0
+              ? held_frame(rod_.clamps[to_size(knot.clamp)].held, model, state).tangent
+              : effective_vector(edges_[to_size(rod_.position(knot.edge))], model, state)
+                    .normalized());
+    }
+    for (const FreeEnd& end : ends_) {
+      (end.last ? knots.back() : knots.front()) -= lean(end, model, state);
+    }
+    if (!moments_) return;
+    for (std::size_t i = 0; i < moments_->size(); ++i) {
+      const Index edge = rod_.position((*moments_)[i].first_edge);
+      kinks.push_back(
+          -change_by(moments_->value(i, model, state).whole, 1.0, frame(edge, model, state)));
+    }
+  }
+
+  [[nodiscard]] SectionFrame frame(Index edge, const Model& model, const State& state) const {
+    return section_frame(model, rod_.first_edge + edge, state);
+  }
+
+  /// How the tangent changes along a length [m] under a moment [N m].
+  [[nodiscard]] Vec3 change_by(const Vec3& moment, double length, const SectionFrame& frame) const {
+    const auto bent = [&](double part, double stiffness) {
+      return stiffness > 0.0 ? length * part / stiffness : 0.0;
+    };
+    return bent(moment.dot(frame.second), rod_.EI_1) * frame.first -
+           bent(moment.dot(frame.first), rod_.EI_2) * frame.second;
+  }
+
+  /// How far the tangent of an outermost edge is beyond that of the curve.
+  [[nodiscard]] Vec3 lean(const FreeEnd& end, const Model& model, const State& state) const {
+    const SectionFrame section = frame(end.edge, model, state);
+    Vec3 change = Vec3::Zero();
+    if (spread_) {
+      change += change_by(spread_->excess(end.edge, model, state), end.bend_length, section);
+    }
+    if (!rod_.natural_curvatures.empty()) {
+      const Vec2& natural =
+          end.last ? rod_.natural_curvatures.back() : rod_.natural_curvatures.front();
+      const double twelfth = (end.last ? 1.0 : -1.0) * rod_.edge_length[to_size(end.edge)] / 12.0;
+      change += twelfth * (natural[0] * section.first + natural[1] * section.second);
+    }
+    return change;
+  }
+
+  [[nodiscard]] double number_of(const Vec3& direction) const override {
+    return direction[component_] / direction.norm();
+  }
+
+  int component_;
+  RodLayout rod_;
+  std::vector<SpatialEdge> edges_;
+  std::vector<FreeEnd> ends_;
+  std::optional<MomentRecovery> spread_;  // where moments at free ends may matter
+  std::optional<SpreadMoments> moments_;
+};
+
+}  // namespace
+
+std::unique_ptr<RodField> make_slope_field(const RodLayout& rod, const Model& model) {
+  return PlanarDirection::make(std::nullopt, rod, model);
+}
+
+std::unique_ptr<RodField> make_tangent_field(int number, const RodLayout& rod, const Model& model) {
+  if (model.dimension == 2) return PlanarDirection::make(number, rod, model);
+  return SpatialDirection::make(number, rod, model);
+}
+
+}  // namespace der

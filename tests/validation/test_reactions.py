@@ -1,0 +1,419 @@
+"""Reactions of supports: balance of forces and moments, statically indeterminate beams, motions."""
+
+import itertools
+
+import der
+import numpy as np
+import pytest
+from scenes import straight
+from scipy.integrate import solve_ivp
+from spatial_scenes import section
+
+CLAMPED = {"rod": "rod", "at": "start", "clamp": True}
+GRAVITY = np.array([0.3, -2.0])
+
+
+def embedded(vector):
+    """Return a vector of the plane as one in space; a number is along z."""
+    vector = np.asarray(vector, float)
+    if vector.ndim == 0:
+        return np.array([0.0, 0.0, float(vector)])
+    return np.append(vector, np.zeros(3 - len(vector)))
+
+
+def resultant(reactions):
+    """Return the force of reactions, and their moment about the origin."""
+    force = sum(embedded(r.force) for r in reactions)
+    moment = sum(
+        np.cross(embedded(r.point), embedded(r.force)) + embedded(r.moment) for r in reactions
+    )
+    return np.concatenate([force, moment])
+
+
+def acting(force, point, moment=0.0):
+    return np.concatenate(
+        [embedded(force), np.cross(embedded(point), embedded(force)) + embedded(moment)]
+    )
+
+
+def probe(quantity, at, **more):
+    return {"quantity": quantity, "rod": "rod", "at": at, **more}
+
+
+def places(*arc_lengths, axes="xy"):
+    """Return probes of the points at some arc lengths."""
+    return {f"{axis}{i}": probe(axis, s) for i, s in enumerate(arc_lengths) for axis in axes}
+
+
+def point(result, i, axes="xy"):
+    return [result.probes[f"{axis}{i}"][-1] for axis in axes]
+
+
+def solved(scene):
+    return der.run({**scene, "analysis": "static"})
+
+
+def last(reactions):
+    """Return reactions as they are at the last frame."""
+    return [
+        der.Reaction(r.support, r.rod, r.arc_length, r.point[-1], r.force[-1], r.moment[-1])
+        for r in reactions
+    ]
+
+
+# Beside the clamp, where edges and clamp share a moment, on both its edges and beyond (the edge is
+# 0.1 long); 0.8 has the spring.
+@pytest.mark.filterwarnings("ignore:the . component of loads.2")
+@pytest.mark.parametrize("place", [0.02, 0.05, 0.07, 0.13, 0.4, 0.8, 0.97, 1.0])
+@pytest.mark.parametrize("turned", [0.0, 0.4])
+def test_loads_and_reactions_balance_in_the_plane(place, turned):
+    clamp = {**CLAMPED, "prescribe": {"angle": turned}} if turned else CLAMPED
+    rod = {
+        "name": "rod",
+        "nodes": 11,
+        "from": [0.2, -0.1],
+        "to": [0.8, 0.7],
+        "natural_curvature": 0.5,
+        "cross_section": {"stiffness": {"EA": 40, "EI": 0.3, "mass_per_length": 0.2}},
+    }
+    force, through, moment = [0.3, -0.2], [-0.1, 0.25], 0.17
+    result = solved(
+        {
+            "rods": [rod],
+            "supports": [
+                clamp,
+                {"rod": "rod", "at": 0.83, "spring": {"stiffness": [1.5, 0.7]}},
+                {"rod": "rod", "at": 0.8, "spring": {"rotational_stiffness": 0.3}},
+                {"rod": "rod", "at": 0.8, "spring": {"rotational_stiffness": 0.1}},
+                {"rod": "rod", "at": {"node": 5}, "prescribe": {"y": 0.02}},
+            ],
+            "loads": [
+                {"gravity": GRAVITY.tolist()},
+                {"point_force": {"rod": "rod", "at": 0.46, "force": force}},
+                {"point_force": {"rod": "rod", "at": "start", "force": through}},
+                {"moment": {"rod": "rod", "at": place, "moment": moment}},
+            ],
+            "output": {"probes": places(0.46, 0.0)},
+        }
+    )
+    loads = acting(force, point(result, 0), moment) + acting(through, point(result, 1))
+    masses = der.Simulation(result.scenario).node_masses
+    for node, mass in zip(result.positions[-1], masses, strict=True):
+        loads = loads + acting(mass * GRAVITY, node)
+    reactions = last(result.reactions())
+    np.testing.assert_allclose(resultant(reactions) + loads, 0.0, atol=1e-9)
+    springs = [r.moment for r in reactions[2:4]]
+    assert springs[0] == pytest.approx(3 * springs[1], rel=1e-12) != 0.0
+
+
+def test_two_edges_between_two_clamps_balance():
+    moved = {"rod": "rod", "at": "end", "clamp": True, "prescribe": {"y": 0.1, "angle": 0.3}}
+    scene = straight(2, "free-free", EA=1e4)
+    result = solved(
+        {
+            "rods": scene["rods"],
+            "supports": [CLAMPED, moved],
+            "loads": [{"moment": {"rod": "rod", "at": 0.45, "moment": 0.2}}],
+        }
+    )
+    balance = resultant(last(result.reactions())) + embedded_moment(0.2)
+    np.testing.assert_allclose(balance, 0.0, atol=1e-9)
+
+
+def embedded_moment(moment):
+    return np.concatenate([np.zeros(3), embedded(moment)])
+
+
+@pytest.mark.parametrize("place", [0.04, 0.13, 0.62, 0.9])
+@pytest.mark.parametrize("clamp", [True, "tangent"])
+def test_loads_and_reactions_balance_in_space(place, clamp):
+    corners = np.array([[0, 0, 0], [0.5, 0.05, 0], [0.5, 0.45, 0.1]])
+    leg = np.linspace(0, 1, 5)[1:, None]
+    points = np.vstack([corners[:1], *(a + leg * (b - a) for a, b in itertools.pairwise(corners))])
+    force, moment = [0.3, -0.2, 0.4], [0.05, -0.08, 0.06]
+    turn = {"rotation": {"axis": [0, 1, 1], "angle": 0.3}}
+    if clamp is True:
+        turn["twist"] = 0.2
+    result = solved(
+        {
+            "rods": [
+                {
+                    "name": "rod",
+                    "points": points.tolist(),
+                    "cross_section": section(EA=60.0, EI1=0.4, EI2=0.2, GJ=0.15),
+                }
+            ],
+            "supports": [
+                {"rod": "rod", "at": "start", "clamp": clamp, "prescribe": turn},
+                {"rod": "rod", "at": 0.3, "spring": {"stiffness": [1.5, 0.7, 0.4]}},
+                {"rod": "rod", "at": 0.03, "spring": {"rotational_stiffness": [0.3, 0.1, 0.2]}},
+                {"rod": "rod", "at": 0.55, "spring": {"rotational_stiffness": [0.1, 0.2, 0.3]}},
+                {"rod": "rod", "at": {"node": 4}, "fix": ["z"]},
+            ],
+            "loads": [
+                {"point_force": {"rod": "rod", "at": "end", "force": force}},
+                {"moment": {"rod": "rod", "at": place, "moment": moment}},
+            ],
+            "output": {"probes": places("end", axes="xyz")},
+        }
+    )
+    loads = acting(force, point(result, 0, "xyz"), moment)
+    np.testing.assert_allclose(resultant(last(result.reactions())) + loads, 0.0, atol=1e-8)
+
+
+def test_an_isotropic_rod_in_space_balances():
+    force = [0.0, 0.2, 0.3]
+    result = solved(
+        {
+            "model": "spatial_bend",
+            "rods": [
+                {
+                    "name": "rod",
+                    "nodes": 9,
+                    "from": [0, 0, 0],
+                    "to": [1, 0, 0],
+                    "curvature": "tangent",
+                    "cross_section": {
+                        "stiffness": {"EA": 60, "EI": 0.2, "mass_per_length": 0.1, "GJ": 1}
+                    },
+                }
+            ],
+            "supports": [CLAMPED],
+            "loads": [{"point_force": {"rod": "rod", "at": 0.93, "force": force}}],
+            "output": {"probes": places(0.93, axes="xyz")},
+        }
+    )
+    loads = acting(force, point(result, 0, "xyz"))
+    np.testing.assert_allclose(resultant(last(result.reactions())) + loads, 0.0, atol=1e-9)
+
+
+LOAD = 1e-4  # small: the beams stay in linear theory
+
+
+def uniform(edges, supports):
+    scene = straight(edges, "free-free", EA=1e3)
+    load = {"distributed_force": {"rod": "rod", "force": [0, -LOAD]}}
+    result = solved({"rods": scene["rods"], "supports": supports, "loads": [load]})
+    return last(result.reactions())
+
+
+def y_held(at):
+    return {"rod": "rod", "at": at, "fix": ["y"]}
+
+
+#: Beams of length 1 under a uniform load: supports, and the force and moment of the first two of
+#: them for a unit load (Timoshenko, Strength of Materials I, chapters V and VI).
+BEAMS = {
+    "propped cantilever": ([CLAMPED, y_held("end")], [(5 / 8, 1 / 8), (3 / 8, 0)]),
+    "fixed at both ends": (
+        [CLAMPED, {"rod": "rod", "at": "end", "clamp": True}],
+        [(1 / 2, 1 / 12), (1 / 2, -1 / 12)],
+    ),
+    "two spans": (
+        [y_held("middle"), {"rod": "rod", "at": "start", "fix": ["x", "y"]}, y_held("end")],
+        [(5 / 8, 0), (3 / 16, 0)],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BEAMS)
+def test_statically_indeterminate_beams(name, fitted_order):
+    supports, exact = BEAMS[name]
+    edges = [8, 16, 32]
+    errors = []
+    for count in edges:
+        found = uniform(count, supports)[:2]
+        values = [(r.force[1] / LOAD, r.moment / LOAD) for r in found]
+        errors.append(np.abs(np.subtract(values, exact)).max())
+    assert errors[-1] < 2e-3
+    assert fitted_order(edges, errors) < -1.9
+
+
+def test_a_clamp_bears_the_moment_of_the_rod(fitted_order):
+    # The clamp is before the rod: it exerts the opposite of the moment there.
+    edges = [10, 20, 40]
+    errors = []
+    for count in edges:
+        scene = straight(count, "free-free", EA=1e5)
+        result = solved(
+            {
+                "rods": [{**scene["rods"][0], "natural_curvature": 0.4}],
+                "supports": [CLAMPED, y_held("end")],
+                "loads": [
+                    {"distributed_force": {"rod": "rod", "force": [0, -6.0]}},
+                    {"moment": {"rod": "rod", "at": 0.31, "moment": 0.8}},
+                ],
+                "output": {
+                    "probes": {
+                        "inside": probe("moment", "start"),
+                        "held": {"quantity": "reaction_moment", "support": 0},
+                    }
+                },
+            }
+        )
+        errors.append(result.probes["held"][-1] + result.probes["inside"][-1])
+    assert fitted_order(edges, errors) < -1.9
+
+
+@pytest.mark.parametrize("integrator", ["tr_bdf2", "newmark", "generalized_alpha", "bdf2"])
+def test_a_pendulum_pulls_at_its_pin(integrator, fitted_order):
+    # A mass of 2 kg on an elastic rod without mass of length 1, let go where it is horizontal.
+    g, mass, EA, time = 9.81, 2.0, 2e3, 0.5
+
+    def motion(_, y):
+        length = np.hypot(y[0], y[1])
+        pull = -EA * (length - 1) * y[:2] / (length * mass)
+        return [y[2], y[3], pull[0], pull[1] - g]
+
+    y = solve_ivp(motion, [0, time], [1, 0, 0, 0], rtol=1e-11, atol=1e-12).y[:2, -1]
+    length = np.hypot(*y)
+    exact = -EA * (length - 1) * y / length
+    radius = 0.01
+    sphere = {"at": "end", "radius": radius, "density": mass / (4 / 3 * np.pi * radius**3)}
+    rod = {
+        "name": "rod",
+        "points": [[0, 0], [1, 0]],
+        "cross_section": {"stiffness": {"EA": EA, "EI": 0, "mass_per_length": 0}},
+        "spheres": [sphere],
+    }
+    steps = [200, 400, 800]
+    errors = []
+    for count in steps:
+        result = der.run(
+            {
+                "rods": [rod],
+                "supports": [{"rod": "rod", "at": "start", "fix": ["x", "y"]}],
+                "loads": [{"gravity": [0, -g]}],
+                "time": {"duration": time, "step": time / count, "integrator": integrator},
+            }
+        )
+        errors.append(np.linalg.norm(result.reactions()[0].force[-1] - exact))
+    assert fitted_order(steps, errors) < -1.9
+
+
+def test_a_support_that_moves_bears_inertia_and_damping(fitted_order):
+    # All nodes are moved alike: the rod goes as one piece. The last frame is at the table's end.
+    mass, damping, rate = 2.0, 3.0, 9.0
+    steps = [50, 100, 200]
+    errors = []
+    for count in steps:
+        t = np.linspace(0, 1, count + 1)
+        motion = {"times": t.tolist(), "values": (0.1 * (1 - np.cos(rate * t))).tolist()}
+        section_ = {"stiffness": {"EA": 10, "EI": 1, "mass_per_length": mass}}
+        rod = {"name": "rod", "nodes": 9, "from": [0, 0], "to": [1, 0], "cross_section": section_}
+        result = der.run(
+            {
+                "rods": [rod],
+                "supports": [
+                    {"rod": "rod", "at": "all", "prescribe": {"y": motion}},
+                    {"rod": "rod", "at": "start", "fix": ["x"]},
+                ],
+                "loads": [{"damping": {"rod": "rod", "coefficient": damping}}],
+                "time": {"duration": 1.0, "step": 1.0 / count},
+                "output": {"every": 0.5},
+            }
+        )
+        force = sum(r.force[1:, 1] for r in result.reactions())
+        wave = rate * result.times[1:]
+        exact = 0.1 * rate * (mass * rate * np.cos(wave) + damping * np.sin(wave))
+        errors.append(np.abs(force - exact).max())
+    assert fitted_order(steps, errors) < -1.9
+
+
+def test_reactions_of_a_run_are_those_of_the_simulation_and_of_probes():
+    rod = {
+        "name": "rod",
+        "nodes": 9,
+        "from": [0, 0, 0],
+        "to": [1, 0, 0],
+        "cross_section": section(EA=1e4, EI1=2.0, EI2=1.0, GJ=0.8),
+    }
+    names = [f"reaction_{axis}" for axis in "xyz"] + [f"reaction_moment_{axis}" for axis in "xyz"]
+    twist = {"times": [0, 1], "values": [0, 2.0]}
+    scene = {
+        "rods": [rod],
+        "supports": [{**CLAMPED, "prescribe": {"twist": twist}}],
+        "loads": [
+            {"gravity": [0, -1, -2]},
+            {"moment": {"rod": "rod", "at": 0.7, "moment": [1, 0, 0]}},
+        ],
+        "time": {"duration": 0.2, "step": 0.01},
+        "output": {
+            "every": 0.1,
+            "probes": {name: {"quantity": name, "support": 0} for name in names},
+        },
+    }
+    simulation = der.Simulation(scene)
+    result = simulation.run()
+    now = simulation.reactions()[0]
+    saved = result.reactions()[0]
+    probed = np.array([result.probes[name] for name in names]).T
+    np.testing.assert_array_equal(np.hstack([now.force, now.moment]), probed[-1])
+    np.testing.assert_allclose(np.hstack([saved.force, saved.moment]), probed, rtol=1e-9, atol=1e-9)
+    assert (saved.support, saved.rod, saved.arc_length) == (0, "rod", 0.0)
+
+
+def test_held_components_of_every_node_have_reactions_of_their_own():
+    scene = {
+        "rods": [
+            {
+                "name": "rod",
+                "nodes": 5,
+                "from": [0, 0],
+                "to": [1, 0],
+                "cross_section": {"stiffness": {"EA": 10, "EI": 1, "mass_per_length": 1}},
+            }
+        ],
+        "supports": [
+            {"rod": "rod", "at": "all", "fix": ["y"]},
+            {"rod": "rod", "at": "start", "fix": ["x"]},
+        ],
+        "loads": [{"gravity": [0, -2]}],
+        "analysis": "static",
+        "output": {"probes": {"weight": {"quantity": "reaction_y", "support": 0}}},
+    }
+    result = der.run(scene)
+    forces = [r.force[-1, 1] for r in result.reactions() if r.support == 0]
+    assert forces == pytest.approx([0.25, 0.5, 0.5, 0.5, 0.25])
+    assert result.probes["weight"][-1] == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        ({}, "give 'support', its number"),
+        ({"rod": "rod"}, "give 'support', its number in place of 'rod'"),
+        ({"support": 3}, "there is no support '3': the scene has 1 of them, counted from 0"),
+        ({"support": "wall"}, "there is no support 'wall'"),
+        ({"support": 0, "at": "start"}, "has the place of its support"),
+        ({"support": 0, "quantity": "moment"}, "is no quantity of a support"),
+        ({"support": 0, "rod": "rod"}, "support"),
+        ({"support": -1}, "at least 0"),
+    ],
+)
+def test_wrong_probes_of_reactions_are_refused(more, message):
+    scene = straight(4, "free-free")
+    probes = {"p": {"quantity": "reaction_x", **more}}
+    with pytest.raises(der.SceneError, match=message):
+        der.Scenario.from_dict(
+            {
+                "rods": scene["rods"],
+                "supports": [CLAMPED],
+                "analysis": "static",
+                "output": {"probes": probes},
+            }
+        )
+
+
+def test_moments_in_the_plane_and_in_space_have_quantities_of_their_own():
+    scene = straight(4, "free-free")
+    whole = {"rods": scene["rods"], "supports": [CLAMPED], "analysis": "static"}
+
+    def ask(quantity, **more):
+        probes = {"p": {"quantity": quantity, "support": 0}}
+        return der.Simulation({**whole, **more, "output": {"probes": probes}}).probes
+
+    with pytest.raises(der.DerError, match="in a plane take 'reaction_moment'"):
+        ask("reaction_moment_z")
+    with pytest.raises(der.DerError, match="'reaction_moment_x', 'reaction_moment_y'"):
+        ask("reaction_moment", model="spatial_bend")

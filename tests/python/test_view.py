@@ -198,6 +198,7 @@ def test_small_quantities_are_coloured(swing):
 def test_static_modes_and_paths(tube):
     data = make_payload(der.equilibrium(tube))
     assert data["captions"] == ["undeformed", "equilibrium"]
+    assert data["quantity"] == "curvature"
     assert (data["start"], data["times"], data["speeds"]) == (1, None, [])
     assert "speed" not in data["fields"]
     path = der.continuation(tube)

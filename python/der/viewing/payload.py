@@ -29,6 +29,8 @@ _SYMBOL = 0.035
 _LINE_ARROWS = 9
 #: Springs of an elastic foundation of a whole rod.
 _FOUNDATION_SPRINGS = 15
+#: The quantity that rods are coloured by at first.
+_COLOURED = "curvature"
 #: Speeds on offer, against the one that suits the run.
 _SPEEDS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 
@@ -77,7 +79,7 @@ def make_payload(result: RunData) -> dict[str, Any]:
             name: _field_range(quantities[name].unit, values, result.rods, span)
             for name, values in film.fields.items()
         },
-        "quantity": next(iter(film.fields), ""),
+        "quantity": _COLOURED if _COLOURED in film.fields else "",
         "rods": [
             _rod(
                 rod,

@@ -446,7 +446,7 @@
         type: "mesh3d",
         hoverinfo: "skip",
         lighting: LIGHT,
-        opacity: 0.4,
+        opacity: 0.25,
         ...mesh,
         colorscale: [[0, colours[0]], [0.5, "#f7f7f7"], [1, colours[1]]],
         cmin: -1,

@@ -2,8 +2,8 @@
 
     python docs/make_figures.py [NAME...]
 
-Writes docs/images/NAME.png for each NAME, or for all of them. swinging is a GIF, and view, a
-screenshot, takes Chromium and selenium: without them it is left as it is.
+Writes docs/images/NAME.png for each NAME, or for all of them. finger_traces and swinging are
+GIFs, and view, a screenshot, takes Chromium and selenium: without them it is left as it is.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from der.plotting import PALETTE, style
 from der.plotting.style import look
-from tutorials import beam_study, control, falling_rod
+from tutorials import beam_study, control, falling_rod, finger
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -167,6 +167,11 @@ def snap_through_arch() -> Figure:
     return der.run(CONFIGS / "snap_through_arch.yaml").plot()
 
 
+def actuated_finger() -> Figure:
+    """Draw a soft finger as it closes: the chamber of the tip is behind that of the base."""
+    return der.run(CONFIGS / "finger.yaml").plot("shapes", times=[0, 0.3, 0.7])
+
+
 def helix_spring() -> Figure:
     """Draw a wire in space that coils up to its natural shape."""
     return der.run(CONFIGS / "helix_spring.yaml").plot()
@@ -218,6 +223,14 @@ def tutorial_beam_study() -> Figure:
 def tutorial_control() -> Figure:
     """Draw the arm of the third tutorial, with and without feedback."""
     return control.figure(control.run(control.PI()), control.run(control.open_loop))
+
+
+def tutorial_finger() -> Figure:
+    """Draw the finger's tip of the fourth tutorial, with and without feedback."""
+    inverse = finger.Inverse()
+    return finger.figure(
+        inverse, finger.run(finger.Feedback(inverse)), finger.run(finger.OpenLoop(inverse))
+    )
 
 
 def data_flow() -> Figure:
@@ -315,6 +328,12 @@ def symbols() -> Figure:
     return der.run(scene).plot("shapes")
 
 
+def finger_traces(path: Path) -> None:
+    """Write an animation of the finger of the fourth tutorial, with feedback."""
+    controlled = finger.run(finger.Feedback(finger.Inverse()))
+    finger.replay(controlled).animate(path, speed=2, fps=10)
+
+
 def swinging(path: Path) -> None:
     """Write an animation of the swinging rod at half its speed."""
     der.run(SWING).animate(path, speed=0.5)
@@ -375,6 +394,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         beam_modes,
         euler_buckling,
         snap_through_arch,
+        actuated_finger,
         helix_spring,
         spun_strip,
         helical_buckling,
@@ -382,12 +402,14 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         tutorial_falling_rod,
         tutorial_beam_study,
         tutorial_control,
+        tutorial_finger,
         data_flow,
         symbols,
     )
 }
 # Figures whose function writes the file itself, with the ending of the file.
 FILES: dict[str, tuple[str, Callable[[Path], None]]] = {
+    "finger_traces": (".gif", finger_traces),
     "swinging": (".gif", swinging),
     "view": (".png", view),
 }

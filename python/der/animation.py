@@ -34,7 +34,7 @@ _TITLE_LINE = 0.2  # that each further line takes [inch]
 _MAX_FRAMES = 20_000
 _CENTISECONDS = 100.0  # a GIF counts time in them ...
 _SHORTEST = 2  # ... and viewers slow down what is shorter than so many
-_GIF_TONES = 64  # between white and each colour of a picture
+_GIF_TONES = 256  # of all colours of a picture, between each and white
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,8 +90,7 @@ def animate(
         For an MP4 without imageio-ffmpeg.
     """
     path = Path(path)
-    writers = {".gif": _write_gif, ".mp4": _write_mp4}
-    if path.suffix.lower() not in writers:
+    if path.suffix.lower() not in (".gif", ".mp4"):
         raise ValueError(f"cannot write {path.name}: an animation ends with .gif or .mp4")
     if not 0.0 < fps <= 240.0:
         raise ValueError(f"fps must be greater than 0 and at most 240, not {fps:g}")
@@ -107,7 +106,10 @@ def animate(
     pictures = _draw(picture, cut, progress)
     partial = path.with_name(f".{path.stem}.partial{path.suffix}")
     try:
-        writers[path.suffix.lower()](pictures, partial, cut.fps)
+        if gif:
+            _write_gif(pictures, partial, cut.fps, _gif_palette(len(picture.actuated)))
+        else:
+            _write_mp4(pictures, partial, cut.fps)
         partial.replace(path)
     finally:
         partial.unlink(missing_ok=True)
@@ -206,6 +208,7 @@ def _draw(picture: Picture, cut: _Cut, progress: ProgressFunction | None) -> Ite
 
 
 def _draw_moment(axes: Axes, picture: Picture, positions: Array, frame: int, text: str) -> None:
+    from der.plotting.actuation import draw_actuation
     from der.plotting.loads import draw_loads
     from der.plotting.shapes import draw_shapes
     from der.plotting.style import PALETTE
@@ -215,6 +218,7 @@ def _draw_moment(axes: Axes, picture: Picture, positions: Array, frame: int, tex
     source = min(frame, len(result.times) - 1)
     half_widths = picture.half_widths(source, positions)
     draw_shapes(axes, rods, positions, PALETTE[0], half_widths=half_widths)
+    draw_actuation(axes, rods, picture.actuated, source, positions)
     draw_supports(axes, rods, picture.held_nodes(source), positions)
     draw_springs(axes, rods, picture.springs, positions)
     if result.modes is None and result.buckling is None:
@@ -227,6 +231,7 @@ def _set_stage(picture: Picture, cut: _Cut) -> Axes:
     """Make a figure with one set of axes: equal, with limits that hold the whole motion."""
     from matplotlib.figure import Figure
 
+    from der.plotting.actuation import add_actuation_to_legend
     from der.plotting.loads import draw_loads
     from der.plotting.style import FIGURE_TITLE, wrapped
     from der.scene_loads import ActingLoads
@@ -259,7 +264,10 @@ def _set_stage(picture: Picture, cut: _Cut) -> Axes:
     gravity = picture.loads(0).gravity
     if gravity is not None:
         draw_loads(axes, picture.rods, ActingLoads(gravity=gravity), cut.positions[0])
-        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1)
+    add_actuation_to_legend(axes, picture.actuated)
+    entries = len(picture.actuated) + (gravity is not None)
+    if entries:
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.1, ncols=entries)
     return axes
 
 
@@ -279,12 +287,12 @@ def _extent(picture: Picture, cut: _Cut) -> tuple[Array, Array]:
     return low - room, high + room
 
 
-def _write_gif(pictures: Iterator[Pixels], path: Path, fps: float) -> None:
+def _write_gif(pictures: Iterator[Pixels], path: Path, fps: float, tones: list[int]) -> None:
     from PIL import Image
 
     # One palette for all, without dithering: quick, small, and colours that do not flicker.
     palette = Image.new("P", (1, 1))
-    palette.putpalette(_gif_palette())
+    palette.putpalette(tones)
     images = (
         Image.fromarray(picture).quantize(palette=palette, dither=Image.Dither.NONE)
         for picture in pictures
@@ -298,15 +306,18 @@ def _write_gif(pictures: Iterator[Pixels], path: Path, fps: float) -> None:
     )
 
 
-def _gif_palette() -> list[int]:
+def _gif_palette(actuations: int) -> list[int]:
     """Return red, green and blue of the colours that pictures are made of, and of their tones."""
     from matplotlib.colors import to_rgb
 
-    from der.plotting.style import LOAD, MUTED, PALETTE
+    from der.plotting.style import ACTUATED, LOAD, MUTED, PALETTE, actuated_colour
 
-    # Nothing close to white, or Pillow would take it for white.
-    tones = np.append(np.linspace(0.0, 0.94, _GIF_TONES - 1), 1.0)[:, np.newaxis]
     colours = [to_rgb(colour) for colour in (PALETTE[0], LOAD, MUTED, "black")]
+    for number in range(min(actuations, len(ACTUATED))):
+        colours += [actuated_colour(number, share) for share in (1.0, -1.0)]
+    # Nothing close to white, or Pillow would take it for white.
+    count = _GIF_TONES // len(colours)
+    tones = np.append(np.linspace(0.0, 0.94, count - 1), 1.0)[:, np.newaxis]
     mixed = np.vstack([tones + (1.0 - tones) * np.array(colour) for colour in colours])
     return [int(value) for value in np.rint(255.0 * mixed).ravel()]
 

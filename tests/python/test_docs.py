@@ -210,7 +210,7 @@ def tutorial(monkeypatch):
     return lambda module: importlib.import_module(f"tutorials.{module}")
 
 
-@pytest.mark.parametrize("module", ["falling_rod", "beam_study", "control"])
+@pytest.mark.parametrize("module", ["falling_rod", "beam_study", "control", "finger"])
 def test_code_of_a_tutorial_is_that_of_its_program(module):
     """Definitions are shown as they are; blocks that use them may be the page's own."""
     program = (TUTORIALS / f"{module}.py").read_text(encoding="utf-8")
@@ -271,3 +271,28 @@ def test_pictures_can_be_made(tmp_path, monkeypatch):
     assert made | {"peers.png", "peers_strip.png", "view.png"} == {
         path.name for path in (ROOT / "docs" / "images").iterdir()
     }
+
+
+def test_tutorial_of_the_finger(tutorial):
+    finger = tutorial("finger")
+    inverse = finger.Inverse(points=12)
+    assert inverse.error < 1e-8
+    assert inverse.pressures.min() > 0.0
+    # The slopes that the solver found, against a change of the pressures.
+    simulation = der.Simulation(der.Scenario.from_dict(finger.FINGER))
+    tips = []
+    for change in ([0, 0, 0], [0.1, 0, -0.2]):
+        finger.inflate(simulation, inverse.pressures[3] + change)
+        simulation.equilibrium()
+        tips.append(simulation.positions[-1].copy())
+    moved = inverse.slopes[3] @ change
+    assert tips[1] - tips[0] == pytest.approx(moved, abs=0.01 * np.linalg.norm(moved))
+    with_feedback = finger.run(finger.Feedback(inverse))
+    without = finger.run(finger.OpenLoop(inverse))
+    assert max(with_feedback.error(lap) for lap in range(3)) < 1e-3
+    assert without.error(1) > 5e-3
+    assert abs(without.error(2) - without.error(0)) < 1e-4
+    # The chambers' work is in the ledger, and tables are the same run as what was set.
+    result = finger.replay(with_feedback)
+    assert result.positions[-1, -1] == pytest.approx(with_feedback.tips[-1], abs=1e-12)
+    assert result.work["actuation"][-1] > 0.0

@@ -198,6 +198,7 @@ def test_small_quantities_are_coloured(swing):
 def test_static_modes_and_paths(tube):
     data = make_payload(der.equilibrium(tube))
     assert data["captions"] == ["undeformed", "equilibrium"]
+    assert data["quantity"] == "curvature"
     assert (data["start"], data["times"], data["speeds"]) == (1, None, [])
     assert "speed" not in data["fields"]
     path = der.continuation(tube)
@@ -496,6 +497,25 @@ def test_browser_draws_loads_and_supports(browser, tube, tmp_path):
     assert [x.min(), x.max()] == pytest.approx(
         [0, result.positions[-1, -1, 0]], abs=2 * payload_of(tmp_path / "view.html")["symbol"]
     )
+    assert_no_errors(browser)
+
+
+def test_browser_draws_actuated_stretches(browser, swing, tmp_path):
+    """A sleeve around the stretch, and its value above the scene."""
+    table = {"times": [0, 0.2], "values": [0, -4]}
+    part = {"name": "bend", "rod": "arm", "from": 0.35, "to": 0.75}
+    swing["actuation"] = [{**part, "natural_curvature": table}]
+    swing["loads"] = []
+    open_page(browser, der.run(swing).view(tmp_path / "view.html"))
+    legend = "document.getElementById('legend').textContent"
+    assert browser.execute_script(f"return {legend}") == "bend: curvature 0 1/m"
+    sleeve = "document.getElementById('scene').data.at(-2)"
+    x = np.array(browser.execute_script(f"return {sleeve}.x"))
+    assert [x.min(), x.max()] == pytest.approx([0.35, 0.75], abs=1e-6)
+    move_slider(browser, 20)
+    wait_for(browser, f"{legend} == 'bend: curvature -4 1/m'")
+    values = browser.execute_script(f"return {sleeve}.intensity")
+    assert set(values) == {-1}
     assert_no_errors(browser)
 
 

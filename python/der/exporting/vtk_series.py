@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der._core import Rod
+from der.actuated_stretches import ActuatedStretch, actuated_stretches
 from der.fields import RodFields, along_line, rod_fields
 from der.film import mode_shapes
 from der.progress import ProgressFunction
@@ -48,6 +49,7 @@ def write_vtk(result: RunData, out: Path, progress: ProgressFunction) -> list[Pa
     sizes = np.array([len(fields.rod.line_nodes) for fields in rods])
     sections, directors = sections_of(result), directors_along(result)
     surfaces = _Surfaces(sections, [fields.rod for fields in rods])
+    actuated = actuated_stretches(result)
     lines = np.full(len(rods), VtkPolyLine.tid, dtype=np.uint8)
     # A path has no time: its frames are numbered.
     times = result.times if result.path is None else np.arange(len(result.times), dtype=np.float64)
@@ -59,6 +61,7 @@ def write_vtk(result: RunData, out: Path, progress: ProgressFunction) -> list[Pa
             _point_data(rods, frame)
             | _section_data(sections, directors, rods, frame)
             | _mode_data(result, rods)
+            | _actuation_data(actuated, rods, frame)
         )
         at_frame = _field_data(result, frame, time)
         path = unstructuredGridToVTK(
@@ -197,6 +200,25 @@ def _mode_data(result: RunData, rods: list[RodFields]) -> PointData:
         f"mode_{number}": _in_space(np.vstack([shape[fields.rod.line_nodes] for fields in rods]))
         for number, shape in enumerate(mode_shapes(result), 1)
     }
+
+
+def _actuation_data(
+    stretches: list[ActuatedStretch], rods: list[RodFields], frame: int
+) -> PointData:
+    """Return what each actuation adds to the rest shape at the nodes, also those at its ends."""
+    data: PointData = {}
+    for stretch in stretches:
+        profile = np.concatenate(
+            [
+                stretch.profile_at(fields.rod.line_arc_lengths) * (fields.rod.name == stretch.rod)
+                for fields in rods
+            ]
+        )
+        values = np.atleast_1d(stretch.values[frame])
+        names = [""] if len(values) == 1 else ["_k1", "_k2"]
+        for name, value in zip(names, values.tolist(), strict=True):
+            data[f"actuation_{stretch.name}{name}"] = value * profile
+    return data
 
 
 def _field_data(result: RunData, frame: int, time: float) -> dict[str, Array]:

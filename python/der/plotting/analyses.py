@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from der.film import MODE_SIZE
+from der.plotting.actuation import draw_actuation
 from der.plotting.picture import Picture
 from der.plotting.shapes import draw_shapes, limits
 from der.plotting.style import MUTED, PALETTE, axis_label
@@ -71,6 +72,7 @@ def _draw_mode(axes: Axes, picture: Picture, rest: Array, shape: Array, label: s
     draw_supports(axes, rods, picture.held_nodes(0), rest)
     draw_springs(axes, rods, picture.springs, rest)
     draw_foundations(axes, rods, picture.loads(0).foundations, rest)
+    draw_actuation(axes, rods, picture.actuated, 0, rest)
     axes.set_aspect("equal", adjustable="datalim")
     axes.text(1.01, 0.5, f"{label},\nnot to scale", transform=axes.transAxes, va="center")
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from der._core import ended_as_asked
 from der.film import title_of
+from der.plotting.actuation import add_actuation_to_legend, draw_actuation
 from der.plotting.analyses import plot_modes, plot_path
 from der.plotting.loads import draw_loads, room_for_loads
 from der.plotting.picture import Picture
@@ -201,6 +202,8 @@ def _plot_path_shapes(picture: Picture) -> Figure:
     draw_supports(axes, rods, picture.held_nodes(0), positions[0])
     draw_springs(axes, rods, picture.springs, positions[0])
     draw_foundations(axes, rods, picture.loads(0).foundations, positions[0])
+    draw_actuation(axes, rods, picture.actuated, 0, positions[0])
+    add_actuation_to_legend(axes, picture.actuated)
     _finish_shape_panel(axes, picture)
     return figure
 
@@ -265,15 +268,17 @@ def _draw_shape_panel(
     labels: Sequence[str],
     frames: Sequence[int],
 ) -> None:
-    """Draw the shapes at some frames, with supports and loads at the last of them."""
+    """Draw the shapes at some frames, with supports, loads and actuation at the last."""
     colours = time_colours(len(shapes))
     for positions, label, colour, at in zip(shapes, labels, colours, frames, strict=True):
         half_widths = picture.half_widths(at, positions)
         draw_shapes(axes, picture.rods, positions, colour, label, half_widths=half_widths)
     frame = frames[-1]
+    draw_actuation(axes, picture.rods, picture.actuated, frame, shapes[-1])
     draw_supports(axes, picture.rods, picture.held_nodes(frame), shapes[-1])
     draw_springs(axes, picture.rods, picture.springs, shapes[-1])
     draw_loads(axes, picture.rods, picture.loads(frame), shapes[-1])
+    add_actuation_to_legend(axes, picture.actuated, frame)
     axes.update_datalim(np.array(_corners(picture, shapes, frame)))
     _finish_shape_panel(axes, picture)
 

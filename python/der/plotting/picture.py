@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from der.actuated_stretches import ActuatedStretch, actuated_stretches
 from der.film import mode_displacements
 from der.plotting.lengths import label_positions
 from der.plotting.supports import HeldPlace, SpringPlace
@@ -207,6 +208,11 @@ class Picture:
             )
             for spring in found
         ]
+
+    @cached_property
+    def actuated(self) -> list[ActuatedStretch]:
+        """The actuated stretches of the scene, with their values at all frames."""
+        return actuated_stretches(self.result)
 
     def held_nodes(self, frame: int) -> list[HeldNode] | list[HeldPlace]:
         """Return the nodes that supports hold at a frame; those held towards the viewer only not.

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der._core import Rod, springs
+from der.actuated_stretches import ActuatedStretch, actuated_stretches
 from der.fields import fields_of
 from der.film import Film, failure_text, make_film, mode_shapes, round_speed, speed_text
 from der.natural_sizes import natural_size
@@ -28,6 +29,8 @@ _SYMBOL = 0.035
 _LINE_ARROWS = 9
 #: Springs of an elastic foundation of a whole rod.
 _FOUNDATION_SPRINGS = 15
+#: The quantity that rods are coloured by at first.
+_COLOURED = "curvature"
 #: Speeds on offer, against the one that suits the run.
 _SPEEDS = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 
@@ -76,7 +79,7 @@ def make_payload(result: RunData) -> dict[str, Any]:
             name: _field_range(quantities[name].unit, values, result.rods, span)
             for name, values in film.fields.items()
         },
-        "quantity": next(iter(film.fields), ""),
+        "quantity": _COLOURED if _COLOURED in film.fields else "",
         "rods": [
             _rod(
                 rod,
@@ -90,6 +93,7 @@ def make_payload(result: RunData) -> dict[str, Any]:
         "supports": _supports(result, film.source[frames]),
         "springs": found_springs,
         **loads,
+        "actuation": _actuation(result, film.source[frames]),
         "symbol": symbol,
         "low": low.tolist(),
         "high": high.tolist(),
@@ -355,3 +359,38 @@ def _springs(result: RunData) -> list[dict[str, Any]]:
             }
         )
     return found
+
+
+def _actuation(result: RunData, source: NDArray[np.int64]) -> list[dict[str, Any]]:
+    """Return the band of each actuated stretch.
+
+    Its line goes through points at a ``share`` of the edge after a ``place``, each with the
+    ``profile`` there. Every frame of the page, which is frame ``source`` of the result, has the
+    value as a ``text`` and its ``size`` against the largest.
+    """
+    numbers = {rod.name: number for number, rod in enumerate(result.rods)}
+    found = []
+    for stretch in actuated_stretches(result):
+        rod = numbers[stretch.rod]
+        texts = [stretch.value_text(frame) for frame in source.tolist()]
+        found.append(
+            {
+                "name": stretch.name,
+                "rod": rod,
+                "level": stretch.level,
+                "points": _band(stretch, result.rods[rod]),
+                "sizes": stretch.shares[source].tolist(),
+                "texts": texts if any(text != texts[0] for text in texts) else texts[:1],
+            }
+        )
+    return found
+
+
+def _band(stretch: ActuatedStretch, rod: Rod) -> list[tuple[int, float, float]]:
+    """Return place, share and profile of the points of a stretch."""
+    at = stretch.samples(rod)
+    nodes = rod.line_arc_lengths
+    right = np.clip(np.searchsorted(nodes, at), 1, len(nodes) - 1)
+    shares = (at - nodes[right - 1]) / np.diff(nodes)[right - 1]
+    profile = stretch.profile_at(at)
+    return list(zip((right - 1).tolist(), shares.tolist(), profile.tolist(), strict=True))

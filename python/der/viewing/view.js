@@ -10,6 +10,9 @@
   const SPHERE = "#56B4E9";
   const SUPPORT = "#8c8c8c";
   const LOAD = "#D55E00";
+  const ACTUATED = ["#CC79A7", "#E69F00", "#009E73", "#56B4E9"];
+  const NEGATIVE = ["#704361", "#7f5700", "#00573f", "#2f637f"]; // the same, dark
+  const SLEEVE = 0.3; // how far a sleeve is from its rod and from the one within it, in symbols
 
   // Vectors.
   const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
@@ -428,6 +431,38 @@
     return [{ type: "mesh3d", ...plain(mesh), ...look }, labels];
   };
 
+  // Sleeves around the actuated stretches: pale where the value is small, dark where it is negative.
+  const sleeves = (frame) =>
+    data.actuation.map((band, number) => {
+      const mesh = newMesh();
+      const rod = rods[band.rod];
+      const line = lineOf(rod, frame);
+      const points = band.points.map(([place, share]) => loadPlace({ place, share }, line));
+      const reach = Math.max(0, ...rod.outline.map(([u, v]) => Math.hypot(u, v)));
+      const radius = reach + SLEEVE * (1 + band.level) * data.symbol;
+      addTube(mesh, points, radius, band.points.map((point) => band.sizes[frame] * point[2]));
+      const colours = [NEGATIVE, ACTUATED].map((list) => list[number % list.length]);
+      return {
+        type: "mesh3d",
+        hoverinfo: "skip",
+        lighting: LIGHT,
+        opacity: 0.25,
+        ...mesh,
+        colorscale: [[0, colours[0]], [0.5, "#f7f7f7"], [1, colours[1]]],
+        cmin: -1,
+        cmax: 1,
+        showscale: false,
+      };
+    });
+  const showLegend = (frame) => {
+    data.actuation.forEach((band, number) => {
+      const entry = element("legend").children[number];
+      const colours = band.sizes[frame] < 0 ? NEGATIVE : ACTUATED;
+      entry.style.borderColor = colours[number % colours.length];
+      entry.textContent = `${band.name}: ${band.texts[band.texts.length > 1 ? frame : 0]}`;
+    });
+  };
+
   // A text at a point, always upright and of the same size on the screen.
   const note = (text, [x, y, z], font, place) => ({ x, y, z, text, font, showarrow: false, ...place });
 
@@ -499,9 +534,10 @@
     const { frame } = state;
     element("slider").value = frame;
     element("caption").textContent = data.captions[frame];
+    showLegend(frame);
     const [arrows, labels] = loads(frame);
     const own = [centreLines(frame), tubes(frame), spheres(frame), supports(frame)];
-    return Plotly.react("scene", [...own, arrows, springs(frame)], layout(labels), config);
+    return Plotly.react("scene", [...own, arrows, ...sleeves(frame), springs(frame)], layout(labels), config);
   };
 
   // Controls.
@@ -563,6 +599,7 @@
     document.title = data.title;
     element("title").textContent = data.title;
     element("note").textContent = data.note;
+    for (const _ of data.actuation) element("legend").append(document.createElement("span"));
     state.quantity = data.quantity;
     state.speed = data.speeds.length ? data.speeds[Math.floor(data.speeds.length / 2)][0] : 1;
     choose(0);

@@ -159,6 +159,7 @@ class ActuationCheck {
     for (int i = 0; i <= number_; ++i) {
       const Actuation& other = context_.scene.actuations[static_cast<std::size_t>(i)];
       if (other.what != Actuated::Elongation || other.rod != actuation_.rod) continue;
+      if (context_.diagnostics.under(path_of(i))) continue;
       all.push_back(&other);
       places.insert(places.end(), {other.from, 0.5 * (other.from + other.to), other.to});
       const std::vector<double>& own = other.values.front().times;
@@ -167,6 +168,7 @@ class ActuationCheck {
     std::sort(places.begin(), places.end());
     double least_sum = 0.0;
     for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+      if (places[k] < actuation_.from || places[k + 1] > actuation_.to) continue;
       for (const double s : {places[k], 0.5 * (places[k] + places[k + 1]), places[k + 1]}) {
         for (const double time : times) {
           double sum = 0.0;

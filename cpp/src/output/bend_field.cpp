@@ -161,7 +161,7 @@ class BendField : public EdgewiseField<double> {
       result.length = bend_length(rod, node);
       result.rest_angle = rod.rest_turning_angle[to_size(rod.position(node))];
     }
-    result.natural_curvature = natural.at(result.arc_length);
+    result.natural_curvature = natural.at(edge, result.arc_length);
     return result;
   }
 

@@ -5,6 +5,7 @@
 
 #include "der/core/index.hpp"
 #include "der/model/moment_place.hpp"
+#include "model/corner.hpp"
 
 namespace der {
 namespace {
@@ -32,7 +33,9 @@ MomentRecovery::MomentRecovery(const RodLayout& rod, const Model& model)
       forces_(rod, model),
       moments_(rod, model),
       edges_(to_size(rod.num_edges())),
-      kinks_(loaded_nodes(rod, model)) {
+      kinks_(loaded_nodes(rod, model)),
+      corners_(rod.nodes.size()) {
+  for (const Index corner : corners_of(rod, model)) corners_[to_size(corner)] = true;
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     const std::optional<Index> start = clamp_before(rod, edge);
     const std::optional<Index> end = clamp_beyond(rod, edge);
@@ -226,7 +229,8 @@ bool MomentRecovery::jumps_at(Index node) const {
     return is_same_place(s, rod_.arc_length[to_size(rod_.position(node))]);
   };
   const std::vector<double> places = rod_.moment_arc_lengths();
-  return rod_.clamp_at(node) != nullptr || std::any_of(places.begin(), places.end(), stands_here);
+  return rod_.clamp_at(node) != nullptr || is_corner(node) ||
+         std::any_of(places.begin(), places.end(), stands_here);
 }
 
 }  // namespace der

@@ -118,20 +118,16 @@ def test_what_jumps_at_a_corner_in_the_plane(fitted_order):
     compare(fitted_order, wire, ("x", "y", "curvature_1", "moment_1", "tension"), planar=True)
 
 
-#: Legs of 0.5 m in the x-y plane.
-ELL = np.concatenate(
-    [[[0.1 * k, 0.0] for k in range(6)], [[0.5, 0.1 * k] for k in range(1, 6)]]
-).round(12)
-
-
 @pytest.fixture(params=["planar", "spatial"])
 def dimension(request):
     return 2 if request.param == "planar" else 3
 
 
-def ell(dimension, stiffness, loads, probes):
-    """Final values of the probes on a clamped frame of two legs."""
-    points = np.pad(ELL, ((0, 0), (0, dimension - 2)))
+def ell(dimension, stiffness, loads, probes, angle=90):
+    """Final values of the probes on a clamped frame of two legs of 0.5 m in the x-y plane."""
+    share = np.linspace(0.0, 0.5, 6)[:, None]
+    second = [np.cos(np.radians(angle)), np.sin(np.radians(angle)), 0.0]
+    points = np.vstack([share * [1, 0, 0], [0.5, 0, 0] + share[1:] * second])[:, :dimension]
     cross_section = {"stiffness": {"mass_per_length": 1.0, "GJ": stiffness["EI"], **stiffness}}
     scene = rod_through(points, cross_section, loads=loads)
     scene["model"] = "planar" if dimension == 2 else "spatial"
@@ -140,13 +136,16 @@ def ell(dimension, stiffness, loads, probes):
     return {name: values[-1] for name, values in result.probes.items()}
 
 
-def test_torque_becomes_a_moment_at_a_right_angle():
-    """A tip force across the plane bends one leg and twists and bends the other: by statics."""
+@pytest.mark.parametrize("angle", [90, 25, 7])
+def test_torque_becomes_a_moment_behind_a_corner(angle):
+    """A tip force across the plane bends one leg, and twists and bends the other: by statics. Small
+    angles are corners too where they stand alone."""
     force, leg = 1e-5, 0.5  # so small that the frame keeps its shape
+    sine, cosine = np.sin(np.radians(angle)), np.cos(np.radians(angle))
     corner = {"at": {"node": 5}}
     values = ell(
         3,
-        {"EA": 1e6, "EI": 1.0},
+        {"EA": 1e6, "EI": 1.0, "GJ": 0.2},
         [{"point_force": {"rod": "rod", "at": "end", "force": [0, 0, force]}}],
         {
             "before": {"quantity": "torque", **corner, "side": "before"},
@@ -157,15 +156,16 @@ def test_torque_becomes_a_moment_at_a_right_angle():
             "greatest": {"quantity": "torque", "over": "rod", "reduce": "max"},
             "most_curved": {"quantity": "curvature", "over": "rod", "reduce": "max"},
         },
+        angle,
     )
     exact = {
-        "before": force * leg,
+        "before": force * leg * sine,
         "after": 0.0,
-        "moment_before": 0.0,
+        "moment_before": force * leg * cosine,
         "moment_after": force * leg,
-        "moment_near": force * 0.02,
-        "greatest": force * leg,
-        "most_curved": force * leg,
+        "moment_near": force * (0.02 + leg * cosine),
+        "greatest": force * leg * sine,
+        "most_curved": force * leg * (1.0 + cosine),
     }
     assert values == pytest.approx(exact, abs=1e-6 * force)
 
@@ -208,8 +208,8 @@ def test_places_beside_a_corner_lie_on_their_leg(dimension):
 
 
 def test_forces_beside_a_corner(fitted_order):
-    """Within the first two edges on either side of a corner, at 1/5 and 4/5 of an edge. The rod does
-    not stretch: forces between nodes along it stretch it to order 1."""
+    """Within the first two edges on either side of a corner, at 1/5 and 4/5 of an edge. The rod
+    does not stretch: forces between nodes along it stretch it to order 1."""
     inside = {0: (0.96, (0.8, 1.5, -0.9)), 1: (0.04, (-1.0, 0.9, 0.6))}
     frame = along_x([0.0, 0.6, 0.8])
     wire = Wire(LEGS, frame, (STRONG, WEAK, TWISTING, 1e8), (0.4, 0.3, -0.5), inside)

@@ -46,7 +46,7 @@ bool bends(const RodLayout& rod, const Model& model) {
 }  // namespace
 
 bool is_corner(const RodLayout& rod, Index place, const Model& model) {
-  constexpr double kLeast = 0.5;        // [rad]
+  constexpr double kLeast = 0.1;        // [rad]
   constexpr double kSharp = kPi / 3.0;  // [rad]
   constexpr double kAlone = 3.0;
   if (!is_free_of_stress(rod) || !bends(rod, model)) return false;

@@ -8,8 +8,8 @@
 namespace der {
 
 /// Whether a place of a rod that is stress-free as drawn, and bends, is a corner: its drawn turn is
-/// more than 60 degrees, or more than half a radian and three times what the rod turns the same way
-/// at the nodes before and after. In a smooth curve neighbouring turns are alike.
+/// more than 60 degrees, or more than a tenth of a radian and three times what the rod turns the
+/// same way at the nodes before and after. In a smooth curve neighbouring turns are alike.
 ///
 /// Corners part a rod into legs. Tangent and section jump there, and what refers to them.
 bool is_corner(const RodLayout& rod, Index place, const Model& model);

@@ -654,3 +654,44 @@ def test_verdict_on_a_rod_between_clamps_is_that_of_the_spatial_model(value, uns
     directions = report.unstable_directions + report.out_of_plane.unstable_directions
     assert directions == spatial.unstable_directions
     assert (directions > 0) == unstable
+
+
+@pytest.mark.parametrize("ends", [(0.313, 0.777), (0.503, 0.511)])
+def test_curvature_within_a_smooth_stretch(ends):
+    """Without stress it is the profile at every place, also of a stretch within an edge."""
+    middle = 0.5 * (ends[0] + ends[1])
+    scene = straight(40, "clamped-free", 1e4)
+    scene["actuation"] = [bend(CURVATURE, *ends, profile="smooth")]
+    found = probed(scene, [(middle, "after")], ["curvature", "moment"])
+    assert found[0, 1] == pytest.approx(0.0, abs=1e-8)
+    truth = CURVATURE * PROFILES["smooth"](0.5)
+    assert found[0, 0] == pytest.approx(truth, abs=1e-8)
+
+
+def test_elongations_that_do_not_all_overlap_at_one_place():
+    """Two at a time: nowhere is the rod shorter than a fifth of its length."""
+    parts = [stretch(-0.4, 0.0, 0.3, "a"), stretch(-0.4, 0.6, 1.0, "b"), stretch(-0.4, 0, 1, "c")]
+    scene = straight(10, "clamped-free", 1e3, actuation=parts)
+    length = 1 - 0.4 * (0.3 + 0.4 + 1.0)
+    assert der.equilibrium(scene).positions[-1, -1, 0] == pytest.approx(length, abs=1e-9)
+
+
+def test_elongations_that_overlap_at_different_times():
+    """The sum of two tables is never below -0.6."""
+    early = {"times": [0, 0.1, 0.2], "values": [0, -0.6, 0]}
+    late = {"times": [0, 0.2, 0.3], "values": [0, 0, -0.6]}
+    scene = straight(4, "clamped-free", 1e3)
+    del scene["analysis"]
+    scene["actuation"] = [stretch(early, 0.0, 1.0, "early"), stretch(late, 0.0, 1.0, "late")]
+    der.Scenario.from_dict(scene | {"time": {"duration": 0.3, "step": 0.01}})
+
+
+def test_edges_beside_a_clamp_keep_a_length():
+    """They start from a pivot at a fifth of their length, and are refused where that leaves none."""
+    scene = straight(10, "clamped-free", 1e3, actuation=[stretch(-0.7, 0.0, 1.0)])
+    assert der.equilibrium(scene).positions[-1, -1, 0] == pytest.approx(0.3, abs=1e-9)
+    scene["actuation"] = [stretch(-0.8, 0.0, 1.0)]
+    with pytest.raises(der.SceneError, match="must be greater than -0[.]75 beside a clamp"):
+        der.Scenario.from_dict(scene)
+    scene["actuation"] = [stretch(-0.95, 0.2, 1.0)]
+    assert der.equilibrium(scene).positions[-1, -1, 0] == pytest.approx(0.24, abs=1e-9)

@@ -14,6 +14,7 @@
 #include "der/supports/clamp.hpp"
 #include "der/supports/section_spring.hpp"
 #include "der/supports/spatial_clamp.hpp"
+#include "model/is_corner.hpp"
 
 namespace der {
 namespace {

@@ -661,3 +661,53 @@ def test_planar_rings_know_when_they_leave_their_plane():
     expected = verdict(0)
     for first in (3, 6, 7):
         assert verdict(first) == pytest.approx(expected, rel=1e-7)
+
+
+def on_both_sides(scene, places, quantities):
+    """Values before and after each place, by its name."""
+    probes = {
+        f"{quantity}-{side}-{name}": {"rod": "rod", "at": at, "side": side, "quantity": quantity}
+        for quantity in quantities
+        for name, at in places.items()
+        for side in ("before", "after")
+    }
+    found = der.run({**scene, "output": {"probes": probes}}).probes
+    return {name: found[name][-1] for name in probes}
+
+
+@pytest.mark.parametrize("model", ["planar", "spatial"])
+def test_what_is_before_the_start_of_a_ring(model):
+    """A clamp, and a pin with a force, a moment and a spring, where rings may begin."""
+    count = 18
+    flat = model == "planar"
+    quantities = ("moment", "curvature", "tension", "strain")
+    if not flat:
+        quantities += ("torque", "moment_1", "moment_2", "curvature_1", "curvature_2", "twist")
+
+    def values(first, starts):
+        ring = Drawn(circle(count), first)
+        corner = {"rod": "rod", "at": {"node": ring.node(0)}}
+        pins = [{"rod": "rod", "at": {"node": ring.node(5)}, "fix": ["x", "y", "z"]}]
+        support = {"clamp": True} if starts == "clamp" else {"fix": ["x", "y", "z"]}
+        loads = [
+            {"gravity": [0.1, -0.2, 0 if flat else 0.3]},
+            {"point_force": {**corner, "force": [0.3, 0.2, 0 if flat else 0.4]}},
+        ]
+        if starts == "moment":
+            vector = [0, 0, 0.2] if flat else [0.2, 0.3, -0.4]
+            loads.append({"moment": {**corner, "moment": vector}})
+            support["spring"] = {"rotational_stiffness": 0.3}
+            del support["fix"]
+            pins.append({"rod": "rod", "at": {"node": ring.node(11)}, "fix": ["x", "y", "z"]})
+        # Directors across the plane do not depend on where the ring begins.
+        stiff = strip(director=[0, 0, 1])
+        supports = [{**corner, **support}, *pins]
+        scene = ring_through(ring.points, stiff, supports=supports, loads=loads, model=model)
+        return on_both_sides(scene, {"here": {"node": ring.node(0)}}, quantities)
+
+    for starts in ("clamp", "pin", "moment"):
+        here, there = values(0, starts), values(7, starts)
+        for quantity in ("moment", "tension"):
+            jump = abs(there[f"{quantity}-after-here"] - there[f"{quantity}-before-here"])
+            assert jump > 1e-2 or (quantity == "moment" and starts == "pin")
+        assert here == pytest.approx(there, abs=1e-7), starts

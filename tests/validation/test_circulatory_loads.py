@@ -248,6 +248,23 @@ def test_a_rod_that_nothing_holds_against_a_force_that_follows():
         der.Simulation(der.Scenario.from_dict(scene)).equilibrium()
 
 
+@pytest.mark.parametrize("load", ["force", "moment"])
+def test_a_rod_that_spins_about_its_clamped_tangent(load):
+    """The message says what turns, and what holds it."""
+    strip = section(EA=1e4, EI1=2.0, EI2=1.0, GJ=0.6)
+    across = {"rod": "rod", "at": "end", load: [0, 0.2, 0.3], "follower": True}
+    loads = [{"point_force" if load == "force" else load: across}]
+    supports = [{**START, "clamp": "tangent"}]
+    scene = straight_rod(20, strip, supports=supports, loads=loads)
+    with pytest.raises(der.NotConvergedError, match="spins freely about the tangent") as failure:
+        der.Simulation(der.Scenario.from_dict(scene)).equilibrium()
+    assert failure.value.status == "not_held"
+    assert "'clamp: true'" in str(failure.value)
+    spring = {"rotational_stiffness": [0, 0, 1.0]}
+    supports.append({"rod": "rod", "at": 0.3, "spring": spring})
+    der.Simulation(der.Scenario.from_dict(scene)).equilibrium()
+
+
 @pytest.mark.parametrize(
     ("factor", "tip"), [(0.25, (0.453, 0.621, 0.428)), (0.35, (0.727, 0.296, 0.507))]
 )

@@ -3,6 +3,7 @@
 import der
 import numpy as np
 import pytest
+from references.kirchhoff_rod import Held, Rod, natural_shape, solve
 from references.writhe import figure_eight, torus_knot
 from scipy.integrate import solve_bvp
 from spatial_scenes import critical, measured, rod_through, section
@@ -661,3 +662,157 @@ def test_planar_rings_know_when_they_leave_their_plane():
     expected = verdict(0)
     for first in (3, 6, 7):
         assert verdict(first) == pytest.approx(expected, rel=1e-7)
+
+
+def on_both_sides(scene, places, quantities):
+    """Values before and after each place, by its name."""
+    probes = {
+        f"{quantity}-{side}-{name}": {"rod": "rod", "at": at, "side": side, "quantity": quantity}
+        for quantity in quantities
+        for name, at in places.items()
+        for side in ("before", "after")
+    }
+    found = der.run({**scene, "output": {"probes": probes}}).probes
+    return {name: found[name][-1] for name in probes}
+
+
+@pytest.mark.parametrize("model", ["planar", "spatial"])
+def test_what_is_before_the_start_of_a_ring(model):
+    """A clamp, and a pin with a force, a moment and a spring, where rings may begin."""
+    count = 18
+    flat = model == "planar"
+    quantities = ("moment", "curvature", "tension", "strain")
+    if not flat:
+        quantities += ("torque", "moment_1", "moment_2", "curvature_1", "curvature_2", "twist")
+
+    def values(first, starts):
+        ring = Drawn(circle(count), first)
+        corner = {"rod": "rod", "at": {"node": ring.node(0)}}
+        pins = [{"rod": "rod", "at": {"node": ring.node(5)}, "fix": ["x", "y", "z"]}]
+        support = {"clamp": True} if starts == "clamp" else {"fix": ["x", "y", "z"]}
+        loads = [
+            {"gravity": [0.1, -0.2, 0 if flat else 0.3]},
+            {"point_force": {**corner, "force": [0.3, 0.2, 0 if flat else 0.4]}},
+        ]
+        if starts == "moment":
+            vector = [0, 0, 0.2] if flat else [0.2, 0.3, -0.4]
+            loads.append({"moment": {**corner, "moment": vector}})
+            support["spring"] = {"rotational_stiffness": 0.3}
+            del support["fix"]
+            pins.append({"rod": "rod", "at": {"node": ring.node(11)}, "fix": ["x", "y", "z"]})
+        # Directors across the plane do not depend on where the ring begins.
+        stiff = strip(director=[0, 0, 1])
+        supports = [{**corner, **support}, *pins]
+        scene = ring_through(ring.points, stiff, supports=supports, loads=loads, model=model)
+        return on_both_sides(scene, {"here": {"node": ring.node(0)}}, quantities)
+
+    for starts in ("clamp", "pin", "moment"):
+        here, there = values(0, starts), values(7, starts)
+        for quantity in ("moment", "tension"):
+            jump = abs(there[f"{quantity}-after-here"] - there[f"{quantity}-before-here"])
+            assert jump > 1e-2 or (quantity == "moment" and starts == "pin")
+        assert here == pytest.approx(there, abs=1e-7), starts
+
+
+GLUED = 1.5  # [rad] by which the ends of the ring below are turned before they are glued
+NATURAL = np.array([0.5, 0.3])  # its curvatures without stress; it has no twist without stress
+AROUND = 2 * np.pi
+
+
+def glued_reference():
+    """The ring as an open rod from its clamp, opposite of the glue, around to it again."""
+    rate = GLUED / AROUND  # at which the drawn sections turn
+
+    def frame(s):
+        """The drawn section at a distance from the clamp; the sections go on across the glue."""
+        along, turned = np.pi + s, rate * (np.pi + s)
+        tangent = np.array([-np.sin(along), np.cos(along), 0.0])
+        first = np.cos(turned) * np.eye(3)[2] + np.sin(turned) * np.cross(tangent, np.eye(3)[2])
+        return np.column_stack([first, np.cross(tangent, first), tangent])
+
+    def natural(share, s):
+        turned = rate * (np.pi + s)
+        drawn = np.stack([np.cos(turned), -np.sin(turned), rate + 0 * s])
+        back = np.where(s < np.pi, 0.0, -GLUED)  # of the sections beyond the glue
+        bend_1 = NATURAL[0] * np.cos(back) - NATURAL[1] * np.sin(back)
+        bend_2 = NATURAL[1] * np.cos(back) + NATURAL[0] * np.sin(back)
+        return (1 - share) * drawn + share * np.stack([-bend_2, bend_1, 0 * s])
+
+    start, end = (Held((-1.0, 0.0, 0.0), frame(s)) for s in (0.0, AROUND))
+
+    def rod(share):
+        return Rod(AROUND, (1.0, 1.0), 0.8, 1e4, lambda s: natural(share, s))
+
+    found = natural_shape(rod(0.0), start, np.linspace(0, 1, 5), 16)
+    for share in (0.25, 0.5, 0.75, 1.0):
+        there = solve(rod(share), start, end, found)
+        found = there.solution
+    return there
+
+
+#: Places beside the glue, as shares of the length, and distances from the clamp in the reference.
+BESIDE_GLUE = {
+    "before": (0.0, "before", np.pi - 1e-12, 0.0),
+    "after": (0.0, "after", np.pi + 1e-12, -GLUED),
+    "beyond": (0.125, "after", np.pi + 0.125 * AROUND, -GLUED),
+}
+
+
+@pytest.mark.parametrize("finer", [1, 2], ids=["even", "finer on one side"])
+def test_natural_curvature_where_a_ring_is_glued_turned(fitted_order, finer):
+    """The pair of the first node is read in the section on either side of the glue.
+
+    Torque has a kink there, so that the torque of the joint, in the middle between those of its
+    edges, is that at the node to order 1 alone unless they have the same length.
+    """
+    there = glued_reference()
+    exact = []
+    for _, _, s, back in BESIDE_GLUE.values():
+        u1, u2, u3, _ = there.strains(np.array([s]))[:, 0]
+        n1, n2, n3 = there.rod.natural(np.array([s]))[:, 0]
+        turn = np.array([[np.cos(back), np.sin(back)], [-np.sin(back), np.cos(back)]])
+        curvatures = turn @ [u2, -u1]
+        moments = turn @ [u2 - n2, n1 - u1]
+        exact.append([*curvatures, np.linalg.norm(curvatures), u3, *moments, 0.8 * (u3 - n3)])
+    exact = np.array(exact)
+    quantities = (
+        *("curvature_1", "curvature_2", "curvature", "twist"),
+        *("moment_1", "moment_2", "torque"),
+    )
+    sizes = (96, 192, 384)
+    errors = []
+    for count in sizes:
+        after = np.linspace(0, np.pi, finer * count // 2, endpoint=False)
+        before = np.linspace(np.pi, AROUND, count // 2, endpoint=False)
+        angle = np.concatenate([after, before])
+        points = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+        length = length_of(points)
+        edges = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
+        arcs = np.concatenate([[0.0], np.cumsum(edges)])
+        scene = ring_through(
+            points,
+            section([0, 0, 1], EA=1e4, EI=1.0, GJ=0.8),
+            {
+                "initial_twist": GLUED / length,
+                "natural_twist": 0,
+                "natural_curvature": NATURAL.tolist(),
+            },
+            supports=[{"rod": "rod", "at": {"node": len(after)}, "clamp": True}],
+        )
+        probes = {
+            f"{quantity}-{name}": {
+                **{"rod": "rod", "quantity": quantity, "side": side},
+                "at": float(np.interp(share * AROUND, [*angle, AROUND], arcs)),
+            }
+            for quantity in quantities
+            for name, (share, side, _, _) in BESIDE_GLUE.items()
+        }
+        found = der.run({**scene, "output": {"probes": probes}}).probes
+        values = [[found[f"{q}-{name}"][-1] for q in quantities] for name in BESIDE_GLUE]
+        errors.append(np.abs(np.array(values) - exact))
+    errors = np.array(errors)
+    assert errors[-1].max() < 5e-3
+    if finer > 1:
+        errors = errors[:, :, [k for k, q in enumerate(quantities) if q not in ("twist", "torque")]]
+    for of_place in errors.reshape(len(sizes), -1).T:
+        assert fitted_order([1 / n for n in sizes], of_place) > 1.9

@@ -115,3 +115,121 @@ def test_without_sections(fitted_order):
     )
     for name in probes:
         assert without[name]["final"] == pytest.approx(with_sections[name]["final"], rel=1e-3)
+
+
+BOW = 2.0  # turn of the drawn arc [rad], whose length is 1
+TURNED = 1.5  # of the sections as they are drawn [rad/m]
+ENDS = ((0.0, "after"), (1e-3, "after"), (1.0, "before"))
+
+
+def bow(edges, **more):
+    """A clamped circular arc in the x-y plane, without stress as it is drawn."""
+    turn = BOW * np.arange(edges + 1) / edges
+    points = np.column_stack([np.sin(turn), 1 - np.cos(turn), 0 * turn]) / BOW
+    beam = section([0, 1, 0], EA=STRETCHING, EI1=STRONG, EI2=WEAK, GJ=TWISTING)
+    return rod_through(points, beam, rod={"initial_twist": TURNED}, **more)
+
+
+def natural_of_the_bow(s):
+    """Curvatures towards the directors, which start towards the centre, and twist."""
+    return np.stack([BOW * np.cos(TURNED * s), -BOW * np.sin(TURNED * s), TURNED + 0 * s])
+
+
+def probed(scene, places, quantities=QUANTITIES):
+    probes = {
+        f"{quantity}-{i}": {"rod": "rod", "at": s, "side": side, "quantity": quantity}
+        for quantity in quantities
+        for i, (s, side) in enumerate(places)
+    }
+    result = der.run(der.Scenario.from_dict({**scene, "output": {"probes": probes}}))
+    return np.array(
+        [[result.probes[f"{q}-{i}"][-1] for q in quantities] for i in range(len(places))]
+    )
+
+
+@pytest.mark.parametrize("clamps", [("start",), ("end",), ("start", "middle", "end")], ids=str)
+def test_drawn_curvature_at_clamps(fitted_order, clamps):
+    """No load: the curvatures are those that are drawn."""
+    places = [*ENDS, (0.5, "before"), (0.5, "after")]
+    exact = natural_of_the_bow(np.array([s for s, _ in places])).T
+    sizes = (40, 80, 160)
+    errors = []
+    for edges in sizes:
+        held = [{"rod": "rod", "at": at, "clamp": True} for at in clamps]
+        length = edges * 2 * np.sin(BOW / 2 / edges) / BOW
+        at = [(s * length, side) for s, side in places]
+        found = probed(bow(edges, supports=held), at, ("curvature_1", "curvature_2", "twist"))
+        errors.append(np.abs(found - exact))
+    errors = np.array(errors)
+    assert errors[-1].max() < 2e-3
+    for of_place in errors.reshape(len(sizes), -1).T:
+        if of_place.max() > 1e-9:
+            assert fitted_order([1 / n for n in sizes], of_place) > 1.9
+
+
+def test_a_loaded_bow_at_its_clamp(fitted_order):
+    """All that is probed at the clamp of a rod that is drawn curved and turned.
+
+    The order of the curvatures is in the test before.
+    """
+
+    def natural(s):
+        k1, k2, twist = natural_of_the_bow(s)
+        return np.stack([-k2, k1, twist])  # turning about directors 1 and 2
+
+    rod = Rod(1.0, (WEAK, STRONG), TWISTING, STRETCHING, natural)
+    there = follow(
+        rod,
+        Held((0, 0, 0), UPRIGHT),
+        lambda share: Loaded(share * np.array(TIP)),
+        steps=4,
+        segments=4,
+        degree=18,
+    )
+    assert there.shooting_error() < 1e-9
+    places = [(0.0, "after"), (0.3, "after")]
+    s = np.array([place for place, _ in places])
+    u1, u2, u3, strain = there.strains(s)
+    n1, n2, n3 = natural(s)
+    moments = [STRONG * (u2 - n2), -WEAK * (u1 - n1), TWISTING * (u3 - n3)]
+    exact = np.vstack([u2, -u1, u3, *moments, STRETCHING * strain]).T
+    sizes = (80, 160, 320)
+    errors = []
+    for edges in sizes:
+        length = edges * 2 * np.sin(BOW / 2 / edges) / BOW
+        at = [(place * length, side) for place, side in places]
+        errors.append(np.abs(probed(bow(edges, loads=tip_force(*TIP)), at) - exact))
+    errors = np.array(errors) / np.abs(exact).max(axis=0)
+    assert errors[-1].max() < 1e-4
+    for of_place in errors[:, :, 2:].reshape(len(sizes), -1).T:
+        assert fitted_order([1 / n for n in sizes], of_place) > 1.9
+
+
+def test_a_loaded_bow_in_the_plane(fitted_order):
+    """Tension at the clamp, where the edge of the chain leans by more than in a straight rod."""
+    load = (1.2, -0.5, 0.0)
+    there = follow(
+        Rod(1.0, (WEAK, STRONG), TWISTING, STRETCHING, constant(0.0, BOW, 0.0)),
+        Held((0, 0, 0), UPRIGHT),
+        lambda share: Loaded(share * np.array(load)),
+        steps=2,
+        degree=18,
+    )
+    assert there.shooting_error() < 1e-9
+    _, bend, _, strain = there.strains(np.array([0.0]))
+    exact = np.array([bend[0], STRONG * (bend[0] - BOW), STRETCHING * strain[0]])
+    sizes = (40, 80, 160)
+    errors = []
+    for edges in sizes:
+        scene = bow(edges, loads=tip_force(*load[:2]))
+        rod = scene["rods"][0]
+        rod["points"] = np.array(rod["points"])[:, :2].tolist()
+        rod["cross_section"] = section(EA=STRETCHING, EI=STRONG)
+        del rod["initial_twist"]
+        scene["model"] = "planar"
+        found = probed(scene, [(0.0, "after")], ("curvature", "moment", "tension"))
+        errors.append(np.abs(found[0] - exact))
+    errors = np.array(errors)
+    assert errors[-1].max() < 1e-3
+    for of_quantity in errors.T:
+        assert fitted_order([1 / n for n in sizes], of_quantity) > 1.9

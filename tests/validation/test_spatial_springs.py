@@ -5,11 +5,13 @@ clamped elastica; the planar models, whose own references are in test_springs.py
 test_foundation.py.
 """
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from references.kirchhoff_rod import rotation
 from scenes import START
-from spatial_scenes import CLAMPED, measured, section, straight_rod
+from spatial_scenes import CLAMPED, measured, rod_through, section, straight_rod
 
 XYZ = ("x", "y", "z")
 SIZES = [16, 32, 64]
@@ -179,3 +181,80 @@ def test_a_twisting_spring_counts_whole_turns():
     rod = section(EI=50.0, GJ=TWISTING)
     values, _ = measured(straight_rod(10, rod, supports=supports), ["middle"], ["torque"])
     assert abs(values[0, 0]) == pytest.approx(turns / (1 / k + 1 / TWISTING), rel=1e-9)
+
+
+LEGS = 0.6, 0.4
+CORNER = np.array([[1, 0, 0], [0.28, 0.96, 0]])  # directions of the two legs
+
+
+def bent_at_the_corner(edges):
+    """Nodes of two legs, of the same number of edges each."""
+    share = np.linspace(0, 1, edges + 1)[:, None]
+    first = share * LEGS[0] * CORNER[0]
+    return np.vstack([first, first[-1] + share[1:] * LEGS[1] * CORNER[1]])
+
+
+def tip_by_beam_theory(k, place, load):
+    """How far the end moves under a small force there, the springs `k` at the arc length `place`.
+
+    The rotation r' = C m, with the compliance C of each leg. At the place it is m/k, with the
+    moment m of the springs towards the two directors and about the tangent.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    corner = LEGS[0] * CORNER[0]
+    total = sum(LEGS)
+
+    def axes(s):
+        """Rotations towards the two directors, which are z and z x t, and about the tangent."""
+        tangent = CORNER[int(s >= LEGS[0])]
+        second = np.cross(tangent, [0, 0, 1])
+        return np.column_stack([second, [0, 0, -1], tangent])
+
+    def point(s):
+        return s * CORNER[0] if s < LEGS[0] else corner + (s - LEGS[0]) * CORNER[1]
+
+    def turns(moment, at):
+        """Rotation at `at` and movement of the end."""
+        turn, moved = np.zeros(3), np.zeros(3)
+        borders = sorted({0.0, LEGS[0], at, place, total})
+        for low, high in pairwise(borders):
+            for node, weight in zip(nodes, weights, strict=True):
+                s = low + (high - low) * (1 + node) / 2
+                own = axes(s)
+                bend = own @ ((own.T @ moment(s)) / [STRONG, WEAK, TWISTING])
+                bend *= weight * (high - low) / 2
+                turn += bend * (s < at)
+                moved += np.cross(bend, point(total) - point(s))
+        return turn, moved
+
+    turn, moved = turns(lambda s: np.cross(point(total) - point(s), load), place)
+    units = [turns(lambda s, unit=unit: unit * (s < place), place) for unit in np.eye(3)]
+    flexible = np.column_stack([unit[0] for unit in units])
+    held = axes(place)
+    stiffness = held @ np.diag(k) @ held.T
+    moment = -np.linalg.solve(np.eye(3) + stiffness @ flexible, stiffness @ turn)
+    return moved + np.column_stack([unit[1] for unit in units]) @ moment
+
+
+@pytest.mark.parametrize("share", [0.0, -0.3, 0.4], ids=["at", "before", "beyond"])
+@pytest.mark.parametrize("k", [(10.0, 10.0, 10.0), (20.0, 1.0, 5.0)], ids=["one", "three"])
+def test_a_spring_at_a_corner(fitted_order, k, share):
+    """It holds the section of the leg beyond the corner, or of the leg on which it is."""
+    load = SMALL * np.array([1.0, -0.5, 2.0])
+    strip = section([0, 0, 1], EA=1e6, EI1=STRONG, EI2=WEAK, GJ=TWISTING)
+    errors = []
+    for edges in (5, 10, 20):
+        place = LEGS[0] + share * LEGS[int(share > 0)] / edges
+        scene = rod_through(
+            bent_at_the_corner(edges),
+            strip,
+            supports=[*CLAMPED, turning_spring(*k, at=place)],
+            loads=[force(*load.tolist())],
+        )
+        values, result = measured(scene, ["end"], XYZ)
+        moved = values[0] - result.model.initial_positions[-1]
+        exact = tip_by_beam_theory(k, place, load)
+        errors.append(np.linalg.norm(moved - exact) / np.linalg.norm(exact))
+    # At another place in its edge on each mesh, a bound tells the order.
+    assert errors[-1] < 2e-3
+    assert fitted_order([1 / n for n in (5, 10, 20)], errors) > 1.9

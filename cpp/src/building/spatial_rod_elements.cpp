@@ -1,6 +1,8 @@
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <type_traits>
+#include <utility>
 
 #include "building/corner.hpp"
 #include "building/spatial_rod_elements.hpp"
@@ -128,12 +130,23 @@ double natural_twist_at(const RodLayout& rod, const RodJoint& joint) {
          share * rod.natural_twist[to_size(rod.position(edge + 1))];
 }
 
+/// Natural curvature, in the section before a joint, of the cell about it [1/m]: half of the cell
+/// lies beyond the joint, where the sections of a ring may be glued turned.
+Vec2 mean_natural_curvature(const RodLayout& rod, const RodJoint& joint) {
+  if (joint.clamp >= 0 || joint.glued == 0.0) return joint.natural_curvature;
+  const double before = rod.edge_length[to_size(joint.before)];
+  const double after = rod.edge_length[to_size(joint.after)];
+  const Vec2 beyond = Eigen::Rotation2Dd(joint.glued) * joint.natural_curvature;
+  return (before * joint.natural_curvature + after * beyond) / (before + after);
+}
+
 void set_rest(const RodLayout& rod, const JointStrain& drawn, RodJoint& joint) {
   joint.rest = drawn;
   joint.natural_curvature = Vec2(drawn.kappa_1, drawn.kappa_2) / joint.bend_length;
   if (!rod.natural_curvatures.empty()) {
     joint.natural_curvature = natural_curvature_at(rod, joint);
-    const Vec2 turn = joint.bend_length * joint.natural_curvature + free_end_turn(rod, joint);
+    const Vec2 turn =
+        joint.bend_length * mean_natural_curvature(rod, joint) + free_end_turn(rod, joint);
     joint.rest.kappa_1 = turn[0];
     joint.rest.kappa_2 = turn[1];
   }
@@ -153,6 +166,51 @@ template <class Curvature>
 JointKinematics<Curvature> drawn_joint(const SectionFrame& before, const SectionFrame& after,
                                        double twist) {
   return {before, after, nearest_turn(twist_between(before, after), twist)};
+}
+
+/// Curvature [1/m] of the drawn rod about a place at which edges meet, in the section of `edge`,
+/// one of the two; and where it has this value, a third of their difference beside the place.
+std::pair<double, Vec2> drawn_curvature(const RodLayout& rod, Index place, Index edge) {
+  const Index before = rod.edge_before(place);
+  const Index after = rod.edge_after(place);
+  const double twist = rod.voronoi_length(place) * rod.initial_twist;
+  SectionFrame a = rod.drawn_frames[to_size(before)];
+  SectionFrame b = rod.drawn_frames[to_size(after)];
+  if (after == 0) {
+    const double glued = glued_angle(a, b, twist);
+    if (edge == after) {
+      a = a.turned(glued);
+    } else {
+      b = b.turned(-glued);
+    }
+  }
+  const JointStrain drawn = drawn_joint<AngleCurvature>(a, b, twist).strain();
+  const double beside = (rod.edge_length[to_size(after)] - rod.edge_length[to_size(before)]) / 3.0;
+  return {rod.arc_length_at(place) + beside,
+          Vec2(drawn.kappa_1, drawn.kappa_2) / rod.voronoi_length(place)};
+}
+
+/// Curvature [1/m] of the drawn rod where it bends beside a clamp: on the line through those at the
+/// two nodes beyond it. The turn of the cell itself does not tell it, nor that at the next node:
+/// the effective edge between, a chord from a pivot on the tangent, leans further than the curve.
+Vec2 drawn_curvature_at_clamp(const RodLayout& rod, const RodJoint& joint) {
+  const bool leaves = joint.after >= 0;
+  const Index edge = leaves ? joint.after : joint.before;
+  const Index held = leaves ? edge : edge + 1;
+  const Index near = leaves ? edge + 1 : edge;
+  const auto has_value = [&](Index place) {
+    return 0 <= place && place <= rod.num_edges() && rod.is_inner(place);
+  };
+  if (!has_value(near))
+    return has_value(held) ? drawn_curvature(rod, held, edge).second : Vec2(Vec2::Zero());
+  const auto [s, value] = drawn_curvature(rod, near, edge);
+  // The shape may have a kink at the clamp: the line is that on this side of it.
+  Index far = 2 * near - held;
+  if (!has_value(far) || rod.clamp_at(near) != nullptr) far = held;
+  if (!has_value(far)) return value;
+  const auto [other_s, other] = drawn_curvature(rod, far, edge);
+  const double share = (joint.bend_place - s) / (other_s - s);
+  return (1.0 - share) * value + share * other;
 }
 
 /// Makes the elements of a rod whose sections count.
@@ -206,6 +264,11 @@ class SectionElements {
     }
     const auto drawn = drawn_joint<Curvature>(a, b, drawn_twist);
     set_rest(rod_, drawn.strain(), joint);
+    const bool beside_clamp =
+        rod_.clamp_at(joint.place() - 1) != nullptr || rod_.clamp_at(joint.place() + 1) != nullptr;
+    if (rod_.natural_curvatures.empty() && beside_clamp) {
+      joint.natural_curvature = drawn_curvature(rod_, joint.place(), joint.before).second;
+    }
     Joint stiffness = stiffness_of(rod_, joint, true);
     if constexpr (std::is_same_v<Curvature, AngleCurvature>) {
       if (is_corner(rod_, joint.place(), model_) && resists_everything(stiffness)) {
@@ -249,6 +312,9 @@ class SectionElements {
     const SectionFrame& b = leaves ? frame_of_edge : held;
     const JointStrain drawn = drawn_joint<Curvature>(a, b, beyond).strain();
     set_rest(rod_, drawn, joint);
+    if (rod_.natural_curvatures.empty()) {
+      joint.natural_curvature = drawn_curvature_at_clamp(rod_, joint);
+    }
     elements_of<FromSpatialPivot<SpatialClamp<Curvature>>>(*model_.elements)
         .add(
             {own.start, own.start + 1, own.start + 2, own.end, own.end + 1, own.end + 2, own.theta},

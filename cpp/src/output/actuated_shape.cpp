@@ -3,8 +3,7 @@
 #include <algorithm>
 
 #include "der/core/index.hpp"
-#include "der/model/clamp_cell.hpp"
-#include "der/model/location.hpp"
+#include "output/leaning_edge.hpp"
 
 namespace der {
 
@@ -55,12 +54,7 @@ bool ActuatedShape::is_strained() const {
 }
 
 double actuated_lean(const RodLayout& rod, Index edge) {
-  // A uniform curvature turns half of itself over half of an edge, on to its middle.
-  const double a = rod.clamp_at(edge) != nullptr ? kPivotShare : 0.0;
-  const double b = rod.clamp_at(edge + 1) != nullptr ? kPivotShare : 0.0;
-  const double direction = 0.5 + 0.5 * (a - b) / (1.0 - a - b);
-  const double length = rod.edge_length[to_size(edge)];
-  return rod.arc_length_at(edge) + direction * length - tangent_place(rod, edge);
+  return mean_tangent_place(rod, edge) - tangent_place(rod, edge);
 }
 
 }  // namespace der

@@ -217,6 +217,15 @@ std::unique_ptr<RodField> make_probed_field(const scenario::Probe& probe, const 
   return field;
 }
 
+/// Arc length [m] of a probe's place. The start of a ring is its end, too: what is before it is
+/// there.
+double place_of(const scenario::Probe& probe, const RodLayout& rod) {
+  const double s = arc_length_of(*probe.at, rod);
+  const bool before_start =
+      rod.closed && probe.side == scenario::Side::Before && s <= rod.same_place();
+  return before_start ? rod.rest_length() : s;
+}
+
 SampleWeights point_weights(const scenario::Probe& probe, QuantityKind kind, const RodField& field,
                             const RodLayout& rod, double s, const Model& model) {
   if (kind == QuantityKind::Position || kind == QuantityKind::Velocity) {
@@ -248,7 +257,7 @@ std::unique_ptr<ProbeReader> make_reader(const scenario::Probe& probe, const Qua
     return std::make_unique<ExtremeReader>(std::move(field), rod, probe.over,
                                            quantity.kind == QuantityKind::Position);
   }
-  const double s = arc_length_of(*probe.at, rod);
+  const double s = place_of(probe, rod);
   SampleWeights weights = point_weights(probe, quantity.kind, *field, rod, s, model);
   return std::make_unique<PointReader>(std::move(field), std::move(weights));
 }

@@ -14,6 +14,7 @@
 #include "der/supports/spatial_clamp.hpp"
 #include "output/actuated_shape.hpp"
 #include "output/edgewise_field.hpp"
+#include "output/leaning_edge.hpp"
 #include "output/moment_recovery.hpp"
 
 namespace der {
@@ -139,15 +140,20 @@ class SectionField : public EdgewiseField<Vec3> {
     return {c * parts[0] + s * parts[1], c * parts[1] - s * parts[0], parts[2]};
   }
 
-  /// Whether components jump where the two ends of a ring are glued, their sections being turned
-  /// against each other by more than rounding.
+  /// Whether a quantity jumps where the two ends of a ring are glued, their sections being turned
+  /// against each other by more than rounding. Natural curvatures are turned with the sections, and
+  /// so are the axes of unequal stiffnesses.
   static bool jumps_at_glue(SectionQuantity quantity, const RodLayout& rod) {
     const bool is_component =
         quantity == SectionQuantity::Curvature1 || quantity == SectionQuantity::Curvature2 ||
         quantity == SectionQuantity::Moment1 || quantity == SectionQuantity::Moment2;
+    const bool whole_jumps = quantity == SectionQuantity::Curvature &&
+                             (!rod.natural_curvatures.empty() || rod.EI_1 != rod.EI_2);
+    return rod.closed && (is_component || whole_jumps) && is_glued_turned(rod.joints.back());
+  }
+  static bool is_glued_turned(const RodJoint& joint) {
     constexpr double rounding = 1e-9;  // [rad]
-    const RodJoint& last = rod.joints.back();
-    return rod.closed && is_component && last.clamp < 0 && std::abs(last.glued) > rounding;
+    return joint.clamp < 0 && std::abs(joint.glued) > rounding;
   }
 
   /// Whether components along an edge, or on from it, have a kink or jump.
@@ -158,6 +164,15 @@ class SectionField : public EdgewiseField<Vec3> {
   static Vec3 natural_of(const RodJoint& joint) {
     return {joint.natural_curvature[0], joint.natural_curvature[1],
             joint.rest.twist / joint.twist_length};
+  }
+
+  /// Those of the whole cell about a joint, in the joint's frame.
+  static Vec3 mean_natural(const RodJoint& joint) {
+    Vec3 mean = natural_of(joint);
+    if (is_glued_turned(joint)) {
+      mean.head<2>() = Vec2(joint.rest.kappa_1, joint.rest.kappa_2) / joint.bend_length;
+    }
+    return mean;
   }
 
   /// Natural curvatures and twist of a joint, and the arc length [m] at which it bends.
@@ -232,6 +247,9 @@ class SectionField : public EdgewiseField<Vec3> {
       result.joint_ahead = rod.rest_length();
       result.glued = joint->glued;
       result.natural = turned(result.natural, result.glued);
+      // Of the scene's pairs, the first is that of the section after the glue, too.
+      if (!rod.natural_curvatures.empty())
+        result.natural.head<2>() = rod.natural_curvatures.front();
     }
     if (recovery.is_corner(joint->place())) {
       result.natural.head<2>() = natural_at_end_of_leg(rod, edge, last, recovery).head<2>();
@@ -266,8 +284,8 @@ class SectionField : public EdgewiseField<Vec3> {
     const Vec3 excess = excess_of(*known.joint, model, state);
     Vec3 moment = stiffness_.cwiseProduct(excess);
     if (model.has_sections()) {
-      const Vec3 rest = natural_of(*known.joint) + actuated_mean(*known.joint, model, state);
-      moment = turned(moved(moment, known, rest + excess), known.glued);
+      const Vec3 actuated = actuated_mean(*known.joint, model, state);
+      moment = turned(moved(moment, known, excess, actuated), known.glued);
     }
     return natural + (is_moment(quantity_) ? moment : Vec3(moment.cwiseQuotient(stiffness_))) +
            in_section(edge, missing, model, state);
@@ -318,25 +336,39 @@ class SectionField : public EdgewiseField<Vec3> {
   /// frame at the known place. The joint's tangent is the mean of those beside it, and its
   /// directors are those in the middle of the length over which it twists. At inner nodes of an
   /// even mesh all these places are one.
-  [[nodiscard]] Vec3 moved(const Vec3& moment, const Known& known, const Vec3& strains) const {
+  [[nodiscard]] Vec3 moved(const Vec3& moment, const Known& known, const Vec3& excess,
+                           const Vec3& actuated) const {
+    const RodJoint& joint = *known.joint;
     const double place = known.arc_length + known.joint_ahead;
-    const double tilted = place - tangent_place(*known.joint);
-    const double turned = place - known.joint->twist_place;
+    const Vec3 natural = mean_natural(joint);
+    const double turned = place - joint.twist_place;
+    const Vec2 bent = (place - tangent_place(joint, der::tangent_place)) * excess.head<2>() +
+                      (place - tangent_place(joint, natural_tangent_place)) * natural.head<2>() +
+                      (place - tangent_place(joint, mean_tangent_place)) * actuated.head<2>() +
+                      tilt_at_glue(joint);
     // Bending towards a director turns about the other one.
     const auto about = [](const Vec3& parts) { return Vec3(-parts[1], parts[0], parts[2]); };
-    const Vec3 turn = about({tilted * strains[0], tilted * strains[1], turned * strains[2]});
+    const Vec3 turn = about({bent[0], bent[1], turned * (natural + actuated + excess)[2]});
     const Vec3 change = about(moment).cross(turn);
     return moment + Vec3(change[1], -change[0], change[2]);
   }
 
+  /// How far the tangent at a joint is turned against the mean of those beside it as natural
+  /// curvature jumps there [rad].
+  [[nodiscard]] Vec2 tilt_at_glue(const RodJoint& joint) const {
+    if (!is_glued_turned(joint)) return Vec2::Zero();
+    const Vec3 beyond_mean = natural_of(joint) - mean_natural(joint);
+    return 0.5 * rod_.edge_length[to_size(joint.before)] * beyond_mean.head<2>();
+  }
+
   /// Arc length [m] in the middle between the places where the rod has the directions of the two
-  /// sides of a joint: a clamp, or an edge's middle, which beside a clamp is a little further away
-  /// (supports/clamp.hpp).
-  [[nodiscard]] double tangent_place(const RodJoint& joint) const {
+  /// sides of a joint: a clamp, or the place of an edge's direction.
+  template <class PlaceOf>
+  [[nodiscard]] double tangent_place(const RodJoint& joint, const PlaceOf& place_of) const {
     const Index place = joint.place();
     const auto side = [&](Index own, Index edge) {
       if (own < 0) return rod_.arc_length_at(place);  // of the clamp
-      return der::tangent_place(rod_, edge);
+      return place_of(rod_, edge);
     };
     return 0.5 * (side(joint.before, place - 1) + side(joint.after, place));
   }
@@ -349,6 +381,8 @@ class SectionField : public EdgewiseField<Vec3> {
     const SectionFrame frame = section_frame(model, rod_.first_edge + edge, state);
     const double s = place.arc_length;
     Vec3 turn = turn_between(edge, frame, der::tangent_place(rod_, edge), s, model, state);
+    const double further = der::tangent_place(rod_, edge) - natural_tangent_place(rod_, edge);
+    turn += further * natural_at(edge, rod_.edge_middle(edge));
     turn[2] = turn_between(edge, frame, rod_.edge_middle(edge), s, model, state)[2];
     turn -= lean(edge, frame, model, state);
     const Vec3 axis = turn[0] * frame.second - turn[1] * frame.first + turn[2] * frame.tangent;

@@ -88,7 +88,8 @@ EdgeMoments SpreadMoments::value_of(SpatialSpring<1> spring, const Model& model,
   const auto whole = [](const Vec3& part, double weight) -> Vec3 {
     return weight > 0.0 ? Vec3(part / weight) : Vec3(Vec3::Zero());
   };
-  moments.whole = whole(moments.whole - torque, held.weights[0]) + whole(torque, held.weights[2]);
+  moments.whole =
+      whole(moments.whole - torque, held.weights(0, 0)) + whole(torque, held.weights(2, 2));
   return moments;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "der/core/index.hpp"
@@ -13,7 +12,9 @@
 #include "output/actuated_shape.hpp"
 #include "output/edge_excess.hpp"
 #include "output/in_space.hpp"
+#include "output/leaning_edge.hpp"
 #include "output/line_loads.hpp"
+#include "output/natural_curvature.hpp"
 #include "output/rod_field.hpp"
 #include "output/spread_forces.hpp"
 #include "output/spread_moments.hpp"
@@ -60,7 +61,8 @@ class EffectiveVectors {
 /// The tension that edges have in excess because they lean: an edge next to a clamp, and one at a
 /// free end with a natural curvature, has the direction that the curve has not in the edge's middle
 /// but a distance beyond it (supports/clamp.hpp; docs/mechanics.md). The excess is this distance
-/// times k . F, with the curvature k and the force F in the rod across it.
+/// times k . F, with the curvature k and the force F in the rod across it. The distance is another
+/// one for the curvature that a rod has as it is drawn (output/leaning_edge.hpp).
 class LeaningEdges {
  public:
   LeaningEdges(const RodLayout& rod, const Model& model) : rod_(rod), actuated_(rod) {
@@ -68,7 +70,9 @@ class LeaningEdges {
       for (const Index edge : {rod.edge_before(clamp.place), rod.edge_after(clamp.place)}) {
         if (edge < 0) continue;
         const double further = clamp_cell_length(rod, edge) - 0.5 * rod.edge_length[to_size(edge)];
-        add({edge, edge == clamp.place ? further : -further, {}}, model);
+        const double sign = edge == clamp.place ? 1.0 : -1.0;
+        const Vec2 natural = drawn_curvature(edge, model);
+        add({edge, sign * further, sign * (drawn_lean(rod, edge) - further), natural}, model);
       }
     }
     add_free_end(false, model);
@@ -79,7 +83,7 @@ class LeaningEdges {
   [[nodiscard]] double excess(Index edge, const Model& model, const State& state) const {
     double excess = 0.0;
     for (const Lean& lean : leans_) {
-      if (lean.edge == edge) excess += excess_of(lean, model, state);
+      if (lean.edge == edge) excess += lean_times_force(lean, model, state);
     }
     return excess;
   }
@@ -87,9 +91,27 @@ class LeaningEdges {
  private:
   struct Lean {
     Index edge = 0;
-    double beyond = 0.0;                    // [m]
-    std::optional<Vec2> natural_curvature;  // [1/m] at a free end, where it alone makes edges lean
+    double beyond = 0.0;          // [m] for the curvature
+    double natural_beyond = 0.0;  // [m] that natural curvature adds
+    Vec2 natural = Vec2::Zero();  // curvature [1/m]
   };
+
+  /// Curvature [1/m] of an edge of a rod that is free of stress as it is drawn; 0 of a straight
+  /// one, and where the scene gives it: the cells of a clamp then have it.
+  [[nodiscard]] Vec2 drawn_curvature(Index edge, const Model& model) const {
+    constexpr double kStraight = 1e-12;  // [rad]
+    Vec2 drawn = Vec2::Zero();
+    if (!rod_.natural_curvature.empty() || !rod_.natural_curvatures.empty()) return drawn;
+    if (model.dimension == 2) {
+      drawn[0] = NaturalCurvature(rod_, model).at(rod_.edge_middle(edge));
+    } else {
+      for (const RodJoint& joint : rod_.joints) {
+        if (joint.after == edge || joint.before == edge) drawn += 0.5 * joint.natural_curvature;
+      }
+    }
+    const bool straight = drawn.norm() * rod_.edge_length[to_size(edge)] < kStraight;
+    return straight ? Vec2(Vec2::Zero()) : drawn;
+  }
 
   void add_free_end(bool last, const Model& model) {
     if (rod_.closed || rod_.clamp_at(last ? rod_.num_edges() : 0) != nullptr) return;
@@ -102,7 +124,7 @@ class LeaningEdges {
     if (natural.isZero(0.0)) return;
     const Index edge = last ? rod_.num_edges() - 1 : 0;
     const double twelfth = rod_.edge_length[to_size(edge)] / 12.0;
-    add({edge, last ? twelfth : -twelfth, natural}, model);
+    add({edge, 0.0, last ? twelfth : -twelfth, natural}, model);
   }
 
   void add(const Lean& lean, const Model& model) {
@@ -113,14 +135,16 @@ class LeaningEdges {
       bends_.push_back({field("curvature_1"), field("moment_1")});
       bends_.push_back({field("curvature_2"), field("moment_2")});
       twist_ = field("twist");
+      torque_ = field("torque");
     } else {
       bends_.push_back({field("curvature"), field("moment")});
     }
   }
 
-  /// Distances times k . F [N], with F = -M' and the components of M along directors that turn with
-  /// the twist u as F1 = -M1' + u M2, F2 = -M2' - u M1; the torque's part falls out of k . F.
-  [[nodiscard]] double excess_of(const Lean& lean, const Model& model, const State& state) const {
+  /// F = -M', with the components of M along directors that turn with the twist u as
+  /// F1 = -M1' + u M2 - k2 T, F2 = -M2' - u M1 + k1 T. The torque's part falls out of k . F.
+  [[nodiscard]] double lean_times_force(const Lean& lean, const Model& model,
+                                        const State& state) const {
     const auto mean = [&](const RodField& field) {
       return 0.5 * (at_end(field, lean.edge, false, model, state) +
                     at_end(field, lean.edge, true, model, state));
@@ -136,10 +160,14 @@ class LeaningEdges {
                          rod_.edge_length[to_size(lean.edge)];
     }
     if (twist_) force += mean(*twist_) * Vec2(moment[1], -moment[0]);
-    if (lean.natural_curvature) return lean.beyond * lean.natural_curvature->dot(force);
+    const double product = lean.beyond * curvature.dot(force);
     const Vec3 actuated = actuated_.strains(rod_.edge_middle(lean.edge), false, model, state);
-    return (lean.beyond * curvature + actuated_lean(rod_, lean.edge) * actuated.head<2>())
-        .dot(force);
+    const Vec2 without_load =
+        lean.natural_beyond * lean.natural +
+        (lean.beyond == 0.0 ? 0.0 : actuated_lean(rod_, lean.edge)) * actuated.head<2>();
+    if (without_load.isZero(0.0)) return product;
+    if (torque_) force += mean(*torque_) * Vec2(-curvature[1], curvature[0]);
+    return product + without_load.dot(force);
   }
 
   /// The sample of a field at the first or last end of an edge, on the edge's side of a jump.
@@ -177,7 +205,7 @@ class LeaningEdges {
   ActuatedShape actuated_;
   std::vector<Lean> leans_;
   std::vector<Bend> bends_;  // towards each director, or in the plane; empty where no edge leans
-  std::unique_ptr<RodField> twist_;  // of sections
+  std::unique_ptr<RodField> twist_, torque_;  // of sections
 };
 
 /// The tension that edges next to a clamp have in excess in a plane, where a moment is a couple

@@ -184,17 +184,22 @@ template <int Edges>
 typename SectionSpring<Edges>::Constants sample_constants(const SectionSpring<Edges>&,
                                                           Random& random) {
   typename SectionSpring<Edges>::Constants c;
-  for (double& stiffness : c.stiffness) stiffness = uniform(random, 0.0, 5.0);
-  const double across = Edges == 1 ? 1.0 : uniform(random, -0.1, 1.1);
-  const double along = Edges == 1 ? 1.0 : uniform(random, 0.0, 1.0);
+  const auto matrix = [&] {
+    return Mat3(Mat3::NullaryExpr([&] { return uniform(random, -1, 1); }));
+  };
+  const Mat3 factor = matrix();
+  c.stiffness = factor * factor.transpose() + 2.0 * Mat3::Identity();
+  const Mat3 share =
+      Edges == 1 ? Mat3(Mat3::Identity()) : Mat3(0.5 * (Mat3::Identity() + matrix()));
+  const SectionFrame section = sample_frame(direction(random), random);  // at a corner
   for (int i = 0; i < Edges; ++i) {
     auto& held = c.edges[static_cast<std::size_t>(i)];
     held.block = FrameBlock::of(i);
     held.first = {uniform(random, -0.01, 0.01), sample_held_frame(random)};
     held.last = {uniform(random, -0.01, 0.01), sample_held_frame(random)};
     held.reference_twist = held.block.twist_at_end();
-    held.weights =
-        i == 0 ? Vec3(across, across, along) : Vec3(1.0 - across, 1.0 - across, 1.0 - along);
+    held.weights = i == 0 ? share : Mat3(Mat3::Identity() - share);
+    held.carried << section.first, section.second, section.tangent;
   }
   return c;
 }
@@ -317,10 +322,11 @@ void sample_frames(const SectionSpring<Edges>& /*kernel*/,
     const Vec3 e = x.template segment<3>(3 * i + 3) + held.last.offset(here.controls) -
                    x.template segment<3>(3 * i) - held.first.offset(here.controls);
     const SectionFrame edge = sample_source(i, e, random, here);
-    const Vec3 axis = made_perpendicular(direction(random), edge.tangent);
-    const Vec3 drawn = Eigen::AngleAxisd(uniform(random, 0.0, 2.5), axis) * edge.tangent;
+    const SectionFrame section = SectionSpring<Edges>::carried_by(edge, held.carried);
+    const Vec3 axis = made_perpendicular(direction(random), section.tangent);
+    const Vec3 drawn = Eigen::AngleAxisd(uniform(random, 0.0, 2.5), axis) * section.tangent;
     held.drawn = sample_frame(drawn, random);
-    here.controls[held.reference_twist] = twist_between(edge, held.drawn);
+    here.controls[held.reference_twist] = twist_between(section, held.drawn);
   }
 }
 

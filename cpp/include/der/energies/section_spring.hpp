@@ -11,11 +11,12 @@
 
 namespace der {
 
-/// RotationalSpring in space: E = 1/2 sum_c k_c (sum_i w_ic kappa_ic)^2, with kappa_i the rotation
-/// of edge i from its drawn section, as a joint between the two would measure it (JointKinematics):
-/// towards the first director, towards the second, and the twist about the tangent, whole turns
-/// included. The weights of two edges add up to 1 in each component; supports/spring.hpp says how
-/// the section of a rod at a place is such a sum. Coordinates: the nodes, then the angles.
+/// RotationalSpring in space: E = 1/2 r . K r with r = sum_i W_i kappa_i, and kappa_i the rotation
+/// of edge i from its drawn place, as a joint between the drawn section and the one that the edge
+/// carries would measure it (JointKinematics): towards the first director, towards the second, and
+/// the twist about the tangent, whole turns included. The weights of two edges add up to the unit
+/// matrix; supports/section_spring.hpp says how the section of a rod at a place is such a sum. Both
+/// are diagonal but at corners. Coordinates: the nodes, then the angles.
 template <int Edges>
 struct SectionSpring {
   static_assert(Edges == 1 || Edges == 2);
@@ -27,21 +28,32 @@ struct SectionSpring {
     SpatialPivot first;  ///< of the edge, beside a clamp
     SpatialPivot last;
     SectionFrame drawn;
+    /// The section that the edge carries, by its directors and its tangent in the edge's own: the
+    /// unit matrix, but where the rod's section at the place is drawn along another edge.
+    Mat3 carried = Mat3::Identity();
     /// Control: twist [rad] from the edge's reference director to the drawn section, whole turns
     /// included; -1: they do not count.
     Index reference_twist = -1;
-    Vec3 weights = Vec3::Ones();  ///< w_i [-]
+    Mat3 weights = Mat3::Identity();  ///< W_i [-]
   };
   struct Constants {
-    Vec3 stiffness = Vec3::Zero();  ///< k [N m/rad]
+    Mat3 stiffness = Mat3::Zero();  ///< K [N m/rad], symmetric
     std::array<HeldEdge, Edges> edges;
   };
+
+  /// The section that turns with an edge, and therefore by the same rotation.
+  static SectionFrame carried_by(const SectionFrame& edge, const Mat3& section) {
+    Mat3 axes;
+    axes << edge.first, edge.second, edge.tangent;
+    const Mat3 carried = axes * section;
+    return {carried.col(2), carried.col(0), carried.col(1)};
+  }
 
   /// The moments that the spring exerts on its edges, and their sum.
   static EdgeMoments moments(const Constants& c, const Configuration& here,
                              const Eigen::Matrix<double, kDofs, 1>& x) {
     std::array<Measured, Edges> measured = measure(c, here, x, std::make_index_sequence<Edges>{});
-    const Vec3 moment = c.stiffness.cwiseProduct(weighted_rotation(c, measured));
+    const Vec3 moment = c.stiffness * weighted_rotation(c, measured);
     EdgeMoments result;
     for (std::size_t i = 0; i < Edges; ++i) {
       measured[i].find_slopes(c.edges[i].weights);
@@ -56,7 +68,7 @@ struct SectionSpring {
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     std::array<Measured, Edges> measured = measure(c, here, x, std::make_index_sequence<Edges>{});
     const Vec3 rotation = weighted_rotation(c, measured);
-    const Vec3 moment = c.stiffness.cwiseProduct(rotation);
+    const Vec3 moment = c.stiffness * rotation;
     out.energy = 0.5 * moment.dot(rotation);
     if constexpr (D == Derivatives::Energy) return;
 
@@ -78,10 +90,9 @@ struct SectionSpring {
       for (int j = 0; j <= i; ++j) {
         const Measured& row = measured[std::size_t(i)];
         const Measured& column = measured[std::size_t(j)];
-        Eigen::Matrix4d block =
-            row.map.transpose() *
-            (row.slopes * c.stiffness.asDiagonal() * column.slopes.transpose()) * column.map;
-        if (i == j) block += row.curving(c.edges[std::size_t(i)].weights.cwiseProduct(moment));
+        Eigen::Matrix4d block = row.map.transpose() *
+                                (row.slopes * c.stiffness * column.slopes.transpose()) * column.map;
+        if (i == j) block += row.curving(c.edges[std::size_t(i)].weights.transpose() * moment);
         add_block(i, j, block, out.hessian);
         if (i != j) add_block(j, i, block.transpose(), out.hessian);
       }
@@ -110,11 +121,13 @@ struct SectionSpring {
           {stiffness[0], stiffness[1], stiffness[2], {rest[0], rest[1], rest[2]}}, result);
       return result;
     }
-    void find_slopes(const Vec3& weights) {
+    void find_slopes(const Mat3& weights) {
       map = edge.rotation();
+      Mat3 of_strains;
       for (int k = 0; k < 3; ++k) {
-        slopes.col(k) = weights[k] * response<false>(Vec3::Unit(k), Vec3::Ones()).moment;
+        of_strains.col(k) = response<false>(Vec3::Unit(k), Vec3::Ones()).moment;
       }
+      slopes = of_strains * weights.transpose();
     }
     /// The second derivatives of the strains times `moment`, by the edge's vector and angle.
     [[nodiscard]] Eigen::Matrix4d curving(const Vec3& moment) const {
@@ -127,11 +140,11 @@ struct SectionSpring {
     }
   };
 
-  /// sum_i w_i kappa_i, one component for each axis.
+  /// sum_i W_i kappa_i, one component for each axis.
   static Vec3 weighted_rotation(const Constants& c, const std::array<Measured, Edges>& measured) {
     Vec3 rotation = Vec3::Zero();
     for (std::size_t i = 0; i < Edges; ++i) {
-      rotation += c.edges[i].weights.cwiseProduct(measured[i].strain());
+      rotation += c.edges[i].weights * measured[i].strain();
     }
     return rotation;
   }
@@ -150,9 +163,10 @@ struct SectionSpring {
     const Vec3 vector = x.template segment<3>(3 * i + 3) + held.last.offset(values) -
                         x.template segment<3>(3 * i) - held.first.offset(values);
     const EdgeFrame edge(vector, theta, held.block.tangent(values), held.block.director(values));
+    const SectionFrame section = carried_by(edge.frame, held.carried);
     const double near = held.reference_twist < 0 ? 0.0 : theta - values[held.reference_twist];
-    const double twist = nearest_turn(twist_between(held.drawn, edge.frame), near);
-    return {edge, {held.drawn, edge.frame, twist}, {}, {}};
+    const double twist = nearest_turn(twist_between(held.drawn, section), near);
+    return {edge, {held.drawn, section, twist}, {}, {}};
   }
 
   /// Adds a block by the vectors and angles of edges i and j.

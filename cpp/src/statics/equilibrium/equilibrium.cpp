@@ -10,6 +10,7 @@
 #include "der/statics/potential.hpp"
 #include "der/statics/rigid_motion.hpp"
 #include "statics/equilibrium/dynamic_relaxation.hpp"
+#include "statics/equilibrium/free_spin.hpp"
 #include "statics/equilibrium/load_raising.hpp"
 #include "statics/equilibrium/load_steps.hpp"
 #include "statics/equilibrium/moving_supports.hpp"
@@ -74,6 +75,7 @@ class EquilibriumSearch {
     Shape shape{state.positions, state.followed};
     report_.failed = search(shape);
     if (report_.failed) blame_weak_holding(state, *report_.failed);
+    if (report_.failed) blame_free_spin(*report_.failed);
     report_.newton_iterations = newton_.iterations();
     report_.relaxations = continuation_.steps() + relaxation_steps_;
     report_.force_scale = newton_.force_scale();
@@ -110,6 +112,13 @@ class EquilibriumSearch {
     stiffness_.evaluate(start);
     std::string found = find_weakly_held_part(model_, start, stiffness_.rounding());
     if (!found.empty()) failed = {EquilibriumFailure::HeldTooWeakly, std::move(found)};
+  }
+
+  /// Replaces the cause of a failure to follow a path on which a rod turns about itself.
+  void blame_free_spin(FailedSearch& failed) {
+    if (failed.cause != EquilibriumFailure::PathLost) return;
+    std::string found = find_free_spin(model_);
+    if (!found.empty()) failed = {EquilibriumFailure::NotHeld, std::move(found)};
   }
 
   /// Inverse of the first pseudo-time step [N/m].

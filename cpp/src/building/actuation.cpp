@@ -22,7 +22,7 @@ Changes changes_of(const scenario::Rod& rod, const scenario::Scene& scene) {
   Changes changes;
   for (const scenario::Actuation& actuation : scene.actuations) {
     if (actuation.rod != rod.name) continue;
-    (actuation.what == Actuated::Elongation ? changes.lengths : changes.cells) = true;
+    (actuation.what == Actuated::Length ? changes.lengths : changes.cells) = true;
   }
   return changes;
 }
@@ -107,9 +107,9 @@ class Weights {
 };
 
 NamedControl named_control(const ActuatedStretch& stretch) {
-  const char* unit = stretch.what == Actuated::Elongation     ? ""
-                     : stretch.what == Actuated::NaturalTwist ? "rad/m"
-                                                              : "1/m";
+  const char* unit = stretch.what == Actuated::Length  ? ""
+                     : stretch.what == Actuated::Twist ? "rad/m"
+                                                       : "1/m";
   const std::string key = key_of(stretch.what);
   if (stretch.controls[1] < 0) return {stretch.name, false, {{key, unit, {stretch.controls[0]}}}};
   NamedControl pair{stretch.name, true, {}};
@@ -160,13 +160,13 @@ void add_actuation(const scenario::Actuation& actuation, Model& model) {
   }
   Weights weights(stretch, rod);
   switch (actuation.what) {
-    case Actuated::Elongation:
+    case Actuated::Length:
       weights.add_elongation();
       break;
-    case Actuated::NaturalTwist:
+    case Actuated::Twist:
       weights.add_twist();
       break;
-    case Actuated::NaturalCurvature:
+    case Actuated::Curvature:
       for (std::size_t i = 0; i < actuation.values.size(); ++i) {
         weights.add_curvature(i);
       }

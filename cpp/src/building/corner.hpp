@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cmath>
-
 #include "der/energies/joint_response.hpp"
 #include "der/kinematics/section_frame.hpp"
 
@@ -10,14 +8,6 @@ namespace der {
 // The cell about a node is half on the edge before it and half on the one after. At a corner these
 // point elsewhere: the cell twists on one and bends on the other where a smooth curve does only one
 // of both. `curvature: tangent` does not resolve corners, not even in their plane.
-
-/// Whether two edges are drawn with a corner between them: a smooth curve on a mesh that resolves
-/// it turns by less.
-inline bool is_corner(const SectionFrame& before, const SectionFrame& after) {
-  constexpr double turn = 0.5;  // [rad]
-  return before.tangent.cross(after.tangent).norm() > std::sin(turn) ||
-         before.tangent.dot(after.tangent) < 0.0;
-}
 
 /// The joint whose compliance at rest is the sum of its two halves. `drawn` is the joint as the
 /// drawn frames `before` and `after` see it, `smooth` that of a smooth curve, with stiffnesses

@@ -161,7 +161,7 @@ void follow_actuations(const scenario::Rod& rod, std::size_t number, const Model
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     const auto& own = twin.model.rods[number].actuated_stretches[i].controls;
     const Index control = stretches[i].controls[0];
-    if (stretches[i].what == scenario::Actuated::Elongation) {
+    if (stretches[i].what == scenario::Actuated::Length) {
       twin.actuations.push_back({control, own[0], 1.0});
       continue;
     }

@@ -14,6 +14,7 @@
 #include "der/supports/clamp.hpp"
 #include "der/supports/section_spring.hpp"
 #include "der/supports/spatial_clamp.hpp"
+#include "model/corner.hpp"
 
 namespace der {
 namespace {
@@ -207,7 +208,7 @@ class SectionElements {
     set_rest(rod_, drawn.strain(), joint);
     Joint stiffness = stiffness_of(rod_, joint, true);
     if constexpr (std::is_same_v<Curvature, AngleCurvature>) {
-      if (rod_.natural_curvatures.empty() && is_corner(a, b) && resists_everything(stiffness)) {
+      if (is_corner(rod_, joint.place(), model_) && resists_everything(stiffness)) {
         const double length = rod_.edge_length[to_size(joint.before)];
         const double share = length / (length + rod_.edge_length[to_size(joint.after)]);
         add_joint_element<CornerBend>(joint, corner_joint(a, b, drawn, share, stiffness));

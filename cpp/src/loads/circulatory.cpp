@@ -8,6 +8,7 @@
 #include "der/model/location.hpp"
 #include "der/model/section_place.hpp"
 #include "der/supports/clamp.hpp"
+#include "model/corner.hpp"
 
 namespace der {
 namespace {
@@ -22,7 +23,7 @@ void set_amount(const scenario::VectorSeries& amount, CirculatoryLoad& load, Mod
 void add_point(double s, const RodLayout& rod, const Model& model, CirculatoryLoad& load) {
   for (int c = 0; c < model.dimension; ++c) {
     auto& component = load.coordinates.emplace_back();
-    for (const auto& [place, weight] : node_weights(rod, s)) {
+    for (const auto& [place, weight] : node_weights(rod, s, model)) {
       component.push_back({model.dof(rod.node(place), c), weight});
     }
   }

@@ -4,6 +4,7 @@
 #include "der/loads/dead_force.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/location.hpp"
+#include "model/corner.hpp"
 
 namespace der {
 
@@ -27,7 +28,7 @@ void add_load(const scenario::PointForce& load, const LoadContext& context, Mode
     return;
   }
   const double s = arc_length_of(load.at, rod);
-  const std::vector<Weighted> nodes = node_weights(rod, s);
+  const std::vector<Weighted> nodes = node_weights(rod, s, model);
   for (const auto& [place, weight] : nodes) {
     force.act_on(rod.node(place), weight, model);
   }

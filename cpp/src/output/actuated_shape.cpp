@@ -40,7 +40,7 @@ Vec3 ActuatedShape::strains(double s, bool before, const Model& model, const Sta
     if (!stretch.strains()) continue;
     const double profile = stretch.profile_at(s, before);
     if (profile == 0.0) continue;
-    const Index first = stretch.what == scenario::Actuated::NaturalTwist ? 2 : 0;
+    const Index first = stretch.what == scenario::Actuated::Twist ? 2 : 0;
     for (Index i = 0; i < 2; ++i) {
       const Index control = stretch.controls[to_size(i)];
       if (control >= 0) sum[first + i] += profile * control_value(model, state, control);

@@ -176,7 +176,7 @@ class BendField : public EdgewiseField<double> {
       result.rest_angle = rod.rest_turning_angle[to_size(rod.position(node))];
       result.actuated = ActuatedRest(rod.rest_entries.cell(rod.position(node), false), 1, model);
     }
-    result.natural_curvature = natural.at(result.arc_length);
+    result.natural_curvature = natural.at(edge, result.arc_length);
     return result;
   }
 

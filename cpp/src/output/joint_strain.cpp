@@ -4,7 +4,10 @@
 #include <utility>
 
 #include "der/core/index.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/from_pivot.hpp"
 #include "der/energies/joint_response.hpp"
+#include "der/energies/spatial_bend.hpp"
 #include "der/model/frames.hpp"
 #include "der/supports/spatial_clamp.hpp"
 #include "output/actuated_shape.hpp"
@@ -77,16 +80,44 @@ JointKinematics<Curvature> kinematics_of(const RodJoint& joint, const RodLayout&
   return {sides.before, sides.after, twist};
 }
 
+/// What a corner resists with; null if the joint is none.
+const CoupledJoint* corner_of(const RodJoint& joint, const RodLayout& rod, const Model& model) {
+  if (joint.before < 0 || joint.after < 0) return nullptr;
+  const Index theta_before = model.framed_edges[to_size(rod.first_edge + joint.before)].theta;
+  const auto find = [&](const auto& list, const auto& joint_of) -> const CoupledJoint* {
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      if (list.dofs[i][9] == theta_before) return &joint_of(list.constants[i]);
+    }
+    return nullptr;
+  };
+  using Plain = CornerBend::Constants;
+  using BesideClamp = FromSpatialPivot<CornerBend>::Constants;
+  const auto* plain =
+      find(elements_of<CornerBend>(*model.elements),
+           [](const Plain& element) -> const CoupledJoint& { return element.joint; });
+  if (plain != nullptr) return plain;
+  return find(
+      elements_of<FromSpatialPivot<CornerBend>>(*model.elements),
+      [](const BesideClamp& element) -> const CoupledJoint& { return element.element.joint; });
+}
+
 template <class Curvature>
 Vec3 response_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
                  const State& state) {
   const bool twists = joint.clamp < 0 || rod.clamps[to_size(joint.clamp)].holds_section;
   const JointStrain rest = rest_strain(joint, rod, model, state);
+  const auto kinematics = kinematics_of<Curvature>(joint, rod, model, state);
   JointResponse response;
-  kinematics_of<Curvature>(joint, rod, model, state)
-      .template respond<false>({rod.EI_1 / joint.bend_length, rod.EI_2 / joint.bend_length,
-                                twists ? rod.GJ / joint.twist_length : 0.0, rest},
-                               response);
+  if (const CoupledJoint* corner = corner_of(joint, rod, model)) {
+    CoupledJoint actuated = *corner;
+    actuated.rest = rest;
+    kinematics.template respond<false>(actuated, response);
+  } else {
+    kinematics.template respond<false>(
+        Joint{rod.EI_1 / joint.bend_length, rod.EI_2 / joint.bend_length,
+              twists ? rod.GJ / joint.twist_length : 0.0, rest},
+        response);
+  }
   return response.moment;
 }
 

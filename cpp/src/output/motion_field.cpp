@@ -1,14 +1,29 @@
 #include "output/motion_field.hpp"
+#include "model/corner.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace der {
 namespace {
 
-class ComponentField : public RodField {
+/// A field at the nodes, with a kink at the corners.
+class NodeField : public RodField {
+ public:
+  NodeField(const RodLayout& rod, const Model& model)
+      : RodField(rod.arc_length), corners_(corners_of(rod, model)) {}
+  [[nodiscard]] bool smooth_at(std::size_t i) const override {
+    return !std::binary_search(corners_.begin(), corners_.end(), static_cast<Index>(i));
+  }
+
+ private:
+  std::vector<Index> corners_;
+};
+
+class ComponentField : public NodeField {
  public:
   ComponentField(Vector State::* vector, int component, const RodLayout& rod, const Model& model)
-      : RodField(rod.arc_length), vector_(vector) {
+      : NodeField(rod, model), vector_(vector) {
     for (const Index node : rod.nodes) dofs_.push_back(model.dof(node, component));
   }
   [[nodiscard]] double sample(std::size_t i, const Model& /*model*/,
@@ -21,9 +36,9 @@ class ComponentField : public RodField {
   std::vector<Index> dofs_;
 };
 
-class SpeedField : public RodField {
+class SpeedField : public NodeField {
  public:
-  SpeedField(const RodLayout& rod, const Model& model) : RodField(rod.arc_length) {
+  SpeedField(const RodLayout& rod, const Model& model) : NodeField(rod, model) {
     for (const Index node : rod.nodes) dofs_.push_back(model.dof(node, 0));
   }
   [[nodiscard]] double sample(std::size_t i, const Model& model,

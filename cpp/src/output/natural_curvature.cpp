@@ -4,6 +4,7 @@
 
 #include "der/core/index.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "model/corner.hpp"
 
 namespace der {
 namespace {
@@ -15,33 +16,44 @@ Vec2 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
 }  // namespace
 
 NaturalCurvature::NaturalCurvature(const RodLayout& rod, const Model& model) {
+  for (const Index corner : corners_of(rod, model)) legs_.push_back({corner, {}, {}});
+  legs_.push_back({rod.num_edges(), {}, {}});
   if (!rod.natural_curvature.empty()) {
-    arc_length_ = rod.arc_length;
-    values_ = rod.natural_curvature;
+    Leg& whole = legs_.front();
+    whole.arc_length = rod.arc_length;
+    whole.values = rod.natural_curvature;
     if (rod.closed) {
-      arc_length_.push_back(rod.rest_length());
-      values_.push_back(values_.front());
+      whole.arc_length.push_back(rod.rest_length());
+      whole.values.push_back(whole.values.front());
     }
     return;
   }
+  auto leg = legs_.begin();
   for (Index i = 0; i <= rod.num_edges(); ++i) {
+    if (is_corner(rod, i, model)) {
+      if (i < rod.num_edges()) ++leg;
+      continue;
+    }
     if (!rod.is_inner(i)) continue;
     const double before = rod.edge_length[to_size(rod.edge_before(i))];
     const double after = rod.edge_length[to_size(rod.edge_after(i))];
-    arc_length_.push_back(rod.arc_length_at(i) + (after - before) / 3.0);
-    values_.push_back(angle_between(drawn_edge(rod, i - 1, model), drawn_edge(rod, i, model)) /
-                      (0.5 * (before + after)));
+    leg->arc_length.push_back(rod.arc_length_at(i) + (after - before) / 3.0);
+    leg->values.push_back(angle_between(drawn_edge(rod, i - 1, model), drawn_edge(rod, i, model)) /
+                          (0.5 * (before + after)));
   }
 }
 
-double NaturalCurvature::at(double s) const {
-  if (values_.empty()) return 0.0;
-  if (values_.size() == 1) return values_.front();
-  const auto above = static_cast<std::size_t>(
-      std::upper_bound(arc_length_.begin(), arc_length_.end(), s) - arc_length_.begin());
-  const std::size_t right = std::clamp<std::size_t>(above, 1, arc_length_.size() - 1);
-  const double share = (s - arc_length_[right - 1]) / (arc_length_[right] - arc_length_[right - 1]);
-  return (1.0 - share) * values_[right - 1] + share * values_[right];
+double NaturalCurvature::at(Index edge, double s) const {
+  const auto leg = std::find_if(legs_.begin(), legs_.end(),
+                                [edge](const Leg& other) { return edge < other.end; });
+  const auto& [end, places, values] = *leg;
+  if (values.empty()) return 0.0;
+  if (values.size() == 1) return values.front();
+  const auto above =
+      static_cast<std::size_t>(std::upper_bound(places.begin(), places.end(), s) - places.begin());
+  const std::size_t right = std::clamp<std::size_t>(above, 1, places.size() - 1);
+  const double share = (s - places[right - 1]) / (places[right] - places[right - 1]);
+  return (1.0 - share) * values[right - 1] + share * values[right];
 }
 
 }  // namespace der

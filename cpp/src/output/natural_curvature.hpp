@@ -6,18 +6,25 @@
 
 namespace der {
 
-/// Curvature [1/m] of a rod where no moment acts, at any arc length: the values of the
-/// scene at the nodes, or those of the initial shape, interpolated and extrapolated linearly.
-/// The turning angle of two initial edges over their mean length is the curvature a third of their
-/// difference beside their node.
+/// Curvature [1/m] of a planar rod where no moment acts, at any place of its edges: the values of
+/// the scene at the nodes, or those of the initial shape, interpolated and extrapolated linearly
+/// within each leg of the rod. The turning angle of two initial edges over their mean length is the
+/// curvature a third of their difference beside their node; that of a corner is none.
 class NaturalCurvature {
  public:
   NaturalCurvature(const RodLayout& rod, const Model& model);
-  [[nodiscard]] double at(double s) const;
+  /// At arc length `s` [m] of an edge.
+  [[nodiscard]] double at(Index edge, double s) const;
 
  private:
-  std::vector<double> arc_length_;  // [m]
-  std::vector<double> values_;      // [1/m]
+  /// The rod between two corners or ends.
+  struct Leg {
+    Index end = 0;                   // the edge beyond it
+    std::vector<double> arc_length;  // [m]
+    std::vector<double> values;      // [1/m]
+  };
+
+  std::vector<Leg> legs_;
 };
 
 }  // namespace der

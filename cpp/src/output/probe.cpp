@@ -12,6 +12,7 @@
 #include "der/output/reactions.hpp"
 #include "der/scenario/find_support.hpp"
 #include "der/scenario/scenario.hpp"
+#include "model/corner.hpp"
 #include "output/energy_reader.hpp"
 #include "output/rod_field.hpp"
 
@@ -217,9 +218,9 @@ std::unique_ptr<RodField> make_probed_field(const scenario::Probe& probe, const 
 }
 
 SampleWeights point_weights(const scenario::Probe& probe, QuantityKind kind, const RodField& field,
-                            const RodLayout& rod, double s) {
+                            const RodLayout& rod, double s, const Model& model) {
   if (kind == QuantityKind::Position || kind == QuantityKind::Velocity) {
-    return sample_weights(node_weights(rod, s), rod);
+    return sample_weights(node_weights(rod, s, model), rod);
   }
   if (can_jump(kind)) {
     return one_sided_weights(field.arc_length(), s, probe.side.value_or(scenario::Side::After),
@@ -248,7 +249,7 @@ std::unique_ptr<ProbeReader> make_reader(const scenario::Probe& probe, const Qua
                                            quantity.kind == QuantityKind::Position);
   }
   const double s = arc_length_of(*probe.at, rod);
-  SampleWeights weights = point_weights(probe, quantity.kind, *field, rod, s);
+  SampleWeights weights = point_weights(probe, quantity.kind, *field, rod, s, model);
   return std::make_unique<PointReader>(std::move(field), std::move(weights));
 }
 

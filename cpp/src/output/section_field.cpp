@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "der/core/index.hpp"
 #include "der/model/location.hpp"
@@ -38,8 +40,9 @@ bool is_moment(SectionQuantity quantity) {
 /// bends, in fixed axes.
 ///
 /// Beside moments inside the rod the section turns at rates that differ on their two sides, and
-/// components along it have a kink. Along the edges there the field is the vector of the moment in
-/// fixed axes, which has none, and the section at each place takes its components.
+/// components along it have a kink; at corners the section itself jumps. Along the edges there the
+/// field is the vector of the moment in fixed axes, and the section at each place takes its
+/// components.
 class SectionField : public EdgewiseField<Vec3> {
  public:
   static std::unique_ptr<RodField> make(SectionQuantity quantity, const RodLayout& rod,
@@ -50,13 +53,14 @@ class SectionField : public EdgewiseField<Vec3> {
     Lines lines;
     if (!rod.joints.empty()) {
       samples = samples_of(rod, recovery);
-      if (jumps_at_glue(quantity, rod)) {
+      if (jumps_at_glue(quantity, rod) && !recovery.jumps_at(0)) {
         samples.front().smooth = false;
         samples.push_back({rod.num_edges() - 1, {rod.rest_length(), true}, false});
       }
       for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-        const bool by_twist = is_of_twist(quantity) && !recovery.has_moments(edge);
-        edges.emplace_back(known(by_twist, rod, edge, false), known(by_twist, rod, edge, true));
+        const bool by_twist = is_of_twist(quantity) && !has_kinks(edge, recovery);
+        edges.emplace_back(known(by_twist, rod, edge, false, recovery),
+                           known(by_twist, rod, edge, true, recovery));
         lines.emplace_back(edges.back().first.arc_length, edges.back().second.arc_length);
       }
     }
@@ -146,21 +150,61 @@ class SectionField : public EdgewiseField<Vec3> {
     return rod.closed && is_component && last.clamp < 0 && std::abs(last.glued) > rounding;
   }
 
+  /// Whether components along an edge, or on from it, have a kink or jump.
+  static bool has_kinks(Index edge, const MomentRecovery& recovery) {
+    return recovery.has_moments(edge) || recovery.is_corner(edge) || recovery.is_corner(edge + 1);
+  }
+
   static Vec3 natural_of(const RodJoint& joint) {
     return {joint.natural_curvature[0], joint.natural_curvature[1],
             joint.rest.twist / joint.twist_length};
   }
 
-  /// Natural curvatures and twist at an end of the rod: as given, or those of the drawn rod,
-  /// extrapolated.
-  static Vec3 natural_at_end(const RodLayout& rod, bool last) {
-    Vec3 result = natural_of(last ? rod.joints.back() : rod.joints.front());
-    if (rod.joints.size() > 1) {
-      const RodJoint& near = last ? rod.joints.back() : rod.joints.front();
-      const RodJoint& far = last ? rod.joints.end()[-2] : rod.joints[1];
-      const double beyond = (last ? rod.rest_length() : 0.0) - near.bend_place;
-      result += beyond / (near.bend_place - far.bend_place) * (result - natural_of(far));
+  /// Natural curvatures and twist of a joint, and the arc length [m] at which it bends.
+  struct NaturalAt {
+    double arc_length = 0.0;
+    Vec3 natural;
+  };
+
+  /// Of the two joints of a leg that are next to its last end, beyond `edge`, or to its first one;
+  /// fewer where it has no more. Corners bend on their two legs and belong to none.
+  static std::vector<NaturalAt> naturals_beside_end(const RodLayout& rod, Index edge, bool last,
+                                                    const MomentRecovery& recovery) {
+    std::vector<NaturalAt> found;
+    const Index step = last ? -1 : 1;
+    const auto is_of_leg = [&](Index place) {
+      return (rod.closed || (0 <= place && place <= rod.num_edges())) && !recovery.is_corner(place);
+    };
+    for (Index place = last ? edge : edge + 1; found.size() < 2 && is_of_leg(place);
+         place += step) {
+      const auto first_here = static_cast<std::ptrdiff_t>(found.size());
+      for (const RodJoint& joint : rod.joints) {
+        if (rod.position(joint.place()) != rod.position(place)) continue;
+        const double ahead = rod.arc_length_at(place) - rod.arc_length_at(joint.place());
+        found.push_back({joint.bend_place + ahead, natural_of(joint)});
+      }
+      if (last) std::reverse(found.begin() + first_here, found.end());
     }
+    return found;
+  }
+
+  /// Natural curvatures and twist at an end of a leg, beyond `edge` or before it: those of the
+  /// drawn rod, extrapolated.
+  static Vec3 natural_at_end_of_leg(const RodLayout& rod, Index edge, bool last,
+                                    const MomentRecovery& recovery) {
+    const std::vector<NaturalAt> joints = naturals_beside_end(rod, edge, last, recovery);
+    if (joints.empty()) return Vec3::Zero();
+    const NaturalAt& near = joints[0];
+    if (joints.size() == 1) return near.natural;
+    const NaturalAt& far = joints[1];
+    const double beyond = rod.arc_length_at(last ? edge + 1 : edge) - near.arc_length;
+    return near.natural +
+           beyond / (near.arc_length - far.arc_length) * (near.natural - far.natural);
+  }
+
+  /// Natural curvatures and twist at an end of the rod: as given, or those of the drawn rod.
+  static Vec3 natural_at_end(const RodLayout& rod, bool last, const MomentRecovery& recovery) {
+    Vec3 result = natural_at_end_of_leg(rod, last ? rod.num_edges() - 1 : 0, last, recovery);
     if (!rod.natural_curvatures.empty()) {
       result.head<2>() = last ? rod.natural_curvatures.back() : rod.natural_curvatures.front();
     }
@@ -171,14 +215,15 @@ class SectionField : public EdgewiseField<Vec3> {
   }
 
   /// `by_twist`: where the chain twists, in place of where it bends.
-  static Known known(bool by_twist, const RodLayout& rod, Index edge, bool last) {
+  static Known known(bool by_twist, const RodLayout& rod, Index edge, bool last,
+                     const MomentRecovery& recovery) {
     Known result;
     result.arc_length = result.twist_place = rod.arc_length_at(last ? edge + 1 : edge);
     const auto joint = std::find_if(rod.joints.begin(), rod.joints.end(), [&](const auto& other) {
       return (last ? other.before : other.after) == edge;
     });
     if (joint == rod.joints.end()) {
-      result.natural = natural_at_end(rod, last);
+      result.natural = natural_at_end(rod, last, recovery);
       return result;
     }
     result.natural = natural_of(*joint);
@@ -187,6 +232,9 @@ class SectionField : public EdgewiseField<Vec3> {
       result.joint_ahead = rod.rest_length();
       result.glued = joint->glued;
       result.natural = turned(result.natural, result.glued);
+    }
+    if (recovery.is_corner(joint->place())) {
+      result.natural.head<2>() = natural_at_end_of_leg(rod, edge, last, recovery).head<2>();
     }
     result.twist_place = joint->twist_place - result.joint_ahead;
     // A clamp that holds the tangent alone lets the section turn.
@@ -199,7 +247,7 @@ class SectionField : public EdgewiseField<Vec3> {
 
   /// Whether the field is a vector in fixed axes along an edge.
   [[nodiscard]] bool is_vector(Index edge, const Model& model) const {
-    return model.has_sections() && recovery_.has_moments(edge);
+    return model.has_sections() && has_kinks(edge, recovery_);
   }
 
   [[nodiscard]] Vec3 line(Index edge, bool last, const Model& model,

@@ -5,6 +5,7 @@
 
 #include "der/core/index.hpp"
 #include "der/energies/circulatory_load.hpp"
+#include "model/corner.hpp"
 
 namespace der {
 
@@ -12,7 +13,7 @@ SpreadForces::SpreadForces(const RodLayout& rod, const Model& model)
     : dimension_(model.dimension), rod_(rod) {
   for (const Index node : rod.nodes) first_dofs_.push_back(model.dof(node, 0));
   for (const ForcePlace& place : rod.force_places) {
-    const std::vector<Weighted> nodes = node_weights(rod, place.arc_length);
+    const std::vector<Weighted> nodes = node_weights(rod, place.arc_length, model);
     if (nodes.size() == 1) continue;
     for (const Index turns : turns_of(rod)) {
       Force& force = forces_.emplace_back(Force{place, nodes});

@@ -6,25 +6,10 @@
 
 #include "der/core/index.hpp"
 #include "der/model/location.hpp"
+#include "model/corner.hpp"
 
 namespace der {
 namespace {
-
-/// A smooth curve on a mesh that resolves it turns by less from edge to edge [rad].
-constexpr double kCorner = 0.5;
-
-bool is_corner(const RodLayout& rod, Index place, const Model& model) {
-  if (!rod.is_inner(place) || rod.clamp_at(place) != nullptr) return false;
-  if (!rod.natural_curvature.empty() || !rod.natural_curvatures.empty()) return false;
-  const bool bends = rod.EI > 0.0 || rod.EI_1 > 0.0 || rod.EI_2 > 0.0;
-  const auto drawn = [&](Index edge) {
-    const auto node = [&](Index number) {
-      return model.initial_positions.segment(model.dof(rod.node(number), 0), model.dimension);
-    };
-    return Vector(node(edge + 1) - node(edge)).normalized();
-  };
-  return bends && drawn(place - 1).dot(drawn(place)) < std::cos(kCorner);
-}
 
 /// What a jump of the curvature by 1 at `kink` adds at `s` to a line that begins before it [m].
 double beyond(double s, double kink) { return std::max(0.0, s - kink); }
@@ -66,7 +51,8 @@ void TangentLine::find_knots(const RodLayout& rod, const Model& model) {
   const Index last = rod.num_edges() + (rod.closed ? 1 : 0);
   legs_.push_back({rod.arc_length_at(first), 0.0, 0, 0});
   for (Index place = first; place <= last; ++place) {
-    if (place > first && place < last && is_corner(rod, place, model)) {
+    if (place > first && place < last && rod.clamp_at(place) == nullptr &&
+        is_corner(rod, place, model)) {
       legs_.back().to = rod.arc_length_at(place);
       legs_.back().last = knots_.size();
       legs_.push_back({rod.arc_length_at(place), 0.0, knots_.size(), 0});

@@ -52,10 +52,10 @@ void check_actuation(ActuationText& actuation, const Place& place, Diagnostics& 
 Actuation completed(ActuationText text, const Mapping* entries) {
   const auto given = [&](const char* key) { return entries && find_entry(*entries, key); };
   if (given("elongation")) {
-    text.what = Actuated::Elongation;
+    text.what = Actuated::Length;
     text.values = {std::move(text.stretch)};
   } else if (given("natural_twist")) {
-    text.what = Actuated::NaturalTwist;
+    text.what = Actuated::Twist;
     text.values = {std::move(text.twist)};
   } else {
     text.values = std::move(text.curvature);
@@ -67,11 +67,11 @@ Actuation completed(ActuationText text, const Mapping* entries) {
 
 const char* key_of(Actuated what) {
   switch (what) {
-    case Actuated::NaturalCurvature:
+    case Actuated::Curvature:
       return "natural_curvature";
-    case Actuated::NaturalTwist:
+    case Actuated::Twist:
       return "natural_twist";
-    case Actuated::Elongation:
+    case Actuated::Length:
       break;
   }
   return "elongation";

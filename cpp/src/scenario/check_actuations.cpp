@@ -107,13 +107,13 @@ class ActuationCheck {
   }
 
   void check_value(const Rod& rod, const RestLine& line, int number) {
-    if (actuation_.what == Actuated::Elongation) {
+    if (actuation_.what == Actuated::Length) {
       check_elongation(line, number);
     } else if (does_not_bend(rod)) {
       report(value_path_, fmt::format("has no effect: rod '{}' does not resist bending (EI is 0), "
                                       "only 'elongation' acts on it",
                                       rod.name));
-    } else if (actuation_.what == Actuated::NaturalCurvature) {
+    } else if (actuation_.what == Actuated::Curvature) {
       check_curvature(rod);
     }
   }
@@ -158,7 +158,8 @@ class ActuationCheck {
     std::vector<double> times{0.0};
     for (int i = 0; i <= number_; ++i) {
       const Actuation& other = context_.scene.actuations[static_cast<std::size_t>(i)];
-      if (other.what != Actuated::Elongation || other.rod != actuation_.rod) continue;
+      if (other.what != Actuated::Length || other.rod != actuation_.rod) continue;
+      if (context_.diagnostics.under(path_of(i))) continue;
       all.push_back(&other);
       places.insert(places.end(), {other.from, 0.5 * (other.from + other.to), other.to});
       const std::vector<double>& own = other.values.front().times;
@@ -167,6 +168,7 @@ class ActuationCheck {
     std::sort(places.begin(), places.end());
     double least_sum = 0.0;
     for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+      if (places[k] < actuation_.from || places[k + 1] > actuation_.to) continue;
       for (const double s : {places[k], 0.5 * (places[k] + places[k + 1]), places[k + 1]}) {
         for (const double time : times) {
           double sum = 0.0;
@@ -202,7 +204,7 @@ class ActuationCheck {
   /// Edges turn by less than half a turn, and a mesh is coarse from 1 rad on
   /// (check_resolution.cpp).
   void check_resolution(const Rod& rod, const RestLine& line) {
-    if (actuation_.what != Actuated::NaturalCurvature) return;
+    if (actuation_.what != Actuated::Curvature) return;
     double squares = 0.0;
     for (const Series& series : actuation_.values) squares += std::pow(largest(series), 2);
     const double angle = std::sqrt(squares) * longest_edge(line, actuation_);

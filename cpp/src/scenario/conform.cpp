@@ -72,7 +72,7 @@ class Conform {
   }
 
   void conform(Actuation& actuation) const {
-    if (actuation.what != Actuated::NaturalCurvature) return;
+    if (actuation.what != Actuated::Curvature) return;
     const auto rod = std::find_if(scene_.rods.begin(), scene_.rods.end(),
                                   [&](const Rod& each) { return each.name == actuation.rod; });
     std::vector<Series>& values = actuation.values;

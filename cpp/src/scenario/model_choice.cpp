@@ -131,7 +131,7 @@ struct OutOfPlane {
 };
 
 std::string out_of_plane(const Actuation& actuation, const Scene& scene) {
-  if (actuation.what != Actuated::NaturalCurvature || actuation.values.size() != 2) return {};
+  if (actuation.what != Actuated::Curvature || actuation.values.size() != 2) return {};
   for (const Rod& rod : scene.rods) {
     if (rod.name != actuation.rod) continue;
     const FlatDirector director = flat_director(rod);
@@ -173,13 +173,13 @@ std::string own_twist(const Rod& rod) {
 }
 
 std::string actuated_twist(const Actuation& actuation) {
-  if (actuation.what != Actuated::NaturalTwist) return {};
+  if (actuation.what != Actuated::Twist) return {};
   return fmt::format("actuation.{} twists rod '{}'", actuation.name, actuation.rod);
 }
 
 /// A rod that an actuation bends has a natural curvature.
 std::string actuated_bend(const Actuation& actuation) {
-  if (actuation.what != Actuated::NaturalCurvature) return {};
+  if (actuation.what != Actuated::Curvature) return {};
   return fmt::format("actuation.{} curves rod '{}' without stress", actuation.name, actuation.rod);
 }
 

@@ -74,11 +74,9 @@ Table<ProbeText> probe_table() {
                 choice<Side>({{{"before", "toward the start of the rod"}, Side::Before},
                               {{"after", "toward its end"}, Side::After}}),
                 "With `at`: on which side of a place where the quantity jumps: curvatures, twist, "
-                "moments "
-                "and torque at an interior clamp, moment or spring against turning, strain and "
-                "tension at "
-                "a force, support or sphere, slope and tangent at a corner as drawn; without it, "
-                "after the place.")
+                "moments and torque at an interior clamp, moment or spring against turning, strain "
+                "and tension at a force, support or sphere, all of these, slope and tangent at a "
+                "corner; without it, after the place.")
       .at_most_one({{"at"}, {"over", "reduce"}})
       .at_most_one({{"rod"}, {"support"}});
 }

@@ -119,7 +119,7 @@ bool is_elongation(const Model& model, Index control) {
   return std::any_of(model.rods.begin(), model.rods.end(), [control](const RodLayout& rod) {
     return std::any_of(rod.actuated_stretches.begin(), rod.actuated_stretches.end(),
                        [control](const ActuatedStretch& stretch) {
-                         return stretch.what == scenario::Actuated::Elongation &&
+                         return stretch.what == scenario::Actuated::Length &&
                                 stretch.controls[0] == control;
                        });
   });

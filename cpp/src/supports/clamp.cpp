@@ -11,6 +11,7 @@
 #include "der/model/clamp_cell.hpp"
 #include "der/model/location.hpp"
 #include "der/scenario/support.hpp"
+#include "model/corner.hpp"
 
 namespace der {
 namespace {
@@ -22,10 +23,12 @@ Vec2 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
 
 double direction(const Vec2& e) { return std::atan2(e.y(), e.x()); }
 
-/// Turning angle at the node nearest to `place` that has two edges, per metre [1/m].
+/// Turning angle at the node nearest to `place` that has two edges, per metre [1/m]; none between
+/// `place` and a corner.
 double initial_curvature(const RodLayout& rod, Index place, const Model& model) {
   if (rod.num_edges() < 2) return 0.0;
   const Index inner = inner_place_near(rod, place);
+  if (inner != place && is_corner(rod, inner, model)) return 0.0;
   return angle_between(drawn_edge(rod, inner - 1, model), drawn_edge(rod, inner, model)) /
          rod.voronoi_length(inner);
 }

@@ -7,6 +7,7 @@
 #include "der/core/index.hpp"
 #include "der/scenario/support.hpp"
 #include "der/supports/clamp.hpp"
+#include "model/corner.hpp"
 
 namespace der {
 namespace {
@@ -17,10 +18,11 @@ Vec3 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
 }
 
 /// Rotation vector of the turning angle at the node nearest to `place` that has two edges, per
-/// metre [1/m].
+/// metre [1/m]; zero between `place` and a corner.
 Vec3 initial_curvature(const RodLayout& rod, Index place, const Model& model) {
   if (rod.num_edges() < 2) return Vec3::Zero();
   const Index inner = inner_place_near(rod, place);
+  if (inner != place && is_corner(rod, inner, model)) return Vec3::Zero();
   const Vec3 before = drawn_edge(rod, inner - 1, model);
   const Vec3 after = drawn_edge(rod, inner, model);
   const Vec3 axis = before.cross(after);

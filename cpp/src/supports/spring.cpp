@@ -17,6 +17,7 @@
 #include "der/scenario/support.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/section_spring.hpp"
+#include "model/corner.hpp"
 
 namespace der {
 namespace {
@@ -55,7 +56,7 @@ void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s,
 
 template <int Dim>
 void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s, Model& model) {
-  const std::vector<Weighted> weights = node_weights(rod, s);
+  const std::vector<Weighted> weights = node_weights(rod, s, model);
   switch (weights.size()) {
     case 1:
       return add_point_spring<Dim, 1>(spring, rod, s, weights, model);

@@ -265,6 +265,12 @@ TEST_CASE("controls: a support that holds several nodes moves them all") {
 TEST_CASE("controls: in space") {
   const std::vector<Override> space{
       {"model", "spatial"},
+      {"rods.rod.from", "[0, 0, 0]"},
+      {"rods.rod.to", "[1, 0, 0]"},
+      {"loads.gravity.gravity", "[0, -5, 0]"},
+      {"loads.push.point_force.force", "[0, 0, 0]"},
+      {"loads.line.distributed_force.force", "[0, 0, 0]"},
+      {"loads.follower.point_force.force", "[0, 0, 0]"},
       {"rods.rod.material.poissons_ratio", "0.3"},
       {"supports.wall.prescribe", "{z: 0, twist: 0, rotation: {axis: [0, 1, 0], angle: 0}}"},
       {"loads.bend", "{name: bend, moment: {rod: rod, at: 0.4, moment: [0, 0, 0]}}"},

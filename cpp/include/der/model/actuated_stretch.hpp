@@ -12,13 +12,13 @@ namespace der {
 /// A stretch of a rod on which an actuation changes the rest shape.
 struct ActuatedStretch {
   std::string name;
-  scenario::Actuated what = scenario::Actuated::NaturalCurvature;
+  scenario::Actuated what = scenario::Actuated::Curvature;
   scenario::Profile profile = scenario::Profile::Constant;
   double from = 0.0, to = 0.0;            ///< rest arc length [m]
   std::array<Index, 2> controls{-1, -1};  ///< tables; the second of curvatures in space alone
 
   /// Whether it bends or twists the rod.
-  [[nodiscard]] bool strains() const { return what != scenario::Actuated::Elongation; }
+  [[nodiscard]] bool strains() const { return what != scenario::Actuated::Length; }
   /// The profile right before arc length `s` [m], or right after it.
   [[nodiscard]] double profile_at(double s, bool before) const;
   /// Integral [m] of the profile over a part of the rod.

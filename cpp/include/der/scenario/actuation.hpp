@@ -17,7 +17,7 @@ enum class Profile {
 };
 
 /// What an actuation changes of the rest shape.
-enum class Actuated { NaturalCurvature, NaturalTwist, Elongation };
+enum class Actuated { Curvature, Twist, Length };
 
 /// A change of the rest shape of a stretch of a rod, over time. Several at one place add up.
 struct Actuation {
@@ -26,7 +26,7 @@ struct Actuation {
   double from = 0.0;                                    ///< rest arc length [m]
   double to = std::numeric_limits<double>::infinity();  ///< the checks limit it to the rod
   Profile profile = Profile::Constant;
-  Actuated what = Actuated::NaturalCurvature;
+  Actuated what = Actuated::Curvature;
   /// [1/m], [rad/m] or [-]: one table, or two of a curvature in space, toward the two directors.
   /// Scenes of the planar model have curvatures positive counter-clockwise.
   std::vector<Series> values;

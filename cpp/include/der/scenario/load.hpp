@@ -38,7 +38,7 @@ struct OnPart : OnRod {
 };
 
 /// A value that a load is proportional to: its key below that of the load, empty where the load has
-/// no other, and the member that holds it (Components, Series or VectorSeries).
+/// no other, and the member that holds it (Series or VectorSeries).
 template <class Load, class Value>
 struct Amount {
   const char* key;

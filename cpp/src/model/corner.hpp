@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "der/model/location.hpp"
+#include "der/model/model.hpp"
+
+namespace der {
+
+/// Whether a place of a rod that is stress-free as drawn, and bends, is a corner: its drawn turn is
+/// more than 60 degrees, or more than a tenth of a radian and three times what the rod turns the
+/// same way at the nodes before and after. In a smooth curve neighbouring turns are alike.
+///
+/// Corners part a rod into legs. Tangent and section jump there, and what refers to them.
+bool is_corner(const RodLayout& rod, Index place, const Model& model);
+
+/// Positions of all corners in RodLayout::nodes, ascending.
+std::vector<Index> corners_of(const RodLayout& rod, const Model& model);
+
+/// Like the weights of location.hpp, but through nodes of the leg on which `s` lies alone.
+std::vector<Weighted> node_weights(const RodLayout& rod, double s, const Model& model);
+
+}  // namespace der

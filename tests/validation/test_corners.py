@@ -1,0 +1,233 @@
+"""Rods drawn with corners: what jumps there, against `references/bent_wire.py` and statics."""
+
+import der
+import numpy as np
+import pytest
+from references.bent_wire import Leg, Wire
+from spatial_scenes import QUANTITIES, rod_through, section
+
+SIZES = [16, 32, 64]  # edges a leg
+STRONG, WEAK, TWISTING, STRETCHING = 2.0, 1.0, 0.7, 1e3
+#: Direction of the third leg in the plane of the first three.
+THIRD = np.radians(80 + 50) - 0.6
+#: A leg along x, corners of 80 and 50 degrees with an arc between them, one of 70 out of the plane.
+LEGS = (
+    Leg(0.5, ((0.0, 0.0, 1.0), 0.0)),
+    Leg(0.5, ((0.0, 0.0, 1.0), np.radians(80)), bent=(0.0, 0.0, -1.2)),
+    Leg(0.3, ((0.0, 0.0, 1.0), np.radians(50))),
+    Leg(0.4, ((np.sin(THIRD), -np.cos(THIRD), 0.0), np.radians(70))),
+)
+#: Where everything has two values: leg and share of it.
+SIDES = {
+    f"{side} corner {corner}": place
+    for corner in (1, 2, 3)
+    for side, place in (("before", (corner - 1, 1.0)), ("after", (corner, 0.0)))
+}
+#: On the edges beside.
+NEAR = {
+    f"near {side} corner {corner}": place
+    for corner in (1, 2, 3)
+    for side, place in (("before", (corner - 1, 0.985)), ("after", (corner, 0.015)))
+}
+
+
+def at(points, edges, leg, share):
+    """The place of a probe: a node and a side, or an arc length."""
+    number = round((leg + share) * edges)
+    if share in (0.0, 1.0):
+        return {"at": {"node": number}, "side": "after" if share == 0.0 else "before"}
+    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    arc = np.concatenate([[0.0], np.cumsum(lengths)])
+    return {"at": float(np.interp((leg + share) * edges, np.arange(len(arc)), arc))}
+
+
+def found(wire, edges, places, quantities, planar=False):
+    """Values at the places, shape (places, quantities)."""
+    points = wire.points(edges)
+    EI1, EI2, GJ, EA = wire.stiffness
+    sides = ("x", "y", "z")
+    probes = {}
+    for i, place in enumerate(places):
+        for quantity in quantities:
+            probe = {"rod": "rod", "quantity": quantity, **at(points, edges, *place)}
+            if quantity in sides:
+                probe.pop("side", None)
+            probes[f"{quantity}-{i}"] = probe
+    dimension = 2 if planar else 3
+    loads = [
+        {"point_force": {"rod": "rod", **at(points, edges, leg, share), "force": list(force)}}
+        for leg, (share, force) in [*wire.inside.items(), (len(wire.legs) - 1, (1.0, wire.tip))]
+    ]
+    for load in loads:
+        load["point_force"].pop("side", None)
+        load["point_force"]["force"] = load["point_force"]["force"][:dimension]
+    if planar:
+        cross_section = section(EA=EA, EI=EI1)
+    else:
+        cross_section = section(wire.frame[:, 0], EA=EA, EI1=EI1, EI2=EI2, GJ=GJ)
+    scene = rod_through(points[:, :dimension], cross_section, loads=loads)
+    scene["model"] = "planar" if planar else "spatial"
+    result = der.run(der.Scenario.from_dict({**scene, "output": {"probes": probes}}))
+    values = [[result.probes[f"{q}-{i}"][-1] for q in quantities] for i in range(len(places))]
+    return np.array(values)
+
+
+def check_orders(fitted_order, sizes, errors, scale, names, quantities):
+    """`errors`: (sizes, places, quantities)."""
+    assert (np.abs(errors[-1]) < 5e-4 * scale).all()
+    for i, name in enumerate(names):
+        for k, quantity in enumerate(quantities):
+            if np.abs(errors[:, i, k]).max() < 2e-5 * scale[k]:
+                continue  # terms of order 3 are as large
+            order = fitted_order([1 / n for n in sizes], errors[:, i, k])
+            assert order > 1.9, (name, quantity, order)
+
+
+def compare(fitted_order, wire, quantities, planar=False):
+    """Orders on both sides of the corners, and errors on the edges beside these: there they depend
+    on where in its edge a place lies."""
+    columns = [QUANTITIES.index(quantity) for quantity in quantities]
+    names = [quantity.removesuffix("_1") for quantity in quantities] if planar else quantities
+    exact = wire.solve([*SIDES.values(), *NEAR.values()])[:, columns]
+    scale = np.abs(exact).max(axis=0)
+    sides = exact[: len(SIDES)]
+    errors = np.array([found(wire, n, SIDES.values(), names, planar) - sides for n in SIZES])
+    check_orders(fitted_order, SIZES, errors, scale, SIDES, quantities)
+    for n in SIZES:
+        near = found(wire, n, NEAR.values(), names, planar) - exact[len(SIDES) :]
+        assert (np.abs(near) < 2.0 / n**2 * scale).all()
+
+
+def along_x(director):
+    tangent = np.array([1.0, 0.0, 0.0])
+    return np.column_stack([director, np.cross(tangent, director), tangent])
+
+
+def test_what_jumps_at_a_corner(fitted_order):
+    """Forces and moments go through a corner, but the section has another direction behind it."""
+    frame = along_x([0.0, 0.6, 0.8])
+    wire = Wire(LEGS, frame, (STRONG, WEAK, TWISTING, STRETCHING), tip=(1.0, 0.7, -1.4))
+    compare(fitted_order, wire, QUANTITIES)
+
+
+def test_what_jumps_at_a_corner_in_the_plane(fitted_order):
+    """The moment does not."""
+    legs = (*LEGS[:3], Leg(0.4, ((0.0, 0.0, 1.0), np.radians(-100))))
+    frame = along_x([0.0, 1.0, 0.0])
+    wire = Wire(legs, frame, (1.0, 1.0, 1.0, STRETCHING), tip=(0.6, -0.9, 0.0))
+    compare(fitted_order, wire, ("x", "y", "curvature_1", "moment_1", "tension"), planar=True)
+
+
+@pytest.fixture(params=["planar", "spatial"])
+def dimension(request):
+    return 2 if request.param == "planar" else 3
+
+
+def ell(dimension, stiffness, loads, probes, angle=90):
+    """Final values of the probes on a clamped frame of two legs of 0.5 m in the x-y plane."""
+    share = np.linspace(0.0, 0.5, 6)[:, None]
+    second = [np.cos(np.radians(angle)), np.sin(np.radians(angle)), 0.0]
+    points = np.vstack([share * [1, 0, 0], [0.5, 0, 0] + share[1:] * second])[:, :dimension]
+    cross_section = {"stiffness": {"mass_per_length": 1.0, "GJ": stiffness["EI"], **stiffness}}
+    scene = rod_through(points, cross_section, loads=loads)
+    scene["model"] = "planar" if dimension == 2 else "spatial"
+    scene["output"] = {"probes": {name: {"rod": "rod", **probe} for name, probe in probes.items()}}
+    result = der.run(der.Scenario.from_dict(scene))
+    return {name: values[-1] for name, values in result.probes.items()}
+
+
+@pytest.mark.parametrize("angle", [90, 25, 7])
+def test_torque_becomes_a_moment_behind_a_corner(angle):
+    """A tip force across the plane bends one leg, and twists and bends the other: by statics. Small
+    angles are corners too where they stand alone."""
+    force, leg = 1e-5, 0.5  # so small that the frame keeps its shape
+    sine, cosine = np.sin(np.radians(angle)), np.cos(np.radians(angle))
+    corner = {"at": {"node": 5}}
+    values = ell(
+        3,
+        {"EA": 1e6, "EI": 1.0, "GJ": 0.2},
+        [{"point_force": {"rod": "rod", "at": "end", "force": [0, 0, force]}}],
+        {
+            "before": {"quantity": "torque", **corner, "side": "before"},
+            "after": {"quantity": "torque", **corner, "side": "after"},
+            "moment_before": {"quantity": "moment", **corner, "side": "before"},
+            "moment_after": {"quantity": "moment", **corner, "side": "after"},
+            "moment_near": {"quantity": "moment", "at": 0.48},
+            "greatest": {"quantity": "torque", "over": "rod", "reduce": "max"},
+            "most_curved": {"quantity": "curvature", "over": "rod", "reduce": "max"},
+        },
+        angle,
+    )
+    exact = {
+        "before": force * leg * sine,
+        "after": 0.0,
+        "moment_before": force * leg * cosine,
+        "moment_after": force * leg,
+        "moment_near": force * (0.02 + leg * cosine),
+        "greatest": force * leg * sine,
+        "most_curved": force * leg * (1.0 + cosine),
+    }
+    assert values == pytest.approx(exact, abs=1e-6 * force)
+
+
+def test_tension_at_a_right_angle(dimension):
+    """A stiff frame: the force is (1, 3) in both legs."""
+    tension = {"quantity": "tension"}
+    force = [1.0, 3.0, 0.0][:dimension]
+    values = ell(
+        dimension,
+        {"EA": 1e8, "EI": 1e6},
+        [{"point_force": {"rod": "rod", "at": "end", "force": force}}],
+        {
+            "before": {**tension, "at": {"node": 5}, "side": "before"},
+            "after": {**tension, "at": {"node": 5}, "side": "after"},
+            "near_before": {**tension, "at": 0.48},
+            "near_after": {**tension, "at": 0.52},
+            "greatest": {**tension, "over": "rod", "reduce": "max"},
+            "least": {**tension, "over": "rod", "reduce": "min"},
+        },
+    )
+    exact = [1.0, 3.0, 1.0, 3.0, 3.0, 1.0]
+    assert list(values.values()) == pytest.approx(exact, abs=1e-5)
+
+
+def test_places_beside_a_corner_lie_on_their_leg(dimension):
+    """Of an unloaded frame: no place is beyond the corner, and nothing lies outside the legs."""
+    probes = {
+        f"{quantity}_{i}": {"quantity": quantity, "at": s}
+        for i, s in enumerate((0.47, 0.52))
+        for quantity in "xy"
+    }
+    probes |= {
+        "greatest": {"quantity": "x", "over": "rod", "reduce": "max"},
+        "least": {"quantity": "y", "over": "rod", "reduce": "min"},
+    }
+    values = ell(dimension, {"EA": 1e8, "EI": 1.0}, [], probes)
+    exact = [0.47, 0.0, 0.5, 0.02, 0.5, 0.0]
+    assert list(values.values()) == pytest.approx(exact, abs=1e-12)
+
+
+def test_forces_beside_a_corner(fitted_order):
+    """Within the first two edges on either side of a corner, at 1/5 and 4/5 of an edge. The rod
+    does not stretch: forces between nodes along it stretch it to order 1."""
+    inside = {0: (0.96, (0.8, 1.5, -0.9)), 1: (0.04, (-1.0, 0.9, 0.6))}
+    frame = along_x([0.0, 0.6, 0.8])
+    wire = Wire(LEGS, frame, (STRONG, WEAK, TWISTING, 1e8), (0.4, 0.3, -0.5), inside)
+    places = {"start": (0, 0.0), "before": (0, 1.0), "after": (1, 0.0), "end": (3, 1.0)}
+    exact = wire.solve(list(places.values()))
+    sizes = [20, 45, 95]
+    errors = np.array([found(wire, n, places.values(), QUANTITIES) - exact for n in sizes])
+    scale = np.abs(exact).max(axis=0)
+    check_orders(fitted_order, sizes, errors, scale, places, QUANTITIES)
+
+
+def test_a_clamp_beside_a_corner_holds_the_leg():
+    """A leg of one edge is straight: its clamp has its direction and not one that bends into the
+    corner."""
+    points = [[0, 0], [0.5, 0], [0.5, 0.5]]
+    scene = rod_through(points, section(EA=1e8, EI=1.0))
+    scene["model"] = "planar"
+    turn = {"rod": "rod", "quantity": "turning_angle", "at": "start"}
+    scene["output"] = {"probes": {"turn": turn}}
+    result = der.run(der.Scenario.from_dict(scene))
+    assert result.probes["turn"][-1] == pytest.approx(0.0, abs=1e-12)

@@ -67,7 +67,8 @@ class RunData:
     work
         Works done and energy lost since the start [J] by name, each of shape (frames,):
         work of the ``loads`` (but for weight), of moving ``supports``, of ``actuation`` and of the
-        ``solver``'s residual went in; ``drag`` and the ``numerical`` loss of the time stepping went out.
+        ``solver``'s residual went in; ``drag`` and the ``numerical`` loss of the time stepping went
+        out.
     probes
         Probes by name, each an array of shape (frames,) with its ``unit`` and ``summary``.
     summary

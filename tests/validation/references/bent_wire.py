@@ -103,7 +103,7 @@ class Wire:
                 if part == 1:
                     n = n - np.array(self.inside[i][1])
 
-                def rate(_s, y, n=n, natural=natural):
+                def rate(_s: float, y: Array, n: Array = n, natural: Array = natural) -> Array:
                     d, m = y[3:12].reshape(3, 3), y[12:]
                     u = natural + compliance * (d.T @ m)
                     slope = (1.0 + n @ d[:, 2] / EA) * d[:, 2]

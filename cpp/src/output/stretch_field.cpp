@@ -9,6 +9,7 @@
 #include "der/output/joint_strain.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spatial_clamp.hpp"
+#include "model/corner.hpp"
 #include "output/actuated_shape.hpp"
 #include "output/edge_excess.hpp"
 #include "output/in_space.hpp"
@@ -103,9 +104,10 @@ class LeaningEdges {
     Vec2 drawn = Vec2::Zero();
     if (!rod_.natural_curvature.empty() || !rod_.natural_curvatures.empty()) return drawn;
     if (model.dimension == 2) {
-      drawn[0] = NaturalCurvature(rod_, model).at(rod_.edge_middle(edge));
+      drawn[0] = NaturalCurvature(rod_, model).at(edge, rod_.edge_middle(edge));
     } else {
       for (const RodJoint& joint : rod_.joints) {
+        if (is_corner(rod_, joint.place(), model)) continue;
         if (joint.after == edge || joint.before == edge) drawn += 0.5 * joint.natural_curvature;
       }
     }

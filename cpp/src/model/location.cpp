@@ -95,7 +95,8 @@ double tangent_place(const RodLayout& rod, Index edge) {
 
 std::optional<PlaceBesideClamp> place_beside_clamp(const RodLayout& rod, double s) {
   for (std::size_t i = 0; i < rod.clamps.size(); ++i) {
-    for (const Index turns : turns_of(rod)) {
+    const Index most = rod.closed ? 1 : 0;
+    for (Index turns = -most; turns <= most; ++turns) {
       const Index node = rod.clamps[i].place + turns * rod.num_edges();
       const double from = rod.arc_length_at(node);
       const Index edge = s < from ? node - 1 : node;

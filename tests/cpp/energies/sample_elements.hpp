@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <random>
 #include <type_traits>
@@ -191,15 +192,17 @@ typename SectionSpring<Edges>::Constants sample_constants(const SectionSpring<Ed
   c.stiffness = factor * factor.transpose() + 2.0 * Mat3::Identity();
   const Mat3 share =
       Edges == 1 ? Mat3(Mat3::Identity()) : Mat3(0.5 * (Mat3::Identity() + matrix()));
-  const SectionFrame section = sample_frame(direction(random), random);  // at a corner
+  // At a corner the section is that of another edge, and turns do not count.
+  const bool at_corner = uniform(random, 0.0, 1.0) < 0.5;
+  const SectionFrame section = sample_frame(direction(random), random);
   for (int i = 0; i < Edges; ++i) {
     auto& held = c.edges[static_cast<std::size_t>(i)];
     held.block = FrameBlock::of(i);
     held.first = {uniform(random, -0.01, 0.01), sample_held_frame(random)};
     held.last = {uniform(random, -0.01, 0.01), sample_held_frame(random)};
-    held.reference_twist = held.block.twist_at_end();
+    if (!at_corner) held.reference_twist = held.block.twist_at_end();
     held.weights = i == 0 ? share : Mat3(Mat3::Identity() - share);
-    held.carried << section.first, section.second, section.tangent;
+    if (at_corner) held.carried << section.first, section.second, section.tangent;
   }
   return c;
 }
@@ -322,11 +325,19 @@ void sample_frames(const SectionSpring<Edges>& /*kernel*/,
     const Vec3 e = x.template segment<3>(3 * i + 3) + held.last.offset(here.controls) -
                    x.template segment<3>(3 * i) - held.first.offset(here.controls);
     const SectionFrame edge = sample_source(i, e, random, here);
-    const SectionFrame section = SectionSpring<Edges>::carried_by(edge, held.carried);
-    const Vec3 axis = made_perpendicular(direction(random), section.tangent);
-    const Vec3 drawn = Eigen::AngleAxisd(uniform(random, 0.0, 2.5), axis) * section.tangent;
-    held.drawn = sample_frame(drawn, random);
-    here.controls[held.reference_twist] = twist_between(section, held.drawn);
+    if (held.reference_twist >= 0) {
+      const Vec3 axis = made_perpendicular(direction(random), edge.tangent);
+      const Vec3 drawn = Eigen::AngleAxisd(uniform(random, 0.0, 2.5), axis) * edge.tangent;
+      held.drawn = sample_frame(drawn, random);
+      here.controls[held.reference_twist] = twist_between(edge, held.drawn);
+    } else {
+      const SectionFrame section = SectionSpring<Edges>::carried_by(
+          edge.turned(x[3 * SectionSpring<Edges>::kNodes + i]), held.carried);
+      const Mat3 rotation =
+          Eigen::AngleAxisd(uniform(random, 0.0, 1.5), direction(random)).toRotationMatrix();
+      held.drawn = {rotation * section.tangent, rotation * section.first,
+                    rotation * section.second};
+    }
   }
 }
 

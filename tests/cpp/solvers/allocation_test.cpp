@@ -150,6 +150,11 @@ output:
   for (const Quantity& quantity : quantities()) {
     if (quantity.scope > QuantityScope::Planar) continue;
     const std::string head = "    " + quantity.name;
+    if (quantity.read_reaction != nullptr) {
+      scene += head + ": {quantity: " + quantity.name + ", support: 0}\n";
+      ++probes;
+      continue;
+    }
     const std::string what = ": {quantity: " + quantity.name + ", rod: rod";
     if (quantity.kind == QuantityKind::Energy) {
       scene += head + what + "}\n";

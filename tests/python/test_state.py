@@ -133,6 +133,8 @@ FAILURES = {
     "prescribed": [(nothing, lambda s: s.prescribed("x"))],
     "hessian": [(nothing, lambda s: s.hessian(1))],
     "mass": [(nothing, lambda s: s.mass(1))],
+    "reactions": [(nothing, lambda s: s.reactions(1))],
+    "reaction_vectors": [(nothing, lambda s: s.reaction_vectors(1))],
     "gradient": [(nothing, lambda s: s.gradient(1))],
     "lower_hessian": [(nothing, lambda s: s.lower_hessian(1))],
     "lower_mass": [(nothing, lambda s: s.lower_mass(1))],

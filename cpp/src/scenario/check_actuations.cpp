@@ -79,6 +79,13 @@ class ActuationCheck {
   }
 
  private:
+  /// A part of a rod [m].
+  struct Part {
+    double from = 0.0;
+    double to = 0.0;
+    [[nodiscard]] bool overlaps(double a, double b) const { return from < b && a < to; }
+  };
+
   void report(const Path& where, const std::string& message) {
     context_.diagnostics.add(where, message);
   }
@@ -119,8 +126,11 @@ class ActuationCheck {
   }
 
   void check_elongation(const RestLine& line, int rod) {
+    const std::vector<Part> at_clamps = edges_at_clamps(line, rod);
     const double own = least(actuation_.values.front());
-    const bool clamped = is_beside_clamp(line, rod);
+    const bool clamped = std::any_of(at_clamps.begin(), at_clamps.end(), [&](const Part& edge) {
+      return edge.overlaps(actuation_.from, actuation_.to);
+    });
     if (own <= (clamped ? kLeastAtClamp : -1.0)) {
       report(value_path_,
              clamped
@@ -132,27 +142,34 @@ class ActuationCheck {
                                own));
       return;
     }
-    const double together = least_together();
-    if (together > -1.0) return;
+    const Shortening together = largest_shortening(at_clamps);
+    if (together.sum > together.limit) return;
     report(value_path_, fmt::format("the actuations that overlap here shorten the rod by {:g} of "
                                     "its length: give smaller elongations, or stretches that do "
                                     "not overlap",
-                                    -together));
+                                    -together.sum));
   }
 
-  [[nodiscard]] bool is_beside_clamp(const RestLine& line, int rod) const {
+  [[nodiscard]] std::vector<Part> edges_at_clamps(const RestLine& line, int rod) const {
+    std::vector<Part> edges;
     const int count = line.num_nodes();
     for (int node = 0; node < count; ++node) {
       if (!context_.is_clamped(rod, node)) continue;
       const double before = line.arc_length(std::max(0, node - 1));
       const double after = node + 1 < count ? line.arc_length(node + 1) : line.length();
-      if (before < actuation_.to && actuation_.from < after) return true;
+      edges.push_back({before, after});
     }
-    return false;
+    return edges;
   }
 
-  /// The least sum of this elongation and of those before it in the scene, at one place and time.
-  [[nodiscard]] double least_together() const {
+  /// A sum of elongations and what it has to be greater than.
+  struct Shortening {
+    double sum = 0.0;
+    double limit = -1.0;
+  };
+
+  /// Of this elongation and those before it in the scene, at one place and time.
+  [[nodiscard]] Shortening largest_shortening(const std::vector<Part>& at_clamps) const {
     std::vector<const Actuation*> all;
     std::vector<double> places{actuation_.from, actuation_.to};
     std::vector<double> times{0.0};
@@ -165,25 +182,37 @@ class ActuationCheck {
       const std::vector<double>& own = other.values.front().times;
       times.insert(times.end(), own.begin(), own.end());
     }
+    for (const Part& edge : at_clamps) places.insert(places.end(), {edge.from, edge.to});
     std::sort(places.begin(), places.end());
-    double least_sum = 0.0;
+    Shortening largest;
     for (std::size_t k = 0; k + 1 < places.size(); ++k) {
-      if (places[k] < actuation_.from || places[k + 1] > actuation_.to) continue;
-      for (const double s : {places[k], 0.5 * (places[k] + places[k + 1]), places[k + 1]}) {
+      const double a = places[k];
+      const double b = places[k + 1];
+      if (a < actuation_.from || b > actuation_.to || !(a < b)) continue;
+      const bool at_clamp = std::any_of(at_clamps.begin(), at_clamps.end(),
+                                        [&](const Part& edge) { return edge.overlaps(a, b); });
+      const double limit = at_clamp ? kLeastAtClamp : -1.0;
+      for (const double s : {a, 0.5 * (a + b), b}) {
         for (const double time : times) {
-          double sum = 0.0;
-          for (const Actuation* each : all) {
-            // The part between two places is in a stretch, or outside.
-            if (each->from > places[k] || each->to < places[k + 1]) continue;
-            const Series& series = each->values.front();
-            const bool sine = series.course.kind == Course::Kind::Sine;
-            sum += profile_at(*each, s) * (sine ? least(series) : value_at(series, time));
-          }
-          least_sum = std::min(least_sum, sum);
+          const double sum = elongation_at(all, a, b, s, time);
+          if (sum - limit < largest.sum - largest.limit) largest = {sum, limit};
         }
       }
     }
-    return least_sum;
+    return largest;
+  }
+
+  /// The sum at a place of a part from `a` to `b`, which every stretch covers or does not reach.
+  static double elongation_at(const std::vector<const Actuation*>& all, double a, double b,
+                              double s, double time) {
+    double sum = 0.0;
+    for (const Actuation* each : all) {
+      if (each->from > a || each->to < b) continue;
+      const Series& series = each->values.front();
+      const bool sine = series.course.kind == Course::Kind::Sine;
+      sum += profile_at(*each, s) * (sine ? least(series) : value_at(series, time));
+    }
+    return sum;
   }
 
   void check_curvature(const Rod& rod) {

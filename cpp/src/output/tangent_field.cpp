@@ -184,7 +184,7 @@ class PlanarDirection : public DirectionField<double> {
     }
     if (!moments_) return;
     for (std::size_t i = 0; i < moments_->size(); ++i) {
-      kinks.push_back(-moments_->value(i, model, state).whole.z() / rod_.EI);
+      kinks.emplace_back(-moments_->value(i, model, state).whole.z() / rod_.EI);
     }
   }
 
@@ -260,7 +260,7 @@ class SpatialDirection : public DirectionField<Vec3> {
     if (!moments_) return;
     for (std::size_t i = 0; i < moments_->size(); ++i) {
       const Index edge = rod_.position((*moments_)[i].first_edge);
-      kinks.push_back(
+      kinks.emplace_back(
           -change_by(moments_->value(i, model, state).whole, 1.0, frame(edge, model, state)));
     }
   }

@@ -57,9 +57,10 @@ scenario::Scene cantilever(int nodes, scenario::ModelChoice model, bool closed) 
   support.clamp = planar ? scenario::Clamp::Section : scenario::Clamp::Tangent;
   if (model == scenario::ModelChoice::Spatial) support.clamp = scenario::Clamp::Section;
   if (!closed) scene.supports.push_back(support);
-  scenario::Load& load = scene.loads.emplace_back();
-  load.what = scenario::Gravity{planar ? scenario::Components{0.0, -9.81}
-                                       : scenario::Components{0.0, -9.81, 0.0}};
+  scenario::Gravity gravity;
+  gravity.acceleration.values = {planar ? scenario::Components{0.0, -9.81}
+                                        : scenario::Components{0.0, -9.81, 0.0}};
+  scene.loads.emplace_back().what = gravity;
   return scene;
 }
 

@@ -19,13 +19,13 @@ struct EdgeTerms {
   double inverse_squared;  ///< 1 / |e|^2
   StretchResponse stretch;
 
-  EdgeTerms(const Stretch<2>::Constants& c, const Vector& controls, const double* node)
+  EdgeTerms(const Stretch<2>::Constants& c, double elongation, const double* node)
       : vector(node[2] - node[0], node[3] - node[1]) {
     const double squared = vector.squaredNorm();
     const double length = std::sqrt(squared);
     inverse_squared = 1.0 / squared;
     turn = direction_gradient(vector, inverse_squared);
-    stretch = Stretch<2>::response(c, controls, length);
+    stretch = stretch_response(c.EA, c.rest_length, elongation, length);
   }
 };
 
@@ -70,6 +70,7 @@ std::vector<PlanarChain> PlanarChain::find(const Model& model, const MatrixLayou
       chain.edges_ = run.edges;
       chain.bends_ = run.bends;
       chain.tangent_ = tangent;
+      chain.actuated_ = run.actuated;
       chain.map_nodes(model, layout);
     }
   }
@@ -117,19 +118,24 @@ void PlanarChain::add_measured(const Model& model, const Configuration& here, Ve
   const double* x = here.coordinates.data() + first_dof_;
   double* g = gradient.data() + first_dof_;
 
-  EdgeTerms edge(edge_constants[0], here.controls, x);
+  const bool actuated = actuated_;
+  const auto terms_of = [&](std::size_t j) {
+    const auto& c = edge_constants[j];
+    return EdgeTerms(c, actuated ? c.elongation.value(here.controls) : 0.0, x + 2 * j);
+  };
+  EdgeTerms edge = terms_of(0);
   BendResponse start;                // of the node at the start of the edge
   Vec2 force_before = Vec2::Zero();  // F_{j-1}
   Symmetric before;                  // B_{j-1}
   Mat2 from_before = Mat2::Zero();   // C_j
   for (std::size_t j = 0; j < edges_.count; ++j, g += 2) {
     const bool last = j + 1 == edges_.count;
-    const EdgeTerms next =
-        last ? edge : EdgeTerms(edge_constants[j + 1], here.controls, x + 2 * (j + 1));
+    const EdgeTerms next = last ? edge : terms_of(j + 1);
     BendResponse end;
     if (!last) {
       const auto& c = bend_constants[j];
-      end = bend_response<Curvature>(c.stiffness_per_length, c.natural(here.controls),
+      const double natural = actuated ? c.natural(here.controls) : c.rest_kappa;
+      end = bend_response<Curvature>(c.stiffness_per_length, natural,
                                      angle_between(edge.vector, next.vector));
     }
     const double moment = start.moment - end.moment;

@@ -50,17 +50,22 @@ struct Sections {
   /// `constants(lane)` is the joint of a lane.
   template <bool with_stiffness, class Constants>
   static Response joint(const Constants& constants, const Edge& edge, const Edge& next,
-                        const Vector& values) {
+                        const Vector& values, bool actuated) {
     const auto each = [&](auto member) {
       return in_lanes<T>([&](int lane) { return member(constants(lane)); });
     };
     using C = typename Bend::Constants;
-    const JointOf<T> joint{each([](const C& c) { return c.joint.bend_1; }),
-                           each([](const C& c) { return c.joint.bend_2; }),
-                           each([](const C& c) { return c.joint.twist; }),
-                           {each([&](const C& c) { return c.actuated_joint(values).rest.kappa_1; }),
-                            each([&](const C& c) { return c.actuated_joint(values).rest.kappa_2; }),
-                            each([&](const C& c) { return c.actuated_joint(values).rest.twist; })}};
+    JointOf<T> joint{each([](const C& c) { return c.joint.bend_1; }),
+                     each([](const C& c) { return c.joint.bend_2; }),
+                     each([](const C& c) { return c.joint.twist; }),
+                     {each([](const C& c) { return c.joint.rest.kappa_1; }),
+                      each([](const C& c) { return c.joint.rest.kappa_2; }),
+                      each([](const C& c) { return c.joint.rest.twist; })}};
+    if (actuated) {
+      joint.rest.kappa_1 += each([&](const C& c) { return c.actuated.strain(values).kappa_1; });
+      joint.rest.kappa_2 += each([&](const C& c) { return c.actuated.strain(values).kappa_2; });
+      joint.rest.twist += each([&](const C& c) { return c.actuated.strain(values).twist; });
+    }
     const T reference = each([&](const C& c) { return values[c.after.twist_at_start()]; });
     const T twist =
         whole_twist<T>(edge.frame.frame, next.frame.frame, edge.theta, next.theta, reference);
@@ -107,7 +112,7 @@ struct Tangents {
 
   template <bool with_stiffness, class Constants>
   static Response joint(const Constants& constants, const Edge& edge, const Edge& next,
-                        const Vector& /*values*/) {
+                        const Vector& /*values*/, bool /*actuated*/) {
     const T stiffness = in_lanes<T>([&](int lane) { return constants(lane).stiffness_per_length; });
     Response response;
     response.cosine = edge.tangent.dot(next.tangent);
@@ -151,6 +156,7 @@ std::vector<SpatialChain> SpatialChain::find(const Model& model, const MatrixLay
       if constexpr (decltype(bend)::kDofs > 9) {
         chain.first_theta_ = bends.dofs[run.bends.first][9];
       }
+      chain.actuated_ = run.actuated;
       chain.map_nodes(model, layout);
     }
   };
@@ -269,7 +275,7 @@ void SpatialChain::add_part(const LaneStarts<Terms>& first, std::ptrdiff_t count
         [&](int lane) -> const auto& {
           return bends[std::clamp<std::ptrdiff_t>(first[to_size(lane)] + j, 0, last - 1)];
         },
-        edge, next, here.controls);
+        edge, next, here.controls, actuated_);
   };
   const auto joint_exists = [&](std::ptrdiff_t j) {
     return in_lanes<T>([&](int lane) {
@@ -309,9 +315,12 @@ void SpatialChain::add_part(const LaneStarts<Terms>& first, std::ptrdiff_t count
     const auto constant = [&](double Stretch<3>::Constants::* member) {
       return in_lanes<T>([&](int lane) { return stretches[first[to_size(lane)] + j].*member; });
     };
-    const T elongation = in_lanes<T>([&](int lane) {
-      return stretches[first[to_size(lane)] + j].elongation.value(here.controls);
-    });
+    T elongation = 0.0;
+    if (actuated_) {
+      elongation = in_lanes<T>([&](int lane) {
+        return stretches[first[to_size(lane)] + j].elongation.value(here.controls);
+      });
+    }
     const StretchResponseOf<T> stretch =
         stretch_response(constant(&Stretch<3>::Constants::EA),
                          constant(&Stretch<3>::Constants::rest_length), elongation, edge.length);

@@ -22,6 +22,7 @@ struct ChainRange {
 struct ChainRun {
   ChainRange edges;
   ChainRange bends;
+  bool actuated = false;  ///< whether the rest shape of any of them is
 };
 
 /// Finds the runs in the lists of a model. `Stretch` has the coordinates of two nodes, `Bend` those
@@ -41,7 +42,11 @@ class ChainRunFinder {
     for (std::size_t first = 0; first < edges_.size();) {
       const auto bend = starts_.find(edges_.dofs[first][0]);
       const std::size_t count = bend == starts_.end() ? 0 : length(first, bend->second);
-      if (count >= 2) runs.push_back({{first, count}, {bend->second, count - 1}});
+      if (count >= 2) {
+        const ChainRange edges{first, count};
+        const ChainRange bends{bend->second, count - 1};
+        runs.push_back({edges, bends, is_actuated(edges_, edges) || is_actuated(bends_, bends)});
+      }
       first += std::max<std::size_t>(count, 1);
     }
     return runs;
@@ -50,6 +55,13 @@ class ChainRunFinder {
  private:
   static constexpr std::size_t kEdge = Stretch::kDofs;
   static constexpr std::size_t kNodes = 3 * kEdge / 2;  // coordinates of the nodes of a bend
+
+  template <class Kernel>
+  static bool is_actuated(const ElementList<Kernel>& list, const ChainRange& range) {
+    const auto first = list.constants.begin() + static_cast<std::ptrdiff_t>(range.first);
+    return std::any_of(first, first + static_cast<std::ptrdiff_t>(range.count),
+                       [](const auto& constants) { return constants.is_actuated(); });
+  }
 
   template <std::size_t N>
   static bool consecutive(const std::array<Index, N>& dofs, std::size_t first, std::size_t last) {

@@ -56,8 +56,9 @@ class PlanarChain {
 
   ChainRange edges_;
   ChainRange bends_;
-  bool tangent_ = false;  ///< bends_ are of TangentCurvature, not of AngleCurvature
-  Index first_dof_ = 0;   ///< of the first node; the others follow, x before y
+  bool actuated_ = false;  ///< whether the rest shape of any of them is
+  bool tangent_ = false;   ///< bends_ are of TangentCurvature, not of AngleCurvature
+  Index first_dof_ = 0;    ///< of the first node; the others follow, x before y
   std::vector<NodeSlots> slots_;
 };
 

@@ -76,6 +76,7 @@ class SpatialChain {
   Kind kind_ = Kind::SectionAngle;
   ChainRange edges_;
   ChainRange bends_;
+  bool actuated_ = false;   ///< whether the rest shape of any of them is
   Index first_dof_ = 0;     ///< of the first node; the others follow
   Index first_theta_ = -1;  ///< of the first edge; the others follow; -1: there are no angles
   std::vector<NodeSlots> slots_;

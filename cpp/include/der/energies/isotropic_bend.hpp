@@ -66,6 +66,7 @@ struct IsotropicBend {
   static constexpr EnergyTerm kTerm = EnergyTerm::Bend;
   struct Constants {
     double stiffness_per_length = 0.0;  ///< EI over the cell length [N m]
+    [[nodiscard]] static bool is_actuated() { return false; }
   };
 
   template <Derivatives D>

@@ -41,6 +41,7 @@ struct PlanarBend {
     double rest_kappa = 0.0;            ///< integrated natural curvature [-]
     RestShift actuated{};               ///< of `rest_kappa`
 
+    [[nodiscard]] bool is_actuated() const { return actuated.entry >= 0; }
     [[nodiscard]] double natural(const Vector& controls) const {
       return rest_kappa + actuated.value(controls);
     }

@@ -52,6 +52,7 @@ struct SpatialBend {
     double glued = 0.0;  ///< [rad] by which the section after it is turned without strain
     RestShift actuated{};
 
+    [[nodiscard]] bool is_actuated() const { return actuated.entry >= 0; }
     [[nodiscard]] AJoint actuated_joint(const Vector& controls) const {
       return der::actuated_joint(joint, actuated, controls);
     }

@@ -42,6 +42,7 @@ struct Stretch {
     double EA = 0.0;           ///< [N]
     double rest_length = 0.0;  ///< [m]
     RestShift elongation{};    ///< [m]
+    [[nodiscard]] bool is_actuated() const { return elongation.entry >= 0; }
   };
 
   /// The edge's vector, or the change of it, from the values at its ends.

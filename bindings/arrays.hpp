@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "der/core/types.hpp"
+#include "der/output/actuation_forces.hpp"
 #include "der/output/reactions.hpp"
 
 namespace der::python {
@@ -32,6 +33,15 @@ inline py::list places_of(const std::vector<Reaction>& reactions) {
     places.append(py::make_tuple(reaction.support, reaction.rod, reaction.arc_length));
   }
   return places;
+}
+
+/// The actuations whose forces are read: name, name of the rod, length [m], number of values.
+inline py::list stretches_of(const std::vector<ActuationForce>& forces) {
+  py::list stretches;
+  for (const ActuationForce& force : forces) {
+    stretches.append(py::make_tuple(force.name, force.rod, force.length, force.num_values));
+  }
+  return stretches;
 }
 
 }  // namespace der::python

@@ -17,6 +17,7 @@ void bind_state(py::module_& module);
 void bind_recording(py::module_& module);
 void bind_saved_run(py::module_& module);
 void bind_simulation(py::module_& module);
+void bind_batch(py::module_& module);
 void bind_steppers(py::module_& module);
 
 }  // namespace der::python

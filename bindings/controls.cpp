@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "arrays.hpp"
+#include "settable_names.hpp"
 
 namespace der::python {
 namespace {
@@ -46,6 +47,7 @@ void set_components(Simulation& engine, const std::string& name, const py::dict&
     }
   } catch (...) {  // all of them or none
     engine.state().ramps = before;
+    (void)engine.take_warnings();  // of what is not set
     throw;
   }
 }
@@ -55,9 +57,10 @@ std::vector<double> to_numbers(py::handle values, std::string_view name) {
   // A list of what is iterable, and the list or tuple itself without a copy.
   const auto items =
       py::reinterpret_steal<py::object>(PySequence_Fast(values.ptr(), "no sequence"));
-  if (!items || PyUnicode_Check(values.ptr())) {
+  if (PyUnicode_Check(values.ptr())) refuse(std::string(name), values, expected);
+  if (!items) {  // a number of NumPy, or nothing of the kind
     PyErr_Clear();
-    refuse(std::string(name), values, expected);
+    return {to_number(values, name, expected)};
   }
   const Py_ssize_t count = PySequence_Fast_GET_SIZE(items.ptr());
   std::vector<double> numbers(static_cast<std::size_t>(count));
@@ -80,6 +83,9 @@ void set(PySimulation& simulation, const py::str& name, const py::object& value,
   } else {
     engine.set(text, to_numbers(value, text), over);
   }
+  if (engine.has_warnings()) {
+    py::module_::import("der.errors").attr("warn")(py::cast(engine.take_warnings()));
+  }
 }
 
 py::object value(const PySimulation& simulation, const py::str& name) {
@@ -93,18 +99,6 @@ py::object value(const PySimulation& simulation, const py::str& name) {
     by_component[py::str(found.begin[i].name)] = values[i];
   }
   return by_component;
-}
-
-py::dict names(const PySimulation& simulation) {
-  py::dict all;
-  for (const NamedControl& control : simulation.engine().model().named) {
-    py::dict units;
-    for (const ControlComponent& component : control.components) {
-      units[py::str(component.name)] = component.unit;
-    }
-    all[py::str(control.name)] = units;
-  }
-  return all;
 }
 
 void prescribe(PySimulation& simulation, std::size_t support, std::optional<double> x,
@@ -145,13 +139,15 @@ void bind_controls(py::class_<PySimulation>& cls) {
           "units. The value is reached\nevenly, at the end of the next step or after `over` "
           "seconds, and kept until it is set again;\n`equilibrium` and static scenes take it at "
           "once. DerError where it cannot be set, and nothing is then\nchanged; TypeError for what "
-          "is no number.")
+          "is no number. Issues a DerWarning, once for each rod, where actuations turn\n"
+          "edges by more than 1 rad.")
       .def("value", &value, py::arg("name"),
            "Present value of what has a name: a number if it has one component, otherwise an array "
            "for a vector\nand a dict by component for a support. DerError as `set`.")
-      .def_property_readonly("names", &names,
-                             "What `set` can set: by name, the unit of each component, as "
-                             "``{\"push\": {\"x\": \"N\", \"y\": \"N\"}}``.")
+      .def_property_readonly(
+          "names", [](const PySimulation& s) { return settable_names(s.engine().model()); },
+          "What `set` can set: by name, the unit of each component, as "
+          "``{\"push\": {\"x\": \"N\", \"y\": \"N\"}}``.")
       .def(
           "prescribe", &prescribe, py::arg("support"), py::kw_only(), py::arg("x") = py::none(),
           py::arg("y") = py::none(), py::arg("z") = py::none(), py::arg("angle") = py::none(),

@@ -134,6 +134,9 @@ void bind_model(py::module_& module) {
       .def_readonly("name", &Model::name, "Name of the model, such as planar.")
       .def_readonly("reason", &Model::reason, "Why this model was taken.")
       .def_readonly("dimension", &Model::dimension, "Components of a position: 2 or 3.")
+      .def_property_readonly(
+          "is_actuated", [](const Model& model) { return model.rest_shape.is_actuated(); },
+          "Whether actuations change the rest shape.")
       .def_readonly("num_nodes", &Model::num_nodes, "Number of nodes of all rods.")
       .def_property_readonly("num_dofs", &Model::num_dofs,
                              "Degrees of freedom, held ones included.")

@@ -14,5 +14,6 @@ PYBIND11_MODULE(_core, module) {
   bindings::bind_recording(module);
   bindings::bind_saved_run(module);
   bindings::bind_simulation(module);
+  bindings::bind_batch(module);
   bindings::bind_steppers(module);
 }

@@ -30,10 +30,14 @@ const char* kind_name(QuantityKind kind) {
       return "edge";
     case QuantityKind::Section:
       return "section";
+    case QuantityKind::Natural:
+      return "natural";
     case QuantityKind::Ring:
       return "ring";
     case QuantityKind::Support:
       return "support";
+    case QuantityKind::Actuation:
+      return "actuation";
     case QuantityKind::Energy:
       return "energy";
   }

@@ -11,6 +11,7 @@
 #include "der/output/memory_sink.hpp"
 #include "der/output/run_arrays.hpp"
 #include "der/output/summary.hpp"
+#include "errors.hpp"
 #include "py_simulation.hpp"
 
 namespace der::python {
@@ -171,10 +172,12 @@ void bind_recording(py::module_& module) {
       .def_property_readonly(
           "status", [](const RunRecording& r) { return r.outcome.status; }, "How the run ended.")
       .def_property_readonly(
-          "message", [](const RunRecording& r) { return r.outcome.message; },
-          "Why it failed; empty if it did not.")
-      .def_property_readonly(
-          "failed", [](const RunRecording& r) { return r.outcome.failed(); }, "Whether it failed.")
+          "error",
+          [](const RunRecording& r) -> py::object {
+            if (r.outcome.error == nullptr) return py::none();
+            return to_python(r.outcome.error);
+          },
+          "The failure that ended it, an exception of its own class; None if it did not fail.")
       .def_readonly("doubt", &RunRecording::doubt,
                     "Why its result is unreliable though it did not fail; empty if it is not.")
       .def_readonly("summary_json", &RunRecording::summary_json, "Text of summary.json.");

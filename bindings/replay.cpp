@@ -158,6 +158,16 @@ py::tuple reactions(Replay& replay, const Frames& positions, const Frames& veloc
                         vectors(series.moments));
 }
 
+py::tuple actuation_forces(Replay& replay, const Frames& positions, const Frames& velocities,
+                           const Frames& theta, const Frames& section_frames) {
+  const ActuationForceSeries series =
+      replay.actuation_forces(to_frames(replay, positions, velocities, theta, section_frames));
+  const Eigen::Index frames = series.values.rows();
+  return py::make_tuple(
+      stretches_of(series.actuations),
+      Array({frames, series.values.cols() / 2, Eigen::Index{2}}, series.values.data()));
+}
+
 void bind_held_node(py::module_& module) {
   py::class_<HeldNode>(module, "HeldNode", "A node that a support of the scene holds.")
       .def_readonly("rod", &HeldNode::rod, "Name of the rod.")
@@ -215,6 +225,11 @@ void bind_replay(py::module_& module) {
            "Return places of supports, and points [m], forces [N] and moments [N m] on the rods "
            "there,\neach of shape (frames, places, 3); the arrays as for `along`, `spin` [rad/s] "
            "of shape (frames, edges).")
+      .def("actuation_forces", &actuation_forces, py::arg("positions"), py::arg("velocities"),
+           py::arg("theta"), py::arg("section_frames"),
+           "Return actuations (name, rod, length [m], number of values), and the moments [N m] or "
+           "forces\n[N] that they exert on the rods, shape (frames, actuations, 2); the arrays as "
+           "for `along`.")
       .def("held_nodes", &held_nodes, py::arg("frame"),
            "Return every node that a support of the scene holds, with the angle of clamps at a "
            "frame.\n\nRaises DerError if there is no such frame.")

@@ -86,6 +86,17 @@ py::tuple reaction_vectors(const PySimulation& simulation) {
                         vectors(&Reaction::moment));
 }
 
+py::tuple actuation_values(const PySimulation& simulation) {
+  const Simulation& engine = simulation.engine();
+  ActuationForces reader(engine.model());
+  const std::vector<ActuationForce>& forces = reader.evaluate(engine.model(), engine.state());
+  Array table({static_cast<py::ssize_t>(forces.size()), py::ssize_t{2}});
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    std::copy_n(forces[i].values.data(), 2, table.mutable_data(static_cast<py::ssize_t>(i), 0));
+  }
+  return py::make_tuple(stretches_of(forces), table);
+}
+
 py::dict probe_values(const PySimulation& simulation) {
   const Simulation& engine = simulation.engine();
   py::dict values;
@@ -97,6 +108,7 @@ py::dict probe_values(const PySimulation& simulation) {
 
 void restore(PySimulation& simulation, const SavedState& saved) {
   try {
+    check_control_names(simulation.engine().model(), saved.controls);
     simulation.restore(saved.state);
   } catch (const Error& error) {
     throw py::value_error(error.what());
@@ -309,6 +321,10 @@ void bind_facts(PySimulationClass& cls) {
            "Places of the supports (number, rod, arc length [m]), and points [m], forces [N] and "
            "moments [N m]\non the rods there, each of shape (places, 3); `reactions` makes objects "
            "of them.")
+      .def("actuation_values", &actuation_values,
+           "Actuations (name, rod, length [m], number of values), and the moments [N m] or forces "
+           "[N] that\nthey exert on the rods, shape (actuations, 2); `actuation_forces` makes "
+           "objects of them.")
       .def_property_readonly("probes", &probe_values,
                              "Present value of each probe of the scene, by name, in its SI unit.");
 }
@@ -377,15 +393,14 @@ void bind_actions(PySimulationClass& cls) {
       .def(
           "save_state",
           [](const PySimulation& simulation) {
-            const Simulation& engine = simulation.engine();
-            return SavedState{engine.state(), engine.model().num_nodes, engine.model().dimension};
+            return saved_state(simulation.engine().model(), simulation.engine().state());
           },
           "Return a copy of the state, to go back to with `restore_state`.")
       .def("restore_state", &restore, py::arg("state"),
            "Go back (or forward) to a saved state, bit for bit. Views stay valid.\n\n"
            "The state may come from another simulation of the same rods and supports, one with\n"
-           "another time step too: time goes on from that of the state. Raises ValueError if it\n"
-           "does not fit.")
+           "another time step too: time goes on from that of the state. What `set` can set has to\n"
+           "be the same, in the same order. Raises ValueError that says what does not fit.")
       .def("record", &record, py::arg("callback") = py::none(),
            py::arg("until") = std::numeric_limits<double>::infinity(), py::arg("tick") = py::none(),
            py::arg("out") = py::none(),
@@ -411,7 +426,7 @@ void bind_simulation(py::module_& module) {
       module, "Simulation", py::custom_type_setup(support_cycle_collection),
       "A scenario's model, its state, and the time integrator that advances it.\n\n"
       "One thread at a time may use a simulation.");
-  cls.def(py::init<Scenario>(), py::arg("scenario"),
+  cls.def(py::init<Scenario>(), py::call_guard<py::gil_scoped_release>(), py::arg("scenario"),
           "Raises SceneError or DerError where the scene cannot be simulated.");
   bind_arrays(cls);
   bind_progress(cls);

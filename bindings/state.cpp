@@ -29,7 +29,7 @@ constexpr const char* kKind = "der.State";
 
 template <class Value>
 py::object dump(const Value& value) {
-  if constexpr (std::is_arithmetic_v<Value>) {
+  if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
     return py::cast(value);
   } else if constexpr (std::is_same_v<Value, Vector>) {
     return Array(value.size(), value.data());
@@ -97,7 +97,7 @@ void read_fields(const py::dict& dumped, const std::string& name, Struct& value)
 
 template <class Value>
 void read(const py::handle& dumped, const std::string& name, Value& value) {
-  if constexpr (std::is_arithmetic_v<Value>) {
+  if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
     try {
       value = dumped.cast<Value>();
     } catch (const py::cast_error&) {
@@ -117,7 +117,8 @@ void read(const py::handle& dumped, const std::string& name, Value& value) {
 }
 
 py::tuple dump_state(const SavedState& saved) {
-  return py::make_tuple(kKind, kStateVersion, saved.num_nodes, saved.dimension, dump(saved.state));
+  return py::make_tuple(kKind, kStateVersion, saved.num_nodes, saved.dimension, dump(saved.state),
+                        dump(saved.controls));
 }
 
 SavedState revive(const py::tuple& dumped) {
@@ -127,11 +128,12 @@ SavedState revive(const py::tuple& dumped) {
       refuse("it is of version " + std::to_string(version) + ", not " +
              std::to_string(kStateVersion));
     }
-    if (dumped.size() != 5) refuse("other content");
+    if (dumped.size() != 6) refuse("other content");
     SavedState saved;
     saved.num_nodes = dumped[2].cast<Index>();
     saved.dimension = dumped[3].cast<Index>();
     read(dumped[4], "", saved.state);
+    read(dumped[5], "controls", saved.controls);
     const Eigen::Index dofs = saved.state.positions.size();
     if (saved.dimension != 2 && saved.dimension != 3) refuse("another number of dimensions");
     if (saved.num_nodes < 1 || saved.num_nodes > dofs / saved.dimension) {
@@ -167,6 +169,10 @@ void bind_energies(py::module_& module) {
 }
 
 }  // namespace
+
+SavedState saved_state(const Model& model, const State& state) {
+  return {state, model.num_nodes, model.dimension, control_names(model)};
+}
 
 void bind_state(py::module_& module) {
   bind_energies(module);

@@ -4,6 +4,8 @@
 
 Data goes one way (docs/architecture.md), and so do includes and imports. A file directly in
 ``include/der/`` or ``src/`` counts as a folder of its own. Imports for type checking count too.
+The page has to be true: folders include one another in its order, and the files that it names
+exist.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 LIBRARY = (ROOT / "cpp/include/der", ROOT / "cpp/src")
 PACKAGE = ROOT / "python/der"
+PAGE = ROOT / "docs/architecture.md"
 
 Graph = dict[str, set[str]]
 
@@ -89,8 +92,42 @@ def circles(graph: Graph) -> list[list[str]]:
     return sorted(sorted(group) for group in groups)
 
 
+def stated_order(page: str) -> list[str]:
+    """Return the folders of the library in the order in which the page lists them."""
+    sentence = re.search(r"each includes some of those before it in\s([^.]+)\.", page)
+    if sentence is None:
+        raise SystemExit(f"{PAGE.name} no longer says in which order folders include one another")
+    return re.findall(r"`(\w+)`", sentence.group(1))
+
+
+def against_order(graph: Graph, order: list[str]) -> Iterator[str]:
+    """Yield what the page's order of folders does not allow, and folders that it lacks."""
+    folders = {folder.name for root in LIBRARY for folder in root.iterdir() if folder.is_dir()}
+    for folder in sorted(folders.symmetric_difference(order)):
+        yield f"'{folder}' is a folder of the library or in the order of the page, not both"
+    place = {folder: i for i, folder in enumerate(order)}
+    for folder, included in sorted(graph.items()):
+        for other in sorted(included & place.keys()):
+            if folder in place and place[other] > place[folder]:
+                yield f"'{folder}' includes '{other}', which comes after it on the page"
+
+
+def missing_files(page: str) -> Iterator[str]:
+    """Yield the files that the page names and that do not exist."""
+    roots = ("cpp", "bindings", "python", "tests", "benchmarks", "docs", "scripts", "configs")
+    files = [
+        "/" + file.relative_to(ROOT).as_posix()
+        for root in roots
+        for file in (ROOT / root).rglob("*.*")
+    ]
+    for name in sorted(set(re.findall(r"`([a-z0-9_/.]+\.(?:hpp|cpp|py|md))`", page))):
+        if not any(file.endswith("/" + name) for file in files):
+            yield f"the page names '{name}', which does not exist"
+
+
 def main() -> int:
-    """Print the circles found; return the exit code."""
+    """Print the circles found, and what the page says wrongly; return the exit code."""
+    page = PAGE.read_text(encoding="utf-8")
     found = 0
     for kind, graph in (("folders", include_graph()), ("modules", import_graph())):
         for circle in circles(graph):
@@ -98,6 +135,9 @@ def main() -> int:
             for member in circle:
                 print(f"  {member} needs {', '.join(sorted(graph[member] & set(circle)))}")
             found += 1
+    for error in (*against_order(include_graph(), stated_order(page)), *missing_files(page)):
+        print(f"{PAGE.name}: {error}")
+        found += 1
     return 1 if found else 0
 
 

@@ -62,6 +62,9 @@ class UnreliableResultWarning(DerWarning):
 
 def warn(messages: Iterable[str], category: type[DerWarning] = DerWarning) -> None:
     """Issue a warning for each message, at the line that called into der."""
+    messages = tuple(messages)
+    if not messages:  # as nearly always: the frames below take longer than an equilibrium's row
+        return
     level = 2
     frame = inspect.currentframe()
     while (
@@ -108,12 +111,3 @@ class DivergedError(DerError):
 
     def __init__(self, message: str, status: str = "diverged") -> None:
         super().__init__(message, status)
-
-
-def error_for(status: str, message: str) -> DerError:
-    """Return the error of the class that belongs to the status of a failed run."""
-    not_found = ("not_converged", "not_held", "unbounded", "collapsed", "folded", "too_fine")
-    classes = dict.fromkeys(not_found, NotConvergedError) | dict.fromkeys(
-        ("diverged", "unstable_motion"), DivergedError
-    )
-    return classes.get(status, DerError)(message, status)

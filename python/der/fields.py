@@ -21,13 +21,17 @@ def fields_of(model: Model) -> dict[str, Quantity]:
     """Return the quantities along rods that exports and views have of a model, by name.
 
     They have a value at every arc length; those of the motion come last. Components of positions
-    and velocities are left out, as the vectors are exported.
+    and velocities are left out, as the vectors are exported; the shape without stress is one of
+    them where actuations change it.
     """
+    left_out = {"turn", "ring", "support", "actuation", "energy"}
+    if not model.is_actuated:
+        left_out.add("natural")
     along_rods = [
         quantity
         for quantity in quantities()
         if quantity.is_available(model)
-        and quantity.kind not in ("turn", "ring", "support", "energy")
+        and quantity.kind not in left_out
         and not quantity.is_component
     ]
     along_rods.sort(key=is_motion)

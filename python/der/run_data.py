@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der._core import HeldNode, Model, Replay, Rod, Scenario
+from der.actuation_forces import ActuationForce, make_actuation_forces
 from der.analyses import (
     BucklingModes,
     Modes,
@@ -211,6 +212,15 @@ class RunData:
         positions, velocities, theta, frames = self._frames
         vectors = self._replay.reactions(positions, velocities, theta, frames, spin)
         return make_reactions(*vectors, self.model.dimension)
+
+    def actuation_forces(self) -> list[ActuationForce]:
+        """Return what the actuations exert on the rods at every frame.
+
+        They are those of `Simulation.actuation_forces`, with the values that the scene has: frames
+        do not tell what a program has set. A run in which a program sets actuations records them
+        with probes.
+        """
+        return make_actuation_forces(*self._replay.actuation_forces(*self._frames))
 
     def held_nodes(self, frame: int) -> list[HeldNode]:
         """Return every node that a support of the scene holds, clamps turned as at a frame.

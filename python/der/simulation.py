@@ -12,8 +12,9 @@ import numpy as np
 
 from der import _core
 from der._core import RunRecording, Scenario
+from der.actuation_forces import ActuationForce, make_actuation_forces
 from der.analyses import Modes
-from der.errors import UnreliableResultWarning, error_for, warn
+from der.errors import UnreliableResultWarning, warn
 from der.progress import ProgressFunction, ProgressLine
 from der.reactions import Reaction, make_reactions
 from der.result import Result, to_result
@@ -118,21 +119,21 @@ class Simulation(_core.Simulation):
             recording = self.record(
                 callback=None if callback is None else lambda: _goes_on(callback(self)),
                 until=end,
-                tick=None if report is None else lambda: report(self._share_done(end)),
+                tick=None if report is None else lambda: report(self.share_done(end)),
                 out=out,
             )
         finally:
             if line is not None:
                 line.close()
-        result = _to_result(self.scenario, recording)
-        if check and recording.failed:
-            error = error_for(recording.status, recording.message)
+        result = recorded_result(self.scenario, recording)
+        error = recording.error
+        if check and error is not None:
             error.result = result
             raise error
         if warns:
             warn(result.summary["hints"])
             warn(_leaving_the_plane(result))
-            if recording.doubt and not recording.failed:
+            if recording.doubt and error is None:
                 warn([recording.doubt], UnreliableResultWarning)
         return result
 
@@ -180,6 +181,25 @@ class Simulation(_core.Simulation):
         """
         return make_reactions(*self.reaction_vectors(), self.model.dimension)
 
+    def actuation_forces(self) -> list[ActuationForce]:
+        """Return what the actuations exert on the rods at the present state.
+
+        Each is the moment, torque or force whose work is the `actuation` line of the ledger: over
+        the turning angle, twist or length that the actuation gives its stretch. See
+        docs/actuation.md, "What an actuation bears".
+
+        Examples
+        --------
+        >>> finger = simulation.actuation_forces()[0]
+        >>> finger.name, finger.force
+        """
+        return make_actuation_forces(*self.actuation_values())
+
+    def share_done(self, end: float = math.inf) -> float:
+        """Return how much of a run to its end, or to the time `end` [s], is done, from 0 to 1."""
+        duration = min(end, self.scenario.duration)
+        return self.time / duration if duration > 0.0 else 0.0
+
     def _end_time(self, until: float | None) -> float:
         if until is None:
             return math.inf
@@ -192,10 +212,6 @@ class Simulation(_core.Simulation):
                 'with with_(**{"time.duration": ...})'
             )
         return until
-
-    def _share_done(self, end: float) -> float:
-        duration = min(end, self.scenario.duration)
-        return self.time / duration if duration > 0.0 else 0.0
 
 
 def _symmetric(
@@ -388,7 +404,8 @@ def as_scenario(scenario: SceneLike) -> Scenario:
     )
 
 
-def _to_result(scenario: Scenario, recording: RunRecording) -> Result:
+def recorded_result(scenario: Scenario, recording: RunRecording) -> Result:
+    """Return what the engine recorded of a run as a result."""
     return to_result(
         scenario, recording, list(recording.probes), json.loads(recording.summary_json)
     )

@@ -6,16 +6,20 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "der/assembly/assembler.hpp"
 #include "der/assembly/pattern.hpp"
+#include "der/model/elongation_limits.hpp"
 #include "der/model/fields.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
+#include "der/model/turning_limits.hpp"
 #include "der/scenario/reader.hpp"
 #include "der/solvers/linear_solver.hpp"
 #include "der/solvers/newton.hpp"
@@ -64,6 +68,10 @@ class Simulation {
   /// Throws SceneError or Error where the scene cannot be simulated. A scene with `start_from` is
   /// still at its drawn shape (`apply_start`).
   explicit Simulation(Scenario scenario);
+  /// One that shares with `like` what stays constant and is the same in both: of one scenario the
+  /// whole model, of another one of the same structure the places of matrix entries. What `like`
+  /// does meanwhile does not matter. Throws Error besides where the structures differ.
+  Simulation(Scenario scenario, const Simulation& like);
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
@@ -101,8 +109,12 @@ class Simulation {
   /// They are reached at the end of the next step, or after the time `over` [s]; `equilibrium` and
   /// static scenes take them at once. Throws Error where nothing of that name can be set, where
   /// the load factor of an analysis scales it, and for values that do not fit.
+  /// Curvatures that the mesh hardly resolves are a warning (`take_warnings`).
   void set(std::string_view name, const std::vector<double>& values,
            std::optional<double> over = std::nullopt);
+  [[nodiscard]] bool has_warnings() const { return !warnings_.empty(); }
+  /// What `set` has found doubtful since the last call, in sentences: one for each rod, once.
+  [[nodiscard]] std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
   /// Present values of what has a name, one for each component. Throws Error as `set`.
   [[nodiscard]] std::vector<double> value(std::string_view name) const;
   /// What a name stands for. Throws Error as `set`.
@@ -133,7 +145,9 @@ class Simulation {
   std::optional<double> buckling_factor_out_of_plane(const LinearBuckling& in_plane);
   /// Why equilibria of the scene are not tested against motion out of their plane, as a clause;
   /// empty if they are, and where the model is one in space.
-  [[nodiscard]] const std::string& not_tested_out_of_plane() const { return not_tested_; }
+  [[nodiscard]] const std::string& not_tested_out_of_plane() const {
+    return constants_->not_tested;
+  }
   /// Replaces the state by the equilibrium without loads, and returns its linear buckling modes
   /// under the scene's loads. Throws NotConvergedError, and Error where that is not the scene's
   /// analysis.
@@ -174,9 +188,29 @@ class Simulation {
   [[nodiscard]] const std::string& linear_solver_reason() const { return solver_.reason; }
 
  private:
-  void check_values(const Settable& found, const std::vector<double>& values) const;
-  /// Why a control cannot take a value, as the end of a sentence; empty if it can.
-  [[nodiscard]] std::string why_not(Index control, double value) const;
+  /// What a scene says, and what follows from it alone.
+  struct Constants {
+    explicit Constants(Scenario scene);
+    const Scenario scenario;
+    const Model model;
+    const std::map<std::string, Settable, std::less<>> settable;  // parts of `model`, by name
+    const std::string not_tested;                                 // out of the plane
+  };
+  Simulation(std::shared_ptr<const Constants> constants, const Simulation* like);
+  static std::shared_ptr<const Constants> constants_like(Scenario scenario, const Simulation& like);
+  [[nodiscard]] std::shared_ptr<const Assembler> assembler_like(const Simulation* like) const;
+
+  void check_values(const Settable& found, const std::vector<double>& values, double end);
+  /// Why a control cannot come to a value at the time `end` [s], as the end of a sentence; empty if
+  /// it can.
+  [[nodiscard]] std::string why_not(Index control, double value, double end);
+  /// The same of the sum of elongations.
+  [[nodiscard]] std::string why_too_short(const Ramp& ramp);
+  /// Throws Error if curvatures would turn edges by half a turn; enters a warning of a coarse mesh.
+  void check_turns(const Settable& found, const std::vector<double>& values, double end);
+  /// Throws Error if what programs have set and tables leave an edge without length at the end of
+  /// the next step, or turn edges by half a turn.
+  void check_rest_shape();
   /// Time [s] at which a value that is set now is reached.
   [[nodiscard]] double end_of_ramp(std::optional<double> over) const;
   /// Lets a control come to `value` at the time `end` [s].
@@ -208,13 +242,16 @@ class Simulation {
   [[nodiscard]] std::string describe_unstable_motion() const;
   [[nodiscard]] std::string describe_divergence(const StepReport& report, double dt);
 
-  Scenario scenario_;
-  const Model model_;
-  std::map<std::string, Settable, std::less<>> settable_;  // parts of `model_`, by name
-  Pattern pattern_;
+  std::shared_ptr<const Constants> constants_;
+  const Scenario& scenario_;
+  const Model& model_;
+  ElongationLimits elongation_limits_;
+  TurningLimits turning_limits_;
+  std::vector<std::string> warnings_;  // not taken yet
+  std::set<std::string> coarse_rods_;  // that there was a warning of
+  std::shared_ptr<const Pattern> pattern_;
   LinearSolverChoice solver_;
-  Assembler assembler_;
-  std::string not_tested_;  // out of the plane
+  std::shared_ptr<const Assembler> assembler_;
   std::unique_ptr<OutOfPlaneTest> out_of_plane_;
   const StepperInfo& stepper_info_;
   std::unique_ptr<Stepper> stepper_;

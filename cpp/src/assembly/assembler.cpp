@@ -70,6 +70,13 @@ struct MapsOf<std::tuple<ElementList<Kernels>...>> {
   using type = std::tuple<ScatterMap<Kernels>...>;
 };
 
+/// Where a mass between two degrees of freedom goes.
+struct CouplingSlots {
+  Index a;  // diagonal entries
+  Index b;
+  Index ab;  // the entry between them
+};
+
 /// A stiffness [N/m] across an edge vector.
 Mat2 across(const Vec2& e, double length, double stiffness) {
   const Vec2 normal = perpendicular(e) / length;
@@ -85,6 +92,8 @@ constexpr auto kKinds = std::make_index_sequence<std::tuple_size_v<ElementLists:
 }  // namespace
 
 struct Assembler::ScatterMaps {
+  std::vector<Index> diagonal;           // slot of each free degree of freedom
+  std::vector<CouplingSlots> couplings;  // of each of the model's mass couplings
   std::vector<PlanarChain> planar_chains;
   std::vector<SpatialChain> spatial_chains;
   MapsOf<ElementLists::Lists>::type elements;
@@ -110,11 +119,11 @@ Assembler::Assembler(const Model& model, const MatrixLayout& layout)
   const auto slot_of = [&](Index a, Index b) {
     return layout.slot_or_spare(model.dofs.free_index(a), model.dofs.free_index(b));
   };
-  for (Index i = 0; i < model.num_free(); ++i) diagonal_slots_.push_back(layout.slot(i, i));
+  auto maps = std::make_shared<ScatterMaps>();
+  for (Index i = 0; i < model.num_free(); ++i) maps->diagonal.push_back(layout.slot(i, i));
   for (const auto& [a, b, mass] : model.mass.coupling) {
-    coupling_slots_.push_back({slot_of(a, a), slot_of(b, b), slot_of(a, b)});
+    maps->couplings.push_back({slot_of(a, a), slot_of(b, b), slot_of(a, b)});
   }
-  auto maps = std::make_unique<ScatterMaps>();
   maps->planar_chains = PlanarChain::find(model, layout);
   maps->spatial_chains = SpatialChain::find(model, layout);
   for_each_pair(
@@ -136,6 +145,9 @@ Assembler::Assembler(const Model& model, const MatrixLayout& layout)
   }
   maps_ = std::move(maps);
 }
+
+Assembler::Assembler(const Model& model, const Assembler& like)
+    : model_(model), num_values_(like.num_values_), maps_(like.maps_) {}
 
 template <Derivatives D>
 void Assembler::ScatterMaps::assemble(const Model& model, const Configuration& here,
@@ -193,9 +205,10 @@ void Assembler::add_mass(const Mass& mass, double factor, Vector& values) const 
   add_diagonal(mass.lumped, factor, values);
   for (std::size_t i = 0; i < mass.coupling.size(); ++i) {
     const double shared = factor * mass.coupling[i].mass;
-    values[coupling_slots_[i].a] -= shared;
-    values[coupling_slots_[i].b] -= shared;
-    values[coupling_slots_[i].ab] += shared;
+    const CouplingSlots& slots = maps_->couplings[i];
+    values[slots.a] -= shared;
+    values[slots.b] -= shared;
+    values[slots.ab] += shared;
   }
 }
 
@@ -226,9 +239,20 @@ void Assembler::add_tension_stiffness(const Configuration& here, const Vector& t
   with_dimension(model_, [&](auto dim) { add_tension_stiffness<dim>(here, tension, values); });
 }
 
+double Assembler::largest_diagonal(const DofBlock& block, const Vector& values) const {
+  double largest = 0.0;
+  for (Index dof = block.first; dof < block.first + block.count; ++dof) {
+    if (!model_.dofs.is_free(dof)) continue;
+    const double entry = values[maps_->diagonal[to_size(model_.dofs.free_index(dof))]];
+    largest = std::max(largest, std::abs(entry));
+  }
+  return largest;
+}
+
 void Assembler::add_diagonal(const Vector& diagonal, double factor, Vector& values) const {
-  for (std::size_t i = 0; i < diagonal_slots_.size(); ++i) {
-    values[diagonal_slots_[i]] += factor * diagonal[model_.dofs.free()[i]];
+  const std::vector<Index>& slots = maps_->diagonal;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    values[slots[i]] += factor * diagonal[model_.dofs.free()[i]];
   }
 }
 

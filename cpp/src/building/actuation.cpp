@@ -6,11 +6,14 @@
 
 #include "der/core/index.hpp"
 #include "der/model/clamp_cell.hpp"
+#include "model/actuated_turn.hpp"
 
 namespace der {
 namespace {
 
 using scenario::Actuated;
+
+static_assert(scenario::kEdgePivot == kPivotShare);
 
 /// What the actuations of one rod change.
 struct Changes {
@@ -63,17 +66,9 @@ class Weights {
   /// Towards director `strain`, or in the plane, by table number `strain`.
   void add_curvature(std::size_t strain) {
     for (Index edge = 0; edge < rod_.num_edges(); ++edge) {
-      // The edge turns against the tangent at its start by the first of these on average, and the
-      // tangent at its end against the edge by the second.
-      const double last =
-          stretch_.first_moment(start(edge), end(edge)) / rod_.edge_length[to_size(edge)];
-      const double first = stretch_.integral(start(edge), end(edge)) - last;
-      // From a clamp's pivot on the edge is shorter and turns by more.
-      const double a = rod_.clamp_at(edge) != nullptr ? kPivotShare : 0.0;
-      const double b = rod_.clamp_at(edge + 1) != nullptr ? kPivotShare : 0.0;
-      const double turn = (b * last - a * first) / (1.0 - a - b);
-      add_strain(static_cast<Index>(strain), cell_at_start(edge), first - turn, strain);
-      add_strain(static_cast<Index>(strain), cell_at_end(edge), last + turn, strain);
+      const auto [at_start, at_end] = edge_turns(stretch_, rod_, edge);
+      add_strain(static_cast<Index>(strain), cell_at_start(edge), at_start, strain);
+      add_strain(static_cast<Index>(strain), cell_at_end(edge), at_end, strain);
     }
   }
 

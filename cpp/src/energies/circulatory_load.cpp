@@ -1,5 +1,6 @@
 #include "der/energies/circulatory_load.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "der/core/index.hpp"
@@ -15,7 +16,7 @@ Vec3 amount_of(const CirculatoryLoad& load, const Vector& controls) {
     const Index control = load.amount[to_size(c)];
     if (control >= 0) amount[c] = controls[control];
   }
-  return amount;
+  return load.actuated.turned(amount, controls);
 }
 
 /// Beyond the middle of an outermost edge, where its weight is above 1: the edge is bent against
@@ -24,6 +25,12 @@ Vec3 amount_of(const CirculatoryLoad& load, const Vector& controls) {
 constexpr double kTrueTurn = 12.0 / 13.0;
 
 bool is_beyond(double weight) { return weight > 1.0; }
+
+/// weights_in_bending of edges with a weight.
+template <class Edge>
+std::array<double, 2> bending_weights(const std::vector<Edge>& edges) {
+  return weights_in_bending({edges[0].weight, edges.size() > 1 ? edges[1].weight : 0.0});
+}
 
 /// A vector that turns with edges, and its derivative by their vectors and angles.
 struct FollowingVector {
@@ -49,13 +56,10 @@ FollowingVector following(const std::vector<Edge>& edges, const Configuration& h
   const bool has_two = edges.size() == 2;
   const std::size_t outer = has_two && edges[1].weight > edges[0].weight ? 1 : 0;
   const double weight = edges[outer].weight;
-  if (!has_two || !is_beyond(weight)) {
-    for (std::size_t i = 0; i < edges.size(); ++i) add(i, edges[i].weight);
-    return result;
-  }
+  const auto in_bending = bending_weights(edges);
+  for (std::size_t i = 0; i < edges.size(); ++i) add(i, in_bending[i]);
+  if (!has_two || !is_beyond(weight)) return result;
   const std::size_t next = 1 - outer;
-  add(outer, kTrueTurn * weight);
-  add(next, 1.0 - kTrueTurn * weight);
 
   const EdgeFrame a = edges[outer].frame(here);
   const EdgeFrame b = edges[next].frame(here);
@@ -89,6 +93,7 @@ std::size_t torque_axis(const std::vector<SpatialMoment::TurnedEdge>& edges) {
 
 /// M0 as the edges turn it.
 Vec3 drawn_moment(const SpatialMoment& load, const Vec3& amount) {
+  if (!load.turns_further) return amount;
   return amount + (load.compliance * amount).cross(amount);
 }
 
@@ -100,23 +105,34 @@ Vec3 taken_by(const SpatialMoment::TurnedEdge& edge, const Vec3& moment, double 
 
 }  // namespace
 
+std::array<double, 2> weights_in_bending(const std::array<double, 2>& weights) {
+  const std::size_t outer = weights[1] > weights[0] ? 1 : 0;
+  if (!is_beyond(weights[outer])) return weights;
+  std::array<double, 2> result{};
+  result[outer] = kTrueTurn * weights[outer];
+  result[1 - outer] = 1.0 - result[outer];
+  return result;
+}
+
+Vec3 ActuatedSection::turned(const Vec3& vector, const Vector& controls) const {
+  if (turn.is_zero()) return vector;
+  const Vec3 rotation = axes * turn.at(controls);
+  const double angle = rotation.norm();
+  if (angle == 0.0) return vector;
+  return Eigen::AngleAxisd(angle, rotation / angle) * vector;
+}
+
 void PlanarFollowerForce::evaluate(const Configuration& here, const Vec3& amount,
                                    CirculatoryTerm& out) const {
   out.reset(size());
   const Vec2 drawn_force = amount.head<2>();
-  const auto beyond = std::find_if(edges.begin(), edges.end(), [](const FollowedEdge& followed) {
-    return is_beyond(followed.weight);
-  });
+  const auto weights = bending_weights(edges);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const FollowedEdge& followed = edges[i];
-    double weight = followed.weight;
-    if (beyond != edges.end()) {
-      weight = &*beyond == &followed ? kTrueTurn * weight : 1.0 - kTrueTurn * beyond->weight;
-    }
     const Vec2 e = followed.edge.vector(here);
     const Vec2 tangent = e.normalized();
-    const Vec2 force = weight * (followed.drawn.dot(drawn_force) * tangent +
-                                 cross(followed.drawn, drawn_force) * perpendicular(tangent));
+    const Vec2 force = weights[i] * (followed.drawn.dot(drawn_force) * tangent +
+                                     cross(followed.drawn, drawn_force) * perpendicular(tangent));
     out.force.head<2>() += force;
     out.tangent.block<2, 2>(0, 2 + 2 * static_cast<Index>(i)) =
         -perpendicular(force) * direction_gradient(e, 1.0 / e.squaredNorm()).transpose();
@@ -131,6 +147,11 @@ EdgeFrame FramedEdge::frame(const Configuration& here) const {
 Vec3 FramedEdge::turned(const Vec3& vector, const SectionFrame& now) const {
   return drawn.tangent.dot(vector) * now.tangent + drawn.first.dot(vector) * now.first +
          drawn.second.dot(vector) * now.second;
+}
+
+Vec3 FramedEdge::turned_back(const Vec3& vector, const SectionFrame& now) const {
+  return now.tangent.dot(vector) * drawn.tangent + now.first.dot(vector) * drawn.first +
+         now.second.dot(vector) * drawn.second;
 }
 
 void FollowerForce::evaluate(const Configuration& here, const Vec3& amount,
@@ -151,6 +172,12 @@ EdgeMoments SpatialMoment::moments(const Configuration& here, const Vec3& amount
     result.on_edge[i] = taken_by(edges[i], result.whole, torque, t);
   }
   return result;
+}
+
+double SpatialMoment::stored(const Configuration& here, const Vec3& amount) const {
+  const TurnedEdge& edge = edges.front();
+  const Vec3 moment = follower ? amount : edge.turned_back(amount, edge.frame(here).frame);
+  return 0.5 * moment.dot(compliance * moment);
 }
 
 void SpatialMoment::evaluate(const Configuration& here, const Vec3& amount,
@@ -206,6 +233,11 @@ Vec3 CirculatoryLoad::force(const Configuration& here) const {
 EdgeMoments CirculatoryLoad::moments(const Configuration& here) const {
   const auto* moment = std::get_if<SpatialMoment>(&kind);
   return moment == nullptr ? EdgeMoments{} : moment->moments(here, amount_of(*this, here.controls));
+}
+
+double CirculatoryLoad::stored(const Configuration& here) const {
+  const auto* moment = std::get_if<SpatialMoment>(&kind);
+  return moment == nullptr ? 0.0 : moment->stored(here, amount_of(*this, here.controls));
 }
 
 void add_circulatory_forces(const std::vector<CirculatoryLoad>& loads, const Configuration& here,

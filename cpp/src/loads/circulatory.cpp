@@ -8,6 +8,7 @@
 #include "der/model/location.hpp"
 #include "der/model/section_place.hpp"
 #include "der/supports/clamp.hpp"
+#include "model/actuated_turn.hpp"
 #include "model/corner.hpp"
 
 namespace der {
@@ -80,6 +81,22 @@ Mat3 compliance_of(const SectionPlace& place, const SpatialMoment& moment, const
          along(drawn.tangent, place.twist_cell, rod.GJ);
 }
 
+/// Of the loads that follow the section at arc length `s` [m].
+ActuatedSection actuated_section(double s, const SectionPlace& place, const RodLayout& rod,
+                                 const Model& model) {
+  const std::vector<double>& weights = place.direction;
+  const auto in_bending = weights_in_bending({weights[0], weights.size() > 1 ? weights[1] : 0.0});
+  ActuatedSection section{actuated_turn_of_follower(s, place, in_bending, rod), Mat3::Zero()};
+  if (model.dimension == 2) {
+    section.axes.col(0) = Vec3::UnitZ();
+  } else {
+    const Index nearer = in_bending[1] > in_bending[0] ? 1 : 0;
+    const Index edge = rod.position(place.first_edge + nearer);
+    section.axes = turning_axes(drawn_frame(model, rod.first_edge + edge));
+  }
+  return section;
+}
+
 Index add(CirculatoryLoad&& load, Model& model) {
   auto& loads = circulatory_loads(*model.elements);
   loads.push_back(std::move(load));
@@ -94,6 +111,7 @@ Index add_follower_force(const scenario::VectorSeries& force, double s, const Ro
   set_amount(force, load, model);
   add_point(s, rod, model, load);
   const SectionPlace place = section_place(s, rod);
+  load.actuated = actuated_section(s, place, rod, model);
   if (model.dimension == 2) {
     load.kind = planar_follower(place, rod, model, load);
   } else {
@@ -116,8 +134,9 @@ void add_spatial_moment(const scenario::VectorSeries& moment, bool follower, dou
                                          place.along[i]};
       });
   kind.follower = follower;
-  if (!place_beside_clamp(rod, s) && beyond_outer_middle(rod, s) == 0.0)
-    kind.compliance = compliance_of(place, kind, rod);
+  if (follower) load.actuated = actuated_section(s, place, rod, model);
+  kind.compliance = compliance_of(place, kind, rod);
+  kind.turns_further = !place_beside_clamp(rod, s) && beyond_outer_middle(rod, s) == 0.0;
   load.kind = std::move(kind);
   rod.spatial_moments.push_back({s, add(std::move(load), model)});
 }

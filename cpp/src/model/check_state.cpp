@@ -13,10 +13,7 @@
 namespace der {
 namespace {
 
-void demand(bool fits, const std::string& problem) {
-  if (fits) return;
-  throw Error("model_error", problem);
-}
+[[noreturn]] void refuse(const std::string& problem) { throw Error("model_error", problem); }
 
 std::string in_words(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
@@ -39,22 +36,26 @@ void check_sizes(const Model& model, const State& state) {
   for_each_value(state, [&](const auto& field, const auto& value) {
     if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Vector>) {
       const Eigen::Index wanted = entries(field.extent, model).value_or(value.size());
-      demand(value.size() == wanted,
-             fmt::format("the state has {} {} in its {}, this simulation has {}: a state can only "
-                         "be restored into a simulation of the same rods and supports",
-                         value.size(), counted_by(field.extent), in_words(field.name), wanted));
+      if (value.size() == wanted) return;  // before the message is made, which takes long
+      refuse(
+          fmt::format("the state has {} {} in its {}, this simulation has {}: a state can only "
+                      "be restored into a simulation of the same rods and supports",
+                      value.size(), counted_by(field.extent), in_words(field.name), wanted));
     }
   });
 }
 
 void check_ramps(const Model& model, const std::vector<Ramp>& ramps) {
   for (const Ramp& ramp : ramps) {
-    demand(model.can_set(ramp.control),
-           "the state sets a value that this scene neither prescribes nor names: a state can only "
-           "be restored into a simulation of the same rods, supports and loads");
-    demand(ramp.start <= ramp.end,
-           fmt::format("the state sets a value between t = {} and {} s: these must be in order",
-                       ramp.start, ramp.end));
+    if (!model.can_set(ramp.control)) {
+      refuse(
+          "the state sets a value that this scene neither prescribes nor names: a state can "
+          "only be restored into a simulation of the same rods, supports and loads");
+    }
+    if (!(ramp.start <= ramp.end)) {
+      refuse(fmt::format("the state sets a value between t = {} and {} s: these must be in order",
+                         ramp.start, ramp.end));
+    }
   }
 }
 
@@ -94,13 +95,13 @@ std::string find_wrong_value(const State& state) {
 
 void check_state(const Model& model, const State& state) {
   check_sizes(model, state);
-  const std::string wrong = find_wrong_value(state);
-  demand(wrong.empty(), wrong);
+  if (const std::string wrong = find_wrong_value(state); !wrong.empty()) refuse(wrong);
   check_ramps(model, state.ramps);
-  demand(model.load_variation || state.load_factor == 1.0,
-         fmt::format("the state is one at the load factor {:g}, but this scene varies no loads: it "
-                     "can only be restored into a simulation of the same continuation",
-                     state.load_factor));
+  if (model.load_variation || state.load_factor == 1.0) return;
+  refuse(
+      fmt::format("the state is one at the load factor {:g}, but this scene varies no loads: it "
+                  "can only be restored into a simulation of the same continuation",
+                  state.load_factor));
 }
 
 }  // namespace der

@@ -47,20 +47,22 @@ void DofMap::hold(const std::vector<Index>& held) {
 }
 
 void DofMap::number_free() {
-  free_.clear();
   counts_.setZero(size());
+  // Positions of a node come before the angles of edges that begin there, as they do in storage.
+  std::vector<std::tuple<Index, bool, Index>> ranked;
+  ranked.reserve(to_size(size()));
   for (Index dof = 0; dof < size(); ++dof) {
     if (!is_free(dof)) continue;
-    free_.push_back(dof);
+    const Index node = eliminated_with(dof);
+    ranked.emplace_back(node, node != node_of(dof), dof);
     counts_[dof] = kCounts;
   }
-  // Positions of a node come before the angles of edges that begin there, as they do in storage.
-  const auto rank = [this](Index dof) {
-    const Index node = eliminated_with(dof);
-    return std::make_tuple(node, node != node_of(dof), dof);
-  };
-  std::sort(free_.begin(), free_.end(), [&](Index a, Index b) { return rank(a) < rank(b); });
-  for (Index i = 0; i < num_free(); ++i) free_index_[to_size(free_[to_size(i)])] = i;
+  std::sort(ranked.begin(), ranked.end());
+  free_.resize(ranked.size());
+  for (std::size_t i = 0; i < ranked.size(); ++i) {
+    free_[i] = std::get<2>(ranked[i]);
+    free_index_[to_size(free_[i])] = static_cast<Index>(i);
+  }
 }
 
 void DofMap::set_length(double length) {

@@ -8,6 +8,7 @@
 #include "der/energies/rotational_spring.hpp"
 #include "der/model/clamp_cell.hpp"
 #include "der/model/location.hpp"
+#include "model/section_cells.hpp"
 
 namespace der {
 namespace {
@@ -109,6 +110,7 @@ double carried_moment(const MomentPlace& place, const RodLayout& rod, const Mode
 }
 
 Energies cell_energies(const RodLayout& rod, const Model& model, const Configuration& here) {
+  if (model.has_sections()) return section_cell_energies(rod, model, here);
   Energies energies;
   if (rod.EI == 0.0) return energies;
   for (const MomentPlace& place : rod.moment_places) {
@@ -126,8 +128,11 @@ Energies cell_energies(const RodLayout& rod, const Model& model, const Configura
   return energies;
 }
 
-double cell_work(const Model& model, const Vector& controls_start, const Vector& controls_end) {
-  return stored_by_loads(model, controls_end) - stored_by_loads(model, controls_start);
+double cell_work(const Model& model, const Configuration& start, const Configuration& end) {
+  if (model.has_sections()) {
+    return stored_by_section_moments(model, end) - stored_by_section_moments(model, start);
+  }
+  return stored_by_loads(model, end.controls) - stored_by_loads(model, start.controls);
 }
 
 }  // namespace der

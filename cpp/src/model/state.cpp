@@ -51,8 +51,12 @@ const Ramp* find_ramp(const State& state, Index control) {
 }
 
 double control_value(const Model& model, const State& state, Index control) {
-  if (const Ramp* ramp = find_ramp(state, control)) return ramp->at(state.time);
-  if (!model.load_variation) return value_at(model.tables[control], state.time);
+  return control_value(model, state, control, state.time);
+}
+
+double control_value(const Model& model, const State& state, Index control, double time) {
+  if (const Ramp* ramp = find_ramp(state, control)) return ramp->at(time);
+  if (!model.load_variation) return value_at(model.tables[control], time);
   return model.load_variation->controls.at(state.load_factor)[control];
 }
 

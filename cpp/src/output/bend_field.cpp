@@ -83,21 +83,25 @@ class TurnField : public RodField {
   bool continuous_;
 };
 
-/// Curvature or moment of a rod without bending stiffness.
-std::unique_ptr<RodField> limp_field(bool moment, const RodLayout& rod, const Model& model) {
+/// What is read of the bending of a rod.
+enum class Bending { Curvature, Moment, NaturalCurvature };
+
+/// Of a rod without bending stiffness: moment and natural curvature are zero.
+std::unique_ptr<RodField> limp_field(Bending what, const RodLayout& rod, const Model& model) {
   std::vector<Weighted> nodes;
   for (Index i = 0; i < static_cast<Index>(rod.nodes.size()); ++i) {
-    if (rod.is_inner(i)) nodes.push_back({i, moment ? 0.0 : 1.0 / rod.voronoi_length(i)});
+    if (!rod.is_inner(i)) continue;
+    nodes.push_back({i, what == Bending::Curvature ? 1.0 / rod.voronoi_length(i) : 0.0});
   }
   return std::make_unique<TurnField>(rod, nodes, true, model);
 }
 
-/// Curvature or moment of a rod with bending stiffness: along each edge that of its two ends,
-/// linear but for the loads inside the edge.
+/// Of a rod with bending stiffness: along each edge that of its two ends, linear but for the loads
+/// inside the edge.
 template <class Measure>
 class BendField : public EdgewiseField<double> {
  public:
-  static std::unique_ptr<RodField> make(bool moment, const RodLayout& rod, const Model& model) {
+  static std::unique_ptr<RodField> make(Bending what, const RodLayout& rod, const Model& model) {
     std::vector<std::pair<Known, Known>> edges;
     Lines lines;
     const NaturalCurvature natural(rod, model);
@@ -108,15 +112,15 @@ class BendField : public EdgewiseField<double> {
     }
     MomentRecovery recovery(rod, model);
     std::vector<Sample> samples = samples_of(rod, recovery);
-    return std::unique_ptr<RodField>(new BendField(
-        moment, rod, std::move(samples), std::move(lines), std::move(recovery), std::move(edges)));
+    return std::unique_ptr<RodField>(new BendField(what, rod, std::move(samples), std::move(lines),
+                                                   std::move(recovery), std::move(edges)));
   }
 
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
     const auto& [edge, place, smooth] = sample_at(i);
     const double own = value(edge, place, model, state);
-    if (moment_) return own;
+    if (is_moment()) return own;
     return own + actuated_.strains(place.arc_length, place.loads_here_are_beyond, model, state)[0];
   }
 
@@ -124,7 +128,7 @@ class BendField : public EdgewiseField<double> {
   [[nodiscard]] double interpolate(const SampleWeights& weights, const Model& model,
                                    const State& state) const override {
     const double own = RodField::interpolate(weights, model, state);
-    return moment_ ? own : own + bulge(actuated_, weights, model, state)[0];
+    return is_moment() ? own : own + bulge(actuated_, weights, model, state)[0];
   }
 
  private:
@@ -140,12 +144,12 @@ class BendField : public EdgewiseField<double> {
     EffectiveEdge effective;         // of the edge
   };
 
-  BendField(bool moment, const RodLayout& rod, std::vector<Sample> samples, Lines lines,
+  BendField(Bending what, const RodLayout& rod, std::vector<Sample> samples, Lines lines,
             MomentRecovery recovery, std::vector<std::pair<Known, Known>> edges)
       : EdgewiseField(std::move(samples), std::move(lines)),
-        moment_(moment),
+        what_(what),
         EI_(rod.EI),
-        per_moment_(moment ? 1.0 : rod.EI),
+        per_moment_(what == Bending::Moment ? 1.0 : rod.EI),
         actuated_(rod),
         recovery_(std::move(recovery)),
         edges_(std::move(edges)) {}
@@ -184,11 +188,12 @@ class BendField : public EdgewiseField<double> {
                             const State& state) const override {
     const auto& ends = edges_[to_size(edge)];
     const Known& known = last ? ends.second : ends.first;
+    if (what_ == Bending::NaturalCurvature) return known.natural_curvature;
     if (!known.cell) {
       const MomentRecovery::Place end{known.arc_length, last};
       const double moment =
           recovery_.at_end(last, model, state).z() - recovery_.inside(edge, end, model, state).z();
-      return moment / per_moment_ + (moment_ ? 0.0 : known.natural_curvature);
+      return moment / per_moment_ + (is_moment() ? 0.0 : known.natural_curvature);
     }
     const double angle = turning_angle(*known.cell, model, state);
     const Vec3 point = in_space(effective_end(known.effective, last, model, state));
@@ -198,20 +203,23 @@ class BendField : public EdgewiseField<double> {
 
   [[nodiscard]] double inside(Index edge, const MomentRecovery::Place& place, const Model& model,
                               const State& state) const override {
+    if (what_ == Bending::NaturalCurvature) return 0.0;
     return recovery_.inside(edge, place, model, state).z() / per_moment_;
   }
 
   /// Moment of the chain at this turning angle, or its curvature less that of actuations, which add
   /// `actuated` to the rest angle.
   [[nodiscard]] double chain(const Known& known, double angle, double actuated) const {
-    if (!moment_) {
+    if (!is_moment()) {
       return (angle - known.rest_angle - actuated) / known.length + known.natural_curvature;
     }
     const double rest_kappa = Measure::of(known.rest_angle).kappa + actuated;
     return bend_response<Measure>(EI_ / known.length, rest_kappa, angle).moment;
   }
 
-  bool moment_;
+  [[nodiscard]] bool is_moment() const { return what_ == Bending::Moment; }
+
+  Bending what_;
   double EI_;
   double per_moment_;  // 1, or EI to make curvatures of moments
   ActuatedShape actuated_;
@@ -219,12 +227,12 @@ class BendField : public EdgewiseField<double> {
   std::vector<std::pair<Known, Known>> edges_;  // first and last of each
 };
 
-std::unique_ptr<RodField> make_bend_field(bool moment, const RodLayout& rod, const Model& model) {
-  if (rod.EI == 0.0) return limp_field(moment, rod, model);
+std::unique_ptr<RodField> make_bend_field(Bending what, const RodLayout& rod, const Model& model) {
+  if (rod.EI == 0.0) return limp_field(what, rod, model);
   if (rod.curvature == scenario::CurvatureMeasure::Angle) {
-    return BendField<AngleCurvature>::make(moment, rod, model);
+    return BendField<AngleCurvature>::make(what, rod, model);
   }
-  return BendField<TangentCurvature>::make(moment, rod, model);
+  return BendField<TangentCurvature>::make(what, rod, model);
 }
 
 }  // namespace
@@ -239,12 +247,16 @@ std::unique_ptr<RodField> make_turning_angle_field(const RodLayout& rod, const M
 
 std::unique_ptr<RodField> make_curvature_field(const RodLayout& rod, const Model& model) {
   if (model.dimension == 3) return make_section_field(SectionQuantity::Curvature, rod, model);
-  return make_bend_field(false, rod, model);
+  return make_bend_field(Bending::Curvature, rod, model);
 }
 
 std::unique_ptr<RodField> make_moment_field(const RodLayout& rod, const Model& model) {
   if (model.dimension == 3) return make_section_field(SectionQuantity::Moment, rod, model);
-  return make_bend_field(true, rod, model);
+  return make_bend_field(Bending::Moment, rod, model);
+}
+
+std::unique_ptr<RodField> make_natural_curvature_field(const RodLayout& rod, const Model& model) {
+  return make_bend_field(Bending::NaturalCurvature, rod, model);
 }
 
 }  // namespace der

@@ -1,6 +1,7 @@
 #include "output/held_motion.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "der/core/index.hpp"
 #include "der/scenario/scenario.hpp"
@@ -27,16 +28,27 @@ void HeldMotion::evaluate(const Model& model, const State& state) {
 HeldMotion::Rates HeldMotion::of(const HeldDof& held, const State& state) const {
   const Rates even{state.velocities[held.dof], 0.0};
   if (!moves_ || held.displacement < 0) return even;
-  const bool set_by_program =
-      std::any_of(state.ramps.begin(), state.ramps.end(),
-                  [&](const Ramp& ramp) { return ramp.control == held.displacement; });
-  if (set_by_program) return even;
-  const auto at = [&](std::size_t i) { return controls_[i][held.displacement]; };
-  if (at_end_) {
-    return {(1.5 * at(0) - 2.0 * at(1) + 0.5 * at(2)) / step_,
-            (2.0 * at(0) - 5.0 * at(1) + 4.0 * at(2) - at(3)) / (step_ * step_)};
+  if (const Ramp* ramp = find_ramp(state, held.displacement)) {
+    if (!knows_past(*ramp, state)) return even;
+    return after_steps([&](int i) { return ramp->past(state.time - i * step_); });
   }
+  const auto at = [&](int i) { return controls_[to_size(i)][held.displacement]; };
+  if (at_end_) return after_steps(at);
   return {0.5 * (at(0) - at(2)) / step_, (at(0) - 2.0 * at(1) + at(2)) / (step_ * step_)};
+}
+
+template <class At>
+HeldMotion::Rates HeldMotion::after_steps(const At& at) const {
+  return {(1.5 * at(0) - 2.0 * at(1) + 0.5 * at(2)) / step_,
+          (2.0 * at(0) - 5.0 * at(1) + 4.0 * at(2) - at(3)) / (step_ * step_)};
+}
+
+bool HeldMotion::knows_past(const Ramp& ramp, const State& state) const {
+  constexpr double kSameLength = 1e-6;
+  const double first = state.time - 3.0 * step_;
+  if (first < -kSameLength * step_) return false;
+  const bool is_straight = first >= ramp.start;
+  return is_straight || std::abs(ramp.step - step_) <= kSameLength * step_;
 }
 
 }  // namespace der

@@ -17,8 +17,8 @@ struct Scene;
 /// Tables are straight between their entries, and a motion in pieces has no acceleration but at its
 /// kinks. A table that samples a smooth motion has it in the mean: over the step before an instant
 /// and one of the same length after it, to second order in the step. At the end of the run the
-/// three steps before count. A support that a program moves is moved evenly within each step,
-/// without acceleration.
+/// three steps before count, and everywhere where a program sets the motion, as what comes is not
+/// known. Steps that are not equal move it evenly, without acceleration.
 class HeldMotion {
  public:
   explicit HeldMotion(const scenario::Scene& scene);
@@ -33,6 +33,12 @@ class HeldMotion {
   [[nodiscard]] Rates of(const HeldDof& held, const State& state) const;
 
  private:
+  /// From the values at the end of the last step and so many before it.
+  template <class At>
+  [[nodiscard]] Rates after_steps(const At& at) const;
+  /// Whether a ramp tells of the last three steps.
+  [[nodiscard]] bool knows_past(const Ramp& ramp, const State& state) const;
+
   double duration_;  // [s]; 0: there is no time
   bool moves_ = false;
   bool at_end_ = false;

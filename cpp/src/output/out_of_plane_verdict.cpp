@@ -2,10 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "der/scenario/scenario.hpp"
 
 namespace der {
 namespace {
+
+/// Load factors that differ by a smaller share are the same: they come from two models, and
+/// rounding decides which is lower.
+constexpr double kSameLoad = 1e-6;
 
 constexpr const char* kAdvice =
     "Supports are taken to hold z and the section there. To follow the rod out of the plane, write "
@@ -42,7 +48,10 @@ struct Judge {
     verdict.load_factor = outcome.out_of_plane.buckling_factor;
     if (!verdict.load_factor) return;
     const auto& modes = outcome.buckling.modes;
-    if (!modes.empty() && *verdict.load_factor >= modes.front().load_factor) return;
+    if (!modes.empty()) {
+      const double in_plane = modes.front().load_factor;
+      if (*verdict.load_factor >= in_plane - kSameLoad * std::abs(in_plane)) return;
+    }
     verdict.warning = fmt::format(
         "the structure buckles out of its plane first, at the load factor {:.6g}. For the shape, "
         "write 'model: spatial', and let the supports hold z",

@@ -9,6 +9,7 @@
 #include "der/catalog/quantities.hpp"
 #include "der/core/error.hpp"
 #include "der/model/location.hpp"
+#include "der/output/actuation_forces.hpp"
 #include "der/output/reactions.hpp"
 #include "der/scenario/find_support.hpp"
 #include "der/scenario/scenario.hpp"
@@ -200,6 +201,20 @@ class SupportReader : public ProbeReader {
   Reactions reactions_;
 };
 
+/// What an actuation exerts.
+class ActuationReader : public ProbeReader {
+ public:
+  ActuationReader(ActuationReading read, const std::string& name, const Model& model)
+      : read_(read), forces_(model, name) {}
+  double value(const Model& model, const State& state) override {
+    return read_(forces_.evaluate(model, state).front());
+  }
+
+ private:
+  ActuationReading read_;
+  ActuationForces forces_;
+};
+
 SampleWeights sample_weights(const std::vector<Weighted>& weights, const RodLayout& rod) {
   SampleWeights result;
   for (const auto& [place, weight] : weights) {
@@ -247,6 +262,10 @@ std::unique_ptr<ProbeReader> make_reader(const scenario::Probe& probe, const Qua
   if (quantity.kind == QuantityKind::Support) {
     const std::size_t support = scenario::find_support(scene, probe.support.value()).value();
     return std::make_unique<SupportReader>(quantity.read_reaction, support, scene, model);
+  }
+  if (quantity.kind == QuantityKind::Actuation) {
+    return std::make_unique<ActuationReader>(quantity.read_actuation, probe.actuation.value(),
+                                             model);
   }
   const RodLayout& rod = model.rod(probe.rod.value());
   if (quantity.kind == QuantityKind::Ring) {

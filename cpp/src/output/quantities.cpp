@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "der/model/model.hpp"
-
+#include "der/output/actuation_forces.hpp"
 #include "der/output/reactions.hpp"
 #include "output/bend_field.hpp"
 #include "output/motion_field.hpp"
@@ -53,12 +53,13 @@ Quantity tangent(std::string name, std::string meaning) {
 }
 
 template <SectionQuantity quantity>
-Quantity section(std::string name, std::string unit, std::string meaning) {
+Quantity section(std::string name, std::string unit, std::string meaning,
+                 QuantityKind kind = QuantityKind::Section) {
   const RodFieldMaker maker = [](const RodLayout& rod, const Model& model) {
     return make_section_field(quantity, rod, model);
   };
-  return in(QuantityScope::Sections, field(std::move(name), std::move(unit), QuantityKind::Section,
-                                           std::move(meaning), maker));
+  return in(QuantityScope::Sections,
+            field(std::move(name), std::move(unit), kind, std::move(meaning), maker));
 }
 
 Quantity energy(std::string name, std::string meaning, std::vector<EnergyTerm> terms) {
@@ -104,6 +105,23 @@ std::vector<Quantity> quantities_along_rods() {
           "moment_2", "N m", "bending moment of the curvature towards the second director"),
       section<SectionQuantity::Twist>("twist", "rad/m", "rotation of the section per length"),
       section<SectionQuantity::Torque>("torque", "N m", "moment about the tangent"),
+      in(QuantityScope::Planar,
+         field("natural_curvature", "1/m", Kind::Natural,
+               "curvature without stress, with what actuations add to it, positive "
+               "counter-clockwise",
+               make_natural_curvature_field),
+         "in space take 'natural_curvature_1' and 'natural_curvature_2'"),
+      section<SectionQuantity::NaturalCurvature1>(
+          "natural_curvature_1", "1/m",
+          "curvature without stress towards the first director, with what actuations add to it",
+          Kind::Natural),
+      section<SectionQuantity::NaturalCurvature2>(
+          "natural_curvature_2", "1/m",
+          "curvature without stress towards the second director, with what actuations add to it",
+          Kind::Natural),
+      section<SectionQuantity::NaturalTwist>("natural_twist", "rad/m",
+                                             "twist without stress, with what actuations add to it",
+                                             Kind::Natural),
       field("strain", "", Kind::Edge, "elongation per rest length", make_strain_field),
       field("tension", "N", Kind::Edge, "axial force, positive in tension", make_tension_field),
   };
@@ -163,6 +181,40 @@ std::vector<Quantity> quantities_of_supports() {
   };
 }
 
+/// What an actuation exerts on the rod.
+template <std::size_t number = 0>
+Quantity actuation(scenario::Actuated what, std::string name, std::string unit,
+                   std::string meaning) {
+  Quantity quantity{std::move(name),    std::move(unit), QuantityKind::Actuation,
+                    std::move(meaning), nullptr,         {}};
+  quantity.read_actuation = [](const ActuationForce& force) { return force.values[number]; };
+  quantity.actuates = scenario::key_of(what);
+  return quantity;
+}
+
+std::vector<Quantity> quantities_of_actuations() {
+  using scenario::Actuated;
+  return {
+      in(QuantityScope::Planar,
+         actuation(Actuated::Curvature, "actuation_moment", "N m",
+                   "moment with which an actuation bends its stretch, counter-clockwise"),
+         "in space take 'actuation_moment_1' and 'actuation_moment_2'"),
+      in(QuantityScope::Sections,
+         actuation<0>(Actuated::Curvature, "actuation_moment_1", "N m",
+                      "moment with which an actuation bends its stretch towards the first "
+                      "director"),
+         "in a plane take 'actuation_moment'"),
+      in(QuantityScope::Sections,
+         actuation<1>(Actuated::Curvature, "actuation_moment_2", "N m",
+                      "the same towards the second director"),
+         "in a plane take 'actuation_moment'"),
+      in(QuantityScope::Sections, actuation(Actuated::Twist, "actuation_torque", "N m",
+                                            "torque with which an actuation twists its stretch")),
+      actuation(Actuated::Length, "actuation_force", "N",
+                "force with which an actuation elongates its stretch"),
+  };
+}
+
 /// Each term by itself, what is stored elastically, and all together.
 std::vector<Quantity> energy_quantities() {
   std::vector<Quantity> rows;
@@ -183,6 +235,7 @@ std::vector<Quantity> all_quantities() {
   std::vector<Quantity> rows = quantities_along_rods();
   for (Quantity& row : quantities_of_rings()) rows.push_back(std::move(row));
   for (Quantity& row : quantities_of_supports()) rows.push_back(std::move(row));
+  for (Quantity& row : quantities_of_actuations()) rows.push_back(std::move(row));
   for (Quantity& row : energy_quantities()) rows.push_back(std::move(row));
   return rows;
 }

@@ -108,6 +108,22 @@ ReactionSeries Replay::reactions(const SavedFrames& frames,
   return series;
 }
 
+ActuationForceSeries Replay::actuation_forces(const SavedFrames& frames) {
+  ActuationForces reader(model_);
+  ActuationForceSeries series;
+  for (Eigen::Index frame = 0; frame < frames.positions.rows(); ++frame) {
+    go_to(static_cast<std::size_t>(frame), frames);
+    series.actuations = reader.evaluate(model_, state_);
+    const auto count = static_cast<Eigen::Index>(series.actuations.size());
+    if (frame == 0) series.values.resize(frames.positions.rows(), 2 * count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const auto& values = series.actuations[static_cast<std::size_t>(i)].values;
+      series.values.block<1, 2>(frame, 2 * i) = Eigen::Map<const Eigen::RowVector2d>(values.data());
+    }
+  }
+  return series;
+}
+
 FrameTable Replay::directors(const SavedFrames& frames) {
   FrameTable table(frames.theta.rows(), 3 * frames.theta.cols());
   for (Eigen::Index frame = 0; frame < table.rows(); ++frame) {

@@ -75,6 +75,7 @@ RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& a
   const auto fail = [&](const Error& error) {
     outcome.status = error.status();
     outcome.message = error.what();
+    outcome.error = std::current_exception();
   };
   try {
     outcome.status = std::visit(Analyse{simulation, recorder, after_step, outcome},

@@ -21,7 +21,14 @@ namespace der {
 namespace {
 
 bool is_of_twist(SectionQuantity quantity) {
-  return quantity == SectionQuantity::Twist || quantity == SectionQuantity::Torque;
+  return quantity == SectionQuantity::Twist || quantity == SectionQuantity::Torque ||
+         quantity == SectionQuantity::NaturalTwist;
+}
+
+bool is_natural(SectionQuantity quantity) {
+  return quantity == SectionQuantity::NaturalCurvature1 ||
+         quantity == SectionQuantity::NaturalCurvature2 ||
+         quantity == SectionQuantity::NaturalTwist;
 }
 
 bool is_moment(SectionQuantity quantity) {
@@ -73,6 +80,11 @@ class SectionField : public EdgewiseField<Vec3> {
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
     const auto& [edge, place, smooth] = sample_at(i);
+    if (is_natural(quantity_)) {
+      return natural_at(edge, place.arc_length)[*component()] +
+             actuated_.strains(place.arc_length, place.loads_here_are_beyond, model,
+                               state)[*component()];
+    }
     Vec3 all = value(edge, place, model, state);
     if (is_vector(edge, model)) {
       all = in_turned_section(edge, place, all, model, state);
@@ -99,12 +111,15 @@ class SectionField : public EdgewiseField<Vec3> {
     switch (quantity_) {
       case SectionQuantity::Curvature1:
       case SectionQuantity::Moment1:
+      case SectionQuantity::NaturalCurvature1:
         return 0;
       case SectionQuantity::Curvature2:
       case SectionQuantity::Moment2:
+      case SectionQuantity::NaturalCurvature2:
         return 1;
       case SectionQuantity::Twist:
       case SectionQuantity::Torque:
+      case SectionQuantity::NaturalTwist:
         return 2;
       default:
         return std::nullopt;
@@ -146,7 +161,9 @@ class SectionField : public EdgewiseField<Vec3> {
   static bool jumps_at_glue(SectionQuantity quantity, const RodLayout& rod) {
     const bool is_component =
         quantity == SectionQuantity::Curvature1 || quantity == SectionQuantity::Curvature2 ||
-        quantity == SectionQuantity::Moment1 || quantity == SectionQuantity::Moment2;
+        quantity == SectionQuantity::Moment1 || quantity == SectionQuantity::Moment2 ||
+        quantity == SectionQuantity::NaturalCurvature1 ||
+        quantity == SectionQuantity::NaturalCurvature2;
     const bool whole_jumps = quantity == SectionQuantity::Curvature &&
                              (!rod.natural_curvatures.empty() || rod.EI_1 != rod.EI_2);
     return rod.closed && (is_component || whole_jumps) && is_glued_turned(rod.joints.back());

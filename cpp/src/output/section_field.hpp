@@ -11,14 +11,17 @@ namespace der {
 
 /// Quantities of a section.
 enum class SectionQuantity {
-  Curvature,   ///< magnitude [1/m]
-  Curvature1,  ///< towards the first director [1/m]
-  Curvature2,  ///< towards the second director [1/m]
-  Moment,      ///< magnitude of the bending moment [N m]
-  Moment1,     ///< EI1 times the curvature in excess of the natural one [N m]
-  Moment2,     ///< EI2 likewise [N m]
-  Twist,       ///< rotation of the section per length [rad/m]
-  Torque,      ///< [N m]
+  Curvature,          ///< magnitude [1/m]
+  Curvature1,         ///< towards the first director [1/m]
+  Curvature2,         ///< towards the second director [1/m]
+  Moment,             ///< magnitude of the bending moment [N m]
+  Moment1,            ///< EI1 times the curvature in excess of the natural one [N m]
+  Moment2,            ///< EI2 likewise [N m]
+  Twist,              ///< rotation of the section per length [rad/m]
+  Torque,             ///< [N m]
+  NaturalCurvature1,  ///< without stress, towards the first director [1/m]
+  NaturalCurvature2,  ///< towards the second director [1/m]
+  NaturalTwist,       ///< [rad/m]
 };
 
 /// All but the magnitudes need a model with sections.

@@ -125,7 +125,7 @@ void add_analysis(const Simulation& simulation, const RunOutcome& outcome, const
   if (!outcome.path.empty()) summary["path"] = path_json(outcome, recorder);
 }
 
-std::vector<std::string> buckling_warnings(const LinearBuckling& buckling) {
+std::vector<std::string> warnings_of_loads(const LinearBuckling& buckling) {
   if (buckling.modes.empty() && buckling.reversed) {
     return {
         "no positive load factor is critical: the loads cause tension where buckling needs "
@@ -152,6 +152,17 @@ std::vector<std::string> buckling_warnings(const LinearBuckling& buckling) {
       "and strain by up to {:.2g} at the first load factor. Linear buckling leaves that out and "
       "may be far off, mostly too high; analysis: continuation follows the deformed shape",
       rotation, strain)};
+}
+
+std::vector<std::string> buckling_warnings(const LinearBuckling& buckling,
+                                           const scenario::Scene& scene) {
+  std::vector<std::string> warnings = warnings_of_loads(buckling);
+  if (warnings.empty() || scene.actuations.empty()) return warnings;
+  warnings.front() +=
+      ". Linear buckling scales the loads alone: where the structure buckles as its actuations "
+      "grow "
+      "is found by 'analysis: {continuation: {vary: actuation}}'";
+  return warnings;
 }
 
 }  // namespace
@@ -186,7 +197,7 @@ std::vector<std::string> warnings(const Simulation& simulation, const RunOutcome
     found.push_back(plane->warning);
   }
   if (sought_buckling(simulation) && outcome.ok()) {
-    add(buckling_warnings(outcome.buckling));
+    add(buckling_warnings(outcome.buckling, simulation.scenario().scene()));
     return found;
   }
   if (simulation.plan().step > 0.0) add(fine_table_warnings(scene, simulation.plan().step));

@@ -42,6 +42,11 @@ std::vector<FreeEnd> free_ends(const RodLayout& rod) {
   return ends;
 }
 
+/// The turns towards the two directors [rad], in a plane the first of them.
+Vec3 turn_values(const TangentLine::Turn& turn, const Model& model, const State& state) {
+  return turn.actuated.value([&](Index control) { return control_value(model, state, control); });
+}
+
 /// The direction of a rod as a `Value` that is linear along it: an angle in a plane, the tangent in
 /// space.
 template <class Value>
@@ -50,18 +55,23 @@ class DirectionField : public RodField {
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
     read_knots(model, state);
-    return number_of(value(i));
+    return number_of(value(i, model, state));
   }
   void sample_all(const Model& model, const State& state, double* values) const override {
     read_knots(model, state);
-    for (std::size_t i = 0; i < line_.samples().size(); ++i) values[i] = number_of(value(i));
+    for (std::size_t i = 0; i < line_.samples().size(); ++i) {
+      values[i] = number_of(value(i, model, state));
+    }
   }
   [[nodiscard]] double interpolate(const SampleWeights& weights, const Model& model,
                                    const State& state) const override {
     read_knots(model, state);
-    Value sum = weights.front().weight * value(weights.front().sample);
+    Value sum = weights.front().weight * value(weights.front().sample, model, state);
     for (std::size_t i = 1; i < weights.size(); ++i) {
-      sum += weights[i].weight * value(weights[i].sample);
+      sum += weights[i].weight * value(weights[i].sample, model, state);
+    }
+    if (line_.is_actuated() && weights.size() > 1) {
+      sum += turned(line_.turn_between(weights), model, state);
     }
     return number_of(sum);
   }
@@ -77,6 +87,9 @@ class DirectionField : public RodField {
   /// Sets `knots` to the directions there, and `kinks` to the jumps of their derivative [1/m].
   virtual void read(const Model& model, const State& state, std::vector<Value>& knots,
                     std::vector<Value>& kinks) const = 0;
+  /// What an actuated turn adds to a direction.
+  [[nodiscard]] virtual Value turned(const TangentLine::Turn& turn, const Model& model,
+                                     const State& state) const = 0;
   /// The quantity in a direction.
   [[nodiscard]] virtual double number_of(const Value& direction) const = 0;
 
@@ -85,11 +98,12 @@ class DirectionField : public RodField {
     kinks_.clear();
     read(model, state, knots_, kinks_);
   }
-  [[nodiscard]] Value value(std::size_t i) const {
+  [[nodiscard]] Value value(std::size_t i, const Model& model, const State& state) const {
     const TangentLine::Sample& sample = line_.samples()[i];
     Value sum = sample.knots.front().factor * knots_[sample.knots.front().number];
     if (sample.knots.size() > 1) sum += sample.knots[1].factor * knots_[sample.knots[1].number];
     for (const auto& [kink, factor] : sample.kinks) sum += factor * kinks_[kink];
+    for (const TangentLine::Turn& turn : sample.turns) sum += turned(turn, model, state);
     return sum;
   }
 
@@ -200,6 +214,11 @@ class PlanarDirection : public DirectionField<double> {
     return turn;
   }
 
+  [[nodiscard]] double turned(const TangentLine::Turn& turn, const Model& model,
+                              const State& state) const override {
+    return turn_values(turn, model, state)[0];
+  }
+
   [[nodiscard]] double number_of(const double& angle) const override {
     if (!component_) return angle;
     return *component_ == 0 ? std::cos(angle) : std::sin(angle);
@@ -292,6 +311,13 @@ class SpatialDirection : public DirectionField<Vec3> {
       change += twelfth * (natural[0] * section.first + natural[1] * section.second);
     }
     return change;
+  }
+
+  [[nodiscard]] Vec3 turned(const TangentLine::Turn& turn, const Model& model,
+                            const State& state) const override {
+    const Vec3 values = turn_values(turn, model, state);
+    const SectionFrame section = frame(turn.edge, model, state);
+    return values[0] * section.first + values[1] * section.second;
   }
 
   [[nodiscard]] double number_of(const Vec3& direction) const override {

@@ -6,6 +6,7 @@
 
 #include "der/core/index.hpp"
 #include "der/model/location.hpp"
+#include "model/actuated_turn.hpp"
 #include "model/corner.hpp"
 
 namespace der {
@@ -14,12 +15,35 @@ namespace {
 /// What a jump of the curvature by 1 at `kink` adds at `s` to a line that begins before it [m].
 double beyond(double s, double kink) { return std::max(0.0, s - kink); }
 
+/// Number of the edge on which a place is.
+Index edge_at(double s, const RodLayout& rod) {
+  const auto next = std::upper_bound(rod.arc_length.begin(), rod.arc_length.end(), s);
+  return std::clamp<Index>(static_cast<Index>(next - rod.arc_length.begin()) - 1, 0,
+                           rod.num_edges() - 1);
+}
+
+bool bends(const ActuatedStretch& stretch) { return stretch.what == scenario::Actuated::Curvature; }
+
+bool any_bends(const RodLayout& rod) {
+  return std::any_of(rod.actuated_stretches.begin(), rod.actuated_stretches.end(), bends);
+}
+
+/// Arc lengths [m] at which an actuated curvature jumps.
+void add_actuated_jumps(const RodLayout& rod, std::vector<double>& places) {
+  for (const ActuatedStretch& stretch : rod.actuated_stretches) {
+    if (!bends(stretch)) continue;
+    if (stretch.jumps(false)) places.push_back(stretch.from);
+    if (stretch.jumps(true)) places.push_back(stretch.to);
+  }
+}
+
 }  // namespace
 
 TangentLine::TangentLine(const RodLayout& rod, std::vector<double> kinks, const Model& model)
-    : kinks_(std::move(kinks)) {
-  find_knots(rod, model);
-  const double length = rod.closed ? rod.rest_length() : 0.0;
+    : rod_(rod), is_actuated_(any_bends(rod)), kinks_(std::move(kinks)) {
+  find_knots(model);
+  std::vector<double> jumps = kinks_;
+  add_actuated_jumps(rod, jumps);
   for (const Leg& leg : legs_) {
     if (leg.to <= 0.0 || leg.from >= rod.rest_length()) continue;  // the neighbours of a ring's
     std::vector<std::pair<double, bool>> places;                   // and whether it is smooth there
@@ -27,7 +51,7 @@ TangentLine::TangentLine(const RodLayout& rod, std::vector<double> kinks, const 
       const bool end = node == 0 || node == rod.num_edges();
       places.emplace_back(rod.arc_length_at(node), !end && rod.clamp_at(node) == nullptr);
     }
-    for (const double kink : kinks_) {
+    for (const double kink : jumps) {
       for (auto& [s, smooth] : places) {
         if (std::abs(s - kink) <= rod.same_place()) smooth = false;
       }
@@ -40,13 +64,14 @@ TangentLine::TangentLine(const RodLayout& rod, std::vector<double> kinks, const 
     for (const auto& [s, smooth] : places) {
       if (s < leg.from - rod.same_place() || s > leg.to + rod.same_place()) continue;
       const bool corner = std::min(s - leg.from, leg.to - s) <= rod.same_place();
-      add_sample(s, leg, smooth && !corner, length);
+      add_sample(s, leg, smooth && !corner);
     }
   }
 }
 
-void TangentLine::find_knots(const RodLayout& rod, const Model& model) {
+void TangentLine::find_knots(const Model& model) {
   // A ring's first and last edge have neighbours, too.
+  const RodLayout& rod = rod_;
   const Index first = rod.closed ? -1 : 0;
   const Index last = rod.num_edges() + (rod.closed ? 1 : 0);
   legs_.push_back({rod.arc_length_at(first), 0.0, 0, 0});
@@ -67,11 +92,12 @@ void TangentLine::find_knots(const RodLayout& rod, const Model& model) {
   legs_.back().last = knots_.size();
 }
 
-/// `length` [m] of a ring, 0 of an open rod.
-void TangentLine::add_sample(double s, const Leg& leg, bool smooth, double length) {
-  Sample sample{s, {}, {}, smooth};
+void TangentLine::add_sample(double s, const Leg& leg, bool smooth) {
+  const double length = rod_.closed ? rod_.rest_length() : 0.0;
+  Sample sample{s, {}, {}, {}, smooth};
   if (leg.last - leg.first == 1) {
     sample.knots = {{leg.first, 1.0}};
+    add_turns(sample);
     samples_.push_back(std::move(sample));
     return;
   }
@@ -90,7 +116,39 @@ void TangentLine::add_sample(double s, const Leg& leg, bool smooth, double lengt
     }
     if (std::abs(factor) > 1e-12 * (b - a)) sample.kinks.push_back({i, factor});
   }
+  add_turns(sample);
   samples_.push_back(std::move(sample));
+}
+
+void TangentLine::add_turns(Sample& sample) const {
+  if (!is_actuated_) return;
+  const auto add = [&](Index edge, const ActuatedTurnTo& to) {
+    if (!to.turn().is_zero()) sample.turns.push_back({rod_.position(edge), to.turn()});
+  };
+  const double s = sample.arc_length;
+  for (const auto& [number, factor] : sample.knots) {
+    const Knot& knot = knots_[number];
+    double from = knot.arc_length;
+    if (knot.clamp < 0) {
+      from = std::clamp(s, rod_.arc_length_at(knot.edge), rod_.arc_length_at(knot.edge + 1));
+      ActuatedTurnTo along_edge(from, rod_);
+      along_edge.from_edge(knot.edge, factor, 0.0);
+      add(knot.edge, along_edge);
+    }
+    ActuatedTurnTo beyond_edge(s, rod_);
+    beyond_edge.from(from, factor, 0.0);
+    add(edge_at(0.5 * (from + s), rod_), beyond_edge);
+  }
+}
+
+TangentLine::Turn TangentLine::turn_between(const SampleWeights& weights) const {
+  double s = 0.0;
+  for (const auto& [sample, weight] : weights) s += weight * samples_[sample].arc_length;
+  ActuatedTurnTo turn(s, rod_);
+  for (const auto& [sample, weight] : weights) {
+    turn.from(samples_[sample].arc_length, weight, 0.0);
+  }
+  return {edge_at(s, rod_), turn.turn()};
 }
 
 }  // namespace der

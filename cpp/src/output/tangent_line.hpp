@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "der/core/types.hpp"
+#include "der/kinematics/actuated_turn.hpp"
 #include "der/model/model.hpp"
+#include "output/rod_field.hpp"
 
 namespace der {
 
@@ -12,8 +14,9 @@ namespace der {
 ///
 /// An edge has the direction of the tangent at one place (model/location.hpp), a clamp holds it at
 /// its node. In between, and beyond the outermost of these knots, it is linear in the arc length
-/// but for kinks: where a moment acts the curvature jumps. A corner as drawn parts the rod into
-/// legs, each with its own line; the direction has two values there.
+/// but for kinks, where a moment makes the curvature jump, and for the actuated turn on the way
+/// from the knots. A corner as drawn parts the rod into legs, each with its own line; the direction
+/// has two values there.
 class TangentLine {
  public:
   struct Knot {
@@ -26,12 +29,18 @@ class TangentLine {
     std::size_t number = 0;
     double factor = 0.0;
   };
+  /// What actuations turn along an edge on the way from the knots.
+  struct Turn {
+    Index edge = 0;  ///< number in the rod
+    ActuatedTurn actuated;
+  };
   /// A place along the rod: the direction there is the sum of its parts of the knots' directions,
-  /// and of the kinks' jumps of curvature [m].
+  /// of the kinks' jumps of curvature [m] and of actuated turns.
   struct Sample {
     double arc_length = 0.0;  ///< [m]
     std::vector<Part> knots;
     std::vector<Part> kinks;
+    std::vector<Turn> turns;
     bool smooth = true;
   };
 
@@ -40,6 +49,11 @@ class TangentLine {
 
   [[nodiscard]] const std::vector<Knot>& knots() const { return knots_; }
   [[nodiscard]] const std::vector<Sample>& samples() const { return samples_; }
+  /// Whether actuations bend the rod.
+  [[nodiscard]] bool is_actuated() const { return is_actuated_; }
+  /// The actuated turn by which the direction at a place, the weighted sum of those of samples,
+  /// differs from that sum.
+  [[nodiscard]] Turn turn_between(const SampleWeights& weights) const;
 
  private:
   /// The knots of a leg stand in a row.
@@ -47,9 +61,12 @@ class TangentLine {
     double from = 0.0, to = 0.0;  // [m]
     std::size_t first = 0, last = 0;
   };
-  void find_knots(const RodLayout& rod, const Model& model);
-  void add_sample(double s, const Leg& leg, bool smooth, double length);
+  void find_knots(const Model& model);
+  void add_sample(double s, const Leg& leg, bool smooth);
+  void add_turns(Sample& sample) const;
 
+  RodLayout rod_;
+  bool is_actuated_;
   std::vector<Knot> knots_;
   std::vector<Leg> legs_;
   std::vector<double> kinks_;

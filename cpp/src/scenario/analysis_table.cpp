@@ -20,8 +20,8 @@ constexpr auto assign_continuation = [](Analysis& analysis, ContinuationText&& t
   analysis = static_cast<ContinuationAnalysis&&>(text);
 };
 
-/// Reads `loads`, `supports`, `actuation`, or one of them with its number or, of actuations, its
-/// name; false if it is none of these.
+/// Reads `loads`, `supports`, `actuation`, or one of them with its number or its name; false if it
+/// is none of these.
 bool read_varied(const std::string& text, ContinuationAnalysis& out) {
   const auto dot = text.find('.');
   const std::string kind = text.substr(0, dot);
@@ -31,7 +31,7 @@ bool read_varied(const std::string& text, ContinuationAnalysis& out) {
                                   : Varied::Actuations;
   if (dot == std::string::npos) return true;
   const std::string digits = text.substr(dot + 1);
-  if (out.vary == Varied::Actuations && is_name(digits)) {
+  if (is_name(digits)) {
     out.name = digits;
     return true;
   }
@@ -53,9 +53,8 @@ void check_continuation(ContinuationText& text, const Place& place, Diagnostics&
   }
   if (!read_varied(text.given_vary, text)) {
     diagnostics.add(place.at(*find_entry(entries, "vary")),
-                    fmt::format("expected 'loads', 'supports', 'actuation', or one by its number, "
-                                "as 'loads.0', of actuations by its name, as 'actuation.bend', got "
-                                "'{}'",
+                    fmt::format("expected 'loads', 'supports', 'actuation', or one by its number "
+                                "or its name, as 'loads.0' or 'actuation.bend', got '{}'",
                                 text.given_vary));
   }
 }
@@ -95,7 +94,7 @@ Format<ContinuationText> continuation_format() {
           .optional("vary", &ContinuationText::given_vary, text(),
                     "Quantities that the factor scales: `loads` (all of them), `supports` (all "
                     "prescribed motions), `actuation` (all changes of rest shapes), or one by its "
-                    "number, as `loads.0`; an actuation also by its name, as `actuation.bend`.",
+                    "number or its name, as `loads.0` or `actuation.bend`.",
                     "`loads`")
           .optional("from", &ContinuationAnalysis::from, number(""), "First factor.", "0")
           .optional("to", &ContinuationAnalysis::to, number(""),

@@ -2,15 +2,12 @@
 #include <cmath>
 
 #include "der/core/constants.hpp"
+#include "der/scenario/stretch_profile.hpp"
 #include "scenario/checks.hpp"
 #include "scenario/directions.hpp"
 
 namespace der::scenario {
 namespace {
-
-/// Turning angle [rad] between neighbouring edges from which on a mesh is coarse: the chord of an
-/// arc of this angle is 4 % shorter than the arc.
-constexpr double kCoarse = 1.0;
 
 /// The largest turning angle of a rod, and the first node that has it.
 struct Turning {
@@ -61,7 +58,7 @@ Turning largest_turning(const Natural& natural, const RestLine& line) {
 /// The number of nodes with which neighbouring edges turn by half of a coarse angle.
 double fine_nodes(const Turning& largest, const RestLine& line) {
   const int more = line.closed() ? 0 : 1;  // nodes than edges
-  return more + std::round((line.num_nodes() - more) * largest.angle / (0.5 * kCoarse));
+  return more + std::round((line.num_nodes() - more) * largest.angle / (0.5 * kCoarseTurn));
 }
 
 class Resolution {
@@ -81,7 +78,7 @@ class Resolution {
                       "by less than half a turn: give the rod more nodes, about {:g} for this "
                       "curvature",
                       largest.angle, largest.node, fine_nodes(largest, line_)));
-    } else if (largest.angle > kCoarse) {
+    } else if (largest.angle > kCoarseTurn) {
       warn("natural_curvature", "the edges", largest);
     }
   }
@@ -90,7 +87,7 @@ class Resolution {
   void check_twist() {
     if (is_isotropic(rod_.cross_section) && size_at(rod_.natural_curvature, 0) == 0.0) return;
     const Turning largest = largest_turning(rod_.natural_twist, line_);
-    if (largest.angle > kCoarse) warn("natural_twist", "the sections", largest);
+    if (largest.angle > kCoarseTurn) warn("natural_twist", "the sections", largest);
   }
 
  private:

@@ -109,6 +109,39 @@ std::string quantities_that_jump() {
   return fmt::format("{} and {}", fmt::join(names.begin(), last, ", "), *last);
 }
 
+/// The number of what has a name in a list of the scene; nothing if none of its items has it.
+template <class Item>
+std::optional<int> find_by_name(const std::vector<Item>& items, const std::string& name) {
+  const auto found =
+      std::find_if(items.begin(), items.end(), [&](const Item& item) { return item.name == name; });
+  if (found == items.end()) return std::nullopt;
+  return static_cast<int>(found - items.begin());
+}
+
+/// `what` is the word for an item: "actuation".
+template <class Item>
+std::string none_of_that_name(const char* what, const std::vector<Item>& items,
+                              const std::string& name) {
+  std::vector<std::string> names;
+  for (const Item& item : items) {
+    if (!item.name.empty()) names.push_back(item.name);
+  }
+  const std::string near = did_you_mean(name, names);
+  return fmt::format("there is no {} '{}'{}", what, name,
+                     !near.empty()   ? near
+                     : names.empty() ? "; the scene has none with a name"
+                                     : "; there is " + listed(names));
+}
+
+/// The quantities of actuations of one kind.
+std::vector<std::string> quantities_of(Actuated what) {
+  std::vector<std::string> names;
+  for (const Quantity& quantity : quantities()) {
+    if (quantity.actuates == key_of(what)) names.push_back(quantity.name);
+  }
+  return names;
+}
+
 /// Where a probe can stand, by the kind of its quantity.
 class ProbeCheck {
  public:
@@ -119,13 +152,20 @@ class ProbeCheck {
         supports_known_(!context.diagnostics.under({"supports"})) {}
 
   void run() {
-    const QuantityKind kind = find_quantity(probe_.quantity)->kind;
+    const Quantity& quantity = *find_quantity(probe_.quantity);
+    const QuantityKind kind = quantity.kind;
     if (kind == QuantityKind::Support) {
       check_reaction();
-    } else if (probe_.support) {
-      report(path_ / "support",
-             fmt::format("'{}' is no quantity of a support: those are {}", probe_.quantity,
-                         fmt::join(quantities_of(QuantityKind::Support), ", ")));
+    } else if (kind == QuantityKind::Actuation) {
+      check_actuation(quantity.actuates);
+    } else if (probe_.support || probe_.actuation) {
+      const bool of_support = probe_.support.has_value();
+      report(path_ / (of_support ? "support" : "actuation"),
+             fmt::format("'{}' is no quantity of {}: those are {}", probe_.quantity,
+                         of_support ? "a support" : "an actuation",
+                         fmt::join(quantities_of(of_support ? QuantityKind::Support
+                                                            : QuantityKind::Actuation),
+                                   ", ")));
     } else if (kind == QuantityKind::Energy) {
       check_energy();
     } else if (kind == QuantityKind::Ring) {
@@ -150,17 +190,54 @@ class ProbeCheck {
     const std::size_t count = context_.scene.supports.size();
     if (!probe_.support) {
       report(path_, fmt::format("'{}' belongs to a support: give 'support', its number{}",
-                                probe_.quantity, probe_.rod ? " in place of 'rod'" : ""));
-    } else if (probe_.at || probe_.over != Reduce::None || probe_.side) {
-      report(path_ / (probe_.at     ? "at"
-                      : probe_.side ? "side"
-                                    : "over"),
-             fmt::format("'{}' has the place of its support: leave this out", probe_.quantity));
+                                probe_.quantity, in_place_of()));
+    } else if (has_place("support")) {
+      return;
     } else if (supports_known_ && !find_support(context_.scene, *probe_.support)) {
       report(path_ / "support",
              fmt::format("there is no support '{}': the scene has {} of them{}", *probe_.support,
                          count, count > 0 ? ", counted from 0" : ""));
     }
+  }
+
+  /// `key` is that of the actuations that have the quantity.
+  void check_actuation(const std::string& key) {
+    if (!probe_.actuation) {
+      report(path_, fmt::format("'{}' belongs to an actuation: give 'actuation', its name{}",
+                                probe_.quantity, in_place_of()));
+      return;
+    }
+    if (has_place("actuation") || context_.diagnostics.under({"actuation"})) return;
+    const auto& all = context_.scene.actuations;
+    const auto number = find_by_name(all, *probe_.actuation);
+    if (!number) {
+      report(path_ / "actuation", none_of_that_name("actuation", all, *probe_.actuation));
+      return;
+    }
+    const Actuated what = all[static_cast<std::size_t>(*number)].what;
+    if (key_of(what) == key) return;
+    report(path_ / "quantity",
+           fmt::format("'{}' is a quantity of '{}', and '{}' has '{}': take '{}'", probe_.quantity,
+                       key, *probe_.actuation, key_of(what),
+                       fmt::join(quantities_of(what), "' or '")));
+  }
+
+  /// What stands in the place of the right key.
+  [[nodiscard]] std::string in_place_of() const {
+    return probe_.rod         ? " in place of 'rod'"
+           : probe_.support   ? " in place of 'support'"
+           : probe_.actuation ? " in place of 'actuation'"
+                              : "";
+  }
+
+  /// Whether a place is given, which is an error.
+  bool has_place(const char* owner) {
+    if (!probe_.at && probe_.over == Reduce::None && !probe_.side) return false;
+    report(path_ / (probe_.at     ? "at"
+                    : probe_.side ? "side"
+                                  : "over"),
+           fmt::format("'{}' has the place of its {}: leave this out", probe_.quantity, owner));
+    return true;
   }
 
   void check_energy() {
@@ -198,7 +275,7 @@ class ProbeCheck {
       check_turn(rod);
       return;
     }
-    if (kind == QuantityKind::Bend) check_bend(rod);
+    if (kind == QuantityKind::Bend || kind == QuantityKind::Natural) check_bend(rod);
     if (probe_.at) context_.nodes_at(rod, *probe_.at, path_ / "at", false);
   }
 
@@ -293,26 +370,30 @@ bool can_vary(const Scene& scene, Varied vary, std::size_t number) {
   return true;
 }
 
-/// Puts the number of an actuation in place of its name; false, with a diagnostic, if there is
-/// none of that name.
-bool find_actuation(CheckContext& context, const Path& path, ContinuationAnalysis& continuation) {
+/// Puts the number of an item in place of its name; false, with a diagnostic, if there is none of
+/// that name.
+template <class Item>
+bool number_varied(const char* what, const std::vector<Item>& items, const Path& path,
+                   Diagnostics& diagnostics, ContinuationAnalysis& continuation) {
   if (continuation.name.empty()) return true;
-  const auto& all = context.scene.actuations;
-  const auto found = std::find_if(all.begin(), all.end(), [&](const Actuation& actuation) {
-    return actuation.name == continuation.name;
-  });
-  if (found != all.end()) {
-    continuation.number = static_cast<int>(found - all.begin());
-    return true;
+  continuation.number = find_by_name(items, continuation.name);
+  if (!continuation.number) {
+    diagnostics.add(path, none_of_that_name(what, items, continuation.name));
   }
-  std::vector<std::string> names;
-  for (const Actuation& actuation : all) names.push_back(actuation.name);
-  const std::string near = did_you_mean(continuation.name, names);
-  context.diagnostics.add(path, fmt::format("there is no actuation '{}'{}", continuation.name,
-                                            !near.empty()   ? near
-                                            : names.empty() ? "; the scene has none"
-                                                            : "; there is " + listed(names)));
-  return false;
+  return continuation.number.has_value();
+}
+
+bool number_varied(const Scene& scene, const Path& path, Diagnostics& diagnostics,
+                   ContinuationAnalysis& continuation) {
+  switch (continuation.vary) {
+    case Varied::Loads:
+      return number_varied("load", scene.loads, path, diagnostics, continuation);
+    case Varied::Supports:
+      return number_varied("support", scene.supports, path, diagnostics, continuation);
+    case Varied::Actuations:
+      break;
+  }
+  return number_varied("actuation", scene.actuations, path, diagnostics, continuation);
 }
 
 /// Whether what a continuation varies is there.
@@ -322,7 +403,7 @@ void check_continuation(CheckContext& context) {
   const auto [kind, scaled, remedy, count] = varied_kind(context.scene, continuation->vary);
   if (context.diagnostics.under({kind})) return;
   const Path path{"analysis", "continuation", "vary"};
-  if (!find_actuation(context, path, *continuation)) return;
+  if (!number_varied(context.scene, path, context.diagnostics, *continuation)) return;
   if (continuation->number && static_cast<std::size_t>(*continuation->number) >= count) {
     context.diagnostics.add(path,
                             fmt::format("there is no {}.{}: the scene has {} of them, counted "

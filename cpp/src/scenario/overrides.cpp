@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "der/scenario/value_override.hpp"
 #include "scenario/suggestion.hpp"
 
 namespace der::scenario {
@@ -149,14 +150,17 @@ class Change {
   Value value_;
 };
 
-}  // namespace
+Value as_value(const Value& value) { return value; }
+Value as_value(const std::string& text) { return parsed_value(text); }
 
-Document with_overrides(const Document& document, const std::vector<Override>& overrides) {
+template <class New>
+Document with_changes(const Document& document,
+                      const std::vector<std::pair<std::string, New>>& overrides) {
   Value root = document.root();
   std::vector<Diagnostic> astray;
-  for (const auto& [path, text] : overrides) {
+  for (const auto& [path, value] : overrides) {
     try {
-      Change(path, parsed_value(text)).apply(root);
+      Change(path, as_value(value)).apply(root);
     } catch (const Astray& error) {
       astray.push_back({0, 0, path, error.message});
     }
@@ -165,4 +169,19 @@ Document with_overrides(const Document& document, const std::vector<Override>& o
   return Document(std::move(root), document.source());
 }
 
+}  // namespace
+
+Document with_overrides(const Document& document, const std::vector<Override>& overrides) {
+  return with_changes(document, overrides);
+}
+
 }  // namespace der::scenario
+
+namespace der {
+
+Scenario with_values(const Scenario& scenario, const std::vector<ValueOverride>& values) {
+  return Scenario::from_document(std::make_shared<const scenario::Document>(
+      scenario::with_changes(scenario.document(), values)));
+}
+
+}  // namespace der

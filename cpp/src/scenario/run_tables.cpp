@@ -66,6 +66,8 @@ Table<ProbeText> probe_table() {
                 "In place of `at`: the extreme along the rod.")
       .optional("support", &Probe::support, named_support_format(),
                 "In place of `rod`, for reactions: the number of the support, counted from 0.")
+      .optional("actuation", &Probe::actuation, name(),
+                "In place of `rod`, for what an actuation exerts: its name.")
       .optional("reduce", &Probe::over,
                 choice<Reduce>({{{"min", "the least value"}, Reduce::Min},
                                 {{"max", "the greatest value"}, Reduce::Max}}),
@@ -78,7 +80,7 @@ Table<ProbeText> probe_table() {
                 "and tension at a force, support or sphere, all of these, slope and tangent at a "
                 "corner; without it, after the place.")
       .at_most_one({{"at"}, {"over", "reduce"}})
-      .at_most_one({{"rod"}, {"support"}});
+      .at_most_one({{"rod"}, {"support"}, {"actuation"}});
 }
 
 /// A mapping from free names to probes.

@@ -9,6 +9,7 @@
 #include "der/core/printable.hpp"
 #include "der/scenario/load.hpp"
 #include "der/scenario/scenario.hpp"
+#include "der/scenario/stretch_profile.hpp"
 #include "der/simulation.hpp"
 #include "scenario/suggestion.hpp"
 
@@ -38,6 +39,7 @@ struct WhyNothing {
 
 /// The same by the name; "" if the scene has no such name.
 std::string why_nothing(const scenario::Scene& scene, const std::string& name) {
+  if (name.empty()) return {};  // as loads without a name have it
   for (const auto& support : scene.supports) {
     if (support.name != name) continue;
     return "this support prescribes nothing: give it 'prescribe', as in 'prescribe: {x: 0}'";
@@ -94,8 +96,9 @@ std::string not_settable(std::string_view given, const Model& model, const scena
   }
   const std::string why = why_nothing(scene, first);
   if (!why.empty()) return fmt::format("'{}' cannot be set: {}", first, why);
-  return fmt::format("nothing that could be set has the name '{}'{}", first,
-                     how_to_name(scene, first, model.named));
+  const std::string& whole = first.empty() ? name : first;
+  return fmt::format("nothing that could be set has the name '{}'{}", whole,
+                     how_to_name(scene, whole, model.named));
 }
 
 /// The first control that moves this component; Error if the scene prescribes none.
@@ -125,19 +128,28 @@ bool is_elongation(const Model& model, Index control) {
   });
 }
 
+std::string half_a_turn(const SharpTurn& turn, const Model& model) {
+  return fmt::format(
+      "{} would turn the edges of rod '{}' at node {} by {:.3g} rad without stress, and edges turn "
+      "by less than half a turn: set smaller curvatures, or give the rod about {:g} nodes",
+      listed(turn.names), turn.rod, turn.node, turn.angle,
+      scenario::fine_nodes(turn.curvature, model.rod(turn.rod).rest_length()));
+}
+
 }  // namespace
 
 const Simulation::Settable& Simulation::settable(std::string_view name) const {
-  const auto found = settable_.find(name);
-  if (found != settable_.end()) return found->second;
+  const auto found = constants_->settable.find(name);
+  if (found != constants_->settable.end()) return found->second;
   throw Error("model_error", not_settable(name, model_, scenario_.scene()));
 }
 
 void Simulation::set(std::string_view name, const std::vector<double>& values,
                      std::optional<double> over) {
   const Settable& found = settable(name);
-  check_values(found, values);
   const double end = end_of_ramp(over);
+  check_values(found, values, end);
+  check_turns(found, values, end);
   const double* value = values.data();
   for (const ControlComponent* each = found.begin; each != found.end; ++each, ++value) {
     for (const Index control : each->controls) drive(control, *value, end);
@@ -154,7 +166,8 @@ std::vector<double> Simulation::value(std::string_view name) const {
   return values;
 }
 
-void Simulation::check_values(const Settable& found, const std::vector<double>& values) const {
+void Simulation::check_values(const Settable& found, const std::vector<double>& values,
+                              double end) {
   const std::string& name = found.whole->name;
   if (values.size() != found.size()) {
     throw Error("model_error", fmt::format("'{}' takes {} value{}, for {}, but here {} {}", name,
@@ -165,14 +178,14 @@ void Simulation::check_values(const Settable& found, const std::vector<double>& 
   for (std::size_t i = 0; i < values.size(); ++i) {
     const ControlComponent& component = found.begin[i];
     for (const Index control : component.controls) {
-      const std::string problem = why_not(control, values[i]);
+      const std::string problem = why_not(control, values[i], end);
       if (problem.empty()) continue;
       throw Error("model_error", fmt::format("'{}': {} {}", name, component.name, problem));
     }
   }
 }
 
-std::string Simulation::why_not(Index control, double value) const {
+std::string Simulation::why_not(Index control, double value, double end) {
   if (!std::isfinite(value)) return fmt::format("must be finite, got {}", value);
   if (model_.load_variation && model_.load_variation->controls.change[control] != 0.0) {
     return "follows the load factor of the scene's analysis: set it in a scene that does not vary "
@@ -182,7 +195,60 @@ std::string Simulation::why_not(Index control, double value) const {
     return fmt::format("must be greater than -1, at which the stretch has no length left, got {:g}",
                        value);
   }
-  return {};
+  if (elongation_limits_.empty()) return {};
+  return why_too_short({control, state_.time, end, control_value(model_, state_, control), value});
+}
+
+std::string Simulation::why_too_short(const Ramp& ramp) {
+  if (!elongation_limits_.sums(ramp.control)) return {};
+  std::optional<ShortenedEdge> found = elongation_limits_.shortest(model_, state_, ramp.end, &ramp);
+  for (const Ramp& other : state_.ramps) {
+    if (found) break;
+    if (other.control == ramp.control || other.end <= state_.time) continue;
+    found = elongation_limits_.shortest(model_, state_, other.end, &ramp);
+  }
+  if (!found) return {};
+  const auto of_others = found->of_others(ramp.control);
+  return fmt::format(
+      "must be greater than {:.4g}{}{}: the edge from {:.6g} m to {:.6g} m would be shortened by "
+      "{:.4g} of its length{}, got {:g}",
+      found->least_of(ramp.control), of_others.empty() ? "" : " while ", of_others, found->from,
+      found->to, found->shortening,
+      found->at_clamp ? ", and one beside a clamp needs a quarter" : "", ramp.to);
+}
+
+void Simulation::check_turns(const Settable& found, const std::vector<double>& values, double end) {
+  if (turning_limits_.empty() || !turning_limits_.bends(found.begin->controls.front())) return;
+  const std::optional<SharpTurn> turn =
+      turning_limits_.sharpest(model_, state_, {found.begin, values.data(), values.size(), end});
+  if (!turn) return;
+  if (!turn->is_possible) throw Error("model_error", half_a_turn(*turn, model_));
+  if (!coarse_rods_.insert(turn->rod).second) return;
+  warnings_.push_back(
+      fmt::format("rod '{}' is too coarse for {}: without stress the edges turn by {:.2g} rad at "
+                  "node {}. Give it about {:g} nodes",
+                  turn->rod, listed(turn->names), turn->angle, turn->node,
+                  scenario::fine_nodes(turn->curvature, model_.rod(turn->rod).rest_length())));
+}
+
+void Simulation::check_rest_shape() {
+  if (state_.ramps.empty()) return;
+  const double end = end_of_ramp(std::nullopt);
+  if (!turning_limits_.empty()) {
+    const std::optional<SharpTurn> turn = turning_limits_.sharpest(model_, state_, end);
+    if (turn && !turn->is_possible) {
+      throw Error("model_error",
+                  fmt::format("at t = {:.6g} s {}", end, half_a_turn(*turn, model_)));
+    }
+  }
+  if (elongation_limits_.empty()) return;
+  const std::optional<ShortenedEdge> found = elongation_limits_.shortest(model_, state_, end);
+  if (!found) return;
+  throw Error("model_error",
+              fmt::format("at t = {:.6g} s {} would shorten the edge of rod '{}' from {:.6g} m to "
+                          "{:.6g} m by {:.4g} of its length: set greater elongations",
+                          end, found->of_others(-1), found->rod, found->from, found->to,
+                          found->shortening));
 }
 
 double Simulation::end_of_ramp(std::optional<double> over) const {
@@ -200,10 +266,17 @@ double Simulation::end_of_ramp(std::optional<double> over) const {
 }
 
 void Simulation::drive(Index control, double value, double end) {
-  const Ramp ramp{control, state_.time, end, control_value(model_, state_, control), value};
+  Ramp ramp{control, state_.time, end, control_value(model_, state_, control), value};
   const auto known =
       std::find_if(state_.ramps.begin(), state_.ramps.end(),
                    [control](const Ramp& earlier) { return earlier.control == control; });
+  const auto past = [&](double time) {
+    if (known != state_.ramps.end()) return known->past(time);
+    return control_value(model_, state_, control, time);
+  };
+  ramp.step = state_.last_step;
+  ramp.before = past(state_.time - ramp.step);
+  ramp.earlier = past(state_.time - 2.0 * ramp.step);
   if (known == state_.ramps.end()) {
     state_.ramps.push_back(ramp);
   } else {
@@ -216,7 +289,7 @@ void Simulation::prescribe(std::size_t support, const std::string& component, do
   const double end = end_of_ramp(std::nullopt);
   for (const PrescribedControl& moved : model_.prescribed) {
     if (moved.support != support || moved.component != component) continue;
-    if (const std::string problem = why_not(moved.control, value); !problem.empty()) {
+    if (const std::string problem = why_not(moved.control, value, end); !problem.empty()) {
       throw Error("model_error", fmt::format("support {}: {} {}", support, component, problem));
     }
     drive(moved.control, value, end);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "der/assembly/structure.hpp"
 #include "der/building/builder.hpp"
 #include "der/building/out_of_plane_model.hpp"
 #include "der/core/error.hpp"
@@ -52,18 +53,55 @@ std::string why_not_tested_out_of_plane(const scenario::Scene& scene, const Mode
 
 }  // namespace
 
+Simulation::Constants::Constants(Scenario scene)
+    : scenario(std::move(scene)),
+      model(build_model(scenario.scene())),
+      settable(settable_in(model)),
+      not_tested(why_not_tested_out_of_plane(scenario.scene(), model)) {}
+
+std::shared_ptr<const Simulation::Constants> Simulation::constants_like(Scenario scenario,
+                                                                        const Simulation& like) {
+  if (&scenario.scene() == &like.scenario().scene()) return like.constants_;
+  auto constants = std::make_shared<const Constants>(std::move(scenario));
+  const std::string difference = structural_difference(constants->model, like.model_);
+  if (!difference.empty()) {
+    throw Error(
+        "model_error",
+        fmt::format("only numbers of a scene may differ, not its structure: {}", difference));
+  }
+  return constants;
+}
+
+std::shared_ptr<const Assembler> Simulation::assembler_like(const Simulation* like) const {
+  const MatrixLayout& layout = solver_.solver->layout();
+  if (like == nullptr || !layout.same_slots(like->solver_.solver->layout())) {
+    return std::make_shared<const Assembler>(model_, layout);
+  }
+  return constants_ == like->constants_
+             ? like->assembler_
+             : std::make_shared<const Assembler>(model_, *like->assembler_);
+}
+
 Simulation::Simulation(Scenario scenario)
-    : scenario_(std::move(scenario)),
-      model_(build_model(scenario_.scene())),
-      settable_(settable_in(model_)),
-      pattern_(build_pattern(model_)),
+    : Simulation(std::make_shared<const Constants>(std::move(scenario)), nullptr) {}
+
+Simulation::Simulation(Scenario scenario, const Simulation& like)
+    : Simulation(constants_like(std::move(scenario), like), &like) {}
+
+Simulation::Simulation(std::shared_ptr<const Constants> constants, const Simulation* like)
+    : constants_(std::move(constants)),
+      scenario_(constants_->scenario),
+      model_(constants_->model),
+      elongation_limits_(model_),
+      turning_limits_(model_),
+      pattern_(like != nullptr ? like->pattern_
+                               : std::make_shared<const Pattern>(build_pattern(model_))),
       solver_(make_linear_solver(
-          scenario_.scene().solver.linear, pattern_,
+          scenario_.scene().solver.linear, *pattern_,
           scenario_.scene().is_dynamic() ? Elimination::FromBothEnds : Elimination::FromStart)),
-      assembler_(model_, solver_.solver->layout()),
-      not_tested_(why_not_tested_out_of_plane(scenario_.scene(), model_)),
+      assembler_(assembler_like(like)),
       stepper_info_(find_stepper(scenario_.scene().time.integrator)),
-      stepper_(make_stepper(stepper_info_.name, model_, assembler_, *solver_.solver,
+      stepper_(make_stepper(stepper_info_.name, model_, *assembler_, *solver_.solver,
                             stepper_options(scenario_.scene()))),
       energy_watch_(model_),
       support_motion_(model_),
@@ -81,7 +119,7 @@ Simulation::Simulation(Scenario scenario)
   plan_ = plan_steps(scene, stable_step);
   if (time.stepping == scenario::Stepping::Adaptive) {
     adaptive_.emplace(
-        model_, assembler_, *stepper_, stepper_info_,
+        model_, *assembler_, *stepper_, stepper_info_,
         AdaptiveOptions{time.tolerance, time.duration, time.minimum_step, plan_.largest_step});
   }
 }

@@ -22,13 +22,13 @@ EquilibriumReport Simulation::equilibrium(bool leave_saddles) {
   if (OutOfPlaneTest* test = out_of_plane_test()) {
     report.out_of_plane->stability = test->stability(configuration_of(model_, state_));
   } else {
-    report.out_of_plane->not_tested = not_tested_;
+    report.out_of_plane->not_tested = constants_->not_tested;
   }
   return report;
 }
 
 OutOfPlaneTest* Simulation::out_of_plane_test() {
-  if (model_.dimension == 2 && not_tested_.empty() && !out_of_plane_) {
+  if (model_.dimension == 2 && constants_->not_tested.empty() && !out_of_plane_) {
     out_of_plane_ = std::make_unique<OutOfPlaneTest>(scenario_.scene(), model_);
   }
   return out_of_plane_.get();
@@ -56,7 +56,7 @@ EquilibriumReport Simulation::settle(bool leave_saddles) {
   // Solved once, not at every step: one more iteration takes the last digits too.
   options.newton.step_tolerance *= 0.01;
   options.leave_saddles = leave_saddles;
-  EquilibriumReport report = find_equilibrium(model_, assembler_, *solver_.solver, options, found);
+  EquilibriumReport report = find_equilibrium(model_, *assembler_, *solver_.solver, options, found);
   counters_.newton_iterations += report.newton_iterations;
   if (report.failed) {
     throw NotConvergedError(
@@ -81,7 +81,7 @@ std::vector<Mode> Simulation::modes(int count) {
   }
   constexpr double kBalanced = 1e-6;
   const Forces now = forces();
-  Stiffness stiffness(model_, assembler_, *solver_.solver);
+  Stiffness stiffness(model_, *assembler_, *solver_.solver);
   stiffness.evaluate(now.here);
   const double unbalanced = model_.dofs.largest_free_force(now.gradient - now.external);
   const double acting =
@@ -92,7 +92,7 @@ std::vector<Mode> Simulation::modes(int count) {
                             "balance here: call equilibrium() first",
                             unbalanced));
   }
-  return vibration_modes(model_, assembler_, *solver_.solver, now.here, count);
+  return vibration_modes(model_, *assembler_, *solver_.solver, now.here, count);
 }
 
 LinearBuckling Simulation::buckling(int count) {
@@ -103,7 +103,7 @@ LinearBuckling Simulation::buckling(int count) {
   Undo undo(state_, before);
   state_.load_factor = 0.0;
   settle();
-  LinearBuckling result = linear_buckling(model_, assembler_, *solver_.solver, state_, count);
+  LinearBuckling result = linear_buckling(model_, *assembler_, *solver_.solver, state_, count);
   state_.load_factor = 1.0;
   undo.keep();
   return result;
@@ -141,7 +141,7 @@ std::vector<PathBranch> Simulation::follow() {
   options.max_points = analysis->points;
   options.branching = analysis->branches;
   auto path =
-      follow_path(model_, assembler_, *solver_.solver, options, out_of_plane_test(), state_);
+      follow_path(model_, *assembler_, *solver_.solver, options, out_of_plane_test(), state_);
   undo.keep();
   return path;
 }
@@ -163,25 +163,25 @@ Simulation::Forces Simulation::forces() const {
   now.gradient.resize(model_.num_dofs());
   configuration_of(model_, state_, now.here);
   external_force(model_, now.here, state_.extra_force, now.external);
-  assembler_.gradient(now.here, now.gradient);
+  assembler_->gradient(now.here, now.gradient);
   return now;
 }
 
 Vector Simulation::gradient() const { return forces().unbalanced(model_); }
 
 SymmetricMatrix Simulation::hessian() const {
-  const Assembler assembler(model_, MatrixLayout::compressed(pattern_));
+  const Assembler assembler(model_, MatrixLayout::compressed(*pattern_));
   Vector gradient(model_.num_dofs());
   Vector values(assembler.num_values());
   assembler.gradient_and_hessian(configuration_of(model_, state_), gradient, values);
-  return {pattern_, values.head(pattern_.nonzeros())};
+  return {*pattern_, values.head(pattern_->nonzeros())};
 }
 
 SymmetricMatrix Simulation::mass() const {
-  const Assembler assembler(model_, MatrixLayout::compressed(pattern_));
+  const Assembler assembler(model_, MatrixLayout::compressed(*pattern_));
   Vector values = Vector::Zero(assembler.num_values());
   assembler.add_mass(model_.mass, 1.0, values);
-  return {pattern_, values.head(pattern_.nonzeros())};
+  return {*pattern_, values.head(pattern_->nonzeros())};
 }
 
 }  // namespace der

@@ -46,6 +46,7 @@ void Simulation::step() {
   }
   Undo undo(state_, before_step_);
   if (const std::string found = find_nonfinite(); !found.empty()) throw DivergedError(found);
+  check_rest_shape();
   if (energy_watch_.was_written(state_)) der::follow(model_, state_);
   const bool was_finished = finished();
   energy_watch_.before_step(state_);

@@ -75,6 +75,8 @@ std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& st
     return values.head(solver.layout().num_values()).lpNorm<Eigen::Infinity>();
   };
   if (entries(k1) == 0.0) return {};
+  constexpr double kTrusted = 0.02;  // relative change of a factor from the matrix to the elements
+  constexpr double kHidden = 0.01;   // share of a factor that the rounding of K0 hides
   const double unit = entries(k0) / entries(k1);
   constexpr double kLeast = 1e-18;
   constexpr double kMost = 1e8;
@@ -91,8 +93,15 @@ std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& st
     const Vector shape = over_all_dofs(model, same.back());
     // Taken element by element, the quotient keeps the digits of slender rods.
     const double exact = -second_variation(model, here, shape) / stress.variation(shape);
-    // Where K1 is much larger than K0, its rounding errors cause spurious critical factors.
-    if (!(std::abs(exact / (unit * factor) - 1.0) < 0.5)) break;
+    if (!(std::abs(exact / (unit * factor) - 1.0) < kTrusted)) {
+      // Where K1 is much larger than K0, its rounding errors cause spurious critical factors.
+      const double rounding = stiffness.rounding() * same.back().squaredNorm();
+      if (rounding < kHidden * unit * factor * std::abs(stress.variation(shape))) break;
+      throw NotConvergedError(
+          "the buckling loads are lost in the rounding errors of the stiffness against stretching: "
+          "give the rods fewer nodes, or a smaller EA",
+          status_of(EquilibriumFailure::LostInRoundoff));
+    }
     modes.push_back({exact, scaled(model, shape)});
     before = factor;
     low = factor * (1.0 - 1e-12);

@@ -116,7 +116,7 @@ struct Noise {
 
 Noise matrix_noise(Stiffness& stiffness, const Model& model) {
   Noise noise;
-  noise.square = stiffness.rounding() / model.mass.lower_bound()(model.dofs.free()).minCoeff();
+  noise.square = stiffness.rounding_over(model.mass.lower_bound());
   const auto below = [&](double square) {
     return stiffness.factorize(-square, model.mass).negative_pivots;
   };

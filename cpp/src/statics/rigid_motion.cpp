@@ -52,36 +52,117 @@ void mark_held_by_springs(const Model& model, int component, const std::vector<I
   });
 }
 
-/// Displacements of a part as a rigid body, one a column: along x, along y, and turning about its
-/// middle. Entries are up to about 1.
-Eigen::MatrixX3d rigid_motions(const Model& model, const Vector& positions,
-                               const std::vector<Index>& nodes) {
-  const auto point = [&](Index node) -> Vec2 { return positions.segment<2>(model.dof(node, 0)); };
-  Vec2 middle = Vec2::Zero();
-  for (const Index node : nodes) middle += point(node) / static_cast<double>(nodes.size());
-  Eigen::MatrixX3d motions = Eigen::MatrixX3d::Zero(model.num_dofs(), 3);
-  for (const Index node : nodes) {
-    const Vec2 arm = (point(node) - middle) / model.size();
-    motions.row(model.dof(node, 0)) << 1.0, 0.0, -arm.y();
-    motions.row(model.dof(node, 1)) << 0.0, 1.0, arm.x();
-  }
-  return motions;
-}
+/// A structure as a rigid body: along each axis, and turning in the plane or about each axis.
+template <int Dimension>
+struct RigidBody;
+template <>
+struct RigidBody<2> {
+  static constexpr std::array kMotions{"moving along x", "moving along y", "turning"};
+  /// How `arm` [-] moves, a column for each way of turning.
+  static Vec2 turned(const Vec2& arm) { return {-arm.y(), arm.x()}; }
+};
+template <>
+struct RigidBody<3> {
+  static constexpr std::array kMotions{"moving along x",  "moving along y",  "moving along z",
+                                       "turning about x", "turning about y", "turning about z"};
+  static Mat3 turned(const Vec3& arm) { return -cross_matrix(arm); }
+};
 
-/// Those combinations of rigid motions, one a column, that move no held degree of freedom.
-std::vector<Eigen::Vector3d> permitted(const Model& model, const Eigen::MatrixX3d& motions) {
-  constexpr double kStill = 1e-12;  // sum of the squares of what is held
-  Eigen::Matrix3d held = Eigen::Matrix3d::Zero();
-  for (const HeldDof& dof : model.held) {
-    held += motions.row(dof.dof).transpose() * motions.row(dof.dof);
+template <int Dimension>
+class RigidMotions {
+ public:
+  static constexpr int kCount = static_cast<int>(RigidBody<Dimension>::kMotions.size());
+  using Combination = Eigen::Matrix<double, kCount, 1>;
+
+  /// Those of the part with `nodes`. `part`: for each node the first of its part.
+  RigidMotions(const Model& model, const Configuration& here, const std::vector<Index>& part,
+               const std::vector<Index>& nodes)
+      : model_(model), part_(part), first_(part[to_size(nodes.front())]) {
+    displace(here.coordinates, nodes);
+    turn_sections(here);
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(held);
-  std::vector<Eigen::Vector3d> found;
-  for (int i = 0; i < 3; ++i) {
-    if (solver.eigenvalues()[i] <= kStill) found.emplace_back(solver.eigenvectors().col(i));
+
+  /// Displacements of all degrees of freedom [m, rad], one motion a column. Turning is scaled by
+  /// the size of the model, so that entries are up to about 1.
+  [[nodiscard]] const Eigen::Matrix<double, Eigen::Dynamic, kCount>& columns() const {
+    return columns_;
   }
-  return found;
-}
+
+  /// Those combinations that move no held degree of freedom and turn no clamped tangent.
+  [[nodiscard]] std::vector<Combination> permitted(const Vector& controls) const {
+    constexpr double kStill = 1e-12;  // sum of the squares of what is held
+    Eigen::Matrix<double, kCount, kCount> held = Eigen::Matrix<double, kCount, kCount>::Zero();
+    for (const HeldDof& dof : model_.held) {
+      held += columns_.row(dof.dof).transpose() * columns_.row(dof.dof);
+    }
+    for (const RodLayout& rod : model_.rods) {
+      if (part_[to_size(rod.nodes.front())] != first_) continue;
+      for (const Clamp& clamp : rod.clamps) held += turned_tangent(clamp, controls);
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, kCount, kCount>> solver(held);
+    std::vector<Combination> found;
+    for (int i = 0; i < kCount; ++i) {
+      if (solver.eigenvalues()[i] <= kStill) found.emplace_back(solver.eigenvectors().col(i));
+    }
+    return found;
+  }
+
+  static const char* in_words(const Combination& combination) {
+    Eigen::Index largest = 0;
+    combination.cwiseAbs().maxCoeff(&largest);
+    return RigidBody<Dimension>::kMotions[static_cast<std::size_t>(largest)];
+  }
+
+ private:
+  using Vec = Eigen::Matrix<double, Dimension, 1>;
+  static constexpr int kTurns = kCount - Dimension;
+
+  void displace(const Vector& positions, const std::vector<Index>& nodes) {
+    const auto point = [&](Index node) -> Vec {
+      return positions.segment<Dimension>(model_.dof(node, 0));
+    };
+    Vec middle = Vec::Zero();
+    for (const Index node : nodes) middle += point(node) / static_cast<double>(nodes.size());
+    columns_.setZero(model_.num_dofs(), kCount);
+    for (const Index node : nodes) {
+      auto rows = columns_.template middleRows<Dimension>(model_.dof(node, 0));
+      rows.template leftCols<Dimension>().setIdentity();
+      rows.template rightCols<kTurns>() =
+          RigidBody<Dimension>::turned((point(node) - middle) / model_.size());
+    }
+  }
+
+  /// A section that turns with its rod turns about its tangent by the rotation's component along
+  /// it: its reference frame, transported in parallel, does not.
+  void turn_sections(const Configuration& here) {
+    if constexpr (Dimension == 3) {
+      for (const SpatialEdge& edge : model_.framed_edges) {
+        if (part_[to_size(model_.dofs.node_of(edge.start))] != first_) continue;
+        const Vec3 tangent = edge.vector(here.coordinates, here.controls).normalized();
+        columns_.row(edge.theta).template tail<3>() = tangent.transpose() / model_.size();
+      }
+    }
+  }
+
+  /// Squares of the changes of a clamped tangent [-].
+  [[nodiscard]] static Eigen::Matrix<double, kCount, kCount> turned_tangent(
+      const Clamp& clamp, const Vector& controls) {
+    Eigen::Matrix<double, kCount, kCount> squares = Eigen::Matrix<double, kCount, kCount>::Zero();
+    auto turning = squares.template bottomRightCorner<kTurns, kTurns>();
+    if constexpr (Dimension == 2) {
+      turning.setOnes();
+    } else {
+      const Vec3 tangent = clamp.held.tangent(controls);
+      turning = Mat3::Identity() - tangent * tangent.transpose();
+    }
+    return squares;
+  }
+
+  const Model& model_;
+  const std::vector<Index>& part_;
+  Index first_;
+  Eigen::Matrix<double, Eigen::Dynamic, kCount> columns_;
+};
 
 /// d' K d [J] of springs and foundations for a displacement d over all degrees of freedom [m].
 double spring_variation(const Model& model, const Configuration& here, const Vector& displacement) {
@@ -101,35 +182,33 @@ double spring_variation(const Model& model, const Configuration& here, const Vec
   return total;
 }
 
-const char* motion_in_words(const Eigen::Vector3d& combination) {
-  constexpr std::array kWords{"moving along x", "moving along y", "turning"};
-  Eigen::Index largest = 0;
-  combination.cwiseAbs().maxCoeff(&largest);
-  return kWords[static_cast<std::size_t>(largest)];
-}
-
-}  // namespace
-
-std::string find_weakly_held_part(const Model& model, const Configuration& here, double rounding) {
-  if (model.dimension != 2) return "";  // `rigid_motions` has those of the plane alone
+template <int Dimension>
+std::string find_weakly_held(const Model& model, const Configuration& here, double rounding) {
   const std::vector<Index> part = connected_parts(model);
   std::map<Index, std::vector<Index>> nodes_of_part;
   for (Index node = 0; node < model.num_nodes; ++node) {
     nodes_of_part[part[to_size(node)]].push_back(node);
   }
   for (const auto& [first, nodes] : nodes_of_part) {
-    const Eigen::MatrixX3d motions = rigid_motions(model, here.coordinates, nodes);
-    for (const Eigen::Vector3d& combination : permitted(model, motions)) {
-      const Vector motion = motions * combination;
+    const RigidMotions<Dimension> motions(model, here, part, nodes);
+    for (const auto& combination : motions.permitted(here.controls)) {
+      const Vector motion = motions.columns() * combination;
       const double stiffness = spring_variation(model, here, motion);
       if (stiffness <= 0.0 || stiffness >= rounding * motion.squaredNorm()) continue;
       return fmt::format(
           "springs or foundations alone hold rod '{}' against {}, with {:.3g} N/m, which is lost "
           "in the rounding errors of its stiffness against stretching",
-          place_of(model, first).rod, motion_in_words(combination), stiffness);
+          place_of(model, first).rod, motions.in_words(combination), stiffness);
     }
   }
   return "";
+}
+
+}  // namespace
+
+std::string find_weakly_held_part(const Model& model, const Configuration& here, double rounding) {
+  return model.dimension == 2 ? find_weakly_held<2>(model, here, rounding)
+                              : find_weakly_held<3>(model, here, rounding);
 }
 
 std::string find_unheld_part(const Model& model, const Vector& force) {

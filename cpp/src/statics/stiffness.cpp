@@ -49,6 +49,16 @@ double tension_rounding(const Model& model, const Configuration& here, const Vec
   return kDeviations * std::sqrt(squares);
 }
 
+/// By which shifts of the stiffness are multiplied: 1, and of angles the square of the length that
+/// a radian counts as.
+Mass unit_masses(const DofMap& dofs) {
+  Mass units{Vector::Ones(dofs.size()), {}};
+  for (const DofBlock& block : dofs.blocks()) {
+    units.lumped.segment(block.first, block.count).setConstant(block.length * block.length);
+  }
+  return units;
+}
+
 }  // namespace
 
 Stiffness::Stiffness(const Model& model, const Assembler& assembler, LinearSolver& solver)
@@ -57,7 +67,7 @@ Stiffness::Stiffness(const Model& model, const Assembler& assembler, LinearSolve
       solver_(solver),
       gradient_(Vector::Zero(model.num_dofs())),
       values_(Vector::Zero(assembler.num_values())),
-      ones_{Vector::Ones(model.num_dofs()), {}} {}
+      units_(unit_masses(model.dofs)) {}
 
 void Stiffness::evaluate(const Configuration& here) {
   assembler_.gradient_and_hessian(here, gradient_, values_);
@@ -79,6 +89,22 @@ Inertia Stiffness::factorize(double shift, const Mass& mass) {
 double Stiffness::rounding() const {
   // The spare slot at the end collects what belongs to held degrees of freedom.
   return kRoundings * kEpsilon * values_.head(values_.size() - 1).lpNorm<Eigen::Infinity>();
+}
+
+double Stiffness::rounding_over(const Vector& mass) const {
+  // Errors of what the elimination of positions brings into the entries of an angle.
+  constexpr double kEliminated = 32.0;
+  double largest = 0.0;
+  for (const DofBlock& block : model_.dofs.blocks()) {
+    const double error =
+        block.kind == DofKind::Position
+            ? rounding()
+            : kEliminated * kRoundings * kEpsilon * assembler_.largest_diagonal(block, values_);
+    for (Index dof = block.first; dof < block.first + block.count; ++dof) {
+      if (model_.dofs.is_free(dof)) largest = std::max(largest, error / mass[dof]);
+    }
+  }
+  return largest;
 }
 
 Stability Stiffness::stability() {

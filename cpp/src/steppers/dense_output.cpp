@@ -95,11 +95,14 @@ void DenseOutput::add_table_powers(const State& where, const State& start, const
   before_.coordinates = where.positions;
   after_.coordinates = where.positions;
   const ControlWork work = control_work(model_, before_, after_);
+  power.loads += work.loads / dt;
   power.supports += work.supports / dt;
   power.actuation += work.actuation / dt;
-  power.loads += (cell_work(model_, before_.controls, after_.controls) +
-                  driven_gravity_energy(model_, after_) - driven_gravity_energy(model_, before_)) /
-                 dt;
+  power.loads +=
+      (driven_gravity_energy(model_, after_) - driven_gravity_energy(model_, before_)) / dt;
+  before_.coordinates = start.positions;
+  after_.coordinates = end.positions;
+  power.loads += cell_work(model_, before_, after_) / dt;
 }
 
 }  // namespace der

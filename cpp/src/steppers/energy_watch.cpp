@@ -11,7 +11,9 @@
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/from_pivot.hpp"
+#include "der/energies/isotropic_bend.hpp"
 #include "der/energies/planar_bend.hpp"
+#include "der/energies/spatial_bend.hpp"
 
 namespace der {
 namespace {
@@ -35,32 +37,50 @@ double strain_energy(const Model& model, double strain) {
 /// The two edges that an element of bending lies between.
 struct Corner {
   double cosine;  ///< times both lengths
-  double sine;
+  Vec3 binormal;  ///< the sine, likewise, times the axis
 };
-Corner corner(const std::array<Index, 6>& dofs, const Vector& positions) {
-  const auto [before, after] = PlanarBend<AngleCurvature>::edges(gather(dofs, positions));
-  return {before.dot(after), cross(before, after)};
+template <int Dim, class Dofs>
+Corner corner(const Dofs& dofs, const Vector& positions) {
+  const auto edge = [&](std::size_t node) {
+    Vec3 vector = Vec3::Zero();
+    vector.head<Dim>() =
+        positions.segment<Dim>(dofs[Dim * (node + 1)]) - positions.segment<Dim>(dofs[Dim * node]);
+    return vector;
+  };
+  const Vec3 before = edge(0);
+  const Vec3 after = edge(1);
+  return {before.dot(after), before.cross(after)};
 }
 
-template <class Kernel>
-Index folded_node_of(const ElementList<Kernel>& bends, const Model& model, const Vector& before,
-                     const Vector& after) {
-  for (const auto& dofs : bends.dofs) {
-    const Corner now = corner(dofs, after);
+template <int Dim, class Kernel>
+Index folded_node_of(const Model& model, const Vector& before, const Vector& after) {
+  for (const auto& dofs : elements_of<Kernel>(*model.elements).dofs) {
+    const Corner now = corner<Dim>(dofs, after);
     if (now.cosine >= 0.0) continue;
-    const Corner then = corner(dofs, before);
-    if (then.cosine < 0.0 && now.sine * then.sine < 0.0) return model.dofs.node_of(dofs[2]);
+    const Corner then = corner<Dim>(dofs, before);
+    if (then.cosine < 0.0 && now.binormal.dot(then.binormal) < 0.0) {
+      return model.dofs.node_of(dofs[Dim]);
+    }
   }
   return -1;
 }
 
+template <int Dim, class... Kernels>
+Index first_folded_node(const Model& model, const Vector& before, const Vector& after) {
+  Index found = -1;
+  ((found = found >= 0 ? found : folded_node_of<Dim, Kernels>(model, before, after)), ...);
+  return found;
+}
+
 /// The first node whose turning angle has gone through half a turn; -1 if there is none.
 Index folded_node(const Model& model, const Vector& before, const Vector& after) {
-  using Bend = PlanarBend<AngleCurvature>;
-  const Index node = folded_node_of(elements_of<Bend>(*model.elements), model, before, after);
-  return node >= 0
-             ? node
-             : folded_node_of(elements_of<FromPivot<Bend>>(*model.elements), model, before, after);
+  using Planar = PlanarBend<AngleCurvature>;
+  using Isotropic = IsotropicBend<AngleCurvature>;
+  using Spatial = SpatialBend<AngleCurvature>;
+  return model.dimension == 2
+             ? first_folded_node<2, Planar, FromPivot<Planar>>(model, before, after)
+             : first_folded_node<3, Isotropic, FromSpatialPivot<Isotropic>, Spatial,
+                                 FromSpatialPivot<Spatial>>(model, before, after);
 }
 
 std::string created_text(const EnergyAudit& audit, const std::string& times) {

@@ -17,10 +17,11 @@ void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector
   end_.coordinates = positions;
   evaluate_controls(model_, state, state.time + dt, end_.controls);
   const ControlWork work = control_work(model_, start_, end_);
+  state.work.loads += work.loads;
   state.work.supports += work.supports;
   state.work.actuation += work.actuation;
-  state.work.loads += cell_work(model_, start_.controls, end_.controls) +
-                      driven_gravity_energy(model_, end_) - driven_gravity_energy(model_, start_);
+  state.work.loads += cell_work(model_, start_, end_) + driven_gravity_energy(model_, end_) -
+                      driven_gravity_energy(model_, start_);
   for (const HeldDof& held : model_.held) {
     const double before = state.velocities[held.dof];
     const double after = (positions[held.dof] - state.positions[held.dof]) / dt;

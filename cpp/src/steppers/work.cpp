@@ -2,9 +2,12 @@
 
 #include <type_traits>
 
+#include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/registry.hpp"
+#include "der/model/section_place.hpp"
 #include "der/supports/clamp.hpp"
+#include "model/actuated_turn.hpp"
 
 namespace der {
 namespace {
@@ -34,6 +37,56 @@ double energy_given(const Model& model, const Configuration& before, const Confi
     }
   });
   return energy;
+}
+
+/// What the tables of actuations turn in a step [rad].
+Vec3 turned(const ActuatedTurn& turn, const Configuration& start, const Configuration& end) {
+  return turn.at(end.controls) - turn.at(start.controls);
+}
+
+double planar_work_on_actuated_turns(const RodLayout& rod, const Configuration& start,
+                                     const Configuration& end) {
+  double work = 0.0;
+  for (const MomentPlace& place : rod.moment_places) {
+    if (place.moments.empty()) continue;
+    const double turn = turned(actuated_turn(place.arc_length, rod), start, end)[0];
+    for (const Index moment : place.moments) {
+      const double mean = 0.5 * (start.controls[moment] + end.controls[moment]);
+      work += place.series_share(rod.EI) * mean * turn;
+    }
+  }
+  return work;
+}
+
+double spatial_work_on_actuated_turns(const RodLayout& rod, const Model& model,
+                                      const Configuration& start, const Configuration& end) {
+  double work = 0.0;
+  for (const SpatialMomentPlace& place : rod.spatial_moments) {
+    const SectionPlace section = section_place(place.arc_length, rod);
+    const Vec3 turn = turned(actuated_turn(place.arc_length, section, rod), start, end);
+    if (turn.isZero(0.0)) continue;
+    const CirculatoryLoad& load = circulatory_loads(*model.elements)[to_size(place.load)];
+    const auto& edges = std::get<SpatialMoment>(load.kind).edges;
+    const FramedEdge& nearer = section.across[0] < 0.5 ? edges.back() : edges.front();
+    for (const Configuration* there : {&start, &end}) {
+      const Mat3 axes = turning_axes(nearer.frame(*there).frame);
+      work += 0.5 * load.moments(*there).whole.dot(axes * turn);
+    }
+  }
+  return work;
+}
+
+/// Work [J] of moments on the turns that actuations make between the edges and the moments' places:
+/// displacements of nodes do not have it.
+double work_on_actuated_turns(const Model& model, const Configuration& start,
+                              const Configuration& end) {
+  double work = 0.0;
+  for (const RodLayout& rod : model.rods) {
+    if (rod.actuated_stretches.empty()) continue;
+    work += planar_work_on_actuated_turns(rod, start, end) +
+            spatial_work_on_actuated_turns(rod, model, start, end);
+  }
+  return work;
 }
 
 }  // namespace
@@ -66,9 +119,10 @@ double moment_work(const Model& model, const Configuration& here, const Vector& 
 ControlWork control_work(const Model& model, const Configuration& start, const Configuration& end) {
   const bool turns = any_clamp_turns(model);
   if (!model.rest_shape.is_actuated()) {
-    return {turns ? energy_given(model, start, end, start, end) : 0.0, 0.0};
+    return {turns ? energy_given(model, start, end, start, end) : 0.0, 0.0, 0.0};
   }
-  if (!turns) return {0.0, energy_given(model, start, end, start, end)};
+  const double loads = work_on_actuated_turns(model, start, end);
+  if (!turns) return {0.0, energy_given(model, start, end, start, end) - loads, loads};
   // Each of the two changes first, and after the other.
   Configuration turned = end;
   model.rest_shape.copy(start.controls, turned.controls);
@@ -77,7 +131,8 @@ ControlWork control_work(const Model& model, const Configuration& start, const C
   const auto given = [&](const Configuration& before, const Configuration& after) {
     return 0.5 * energy_given(model, before, after, start, end);
   };
-  return {given(start, turned) + given(actuated, end), given(start, actuated) + given(turned, end)};
+  return {given(start, turned) + given(actuated, end),
+          given(start, actuated) + given(turned, end) - loads, loads};
 }
 
 }  // namespace der

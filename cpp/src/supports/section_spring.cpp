@@ -10,6 +10,7 @@
 #include "der/model/frames.hpp"
 #include "der/model/section_place.hpp"
 #include "der/supports/clamp.hpp"
+#include "der/supports/spring.hpp"
 #include "model/corner.hpp"
 
 namespace der {
@@ -39,25 +40,39 @@ Index follow_twist(Index number, const SectionFrame& drawn, Model& model) {
 struct SectionHold {
   Mat3 stiffness = Mat3::Zero();
   std::array<Mat3, 2> weights;
-  Index section_edge = -1;  // whose section the springs hold, number in the model; -1: each its own
+  SectionFrame section;      // the drawn one that the springs hold
+  SectionFrame of_natural;   // the one that lies there where no moment acts and no edge has turned
   bool counts_turns = true;  // whole ones, of the twist
 };
 
-/// In series with the cell in which the rod turns on to the place.
-double in_series(double stiffness, double cell_length, double stiffness_of_rod) {
-  return stiffness / (1.0 + stiffness * cell_length / stiffness_of_rod);
+Index number_of(const RodLayout& rod, Index edge) { return rod.first_edge + rod.position(edge); }
+
+/// The drawn section at `share` of the way from one to another [-].
+SectionFrame between(const SectionFrame& from, const SectionFrame& to, double share) {
+  const Vec3 axis = from.tangent.cross(to.tangent);
+  const double sine = axis.norm();
+  const double angle = share * std::atan2(sine, from.tangent.dot(to.tangent));
+  const Eigen::AngleAxisd bend(angle, sine > 0.0 ? Vec3(axis / sine) : Vec3::UnitZ());
+  return SectionFrame::of(bend * from.tangent, bend * from.first)
+      .turned(share * twist_between(from, to));
 }
 
-/// On one edge, or between two with nearly the same section.
-SectionHold smooth_hold(const Vec3& stiffness, const SectionPlace& place, const RodLayout& rod) {
-  SectionHold hold;
-  hold.stiffness.diagonal() = Vec3(in_series(stiffness[0], place.bend_cell, rod.EI_1),
-                                   in_series(stiffness[1], place.bend_cell, rod.EI_2),
-                                   in_series(stiffness[2], place.twist_cell, rod.GJ));
-  for (std::size_t i = 0; i < place.across.size(); ++i) {
-    hold.weights[i] = Vec3(place.across[i], place.across[i], place.along[i]).asDiagonal();
+/// The drawn section at arc length `s` [m], inter- or extrapolated from the edges, or from the one
+/// edge and the clamp beside it.
+SectionFrame drawn_section_at(double s, const SectionPlace& place, const RodLayout& rod,
+                              const Model& model) {
+  const SectionFrame first = drawn_frame(model, number_of(rod, place.first_edge));
+  const double middle = rod.edge_middle(place.first_edge);
+  if (place.across.size() == 2) {
+    const SectionFrame second = drawn_frame(model, number_of(rod, place.first_edge + 1));
+    const double spacing = rod.edge_middle(place.first_edge + 1) - middle;
+    return between(first, second, (s - middle) / spacing);
   }
-  return hold;
+  const auto beside = place_beside_clamp(rod, s);
+  if (!beside) return first.turned(rod.initial_twist * (s - middle));
+  const Clamp& clamp = rod.clamps[to_size(beside->clamp)];
+  return between(first, clamp.held.drawn,
+                 (s - middle) / (rod.arc_length[to_size(clamp.place)] - middle));
 }
 
 Mat3 axes_of(const SectionFrame& section) {
@@ -73,6 +88,66 @@ Mat3 rotations_of(const SectionFrame& section) {
   return axes;
 }
 
+/// The weighted rotations at which no moment acts: none, where the drawn shape is free of stress.
+/// A natural shape that is given is that of a chain whose nodes do not lie on the drawn curve
+/// (spring.hpp).
+Vec3 natural_rotation(double s, const SectionPlace& place, const SectionFrame& section,
+                      const RodLayout& rod, const Model& model) {
+  Vec3 rotation = Vec3::Zero();
+  if (!rod.natural_curvatures.empty()) {
+    const auto [at_start, at_end] = natural_turn_lengths(rod, s, place.first_edge, place.across);
+    rotation.head<2>() = at_start * rod.natural_curvatures.front() +
+                         at_end * rod.natural_curvatures[to_size(rod.num_edges())];
+    if (place.across.size() == 2) {
+      const double middle = rod.edge_middle(place.first_edge);
+      const double spacing = rod.edge_middle(place.first_edge + 1) - middle;
+      const Vec3 first = drawn_frame(model, number_of(rod, place.first_edge)).tangent;
+      const Vec3 second = drawn_frame(model, number_of(rod, place.first_edge + 1)).tangent;
+      const Eigen::AngleAxisd bend(Eigen::Quaterniond::FromTwoVectors(first, second));
+      rotation += ((s - middle) / spacing - place.across[1]) * rotations_of(section).transpose() *
+                  (bend.angle() * bend.axis());
+    }
+  }
+  if (const double beyond = beyond_outer_middle(rod, s);
+      beyond > 0.0 && !rod.natural_twist.empty()) {
+    const bool start = s < rod.edge_middle(0);
+    const double twist =
+        start ? rod.natural_twist.front() : -rod.natural_twist[to_size(rod.num_edges())];
+    rotation.z() += beyond * (twist - (start ? 1.0 : -1.0) * rod.initial_twist);
+  }
+  return rotation;
+}
+
+/// A section turned by the opposite of a rotation towards its directors and of a twist.
+SectionFrame turned_back(const SectionFrame& section, const Vec3& rotation) {
+  const double angle = rotation.norm();
+  if (angle == 0.0) return section;
+  const Eigen::AngleAxisd turn(-angle, rotations_of(section) * rotation / angle);
+  return SectionFrame::of(turn * section.tangent, turn * section.first);
+}
+
+/// In series with the cell in which the rod turns on to the place.
+double in_series(double stiffness, double cell_length, double stiffness_of_rod) {
+  return stiffness / (1.0 + stiffness * cell_length / stiffness_of_rod);
+}
+
+/// On one edge, or between two with nearly the same section.
+SectionHold smooth_hold(const SectionSpringPlace& spring, const SectionPlace& place,
+                        const RodLayout& rod, const Model& model) {
+  SectionHold hold;
+  const Vec3& stiffness = spring.stiffness;
+  hold.stiffness.diagonal() = Vec3(in_series(stiffness[0], place.bend_cell, rod.EI_1),
+                                   in_series(stiffness[1], place.bend_cell, rod.EI_2),
+                                   in_series(stiffness[2], place.twist_cell, rod.GJ));
+  for (std::size_t i = 0; i < place.across.size(); ++i) {
+    hold.weights[i] = Vec3(place.across[i], place.across[i], place.along[i]).asDiagonal();
+  }
+  hold.section = drawn_section_at(spring.arc_length, place, rod, model);
+  hold.of_natural = turned_back(
+      hold.section, natural_rotation(spring.arc_length, place, hold.section, rod, model));
+  return hold;
+}
+
 /// Between two edges with different sections, at a corner. Rod before the place and beyond it turns
 /// with the compliances A and B about all axes. The moment of the springs on the rod, m, makes the
 /// one in it jump, and the section turns by B (A + B)^-1 r_a + A (A + B)^-1 r_b + D m, with the
@@ -83,16 +158,17 @@ SectionHold corner_hold(const Vec3& stiffness, double s, Index first_edge, const
   const double corner = rod.arc_length_at(second_edge);
   const double start = rod.edge_middle(first_edge);
   const double end = rod.edge_middle(second_edge);
-  const auto number = [&](Index edge) { return rod.first_edge + rod.position(edge); };
   SectionHold hold;
-  hold.section_edge = number(s < corner - rod.same_place() ? first_edge : second_edge);
+  hold.section =
+      drawn_frame(model, number_of(rod, s < corner - rod.same_place() ? first_edge : second_edge));
+  hold.of_natural = hold.section;
   // The angle of an edge tells the turns about its own tangent alone.
   hold.counts_turns = !is_corner(rod, second_edge, model);
 
-  const Mat3 section = rotations_of(drawn_frame(model, hold.section_edge));
+  const Mat3 section = rotations_of(hold.section);
   const Vec3 softness = Vec3(rod.EI_1, rod.EI_2, rod.GJ).cwiseInverse();
   const auto compliance = [&](Index edge, double from, double to) -> Mat3 {
-    const Mat3 own = section.transpose() * rotations_of(drawn_frame(model, number(edge)));
+    const Mat3 own = section.transpose() * rotations_of(drawn_frame(model, number_of(rod, edge)));
     return std::max(0.0, to - from) * own * softness.asDiagonal() * own.transpose();
   };
   const Mat3 before =
@@ -121,7 +197,7 @@ SectionHold hold_at(const SectionSpringPlace& spring, const SectionPlace& place,
   if (resists && place.across.size() == 2 && sections_differ(place.first_edge, rod, model)) {
     return corner_hold(spring.stiffness, spring.arc_length, place.first_edge, rod, model);
   }
-  return smooth_hold(spring.stiffness, place, rod);
+  return smooth_hold(spring, place, rod, model);
 }
 
 /// Returns the number of the element in its list.
@@ -132,7 +208,7 @@ Index add_element(const SectionHold& hold, Index first_edge, const RodLayout& ro
   typename Kernel::Constants constants;
   constants.stiffness = hold.stiffness;
   for (Index i = 0; i < Edges; ++i) {
-    const Index number = rod.first_edge + rod.position(first_edge + i);
+    const Index number = number_of(rod, first_edge + i);
     const SpatialEdge& edge = model.framed_edges[to_size(number)];
     for (Index c = 0; c < 3; ++c) {
       dofs[to_size(3 * i + c)] = edge.start + c;
@@ -143,14 +219,11 @@ Index add_element(const SectionHold& hold, Index first_edge, const RodLayout& ro
     held.block = FrameBlock::of(number);
     held.first = edge.first;
     held.last = edge.last;
-    held.drawn = drawn_frame(model, number);
     held.weights = hold.weights[to_size(i)];
-    if (hold.counts_turns) held.reference_twist = follow_twist(number, held.drawn, model);
-    if (hold.section_edge >= 0) {
-      const SectionFrame section = drawn_frame(model, hold.section_edge);
-      held.carried = axes_of(held.drawn).transpose() * axes_of(section);
-      held.drawn = section;
-    }
+    const SectionFrame own = drawn_frame(model, number);
+    if (hold.counts_turns) held.reference_twist = follow_twist(number, own, model);
+    held.carried = axes_of(own).transpose() * axes_of(hold.of_natural);
+    held.drawn = hold.section;
   }
   auto& springs = elements_of<Kernel>(*model.elements);
   springs.add(dofs, constants);
@@ -165,7 +238,7 @@ void add_to_section_spring(double s, const Vec3& stiffness, RodLayout& rod) {
     known.stiffness += stiffness;
     return;
   }
-  rod.section_springs.push_back({s, stiffness, -1});
+  rod.section_springs.push_back({s, stiffness});
 }
 
 void add_section_springs(RodLayout& rod, Model& model) {
@@ -177,8 +250,9 @@ void add_section_springs(RodLayout& rod, Model& model) {
       place.bend_cell = place.twist_cell = 0.0;
     }
     const SectionHold hold = hold_at(spring, place, rod, model);
-    spring.element = place.across.size() == 1 ? add_element<1>(hold, place.first_edge, rod, model)
-                                              : add_element<2>(hold, place.first_edge, rod, model);
+    spring.on_one_edge = place.across.size() == 1;
+    spring.element = spring.on_one_edge ? add_element<1>(hold, place.first_edge, rod, model)
+                                        : add_element<2>(hold, place.first_edge, rod, model);
   }
 }
 

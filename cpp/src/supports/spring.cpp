@@ -79,19 +79,11 @@ double rest_turn(const RodLayout& rod, const MomentPlace& place, const Model& mo
                                              drawn_edge(rod, place.first_edge + 1, model));
   if (rod.natural_curvature.empty()) return single ? 0.0 : place.weights[1] * bend;
 
-  // The drawn tangent, and what the natural curvature makes of the cell. The nodes lie on the drawn
-  // curve, but beside the free one, but for the end (supports/clamp.hpp).
   const double first_middle = rod.edge_middle(place.first_edge);
   const double spacing = single ? 1.0 : rod.edge_middle(place.first_edge + 1) - first_middle;
-  const double tangent = (s - first_middle) / spacing * bend;
-  const double beyond = beyond_outer_middle(rod, s);
-  if (beyond == 0.0) return tangent;
-  const bool start = s < rod.edge_middle(0);
-  const Index end = start ? 0 : rod.num_edges();
-  const double outer = rod.edge_length[to_size(start ? 0 : rod.num_edges() - 1)];
-  const double share = single ? 0.0 : -std::min(place.weights[0], place.weights[1]);
-  const double cell = single ? beyond : beyond - share * spacing - (1.0 + share) * outer / 12.0;
-  return tangent + (start ? cell : -cell) * rod.natural_curvature[to_size(end)];
+  const auto [at_start, at_end] = natural_turn_lengths(rod, s, place.first_edge, place.weights);
+  return (s - first_middle) / spacing * bend + at_start * rod.natural_curvature.front() +
+         at_end * rod.natural_curvature[to_size(rod.num_edges())];
 }
 
 /// The spring of a place beside a clamp that turns acts on the edge alone: the clamp's turn is not
@@ -126,6 +118,31 @@ Index add_element(const RodLayout& rod, MomentPlace& place, Model& model) {
 }
 
 }  // namespace
+
+std::array<double, 2> natural_turn_lengths(const RodLayout& rod, double s, Index first_edge,
+                                           const std::vector<double>& weights) {
+  std::array<double, 2> lengths{};
+  if (rod.closed || place_beside_clamp(rod, s)) return lengths;
+  const Index last_edge = rod.num_edges() - 1;
+  const bool single = weights.size() == 1;
+  if (const double beyond = beyond_outer_middle(rod, s); beyond > 0.0) {
+    const double inward = single
+                              ? 0.0
+                              : -std::min(weights[0], weights[1]) *
+                                    (rod.edge_middle(first_edge + 1) - rod.edge_middle(first_edge));
+    const bool start = s < rod.edge_middle(0);
+    lengths[start ? 0 : 1] = (start ? 1.0 : -1.0) * (beyond - inward);
+  }
+  if (single) return lengths;
+  const auto turn = [&](Index edge) {
+    return weights[to_size(edge - first_edge)] * rod.edge_length[to_size(edge)] / 12.0;
+  };
+  if (first_edge == 0 && rod.clamp_at(0) == nullptr) lengths[0] -= turn(0);
+  if (first_edge + 1 == last_edge && rod.clamp_at(rod.num_edges()) == nullptr) {
+    lengths[1] += turn(last_edge);
+  }
+  return lengths;
+}
 
 void add_spring(const scenario::Support& support, Model& model) {
   const scenario::Spring& spring = *support.spring;

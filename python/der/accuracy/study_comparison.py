@@ -117,7 +117,7 @@ class Comparison:
 
 
 def compare_over_time(
-    outcomes: Mapping[tuple[int, int], Outcome],
+    outcomes: Mapping[tuple[int, int], Outcome[Result]],
     meshes: int,
     units: Mapping[str, str],
     every: float,
@@ -148,7 +148,7 @@ def compare_over_time(
 
 
 def compare_static(
-    outcomes: Mapping[tuple[int, int], Outcome],
+    outcomes: Mapping[tuple[int, int], Outcome[Result]],
     meshes: int,
     names: Sequence[str],
     left_out: Sequence[str],

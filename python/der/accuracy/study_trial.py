@@ -44,7 +44,7 @@ def skipped_trial(mesh: int, stepper: str, step: float) -> Trial:
     return Trial(mesh, stepper, step, SKIPPED, None, math.nan)
 
 
-def trial_of(mesh: int, stepper: str, step: float, outcome: Outcome) -> Trial:
+def trial_of(mesh: int, stepper: str, step: float, outcome: Outcome[Result]) -> Trial:
     """Return a configuration that was run."""
     if outcome.error is None:
         assert outcome.result is not None

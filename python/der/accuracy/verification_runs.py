@@ -15,7 +15,7 @@ from der.accuracy.refinement import (
     with_elements,
 )
 from der.accuracy.time_levels import TimeLevels, stepper_of, time_levels
-from der.errors import SceneError, error_for
+from der.errors import SceneError
 from der.parallel import Task, Workers, total_weight
 from der.result import Result
 
@@ -133,7 +133,7 @@ def _run_base(scenario: Scenario, workers: Workers, rest: float) -> Verification
     failure = outcome.error
     if failure is not None and not isinstance(failure, SceneError):
         message = f"the scene itself fails, so there is nothing to verify: {failure}"
-        named = error_for(failure.status, message)
+        named = type(failure)(message, failure.status)
         named.result = outcome.result
         raise named from failure
     base = outcome.value()

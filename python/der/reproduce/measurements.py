@@ -219,7 +219,7 @@ def _scene(name: str, changes: Mapping[str, Any]) -> Scenario:
     return Scenario.load(scene_file(name), **changes)
 
 
-def _result(outcome: Outcome, *, fails: bool = False) -> Result:
+def _result(outcome: Outcome[Result], *, fails: bool = False) -> Result:
     if not fails:
         return outcome.value()
     if not isinstance(outcome.error, DivergedError) or outcome.result is None:
@@ -227,7 +227,7 @@ def _result(outcome: Outcome, *, fails: bool = False) -> Result:
     return outcome.result
 
 
-def _speed(outcome: Outcome) -> float:
+def _speed(outcome: Outcome[Result]) -> float:
     return -float(outcome.value().summary["probes"]["v_mid"]["final"])
 
 
@@ -260,7 +260,7 @@ def _all_runs() -> dict[Key, tuple[str, dict[str, Any]]]:
     return runs
 
 
-def _run_all(workers: Workers) -> dict[Key, Outcome]:
+def _run_all(workers: Workers) -> dict[Key, Outcome[Result]]:
     scenes = {key: _scene(*run) for key, run in _all_runs().items() if key not in _COSTS}
     tasks = {key: Task([scene], weight=_weight(scene)) for key, scene in scenes.items()}
     workers.expect(total_weight(tasks.values()))
@@ -284,7 +284,7 @@ def _weight(scene: Scenario) -> float:
 
 
 def _deflections(
-    outcomes: Mapping[Key, Outcome], jobs: int | None, stages: Stages
+    outcomes: Mapping[Key, Outcome[Result]], jobs: int | None, stages: Stages
 ) -> tuple[dict[float, Deflection], dict[float, Deflection]]:
     """Return the largest deflection, and that of the centre node, by load."""
     tell = stages.of("error bars", 1, 2)

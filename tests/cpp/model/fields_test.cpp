@@ -87,7 +87,7 @@ State counted() {
 }  // namespace
 
 TEST_CASE("every number of a state is visited, and a change of any is seen") {
-  // By hand: 6 numbers, 6 works, 6 of the audit and two ramps of 5.
+  // By hand: 6 numbers, 6 works, 6 of the audit and two ramps of 8.
   const State state = counted<Bdf2Memory>();
   std::size_t numbers = 0;
   std::size_t vectors = 0;
@@ -99,7 +99,7 @@ TEST_CASE("every number of a state is visited, and a change of any is seen") {
     }
   });
   CHECK(vectors == 5 + 2);                      // of the state and of its memory
-  CHECK(numbers == 6 + 6 + 6 + 2 * 5 + 1 + 1);  // with the length of the list, the kind of memory
+  CHECK(numbers == 6 + 6 + 6 + 2 * 8 + 1 + 1);  // with the length of the list, the kind of memory
 
   State other = state;
   CHECK(first_difference(state, other).empty());

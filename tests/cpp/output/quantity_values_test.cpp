@@ -1,6 +1,7 @@
 // Every row of the table of quantities against a value worked out by hand, on one configuration in
 // which none of them is zero.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <map>
@@ -24,6 +25,8 @@ constexpr double kGravity = 9.81;
 constexpr double kSpringX = 40.0;
 constexpr double kSpringY = 60.0;
 constexpr double kWrist = 5.0;  // against turning at the start, where its moment is read
+constexpr double kBend = 0.4;   // natural curvature by an actuation of the whole rod [1/m]
+constexpr double kGrow = 0.01;  // elongation by another
 
 // The configuration: a stretched polygon whose corners all turn by the same angle, in rigid motion.
 constexpr double kStrain = 0.03;
@@ -116,6 +119,10 @@ std::map<std::string, double> expected_values() {
   const double turned = 13.0 / 12.0 * kDirection - 1.0 / 12.0 * (kDirection + kTurn);
   const double cell = 47.0 / 144.0 * edge_length;
   values["reaction_moment"] = -turned / (1.0 / kWrist + cell / kEI);
+  // Actuations do work against the moment of all joints, and against the tension of all edges.
+  values["natural_curvature"] = kBend;
+  values["actuation_moment"] = -kEI * (kTurn / edge_length - kBend) * (kEdges - 1) / kEdges;
+  values["actuation_force"] = -kEA * (kStrain - kGrow);
   values["kinetic_energy"] = kinetic;
   values["stretch_energy"] = stretch;
   values["bend_energy"] = bend;
@@ -126,10 +133,10 @@ std::map<std::string, double> expected_values() {
   return values;
 }
 
-/// The value that a probe reads in the configuration, of a rod with more supports.
-double probe_value(const std::string& probe, const std::string& supports = {}) {
+/// The value that a probe reads in the configuration, of a rod with more supports or actuations.
+double probe_value(const std::string& probe, const std::string& more = {}) {
   std::string scene = kScene + probe + "}}}\n";
-  scene.insert(scene.find("loads:"), supports);
+  scene.insert(scene.find("loads:"), more);
   Simulation simulation(Scenario::parse(scene));
   const std::vector<Vec2> points = corners();
   const RodLayout& rod = simulation.model().rods.at(0);
@@ -162,6 +169,15 @@ TEST_CASE("every quantity of a planar rod has the value worked out by hand") {
       CHECK(probe_value(probe + ", support: 2", wrist) ==
             doctest::Approx(value->second).epsilon(1e-12));
       continue;
+    } else if (quantity.kind == QuantityKind::Natural || !quantity.actuates.empty()) {
+      const std::string where =
+          quantity.actuates.empty() ? ", rod: arm, at: 0.43" : ", actuation: a";
+      const std::string actuation =
+          quantity.actuates == "elongation"
+              ? fmt::format("actuation: [{{name: a, rod: arm, elongation: {}}}]\n", kGrow)
+              : fmt::format("actuation: [{{name: a, rod: arm, natural_curvature: {}}}]\n", kBend);
+      CHECK(probe_value(probe + where, actuation) == doctest::Approx(value->second).epsilon(1e-12));
+      continue;
     } else if (quantity.kind == QuantityKind::Support) {
       probe += ", support: 0";
     } else {
@@ -177,7 +193,11 @@ TEST_CASE("every quantity is made in one way") {
     const bool is_energy = quantity.kind == QuantityKind::Energy;
     const bool is_of_ring = quantity.kind == QuantityKind::Ring;
     const bool is_of_support = quantity.kind == QuantityKind::Support;
-    CHECK((quantity.make_field == nullptr) == (is_energy || is_of_ring || is_of_support));
+    const bool is_of_actuation = quantity.kind == QuantityKind::Actuation;
+    CHECK((quantity.make_field == nullptr) ==
+          (is_energy || is_of_ring || is_of_support || is_of_actuation));
+    CHECK((quantity.read_actuation != nullptr) == is_of_actuation);
+    CHECK(quantity.actuates.empty() != is_of_actuation);
     CHECK((quantity.read_reaction != nullptr) == is_of_support);
     CHECK((quantity.read_rod != nullptr) == is_of_ring);
     CHECK(quantity.energies.empty() != is_energy);

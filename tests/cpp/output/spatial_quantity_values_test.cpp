@@ -36,6 +36,9 @@ constexpr double kTurn = 0.06;      // from edge to edge [rad]
 constexpr double kTwist = 0.8;      // [rad/m]
 constexpr double kDirector = 0.5;   // of the start, from the arc's centre towards its axis [rad]
 constexpr double kSpinRate = -1.3;  // of the sections [rad/s]
+constexpr double kGrow = 0.01;      // elongation by an actuation of the whole rod
+const Vec2 kBend{0.4, -0.7};        // natural curvatures by one [1/m]
+constexpr double kTwisted = 0.3;    // natural twist by one [rad/m]
 constexpr int kNode = 7;            // where quantities along the rod are read
 
 const Vec3 kStart{0.2, -0.1, 0.4};
@@ -61,8 +64,8 @@ std::string in_yaml(const Vec3& v) {
   return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x(), v.y(), v.z());
 }
 
-/// The scene with one probe.
-std::string scene_with(const std::string& probe) {
+/// The scene with one probe, and with actuations.
+std::string scene_with(const std::string& probe, const std::string& actuation = "[]") {
   std::string points;
   for (const Vec3& point : corners(0.0)) points += "      - " + in_yaml(point) + "\n";
   const Vec3 director = std::cos(kDirector) * kAcross + std::sin(kDirector) * kAxis;
@@ -81,11 +84,12 @@ supports:
   - {{rod: arm, at: end, spring: {{stiffness: {}}}}}
 loads:
   - gravity: {}
+actuation: {}
 time: {{duration: 0.1, step: 0.01}}
 output: {{probes: {{p: {{{}}}}}}}
 )",
                      points, kEA, kEI1, kEI2, kGJ, kMassPerLength, kSpinInertia, in_yaml(director),
-                     kTwist, in_yaml(kSpring), in_yaml(kGravity), probe);
+                     kTwist, in_yaml(kSpring), in_yaml(kGravity), actuation, probe);
 }
 
 /// Curvatures [1/m] of the joint at a node towards its two directors. The section has turned from
@@ -148,6 +152,17 @@ std::map<std::string, double> expected_values() {
   }
   const Vec3 pulled = points.back() - corners(0.0).back();  // from where the spring is slack
   const double spring = 0.5 * kSpring.dot(pulled.cwiseAbs2());
+  // Actuations do work against the moments of all joints, and against the tension of all edges.
+  Vec2 mean = Vec2::Zero();
+  for (int node = 1; node < kEdges; ++node) mean += curvatures_at(node) / kEdges;
+  const double joints = static_cast<double>(kEdges - 1) / kEdges;
+  values["natural_curvature_1"] = kBend[0];
+  values["natural_curvature_2"] = kBend[1];
+  values["natural_twist"] = kTwisted;
+  values["actuation_moment_1"] = -kEI1 * (mean[0] - joints * kBend[0]);
+  values["actuation_moment_2"] = -kEI2 * (mean[1] - joints * kBend[1]);
+  values["actuation_torque"] = -kGJ * joints * (kTwist - kTwisted);
+  values["actuation_force"] = -kEA * (kStrain - kGrow);
   values["kinetic_energy"] = kinetic;
   values["stretch_energy"] = stretch;
   values["bend_energy"] = bend;
@@ -158,9 +173,22 @@ std::map<std::string, double> expected_values() {
   return values;
 }
 
+/// An actuation of the whole rod, of the kind that a quantity tells of.
+std::string actuation_for(const Quantity& quantity) {
+  std::string value;
+  if (quantity.name == "natural_twist" || quantity.actuates == "natural_twist") {
+    value = fmt::format("natural_twist: {}", kTwisted);
+  } else if (quantity.actuates == "elongation") {
+    value = fmt::format("elongation: {}", kGrow);
+  } else {
+    value = fmt::format("natural_curvature: [{}, {}]", kBend[0], kBend[1]);
+  }
+  return "[{name: a, rod: arm, " + value + "}]";
+}
+
 /// The value that a probe reads in the configuration.
-double probe_value(const std::string& probe) {
-  Simulation simulation(Scenario::parse(scene_with(probe)));
+double probe_value(const std::string& probe, const std::string& actuation = "[]") {
+  Simulation simulation(Scenario::parse(scene_with(probe, actuation)));
   const Model& model = simulation.model();
   State& state = simulation.state();
   const std::vector<Vec3> points = corners(kStrain);
@@ -188,6 +216,13 @@ TEST_CASE("every quantity of a rod in space has the value worked out by hand") {
     const bool is_known = value != expected.end() && value->second != 0.0;
     CHECK_MESSAGE(is_known, "give expected_values() a value of this quantity, not zero");
     if (!is_known) continue;
+    if (quantity.kind == QuantityKind::Natural || quantity.kind == QuantityKind::Actuation) {
+      const bool is_of_rod = quantity.actuates.empty();
+      const std::string where = is_of_rod ? "rod: arm, at: 0.43" : "actuation: a";
+      CHECK(probe_value("quantity: " + quantity.name + ", " + where, actuation_for(quantity)) ==
+            doctest::Approx(value->second).epsilon(1e-11));
+      continue;
+    }
     std::string probe = "rod: arm, quantity: " + quantity.name;
     if (quantity.kind != QuantityKind::Energy) probe += fmt::format(", at: {{node: {}}}", kNode);
     CHECK(probe_value(probe) == doctest::Approx(value->second).epsilon(1e-11));

@@ -148,7 +148,7 @@ output:
 )");
   std::size_t probes = 0;
   for (const Quantity& quantity : quantities()) {
-    if (quantity.scope > QuantityScope::Planar) continue;
+    if (quantity.scope > QuantityScope::Planar || quantity.read_actuation != nullptr) continue;
     const std::string head = "    " + quantity.name;
     if (quantity.read_reaction != nullptr) {
       scene += head + ": {quantity: " + quantity.name + ", support: 0}\n";
@@ -178,6 +178,40 @@ output:
   }
   CHECK(allocations == before);
   CHECK(recorder.summaries().size() == probes);
+}
+
+TEST_CASE("reading what actuations exert allocates nothing") {
+  Simulation simulation(Scenario::parse(R"(
+rods:
+  - name: rod
+    nodes: 9
+    from: [0, 0]
+    to: [1, 0]
+    cross_section: {circle: {radius: 0.01}}
+    material: {youngs_modulus: 1e7, density: 1000}
+supports:
+  - {rod: rod, at: start, clamp: true}
+actuation:
+  - {name: bend, rod: rod, natural_curvature: {times: [0, 1], values: [0, 0.1]}}
+  - {name: grow, rod: rod, elongation: {times: [0, 1], values: [0, 0.01]}}
+time: {duration: 1, step: 0.001}
+output:
+  every: 1
+  probes:
+    moment: {quantity: actuation_moment, actuation: bend}
+    force: {quantity: actuation_force, actuation: grow}
+)"));
+  Recorder recorder(simulation);
+  for (int i = 0; i < 3; ++i) {
+    simulation.step();
+    recorder.observe(simulation);
+  }
+  const long before = allocations;
+  for (int i = 0; i < 20; ++i) {
+    simulation.step();
+    recorder.observe(simulation);
+  }
+  CHECK(allocations == before);
 }
 
 }  // namespace der::test

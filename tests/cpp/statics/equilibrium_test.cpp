@@ -230,6 +230,28 @@ TEST_CASE("what holds a rod too weakly for double precision is named, not the me
   CHECK(outcome("", foundation("1e-3")) == "stable");
 }
 
+TEST_CASE("what holds a rod in space too weakly is named") {
+  const auto outcome = [](const std::string& supports, const std::string& loads) {
+    std::string text = scene(supports, "[0, 0, -1e-12]");
+    text.replace(text.find("EI: 1,"), 6, "EI1: 1, EI2: 1, GJ: 1,");
+    text.replace(text.find("[0, 0]"), 6, "[0, 0, 0]").replace(text.find("[1, 0]"), 6, "[1, 0, 0]");
+    return failure(text.replace(text.find("analysis"), 0, loads));
+  };
+  const auto holds = [](const std::string& message, const std::string& part) {
+    return message.find(part) != std::string::npos;
+  };
+  const std::string foundation = "  - foundation: {rod: rod, stiffness: [1, 1, 1e-30]}\n";
+  const std::string turned = "  - {rod: rod, at: middle, spring: {rotational_stiffness: 1}}\n";
+  const std::string moved = outcome(turned, foundation);
+  CHECK(moved.rfind("not_held: ", 0) == 0);
+  CHECK(holds(moved, "hold rod 'rod' against moving along z, with 1e-30 N/m"));
+  const std::string tipped = outcome("  - {rod: rod, at: start, fix: [x, y, z]}\n",
+                                     "  - foundation: {rod: rod, stiffness: 1e-30}\n");
+  CHECK(tipped.rfind("not_held: ", 0) == 0);
+  CHECK(holds(tipped, "against turning about "));
+  CHECK(outcome(kClamp, foundation) == "stable");
+}
+
 TEST_CASE("a clamp that turns takes the rod along, beyond half a turn too") {
   // At the other end, which slides, a stiff spring holds the drawn direction: from there to here
   // the rod turns by the whole angle, but for the half cells at the ends.

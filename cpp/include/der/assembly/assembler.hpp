@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "der/assembly/pattern.hpp"
 #include "der/core/types.hpp"
@@ -17,6 +16,9 @@ namespace der {
 class Assembler {
  public:
   Assembler(const Model& model, const MatrixLayout& layout);
+  /// That of a model of the same structure (`structural_difference`) with the same layout: it
+  /// shares the scatter maps.
+  Assembler(const Model& model, const Assembler& like);
   ~Assembler();
   Assembler(const Assembler&) = delete;
   Assembler& operator=(const Assembler&) = delete;
@@ -32,6 +34,9 @@ class Assembler {
   void gradient(const Configuration& here, Vector& gradient) const;
   /// Sets `gradient` likewise, and `values` to the Hessian [N/m].
   void gradient_and_hessian(const Configuration& here, Vector& gradient, Vector& values) const;
+  /// The largest entry, by size, on the diagonal of `values` among the free degrees of freedom of a
+  /// block; 0 if it has none.
+  [[nodiscard]] double largest_diagonal(const DofBlock& block, const Vector& values) const;
   /// Adds `factor` times the mass matrix; its couplings are the model's or none.
   void add_mass(const Mass& mass, double factor, Vector& values) const;
   /// Adds the stiffness across the edges that a tension [N], one for each plain stretch element,
@@ -47,17 +52,10 @@ class Assembler {
                              Vector& values) const;
 
   struct ScatterMaps;
-  struct CouplingSlots {
-    Index a;  // diagonal entries
-    Index b;
-    Index ab;  // the entry between them
-  };
 
   const Model& model_;
   Index num_values_ = 0;
-  std::vector<Index> diagonal_slots_;          // of each free degree of freedom
-  std::vector<CouplingSlots> coupling_slots_;  // of each of the model's mass couplings
-  std::unique_ptr<const ScatterMaps> maps_;    // of the elements
+  std::shared_ptr<const ScatterMaps> maps_;
 };
 
 }  // namespace der

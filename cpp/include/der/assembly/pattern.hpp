@@ -57,6 +57,11 @@ class MatrixLayout {
   /// degree of freedom; its slot is `num_values()`, which no solver reads.
   [[nodiscard]] Index slot_or_spare(Index i, Index j) const;
   [[nodiscard]] Index num_values() const { return num_values_; }
+  /// Whether every entry of one pattern, which both are for, lies in the same slot.
+  [[nodiscard]] bool same_slots(const MatrixLayout& other) const {
+    return pattern_ == other.pattern_ && width_ == other.width_ && half_ == other.half_ &&
+           num_values_ == other.num_values_;
+  }
   /// Adds `shift` to every entry of the diagonal.
   void shift_diagonal(double shift, Vector& values) const;
 

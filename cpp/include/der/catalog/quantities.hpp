@@ -14,25 +14,29 @@ struct RodLayout;
 struct State;
 class RodField;
 struct Reaction;
+struct ActuationForce;
 
 /// The object that a quantity belongs to; it determines where a probe of it can be placed.
 enum class QuantityKind {
-  Position,  ///< of the rod's points: known at nodes, read at any arc length
-  Velocity,  ///< of the rod's points: known at nodes, read at any arc length
-  Tangent,   ///< of the rod's tangent: any arc length, with two values at corners as drawn
-  Turn,      ///< of the nodes that bend: inner nodes, and ends that are clamped
-  Bend,      ///< of the rod's bending: any arc length, with two values where moments jump
-  Edge,      ///< of the edges: any arc length, with two values where forces jump
-  Section,   ///< of the sections of a rod in space: as of its bending
-  Ring,      ///< of a closed rod as a whole: no place
-  Support,   ///< of a support: no place but that of the support
-  Energy,    ///< of a rod or of the whole model: no place
+  Position,   ///< of the rod's points: known at nodes, read at any arc length
+  Velocity,   ///< of the rod's points: known at nodes, read at any arc length
+  Tangent,    ///< of the rod's tangent: any arc length, with two values at corners as drawn
+  Turn,       ///< of the nodes that bend: inner nodes, and ends that are clamped
+  Bend,       ///< of the rod's bending: any arc length, with two values where moments jump
+  Edge,       ///< of the edges: any arc length, with two values where forces jump
+  Section,    ///< of the sections of a rod in space: as of its bending
+  Natural,    ///< of the rod without stress: as of its bending
+  Ring,       ///< of a closed rod as a whole: no place
+  Support,    ///< of a support: no place but that of the support
+  Actuation,  ///< of an actuation: no place but its stretch
+  Energy,     ///< of a rod or of the whole model: no place
 };
 
 /// Whether a quantity has two values at the places where it jumps.
 constexpr bool can_jump(QuantityKind kind) {
   return kind == QuantityKind::Bend || kind == QuantityKind::Edge ||
-         kind == QuantityKind::Section || kind == QuantityKind::Tangent;
+         kind == QuantityKind::Section || kind == QuantityKind::Natural ||
+         kind == QuantityKind::Tangent;
 }
 
 /// The models that have a quantity.
@@ -52,6 +56,9 @@ using RodReading = double (*)(const RodLayout& rod, const Model& model, const St
 /// Reads a quantity of a support off the sum of what it bears at its places (output/reactions.hpp).
 using ReactionReading = double (*)(const Reaction& sum);
 
+/// Reads a quantity of an actuation off what it exerts (output/actuation_forces.hpp).
+using ActuationReading = double (*)(const ActuationForce& force);
+
 /// One row of the table of quantities: probes, `Replay::along`, exports and views follow it.
 struct Quantity {
   std::string name;
@@ -64,7 +71,9 @@ struct Quantity {
   QuantityScope scope = QuantityScope::All;
   RodReading read_rod = nullptr;            ///< of numbers of rings
   ReactionReading read_reaction = nullptr;  ///< of supports
-  std::string advice{};  ///< what to take in its place in a model that lacks it; may be empty
+  ActuationReading read_actuation = nullptr;
+  std::string actuates{};  ///< of actuations: the key of those that have the quantity
+  std::string advice{};    ///< what to take in its place in a model that lacks it; may be empty
 };
 
 /// The quantity whose whole turns the state of a planar rod follows where a probe asks for it.

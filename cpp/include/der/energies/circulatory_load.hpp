@@ -8,6 +8,7 @@
 #include "der/core/types.hpp"
 #include "der/energies/edge_moments.hpp"
 #include "der/energies/effective_edge.hpp"
+#include "der/kinematics/actuated_turn.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/kinematics/edge_frame.hpp"
 #include "der/kinematics/frame_block.hpp"
@@ -42,6 +43,11 @@ struct CirculatoryTerm {
   }
 };
 
+/// The weights of one or two edges in the bending of a vector that turns with `weights` of them:
+/// beyond the middle of an outermost edge, whose weight is above 1, its turn against the next one
+/// is more than that of the rod.
+std::array<double, 2> weights_in_bending(const std::array<double, 2>& weights);
+
 /// A force that turns with a planar rod, F = sum d_i R_i F0: R_i is the rotation of an edge from
 /// its drawn direction, d_i are weights of the one or two edges. Local coordinates: the point on
 /// which it acts, then the vectors of the edges.
@@ -67,6 +73,8 @@ struct FramedEdge {
   [[nodiscard]] EdgeFrame frame(const Configuration& here) const;
   /// A vector turned as the frame is from the initial shape.
   [[nodiscard]] Vec3 turned(const Vec3& vector, const SectionFrame& now) const;
+  /// The vector that is `vector` once it is turned.
+  [[nodiscard]] Vec3 turned_back(const Vec3& vector, const SectionFrame& now) const;
 };
 
 /// A force that turns with a rod in space: PlanarFollowerForce with the rotations of section
@@ -91,7 +99,8 @@ struct FollowerForce {
 ///
 /// Under M the section at its place turns further than the edges tell, by c M with c = `compliance`
 /// in the axes of the drawn section, since the rod between them bends and twists. So the moment
-/// that turns with the section is that sum of M0 + c M0 x M0, to the same order.
+/// that turns with the section is that sum of M0 + c M0 x M0, to the same order, unless its place
+/// lies where the weights d_i extrapolate.
 struct SpatialMoment {
   struct TurnedEdge : FramedEdge {
     double weight = 1.0;  ///< d_i [-]
@@ -100,12 +109,24 @@ struct SpatialMoment {
   };
   std::vector<TurnedEdge> edges;
   bool follower = false;
+  bool turns_further = false;      ///< whether c counts in the direction of one that turns
   Mat3 compliance = Mat3::Zero();  ///< c [rad/(N m)]
 
   [[nodiscard]] Index size() const { return 4 * static_cast<Index>(edges.size()); }
   /// `amount` is M, or M0 [N m], here and below.
   [[nodiscard]] EdgeMoments moments(const Configuration& here, const Vec3& amount) const;
   void evaluate(const Configuration& here, const Vec3& amount, CirculatoryTerm& out) const;
+  /// Elastic energy [J] of the rod between the place and what the edges tell, 1/2 M . c M.
+  [[nodiscard]] double stored(const Configuration& here, const Vec3& amount) const;
+};
+
+/// How actuations turn the section that a load follows beyond its edges. F0 and M0 are turned by it
+/// before the edges turn them: the edges tell all that depends on coordinates.
+struct ActuatedSection {
+  ActuatedTurn turn;
+  Mat3 axes = Mat3::Zero();  ///< of the drawn section (turning_axes), in a plane z stands first
+
+  [[nodiscard]] Vec3 turned(const Vec3& vector, const Vector& controls) const;
 };
 
 /// One load: what it is, how large, and on which degrees of freedom it acts.
@@ -118,6 +139,7 @@ struct CirculatoryLoad {
 
   std::variant<PlanarFollowerForce, FollowerForce, SpatialMoment> kind;
   std::array<Index, 3> amount{-1, -1, -1};     ///< controls of its components [N or N m]; -1: 0
+  ActuatedSection actuated;                    ///< of loads that follow the rod
   std::vector<std::vector<Term>> coordinates;  ///< the rows of B'
 
   void evaluate(const Configuration& here, CirculatoryTerm& out) const;
@@ -125,6 +147,8 @@ struct CirculatoryLoad {
   [[nodiscard]] Vec3 force(const Configuration& here) const;
   /// The whole moment [N m], and the parts of its edges; zero for a force.
   [[nodiscard]] EdgeMoments moments(const Configuration& here) const;
+  /// Elastic energy [J] that a moment stores beside its place; zero for a force.
+  [[nodiscard]] double stored(const Configuration& here) const;
 };
 
 /// Those of a model. Files that use no other elements include this header alone, so that a new

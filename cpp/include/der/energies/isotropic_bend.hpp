@@ -14,7 +14,6 @@ namespace der {
 /// -B p(d), d = ta . tb, p is f for `angle` and f^2 for `tangent`.
 template <class T>
 struct IsotropicResponse {
-  T energy = 0.0;
   T slope = 0.0;      ///< dE/dd [N m]
   T curvature = 0.0;  ///< d2E/dd2 [N m]
 };
@@ -25,9 +24,15 @@ IsotropicResponse<T> isotropic_response(const T& stiffness, const T& cosine) {
   // Powers of f in p: kb is the angle itself, or the tangent of its half.
   constexpr double power = std::is_same_v<Curvature, AngleCurvature> ? 1.0 : 2.0;
   const T p = power == 1.0 ? factor.f : factor.f * factor.f;
-  const T sine_squared = (1.0 - cosine) * (1.0 + cosine);
-  return {0.5 * stiffness * factor.f * factor.f * sine_squared, -stiffness * p,
-          -stiffness * p * power * factor.log_slope};
+  return {-stiffness * p, -stiffness * p * power * factor.log_slope};
+}
+
+/// The energy of that joint [J]. The sine is that of the cross product: 1 - d^2 would leave B times
+/// the rounding error of d at every straight joint.
+template <class Curvature>
+double isotropic_energy(double stiffness, const Vec3& ta, const Vec3& tb) {
+  const double f = Binormal<Curvature>::of(ta.dot(tb)).f;
+  return 0.5 * stiffness * f * f * ta.cross(tb).squaredNorm();
 }
 
 /// The unit tangent t of an edge of length l, on which an energy depends through d = t . other.
@@ -76,10 +81,10 @@ struct IsotropicBend {
     const Vec3 eb = x.segment<3>(6) - x.segment<3>(3);
     const TangentTerm a(ea);
     const TangentTerm b(eb);
+    out.energy = isotropic_energy<Curvature>(c.stiffness_per_length, a.tangent, b.tangent);
+    if constexpr (D == Derivatives::Energy) return;
     const double cosine = a.tangent.dot(b.tangent);
     const auto bend = isotropic_response<Curvature>(c.stiffness_per_length, cosine);
-    out.energy = bend.energy;
-    if constexpr (D == Derivatives::Energy) return;
     const Vec3 by_a = a.first(b.tangent, cosine);
     const Vec3 by_b = b.first(a.tangent, cosine);
     const Vec3 force_a = bend.slope * by_a;
@@ -113,10 +118,10 @@ struct IsotropicClamp {
     const Vec3 e = x.segment<3>(3) - x.segment<3>(0);
     const TangentTerm edge(e);
     const Vec3 held = c.held.tangent(here.controls);
+    out.energy = isotropic_energy<Curvature>(c.stiffness_per_length, edge.tangent, held);
+    if constexpr (D == Derivatives::Energy) return;
     const double cosine = edge.tangent.dot(held);
     const auto bend = isotropic_response<Curvature>(c.stiffness_per_length, cosine);
-    out.energy = bend.energy;
-    if constexpr (D == Derivatives::Energy) return;
     const Vec3 by_edge = edge.first(held, cosine);
     const Vec3 force = bend.slope * by_edge;
     out.gradient << -force, force;

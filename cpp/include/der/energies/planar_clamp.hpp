@@ -33,14 +33,19 @@ struct PlanarClamp {
     }
   };
 
+  /// Angle [rad] by which the cell turns, at the vector `e` of its edge.
+  static double turning_angle(const Constants& c, const Vector& controls, const Vec2& e) {
+    const double direction = c.direction + (c.rotation >= 0 ? controls[c.rotation] : 0.0);
+    const Vec2 tangent{std::cos(direction), std::sin(direction)};
+    return c.side * angle_between(tangent, e);
+  }
+
   template <Derivatives D>
   static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
-    const double direction = c.direction + (c.rotation >= 0 ? here.controls[c.rotation] : 0.0);
-    const Vec2 tangent{std::cos(direction), std::sin(direction)};
     const Vec2 e = x.tail<2>() - x.head<2>();
     const BendResponse bend = bend_response<Curvature>(
-        c.stiffness_per_length, c.natural(here.controls), c.side * angle_between(tangent, e));
+        c.stiffness_per_length, c.natural(here.controls), turning_angle(c, here.controls, e));
     out.energy = bend.energy;
     if constexpr (D == Derivatives::Energy) return;
 

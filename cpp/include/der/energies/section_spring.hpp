@@ -11,12 +11,13 @@
 
 namespace der {
 
-/// RotationalSpring in space: E = 1/2 r . K r with r = sum_i W_i kappa_i, and kappa_i the rotation
-/// of edge i from its drawn place, as a joint between the drawn section and the one that the edge
-/// carries would measure it (JointKinematics): towards the first director, towards the second, and
-/// the twist about the tangent, whole turns included. The weights of two edges add up to the unit
-/// matrix; supports/section_spring.hpp says how the section of a rod at a place is such a sum. Both
-/// are diagonal but at corners. Coordinates: the nodes, then the angles.
+/// RotationalSpring in space: E = 1/2 r . K r with r = sum_i W_i kappa_i, and kappa_i the
+/// rotation of edge i from its drawn place, as a joint between the drawn section at the spring and
+/// the same section, carried by the edge, would measure it (JointKinematics): towards the first
+/// director, towards the second, and the twist about the tangent, whole turns included. The weights
+/// of two edges add up to the unit matrix; supports/section_spring.hpp says how the section of a
+/// rod at a place is such a sum. Both are diagonal but at corners. Coordinates: the nodes, then the
+/// angles.
 template <int Edges>
 struct SectionSpring {
   static_assert(Edges == 1 || Edges == 2);
@@ -27,9 +28,9 @@ struct SectionSpring {
     FrameBlock block;
     SpatialPivot first;  ///< of the edge, beside a clamp
     SpatialPivot last;
-    SectionFrame drawn;
-    /// The section that the edge carries, by its directors and its tangent in the edge's own: the
-    /// unit matrix, but where the rod's section at the place is drawn along another edge.
+    SectionFrame drawn;  ///< of the rod, at the spring
+    /// The section that the edge carries, by its directors and its tangent in the edge's own. It is
+    /// the drawn one where the spring exerts no moment.
     Mat3 carried = Mat3::Identity();
     /// Control: twist [rad] from the edge's reference director to the drawn section, whole turns
     /// included; -1: they do not count.
@@ -47,6 +48,19 @@ struct SectionSpring {
     axes << edge.first, edge.second, edge.tangent;
     const Mat3 carried = axes * section;
     return {carried.col(2), carried.col(0), carried.col(1)};
+  }
+
+  /// The rotation r that it measures [rad], and the moment K r [N m], towards the directors and
+  /// about the tangent.
+  struct Response {
+    Vec3 rotation;
+    Vec3 moment;
+  };
+  static Response response(const Constants& c, const Configuration& here,
+                           const Eigen::Matrix<double, kDofs, 1>& x) {
+    const auto measured = measure(c, here, x, std::make_index_sequence<Edges>{});
+    const Vec3 rotation = weighted_rotation(c, measured);
+    return {rotation, c.stiffness * rotation};
   }
 
   /// The moments that the spring exerts on its edges, and their sum.

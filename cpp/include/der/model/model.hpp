@@ -98,6 +98,7 @@ struct SectionSpringPlace {
   double arc_length = 0.0;        ///< [m]
   Vec3 stiffness = Vec3::Zero();  ///< towards the two directors, about the tangent [N m/rad]
   Index element = -1;             ///< number of their element in its list
+  bool on_one_edge = false;       ///< SectionSpring<1>; else <2>
 };
 
 /// A part of a rod on which a distributed force acts.

@@ -37,9 +37,9 @@ double carried_moment(const MomentPlace& place, const RodLayout& rod, const Mode
 /// their elements.
 Energies cell_energies(const RodLayout& rod, const Model& model, const Configuration& here);
 
-/// Work [J] that the loads' moments do on the cells while the tables go from one set of values to
-/// another: with t = share (w + c M/EI) the edges turn by share w, and the rest of the tangent's
-/// turn depends on M alone.
-double cell_work(const Model& model, const Vector& controls_start, const Vector& controls_end);
+/// Work [J] that the loads' moments do on the cells in a step: with t = share (w + c M/EI) the
+/// edges turn by share w, and the rest of the tangent's turn depends on M alone. In space it also
+/// depends on how the section lies that a moment of a fixed direction bends.
+double cell_work(const Model& model, const Configuration& start, const Configuration& end);
 
 }  // namespace der

@@ -58,7 +58,7 @@ static_assert(lists_all_members<EnergyAudit>());
 
 /// Version of saved states, in checkpoints and pickles; states of another version are refused.
 /// Increase it when a field keeps its name but changes its meaning.
-constexpr std::int64_t kStateVersion = 3;
+constexpr std::int64_t kStateVersion = 4;
 
 /// Everything that changes in a run. A plain value: copy it to save it, assign it to go back, bit
 /// for bit. Vectors have one entry a degree of freedom. A new member is written here and in
@@ -125,8 +125,9 @@ void evaluate_controls(const Model& model, const State& state, double time, Vect
 const Ramp* find_ramp(const State& state, Index control);
 /// Moves what a state follows to its positions, which a program may have written.
 void follow(const Model& model, State& state);
-/// Value of a control that is not a turn, at the time of `state`.
+/// Value of a control that is not a turn, at the time of `state` or at another one [s].
 double control_value(const Model& model, const State& state, Index control);
+double control_value(const Model& model, const State& state, Index control, double time);
 /// Sets `here` to the configuration of a state at its own time; allocates nothing if the sizes of
 /// `here` are right already.
 void configuration_of(const Model& model, const State& state, Configuration& here);

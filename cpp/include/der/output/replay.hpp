@@ -7,6 +7,7 @@
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
+#include "der/output/actuation_forces.hpp"
 #include "der/output/reactions.hpp"
 #include "der/scenario/reader.hpp"
 
@@ -27,6 +28,12 @@ struct ReactionSeries {
   FrameTable points;             ///< frames x (places * 3) [m]
   FrameTable forces;             ///< frames x (places * 3) [N]
   FrameTable moments;            ///< frames x (places * 3) [N m]
+};
+
+/// What actuations exert at every frame.
+struct ActuationForceSeries {
+  std::vector<ActuationForce> actuations;  ///< of the last frame; the table follows them
+  FrameTable values;                       ///< frames x (actuations * 2) [N m] or [N]
 };
 
 /// The saved frames of a run: tables with one frame a row.
@@ -64,6 +71,8 @@ class Replay {
   /// they exert on the rod. Forces that a program added to those of the scene are not known.
   /// `spin` [rad/s]: frames x edges, or x 0 without sections.
   ReactionSeries reactions(const SavedFrames& frames, const Eigen::Ref<const FrameTable>& spin);
+  /// What the actuations exert on the rods at every frame, with the values that the scene has.
+  ActuationForceSeries actuation_forces(const SavedFrames& frames);
   /// Director 1 of the section of each edge at every frame: frames x (edges * 3).
   FrameTable directors(const SavedFrames& frames);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <optional>
 #include <string>
@@ -26,6 +27,7 @@ struct OutOfPlaneAnswer {
 struct RunOutcome {
   std::string status;
   std::string message;        ///< of the failure, empty otherwise
+  std::exception_ptr error;   ///< the failure as it was thrown, null otherwise
   double time = 0.0;          ///< [s] that the simulation has reached
   Counters counters;          ///< earlier parts of a resumed run included
   double wall_seconds = 0.0;  ///< earlier parts of a resumed run included

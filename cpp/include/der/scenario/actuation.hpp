@@ -19,6 +19,11 @@ enum class Profile {
 /// What an actuation changes of the rest shape.
 enum class Actuated { Curvature, Twist, Length };
 
+/// What elongations have to be greater than, in sum at each place: on the edge beside a clamp,
+/// whose pivot takes a fifth of it, so that some length is left.
+constexpr double kLeastElongation = -1.0;
+constexpr double kLeastElongationAtClamp = -0.75;
+
 /// A change of the rest shape of a stretch of a rod, over time. Several at one place add up.
 struct Actuation {
   std::string name;

@@ -36,7 +36,7 @@ struct ContinuationAnalysis {
   Varied vary = Varied::Loads;
   /// Of the one load, support or actuation that varies; absent: all.
   std::optional<int> number;
-  std::string name;    ///< of the one actuation, until the checks find its number
+  std::string name;    ///< of that one, until the checks find its number
   double from = 0.0;   ///< first factor
   double to = 1.0;     ///< last factor
   double step = 0.05;  ///< largest distance of two points

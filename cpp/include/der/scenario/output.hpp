@@ -18,9 +18,10 @@ struct Probe {
   std::string quantity;            ///< a name of the probe registry (x, vy, turning_angle, ...)
   std::optional<std::string> rod;  ///< absent: the whole model (energies only)
   std::optional<Location> at;
-  Reduce over = Reduce::None;          ///< with `over: rod`: the extreme along the rod
-  std::optional<Side> side;            ///< absent: after; quantities that jump only
-  std::optional<std::string> support;  ///< of a reaction (scenario/find_support.hpp)
+  Reduce over = Reduce::None;            ///< with `over: rod`: the extreme along the rod
+  std::optional<Side> side;              ///< absent: after; quantities that jump only
+  std::optional<std::string> support;    ///< of a reaction (scenario/find_support.hpp)
+  std::optional<std::string> actuation;  ///< name of the one whose force or moment it is
   Mark mark;
 };
 

@@ -48,8 +48,9 @@ class Stiffness {
   [[nodiscard]] const Vector& values() const { return values_; }
   [[nodiscard]] Vector& values() { return values_; }
 
-  /// Factorises K + shift I, or K + shift M. A pivot that vanishes moves the shift a little.
-  Inertia factorize(double shift = 0.0) { return factorize(shift, ones_); }
+  /// Factorises K + shift U, with the unit matrix U but for angles, which count times the length of
+  /// the model, or K + shift M. A pivot that vanishes moves the shift a little.
+  Inertia factorize(double shift = 0.0) { return factorize(shift, units_); }
   Inertia factorize(double shift, const Mass& mass);
   /// Solves with the last factorisation, in place; over the free degrees of freedom.
   void solve(Vector& right_side) { solver_.solve(right_side); }
@@ -62,6 +63,9 @@ class Stiffness {
 
   /// Eigenvalues [N/m] smaller than this cannot be distinguished from zero in the assembled matrix.
   [[nodiscard]] double rounding() const;
+  /// The same for the eigenvalues of K and a mass matrix that is nowhere below the diagonal `mass`
+  /// (all degrees of freedom) [1/s^2]. Angles have rounding errors of their own.
+  [[nodiscard]] double rounding_over(const Vector& mass) const;
   /// Counts eigenvalues by the signs of the pivots of two factorisations, shifted by the rounding
   /// error to either side. Those between are judged by second variations, which keep their digits:
   /// each element's terms are taken of differences.
@@ -95,7 +99,7 @@ class Stiffness {
   Vector gradient_;
   Vector values_;
   Vector shifted_;
-  Mass ones_;
+  Mass units_;
   Configuration here_;
 };
 

@@ -21,13 +21,14 @@ void stage_displacement(const Model& model, const Vector& start, const Vector& e
 /// Work [J] of moments and circulatory loads along `displacement` [m].
 double moment_work(const Model& model, const Configuration& here, const Vector& displacement);
 
-/// Works [J] that controls do on elements without a displacement.
+/// Works [J] that controls do without a displacement.
 struct ControlWork {
   double supports = 0.0;   ///< by clamps that turn
   double actuation = 0.0;  ///< by changes of the rest shape
+  double loads = 0.0;      ///< by moments, where actuations turn their place against its edges
 };
 /// The works of a step: the energy that the change of the controls gives the elements, the mean of
-/// that at both ends.
+/// that at both ends. What moments do on actuated turns comes out of it.
 ControlWork control_work(const Model& model, const Configuration& start, const Configuration& end);
 
 }  // namespace der

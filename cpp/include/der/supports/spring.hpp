@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "der/model/model.hpp"
 
 namespace der {
@@ -15,6 +18,14 @@ struct Support;
 // and cell in series, 1/k + c/EI, and a moment that acts at the same place, which bends the cell
 // too, turns the sum by as much less. That keeps the order 2, whatever the stiffness, and a stiff
 // spring becomes a clamp. docs/mechanics.md derives c.
+
+/// Lengths [m], which times the natural curvature at the rod's first and last node are the part of
+/// the weighted directions of two edges that a drawn chain lacks where no moment acts. Beyond the
+/// outermost middle the rod bends on to the place `s` [m]; and the node next to a free end lies
+/// l^2/12 kappa beside the curve (supports/clamp.hpp), which turns the outermost edge.
+/// `weights`: of the edges from `first_edge` on.
+std::array<double, 2> natural_turn_lengths(const RodLayout& rod, double s, Index first_edge,
+                                           const std::vector<double>& weights);
 
 /// Adds the springs of a support: the one to the anchor as an element, the one against turning to
 /// the moment places of its rod, where it joins what is at the same place.

@@ -121,20 +121,18 @@ class PathTracer {
   }
 
   /// If the factor passes `to`, or the opposite limit, on the way to `found`, moves `found` there,
-  /// which is `reached` ahead. Returns the ending of the branch, empty if no limit was passed.
-  std::string stop_at_limits(const PathNode& node, PathNode& found, double& reached) {
+  /// which is `reached` ahead; it is lost if no equilibrium is found there. Returns the ending of
+  /// the branch, empty if no limit was passed.
+  std::string stop_at_limits(const PathNode& node, std::optional<PathNode>& found,
+                             double& reached) {
     const double before = progress(node.at.factor);
-    const double now = progress(found.at.factor);
+    const double now = progress(found->at.factor);
     for (const double limit : {1.0, -1.0}) {
       if ((before - limit) * (now - limit) >= 0.0 || before == limit) continue;
       const double share = (limit - before) / (now - before);
-      const auto last =
-          equations_.node_at_factor(node, options_.from + limit * range_,
-                                    combine(node.at, share, difference(found.at, node.at)));
-      if (last) {
-        found = *last;
-        reached = metric().dot(node.tangent, difference(found.at, node.at));
-      }
+      found = equations_.node_at_factor(node, options_.from + limit * range_,
+                                        combine(node.at, share, difference(found->at, node.at)));
+      if (found) reached = metric().dot(node.tangent, difference(found->at, node.at));
       return limit > 0.0 ? "last factor" : "reached the opposite limit";
     }
     return "";
@@ -284,7 +282,7 @@ class PathTracer {
       double reached = step;
       std::string ending;
       std::vector<LocatedEvent> events;
-      if (found && is_near(node, step, *found)) ending = stop_at_limits(node, *found, reached);
+      if (found && is_near(node, step, *found)) ending = stop_at_limits(node, found, reached);
       if (!found || !is_near(node, reached, *found) ||
           !events_.locate(node, reached, *found, events)) {
         step *= 0.5;

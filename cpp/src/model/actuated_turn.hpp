@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+
+#include "der/kinematics/actuated_turn.hpp"
+#include "der/model/model.hpp"
+#include "der/model/section_place.hpp"
+#include "der/scenario/stretch_profile.hpp"
+
+namespace der {
+
+// An edge has the mean of the directions that actuations give the rod along it (docs/actuation.md),
+// and its section is that in its middle. At a place, the rod is turned on from there by the
+// integral of the actuated curvatures and twist, which no line between edges follows.
+
+/// What an edge turns by in a unit of an actuated curvature [m].
+scenario::EdgeTurns edge_turns(const ActuatedStretch& stretch, const RodLayout& rod, Index edge);
+
+/// The actuated turn to a place, from where the parts of a weighted sum are.
+class ActuatedTurnTo {
+ public:
+  /// `s`: rest arc length [m].
+  ActuatedTurnTo(double s, const RodLayout& rod) : s_(s), rod_(rod) {}
+
+  /// From an edge, those of a ring counted on, with these weights of its direction and its twist.
+  void from_edge(Index edge, double bend, double twist);
+  /// From another place [m].
+  void from(double place, double bend, double twist);
+  [[nodiscard]] ActuatedTurn turn() const { return turn_; }
+
+ private:
+  void add(const ActuatedStretch& stretch, double weight);
+  [[nodiscard]] double integral(const ActuatedStretch& stretch, double a, double b) const;
+
+  double s_;
+  const RodLayout& rod_;
+  ActuatedTurn turn_;
+};
+
+/// From the edges that moments at arc length `s` [m] turn, and the clamp beside them; in a plane.
+ActuatedTurn actuated_turn(double s, const RodLayout& rod);
+/// The same in space.
+ActuatedTurn actuated_turn(double s, const SectionPlace& place, const RodLayout& rod);
+/// From the edges that a load at arc length `s` [m] follows, with these weights of their
+/// directions.
+ActuatedTurn actuated_turn_of_follower(double s, const SectionPlace& place,
+                                       const std::array<double, 2>& in_bending,
+                                       const RodLayout& rod);
+
+}  // namespace der

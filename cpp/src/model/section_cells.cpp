@@ -1,0 +1,64 @@
+#include "model/section_cells.hpp"
+
+#include "der/core/index.hpp"
+#include "der/energies/circulatory_load.hpp"
+#include "der/energies/element_energy.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/section_spring.hpp"
+#include "der/model/section_place.hpp"
+
+namespace der {
+namespace {
+
+double stored_by_moments(const RodLayout& rod, const Model& model, const Configuration& here) {
+  double energy = 0.0;
+  for (const SpatialMomentPlace& place : rod.spatial_moments) {
+    energy += circulatory_loads(*model.elements)[to_size(place.load)].stored(here);
+  }
+  return energy;
+}
+
+/// Of a spring and its cell in series, what the cell stores: the springs have 1/2 m K^-1 m.
+template <int Edges>
+double stored_beside_spring(const SectionSpringPlace& spring, const Model& model,
+                            const Configuration& here) {
+  using Kernel = SectionSpring<Edges>;
+  const auto& springs = elements_of<Kernel>(*model.elements);
+  const std::size_t number = to_size(spring.element);
+  const auto [rotation, moment] = Kernel::response(springs.constants[number], here,
+                                                   gather(springs.dofs[number], here.coordinates));
+  double energy = 0.5 * rotation.dot(moment);
+  for (Index axis = 0; axis < 3; ++axis) {
+    const double stiffness = spring.stiffness[axis];
+    if (stiffness > 0.0) energy -= 0.5 * moment[axis] * moment[axis] / stiffness;
+  }
+  return energy;
+}
+
+double stored_beside_springs(const RodLayout& rod, const Model& model, const Configuration& here) {
+  double energy = 0.0;
+  for (const SectionSpringPlace& spring : rod.section_springs) {
+    energy += spring.on_one_edge ? stored_beside_spring<1>(spring, model, here)
+                                 : stored_beside_spring<2>(spring, model, here);
+  }
+  return energy;
+}
+
+}  // namespace
+
+Energies section_cell_energies(const RodLayout& rod, const Model& model,
+                               const Configuration& here) {
+  Energies energies;
+  const double beside_springs = stored_beside_springs(rod, model, here);
+  energies[EnergyTerm::Bend] = stored_by_moments(rod, model, here) + beside_springs;
+  energies[EnergyTerm::Spring] = -beside_springs;
+  return energies;
+}
+
+double stored_by_section_moments(const Model& model, const Configuration& here) {
+  double energy = 0.0;
+  for (const RodLayout& rod : model.rods) energy += stored_by_moments(rod, model, here);
+  return energy;
+}
+
+}  // namespace der

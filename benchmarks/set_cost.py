@@ -37,6 +37,11 @@ SCENE = {
         {"name": "push", "point_force": {"rod": "rod", "at": "end", "force": [0, 0]}},
         {"name": "bend", "moment": {"rod": "rod", "at": 0.5, "moment": 0}},
     ],
+    "actuation": [
+        {"name": "curl", "rod": "rod", "from": 0.2, "to": 0.8, "natural_curvature": 0},
+        {"name": "longer", "rod": "rod", "elongation": 0},
+        {"name": "shorter", "rod": "rod", "from": 0.13, "profile": "smooth", "elongation": 0},
+    ],
     "time": {"duration": 1, "step": 0.001},
 }
 
@@ -66,6 +71,8 @@ def main() -> int:
     ways: dict[str, Callable[[], object]] = {
         'set("bend", 0.1)': lambda: set_value("bend", 0.1),
         'set("wall.x", 0.1)': lambda: set_value("wall.x", 0.1),
+        'set("curl", 0.1)': lambda: set_value("curl", 0.1),
+        'set("longer", 0.1)': lambda: set_value("longer", 0.1),
         'set("push", [0, -3])': lambda: set_value("push", pull),
         'set("wall", {"x": 0.1})': lambda: set_value("wall", {"x": 0.1}),
         'value("bend")': lambda: simulation.value("bend"),

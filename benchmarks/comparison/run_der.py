@@ -16,12 +16,12 @@ def run(scene: dict[str, Any], config: Config) -> tuple[float, Path]:
     Keys of a configuration besides ``elements`` and ``steps``: ``integrator``, and ``tolerance``,
     the residual at which Newton's method stops.
     """
-    simulation = der.Simulation(der.Scenario.from_dict({**scene, **_controls(config)}))
+    simulation = der.Simulation(der.Scenario.from_dict({**scene, **controls(config)}))
     start = time.process_time()
     recording = simulation.record()  # the run in C++, without what `run` makes of it in Python
     seconds = time.process_time() - start
-    if recording.failed:
-        raise RunFailedError(recording.message)
+    if recording.error is not None:
+        raise RunFailedError(str(recording.error))
     return seconds, recording.positions[:, -1]
 
 
@@ -37,7 +37,8 @@ def explicit(elements: int) -> Config:
     return {"elements": elements, "integrator": "verlet", "steps": "fewest"}
 
 
-def _controls(config: Config) -> dict[str, Any]:
+def controls(config: Config) -> dict[str, Any]:
+    """Return the parts of a scene that a configuration sets."""
     integration: dict[str, Any] = {
         "duration": DURATION,
         "step": time_step(config),

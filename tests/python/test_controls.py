@@ -62,7 +62,9 @@ def test_every_form_of_a_value(simulation):
     simulation.set("push", [1, -3])
     simulation.set("wall", {"x": 0.1})
     simulation.set("wall.angle", np.float64(0.2))
-    simulation.set("bend", 2)
+    for two in (np.float32(2), np.array(2.0), np.array([2.0]), [np.int64(2)], 2):
+        simulation.set("bend", 0)
+        simulation.set("bend", two)
     simulation.set("gravity", np.array([0.0, -1.6]))
     simulation.step()
     assert simulation.value("push").tolist() == [1, -3]
@@ -88,6 +90,8 @@ def test_a_value_is_reached_evenly(simulation):
     ("name", "value", "error", "message"),
     [
         ("psh", 1, der.DerError, "did you mean 'push'"),
+        ("", 1, der.DerError, "the name ''; there is 'wall'"),
+        (".push", 1, der.DerError, "the name '.push'; did you mean 'push'"),
         ("water", 1, der.DerError, "a load of the kind 'damping' has no value"),
         ("wall.y", 1, der.DerError, "has no component 'y'; it has 'x' and 'angle'"),
         ("push", 1, der.DerError, "takes 2 values, for 'x' and 'y', but here is 1"),

@@ -210,7 +210,9 @@ def tutorial(monkeypatch):
     return lambda module: importlib.import_module(f"tutorials.{module}")
 
 
-@pytest.mark.parametrize("module", ["falling_rod", "beam_study", "control", "finger"])
+@pytest.mark.parametrize(
+    "module", ["falling_rod", "beam_study", "control", "finger", "learning", "fitting"]
+)
 def test_code_of_a_tutorial_is_that_of_its_program(module):
     """Definitions are shown as they are; blocks that use them may be the page's own."""
     program = (TUTORIALS / f"{module}.py").read_text(encoding="utf-8")
@@ -257,6 +259,7 @@ def test_tutorial_of_control(tutorial):
 
 def test_pictures_can_be_made(tmp_path, monkeypatch):
     """docs/make_figures.py draws all but those that take the peers, or a browser."""
+    pytest.importorskip("gymnasium")
     scripts = tmp_path / "docs"
     scripts.mkdir()
     (tmp_path / "configs").symlink_to(ROOT / "configs")
@@ -296,3 +299,54 @@ def test_tutorial_of_the_finger(tutorial):
     result = finger.replay(with_feedback)
     assert result.positions[-1, -1] == pytest.approx(with_feedback.tips[-1], abs=1e-12)
     assert result.work["actuation"][-1] > 0.0
+
+
+def test_tutorial_of_learning(tutorial):
+    pytest.importorskip("gymnasium")
+    learning = tutorial("learning")
+    learned = learning.load(TUTORIALS / "learning.json")
+    assert learning.distance_at_the_end(learned, episodes=20) < 1.5  # cm
+    track = learning.run(learned)
+    for second in range(1, len(learning.ROUND) + 1):
+        action = second * learning.ACTIONS
+        apart = track.tips[action] - track.targets[action - 1]
+        assert np.linalg.norm(apart) < 0.03
+    # Tables are the same run as what the controller set.
+    result = learning.replay(track)
+    assert result.positions[-1, -1] == pytest.approx(track.tips[-1], abs=1e-12)
+    # Learning finds the same whatever the number of threads, and it learns.
+    again = [learning.train(6, candidates=24, episodes=2, threads=n) for n in (1, 2)]
+    assert np.array_equal(again[0].weights, again[1].weights)
+    untrained = learning.Learned(np.zeros(learning.WEIGHTS), [])
+    assert learning.distance_at_the_end(again[0], 20) < learning.distance_at_the_end(untrained, 20)
+
+
+def test_tutorial_of_fitting(tutorial):
+    fitting = tutorial("fitting")
+    # The slopes, against the change of the trace in another direction.
+    change = 1e-3 * np.array([0.6, -0.8])
+    _, slopes = fitting.side_by_side(tuple(np.log(fitting.TRUTH)))
+    up, down = fitting.traces(fitting.TRUTH * np.exp([change, -change]))
+    assert 0.5 * (up - down) == pytest.approx(slopes @ change, abs=1e-4 * np.abs(up - down).max())
+    exact = fitting.exact_trace()
+    found = fitting.fit(fitting.film(np.random.default_rng(0), exact))
+    assert found.parameters == pytest.approx(fitting.TRUTH, rel=0.03)
+    assert found.noise == pytest.approx(fitting.NOISE, rel=0.2)
+    assert np.all(np.diff(found.interval(0.95), axis=0) > np.diff(found.interval(0.5), axis=0))
+    # Of 30 films, 95 % are 28.5 +- 1.2; the spread has 13 % of uncertainty.
+    fits = fitting.repeated(exact, films=30)
+    assert np.all(fitting.coverage(fits) >= 25 / 30)
+    spread = np.std(np.log([one.parameters for one in fits]), axis=0)
+    assert spread == pytest.approx(np.sqrt(np.diag(found.covariance)), rel=0.35)
+
+
+def test_the_page_of_failures_has_every_status():
+    thrown = re.compile(r'Error\(\s*"([a-z_]+)"')
+    found = {
+        s for path in (ROOT / "cpp/src").rglob("*.cpp") for s in thrown.findall(path.read_text())
+    }
+    search = (ROOT / "cpp/src/statics/equilibrium/failure.cpp").read_text()
+    found |= set(re.findall(r'return \{\s*"([a-z_]+)"', search))
+    assert {"unstable_step", "model_error", "collapsed", "folded", "too_fine"} <= found
+    page = (DOCS / "what_can_go_wrong.md").read_text(encoding="utf-8")
+    assert [status for status in sorted(found) if f"| `{status}` |" not in page] == []

@@ -84,13 +84,14 @@ def test_every_quantity_where_the_rod_has_it(swing):
     model = der.Model(der.Scenario.from_dict(swing))
     rod = model.rods[0]
     middles = 0.5 * (rod.arc_lengths[1:] + rod.arc_lengths[:-1])
-    of_kind = dict.fromkeys(("position", "velocity", "bend", "tangent"), rod.arc_lengths)
+    kinds = ("position", "velocity", "bend", "natural", "tangent")
+    of_kind = dict.fromkeys(kinds, rod.arc_lengths)
     of_kind["turn"] = rod.arc_lengths[:-1]
     of_kind["edge"] = np.r_[0.0, middles, rod.arc_lengths[-1]]
     places = {
         one.name: of_kind[one.kind]
         for one in der.quantities()
-        if one.kind not in ("energy", "support") and one.is_available(model)
+        if one.kind not in ("energy", "support", "actuation") and one.is_available(model)
     }
     assert len(places) >= 10
     swing["output"]["probes"] = {
@@ -109,8 +110,8 @@ def test_every_quantity_where_the_rod_has_it(swing):
 
 def test_exports_have_every_quantity_with_a_value_at_all_nodes(swing):
     """Components are exported as vectors; a turning angle has no value between nodes that bend."""
-    of_whole = ("ring", "energy", "support")
-    along_rods = [q.name for q in der.quantities() if q.kind not in of_whole]
+    of_whole = ("ring", "energy", "support", "actuation")
+    along_rods = [q.name for q in der.quantities() if q.kind not in (*of_whole, "natural")]
     left_out = {"x", "y", "z", "vx", "vy", "vz", "turning_angle", "tz"}
     of_sections = {quantity.name for quantity in der.quantities() if quantity.kind == "section"}
     fields = fields_of(der.Model(der.Scenario.from_dict(swing)))
@@ -119,6 +120,17 @@ def test_exports_have_every_quantity_with_a_value_at_all_nodes(swing):
     swing["rods"][0]["material"]["poissons_ratio"] = 0.3
     spatial = fields_of(der.Model(der.Scenario.from_dict(swing | {"model": "spatial"})))
     assert set(spatial) == (set(fields) | of_sections | {"tz"}) - {"slope"}
+
+
+def test_exports_have_the_shape_without_stress_where_actuations_change_it(swing):
+    swing["actuation"] = [{"name": "bend", "rod": "arm", "natural_curvature": 1.5}]
+    plane = fields_of(der.Model(der.Scenario.from_dict(swing)))
+    assert "natural_curvature" in plane
+    swing["rods"][0]["material"]["poissons_ratio"] = 0.3
+    space = fields_of(der.Model(der.Scenario.from_dict(swing | {"model": "spatial"})))
+    assert set(space) >= {"natural_curvature_1", "natural_curvature_2", "natural_twist"}
+    values = rod_fields(der.run(swing))[0].at_nodes["natural_curvature"]
+    assert values == pytest.approx(1.5)
 
 
 def test_every_quantity_has_a_natural_size(swing):

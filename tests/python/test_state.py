@@ -133,7 +133,10 @@ FAILURES = {
     "prescribed": [(nothing, lambda s: s.prescribed("x"))],
     "hessian": [(nothing, lambda s: s.hessian(1))],
     "mass": [(nothing, lambda s: s.mass(1))],
+    "actuation_forces": [(nothing, lambda s: s.actuation_forces(1))],
+    "actuation_values": [(nothing, lambda s: s.actuation_values(1))],
     "reactions": [(nothing, lambda s: s.reactions(1))],
+    "share_done": [(nothing, lambda s: s.share_done("x"))],
     "reaction_vectors": [(nothing, lambda s: s.reaction_vectors(1))],
     "gradient": [(nothing, lambda s: s.gradient(1))],
     "lower_hessian": [(nothing, lambda s: s.lower_hessian(1))],
@@ -207,6 +210,55 @@ def test_a_state_of_a_moved_support_does_not_fit_a_scene_without(swing, moving):
         der.Simulation(plain).restore_state(state)
 
 
+def bent(swing, *parts):
+    """The swing with actuations."""
+    swing["actuation"] = [{"rod": "arm", **part} for part in parts]
+    return der.Simulation(swing)
+
+
+CURL = {"name": "curl", "natural_curvature": 0}
+BEND = {"name": "bend", "natural_curvature": 0}
+OTHER_NAMES = {
+    "order": ((BEND, CURL), "'curl' of the state stands in the place of 'bend' of this scene"),
+    "one less": ((CURL,), r"the state has 'bend' \(natural_curvature \[1/m\]\), which this scene"),
+    "one more": ((CURL, BEND, {**BEND, "name": "b"}), "this scene has 'b' .* of the state lacks"),
+    "kind": (
+        (CURL, {"name": "bend", "elongation": 0}),
+        r"'bend' of the state is natural_curvature \[1/m\], and here elongation",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", OTHER_NAMES)
+@pytest.mark.parametrize("is_set", [True, False])
+def test_a_state_knows_the_names_of_what_can_be_set(swing, what, is_set):
+    """It sets controls by their number: in a scene that lists others it would set another one."""
+    first = bent(swing, CURL, BEND)
+    if is_set:
+        first.set("bend", 1.0)
+        first.step()
+    state = pickle.loads(pickle.dumps(first.save_state()))
+    same = bent(swing, CURL, BEND)
+    same.restore_state(state)
+    assert same.value("bend") == first.value("bend")
+    parts, message = OTHER_NAMES[what]
+    other = bent(swing, *parts)
+    before = dumped(other)
+    with pytest.raises(ValueError, match=message + ".*same names in the same order"):
+        other.restore_state(state)
+    assert dumped(other) == before
+
+
+def test_tables_without_a_name_count_too(swing):
+    """They shift the numbers of those that have one."""
+    push = {"rod": "arm", "at": "end", "force": {"times": [0, 1], "values": [[0, 0], [0, 0]]}}
+    swing["loads"] = [{"name": "push", "point_force": {**push, "force": [0, 0]}}]
+    state = der.Simulation(swing).save_state()
+    swing["loads"].insert(0, {"point_force": push})
+    with pytest.raises(ValueError, match="other tables without a name stand before it"):
+        der.Simulation(swing).restore_state(state)
+
+
 def test_time_goes_on_under_another_step(swing):
     first = der.Simulation(swing)
     first.step(33)
@@ -240,7 +292,7 @@ def test_equal_steps_count_their_time_as_before(swing):
     assert simulation.time == 12 * 0.003
 
 
-HEAD = ("kind", "version", "nodes", "dimension", "fields")
+HEAD = ("kind", "version", "nodes", "dimension", "fields", "controls")
 
 
 def content_of(state):
@@ -265,7 +317,8 @@ def changed(state, **parts):
 
 
 def ramp(**parts):
-    return {"control": 0, "start": 0.0, "end": 1.0, "from": 0.0, "to": 1.0} | parts
+    way = {"step": 0.0, "before": 0.0, "earlier": 0.0}
+    return {"control": 0, "start": 0.0, "end": 1.0, "from": 0.0, "to": 1.0} | way | parts
 
 
 def bdf2(size, **parts):
@@ -300,6 +353,9 @@ MALFORMED = {
     "too many nodes": {"nodes": 12},
     "other kind": {"kind": "der.Model"},
     "other version": {"version": 99},
+    "no names": {"controls": []},
+    "a name that is a number": {"controls": [{"name": 1}]},
+    "names of another type": {"controls": "pin"},
     "control": {"ramps": [ramp(control=17)]},
     "negative control": {"ramps": [ramp(control=-1)]},
     "half a control": {"ramps": [ramp(control=0.5)]},
@@ -333,7 +389,7 @@ def test_each_field_that_is_missing_is_named(moving):
     for name in content["fields"]:
         rest = {key: value for key, value in content["fields"].items() if key != name}
         with pytest.raises(ValueError, match=f"'{name}' is missing"):
-            revived(state, (*list(content.values())[:4], rest))
+            revived(state, tuple({**content, "fields": rest}.values()))
 
 
 def test_pickles_of_other_versions_are_refused_by_name(moving):

@@ -19,7 +19,7 @@ from der.accuracy.study_reference import Reference, converge_in_space
 from der.accuracy.study_result import Study
 from der.accuracy.study_row import StudyRow, seconds_text
 from der.cli import main
-from der.parallel import Task, Workers
+from der.parallel import Task, Workers, attempt
 from matplotlib.image import imread
 
 SAGGING = {
@@ -491,14 +491,13 @@ def test_an_interrupt_stops_the_other_runs(sagging, monkeypatch):
     sagging["time"] |= {"duration": 1e6, "step": 1e-3}
     sagging["output"]["every"] = 1e6
     endless = der.Scenario.from_dict(sagging)
-    original = Workers._run_once
 
-    def interrupted(self, scenario, *rest):
+    def interrupted(scenario, *rest, **options):
         if scenario is not endless:
             raise KeyboardInterrupt
-        return original(self, scenario, *rest)
+        return attempt(scenario, *rest, **options)
 
-    monkeypatch.setattr(Workers, "_run_once", interrupted)
+    monkeypatch.setattr("der.parallel.attempt", interrupted)
     with pytest.raises(KeyboardInterrupt):
         Workers(2).run({0: Task([der.Scenario.from_dict(SAGGING)], weight=1), 1: Task([endless])})
 

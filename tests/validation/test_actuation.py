@@ -5,6 +5,7 @@ boundary value problem of the extensible elastica with a rest shape; thermal buc
 """
 
 import math
+import warnings
 from itertools import pairwise
 
 import der
@@ -695,3 +696,224 @@ def test_edges_beside_a_clamp_keep_a_length():
         der.Scenario.from_dict(scene)
     scene["actuation"] = [stretch(-0.95, 0.2, 1.0)]
     assert der.equilibrium(scene).positions[-1, -1, 0] == pytest.approx(0.24, abs=1e-9)
+
+
+def driven(*parts, ends="free-free"):
+    """A rod that has time to follow."""
+    scene = straight(10, ends, 1e3, actuation=list(parts), loads=[{"damping": {"coefficient": 5}}])
+    del scene["analysis"]
+    time = {"duration": 20.0, "step": 0.02, "integrator": "energy_momentum"}
+    return der.Simulation(scene | {"time": time})
+
+
+def test_elongations_that_a_program_sets_leave_every_edge_a_length():
+    """Each is greater than -1; the sum where they overlap would not be, from 0.3 m to 0.6 m."""
+    rod = driven(stretch(0.0, 0.0, 0.6, "a"), stretch(0.0, 0.3, 1.0, "b"))
+    rod.set("a", -0.6, over=2.0)
+    rod.set("b", -0.3, over=1.0)
+    wrong = (
+        r"greater than -0\.4 while 'a' is -0\.6: the edge from 0\.3 m to 0\.4 m would be .* 1\.1 of"
+    )
+    with pytest.raises(der.DerError, match=wrong):
+        rod.set("b", -0.5, over=2.0)
+    # What is on its way counts: a is -0.3 when b would come to -0.5, and then goes on.
+    with pytest.raises(der.DerError, match=wrong):
+        rod.set("b", -0.5, over=1.0)
+    rod.step(100)
+    assert rod.value("b") == -0.3  # as before
+    rod.set("b", -0.39, over=1.0)
+    rod.step(100)
+    assert rod.positions[-1, 0] - rod.positions[0, 0] == pytest.approx(1 - 0.36 - 0.273, abs=1e-3)
+
+
+def test_smooth_elongations_that_a_program_sets():
+    """The edge in the middle has the largest share of sin^2, on average."""
+    parts = [stretch(0.0, 0.0, 1.0, name, profile="smooth") for name in "ab"]
+    rod = der.Simulation(straight(9, "free-free", 1e3, actuation=parts))
+    share = 0.5 + 9 * np.sin(np.pi / 9) / (2 * np.pi)
+    rod.set("a", -0.7)
+    rod.set("b", 0.7 - 1 / share + 1e-9)
+    with pytest.raises(der.DerError, match=r"while 'a' is -0\.7"):
+        rod.set("b", 0.7 - 1 / share - 1e-9)
+
+
+def test_elongation_that_a_program_sets_beside_a_clamp():
+    rod = driven(stretch(0.0, 0.0, 1.0, "a"), ends="clamped-free")
+    rod.set("a", -0.7)
+    with pytest.raises(der.DerError, match=r"than -0\.75: the edge from 0 m to 0\.1 m .* quarter"):
+        rod.set("a", -0.8)
+
+
+def test_a_table_that_meets_what_a_program_has_set():
+    """Neither the table nor the value is wrong by itself."""
+    table = {"times": [0, 4, 10], "values": [0, 0, -0.6]}
+    rod = driven(stretch(table, 0.0, 1.0, "a"), stretch(0.0, 0.5, 1.0, "b"))
+    rod.set("b", -0.65, over=4.0)
+    with pytest.raises(der.DerError, match=r"'a' is -0\.35 and 'b' is -0\.65 would shorten"):
+        rod.step(1000)
+    assert rod.time == pytest.approx(7.5, abs=0.06)
+    rod.set("b", 0.0, over=2.0)
+    rod.step(50)
+
+
+# ---- the natural curvature as a quantity
+
+
+@pytest.mark.parametrize("profile", PROFILES)
+def test_natural_curvature_is_that_of_the_rod_and_of_its_actuations(profile):
+    """Whatever holds the rod; a quantity of the rest shape does not see how it is bent."""
+    curvature = profile_curvature(profile, FROM, TO)
+    part = bend(CURVATURE, FROM, TO, profile=profile)
+    scene = straight(20, "clamped-clamped", 1e4, actuation=[part, bend(0.4, 0.0, 1.0, "whole")])
+    scene["rods"][0]["natural_curvature"] = 0.7
+    inside, beyond = sides(FROM, TO)
+    places = [*inside, *beyond, (0.0, "after"), (0.5432, "after"), (1.0, "before")]
+    truth = [*(curvature(s) for s, _ in inside), 0.0, 0.0, 0.0, curvature(0.5432), 0.0]
+    found = probed(scene, places, ["natural_curvature", "curvature"])
+    assert found[:, 0] == pytest.approx(np.array(truth) + 1.1, abs=1e-9)
+    assert np.abs(found[:, 0] - found[:, 1]).max() > 0.1
+    result = der.run(scene)
+    s, values = result.along("rod", "natural_curvature")
+    assert s == pytest.approx(result.along("rod", "curvature")[0])
+    moment = (result.along("rod", "curvature")[1] - values)[-1]  # EI = 1
+    assert result.along("rod", "moment")[1][-1] == pytest.approx(moment, abs=1e-9)
+
+
+# ---- paths
+
+
+@pytest.mark.parametrize("vary", ["loads.push", "supports.wall", "actuation.bend"])
+def test_paths_of_what_has_a_name(vary):
+    """By the name as by the number."""
+    scene = straight(6, "clamped-free", 1e3, actuation=[bend(0.0, 0, 1, "no"), bend(2.0, 0, 1)])
+    scene |= {
+        "supports": [
+            {"rod": "rod", "at": "end", "spring": {"stiffness": [0.1, 0.1]}},
+            {"name": "wall", "rod": "rod", "at": "start", "clamp": True, "prescribe": {"y": 0.1}},
+        ],
+        "loads": [{"gravity": [0, -0.1]}, {"name": "push"} | tip_force(0, 0.3)[0]],
+    }
+    paths = [
+        der.continuation(scene, vary=which).positions for which in (vary, vary.split(".")[0] + ".1")
+    ]
+    assert np.ptp(paths[0][:, -1, 1]) > 0.005
+    np.testing.assert_array_equal(*paths)
+
+
+def test_buckling_loads_of_an_actuated_rod_name_the_path_of_its_actuations():
+    """They scale the loads, and the rod is bent before it buckles."""
+    scene = straight(8, "clamped-free", 1e3, actuation=[bend(2.0, 0.0, 0.5)])
+    scene |= {"loads": tip_force(-0.1, -0.1), "analysis": "buckling"}
+    (warning,) = der.run(scene).summary["warnings"]
+    assert "'analysis: {continuation: {vary: actuation}}'" in warning
+    (warning,) = der.run(scene | {"actuation": []}).summary["warnings"]
+    assert "actuation" not in warning
+
+
+def test_a_hinge_may_be_shorter_than_an_edge():
+    """A short strong stretch turns the rod by what it has in all, whatever its curvature.
+
+    Without stress: straight, an arc of 5 mm that turns by 0.5 rad, straight. An edge within which
+    the rod is turned has the mean direction, off by a share turn^2/24 of its length.
+    """
+    turn, start, end = 0.5, 0.5, 0.505
+    scene = straight(10, "clamped-free", 1e4, actuation=[bend(turn / 0.005, start, end)])
+    scenario = der.Scenario.from_dict(scene)
+    assert not scenario.warnings
+    arc = 0.005 / turn * np.array([np.sin(turn), 1 - np.cos(turn)])
+    exact = [start, 0] + arc + (1 - end) * np.array([np.cos(turn), np.sin(turn)])
+    tip = der.run(scenario).positions[-1, -1]
+    assert tip == pytest.approx(exact, abs=0.1 * turn**2 / 24)
+    scene["actuation"] = [bend(3.3 / 0.005, start, end)]
+    with pytest.raises(der.SceneError, match=r"asks for a turn of 3\.22 rad at node 5"):
+        der.Scenario.from_dict(scene)
+
+
+def test_a_hinge_at_a_clamp_turns_the_edge_there_more():
+    """From its pivot on the edge is 4/5 as long, and turns by 5/4 of its mean direction."""
+    scene = straight(10, "clamped-free", 1e4, actuation=[bend(2.6 / 1e-6, 0.0, 1e-6)])
+    with pytest.raises(der.SceneError, match=r"asks for a turn of 3\.25 rad at node 0"):
+        der.Scenario.from_dict(scene)
+
+
+def test_curvatures_that_overlap_are_judged_together():
+    """Three of 9.5/m turn edges of 0.1 m by 2.85 rad, and opposite ones by nothing."""
+    parts = [bend(9.5, 0.0, 1.0, name) for name in "abc"]
+    scene = straight(10, "clamped-free", 1e4, actuation=parts)
+    (warning,) = der.Scenario.from_dict(scene).warnings
+    assert "for actuation.a and actuation.b and actuation.c: " in warning
+    assert "by 2.9 rad at node 2. Give it about 58 nodes" in warning
+    table = {"times": [0, 1, 2], "values": [0, -9.5, 0]}
+    scene["actuation"][2]["natural_curvature"] = table
+    del scene["analysis"]
+    scene["time"] = {"duration": 2, "step": 0.1}
+    (warning,) = der.Scenario.from_dict(scene).warnings
+    assert "by 1.9 rad at node" in warning  # at the start and at the end
+    scene["actuation"] = [bend(50.0, 0.0, 1.0, "a"), bend(-49.0, 0.0, 1.0, "b")]
+    assert not der.Scenario.from_dict(scene).warnings
+    scene["actuation"] = [bend(20.0, 0.0, 0.6, "a"), bend(20.0, 0.3, 1.0, "b")]
+    with pytest.raises(der.SceneError, match=r"b.natural_curvature: together with .* of 4 rad"):
+        der.Scenario.from_dict(scene)
+    scene["actuation"] = [bend(20.0, 0.0, 0.5, "a"), bend(20.0, 0.5, 1.0, "b")]
+    (warning,) = der.Scenario.from_dict(scene).warnings
+    assert "by 2 rad" in warning
+
+
+def test_curvatures_that_a_program_sets_are_judged_together():
+    """A warning once for each rod, and an error from half a turn that changes nothing."""
+    rod = driven(bend(0.0, 0.0, 0.6, "a"), bend(0.0, 0.3, 1.0, "b"), ends="clamped-free")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rod.set("a", 9.5)
+        rod.set("b", -9.5, over=1.0)
+    with pytest.warns(der.DerWarning, match="too coarse for 'b': .* by 1.2 rad at node"):
+        rod.set("b", -12.0, over=1.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rod.set("b", -15.0, over=1.0)  # said already
+        rod.set("a", 30.0, over=1.0)  # -15 meanwhile
+    before = rod.value("b"), rod.save_state().time
+    with pytest.raises(der.DerError, match=r"'a' and 'b' would turn .* by 3\.5 rad"):
+        rod.set("b", 5.0, over=2.0)
+    assert (rod.value("b"), rod.save_state().time) == before
+
+
+def test_curvatures_that_a_program_sets_meet_a_table():
+    """The step before edges would turn by half a turn says so."""
+    table = {"times": [0, 4, 14], "values": [0, 0, 20]}
+    with pytest.warns(der.DerWarning, match="too coarse for actuation.table: .* by 2 rad"):
+        rod = driven(bend(0, 0.0, 1.0, "set"), bend(table, 0.4, 0.6, "table"), ends="clamped-free")
+    with pytest.warns(der.DerWarning, match="too coarse for 'set'"):
+        rod.set("set", 20.0, over=4.0)
+    with pytest.raises(der.DerError, match=r"at t = .* 'set' and 'table' would turn the edges"):
+        rod.step(600)
+    assert 2.0 + 0.2 * (rod.time - 4.0) == pytest.approx(np.pi, abs=0.2 * 0.021)
+
+
+def test_pairs_that_a_program_sets_are_judged_together():
+    """Both components of one call: each is less than half a turn."""
+    scene = straight(10, "clamped-free", 1e4, actuation=[bend([0.0, 0.0], 0.0, 1.0)])
+    scene["rods"][0] |= {"from": [0, 0, 0], "to": [1, 0, 0]}
+    scene["rods"][0]["cross_section"] = {
+        "stiffness": {"EA": 1e4, "EI": 1.0, "GJ": 1.0, "mass_per_length": 1.0}
+    }
+    rod = der.Simulation({**scene, "model": "spatial"})
+    with pytest.raises(der.DerError, match=r"'bend' would turn .* by 3\.54 rad"):
+        rod.set("bend", [25.0, 25.0])
+    with pytest.warns(der.DerWarning, match="by 2.5 rad"):
+        rod.set("bend", [25.0, 0.0])
+
+
+def test_elongations_count_on_the_edge_beside_a_clamp_by_their_mean():
+    """The clamp's edge keeps its length where little of a profile or of a stretch is on it."""
+    smooth = [stretch(-0.9, 0.0, 1.0, profile="smooth")]
+    scene = straight(20, "clamped-free", 1e3, actuation=smooth)
+    assert der.equilibrium(scene).positions[-1, -1, 0] == pytest.approx(1 - 0.45, abs=1e-9)
+    scene["actuation"] = [stretch(-0.9, 0.0499, 1.0)]
+    assert der.equilibrium(scene).positions[-1, -1, 0] == pytest.approx(1 - 0.9 * 0.9501, abs=1e-9)
+    scene["actuation"] = [stretch(-0.9, 0.005, 1.0)]
+    with pytest.raises(der.SceneError, match=r"must be greater than -0\.8333 beside a clamp"):
+        der.Scenario.from_dict(scene)
+    scene["actuation"] = [stretch(-0.5, 0.0, 1.0, "a"), stretch(-0.4, 0.0, 0.05, "b")]
+    with pytest.raises(der.SceneError, match=r"shorten the edge beside a clamp by 0\.9 of"):
+        der.Scenario.from_dict(scene)

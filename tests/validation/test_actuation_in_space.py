@@ -507,3 +507,24 @@ def test_ledger_in_space(fitted_order, info, turns):
         assert losses[-1] < 0.01 * scale
     else:
         assert fitted_order(steps, losses) > min(info.order, 2) - 0.1
+
+
+# ---- the natural shape as quantities
+
+
+def test_natural_curvatures_and_twist_are_those_of_the_rod_and_of_its_actuations():
+    """Whatever holds the rod, on both sides of the jumps, at nodes and between them."""
+    actuation = [
+        bend([1.3, -0.8], 0.313, 0.777, profile="linear"),
+        twist(2.1, 0.2, 0.9),
+    ]
+    held = [{**START, "clamp": True}, {**END, "clamp": True}]
+    scene = straight_rod(12, BEAM, supports=held, actuation=actuation)
+    scene["rods"][0] |= {"natural_curvature": [0.3, 0.5], "natural_twist": -0.4}
+    cases = [(0.313, "before"), (0.313, "after"), (0.777, "before"), (0.777, "after")]
+    places = [*cases, (0.5, "after"), (0.2, "before"), (0.2, "after"), (1.0, "before")]
+    names = ["natural_curvature_1", "natural_curvature_2", "natural_twist"]
+    shares = np.array([0, 0, 1, 0, (0.5 - 0.313) / 0.464, 0, 0, 0])
+    twisted = np.array([1, 1, 1, 1, 1, 0, 1, 0])
+    truth = np.column_stack([0.3 + 1.3 * shares, 0.5 - 0.8 * shares, -0.4 + 2.1 * twisted])
+    assert probed(scene, places, names) == pytest.approx(truth, abs=1e-9)

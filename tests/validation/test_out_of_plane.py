@@ -324,3 +324,17 @@ def test_no_potential_in_space():
     sprung = [*CANTILEVER, {**END, "spring": {"rotational_stiffness": 1.0}}]
     scene = strip(10, sprung, tip_force(0, 0.1), 0.1, 0.1)
     assert "supports.1 against rotation" in planar_verdict(scene).not_tested
+
+
+@pytest.mark.parametrize("n", [10, 30, 50])
+def test_columns_that_buckle_alike_both_ways_do_not_leave_their_plane_first(n):
+    """The same matrices in the plane and out of it: the factors differ by rounding alone."""
+    scene = strip(n, BEAM, tip_force(-1, 0), 1.0, 0.7, analysis="buckling")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        result = der.run(scene)
+    factor = result.summary["out_of_plane"]["load_factor"]
+    assert factor == pytest.approx(result.buckling.load_factors[0], rel=1e-9)
+    # A difference that is one of mechanics counts.
+    with pytest.warns(der.DerWarning, match="buckles out of its plane first"):
+        der.run(strip(n, BEAM, tip_force(-1, 0), 0.99999, 0.7, analysis="buckling"))

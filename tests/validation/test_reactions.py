@@ -320,6 +320,96 @@ def test_a_support_that_moves_bears_inertia_and_damping(fitted_order):
     assert fitted_order(steps, errors) < -1.9
 
 
+def test_a_support_that_a_program_moves_bears_inertia_and_damping(fitted_order):
+    # The rod as one piece again; the motion is set step by step, and what comes is not known.
+    mass, damping, rate = 2.0, 3.0, 9.0
+    steps = [50, 100, 200]
+    errors = []
+    for count in steps:
+        section_ = {"stiffness": {"EA": 10, "EI": 1, "mass_per_length": mass}}
+        rod = {"name": "rod", "nodes": 9, "from": [0, 0], "to": [1, 0], "cross_section": section_}
+        simulation = der.Simulation(
+            {
+                "rods": [rod],
+                "supports": [
+                    {"name": "hold", "rod": "rod", "at": "all", "prescribe": {"y": 0}},
+                    {"rod": "rod", "at": "start", "fix": ["x"]},
+                ],
+                "loads": [{"damping": {"rod": "rod", "coefficient": damping}}],
+                "time": {"duration": 1.0, "step": 1.0 / count},
+            }
+        )
+        off = []
+        for t in np.arange(1, count + 1) / count:
+            simulation.set("hold", 0.1 * (1 - np.cos(rate * t)))
+            simulation.step()
+            force = sum(r.force[1] for r in simulation.reactions())
+            exact = 0.1 * rate * (mass * rate * np.cos(rate * t) + damping * np.sin(rate * t))
+            off.append(force - exact)
+        errors.append(np.abs(off[5:]).max())
+    assert fitted_order(steps, errors) < -1.9
+
+
+OMEGA, DAMPING = 9.0, 6.0
+
+
+def borne_by_hand():
+    """Force and moment of a shaken clamp over the amplitude of its deflection, complex.
+
+    EI w'''' + c w_t + m w_tt = 0 with EI = m = L = 1 and w = W(s) exp(i omega t): W is a sum of
+    exp(b s) with the four roots b of b^4 = omega^2 - i c omega; w = 1 and w' = 0 at the clamp, w''
+    and w''' vanish at the free end. The clamp exerts the shear force w''' and the moment -w''.
+    """
+    roots = (OMEGA**2 - 1j * DAMPING * OMEGA) ** 0.25 * np.array([1, 1j, -1, -1j])
+    end = np.exp(roots)
+    conditions = [np.ones(4), roots, roots**2 * end, roots**3 * end]
+    weights = np.linalg.solve(np.array(conditions, dtype=complex), [1, 0, 0, 0])
+    return np.array([weights @ roots**3, -weights @ roots**2])
+
+
+def borne(edges, steps, integrator, driven):
+    """The same of the rod, by least squares over the last period of a small motion."""
+    amplitude, period = 1e-4, 2 * np.pi / OMEGA
+    rounds = int(np.ceil(2 * 9.0 / DAMPING / period)) + 1  # the slowest motion has died away
+    step = period / steps
+    times = step * np.arange(rounds * steps + 1)
+    values = amplitude * (1 - np.cos(OMEGA * times))
+    scene = straight(edges, "clamped-free", EA=300.0)
+    table = {"times": times.tolist(), "values": values.tolist()}
+    del scene["analysis"]
+    scene |= {
+        "supports": [{**CLAMPED, "name": "clamp", "prescribe": {"y": 0 if driven else table}}],
+        "loads": [{"damping": {"coefficient": DAMPING}}],
+        "time": {"duration": times[-1], "step": step, "integrator": integrator},
+    }
+    simulation = der.Simulation(scene)
+    found = []
+    for i, value in enumerate(values[1:], start=1):
+        if driven:
+            simulation.set("clamp.y", value)
+        simulation.step()
+        if i >= len(times) - steps:
+            (bears,) = simulation.reactions()
+            found.append([bears.force[1], bears.moment])
+    waves = OMEGA * times[-steps:]
+    waves = np.column_stack([np.cos(waves), np.sin(waves)])
+    cosine, sine = np.linalg.lstsq(waves, np.array(found), rcond=None)[0] / -amplitude
+    return cosine - 1j * sine
+
+
+@pytest.mark.parametrize("driven", [False, True], ids=["table", "set"])
+@pytest.mark.parametrize("info", der.steppers(), ids=lambda info: info.name)
+def test_a_shaken_clamp_bears_the_inertia_of_the_rod(fitted_order, info, driven):
+    sizes = [1, 2, 4]
+    # Each step jerks the clamp: near the stable step the shortest waves would grow by that.
+    steps = 180 if info.implicit else 360
+    found = [borne(4 * size, steps * size, info.name, driven) for size in sizes]
+    errors = [np.abs(each / borne_by_hand() - 1).max() for each in found]
+    order = min(info.order, 2)
+    assert errors[-1] < (0.02 if order == 2 else 0.05)
+    assert fitted_order(sizes, errors) < 0.1 - order
+
+
 def test_reactions_of_a_run_are_those_of_the_simulation_and_of_probes():
     rod = {
         "name": "rod",

@@ -1,20 +1,23 @@
 """Springs and foundations in space.
 
 References: beam theory for small loads; `references/springs.py` for large ones, of an elastically
-clamped elastica; the planar models, whose own references are in test_springs.py and
-test_foundation.py.
+clamped elastica; `references/curved_twisted_rod.py` for curved rods; the planar models, whose own
+references are in test_springs.py and test_foundation.py.
 """
 
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from references.curved_twisted_rod import NATURAL, rest_position
 from references.kirchhoff_rod import rotation
 from scenes import START
+from scipy.optimize import root
 from spatial_scenes import CLAMPED, measured, rod_through, section, straight_rod
 
 XYZ = ("x", "y", "z")
 SIZES = [16, 32, 64]
+FINE = [64, 128, 256]  # of helices: 3.7 rad a length
 STRONG, WEAK, TWISTING = 3.0, 1.0, 0.8
 STRIP = section([0, 1, 0], EA=1e6, EI1=STRONG, EI2=WEAK, GJ=TWISTING)  # director 1 = y
 SMALL = 1e-6
@@ -258,3 +261,117 @@ def test_a_spring_at_a_corner(fitted_order, k, share):
     # At another place in its edge on each mesh, a bound tells the order.
     assert errors[-1] < 2e-3
     assert fitted_order([1 / n for n in (5, 10, 20)], errors) > 1.9
+
+
+# NATURAL counts rates of turning about d1 and d2; the scene counts curvatures towards them.
+CURVED = {"natural_curvature": [NATURAL[1], -NATURAL[0]], "natural_twist": NATURAL[2]}
+HELIX = section([1, 0, 0], EA=1e4, EI1=3.0, EI2=1.0, GJ=0.8)
+DRAWN = ["straight", "helix with strains", "helix"]
+
+
+def turned_helix(n, drawn, frame, **more):
+    """The rod of references/curved_twisted_rod.py with the directors and the tangent of its drawn
+    start in the columns of `frame`."""
+    rod = {**HELIX, "director": frame[:, 0].tolist()}
+    if drawn == "straight":
+        return straight_rod(n, rod, to=frame[:, 2], rod=CURVED, **more)
+    points = np.array([rest_position(NATURAL, s) for s in np.linspace(0, 1, n + 1)])
+    points *= 1 / np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
+    natural = CURVED if drawn == "helix with strains" else {}
+    return rod_through(points @ frame.T, rod, rod={"initial_twist": NATURAL[2], **natural}, **more)
+
+
+def spring_energy(stiffness, drawn, turned):
+    """Of a spring between two frames, columns d1, d2, d3: the angle between the tangents, towards
+    the mean directors, and the twist once the drawn frame is transported (docs/space.md)."""
+    binormal = np.cross(drawn[:, 2], turned[:, 2])
+    sine, cosine = np.linalg.norm(binormal), drawn[:, 2] @ turned[:, 2]
+    angle = np.arctan2(sine, cosine) / sine * binormal
+    mean = (drawn + turned) / 2
+    moved = rotation(binormal / sine, np.arctan2(sine, cosine)) @ drawn[:, 0]
+    twist = np.arctan2(-moved @ turned[:, 1], moved @ turned[:, 0])
+    return 0.5 * stiffness @ np.array([angle @ mean[:, 1], angle @ mean[:, 0], twist]) ** 2
+
+
+def drawn_frame(stiffness, moment):
+    """The frame from which a spring has to be turned to the unit matrix to exert a moment."""
+
+    def turned_by(vector):
+        angle = np.linalg.norm(vector)
+        return rotation(vector / angle, angle)
+
+    def missing(turn, step=1e-6):
+        drawn = turned_by(turn).T
+        slopes = [
+            spring_energy(stiffness, drawn, turned_by(step * axis))
+            - spring_energy(stiffness, drawn, turned_by(-step * axis))
+            for axis in np.eye(3)
+        ]
+        return np.array(slopes) / (2 * step) - moment
+
+    return turned_by(root(missing, moment / stiffness[[1, 0, 2]], tol=1e-10).x).T
+
+
+@pytest.mark.parametrize("drawn", DRAWN)
+def test_a_turning_spring_at_the_start_of_a_curved_and_twisted_rod(
+    spatial_reference, fitted_order, drawn
+):
+    """A clamped rod of references/curved_twisted_rod.py, the spring in place of its clamp: drawn
+    turned back by the angles that the clamp's moment makes of the spring's stiffnesses, the rod
+    comes to lie where the clamped one does."""
+    stiffness = np.array([150.0, 500.0, 250.0])  # towards d1, towards d2, about d3
+    moment = [spatial_reference("curved_twisted_rod", f"tip_force.start.moment.{c}") for c in XYZ]
+    frame = drawn_frame(stiffness, np.array(moment))
+    exact = [spatial_reference("curved_twisted_rod", f"tip_force.s1.{c}") for c in XYZ]
+    errors = []
+    for n in FINE:
+        scene = turned_helix(
+            n,
+            drawn,
+            frame,
+            supports=[turning_spring(*stiffness.tolist(), fix=list(XYZ))],
+            loads=[force(2, -3, 1)],
+        )
+        errors.append([np.linalg.norm(measured(scene, ["end"], XYZ)[0][0] - exact)])
+    check_order(errors, fitted_order, 5e-5, FINE)
+
+
+@pytest.mark.parametrize("place", [0.993, "end"])
+def test_a_turning_spring_at_the_end_holds_the_natural_shape(fitted_order, place):
+    """Free of stress where the natural shape is drawn: nothing may move."""
+    errors = []
+    for n in FINE:
+        spring = turning_spring(20, 50, 30, at=place)
+        scene = turned_helix(n, "helix with strains", np.eye(3), supports=[*CLAMPED, spring])
+        tip = measured(scene, ["end"], XYZ)[0][0]
+        errors.append([np.linalg.norm(tip - rest_position(NATURAL, 1.0))])
+    check_order(errors, fitted_order, 5e-5, FINE)
+
+
+@pytest.mark.parametrize("place", [0.013, 0.4137, 0.5, 0.99, 1.0])
+@pytest.mark.parametrize("follower", [False, True])
+def test_bending_energy_beside_a_moment(place, follower):
+    """Bent and twisted evenly up to the moment, 1/2 m.K^-1 m a length, and free beyond."""
+    m = np.array([0.5, 2.0, -1.0]) * SMALL  # about x, y and z
+    exact = 0.5 * place * (m[0] ** 2 / TWISTING + m[1] ** 2 / WEAK + m[2] ** 2 / STRONG)
+    for n in (7, 16):
+        load = moment(*m.tolist(), at=place)
+        load["moment"]["follower"] = follower
+        scene = straight_rod(n, STRIP, supports=CLAMPED, loads=[load])
+        energies = measured(scene, ["end"], XYZ)[1].energies
+        assert energies["bend"][-1] == pytest.approx(exact, rel=1e-5)
+
+
+@pytest.mark.parametrize("place", [0.0, 0.013, 0.4137, 1.0])
+def test_energies_beside_a_turning_spring(place):
+    """The moment of the load goes through the spring alone, and the rod from there on is bent."""
+    k = np.array([0.3, 7.0, 1.1])  # about z, y and x
+    m = np.array([-1.0, 2.0, 0.5]) * SMALL  # likewise
+    stiffness = np.array([STRONG, WEAK, TWISTING])
+    supports = [{**START, "fix": list(XYZ)}, turning_spring(*k.tolist(), at=place)]
+    for n in (7, 16):
+        scene = straight_rod(n, STRIP, supports=supports, loads=[moment(m[2], m[1], m[0])])
+        energies = measured(scene, ["end"], XYZ)[1].energies
+        assert energies["spring"][-1] == pytest.approx(np.sum(m**2 / k) / 2, rel=1e-5)
+        bent = (1 - place) * np.sum(m**2 / stiffness) / 2
+        assert energies["bend"][-1] == pytest.approx(bent, rel=1e-5)

@@ -52,7 +52,9 @@ from der.accuracy import (
     study,
     verify,
 )
+from der.actuation_forces import ActuationForce
 from der.analyses import BucklingModes, Modes, Path
+from der.batch import Batch, MemberFailure
 from der.errors import (
     DerError,
     DerWarning,
@@ -68,6 +70,7 @@ from der.reactions import Reaction
 from der.result import Result
 from der.run_folder_reader import open_run
 from der.simulation import Simulation, continuation, equilibrium, run
+from der.sweeps import Sweep, load_sweep, sweep
 from der.viewing import view
 
 if TYPE_CHECKING:
@@ -77,6 +80,8 @@ if TYPE_CHECKING:
 load = Scenario.load
 
 __all__ = [
+    "ActuationForce",
+    "Batch",
     "BucklingModes",
     "Counters",
     "DerError",
@@ -87,6 +92,7 @@ __all__ = [
     "EquilibriumReport",
     "ErrorEstimate",
     "HeldNode",
+    "MemberFailure",
     "Model",
     "Modes",
     "NotConvergedError",
@@ -105,6 +111,7 @@ __all__ = [
     "StepperInfo",
     "Study",
     "StudyRow",
+    "Sweep",
     "UnreliableResultWarning",
     "Verification",
     "VerifiedValue",
@@ -116,6 +123,7 @@ __all__ = [
     "held_nodes",
     "json_schema",
     "load",
+    "load_sweep",
     "open_run",
     "plot",
     "quantities",
@@ -124,6 +132,7 @@ __all__ = [
     "springs",
     "steppers",
     "study",
+    "sweep",
     "verify",
     "view",
 ]

@@ -1,0 +1,203 @@
+"""What `der.Batch` costs beside the simulations in it, in one run; best on a machine that is idle.
+
+    python benchmarks/batch.py [--quick] [--cpp PROGRAM]
+
+1. Swings: 1,000 soft rods of 24 elements, clamped at one end, fall for 1 s in 300 steps of
+   `implicit_midpoint`: those with which benchmarks/peers.py finds the tip within 1e-3 m of the
+   continuum's at 101 times. The error is measured here, too. Swings a second of a loop over
+   `Simulation.step(300)`, which is one C++ loop for each, of a batch on one thread and on two.
+2. One step of all of many short rods: a loop in C++ against `Batch`, by the Google benchmarks
+   `batch` and `loop_over_simulations` of der_benchmarks (`--cpp`; left out if it is not built).
+3. Building, memory and resets of members of 51 nodes, of one scene and with a modulus of its own
+   for each.
+
+Ways are taken in turns, and the best of several times counts, so that other work on the machine
+disturbs all alike. Seconds are those of the clock but for building and resets: those of the CPU.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import multiprocessing
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import der
+import numpy as np
+from comparison.run_der import controls, implicit
+from comparison.scene import FRAMES, distance, steps_per_frame
+from comparison.swing import code_der, problem
+
+SWING = implicit(24, 3, "implicit_midpoint")
+ROOT = Path(__file__).resolve().parents[1]
+MODULUS = "rods.rod.material.youngs_modulus"
+
+
+def swing(elements: int) -> der.Scenario:
+    """Return the scene of the swing."""
+    return der.Scenario.from_dict({**code_der.scene(elements), **controls(SWING)})
+
+
+def tip_error(scene: der.Scenario) -> float:
+    """Return the largest distance [m] of a batch's tips from the continuum's over all frames."""
+    batch = der.Batch(scene, 2)
+    path = [batch.positions[:, -1].copy()]
+    for _ in range(FRAMES):
+        batch.step(steps_per_frame(SWING))
+        path.append(batch.positions[:, -1].copy())
+    tips = np.array(path)
+    return max(distance(tips[:, i], problem.reference()) for i in range(2))
+
+
+def best_of(ways: dict[str, Callable[[], object]], repeats: int) -> dict[str, float]:
+    """Return the least seconds that each way takes, taken in turns."""
+    best = dict.fromkeys(ways, float("inf"))
+    for _ in range(repeats):
+        for name, way in ways.items():
+            start = time.perf_counter()
+            way()
+            best[name] = min(best[name], time.perf_counter() - start)
+    return best
+
+
+def throughput(members: int, repeats: int) -> None:
+    """Print swings a second of a loop, of one thread and of two."""
+    scene = swing(int(SWING["elements"]))
+    steps = FRAMES * steps_per_frame(SWING)
+    print(f"{members} swings of 1 s, error {tip_error(scene):.1e} m:")
+    simulations = [der.Simulation(scene) for _ in range(members)]
+    start = simulations[0].save_state()
+    batches = {threads: der.Batch(scene, members, threads) for threads in (1, 2)}
+
+    def loop() -> None:
+        for simulation in simulations:
+            simulation.restore_state(start)
+            simulation.step(steps)
+
+    def run(batch: der.Batch) -> None:
+        batch.reset()
+        batch.step(steps)
+
+    seconds = best_of(
+        {
+            "loop over Simulation": loop,
+            "batch, one thread": lambda: run(batches[1]),
+            "batch, two threads": lambda: run(batches[2]),
+        },
+        repeats,
+    )
+    loop_time, one, two = seconds.values()
+    for name, each in seconds.items():
+        print(f"  {name:22} {members / each:8.0f} swings a second")
+    print(
+        f"  two threads over one: {one / two:.2f}; one thread over the loop: {loop_time / one:.3f}"
+    )
+    same = all(
+        batch.positions[i].tobytes() == simulations[0].positions.tobytes()
+        for batch in batches.values()
+        for i in range(members)
+    )
+    print(f"  the same bits: {'yes' if same else 'NO'}")
+
+
+def overheads(program: Path, repeats: int) -> None:
+    """Print what a step of a batch costs beyond its members' own."""
+    line = [
+        str(program),
+        "--benchmark_filter=^(batch|loop_over_simulations)/",
+        f"--benchmark_repetitions={repeats}",
+        "--benchmark_enable_random_interleaving=true",
+        "--benchmark_format=json",
+    ]
+    done = subprocess.run(line, capture_output=True, text=True, check=True)
+    best: dict[str, float] = {}
+    for row in json.loads(done.stdout)["benchmarks"]:
+        if row["run_type"] == "iteration":
+            best[row["run_name"]] = min(best.get(row["run_name"], float("inf")), row["cpu_time"])
+    for name, batch in best.items():
+        if not name.startswith("batch/"):
+            continue
+        case = name.removeprefix("batch/")
+        loop = best[f"loop_over_simulations/{case}"]
+        size = dict(part.split(":") for part in case.split("/"))
+        members = int(size["members"])
+        print(
+            f"{size['nodes']} nodes, {members} members, {size['steps']} steps: own "
+            f"{loop / members:.2f} us a member, beyond that {(batch - loop) / members:+.3f} us; "
+            f"loop over batch {loop / batch:.3f}"
+        )
+
+
+def resident() -> int:
+    """Return the bytes of memory that this process holds (Linux only)."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
+def building(members: int, varies: bool) -> dict[str, float]:
+    """Return costs of a member: of building and of a reset [us], its memory [kB]."""
+    scene = swing(50)
+    vary: dict[str, Any] = {MODULUS: np.linspace(1e7, 2e7, members)} if varies else {}
+    der.Batch(scene, 2).step()
+    memory = resident()
+    start = time.process_time()
+    batch = der.Batch(scene, members, 1, vary=vary)
+    built = time.process_time()
+    batch.step()
+    batch.probes  # noqa: B018, which makes them
+    kilobytes = (resident() - memory) / 1e3
+    numbers = list(range(members))
+    reset = float("inf")
+    for _ in range(3):
+        begin = time.process_time()
+        batch.reset(numbers)
+        reset = min(reset, time.process_time() - begin)
+    scale = 1e6 / members
+    return {"build": (built - start) * scale, "kB": kilobytes / members, "reset": reset * scale}
+
+
+def print_building(members: int) -> None:
+    """Print the costs of members, each batch in a process of its own, so that memory counts."""
+    for varies in (False, True):
+        context = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(1, mp_context=context) as pool:
+            cost = pool.submit(building, members, varies).result()
+        print(
+            f"{members} members of 51 nodes, {'a modulus each' if varies else 'one scene'}: "
+            f"{cost['build']:.1f} us to build, {cost['reset']:.2f} us to reset, "
+            f"{cost['kB']:.1f} kB a member"
+        )
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--quick", action="store_true", help="few members, few repeats")
+    parser.add_argument(
+        "--cpp",
+        type=Path,
+        default=ROOT / "build/release/benchmarks/der_benchmarks",
+        metavar="PROGRAM",
+        help="der_benchmarks, as built by the preset `release`",
+    )
+    options = parser.parse_args(arguments)
+    throughput(100 if options.quick else 1000, 2 if options.quick else 5)
+    if options.cpp.exists():
+        overheads(options.cpp, 3 if options.quick else 9)
+    else:
+        print(f"no program {options.cpp}: build it with `cmake --preset release`, or name it")
+    print_building(1000 if options.quick else 10_000)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,290 @@
+"""Many simulations of one scene, stepped side by side by several threads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from der import _core
+from der._core import EquilibriumReport, State
+from der.errors import DerError, UnreliableResultWarning, warn
+from der.simulation import SceneLike, as_scenario
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+#: Numbers of members, a mask of all, the number of one, or None for all.
+Members: TypeAlias = "Iterable[int] | NDArray[np.bool_] | int | None"
+
+
+@dataclass(frozen=True)
+class MemberFailure:
+    """Why a member of a batch goes on no more.
+
+    Attributes
+    ----------
+    member
+        Its number, from 0.
+    status
+        Short machine-readable name, the same as ``status`` in ``summary.json``.
+    time
+        Time of its last good state [s].
+    message
+        What happened, where, and what to try.
+    """
+
+    member: int
+    status: str
+    time: float
+    message: str
+    _error: DerError = field(repr=False)
+
+    def error(self) -> DerError:
+        """Return the error that `Simulation` would have raised."""
+        return self._error
+
+
+class Batch(_core.Batch):
+    """Many simulations of one scene, its members, stepped side by side by several threads.
+
+    Each member has to the last bit what `Simulation` gives for its scene, whatever the number of
+    threads. A member that fails is masked, keeps its last good state, and stops nobody; `failures`
+    tells why, and `reset` takes it in again.
+
+    ``positions``, ``velocities`` and ``extra_force`` are live NumPy views of the engine's memory,
+    shape (members, nodes, dim), in m, m/s and N. The engine works without the interpreter's lock,
+    and Ctrl-C is answered. One thread at a time may use a batch.
+
+    Parameters
+    ----------
+    scene
+        A scenario, the path of a scene file, or a dict with the keys of a scene file.
+    members
+        How many.
+    threads
+        How many threads step them; as many as this process may use, unless given. They live as
+        long as the batch.
+    vary
+        Values that differ from member to member: by the key path that `Scenario.with_` takes, one
+        for each member, such as ``{"rods.arm.cross_section.stiffness.EI": array}``. Numbers and
+        vectors may differ, the structure may not: numbers of nodes, supports, elements.
+
+    Raises
+    ------
+    SceneError, DerError
+        Where a member cannot be simulated: the message names the first.
+    ValueError
+        Where `vary` has not one value for each member.
+
+    Warns
+    -----
+    DerWarning
+        For each of the scenario's `warnings`.
+
+    Examples
+    --------
+    >>> batch = der.Batch("configs/cantilever.yaml", 8, vary={"loads.0.gravity": gravities})
+    >>> batch.step(100)
+    >>> batch.positions[:, -1]  # the tips
+    """
+
+    def __init__(
+        self,
+        scene: SceneLike,
+        members: int,
+        threads: int | None = None,
+        *,
+        vary: Mapping[str, ArrayLike | Sequence[Any]] | None = None,
+    ) -> None:
+        scenario = as_scenario(scene)
+        if members < 1:
+            raise ValueError(f"a batch has at least one member, not {members}")
+        if threads is not None and threads < 1:
+            raise ValueError(f"a batch needs at least one thread, not {threads}")
+        lists = {path: _one_each(path, given, members) for path, given in (vary or {}).items()}
+        super().__init__(scenario, members, threads or 0, lists)
+        warn(scenario.warnings)
+
+    def step(self, n: int = 1) -> NDArray[np.bool_]:
+        """Advance every member that has not failed by `n` time steps of its scene.
+
+        Returns
+        -------
+        NDArray[np.bool_]
+            Which members have failed by now, shape (members,): the live view `failed`.
+
+        Raises
+        ------
+        DerError
+            If the scene is static.
+        KeyboardInterrupt
+            Of Ctrl-C: each member is then at the end of one of its steps, not all of the same.
+
+        Warns
+        -----
+        UnreliableResultWarning
+            Once, when the integrator of a member has created energy; `unreliable` says of which.
+        """
+        warning = self.advance(n)
+        if warning is not None:
+            warn([warning], UnreliableResultWarning)
+        return self.failed
+
+    def equilibrium(self, leave_saddles: bool = True) -> list[EquilibriumReport | None]:
+        """Move every member that has not failed to the static equilibrium near its state.
+
+        As `Simulation.equilibrium`. Members for which none is found have failed then.
+
+        Returns
+        -------
+        list of EquilibriumReport or None
+            One for each member; None for those that have failed.
+        """
+        return self.settle(leave_saddles)
+
+    def set(
+        self,
+        name: str,
+        value: ArrayLike | Mapping[str, ArrayLike],
+        over: float | None = None,
+    ) -> None:
+        """Set a load or the motion of a support that has a name, as `Simulation.set`.
+
+        Parameters
+        ----------
+        name
+            Its name, or that of a component, such as ``"wall.x"``; `names` has all of them.
+        value
+            A value for each member: shape (members,) for one component, else (members,
+            components). Without the first axis it is for all members. Or a dict of such by
+            component.
+        over
+            Time in which the values are reached [s]; None: in the next step.
+
+        Raises
+        ------
+        DerError
+            Where a value does not fit; the message names the member, and nothing is set.
+        ValueError
+            Where the shape does not fit.
+        """
+        parts = (
+            {f"{name}.{component}": given for component, given in value.items()}
+            if isinstance(value, Mapping)
+            else {name: value}
+        )
+        self.set_rows([(part, self._rows(part, given)) for part, given in parts.items()], over)
+
+    def value(self, name: str) -> NDArray[np.float64]:
+        """Return the present values of what has a name.
+
+        Returns
+        -------
+        NDArray[np.float64]
+            Shape (members,) for one component, else (members, components).
+        """
+        rows = self.value_rows(name)
+        return rows[:, 0] if rows.shape[1] == 1 else rows
+
+    def prescribe(self, support: int, **components: ArrayLike) -> None:
+        """Move a support, by its number in the scene, as `Simulation.prescribe`.
+
+        Parameters
+        ----------
+        support
+            Its number.
+        **components
+            ``x``, ``y``, ``z`` [m], ``angle``, ``twist`` [rad]: a number for all members, or an
+            array with one for each.
+
+        Raises
+        ------
+        DerError
+            Where the scene does not prescribe the component, or a value does not fit: nothing is
+            then moved.
+        """
+        pairs = [
+            (component, self._broadcast(component, given, (len(self),)))
+            for component, given in components.items()
+        ]
+        self.prescribe_rows(support, pairs)
+
+    def reset(self, members: Members = None, state: State | Sequence[State] | None = None) -> None:
+        """Bring members to a state, bit for bit, and take in again those that had failed.
+
+        Nothing is built anew; views stay valid. A member whose start (``start_from``) could not be
+        reached stays failed unless it gets a state.
+
+        Parameters
+        ----------
+        members
+            Numbers of members, a mask of shape (members,), or one number; all, unless given.
+        state
+            A state of `save_state`, here or of a `Simulation`, for all of these members, or a
+            list with one for each. None: each goes back to its own start.
+
+        Raises
+        ------
+        IndexError
+            If there is no such member.
+        ValueError
+            If a state does not fit.
+        """
+        numbers = self._numbers(members)
+        states = [] if state is None else [state] if isinstance(state, State) else list(state)
+        if state is not None and not isinstance(state, State) and len(states) != len(numbers):
+            raise ValueError(f"{len(states)} states for {len(numbers)} members: give one for each")
+        self.reset_members(numbers, states)
+
+    @property
+    def failures(self) -> list[MemberFailure]:
+        """Why members have failed, in the order of their numbers."""
+        return [MemberFailure(*row) for row in self.failure_rows()]
+
+    def _numbers(self, members: Members) -> list[int]:
+        every = np.arange(len(self))
+        if members is None:
+            chosen = every
+        elif isinstance(members, (int, np.integer, np.ndarray)):
+            chosen = np.atleast_1d(every[members])
+        else:
+            chosen = every[np.array(list(members), dtype=int)]
+        return [int(number) for number in chosen]
+
+    def _rows(self, name: str, given: ArrayLike) -> NDArray[np.float64]:
+        components = self.value_rows(name).shape[1]
+        values = np.asarray(given, dtype=float)
+        if components == 1 and values.ndim == 1 and values.shape != (1,):
+            values = values[:, None]
+        return self._broadcast(name, values, (len(self), components))
+
+    def _broadcast(
+        self, name: str, given: ArrayLike, shape: tuple[int, ...]
+    ) -> NDArray[np.float64]:
+        values = np.asarray(given, dtype=float)
+        try:
+            return np.ascontiguousarray(np.broadcast_to(values, shape))
+        except ValueError:
+            raise ValueError(
+                f"'{name}' takes values of shape {shape}, a row for each member, or those of one "
+                f"row for all, but here is an array of shape {values.shape}"
+            ) from None
+
+
+def _one_each(path: str, given: ArrayLike | Sequence[Any], members: int) -> list[Any]:
+    """Return the values of a path as a list with one for each member."""
+    values = given.tolist() if isinstance(given, np.ndarray) else given
+    if isinstance(values, (str, Mapping)) or not isinstance(values, Iterable):
+        raise ValueError(
+            f"vary: '{path}' takes one value for each of the {members} members, not {given!r}; a "
+            "value for all of them belongs into the scene (Scenario.with_)"
+        )
+    values = list(values)
+    if len(values) != members:
+        raise ValueError(
+            f"vary: '{path}' has {len(values)} values for {members} members: give one for each"
+        )
+    return values

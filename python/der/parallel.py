@@ -1,4 +1,8 @@
-"""Running many scenarios at once, over threads: the engine steps without the interpreter's lock."""
+"""Running many scenarios at once: the one way of `verify`, `study` and `sweep`.
+
+Threads do the work, in which the engine steps without the interpreter's lock, or any executor of
+`concurrent.futures`.
+"""
 
 from __future__ import annotations
 
@@ -6,24 +10,29 @@ import math
 import os
 import threading
 import time
-from collections.abc import Hashable, Iterable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from pathlib import Path
+from types import TracebackType
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from der._core import Scenario
+from der._core import RunRecording, Scenario
 from der.errors import DerError
 from der.progress import ProgressFunction
 from der.result import Result
-from der.simulation import Simulation
+from der.simulation import Simulation, recorded_result
 
 #: Status of a run that was cancelled.
 TOO_LONG = "too_long"
 
 Key = TypeVar("Key", bound=Hashable)
+Work = TypeVar("Work")
+Done = TypeVar("Done")
+Found = TypeVar("Found")
 
 
 @dataclass(frozen=True)
@@ -56,29 +65,120 @@ class Task:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class Outcome(Generic[Found]):
     """How a run went.
 
     Attributes
     ----------
     result
-        The recorded data, of a failed run up to its last good step; None if it did not start.
+        What was read of the recorded data, of a failed run up to its last good step; None if it did
+        not start.
     error
         Why it failed; None if it did not.
     cpu_seconds
         CPU time of building the simulation and running it [s], the least of the repeats.
     """
 
-    result: Result | None
+    result: Found | None
     error: DerError | None
     cpu_seconds: float
 
-    def value(self) -> Result:
+    def value(self) -> Found:
         """Return the result of a run that did not fail; raise the error of one that did."""
         if self.error is not None:
             raise self.error
         assert self.result is not None
         return self.result
+
+
+class Threads(ThreadPoolExecutor):
+    """Threads that stop when the ``with`` block around them fails, by Ctrl-C above all.
+
+    Parameters
+    ----------
+    jobs
+        How many; as many as the machine has cores, unless given.
+
+    Raises
+    ------
+    ValueError
+        If `jobs` is not a whole number of at least 1.
+    """
+
+    def __init__(self, jobs: int | None = None) -> None:
+        super().__init__(checked_jobs(jobs))
+        self._stop = threading.Event()
+
+    def tick(self) -> None:
+        """Raise `KeyboardInterrupt` in a thread whose work nobody wants any more."""
+        if self._stop.is_set():
+            raise KeyboardInterrupt
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Wait for the threads, which end at their next tick if the block fails."""
+        if kind is not None:
+            self._stop.set()
+        self.shutdown(cancel_futures=kind is not None)
+
+
+def checked_jobs(jobs: int | None) -> int:
+    """Return how many runs go on at once; as many as the machine has cores, unless given.
+
+    Raises
+    ------
+    ValueError
+        If `jobs` is not a whole number of at least 1.
+    """
+    if jobs is not None and (not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1):
+        raise ValueError(f"jobs must be a whole number of at least 1, got {jobs!r}")
+    return jobs or os.cpu_count() or 1
+
+
+def as_they_finish(
+    executor: Executor,
+    function: Callable[[Work], Done],
+    take: Callable[[], Work | None],
+    at_once: Callable[[], int],
+) -> Iterator[tuple[Work, Future[Done]]]:
+    """Do work whose amount need not be known, and yield each piece when it is finished.
+
+    Parameters
+    ----------
+    executor
+        Who does it.
+    function
+        What to do with a piece.
+    take
+        Returns the next piece, or None if there is none now.
+    at_once
+        Returns how many pieces the executor may have; only so many are held in memory.
+
+    Yields
+    ------
+    tuple
+        A piece, and its future, which is done. When the caller stops, what has not begun is
+        cancelled.
+    """
+    pending: dict[Future[Done], Work] = {}
+    try:
+        while True:
+            while len(pending) < max(1, at_once()):
+                piece = take()
+                if piece is None:
+                    break
+                pending[executor.submit(function, piece)] = piece
+            if not pending:
+                return
+            for future in wait(pending, return_when=FIRST_COMPLETED).done:
+                yield pending.pop(future), future
+    finally:
+        for future in pending:
+            future.cancel()
 
 
 class Workers:
@@ -98,15 +198,12 @@ class Workers:
     """
 
     def __init__(self, jobs: int | None = None, progress: ProgressFunction | None = None) -> None:
-        if jobs is not None and (not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1):
-            raise ValueError(f"jobs must be a whole number of at least 1, got {jobs!r}")
-        self._jobs = jobs or os.cpu_count() or 1
+        self._jobs = checked_jobs(jobs)
         self._progress = progress
         self._lock = threading.Lock()
         self._expected = 0.0
         self._later = 0.0
         self._done = 0.0
-        self._stop = threading.Event()
 
     def expect(self, weight: float, later: float = 0.0) -> None:
         """Announce work, in the unit of `Task.weight`, so that progress counts it from now on.
@@ -121,7 +218,9 @@ class Workers:
         self._expected += weight
         self._later = later
 
-    def run(self, tasks: Mapping[Key, Task], *, jobs: int | None = None) -> dict[Key, Outcome]:
+    def run(
+        self, tasks: Mapping[Key, Task], *, jobs: int | None = None
+    ) -> dict[Key, Outcome[Result]]:
         """Run all tasks and return their outcomes by key; a failed run is an outcome as well.
 
         Parameters
@@ -132,51 +231,43 @@ class Workers:
         jobs
             In place of that of the constructor: 1 to measure costs undisturbed.
         """
-        order = sorted(tasks, key=lambda key: -tasks[key].weight)
-        with ThreadPoolExecutor(jobs or self._jobs) as pool:
-            futures = {key: pool.submit(self._run_task, tasks[key]) for key in order}
-            try:
-                return {key: futures[key].result() for key in tasks}
-            except BaseException:  # Ctrl-C above all: the others stop at their next tick
-                self._stop.set()
-                pool.shutdown(cancel_futures=True)
-                raise
+        costly_first = iter(sorted(tasks, key=lambda key: -tasks[key].weight))
+        at_once = jobs or self._jobs
+        with Threads(at_once) as threads:
+            finished = as_they_finish(
+                threads,
+                lambda key: self._run_task(tasks[key], threads.tick),
+                lambda: next(costly_first, None),
+                lambda: at_once,
+            )
+            found = {key: future.result() for key, future in finished}
+        return {key: found[key] for key in tasks}
 
-    def _run_task(self, task: Task) -> Outcome:
+    def _run_task(self, task: Task, tick: Callable[[], None]) -> Outcome[Result]:
         shown = _Share(self, task.weight)
         for scenario in task.scenarios:
             outcome = min(
                 (
-                    self._run_once(task, scenario, shown.part(repeat, task.repeats))
+                    attempt(
+                        scenario,
+                        recorded_result,
+                        start=task.start,
+                        max_seconds=task.max_seconds,
+                        progress=shown.part(repeat, task.repeats),
+                        tick=tick,
+                    )
                     for repeat in range(task.repeats)
                 ),
                 key=lambda outcome: outcome.cpu_seconds,
             )
             if not task.keep_motion:
                 outcome = _without_motion(outcome)
+            if outcome.error is not None:
+                outcome.error.result = outcome.result
             if outcome.error is None:
                 break
         shown(1.0)
         return outcome
-
-    def _run_once(self, task: Task, scenario: Scenario, shown: ProgressFunction) -> Outcome:
-        start = time.thread_time()
-
-        def tick(share: float) -> None:
-            if self._stop.is_set():
-                raise KeyboardInterrupt
-            if time.thread_time() - start > task.max_seconds:
-                raise DerError(f"it took more than {task.max_seconds:g} s of CPU time", TOO_LONG)
-            shown(share)
-
-        try:
-            simulation = Simulation(scenario)
-            if task.start is not None:
-                simulation.positions[:] = task.start
-            result = simulation.run(progress=tick, warns=False)
-        except DerError as error:
-            return Outcome(error.result, error, time.thread_time() - start)
-        return Outcome(result, None, time.thread_time() - start)
 
     def add_done(self, weight: float) -> None:
         """Count work as done and show it."""
@@ -184,6 +275,55 @@ class Workers:
             self._done += weight
             if self._progress is not None and self._expected > 0.0:
                 self._progress(min(1.0, self._done / (self._expected + self._later)))
+
+
+def attempt(
+    scenario: Scenario,
+    read: Callable[[Scenario, RunRecording], Found],
+    *,
+    start: NDArray[np.float64] | None = None,
+    max_seconds: float = math.inf,
+    out: Path | None = None,
+    progress: ProgressFunction | None = None,
+    tick: Callable[[], None] | None = None,
+) -> Outcome[Found]:
+    """Run a scenario in this thread; a failed run is an outcome as well.
+
+    Parameters
+    ----------
+    scenario
+        What to run.
+    read
+        Returns what is wanted of the recorded data, which takes time as well: `recorded_result`
+        for all.
+    start, max_seconds
+        As in `Task`.
+    out
+        Folder to write the run to.
+    progress
+        Told now and then how much is done, from 0 to 1.
+    tick
+        Called as often; what it raises ends the run.
+    """
+    begun = time.thread_time()
+
+    def beat() -> None:
+        if tick is not None:
+            tick()
+        if time.thread_time() - begun > max_seconds:
+            raise DerError(f"it took more than {max_seconds:g} s of CPU time", TOO_LONG)
+        if progress is not None:
+            progress(simulation.share_done())
+
+    try:
+        simulation = Simulation(scenario)
+        if start is not None:
+            simulation.positions[:] = start
+        recording = simulation.record(tick=beat, out=out)
+    except DerError as error:
+        return Outcome(None, error, time.thread_time() - begun)
+    found = read(scenario, recording)
+    return Outcome(found, recording.error, time.thread_time() - begun)
 
 
 class _Share:
@@ -204,7 +344,7 @@ class _Share:
         return lambda share: self((index + share) / count)
 
 
-def _without_motion(outcome: Outcome) -> Outcome:
+def _without_motion(outcome: Outcome[Result]) -> Outcome[Result]:
     result = outcome.result
     if result is None:
         return outcome
@@ -218,8 +358,6 @@ def _without_motion(outcome: Outcome) -> Outcome:
         energies={name: values.copy() for name, values in result.energies.items()},
         sections=None,
     )
-    if outcome.error is not None:
-        outcome.error.result = slim
     return replace(outcome, result=slim)
 
 

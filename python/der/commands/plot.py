@@ -1,17 +1,26 @@
-"""Draw a run: shapes coloured by time, and probes against time."""
+"""Draw a run or a sweep.
+
+Of a run the shapes, coloured by time, and the probes against time. Of a sweep the probes over its
+parameters: lines over one, maps over two, parallel axes over more; failed members are marked.
+"""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from der import open_run
+from der import load_sweep, open_run
 from der.output_paths import PICTURE_ENDINGS
+from der.sweeps.store import is_sweep
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument("run", metavar="RUN", type=Path, help="run folder")
+    parser.add_argument("run", metavar="RUN", type=Path, help="folder of a run or a sweep")
     parser.add_argument(
         "--out",
         type=Path,
@@ -29,7 +38,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="AXES",
         help="axes to the right and upwards, in space, such as xz; xy,xz draws two views",
     )
-    parser.add_argument("--probes", nargs="+", metavar="NAME", help="probes to draw (default: all)")
+    parser.add_argument(
+        "--probes",
+        nargs="+",
+        metavar="NAME",
+        help="probes to draw (default: all); of a sweep any columns, such as tip_y.max",
+    )
 
 
 def execute(arguments: argparse.Namespace) -> int:
@@ -40,13 +54,22 @@ def execute(arguments: argparse.Namespace) -> int:
     if out.suffix.lower() not in PICTURE_ENDINGS:
         raise ValueError(f"cannot write {out.name}: a picture ends with .png, .svg or .pdf")
     mpl.use("agg")  # a file is written and no window opened, on a screen or without
-    result = open_run(arguments.run)
-    figure = result.plot(
+    figure = _plot_sweep(arguments) if is_sweep(arguments.run) else _plot_run(arguments)
+    figure.savefig(out)
+    print(out)
+    return 0
+
+
+def _plot_run(arguments: argparse.Namespace) -> Figure:
+    return open_run(arguments.run).plot(
         arguments.what,
         times=arguments.times,
         probes=arguments.probes,
         views=None if arguments.view is None else arguments.view.split(","),
     )
-    figure.savefig(out)
-    print(out)
-    return 0
+
+
+def _plot_sweep(arguments: argparse.Namespace) -> Figure:
+    if arguments.times or arguments.view or arguments.what != "overview":
+        raise ValueError("a sweep has neither times nor views: leave out --times, --view, --what")
+    return load_sweep(arguments.run).plot(arguments.probes)

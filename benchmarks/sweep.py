@@ -1,0 +1,131 @@
+"""What a sweep costs beside the engine: rows a second, bytes a row, overhead of Dask.
+
+    python benchmarks/sweep.py [--members N] [--dask]
+
+Sweeps equilibria of a cantilever with 51 nodes, the cheapest members there are. The share that is
+not the engine's is measured in CPU time on one thread, in turns with a loop that does nothing but
+vary the scene, build the simulation and run it, so that other work on the machine counts little.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import tempfile
+import time
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+import der
+import numpy as np
+from der import _core
+from der.sweeps.chunk import Chunk, run_chunk
+
+FORCE = "loads.0.point_force.force.1"
+TURNS = 5
+CHUNKS = 60  # without members, for the overhead of a chunk
+
+
+class Here(Executor):
+    """Does at once what it is asked for, in this thread."""
+
+    _max_workers = 1
+
+    def submit(self, function, /, *arguments):
+        """Return what is done already."""
+        future: Future = Future()
+        future.set_result(function(*arguments))
+        return future
+
+
+def engine_seconds(scene: der.Scenario, forces: list[float]) -> float:
+    """Return the CPU time that the engine takes for all members."""
+    begun = time.process_time()
+    for force in forces:
+        _core.Simulation(scene.with_(**{FORCE: force})).record()
+    return time.process_time() - begun
+
+
+def sweep_seconds(scene: der.Scenario, forces: list[float]) -> float:
+    """Return the CPU time of the whole sweep."""
+    with tempfile.TemporaryDirectory() as folder:
+        begun = time.process_time()
+        der.sweep(scene, {FORCE: forces}, out=Path(folder) / "s", executor=Here())
+        return time.process_time() - begun
+
+
+def show_share(scene: der.Scenario) -> None:
+    """Print what of a sweep is not the engine's."""
+    forces = np.linspace(-5.0, 0.0, 8000).tolist()
+    turns = [(engine_seconds(scene, forces), sweep_seconds(scene, forces)) for _ in range(TURNS)]
+    # The best of many turns, for whatever else the machine does only adds to them.
+    engine, whole = (1e6 * min(turn[i] for turn in turns) / len(forces) for i in (0, 1))
+    print(f"CPU time of a member: engine {engine:.0f} us, sweep {whole:.0f} us")
+    print(f"not the engine's: {1.0 - engine / whole:.1%}")
+
+
+def show_rows(
+    label: str, scene: der.Scenario, members: int, executor: object = None, jobs: int | None = None
+) -> None:
+    """Print how fast a sweep with a file is, and how large the file."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "s"
+        vary = {FORCE: f"-5:0:{members}"}
+        begun, cpu = time.perf_counter(), time.process_time()
+        der.sweep(scene, vary, out=out, executor=executor, jobs=jobs)
+        wall, cpu = time.perf_counter() - begun, time.process_time() - cpu
+        size = (out / "sweep.sqlite").stat().st_size
+        print(
+            f"{label}: {members} rows in {wall:.1f} s ({members / wall:.0f} a second; {cpu:.1f} s "
+            f"of CPU time in this process), {size / 1e6:.1f} MB ({size / members:.0f} bytes a row)"
+        )
+
+
+def show_dask(scene: der.Scenario, members: int) -> None:
+    """Print rows a second on a cluster of this machine, and what a chunk costs there."""
+    from distributed import Client, LocalCluster
+    from distributed.protocol import serialize
+
+    cores = os.cpu_count() or 1
+    with (
+        LocalCluster(cores, threads_per_worker=1, dashboard_address=None) as cluster,
+        Client(cluster) as client,
+    ):
+        show_rows("Dask", scene, members, client)
+        text = scene.to_yaml()
+        empty = Chunk(text, "scene", (FORCE,), ())
+        full = Chunk(text, "scene", (FORCE,), tuple((i, (-1e-3 * i,)) for i in range(1000)))
+        table = run_chunk(full)
+        dask = client.get_executor(pure=False)
+        for label, executor in (("threads", Here()), ("Dask", dask)):
+            executor.submit(run_chunk, empty).result()
+            begun = time.perf_counter()
+            for _ in range(CHUNKS):
+                executor.submit(run_chunk, empty).result()
+            each = (time.perf_counter() - begun) / CHUNKS
+            print(f"a chunk without members, {label}: {1e3 * each:.2f} ms")
+        sizes = [sum(map(len, map(bytes, serialize(what)[1]))) for what in (full, table)]
+        print(
+            f"a chunk of 1000 members: {sizes[0] / 1e3:.0f} kB there, {sizes[1] / 1e3:.0f} kB back"
+        )
+
+
+def main() -> None:
+    """Print everything."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--members", type=int, default=5000, metavar="N")
+    parser.add_argument("--dask", action="store_true", help="measure a Dask cluster as well")
+    arguments = parser.parse_args()
+    scene = der.load(Path(__file__).parent.parent / "configs/cantilever.yaml")
+    show_share(scene)
+    show_rows("one thread", scene, arguments.members, jobs=1)
+    show_rows("threads", scene, arguments.members)
+    with ProcessPoolExecutor(os.cpu_count(), get_context("spawn")) as pool:
+        show_rows("processes", scene, arguments.members, pool)
+    if arguments.dask:
+        show_dask(scene, arguments.members)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,218 @@
+"""Running some members of a sweep, in a thread of this process or on another machine."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from operator import itemgetter
+from pathlib import Path
+from typing import Any
+
+from der._core import RunRecording, Scenario, __version__
+from der.accuracy.static_readings import Reading, static_readings
+from der.accuracy.verification import Verification
+from der.accuracy.verifier import verify
+from der.errors import DerError
+from der.parallel import attempt
+from der.simulation import recorded_result
+from der.sweeps.design import Member
+from der.sweeps.table import Column, Table
+
+#: Status of a member whose run met an error that is none of der's, such as a lack of memory.
+BROKEN = "error"
+#: Status of a member that brought down every process that tried it.
+LOST = "worker_lost"
+#: What is told of each probe.
+_TOLD, _WHEN = ("final", "min", "max"), ("t_min", "t_max")
+_told = itemgetter(*_TOLD, *_WHEN)
+#: Run folders in a folder: file systems are slow with more.
+_FOLDERS = 1000
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Members that are run one after the other.
+
+    Attributes
+    ----------
+    scene, source
+        Text and name of the scene that is varied.
+    paths
+        The parameters.
+    members
+        Number and values of each member.
+    verify
+        Whether they get error bars.
+    frames
+        Folder for their run folders; empty for none.
+    version
+        Version of der that is to run them.
+    """
+
+    scene: str
+    source: str
+    paths: tuple[str, ...]
+    members: tuple[tuple[int, Member], ...]
+    verify: bool = False
+    frames: str = ""
+    version: str = __version__
+
+
+def run_chunk(chunk: Chunk, tick: Callable[[], None] | None = None) -> Table:
+    """Run the members of a chunk; one that fails is a row as well.
+
+    Parameters
+    ----------
+    chunk
+        What to run.
+    tick
+        Called now and then; what it raises ends the chunk.
+
+    Raises
+    ------
+    DerError
+        If this is another version of der.
+    """
+    if chunk.version != __version__:
+        raise DerError(
+            f"a worker has der {__version__}, and the sweep is run by der {chunk.version}: install "
+            "the same version on all machines"
+        )
+    scene = _parse(chunk.scene, chunk.source)
+    table = Table()
+    for number, values in chunk.members:
+        if tick is not None:
+            tick()
+        before = len(table.rows)
+        try:
+            _run_member(scene, chunk, number, values, tick, table)
+        except Exception as error:  # the other members are not to suffer from it
+            table.rows[before:] = [failed_row(number, BROKEN, f"{type(error).__name__}: {error}")]
+    return table
+
+
+def failed_row(number: int, status: str, message: str, seconds: float = 0.0) -> dict[str, object]:
+    """Return the row of a member that has no result."""
+    return {
+        "member": number,
+        "status": status,
+        "message": message,
+        "seconds": seconds,
+        "version": __version__,
+    }
+
+
+def run_folder(frames: str | Path, number: int) -> Path:
+    """Return the run folder of a member."""
+    return Path(frames) / f"{number // _FOLDERS:04d}" / f"{number:07d}"
+
+
+@lru_cache(maxsize=4)
+def _parse(text: str, source: str) -> Scenario:
+    """Read a scene once, and not for each chunk."""
+    return Scenario.parse(text, source)
+
+
+def _run_member(
+    scene: Scenario,
+    chunk: Chunk,
+    number: int,
+    values: Member,
+    tick: Callable[[], None] | None,
+    table: Table,
+) -> None:
+    try:
+        varied = scene.with_(**dict(zip(chunk.paths, values, strict=True)))
+    except DerError as error:
+        table.rows.append(failed_row(number, error.status, str(error)))
+        return
+    out = run_folder(chunk.frames, number) if chunk.frames else None
+    outcome = attempt(varied, _read, out=out, tick=tick)
+    message, seconds, verification = "", outcome.cpu_seconds, None
+    if chunk.verify and outcome.error is None:
+        try:
+            verification = verify(varied, jobs=1)
+            seconds += verification.cpu_seconds
+        except DerError as error:
+            message = f"not verified: {error}"
+    if outcome.error is not None:
+        table.rows.append(failed_row(number, outcome.error.status, str(outcome.error), seconds))
+    else:
+        _add_row(table, number, outcome.value(), message, seconds)
+    if outcome.result is not None:  # a failed run has cost something
+        for name in ("steps", "newton_iterations"):
+            table.rows[-1][name] = outcome.result.summary[name]
+    if verification is not None:
+        _add_error_bars(table, verification, outcome.value())
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """What a row tells of a run.
+
+    Attributes
+    ----------
+    summary
+        As in ``summary.json``.
+    found
+        What an analysis finds besides probes.
+    on_path
+        Whether the run is a path of equilibria, on which an extreme has the number of a point, and
+        no time.
+    """
+
+    summary: dict[str, Any]
+    found: tuple[Reading, ...]
+    on_path: bool
+
+
+def _read(scenario: Scenario, recording: RunRecording) -> _Reading:
+    # To make a result of it takes a tenth of the time of an equilibrium, and few need one.
+    summary = json.loads(recording.summary_json)
+    found: tuple[Reading, ...] = ()
+    if recording.data and recording.error is None:
+        readings = static_readings(recorded_result(scenario, recording))
+        found = tuple(
+            reading for label, reading in readings.items() if label not in summary["probes"]
+        )
+    return _Reading(summary, found, scenario.factor_range is not None)
+
+
+def _add_row(table: Table, number: int, reading: _Reading, message: str, seconds: float) -> None:
+    summary = reading.summary
+    row = table.begin(
+        member=number,
+        status=summary["status"],
+        message=message or None,
+        seconds=seconds,
+        unreliable_from=summary.get("unreliable_from"),
+        version=__version__,
+    )
+    for name, probe in summary["probes"].items():
+        names = _probe_columns(name)
+        if names[0] not in table.columns:
+            second = "" if reading.on_path else "s"
+            units = (probe["unit"],) * len(_TOLD) + (second,) * len(_WHEN)
+            for own, unit in zip(names, units, strict=True):
+                table.add(Column(own, "probe", unit))
+        row.update(zip(names, _told(probe), strict=True))
+    if not reading.found and "stability" in summary:
+        table.put("stability", "found", "", summary["stability"])
+    for found in reading.found:
+        table.put(found.label, "found", found.unit, found.value)
+
+
+@lru_cache(maxsize=1024)
+def _probe_columns(probe: str) -> tuple[str, ...]:
+    """Return the names of the columns of a probe, made once and not for each member."""
+    return tuple(f"{probe}.{what}" for what in (*_TOLD, *_WHEN))
+
+
+def _add_error_bars(table: Table, verification: Verification, reading: _Reading) -> None:
+    for value in verification.values:
+        of_probe = value.probe in reading.summary["probes"] and value.what in _TOLD
+        name = f"{value.probe}.{value.what}" if of_probe else value.label
+        table.put(f"{name}.error", "error", value.unit, value.error_bar)
+    table.put("flagged", "error", "", len(verification.flagged))

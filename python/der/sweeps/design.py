@@ -1,0 +1,166 @@
+"""Which values the parameters of the members have: products, lists side by side, and samples."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from der.sweeps.values import Range, Values, as_values, stored
+
+#: The values of a member's parameters, in the order of the paths.
+Member = tuple[Any, ...]
+Sampling = Literal["sobol", "lhs"]
+
+
+@dataclass(frozen=True)
+class Design:
+    """The members of a sweep, made one by one.
+
+    Attributes
+    ----------
+    paths
+        The parameters, as `Scenario.with_` names them.
+    values
+        What each goes through.
+    zipped
+        Whether the values are taken side by side; otherwise each with each, the last parameter
+        first.
+    sampling
+        ``sobol`` or ``lhs``, a sample of the ranges; None without.
+    samples, seed
+        How many, and where they start.
+    """
+
+    paths: tuple[str, ...]
+    values: tuple[Values, ...]
+    zipped: bool = False
+    sampling: Sampling | None = None
+    samples: int = 0
+    seed: int = 0
+
+    def __len__(self) -> int:
+        """Return the number of members; two with the same values are one."""
+        if self.zipped or self.sampling is not None:
+            return len(self._listed)
+        return math.prod(map(len, self._unique_lists()))
+
+    def __iter__(self) -> Iterator[Member]:
+        """Yield the members in their order; those of a product are never all in memory."""
+        if self.zipped or self.sampling is not None:
+            return iter(self._listed)
+        return itertools.product(*self._unique_lists())
+
+    def to_json(self) -> str:
+        """Return a text that tells this design from any other."""
+        values = [
+            [v.low, v.high, v.log] if isinstance(v, Range) else list(map(stored, v))
+            for v in self.values
+        ]
+        own: dict[str, Any] = {"paths": self.paths, "values": values, "zipped": self.zipped}
+        if self.sampling is not None:
+            own |= {"sampling": self.sampling, "samples": self.samples, "seed": self.seed}
+        return json.dumps(own)
+
+    def lists(self) -> list[tuple[Any, ...]]:
+        """Return the values of all parameters that are no ranges."""
+        return [values for values in self.values if not isinstance(values, Range)]
+
+    def _unique_lists(self) -> list[list[Any]]:
+        return [list({stored(value): value for value in own}.values()) for own in self.lists()]
+
+    @cached_property
+    def _listed(self) -> list[Member]:
+        """The members that are taken side by side, or sampled."""
+        if self.sampling is None:
+            members: Iterable[Member] = zip(*self.lists(), strict=True)
+        else:
+            members = map(self._sampled, self._shares())
+        return list({tuple(map(stored, member)): member for member in members}.values())
+
+    def _shares(self) -> NDArray[np.float64]:
+        """Return the points of the sample in the unit cube, shape (samples, parameters)."""
+        from scipy.stats import qmc  # here, because it takes long to load
+
+        engine = qmc.Sobol if self.sampling == "sobol" else qmc.LatinHypercube
+        sample = engine(len(self.paths), seed=np.random.default_rng(self.seed))
+        return np.asarray(sample.random(self.samples))
+
+    def _sampled(self, shares: NDArray[np.float64]) -> Member:
+        return tuple(
+            values.at(share)
+            if isinstance(values, Range)
+            else values[min(int(share * len(values)), len(values) - 1)]
+            for values, share in zip(self.values, shares.tolist(), strict=True)
+        )
+
+
+def make_design(
+    vary: Mapping[str, str | Iterable[Any]],
+    *,
+    zipped: bool = False,
+    sample: str | None = None,
+    seed: int = 0,
+) -> Design:
+    """Check what a sweep is asked for, and return its members.
+
+    Parameters
+    ----------
+    vary
+        By parameter its values, as `as_values` takes them.
+    zipped
+        Whether the values are taken side by side.
+    sample
+        ``sobol:N`` or ``lhs:N``; N points in the space of all parameters. Of a list, each value has
+        an equal share.
+    seed
+        Where the sample starts.
+
+    Raises
+    ------
+    ValueError
+        For no parameter, values that are not spelled right, lists side by side of different
+        lengths, and a range without a sample.
+    """
+    if not vary:
+        raise ValueError("nothing is varied: name a parameter and its values")
+    values = {path: _values_of(path, given) for path, given in vary.items()}
+    if sample is not None:
+        if zipped:
+            raise ValueError("a sample takes no values side by side: leave out zip or sample")
+        sampling, samples = _parse_sample(sample)
+        return Design(tuple(values), tuple(values.values()), False, sampling, samples, seed)
+    for path, own in values.items():
+        if isinstance(own, Range):
+            raise ValueError(
+                f"{path}: {own.low:g}:{own.high:g} is a range to sample from: add the number of "
+                f"values, as {own.low:g}:{own.high:g}:11, or sample with sobol:N or lhs:N"
+            )
+    design = Design(tuple(values), tuple(values.values()), zipped)
+    lengths = {path: len(own) for path, own in zip(design.paths, design.lists(), strict=True)}
+    if zipped and len(set(lengths.values())) > 1:
+        counts = ", ".join(f"{path} has {count}" for path, count in lengths.items())
+        raise ValueError(f"values side by side are as many for each parameter: {counts}")
+    return design
+
+
+def _values_of(path: str, given: str | Iterable[Any]) -> Values:
+    try:
+        return as_values(given)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def _parse_sample(text: str) -> tuple[Sampling, int]:
+    name, _, count = text.partition(":")
+    for sampling in get_args(Sampling):
+        if name == sampling and count.isdecimal() and int(count) > 0:
+            return sampling, int(count)
+    raise ValueError(f"'{text}' is no sample: write sobol:256 or lhs:100")

@@ -1,0 +1,117 @@
+"""The executors that a sweep runs on: its own threads, those of `concurrent.futures`, Dask."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from der.parallel import Threads, checked_jobs
+from der.sweeps.chunk import Chunk, run_chunk
+from der.sweeps.table import Table
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+#: Who can run a sweep.
+AnyExecutor: TypeAlias = "Executor | Client"
+
+#: Chunks that wait for each one that runs, so that nobody is idle while a table is written.
+_WAITING = 1
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where chunks are run.
+
+    Attributes
+    ----------
+    executor
+        Who runs them.
+    run
+        Runs one there.
+    workers
+        Returns how many run at once; clusters grow and shrink.
+    """
+
+    executor: Executor
+    run: Callable[[Chunk], Table]
+    workers: Callable[[], int]
+
+    def at_once(self) -> int:
+        """Return how many chunks the executor may have."""
+        return (1 + _WAITING) * self.workers()
+
+
+@contextmanager
+def place_for(executor: AnyExecutor | None, jobs: int | None) -> Iterator[Place]:
+    """Give the place that a program names; without one, threads for the time of the block.
+
+    Parameters
+    ----------
+    executor
+        An executor of `concurrent.futures`, or a Dask client.
+    jobs
+        Threads; of an executor, how many chunks it runs at once, which it does not tell.
+
+    Raises
+    ------
+    TypeError
+        For anything else.
+    """
+    count = checked_jobs(jobs)
+    if executor is None:
+        with Threads(count) as threads:
+            yield Place(threads, partial(run_chunk, tick=threads.tick), lambda: count)
+    elif isinstance(executor, Executor):
+        if jobs is None:
+            count = getattr(executor, "_max_workers", count)
+        yield Place(executor, run_chunk, lambda: count)
+    elif hasattr(executor, "get_executor"):
+        # Not pure: nobody asks for the same chunk again, so that no result is to be kept.
+        client: Any = executor
+        yield Place(
+            client.get_executor(pure=False),
+            run_chunk,
+            lambda: sum(client.nthreads().values()) if jobs is None else count,
+        )
+    else:
+        raise TypeError(
+            f"executor must be an executor of concurrent.futures or a Dask client, got {executor!r}"
+        )
+
+
+def lost_its_worker(error: BaseException) -> bool:
+    """Return whether Dask gave a chunk up, because each worker that tried it died."""
+    # By name: where nobody runs on Dask, it may not be installed.
+    return type(error).__name__ == "KilledWorker"
+
+
+def connect(address: str) -> Client:
+    """Return a client of a Dask scheduler.
+
+    Parameters
+    ----------
+    address
+        ``tcp://HOST:PORT``, or the path of the scheduler's file.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        Without the package distributed.
+    OSError
+        If nobody answers there.
+    """
+    try:
+        from distributed import Client
+    except ModuleNotFoundError as error:
+        raise ModuleNotFoundError(
+            "Dask needs the package distributed: pip install 'der[dask]'"
+        ) from error
+    if Path(address).exists():
+        return Client(scheduler_file=address)
+    return Client(address)

@@ -1,0 +1,249 @@
+"""The file of a sweep: an SQLite database, one transaction for each chunk of members.
+
+docs/sweeps.md describes its tables. The journal is the rollback journal of SQLite, which works on
+the file systems of clusters as well, and leaves one file.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import sqlite3
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from der.errors import DerError
+from der.sweeps.design import Design
+from der.sweeps.table import RUN_COLUMNS, Column, Kind, Table
+from der.sweeps.values import stored
+
+#: The file in the folder of a sweep, and the one that is locked while a sweep goes on there.
+FILE, LOCK = "sweep.sqlite", "sweep.lock"
+#: Run folders of the members, with ``--frames``.
+FRAMES = "runs"
+#: Number of the layout of the tables.
+_FORMAT = "1"
+#: How long to wait for another program that reads or writes the file [s].
+_PATIENCE = 60.0
+#: Types of columns: parameters are kept as they are given.
+_TYPES: dict[Kind, str] = {"parameter": "", "probe": "REAL", "found": "", "error": "REAL"}
+_RUN_TYPES = {
+    # Not the primary key, so that the numbers of SQLite's own rows grow as members are added.
+    "member": "INTEGER NOT NULL UNIQUE",
+    "status": "TEXT NOT NULL",
+    "message": "TEXT",
+    "seconds": "REAL",
+    "steps": "INTEGER",
+    "newton_iterations": "INTEGER",
+    "unreliable_from": "REAL",
+    "version": "TEXT NOT NULL",
+}
+
+
+def is_sweep(folder: str | os.PathLike[str]) -> bool:
+    """Return whether a folder holds a sweep."""
+    return (Path(folder) / FILE).is_file()
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Keep other sweeps out of a folder for the time of a ``with`` block.
+
+    Raises
+    ------
+    DerError
+        If another one is writing there.
+    """
+    with (folder / LOCK).open("w") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise DerError(
+                f"another sweep is writing its results to '{folder}'; wait for it or name another "
+                "folder"
+            ) from None
+        except OSError:
+            pass  # a file system without locks
+        yield
+
+
+class Store:
+    """The tables of a sweep.
+
+    Parameters
+    ----------
+    path
+        The database file; None for one in memory.
+    """
+
+    def __init__(self, path: Path | None = None) -> None:
+        self._path = path
+        with self._named_errors():
+            self._base = sqlite3.connect(
+                ":memory:" if path is None else path, timeout=_PATIENCE, isolation_level=None
+            )
+        self._columns: dict[str, Column] = {}
+
+    def close(self) -> None:
+        """Close the file."""
+        self._base.close()
+
+    @property
+    def columns(self) -> list[Column]:
+        """The columns of the table of members: parameters behind the member's number."""
+        return list(self._columns.values())
+
+    def description(self) -> dict[str, str]:
+        """Return what is known of the sweep, by name; empty if it never began."""
+        with self._named_errors():
+            if not self._base.execute(
+                "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'sweep'"
+            ).fetchall():
+                return {}
+            found = dict(self._base.execute("SELECT key, value FROM sweep").fetchall())
+            if found.get("format") != _FORMAT:
+                raise ValueError(
+                    f"{self._path} was written by another version of der, {found.get('version')}: "
+                    "read it with that version"
+                )
+            rows = self._base.execute("SELECT name, kind, unit FROM columns ORDER BY rowid")
+            self._columns = {name: Column(name, kind, unit) for name, kind, unit in rows}
+        return found
+
+    def create(self, description: dict[str, str], paths: Iterable[str]) -> None:
+        """Make the tables of a sweep that varies these parameters, all of them or none."""
+        with self._transaction():
+            self._base.execute("CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT NOT NULL)")
+            self._base.executemany(
+                "INSERT INTO sweep VALUES (?, ?)", {"format": _FORMAT, **description}.items()
+            )
+            self._base.execute(
+                "CREATE TABLE requests (first INTEGER NOT NULL, count INTEGER NOT NULL, "
+                "design TEXT NOT NULL)"
+            )
+            self._base.execute("CREATE TABLE columns (name TEXT, kind TEXT, unit TEXT)")
+            number, *others = RUN_COLUMNS
+            columns = [number, *(Column(path, "parameter") for path in paths), *others]
+            self._base.execute(f"CREATE TABLE runs ({', '.join(map(_definition, columns))})")
+            for column in columns:
+                self._note_column(column)
+
+    def request(self, design: Design) -> int:
+        """Note what is asked for, and return the number of its first member.
+
+        What was asked for before has the numbers that it had.
+        """
+        text = design.to_json()
+        with self._transaction():
+            known = self._base.execute("SELECT first, count, design FROM requests").fetchall()
+            for first, _, asked in known:
+                if asked == text:
+                    return int(first)
+            first = max((first + count for first, count, _ in known), default=0)
+            self._base.execute("INSERT INTO requests VALUES (?, ?, ?)", (first, len(design), text))
+        return int(first)
+
+    def requests(self) -> list[dict[str, Any]]:
+        """Return what was asked for, one after the other, as `Design.to_json` tells it."""
+        rows = self._ask("SELECT design FROM requests ORDER BY rowid")
+        return [json.loads(design) for (design,) in rows]
+
+    def finished(self, paths: Iterable[str]) -> set[tuple[Any, ...]]:
+        """Return the values of the parameters of all members that have a row."""
+        names = ", ".join(map(_quoted, paths))
+        return set(self._ask(f"SELECT {names} FROM runs"))
+
+    def write(self, table: Table, parameters: dict[int, dict[str, Any]]) -> None:
+        """Add finished members, all of them or none.
+
+        Parameters
+        ----------
+        table
+            Their rows.
+        parameters
+            By number, the values of their parameters by path.
+        """
+        names = [column.name for column in RUN_COLUMNS]
+        names += next(iter(parameters.values()), {})
+        names += table.columns
+        for row in table.rows:
+            own = parameters[row["member"]]
+            row.update((path, stored(value)) for path, value in own.items())
+        places = ", ".join("?" * len(names))
+        with self._transaction():
+            for column in table.columns.values():
+                self._add_column(column)
+            self._base.executemany(
+                f"INSERT INTO runs ({', '.join(map(_quoted, names))}) VALUES ({places})",
+                table.tuples(names),
+            )
+
+    def last(self) -> int:
+        """Return how many members there are: none is ever changed, and new ones are added."""
+        return int(self._ask("SELECT COALESCE(MAX(rowid), 0) FROM runs")[0][0])
+
+    def read(self, columns: Iterable[Column], last: int) -> list[tuple[Any, ...]]:
+        """Return these columns of the first `last` members, in the order of their numbers."""
+        names = ", ".join(_quoted(column.name) for column in columns)
+        return self._ask(f"SELECT {names} FROM runs WHERE rowid <= ? ORDER BY member", last)
+
+    def statuses(self, last: int) -> dict[str, int]:
+        """Return how many of the first `last` members have each status, most frequent first."""
+        return dict(
+            self._ask(
+                "SELECT status, COUNT(*) AS n FROM runs WHERE rowid <= ? "
+                "GROUP BY status ORDER BY n DESC, status",
+                last,
+            )
+        )
+
+    def seconds(self, last: int) -> float:
+        """Return the CPU time of the first `last` members [s]."""
+        return float(self._ask("SELECT TOTAL(seconds) FROM runs WHERE rowid <= ?", last)[0][0])
+
+    def _ask(self, question: str, *values: Any) -> list[Any]:
+        with self._named_errors():
+            return self._base.execute(question, values).fetchall()
+
+    def _add_column(self, column: Column) -> None:
+        if column.name not in self._columns:
+            self._base.execute(f"ALTER TABLE runs ADD COLUMN {_definition(column)}")
+            self._note_column(column)
+
+    def _note_column(self, column: Column) -> None:
+        self._base.execute(
+            "INSERT INTO columns VALUES (?, ?, ?)", (column.name, column.kind, column.unit)
+        )
+        self._columns[column.name] = column
+
+    @contextmanager
+    def _transaction(self) -> Iterator[None]:
+        with self._named_errors():
+            self._base.execute("BEGIN IMMEDIATE")
+            try:
+                yield
+            except BaseException:
+                if self._base.in_transaction:
+                    self._base.execute("ROLLBACK")
+                raise
+            self._base.execute("COMMIT")
+
+    @contextmanager
+    def _named_errors(self) -> Iterator[None]:
+        try:
+            yield
+        except sqlite3.Error as error:
+            raise OSError(f"{self._path or 'the table of the sweep'}: {error}") from error
+
+
+def _definition(column: Column) -> str:
+    type_ = _RUN_TYPES[column.name] if column.kind == "run" else _TYPES[column.kind]
+    return f"{_quoted(column.name)} {type_}"
+
+
+def _quoted(name: str) -> str:
+    doubled = name.replace('"', '""')
+    return f'"{doubled}"'

@@ -1,0 +1,155 @@
+"""The result of a sweep: a table with a row for each member."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from der._core import Scenario, ended_as_asked
+from der.exporting.sweep_tables import SweepFormat, export_sweep
+from der.sweeps.store import FILE, Store, is_sweep
+from der.sweeps.sweep_data import Rows, SweepData
+from der.sweeps.table import Column
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.figure import Figure
+
+
+#: Returns these columns of the first so many members.
+RowReader = Callable[[tuple[Column, ...], int], Rows]
+
+
+class Sweep(SweepData):
+    """The members of a sweep, with methods to convert, draw and write them."""
+
+    def to_numpy(self) -> NDArray[np.void]:
+        """Return a structured array, shape (members,), with a field for each column.
+
+        Numbers are NaN and texts empty where a member has none.
+        """
+        arrays = {name: self[name] for name in self.values}
+        table = np.empty(len(self), [(name, array.dtype) for name, array in arrays.items()])
+        for name, array in arrays.items():
+            table[name] = array
+        return table
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return a table of pandas, with the number of the member as its index.
+
+        Raises
+        ------
+        ModuleNotFoundError
+            Without pandas.
+        """
+        try:
+            import pandas as pd
+        except ModuleNotFoundError as error:
+            raise ModuleNotFoundError(
+                "to_pandas needs the package pandas: pip install 'der[tables]'"
+            ) from error
+        return pd.DataFrame(self.values).set_index("member")
+
+    def export(self, format: SweepFormat, out: str | os.PathLike[str]) -> list[Path]:
+        """Write the table as ``csv``, ``npz`` or ``parquet``, and return the path of the file.
+
+        The ending is added if it lacks. Parquet requires the package pyarrow.
+        """
+        return export_sweep(self, format, out)
+
+    def plot(self, columns: Sequence[str] | None = None) -> Figure:
+        """Draw columns over the parameters; failed members are marked.
+
+        Over one parameter a line, over two a map, over more parallel axes.
+
+        Parameters
+        ----------
+        columns
+            Names of columns, or of probes for their final values; without it, the final values of
+            all probes and what the analysis finds.
+        """
+        from der.plotting.sweep import plot_sweep  # here, because matplotlib takes long to load
+
+        return plot_sweep(self, columns)
+
+    def summary(self) -> str:
+        """Return in words how many members there are, and how many failed, by status."""
+        failed = {
+            status: count for status, count in self.statuses.items() if not ended_as_asked(status)
+        }
+        members = f"{len(self)} member{'' if len(self) == 1 else 's'}"
+        seconds = f"{self.cpu_seconds:.3g} s of CPU time"
+        if not failed:
+            return f"{members}, none failed; {seconds}"
+        counts = ", ".join(f"{status} {count}" for status, count in failed.items())
+        return f"{members}, {sum(failed.values())} failed ({counts}); {seconds}"
+
+    def __repr__(self) -> str:
+        """Return title, parameters and size in one line."""
+        return (
+            f"<der.Sweep of {self.scenario.title!r} over {', '.join(self.parameters)}: "
+            f"{self.summary()}>"
+        )
+
+
+def load_sweep(folder: str | os.PathLike[str]) -> Sweep:
+    """Read the folder of a sweep, also of one that still goes on or was killed.
+
+    Parameters
+    ----------
+    folder
+        A folder with ``sweep.sqlite``.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is none.
+    ValueError
+        If it was written by another version of der, or never began.
+    OSError
+        If it is damaged.
+    """
+    if not is_sweep(folder):
+        raise FileNotFoundError(f"no sweep in {folder}: {Path(folder) / FILE} does not exist")
+    path = Path(folder) / FILE
+    with closing(Store(path)) as store:
+        return read_sweep(store, partial(_read_rows, path))
+
+
+def read_sweep(
+    store: Store, rows: Callable[[tuple[Column, ...], int], Rows] | None = None
+) -> Sweep:
+    """Return what a store holds.
+
+    Parameters
+    ----------
+    store
+        The tables of a sweep.
+    rows
+        Reads them when they are asked for; without it, they are read now.
+    """
+    description = store.description()
+    if not description:
+        raise ValueError("the sweep never began: it holds nothing to read")
+    columns, last = tuple(store.columns), store.last()
+    read = store.read(columns, last) if rows is None else []
+    return Sweep(
+        scenario=Scenario.parse(description["scene"], description["source"]),
+        columns=columns,
+        requests=tuple(store.requests()),
+        statuses=store.statuses(last),
+        cpu_seconds=store.seconds(last),
+        _read=(lambda: read) if rows is None else partial(rows, columns, last),
+    )
+
+
+def _read_rows(path: Path, columns: tuple[Column, ...], last: int) -> Rows:
+    with closing(Store(path)) as store:
+        return store.read(columns, last)

@@ -1,0 +1,520 @@
+"""Sweeps: members, rows, resuming, and the same bits wherever they are run."""
+
+import json
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import get_context
+
+import der
+import numpy as np
+import pytest
+from der.cli import main
+from der.errors import DerError
+from der.parallel import Threads, as_they_finish
+from der.progress import ProgressLine
+from der.sweeps.chunk import BROKEN, Chunk, run_chunk
+from der.sweeps.design import make_design
+from der.sweeps.store import FILE, locked
+from der.sweeps.values import Range, parse_values
+
+FORCE = "loads.0.point_force.force.1"
+STIFFNESS = "rods.arm.cross_section.stiffness.EI"
+
+CANTILEVER = {
+    "title": "Cantilever",
+    "rods": [
+        {
+            "name": "arm",
+            "nodes": 11,
+            "from": [0, 0],
+            "to": [1, 0],
+            "cross_section": {"stiffness": {"EA": 1e6, "EI": 1.0, "mass_per_length": 0.1}},
+        }
+    ],
+    "supports": [{"rod": "arm", "at": "start", "clamp": True}],
+    "loads": [{"point_force": {"rod": "arm", "at": "end", "force": [0, -1]}}],
+    "analysis": "static",
+    "output": {"probes": {"tip_y": {"rod": "arm", "at": "end", "quantity": "y"}}},
+}
+
+
+class Here(Executor):
+    """Does at once what it is asked for."""
+
+    _max_workers = 1
+
+    def submit(self, function, *arguments):
+        future = Future()
+        try:
+            future.set_result(function(*arguments))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+def bits(sweep):
+    """Return the rows without what they cost, floats as exact texts."""
+    return [
+        {name: repr(value) for name, value in row.items() if name != "seconds"}
+        for row in sweep.rows
+    ]
+
+
+def command(*arguments):
+    return [sys.executable, "-m", "der", "sweep", *map(str, arguments)]
+
+
+@pytest.fixture
+def cantilever():
+    return json.loads(json.dumps(CANTILEVER))
+
+
+@pytest.fixture
+def scene(cantilever, tmp_path):
+    path = tmp_path / "cantilever.yaml"
+    path.write_text(der.Scenario.from_dict(cantilever).to_yaml())
+    return path
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("1,2.5,-3e2", (1, 2.5, -300.0)),
+        ("tr_bdf2", ("tr_bdf2",)),
+        ("[0,-1],[0, -2]", ([0, -1], [0, -2])),
+        ('true,null,"a,b:c"', (True, None, "a,b:c")),
+        ("0:1:5", (0.0, 0.25, 0.5, 0.75, 1.0)),
+        ("11:41:4", (11, 21, 31, 41)),
+        ("1e6:1e9:4:log", tuple(np.geomspace(1e6, 1e9, 4))),
+        ("0:1", Range(0.0, 1.0)),
+        ("1:100:log", Range(1.0, 100.0, log=True)),
+    ],
+)
+def test_spelling_of_values(text, values):
+    read = parse_values(text)
+    assert read == values
+    if isinstance(read, tuple):
+        assert list(map(type, read)) == [
+            type(v.item() if isinstance(v, np.generic) else v) for v in values
+        ]
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("1,,2", "a value is empty"),
+        ("0:1:2:3", "is no range"),
+        ("0:x:3", "is no range"),
+        ("0:1:1", "at least 2"),
+        ("0:1:3:log", "greater than 0"),
+        ("[1", "is no value"),
+        ("0:inf:3", "is no range"),
+    ],
+)
+def test_values_that_are_none(text, says):
+    with pytest.raises(ValueError, match=says):
+        parse_values(text)
+
+
+def test_designs():
+    product = make_design({"a": [1, 2, 2], "b": "0:1:3"})
+    assert len(product) == 6
+    assert list(product) == [(1, 0.0), (1, 0.5), (1, 1.0), (2, 0.0), (2, 0.5), (2, 1.0)]
+    zipped = make_design({"a": [1, 1, 1], "b": [3, 4, 3]}, zipped=True)
+    assert (len(zipped), list(zipped)) == (2, [(1, 3), (1, 4)])
+    arrays = make_design({"a": np.array([[0.0, 1.0]]), "b": np.arange(2)})
+    assert list(arrays) == [([0.0, 1.0], 0), ([0.0, 1.0], 1)]
+
+
+def test_samples_are_those_of_scipy():
+    """Reference: scipy.stats.qmc, whose points are scaled here once more."""
+    from scipy.stats import qmc
+
+    vary = {"a": "2:6", "b": "1:100:log", "c": ["x", "y"]}
+    design = make_design(vary, sample="sobol:16", seed=7)
+    points = qmc.Sobol(3, seed=np.random.default_rng(7)).random(16)
+    for member, (a, b, c) in zip(design, points, strict=True):
+        assert member[0] == pytest.approx(2.0 + 4.0 * a, rel=1e-14)
+        assert member[1] == pytest.approx(10.0 ** (2.0 * b), rel=1e-13)
+        assert member[2] == ("x" if c < 0.5 else "y")
+    longer = make_design(vary, sample="sobol:32", seed=7)
+    assert list(longer)[:16] == list(design)
+    assert list(make_design(vary, sample="sobol:16", seed=8)) != list(design)
+    cube = np.array([m[0] for m in make_design({"a": "0:1"}, sample="lhs:10")])
+    assert sorted(np.floor(10.0 * cube)) == list(range(10))  # one in each tenth
+
+
+@pytest.mark.parametrize(
+    ("vary", "options", "says"),
+    [
+        ({}, {}, "nothing is varied"),
+        ({"a": []}, {}, "a: there is no value"),
+        ({"a": 3}, {}, r"a: expected a sequence of values, got 3: write \[3\]"),
+        ({"a": "0:1"}, {}, "0:1:11"),
+        ({"a": [1, 2], "b": [1]}, {"zipped": True}, "a has 2, b has 1"),
+        ({"a": [1]}, {"sample": "grid:3"}, "write sobol:256"),
+        ({"a": [1]}, {"sample": "lhs:0"}, "write sobol:256"),
+        ({"a": [1]}, {"sample": "lhs:3", "zipped": True}, "leave out zip or sample"),
+    ],
+)
+def test_designs_that_are_none(vary, options, says):
+    with pytest.raises(ValueError, match=says):
+        make_design(vary, **options)
+
+
+def test_rows_are_those_of_single_runs(cantilever):
+    sweep = der.sweep(cantilever, {FORCE: "-2:0:3", STIFFNESS: [1.0, 2.0]}, jobs=2)
+    assert sweep.parameters == [FORCE, STIFFNESS]
+    assert [(row[FORCE], row[STIFFNESS]) for row in sweep.rows] == [
+        (f, s) for f in (-2.0, -1.0, 0.0) for s in (1.0, 2.0)
+    ]
+    scene = der.Scenario.from_dict(cantilever)
+    for row in sweep.rows:
+        alone = der.run(scene.with_(**{FORCE: row[FORCE], STIFFNESS: row[STIFFNESS]}))
+        assert row["tip_y.final"] == alone.probes["tip_y"].summary["final"]
+        assert row["newton_iterations"] == alone.summary["newton_iterations"]
+        assert (row["status"], row["stability"]) == ("static_converged", "stable")
+        assert (row["version"], row["message"]) == (der.__version__, None)
+    assert sweep.column("tip_y").unit == "m"
+    assert len(sweep) == 6
+    assert not sweep.failed.any()
+
+
+def test_a_run_over_time_tells_extremes_and_their_times(swing):
+    sweep = der.sweep(swing, {"rods.arm.material.youngs_modulus": [1e6, 1e7]})
+    for row in sweep.rows:
+        modulus = row["rods.arm.material.youngs_modulus"]
+        scene = der.Scenario.from_dict(swing)
+        alone = der.run(scene.with_(**{"rods.arm.material.youngs_modulus": modulus}))
+        told = {key: row[f"tip.{key}"] for key in ("final", "min", "max", "t_min", "t_max")}
+        assert told == {key: alone.probes["tip"].summary[key] for key in told}
+        assert row["steps"] == alone.summary["steps"]
+    assert sweep.column("tip.t_min").unit == "s"
+
+
+def test_analyses_tell_what_they_find(cantilever):
+    cantilever["analysis"] = {"modes": {"count": 2}}
+    modes = der.sweep(cantilever, {FORCE: [0, -1]})
+    alone = der.run(cantilever).modes
+    assert [modes.rows[1][f"frequency {n}"] for n in (1, 2)] == alone.frequencies.tolist()
+    assert modes.column("frequency 1").unit == "Hz"
+    cantilever["loads"][0]["point_force"]["force"] = [-1, 0]
+    cantilever["analysis"] = {"buckling": {"count": 1}}
+    buckling = der.sweep(cantilever, {STIFFNESS: [1.0, 2.0]})
+    factors = buckling["load factor 1"]
+    # Euler's column: in proportion to EI, which the mesh does not change.
+    assert factors[1] == pytest.approx(2.0 * factors[0], rel=1e-5)
+    assert factors[0] == pytest.approx(np.pi**2 / 4.0, rel=1e-2)
+
+
+def test_a_path_tells_its_events():
+    arch = der.load("configs/snap_through_arch.yaml", **{"analysis.continuation.branches": 0})
+    stiffness = "rods.arch.cross_section.stiffness.EA"
+    (row,) = der.sweep(arch, {stiffness: [2e4]}).rows
+    alone = der.run(arch.with_(**{stiffness: 2e4}))
+    event = alone.path.rows("bifurcation")[0]
+    assert row["factor, bifurcation 1"] == alone.path.factor[event]
+    assert row["top, bifurcation 1"] == alone.probes["top"][event]
+
+
+def test_failed_members_are_rows(cantilever):
+    vary = {STIFFNESS: [1.0, -1.0], "rods.arm.nodes": [11, 21]}
+    sweep = der.sweep(cantilever, vary)
+    assert sweep.statuses == {"invalid_scene": 2, "static_converged": 2}
+    assert sweep.failed.tolist() == [False, False, True, True]
+    assert "must be at least 0" in sweep.rows[2]["message"]
+    assert sweep.rows[2]["tip_y.final"] is None
+    assert np.isnan(sweep["tip_y"][2:]).all()
+    assert "4 members, 2 failed (invalid_scene 2)" in sweep.summary()
+
+
+def test_a_run_that_fails_has_a_cost_and_no_values(swing):
+    swing["time"] |= {"integrator": "verlet", "step": 1e-4}
+    steps = [1e-4, 5e-3]
+    sweep = der.sweep(swing, {"time.step": steps})
+    good, bad = sweep.rows
+    assert good["status"] == "completed"
+    assert bad["status"] not in ("completed", BROKEN)
+    assert bad["message"]
+    assert bad["tip.final"] is None
+
+
+def test_errors_that_are_not_ders_are_rows_too(cantilever, monkeypatch):
+    from der.sweeps import chunk
+
+    original = chunk.attempt
+
+    def forgetful(scenario, *rest, **options):
+        if "-1" in scenario.to_yaml():
+            raise MemoryError("no more")
+        return original(scenario, *rest, **options)
+
+    monkeypatch.setattr(chunk, "attempt", forgetful)
+    sweep = der.sweep(cantilever, {FORCE: [0.0, -1.0]})
+    assert [row["status"] for row in sweep.rows] == ["static_converged", BROKEN]
+    assert sweep.rows[1]["message"] == "MemoryError: no more"
+
+
+@pytest.mark.parametrize(
+    ("path", "says"),
+    [
+        ("loads.0.force", "it belongs under 'point_force'"),
+        ("rods.amr.nodes", "did you mean 'arm'"),
+        ("loads.7.point_force", "no item 7"),
+    ],
+)
+def test_a_wrong_path_is_an_error_before_anything_runs(cantilever, tmp_path, path, says):
+    with pytest.raises(der.SceneError, match=says):
+        der.sweep(cantilever, {path: [1.0]}, out=tmp_path / "sweep")
+    assert not (tmp_path / "sweep").exists()
+
+
+def test_names_that_sqlite_takes_for_one(cantilever):
+    cantilever["output"]["probes"]["TIP_y"] = cantilever["output"]["probes"]["tip_y"]
+    with pytest.raises(ValueError, match="'tip_y' and 'TIP_y' differ in the case"):
+        der.sweep(cantilever, {FORCE: [1.0]})
+
+
+def test_a_scene_without_probes_is_given_some(cantilever):
+    del cantilever["output"]
+    sweep = der.sweep(cantilever, {FORCE: [-1.0]})
+    assert sweep["arm_end_y"] < 0.0
+
+
+def test_verify_adds_error_bars(cantilever):
+    sweep = der.sweep(cantilever, {FORCE: [-1.0, -2.0], STIFFNESS: [1.0, -1.0]}, verify=True)
+    alone = der.verify(der.Scenario.from_dict(cantilever), jobs=1)
+    row = sweep.rows[0]
+    assert row["tip_y.final.error"] == alone["tip_y"].error_bar
+    assert row["flagged"] == len(alone.flagged)
+    assert sweep.column("tip_y.final.error").unit == "m"
+    assert row["seconds"] > 0.0
+    assert sweep.rows[1]["tip_y.final.error"] is None
+
+
+def test_frames_are_run_folders(cantilever, tmp_path):
+    sweep = der.sweep(cantilever, {FORCE: [-1.0, -2.0]}, out=tmp_path / "s", frames=True)
+    for row in sweep.rows:
+        run = der.open_run(tmp_path / "s/runs/0000" / f"{row['member']:07d}")
+        assert run.probes["tip_y"].summary["final"] == row["tip_y.final"]
+    with pytest.raises(ValueError, match="run folders need a folder"):
+        der.sweep(cantilever, {FORCE: [-1.0]}, frames=True)
+
+
+def test_the_same_bits_in_threads_and_processes(cantilever, tmp_path):
+    vary = {FORCE: np.linspace(-5.0, 0.0, 37), STIFFNESS: [1.0, -1.0]}
+    reference = bits(der.sweep(cantilever, vary, jobs=1))
+    assert len(reference) == 74
+    assert bits(der.sweep(cantilever, vary, executor=Here())) == reference
+    for jobs in (2, 3):
+        assert bits(der.sweep(cantilever, vary, jobs=jobs)) == reference
+    with ProcessPoolExecutor(2, get_context("spawn")) as pool:
+        assert bits(der.sweep(cantilever, vary, executor=pool, out=tmp_path / "s")) == reference
+
+
+def test_more_values_run_the_new_ones_alone(cantilever, tmp_path):
+    out = tmp_path / "s"
+    first = der.sweep(cantilever, {FORCE: [-1, -2]}, out=out, resume=True)  # it never began
+    more = der.sweep(cantilever, {FORCE: "-3:0:4"}, out=out, resume=True)
+    assert [row[FORCE] for row in more.rows] == [-1, -2, -3, 0]
+    # Not run again: the very same cost.
+    assert more.rows[:2] == first.rows
+    again = der.sweep(cantilever, {FORCE: "-3:0:4"}, out=out, resume=True)
+    assert again.rows == more.rows
+    assert [request["values"] for request in again.requests] == [[[-1, -2]], [[-3, -2, -1, 0]]]
+    assert again.rows == der.load_sweep(out).rows
+    assert len(first) == len(first.rows) == 2  # the members of its time
+
+
+def test_what_is_refused_by_name(cantilever, tmp_path):
+    out = tmp_path / "s"
+    der.sweep(cantilever, {FORCE: [-1]}, out=out)
+
+    def again(scene=cantilever, vary=None, resume=True, **options):
+        der.sweep(scene, vary or {FORCE: [-2]}, out=out, resume=resume, **options)
+
+    with pytest.raises(ValueError, match="holds a sweep already: go on with it by --resume"):
+        again(resume=False)
+    other = json.loads(json.dumps(cantilever))
+    other["rods"][0]["to"] = [2, 0]
+    with pytest.raises(ValueError, match=r"of the scene 'Cantilever'.* differ in rods\.0\.to\.0"):
+        again(other)
+    with pytest.raises(ValueError, match=f"holds a sweep of {FORCE}, not of {STIFFNESS}"):
+        again(vary={STIFFNESS: [1.0]})
+    with pytest.raises(ValueError, match="a sweep without --verify"):
+        again(verify=True)
+    with locked(out), pytest.raises(DerError, match="another sweep is writing"):
+        again()
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full/notes.txt").touch()
+    for resume in (False, True):
+        with pytest.raises(ValueError, match=r"holds notes\.txt"):
+            der.sweep(cantilever, {FORCE: [-1]}, out=tmp_path / "full", resume=resume)
+    with pytest.raises(ValueError, match="is a file"):
+        der.sweep(cantilever, {FORCE: [-1]}, out=tmp_path / "full/notes.txt")
+    with pytest.raises(TypeError, match="executor must be"):
+        der.sweep(cantilever, {FORCE: [-1]}, executor="dask")
+    with pytest.raises(FileNotFoundError, match="no sweep in"):
+        der.load_sweep(tmp_path)
+    assert len(der.load_sweep(out)) == 1
+
+
+def test_another_version_of_a_worker_is_refused(cantilever):
+    chunk = Chunk(der.Scenario.from_dict(cantilever).to_yaml(), "x", (FORCE,), ((0, (1.0,)),))
+    assert len(run_chunk(chunk).rows) == 1
+    with pytest.raises(DerError, match=f"a worker has der {der.__version__}"):
+        run_chunk(Chunk(chunk.scene, "x", (FORCE,), chunk.members, version="0.0.1"))
+
+
+def test_a_chunk_whose_worker_dies_is_tried_in_parts(cantilever):
+    """Dask gives a chunk up after some workers died of it: the member that kills is a row."""
+
+    class KilledWorker(Exception):
+        pass
+
+    class Deadly(Here):
+        def submit(self, function, chunk):
+            def run(chunk):
+                if any(values == (-2.0,) for _, values in chunk.members):
+                    raise KilledWorker("died")
+                return function(chunk)
+
+            return super().submit(run, chunk)
+
+    vary = {FORCE: np.linspace(-4.0, 0.0, 41)}
+    sweep = der.sweep(cantilever, vary, executor=Deadly())
+    assert len(sweep) == 41
+    assert [r[FORCE] for r in sweep.rows if r["status"] == "worker_lost"] == [-2.0]
+
+
+def test_a_broken_pool_keeps_what_was_finished(cantilever, tmp_path):
+    class Breaking(Here):
+        def submit(self, function, chunk):
+            if chunk.members[0][0] == 3:
+                raise BrokenProcessPool("a process died")
+            return super().submit(function, chunk)
+
+    vary = {FORCE: [-1.0, -2.0, -3.0, -4.0]}
+    with pytest.raises(DerError, match=r"a process died.*go on with --resume"):
+        der.sweep(cantilever, vary, out=tmp_path / "s", executor=Breaking())
+    assert len(der.load_sweep(tmp_path / "s")) > 0
+    assert len(der.sweep(cantilever, vary, out=tmp_path / "s", resume=True)) == 4
+
+
+def test_no_more_work_is_out_than_wanted():
+    """Memory stays bounded: a piece is taken when there is room for it."""
+    pieces = iter(range(1000))
+    taken = []
+
+    def take():
+        piece = next(pieces, None)
+        if piece is not None:
+            taken.append(piece)
+        return piece
+
+    finished = []
+    with Threads(2) as threads:
+        for piece, future in as_they_finish(threads, lambda piece: -piece, take, lambda: 4):
+            assert future.result() == -piece
+            assert len(taken) - len(finished) <= 4
+            finished.append(piece)
+    assert sorted(finished) == taken == list(range(1000))
+
+
+def test_an_interrupt_keeps_what_was_finished(cantilever, tmp_path):
+    """Ctrl-C ends the sweep at once; the rest is run when it is resumed."""
+    seen = []
+
+    def interrupt(share):
+        seen.append(share)
+        if share > 0.3:
+            raise KeyboardInterrupt
+
+    vary = {FORCE: np.linspace(-5.0, 0.0, 200)}
+    with pytest.raises(KeyboardInterrupt):
+        der.sweep(cantilever, vary, out=tmp_path / "s", jobs=2, progress=interrupt)
+    kept = der.load_sweep(tmp_path / "s")
+    assert 0.3 * 200 <= len(kept) < 200 or seen[-1] == 1.0
+    whole = der.sweep(cantilever, vary, out=tmp_path / "s", resume=True, progress=seen.append)
+    assert bits(whole) == bits(der.sweep(cantilever, vary))
+    assert seen[-1] == 1.0
+
+
+def test_a_driver_killed_at_any_moment_loses_no_row(scene, tmp_path):
+    """SIGKILL when some rows are there; each is kept, to its very cost, and none is twice.
+
+    benchmarks/sweep_kills.py does this many times, at random moments.
+    """
+    out = tmp_path / "s"
+    vary = {FORCE: "-5:0:300", "rods.arm.nodes": [401]}
+    line = command(scene, "--vary", f"{FORCE}=-5:0:300", "--vary", "rods.arm.nodes=401")
+    line += ["--out", str(out), "--jobs", "1", "--resume"]
+    process = subprocess.Popen(line)
+    deadline = time.monotonic() + 120.0
+    while process.poll() is None and rows_in(out) < 3 and time.monotonic() < deadline:
+        time.sleep(0.005)
+    process.send_signal(signal.SIGKILL)
+    assert process.wait() == -signal.SIGKILL
+    kept = der.load_sweep(out).rows
+    assert 3 <= len(kept) < 300
+    whole = der.sweep(scene, vary, out=out, resume=True)
+    assert whole.rows[: len(kept)] == kept
+    assert bits(whole) == bits(der.sweep(scene, vary))
+
+
+def rows_in(out):
+    if not (out / FILE).exists():
+        return 0
+    base = sqlite3.connect(f"file:{out / FILE}?mode=ro", uri=True)
+    try:
+        return base.execute("SELECT COUNT(*) FROM runs").fetchone()[0]
+    except sqlite3.OperationalError:  # no table yet, or one is being written
+        return 0
+    finally:
+        base.close()
+
+
+def test_the_command(scene, tmp_path, capsys):
+    out = tmp_path / "s"
+    line = ["sweep", str(scene), "--vary", f"{FORCE}=-2:0:3", "--vary", f"{STIFFNESS}=1,-1,2"]
+    assert main([*line, "--out", str(out)]) == 0
+    printed = capsys.readouterr()
+    assert "Cantilever: 9 members, 3 failed (invalid_scene 3)" in printed.out
+    assert printed.out.endswith(f"{out / FILE}\n")
+    assert printed.err == ""
+    assert main([*line, "--out", str(out)]) == 1
+    assert "--resume" in capsys.readouterr().err
+    sample = ["sweep", str(scene), "--vary", f"{FORCE}=-2:0", "--sample", "lhs:5", "--seed", "3"]
+    assert main([*sample, "--out", str(tmp_path / "t"), "--jobs", "1"]) == 0
+    assert der.load_sweep(tmp_path / "t").requests[0]["seed"] == 3
+    twice = ["sweep", str(scene), "--vary", f"{FORCE}=1", "--vary", f"{FORCE}=2", "--out", str(out)]
+    assert main(twice) == 1
+    assert "given twice" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main(["sweep", str(scene), "--vary", "nothing", "--out", str(out)])
+    assert "write PATH=1,2,5" in capsys.readouterr().err
+
+
+def test_exit_code_if_every_member_fails(cantilever, tmp_path, capsys):
+    del cantilever["supports"]
+    path = tmp_path / "free.yaml"
+    path.write_text(der.Scenario.from_dict(cantilever).to_yaml())
+    code = main(["sweep", str(path), "--vary", f"{FORCE}=-1,-2", "--out", str(tmp_path / "s")])
+    assert code == 3
+    assert "2 members, 2 failed (not_held 2)" in capsys.readouterr().out
+
+
+def test_progress_on_a_terminal_tells_the_time_left(cantilever, tmp_path, monkeypatch):
+    import io
+
+    stream = io.StringIO()
+    line = ProgressLine(stream)
+    line.delay = 0.0
+    der.sweep(cantilever, {FORCE: "-2:0:30"}, jobs=1, progress=line)
+    assert "left" in stream.getvalue()
+    assert "100%" in stream.getvalue()

@@ -1,0 +1,83 @@
+"""Sweeps on a Dask cluster of processes, one of which is killed."""
+
+import os
+import signal
+import threading
+
+import der
+import numpy as np
+import pytest
+from der.sweeps import sweeper
+from der.sweeps.executors import connect, place_for
+
+distributed = pytest.importorskip("distributed")
+
+SCENE = {
+    "title": "Cantilever",
+    "rods": [
+        {
+            "name": "arm",
+            "nodes": 101,
+            "from": [0, 0],
+            "to": [1, 0],
+            "cross_section": {"stiffness": {"EA": 1e6, "EI": 1.0, "mass_per_length": 0.1}},
+        }
+    ],
+    "supports": [{"rod": "arm", "at": "start", "clamp": True}],
+    "loads": [{"point_force": {"rod": "arm", "at": "end", "force": [0, -1]}}],
+    "analysis": "static",
+    "output": {"probes": {"tip_y": {"rod": "arm", "at": "end", "quantity": "y"}}},
+}
+VARY = {
+    "loads.0.point_force.force.1": np.linspace(-5.0, 0.0, 300),
+    "rods.arm.cross_section.stiffness.EI": [1.0, -1.0],
+}
+
+
+def bits(sweep):
+    """Return the rows without what they cost, floats as exact texts."""
+    return [
+        {name: repr(value) for name, value in row.items() if name != "seconds"}
+        for row in sweep.rows
+    ]
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    with distributed.LocalCluster(
+        n_workers=2,
+        threads_per_worker=1,
+        processes=True,
+        dashboard_address=None,
+        silence_logs=50,
+    ) as made:
+        yield made
+
+
+@pytest.mark.filterwarnings("ignore::ResourceWarning")
+def test_a_killed_worker_loses_no_row(cluster, tmp_path, monkeypatch):
+    """The chunks that it had are run again by the others: same rows as with threads."""
+    monkeypatch.setattr(sweeper, "_CHUNK_MEMBERS", 20)  # so that some are out at any time
+    client = connect(cluster.scheduler_address)
+    victims = list(client.run(os.getpid).values())
+    killed = threading.Event()
+
+    def kill(share):
+        if share > 0.2 and not killed.is_set():
+            os.kill(victims[0], signal.SIGKILL)
+            killed.set()
+
+    with client:
+        with place_for(client, None) as place:
+            assert place.at_once() == 4  # two chunks for each worker, however many members
+        swept = der.sweep(SCENE, VARY, out=tmp_path / "s", executor=client, progress=kill)
+    assert killed.is_set()
+    assert bits(swept) == bits(der.sweep(SCENE, VARY))
+
+
+def test_nobody_at_the_address():
+    import dask
+
+    impatient = dask.config.set({"distributed.comm.timeouts.connect": "0.2s"})
+    with impatient, pytest.raises(OSError, match="Timed out"):
+        connect("tcp://127.0.0.1:9")

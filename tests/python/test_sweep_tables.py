@@ -1,0 +1,151 @@
+"""Sweeps as tables for other programs, and as pictures."""
+
+import csv
+
+import der
+import numpy as np
+import pytest
+from der.cli import main
+from matplotlib.image import imread
+
+FORCE = "loads.0.point_force.force.1"
+STIFFNESS = "rods.arm.cross_section.stiffness.EI"
+NODES = "rods.arm.nodes"
+
+CANTILEVER = {
+    "title": "Cantilever",
+    "rods": [
+        {
+            "name": "arm",
+            "nodes": 11,
+            "from": [0, 0],
+            "to": [1, 0],
+            "cross_section": {"stiffness": {"EA": 1e6, "EI": 1.0, "mass_per_length": 0.1}},
+        }
+    ],
+    "supports": [{"rod": "arm", "at": "start", "clamp": True}],
+    "loads": [{"point_force": {"rod": "arm", "at": "end", "force": [0, -1]}}],
+    "analysis": "static",
+    "output": {"probes": {"tip_y": {"rod": "arm", "at": "end", "quantity": "y"}}},
+}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A sweep with failed members, and values of all kinds."""
+    out = tmp_path_factory.mktemp("sweeps") / "s"
+    der.sweep(CANTILEVER, {FORCE: [-2, -1.5], STIFFNESS: [1.0, -1.0]}, out=out)
+    return out
+
+
+def test_csv(folder, capsys):
+    assert main(["export", str(folder), "--format", "csv"]) == 0
+    path = folder / "sweep.csv"
+    assert capsys.readouterr().out == f"{path}\n"
+    with path.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    sweep = der.load_sweep(folder)
+    assert len(rows) == 4
+    for row, own in zip(rows, sweep.rows, strict=True):
+        assert row["status"] == own["status"]
+        assert float(row[FORCE]) == own[FORCE]
+        value = row["tip_y.final [m]"]
+        assert (float(value) if value else None) == own["tip_y.final"]
+
+
+def test_npz(folder, tmp_path):
+    der.load_sweep(folder).export("npz", tmp_path / "table")
+    with np.load(tmp_path / "table.npz") as arrays:
+        assert arrays[FORCE].tolist() == [-2.0, -2.0, -1.5, -1.5]
+        assert np.isnan(arrays["tip_y.final"]).tolist() == [False, True, False, True]
+        assert arrays["units/tip_y.final"] == "m"
+        assert "Cantilever" in str(arrays["scene"])
+
+
+def test_numpy(folder):
+    sweep = der.load_sweep(folder)
+    table = sweep.to_numpy()
+    assert table.shape == (4,)
+    assert table["member"].dtype == np.int64
+    assert table["status"].tolist() == [row["status"] for row in sweep.rows]
+    np.testing.assert_array_equal(table["tip_y.final"], sweep["tip_y"])
+    with pytest.raises(KeyError, match=r"no column 'tip_z'; it has: member, loads\.0"):
+        sweep["tip_z"]
+
+
+def test_pandas(folder):
+    pytest.importorskip("pandas")
+    table = der.load_sweep(folder).to_pandas()
+    assert table.index.name == "member"
+    assert table[FORCE].tolist() == [-2.0, -2.0, -1.5, -1.5]
+    assert table["tip_y.final"].isna().tolist() == [False, True, False, True]
+
+
+def test_parquet(folder, tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    der.load_sweep(folder).export("parquet", tmp_path / "table.parquet")
+    table = parquet.read_table(tmp_path / "table.parquet")
+    assert table.num_rows == 4
+    assert table.schema.field("tip_y.final").metadata == {b"unit": b"m"}
+    assert table["tip_y.final"].to_pylist() == der.load_sweep(folder).values["tip_y.final"]
+
+
+def test_packages_that_are_missing(folder, tmp_path, monkeypatch):
+    import sys
+
+    for name in ("pandas", "pyarrow", "distributed"):
+        monkeypatch.setitem(sys.modules, name, None)
+    sweep = der.load_sweep(folder)
+    with pytest.raises(ModuleNotFoundError, match="pandas"):
+        sweep.to_pandas()
+    with pytest.raises(ModuleNotFoundError, match="pyarrow"):
+        sweep.export("parquet", tmp_path / "x")
+    with pytest.raises(ValueError, match="a sweep is not written as 'vtk'"):
+        sweep.export("vtk", tmp_path / "x")
+
+
+@pytest.mark.parametrize(
+    ("vary", "axes"),
+    [
+        ({FORCE: "-2:0:5"}, 1),
+        ({NODES: [11, 21], FORCE: [-1]}, 1),  # one value is no axis
+        ({FORCE: "-2:0:5", STIFFNESS: [1.0, -1.0, 30.0]}, 2),  # with its colour bar
+        ({FORCE: "-2:0:3", STIFFNESS: [1.0, 2.0], NODES: [11, 1]}, 2),
+    ],
+)
+def test_pictures(vary, axes, tmp_path, capsys):
+    out = tmp_path / "s"
+    sweep = der.sweep(CANTILEVER, vary, out=out)
+    figure = sweep.plot()
+    assert len(figure.axes) == axes
+    texts = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    assert bool(texts) == bool(sweep.failed.any())
+    assert main(["plot", str(out), "--probes", "tip_y.max"]) == 0
+    assert capsys.readouterr().out == f"{out / 'plot.png'}\n"
+    assert imread(out / "plot.png").std() > 0.01
+
+
+def test_a_line_marks_failed_members_and_error_bars(tmp_path):
+    sweep = der.sweep(CANTILEVER, {STIFFNESS: [1.0, -1.0, 2.0]}, verify=True)
+    (axes,) = sweep.plot().axes
+    line, *_, crosses = axes.get_lines()
+    assert line.get_xdata().tolist() == [-1.0, 1.0, 2.0]
+    assert crosses.get_xdata().tolist() == [-1.0]
+    assert axes.get_legend().get_texts()[0].get_text() == "failed: 1 of 3"
+    assert len(axes.collections) == 1  # the bars
+
+
+def test_scattered_members_are_dots(tmp_path):
+    vary = {FORCE: "-2:0", STIFFNESS: "1:100:log"}
+    figure = der.sweep(CANTILEVER, vary, sample="sobol:16").plot(["tip_y"])
+    assert figure.axes[0].get_yscale() == "log"
+    assert len(figure.axes[0].collections[0].get_offsets()) == 16
+
+
+def test_pictures_that_are_refused(folder, capsys):
+    assert main(["plot", str(folder), "--probes", "tip_z"]) == 1
+    assert "no column 'tip_z'" in capsys.readouterr().err
+    assert main(["plot", str(folder), "--probes", "status"]) == 1
+    assert "no numbers to draw" in capsys.readouterr().err
+    assert main(["plot", str(folder), "--view", "xz"]) == 1
+    assert "neither times nor views" in capsys.readouterr().err

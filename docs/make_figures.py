@@ -2,8 +2,9 @@
 
     python docs/make_figures.py [NAME...]
 
-Writes docs/images/NAME.png for each NAME, or for all of them. finger_traces and swinging are
-GIFs, and view, a screenshot, takes Chromium and selenium: without them it is left as it is.
+Writes docs/images/NAME.png for each NAME, or for all of them. finger_learned, finger_traces and
+swinging are GIFs. What has been learned takes gymnasium, and view, a screenshot, takes Chromium and
+selenium: without them these pictures are left as they are.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from der.plotting import PALETTE, style
 from der.plotting.style import look
-from tutorials import beam_study, control, falling_rod, finger
+from tutorials import beam_study, control, falling_rod, finger, fitting
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -122,6 +123,18 @@ def study() -> Figure:
         steppers=["implicit_euler", "implicit_midpoint", "bdf2", "tr_bdf2"],
     )
     return found.plot()
+
+
+def sweep() -> Figure:
+    """Draw a cantilever under many loads and with many stiffnesses."""
+    found = der.sweep(
+        CONFIGS / "cantilever.yaml",
+        {
+            "loads.0.point_force.force.1": "-10:0:41",
+            "rods.arm.cross_section.stiffness.EI": "0.1:10:31:log",
+        },
+    )
+    return found.plot(["tip_y", "root_moment"])
 
 
 def tolerance() -> Figure:
@@ -233,6 +246,22 @@ def tutorial_finger() -> Figure:
     )
 
 
+def tutorial_learning() -> Figure:
+    """Draw what the finger of the fifth tutorial has learned."""
+    from tutorials import learning
+
+    learned = learning.load(DOCS / "tutorials" / "learning.json")
+    track = learning.run(learned)
+    return learning.figure(learned, track, learning.replay(track))
+
+
+def tutorial_fitting() -> Figure:
+    """Draw the strip of the sixth tutorial: its film, the fit, and the fits of other films."""
+    exact = fitting.exact_trace()
+    data = fitting.film(np.random.default_rng(0), exact)
+    return fitting.figure(data, fitting.fit(data), fitting.repeated(exact, films=100))
+
+
 def data_flow() -> Figure:
     """Draw what flows from where to where: the picture of docs/architecture.md."""
     boxes = {
@@ -334,6 +363,14 @@ def finger_traces(path: Path) -> None:
     finger.replay(controlled).animate(path, speed=2, fps=10)
 
 
+def finger_learned(path: Path) -> None:
+    """Write an animation of what the finger of the fifth tutorial has learned."""
+    from tutorials import learning
+
+    learned = learning.load(DOCS / "tutorials" / "learning.json")
+    learning.replay(learning.run(learned)).animate(path, fps=10)
+
+
 def swinging(path: Path) -> None:
     """Write an animation of the swinging rod at half its speed."""
     der.run(SWING).animate(path, speed=0.5)
@@ -390,6 +427,7 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         roll_up,
         convergence,
         study,
+        sweep,
         tolerance,
         beam_modes,
         euler_buckling,
@@ -403,12 +441,15 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         tutorial_beam_study,
         tutorial_control,
         tutorial_finger,
+        tutorial_learning,
+        tutorial_fitting,
         data_flow,
         symbols,
     )
 }
 # Figures whose function writes the file itself, with the ending of the file.
 FILES: dict[str, tuple[str, Callable[[Path], None]]] = {
+    "finger_learned": (".gif", finger_learned),
     "finger_traces": (".gif", finger_traces),
     "swinging": (".gif", swinging),
     "view": (".png", view),

@@ -1,0 +1,96 @@
+"""One rod as an environment of gymnasium."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import gymnasium
+import numpy as np
+from gymnasium.error import ResetNeeded
+
+from der.gym.episodes import Episodes
+from der.gym.play import Play
+from der.gym.task import Task
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+class RodEnv(gymnasium.Env["NDArray[Any]", Any]):
+    """An environment of gymnasium that plays one episode of a task at a time.
+
+    An episode is terminated where the task says so, and where the simulation fails: the info then
+    has ``failure``, the short name of why, and ``failure_message``. It is truncated at the scene's
+    duration, or after `Task.max_steps`.
+
+    Parameters
+    ----------
+    task
+        What is played.
+
+    Raises
+    ------
+    SceneError, DerError
+        Where the scene cannot be simulated from its start.
+    ValueError
+        Where a function of the task returns something of another shape than it should.
+    """
+
+    def __init__(self, task: Task) -> None:
+        self._play = Play(task, members=1, threads=1)
+        self.action_space = task.action_space
+        self.observation_space = self._play.space
+        self._running = False
+
+    @property
+    def batch(self) -> Episodes:
+        """The simulation, a batch of one member."""
+        return self._play.batch
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[NDArray[Any], dict[str, Any]]:
+        """Begin an episode.
+
+        Parameters
+        ----------
+        seed
+            Of what is drawn, in this episode and those after it; None: go on drawing.
+        options
+            Not used.
+
+        Returns
+        -------
+        tuple
+            The observation, and an empty info.
+        """
+        super().reset(seed=seed)
+        self._play.begin([0], [self.np_random])
+        self._running = True
+        return self._play.observations()[0], {}
+
+    def step(self, action: Any) -> tuple[NDArray[Any], float, bool, bool, dict[str, Any]]:
+        """Take an action.
+
+        Returns
+        -------
+        tuple
+            Observation, reward, whether the episode is terminated, whether truncated, info.
+
+        Raises
+        ------
+        gymnasium.error.ResetNeeded
+            Before the first `reset`, and after the end of an episode.
+        """
+        if not self._running:
+            raise ResetNeeded("an episode begins with reset()")
+        outcome = self._play.step(np.asarray(action)[np.newaxis])
+        terminated, truncated = bool(outcome.terminated[0]), bool(outcome.truncated[0])
+        self._running = not (terminated or truncated)
+        return (
+            outcome.observations[0],
+            float(outcome.rewards[0]),
+            terminated,
+            truncated,
+            outcome.infos.get(0, {}),
+        )

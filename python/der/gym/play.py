@@ -1,0 +1,137 @@
+"""Episodes of a task, side by side: what both kinds of environment share."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from gymnasium.spaces import Box
+
+from der.errors import DerWarning
+from der.gym.episodes import Episodes
+from der.gym.task import Task
+from der.simulation import Simulation, as_scenario
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What an action has led to; the first axis of each array is that of members.
+
+    Attributes
+    ----------
+    observations, rewards, terminated, truncated
+        As gymnasium defines them.
+    infos
+        By member, for those that have something to tell.
+    """
+
+    observations: NDArray[Any]
+    rewards: NDArray[np.float64]
+    terminated: NDArray[np.bool_]
+    truncated: NDArray[np.bool_]
+    infos: dict[int, dict[str, Any]]
+
+
+class Play:
+    """Episodes of a task, one for each member of a batch.
+
+    Attributes
+    ----------
+    batch
+        The episodes.
+    space
+        Of the observations of one member.
+    limit
+        The number of actions after which an episode is truncated.
+    """
+
+    def __init__(
+        self,
+        task: Task,
+        members: int,
+        threads: int | None = None,
+        vary: Mapping[str, ArrayLike | Sequence[Any]] | None = None,
+    ) -> None:
+        self._task = task
+        scenario = as_scenario(task.scene)
+        self.limit = task.max_steps or _actions_in(scenario, task.steps_per_action)
+        any_generator = np.random.default_rng(0)
+        drawn = () if task.draw is None else task.draw(any_generator)
+        self.batch = Episodes(scenario, members, threads, vary=vary, drawn_shape=np.shape(drawn))
+        for failure in self.batch.failures:
+            raise failure.error()
+        seen = self._rows("observe", task.observe(self.batch), dtype=None)
+        self.space = task.observation_space or Box(-np.inf, np.inf, seen.shape[1:], np.float64)
+        if seen.shape[1:] != self.space.shape:
+            raise ValueError(
+                f"observe: a member's observation has the shape {seen.shape[1:]}, but the "
+                f"observation space has {self.space.shape}"
+            )
+
+    def begin(self, members: Iterable[int], generators: Sequence[np.random.Generator]) -> None:
+        """Let members begin episodes; `generators` has one for every member of the batch."""
+        members = list(members)
+        if not members:
+            return
+        self.batch.reset(members)
+        self.batch.played[members] = 0
+        for member in members:
+            if self._task.draw is not None:
+                self.batch.drawn[member] = self._task.draw(generators[member])
+            if self._task.noise is not None:
+                self._task.noise(self.batch, member, generators[member])
+
+    def observations(self) -> NDArray[Any]:
+        """Return what the members observe now, a copy."""
+        return self._rows("observe", self._task.observe(self.batch), self.space.dtype)
+
+    def step(self, actions: Any) -> Outcome:
+        """Let every member take its action."""
+        task, batch = self._task, self.batch
+        task.act(batch, actions)
+        batch.step(task.steps_per_action)
+        batch.played += 1
+        ended = batch.failed.copy()
+        if task.terminate is not None:
+            ended |= self._rows("terminate", task.terminate(batch), np.bool_, ndim=1)
+        return Outcome(
+            self.observations(),
+            self._rows("reward", task.reward(batch, actions), np.float64, ndim=1),
+            ended,
+            batch.played >= self.limit,
+            {
+                failure.member: {"failure": failure.status, "failure_message": failure.message}
+                for failure in batch.failures
+            },
+        )
+
+    def _rows(
+        self, function: str, returned: ArrayLike, dtype: Any, ndim: int | None = None
+    ) -> NDArray[Any]:
+        rows = np.array(returned, dtype=dtype)
+        members = len(self.batch)
+        if rows.ndim < 1 or len(rows) != members or (ndim is not None and rows.ndim != ndim):
+            raise ValueError(
+                f"{function} returned the shape {rows.shape} for {members} members: the first "
+                f"axis is that of members{', and there is no other' if ndim == 1 else ''}"
+            )
+        return rows
+
+
+def _actions_in(scenario: Any, steps_per_action: int) -> int:
+    """Return how many actions fit into the duration of a scene."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DerWarning)  # the batch gives them
+        steps = Simulation(scenario).total_steps
+    if steps < steps_per_action:
+        raise ValueError(
+            f"the scene has {steps} equal time steps, and an action takes {steps_per_action}: give "
+            "it a longer duration, equal steps (time.step), or the task max_steps"
+        )
+    return steps // steps_per_action

@@ -2,9 +2,12 @@
 
     python tests/audit/run.py --scenes 300 --seed 1
     python tests/audit/run.py --kind static --only 17
+    python tests/audit/run.py --extremes --scenes 10000 --jobs 2
 
 Prints the share of true values within their bars, the share of right values that carry a flag, and
-every value outside its bar. Exits with 1 if an aim is missed (docs/validation.md).
+every value outside its bar. With ``--extremes`` single runs of scenes of extreme numbers are judged
+in their place: right, refused by name, or wrong. Exits with 1 if an aim is missed
+(docs/validation.md, docs/robustness.md).
 """
 
 from __future__ import annotations
@@ -25,6 +28,7 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "validation"))  # its 
 
 import numpy as np
 from audit import KINDS, aims_missed
+from audit.answers import Answer, aims_of_answers_missed, answer, table
 from audit.score import Outcome, judge, report, summarise
 
 # Statics has the richest grammar, and takes every other turn.
@@ -57,6 +61,15 @@ def audit(
         return list(pool.map(outcome_of, turns, [seed] * scenes, numbers))
 
 
+def answers(scenes: int, seed: int, *, first: int = 0, jobs: int = 1) -> list[Answer]:
+    """What became of ``scenes`` scenes of extreme numbers."""
+    numbers = range(first, first + scenes)
+    if jobs == 1:
+        return [answer(seed, number) for number in numbers]
+    with ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn")) as pool:
+        return list(pool.map(answer, [seed] * scenes, numbers, chunksize=16))
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--scenes", type=int, default=100)
@@ -66,7 +79,16 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=1, help="processes")
     parser.add_argument("--only", type=int, help="the scene of this number alone, as YAML")
     parser.add_argument("--dump", type=Path, help="folder for the scenes with a value outside")
+    parser.add_argument("--extremes", action="store_true", help="single runs of extreme scenes")
     arguments = parser.parse_args()
+    if arguments.extremes:
+        found = answers(
+            arguments.scenes, arguments.seed, first=arguments.first, jobs=arguments.jobs
+        )
+        print(table(found))
+        missed = aims_of_answers_missed(found)
+        print(*missed, sep="\n")
+        return 1 if missed else 0
     kinds = arguments.kind or TURNS
     if arguments.only is not None:
         outcome = outcome_of(kinds[arguments.only % len(kinds)], arguments.seed, arguments.only)

@@ -1,4 +1,4 @@
-"""What `der.Batch` costs beside the simulations in it, in one run; best on a machine that is idle.
+"""The cost of `der.Batch` beside the simulations in it, in one run; best on a machine that is idle.
 
     python benchmarks/batch.py [--quick] [--cpp PROGRAM]
 

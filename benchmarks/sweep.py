@@ -1,4 +1,4 @@
-"""What a sweep costs beside the engine: rows a second, bytes a row, overhead of Dask.
+"""The cost of a sweep beside the engine: rows a second, bytes a row, overhead of Dask.
 
     python benchmarks/sweep.py [--members N] [--dask]
 

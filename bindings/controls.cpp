@@ -1,4 +1,4 @@
-// What a program sets in place of the tables of a scene.
+// Values that a program sets in place of the tables of a scene.
 #include "controls.hpp"
 
 #include <pybind11/stl.h>

@@ -8,7 +8,7 @@ namespace der::python {
 
 namespace py = pybind11;
 
-/// What programs can set: by name, the unit of each component.
+/// The names that programs can set, each with the unit of its components.
 inline py::dict settable_names(const Model& model) {
   py::dict all;
   for (const NamedControl& control : model.named) {

@@ -1,4 +1,4 @@
-"""What actuations exert on the rods: the moments, torques and forces that do their work."""
+"""Forces of actuations: the moments, torques and forces on the rods that do their work."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What supports bear: the forces and moments that they exert on the rods."""
+"""Reactions: the forces and moments that supports exert on the rods."""
 
 from __future__ import annotations
 

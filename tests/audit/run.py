@@ -62,7 +62,7 @@ def audit(
 
 
 def answers(scenes: int, seed: int, *, first: int = 0, jobs: int = 1) -> list[Answer]:
-    """What became of ``scenes`` scenes of extreme numbers."""
+    """The outcomes of ``scenes`` scenes of extreme numbers."""
     numbers = range(first, first + scenes)
     if jobs == 1:
         return [answer(seed, number) for number in numbers]

@@ -296,7 +296,7 @@ def test_equilibria():
 def test_member_without_an_equilibrium_has_failed():
     scene = {k: v for k, v in PLANAR.items() if k != "time"} | {"analysis": "static"}
     batch = der.Batch(scene, 3)
-    # What is not a number is refused as `Simulation` refuses it.
+    # A value that is not a number is refused as `Simulation` refuses it.
     batch.extra_force[1, 4, 0] = np.nan
     reports = batch.equilibrium()
     assert [report is None for report in reports] == [False, True, False]

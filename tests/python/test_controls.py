@@ -1,4 +1,4 @@
-"""What a program sets by its name: the calls of Python, and that a run keeps it."""
+"""Values that a program sets by name: the calls of Python, and that a run keeps them."""
 
 import json
 import os

@@ -333,7 +333,7 @@ def test_tutorial_of_fitting(tutorial):
     assert found.parameters == pytest.approx(fitting.TRUTH, rel=0.03)
     assert found.noise == pytest.approx(fitting.NOISE, rel=0.2)
     assert np.all(np.diff(found.interval(0.95), axis=0) > np.diff(found.interval(0.5), axis=0))
-    # Of 30 films, 95 % are 28.5 +- 1.2; the spread has 13 % of uncertainty.
+    # 95 % of 30 films are 28.5 +- 1.2; the spread has 13 % of uncertainty.
     fits = fitting.repeated(exact, films=30)
     assert np.all(fitting.coverage(fits) >= 25 / 30)
     spread = np.std(np.log([one.parameters for one in fits]), axis=0)

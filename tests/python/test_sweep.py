@@ -21,26 +21,7 @@ from der.sweeps.chunk import BROKEN, Chunk, run_chunk
 from der.sweeps.design import make_design
 from der.sweeps.store import FILE, locked
 from der.sweeps.values import Range, parse_values
-
-FORCE = "loads.0.point_force.force.1"
-STIFFNESS = "rods.arm.cross_section.stiffness.EI"
-
-CANTILEVER = {
-    "title": "Cantilever",
-    "rods": [
-        {
-            "name": "arm",
-            "nodes": 11,
-            "from": [0, 0],
-            "to": [1, 0],
-            "cross_section": {"stiffness": {"EA": 1e6, "EI": 1.0, "mass_per_length": 0.1}},
-        }
-    ],
-    "supports": [{"rod": "arm", "at": "start", "clamp": True}],
-    "loads": [{"point_force": {"rod": "arm", "at": "end", "force": [0, -1]}}],
-    "analysis": "static",
-    "output": {"probes": {"tip_y": {"rod": "arm", "at": "end", "quantity": "y"}}},
-}
+from sweep_scenes import FORCE, STIFFNESS, bits, cantilever
 
 
 class Here(Executor):
@@ -57,21 +38,13 @@ class Here(Executor):
         return future
 
 
-def bits(sweep):
-    """Return the rows without what they cost, floats as exact texts."""
-    return [
-        {name: repr(value) for name, value in row.items() if name != "seconds"}
-        for row in sweep.rows
-    ]
-
-
 def command(*arguments):
     return [sys.executable, "-m", "der", "sweep", *map(str, arguments)]
 
 
-@pytest.fixture
-def cantilever():
-    return json.loads(json.dumps(CANTILEVER))
+@pytest.fixture(name="cantilever")
+def fresh_cantilever():
+    return cantilever()
 
 
 @pytest.fixture

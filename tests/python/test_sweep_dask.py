@@ -9,37 +9,15 @@ import numpy as np
 import pytest
 from der.sweeps import sweeper
 from der.sweeps.executors import connect, place_for
+from sweep_scenes import FORCE, STIFFNESS, bits, cantilever
 
 distributed = pytest.importorskip("distributed")
 
-SCENE = {
-    "title": "Cantilever",
-    "rods": [
-        {
-            "name": "arm",
-            "nodes": 101,
-            "from": [0, 0],
-            "to": [1, 0],
-            "cross_section": {"stiffness": {"EA": 1e6, "EI": 1.0, "mass_per_length": 0.1}},
-        }
-    ],
-    "supports": [{"rod": "arm", "at": "start", "clamp": True}],
-    "loads": [{"point_force": {"rod": "arm", "at": "end", "force": [0, -1]}}],
-    "analysis": "static",
-    "output": {"probes": {"tip_y": {"rod": "arm", "at": "end", "quantity": "y"}}},
-}
+SCENE = cantilever(nodes=101)
 VARY = {
-    "loads.0.point_force.force.1": np.linspace(-5.0, 0.0, 300),
-    "rods.arm.cross_section.stiffness.EI": [1.0, -1.0],
+    FORCE: np.linspace(-5.0, 0.0, 300),
+    STIFFNESS: [1.0, -1.0],
 }
-
-
-def bits(sweep):
-    """Return the rows without what they cost, floats as exact texts."""
-    return [
-        {name: repr(value) for name, value in row.items() if name != "seconds"}
-        for row in sweep.rows
-    ]
 
 
 @pytest.fixture(scope="module")

@@ -7,27 +7,11 @@ import numpy as np
 import pytest
 from der.cli import main
 from matplotlib.image import imread
+from sweep_scenes import FORCE, STIFFNESS, cantilever
 
-FORCE = "loads.0.point_force.force.1"
-STIFFNESS = "rods.arm.cross_section.stiffness.EI"
 NODES = "rods.arm.nodes"
 
-CANTILEVER = {
-    "title": "Cantilever",
-    "rods": [
-        {
-            "name": "arm",
-            "nodes": 11,
-            "from": [0, 0],
-            "to": [1, 0],
-            "cross_section": {"stiffness": {"EA": 1e6, "EI": 1.0, "mass_per_length": 0.1}},
-        }
-    ],
-    "supports": [{"rod": "arm", "at": "start", "clamp": True}],
-    "loads": [{"point_force": {"rod": "arm", "at": "end", "force": [0, -1]}}],
-    "analysis": "static",
-    "output": {"probes": {"tip_y": {"rod": "arm", "at": "end", "quantity": "y"}}},
-}
+CANTILEVER = cantilever()
 
 
 @pytest.fixture(scope="module")

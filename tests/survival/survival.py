@@ -1,4 +1,4 @@
-"""What is left of runs that are killed, of full disks, of folders that two want, of damaged files.
+"""Survival of kills, full disks, folders that two programs want, and damaged files.
 
 Each function tries one thing and returns what went wrong, in sentences; none is the aim.
 """
@@ -156,7 +156,7 @@ def _frames(folder: Path) -> int:
 
 
 def _differences(folder: Path, whole: Path, *, part: bool) -> list[str]:
-    """What differs from the undisturbed run; of a `part` its first frames are compared."""
+    """The differences from the undisturbed run; only the first frames count for a `part`."""
     found, full = der.open_run(folder), der.open_run(whole)
     frames = len(found.times)
     if not part and frames != len(full.times):

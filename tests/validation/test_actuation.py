@@ -716,7 +716,7 @@ def test_elongations_that_a_program_sets_leave_every_edge_a_length():
     )
     with pytest.raises(der.DerError, match=wrong):
         rod.set("b", -0.5, over=2.0)
-    # What is on its way counts: a is -0.3 when b would come to -0.5, and then goes on.
+    # A value on its way counts: a is -0.3 when b would come to -0.5, and then goes on.
     with pytest.raises(der.DerError, match=wrong):
         rod.set("b", -0.5, over=1.0)
     rod.step(100)

@@ -25,7 +25,7 @@ STRETCHES = [(0.0, 1.0), (0.33, 0.68), (0.0, 0.777), (0.313, 1.0), (0.503, 0.511
 
 
 def turn_until(s, start, end, profile):
-    """Of the curve of curvature `CURVATURE` times the profile, from its start."""
+    """The angle [rad] of the curve of curvature `CURVATURE` times the profile, from its start."""
     value = quad(
         lambda r: PROFILES[profile]((r - start) / (end - start)), start, np.clip(s, start, end)
     )
@@ -206,7 +206,7 @@ def test_force_that_follows_an_end_within_a_stretch_shorter_than_an_edge():
 
 
 def works(scene, moment, actuation):
-    """Of a rod that is pressed from one equilibrium into another by a smooth table."""
+    """Works on a rod that a smooth table moves from one equilibrium to another."""
     result = der.run(
         scene
         | {

@@ -1,4 +1,4 @@
-"""What actuations exert: moments, torques and forces that are conjugate to what they change.
+"""Forces of actuations: moments, torques and forces that are conjugate to what they change.
 
 References: closed forms of beams that are held at both ends; the change of the elastic energy along
 a path of equilibria; the `actuation` line of the ledger, by trapezoids over the probes.

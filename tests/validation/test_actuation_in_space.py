@@ -67,7 +67,7 @@ def elastic_energy(result):
 
 
 def test_straight_rod_becomes_a_helix(fitted_order):
-    """Of radius k/(k^2 + t^2) and pitch 2 pi t/(k^2 + t^2)."""
+    """A helix of radius k/(k^2 + t^2) and pitch 2 pi t/(k^2 + t^2)."""
     k, t = np.hypot(*CURVATURES), TWIST
     exact = curve([(1.0, *CURVATURES, TWIST)])
     # The axis has the direction of u = (-k2, k1, twist) at the clamp, and lies k/(k^2 + t^2)
@@ -157,7 +157,7 @@ def test_helix_on_an_uneven_mesh(fitted_order):
 
 
 def test_helix_beyond_a_clamp_inside(fitted_order):
-    """What is beyond the clamp in the middle starts from there, straight along x."""
+    """The part beyond the clamp in the middle starts from there, straight along x."""
     beyond = curve([(7 / 9 - 1 / 2, *CURVATURES, TWIST), (2 / 9, 0, 0, 0)])
     exact = beyond + np.array([0.5, 0.0, 0.0])
     errors = []

@@ -150,7 +150,7 @@ class CrossCheck:
         return 0.5 * (kinetic + elastic + np.sum(self.moment * self.turned, axis=0))
 
     def work(self):
-        """Of the actuations: the forces of the rest shape over its way, by trapezoids."""
+        """Work of the actuations: the forces of the rest shape over its way, by trapezoids."""
 
         def over(force, way):
             return np.sum(-0.5 * (force[:, 1:] + force[:, :-1]) * np.diff(way, axis=1), axis=0)

@@ -99,7 +99,7 @@ def quintic(t, times, values):
 
 @IMPLICIT
 def test_smooth_tables_on_an_oscillator(fitted_order, info):
-    """Of a force and of a support; entries lie within steps, and methods up to order 4 keep it."""
+    """A force and a support; entries lie within steps, and methods up to order 4 keep it."""
     times, pulls, moves = [0.1, 0.43, 0.77], [0.0, 2.0, -1.0], [0.0, 0.05, 0.02]
     exact = by_scipy(
         lambda t: quintic(t, times, pulls), lambda t: quintic(t, times, moves), breaks=times

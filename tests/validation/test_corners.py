@@ -192,7 +192,7 @@ def test_tension_at_a_right_angle(dimension):
 
 
 def test_places_beside_a_corner_lie_on_their_leg(dimension):
-    """Of an unloaded frame: no place is beyond the corner, and nothing lies outside the legs."""
+    """An unloaded frame: no place is beyond the corner, and nothing lies outside the legs."""
     probes = {
         f"{quantity}_{i}": {"quantity": quantity, "at": s}
         for i, s in enumerate((0.47, 0.52))

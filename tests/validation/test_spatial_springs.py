@@ -282,8 +282,11 @@ def turned_helix(n, drawn, frame, **more):
 
 
 def spring_energy(stiffness, drawn, turned):
-    """Of a spring between two frames, columns d1, d2, d3: the angle between the tangents, towards
-    the mean directors, and the twist once the drawn frame is transported (docs/space.md)."""
+    """Energy of a spring between two frames, columns d1, d2, d3.
+
+    Its turns are the angle between the tangents, towards the mean directors, and the twist once the
+    drawn frame is transported (docs/space.md).
+    """
     binormal = np.cross(drawn[:, 2], turned[:, 2])
     sine, cosine = np.linalg.norm(binormal), drawn[:, 2] @ turned[:, 2]
     angle = np.arctan2(sine, cosine) / sine * binormal

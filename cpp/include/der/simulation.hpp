@@ -113,11 +113,11 @@ class Simulation {
   void set(std::string_view name, const std::vector<double>& values,
            std::optional<double> over = std::nullopt);
   [[nodiscard]] bool has_warnings() const { return !warnings_.empty(); }
-  /// What `set` has found doubtful since the last call, in sentences: one for each rod, once.
+  /// Doubts that `set` has found since the last call, in sentences: one for each rod, once.
   [[nodiscard]] std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
   /// Present values of what has a name, one for each component. Throws Error as `set`.
   [[nodiscard]] std::vector<double> value(std::string_view name) const;
-  /// What a name stands for. Throws Error as `set`.
+  /// The thing that a name stands for. Throws Error as `set`.
   struct Settable {
     const NamedControl* whole = nullptr;
     /// The components that are meant: all of them, or one.
@@ -188,7 +188,7 @@ class Simulation {
   [[nodiscard]] const std::string& linear_solver_reason() const { return solver_.reason; }
 
  private:
-  /// What a scene says, and what follows from it alone.
+  /// The scene, and all that follows from it alone.
   struct Constants {
     explicit Constants(Scenario scene);
     const Scenario scenario;

@@ -42,7 +42,7 @@ std::vector<std::string> names_of(const std::vector<scenario::Probe>& probes) {
   return names;
 }
 
-/// What the arrays of a batch need besides the structure of the models.
+/// The sizes that the arrays of a batch need besides the structure of the models.
 void check_probes(const Simulation& member, const Simulation& first) {
   const auto& here = member.scenario().scene().output.probes;
   if (names_of(here) == names_of(first.scenario().scene().output.probes)) return;

@@ -15,7 +15,7 @@ using scenario::Actuated;
 
 static_assert(scenario::kEdgePivot == kPivotShare);
 
-/// What the actuations of one rod change.
+/// The parts of the rest shape that the actuations of one rod change.
 struct Changes {
   bool lengths = false;
   bool cells = false;
@@ -170,6 +170,18 @@ void add_actuation(const scenario::Actuation& actuation, Model& model) {
   model.rest_shape.add(weights.terms());
   model.named.push_back(named_control(stretch));
   rod.actuated_stretches.push_back(stretch);
+}
+
+void set_actuated_turns(Model& model) {
+  for (RodLayout& rod : model.rods) {
+    if (rod.actuated_stretches.empty()) continue;
+    for (MomentPlace& place : rod.moment_places) {
+      if (!place.moments.empty()) place.actuated = actuated_turn(place.arc_length, rod);
+    }
+    for (SpatialMomentPlace& place : rod.spatial_moments) {
+      place.actuated = actuated_turn(place.arc_length, section_place(place.arc_length, rod), rod);
+    }
+  }
 }
 
 }  // namespace der

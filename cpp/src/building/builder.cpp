@@ -285,6 +285,7 @@ Model build_model(const scenario::Scene& scene) {
     std::visit([&](const auto& l) { add_load(l, LoadContext{scene, load.name}, model); },
                load.what);
   }
+  set_actuated_turns(model);
   follow_slopes(scene, model);
   model.damped = (model.damping.array() != 0.0).any();
   hold_dofs(model);

@@ -81,7 +81,7 @@ Mat3 compliance_of(const SectionPlace& place, const SpatialMoment& moment, const
          along(drawn.tangent, place.twist_cell, rod.GJ);
 }
 
-/// Of the loads that follow the section at arc length `s` [m].
+/// The actuated section for loads that follow the section at arc length `s` [m].
 ActuatedSection actuated_section(double s, const SectionPlace& place, const RodLayout& rod,
                                  const Model& model) {
   const std::vector<double>& weights = place.direction;
@@ -138,7 +138,7 @@ void add_spatial_moment(const scenario::VectorSeries& moment, bool follower, dou
   kind.compliance = compliance_of(place, kind, rod);
   kind.turns_further = !place_beside_clamp(rod, s) && beyond_outer_middle(rod, s) == 0.0;
   load.kind = std::move(kind);
-  rod.spatial_moments.push_back({s, add(std::move(load), model)});
+  rod.spatial_moments.push_back({s, add(std::move(load), model), {}});
 }
 
 }  // namespace der

@@ -55,7 +55,7 @@ void ActuatedTurnTo::add(const ActuatedStretch& stretch, double weight) {
   }
 }
 
-/// Of the profile [m]; a ring goes on beyond its ends.
+/// Integral of the profile [m]; a ring goes on beyond its ends.
 double ActuatedTurnTo::integral(const ActuatedStretch& stretch, double a, double b) const {
   const Index most = rod_.closed ? 1 : 0;
   double sum = 0.0;

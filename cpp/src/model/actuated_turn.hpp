@@ -13,7 +13,7 @@ namespace der {
 // and its section is that in its middle. At a place, the rod is turned on from there by the
 // integral of the actuated curvatures and twist, which no line between edges follows.
 
-/// What an edge turns by in a unit of an actuated curvature [m].
+/// The turn of an edge for a unit of an actuated curvature [m].
 scenario::EdgeTurns edge_turns(const ActuatedStretch& stretch, const RodLayout& rod, Index edge);
 
 /// The actuated turn to a place, from where the parts of a weighted sum are.

@@ -28,7 +28,7 @@ const ControlName* first_unknown(const std::vector<ControlName>& these,
   return found == these.end() ? nullptr : &*found;
 }
 
-/// What differs between the scene of a state and another one; empty: nothing.
+/// The difference between the scene of a state and another one, in words; empty: none.
 std::string difference(const std::vector<ControlName>& of_state,
                        const std::vector<ControlName>& here) {
   if (const ControlName* each = first_unknown(of_state, here)) {

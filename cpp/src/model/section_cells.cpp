@@ -18,7 +18,7 @@ double stored_by_moments(const RodLayout& rod, const Model& model, const Configu
   return energy;
 }
 
-/// Of a spring and its cell in series, what the cell stores: the springs have 1/2 m K^-1 m.
+/// The energy that the cell of a spring and a cell in series stores: the springs have 1/2 m K^-1 m.
 template <int Edges>
 double stored_beside_spring(const SectionSpringPlace& spring, const Model& model,
                             const Configuration& here) {

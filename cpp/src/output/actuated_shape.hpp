@@ -8,7 +8,7 @@
 
 namespace der {
 
-/// What actuations add to the rest shape of one element, at a state.
+/// The change that actuations make to the rest shape of one element, at a state.
 class ActuatedRest {
  public:
   ActuatedRest() = default;

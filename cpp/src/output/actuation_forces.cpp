@@ -11,7 +11,7 @@
 
 namespace der {
 
-/// What the forces of a model's actuations need.
+/// The data that the forces of a model's actuations need.
 class ActuationForces::Reader {
  public:
   Reader(const Model& model, const std::optional<std::string>& only);

@@ -83,10 +83,10 @@ class TurnField : public RodField {
   bool continuous_;
 };
 
-/// What is read of the bending of a rod.
+/// The quantities that are read from the bending of a rod.
 enum class Bending { Curvature, Moment, NaturalCurvature };
 
-/// Of a rod without bending stiffness: moment and natural curvature are zero.
+/// A rod without bending stiffness: moment and natural curvature are zero.
 std::unique_ptr<RodField> limp_field(Bending what, const RodLayout& rod, const Model& model) {
   std::vector<Weighted> nodes;
   for (Index i = 0; i < static_cast<Index>(rod.nodes.size()); ++i) {
@@ -96,7 +96,7 @@ std::unique_ptr<RodField> limp_field(Bending what, const RodLayout& rod, const M
   return std::make_unique<TurnField>(rod, nodes, true, model);
 }
 
-/// Of a rod with bending stiffness: along each edge that of its two ends, linear but for the loads
+/// A rod with bending stiffness: along each edge that of its two ends, linear but for the loads
 /// inside the edge.
 template <class Measure>
 class BendField : public EdgewiseField<double> {

@@ -15,7 +15,7 @@ std::unique_ptr<RodField> make_turning_angle_field(const RodLayout& rod, const M
 
 /// In [1/m].
 std::unique_ptr<RodField> make_curvature_field(const RodLayout& rod, const Model& model);
-/// Of the rod without stress, as actuations have it at the state, in [1/m]; in a plane.
+/// Curvature [1/m] of the rod without stress, as actuations have it at the state; in a plane.
 std::unique_ptr<RodField> make_natural_curvature_field(const RodLayout& rod, const Model& model);
 /// In [N m].
 std::unique_ptr<RodField> make_moment_field(const RodLayout& rod, const Model& model);

@@ -80,7 +80,7 @@ JointKinematics<Curvature> kinematics_of(const RodJoint& joint, const RodLayout&
   return {sides.before, sides.after, twist};
 }
 
-/// What a corner resists with; null if the joint is none.
+/// The stiffness of a corner; null if the joint is none.
 const CoupledJoint* corner_of(const RodJoint& joint, const RodLayout& rod, const Model& model) {
   if (joint.before < 0 || joint.after < 0) return nullptr;
   const Index theta_before = model.framed_edges[to_size(rod.first_edge + joint.before)].theta;

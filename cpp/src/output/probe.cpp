@@ -181,7 +181,7 @@ class RingReader : public ProbeReader {
   RodLayout rod_;
 };
 
-/// What a support bears, at all of its places together.
+/// The reaction of a support, at all of its places together.
 class SupportReader : public ProbeReader {
  public:
   SupportReader(ReactionReading read, std::size_t support, const scenario::Scene& scene,
@@ -201,7 +201,7 @@ class SupportReader : public ProbeReader {
   Reactions reactions_;
 };
 
-/// What an actuation exerts.
+/// The force or moment that an actuation exerts.
 class ActuationReader : public ProbeReader {
  public:
   ActuationReader(ActuationReading read, const std::string& name, const Model& model)

@@ -181,7 +181,7 @@ std::vector<Quantity> quantities_of_supports() {
   };
 }
 
-/// What an actuation exerts on the rod.
+/// Readers of the forces that an actuation exerts on the rod.
 template <std::size_t number = 0>
 Quantity actuation(scenario::Actuated what, std::string name, std::string unit,
                    std::string meaning) {

@@ -51,7 +51,7 @@ double share_of(double own, double all, int supports) {
 
 }  // namespace
 
-/// What the reactions of a model need.
+/// The data that the reactions of a model need.
 class Reactions::Reader {
  public:
   Reader(const scenario::Scene& scene, const Model& model, std::optional<std::size_t> only);
@@ -251,7 +251,7 @@ void Reactions::Reader::add_at_pivot(const PivotKind& pivot, Index dof, const Fo
   moments_[to_size(clamp)] += in_space(pivot.offset(here_.controls)).cross(in_space(force));
 }
 
-/// What the gradient of an element does to the clamps beside it: its force acts at the pivot.
+/// Adds the gradient of an element to the clamps beside it: its force acts at the pivot.
 template <class Kernel>
 void Reactions::Reader::add_pivots(const Kernel& /*kernel*/,
                                    const typename Kernel::Constants& constants,

@@ -198,8 +198,8 @@ class SectionField : public EdgewiseField<Vec3> {
     Vec3 natural;
   };
 
-  /// Of the two joints of a leg that are next to its last end, beyond `edge`, or to its first one;
-  /// fewer where it has no more. Corners bend on their two legs and belong to none.
+  /// Natural shapes of the two joints of a leg next to its last end, beyond `edge`, or to its first
+  /// end; fewer where it has no more. Corners bend on their two legs and belong to none.
   static std::vector<NaturalAt> naturals_beside_end(const RodLayout& rod, Index edge, bool last,
                                                     const MomentRecovery& recovery) {
     std::vector<NaturalAt> found;
@@ -264,7 +264,7 @@ class SectionField : public EdgewiseField<Vec3> {
       result.joint_ahead = rod.rest_length();
       result.glued = joint->glued;
       result.natural = turned(result.natural, result.glued);
-      // Of the scene's pairs, the first is that of the section after the glue, too.
+      // The first of the scene's pairs is that of the section after the glue, too.
       if (!rod.natural_curvatures.empty())
         result.natural.head<2>() = rod.natural_curvatures.front();
     }

@@ -87,7 +87,7 @@ class DirectionField : public RodField {
   /// Sets `knots` to the directions there, and `kinks` to the jumps of their derivative [1/m].
   virtual void read(const Model& model, const State& state, std::vector<Value>& knots,
                     std::vector<Value>& kinks) const = 0;
-  /// What an actuated turn adds to a direction.
+  /// The part of a direction that an actuated turn adds.
   [[nodiscard]] virtual Value turned(const TangentLine::Turn& turn, const Model& model,
                                      const State& state) const = 0;
   /// The quantity in a direction.

@@ -12,7 +12,8 @@
 namespace der {
 namespace {
 
-/// What a jump of the curvature by 1 at `kink` adds at `s` to a line that begins before it [m].
+/// The amount that a jump of the curvature by 1 at `kink` adds at `s` to a line begun before it
+/// [m].
 double beyond(double s, double kink) { return std::max(0.0, s - kink); }
 
 /// Number of the edge on which a place is.

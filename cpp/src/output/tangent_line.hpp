@@ -29,7 +29,7 @@ class TangentLine {
     std::size_t number = 0;
     double factor = 0.0;
   };
-  /// What actuations turn along an edge on the way from the knots.
+  /// The turns that actuations make along an edge on the way from the knots.
   struct Turn {
     Index edge = 0;  ///< number in the rod
     ActuatedTurn actuated;

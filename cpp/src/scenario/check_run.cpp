@@ -222,7 +222,7 @@ class ProbeCheck {
                        fmt::join(quantities_of(what), "' or '")));
   }
 
-  /// What stands in the place of the right key.
+  /// The key that stands in the place of the right one.
   [[nodiscard]] std::string in_place_of() const {
     return probe_.rod         ? " in place of 'rod'"
            : probe_.support   ? " in place of 'support'"
@@ -337,7 +337,7 @@ std::string item_in_words(const Scene& scene, const ContinuationAnalysis& path) 
   return fmt::format("loads.{} ({})", *path.number, load_kinds()[load.what.index()]);
 }
 
-/// What a continuation can vary.
+/// The names that a continuation can vary.
 struct VariedKind {
   const char* key;     ///< of the list in the scene
   const char* scaled;  ///< what the factor scales, in words

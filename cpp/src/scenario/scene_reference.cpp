@@ -149,7 +149,7 @@ std::string words_text(const FieldInfo& field) {
   return text.empty() ? text : fmt::format("\nAllowed values of `{}`:\n\n{}", field.key, text);
 }
 
-/// Of a table whose unit is that of the key above it: whether a field is one of its values.
+/// Whether a field is a value of a table whose unit is that of the key above it.
 bool takes_unit_of_the_key(const FieldInfo& field) {
   constexpr std::array keys{"values", "amplitude", "offset"};
   return std::find(keys.begin(), keys.end(), field.key) != keys.end();

@@ -1,4 +1,4 @@
-// What a program sets in place of tables: loads and prescribed motions.
+// Values that a program sets in place of tables: loads, prescribed motions, actuations.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ std::string why_nothing(const scenario::Scene& scene, const std::string& name) {
   return {};
 }
 
-/// What to write in the scene for a name that it does not have.
+/// Tells what to write in the scene for a name that it does not have.
 std::string how_to_name(const scenario::Scene& scene, const std::string& name,
                         const std::vector<NamedControl>& named) {
   const auto is_kind = [&](const auto& load) {

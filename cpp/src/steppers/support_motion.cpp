@@ -17,7 +17,7 @@ constexpr double kLargestTurn = 1.0;  // [rad]
 class Odometer {
  public:
   explicit Odometer(double limit) : left_(limit) {}
-  /// What is left to the limit.
+  /// The distance left to the limit.
   [[nodiscard]] double left() const { return left_; }
   /// The time at which the limit is reached, on the way from one time and value to others.
   double time_of_limit(double start, double from, double end, double to) {
@@ -110,12 +110,8 @@ SupportMotion::SupportMotion(const Model& model) : model_(model) {
     if (held.displacement < 0) continue;
     moved_.push_back({held.displacement, shortest_edge_at(held.dof, model)});
   }
-  for (const RodLayout& rod : model.rods) {
-    for (const Clamp& clamp : rod.clamps) {
-      for_each_turning_control(clamp,
-                               [&](Index control) { moved_.push_back({control, kLargestTurn}); });
-    }
-  }
+  for_each_turning_control(model,
+                           [&](Index control) { moved_.push_back({control, kLargestTurn}); });
 }
 
 double SupportMotion::time_of(double strips, const State& state) const {

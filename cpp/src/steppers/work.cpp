@@ -5,20 +5,14 @@
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/registry.hpp"
-#include "der/model/section_place.hpp"
 #include "der/supports/clamp.hpp"
-#include "model/actuated_turn.hpp"
 
 namespace der {
 namespace {
 
 bool any_clamp_turns(const Model& model) {
   bool any = false;
-  for (const RodLayout& rod : model.rods) {
-    for (const Clamp& clamp : rod.clamps) {
-      for_each_turning_control(clamp, [&](Index /*control*/) { any = true; });
-    }
-  }
+  for_each_turning_control(model, [&](Index /*control*/) { any = true; });
   return any;
 }
 
@@ -39,7 +33,7 @@ double energy_given(const Model& model, const Configuration& before, const Confi
   return energy;
 }
 
-/// What the tables of actuations turn in a step [rad].
+/// The turn that the tables of actuations make in a step [rad].
 Vec3 turned(const ActuatedTurn& turn, const Configuration& start, const Configuration& end) {
   return turn.at(end.controls) - turn.at(start.controls);
 }
@@ -48,8 +42,8 @@ double planar_work_on_actuated_turns(const RodLayout& rod, const Configuration& 
                                      const Configuration& end) {
   double work = 0.0;
   for (const MomentPlace& place : rod.moment_places) {
-    if (place.moments.empty()) continue;
-    const double turn = turned(actuated_turn(place.arc_length, rod), start, end)[0];
+    if (place.actuated.is_zero()) continue;
+    const double turn = turned(place.actuated, start, end)[0];
     for (const Index moment : place.moments) {
       const double mean = 0.5 * (start.controls[moment] + end.controls[moment]);
       work += place.series_share(rod.EI) * mean * turn;
@@ -62,12 +56,11 @@ double spatial_work_on_actuated_turns(const RodLayout& rod, const Model& model,
                                       const Configuration& start, const Configuration& end) {
   double work = 0.0;
   for (const SpatialMomentPlace& place : rod.spatial_moments) {
-    const SectionPlace section = section_place(place.arc_length, rod);
-    const Vec3 turn = turned(actuated_turn(place.arc_length, section, rod), start, end);
-    if (turn.isZero(0.0)) continue;
+    if (place.actuated.is_zero()) continue;
+    const Vec3 turn = turned(place.actuated, start, end);
     const CirculatoryLoad& load = circulatory_loads(*model.elements)[to_size(place.load)];
     const auto& edges = std::get<SpatialMoment>(load.kind).edges;
-    const FramedEdge& nearer = section.across[0] < 0.5 ? edges.back() : edges.front();
+    const FramedEdge& nearer = edges.front().across < 0.5 ? edges.back() : edges.front();
     for (const Configuration* there : {&start, &end}) {
       const Mat3 axes = turning_axes(nearer.frame(*there).frame);
       work += 0.5 * load.moments(*there).whole.dot(axes * turn);

@@ -67,6 +67,13 @@ double tangent_angle(const Clamp& clamp, const Model& model, const State& state)
   return clamp.direction + control_value(model, state, clamp.rotation);
 }
 
+double largest_turn_of_clamps(const Model& model, const Vector& controls) {
+  double largest = 0.0;
+  for_each_turning_control(
+      model, [&](Index control) { largest = std::max(largest, std::abs(controls[control])); });
+  return largest;
+}
+
 bool is_beside_turning_clamp(const RodLayout& rod, double s) {
   const auto beside = place_beside_clamp(rod, s);
   bool turns = false;

@@ -36,7 +36,7 @@ Index follow_twist(Index number, const SectionFrame& drawn, Model& model) {
   return same ? followed.twist() : -1;
 }
 
-/// What the rod makes of the springs at a place between the middles of two edges, or on one.
+/// The springs at a place between the middles of two edges, or on one, as the rod feels them.
 struct SectionHold {
   Mat3 stiffness = Mat3::Zero();
   std::array<Mat3, 2> weights;
@@ -81,13 +81,6 @@ Mat3 axes_of(const SectionFrame& section) {
   return axes;
 }
 
-/// Unit rotations, in fixed axes, that bend a section towards its two directors and twist it.
-Mat3 rotations_of(const SectionFrame& section) {
-  Mat3 axes;
-  axes << section.second, -section.first, section.tangent;
-  return axes;
-}
-
 /// The weighted rotations at which no moment acts: none, where the drawn shape is free of stress.
 /// A natural shape that is given is that of a chain whose nodes do not lie on the drawn curve
 /// (spring.hpp).
@@ -104,7 +97,7 @@ Vec3 natural_rotation(double s, const SectionPlace& place, const SectionFrame& s
       const Vec3 first = drawn_frame(model, number_of(rod, place.first_edge)).tangent;
       const Vec3 second = drawn_frame(model, number_of(rod, place.first_edge + 1)).tangent;
       const Eigen::AngleAxisd bend(Eigen::Quaterniond::FromTwoVectors(first, second));
-      rotation += ((s - middle) / spacing - place.across[1]) * rotations_of(section).transpose() *
+      rotation += ((s - middle) / spacing - place.across[1]) * turning_axes(section).transpose() *
                   (bend.angle() * bend.axis());
     }
   }
@@ -122,7 +115,7 @@ Vec3 natural_rotation(double s, const SectionPlace& place, const SectionFrame& s
 SectionFrame turned_back(const SectionFrame& section, const Vec3& rotation) {
   const double angle = rotation.norm();
   if (angle == 0.0) return section;
-  const Eigen::AngleAxisd turn(-angle, rotations_of(section) * rotation / angle);
+  const Eigen::AngleAxisd turn(-angle, turning_axes(section) * rotation / angle);
   return SectionFrame::of(turn * section.tangent, turn * section.first);
 }
 
@@ -165,10 +158,10 @@ SectionHold corner_hold(const Vec3& stiffness, double s, Index first_edge, const
   // The angle of an edge tells the turns about its own tangent alone.
   hold.counts_turns = !is_corner(rod, second_edge, model);
 
-  const Mat3 section = rotations_of(hold.section);
+  const Mat3 section = turning_axes(hold.section);
   const Vec3 softness = Vec3(rod.EI_1, rod.EI_2, rod.GJ).cwiseInverse();
   const auto compliance = [&](Index edge, double from, double to) -> Mat3 {
-    const Mat3 own = section.transpose() * rotations_of(drawn_frame(model, number_of(rod, edge)));
+    const Mat3 own = section.transpose() * turning_axes(drawn_frame(model, number_of(rod, edge)));
     return std::max(0.0, to - from) * own * softness.asDiagonal() * own.transpose();
   };
   const Mat3 before =

@@ -22,7 +22,7 @@ void hold(Model& model, Index dof, Index displacement) {
   if (known == model.held.end()) model.held.push_back({dof, displacement});
 }
 
-/// What a support moves, by component, each with the controls of all its nodes.
+/// The components that a support moves, each with the controls of all its nodes.
 NamedControl named_motion(const std::string& name, std::size_t number, const Model& model) {
   NamedControl result{name, false, {}};
   auto& components = result.components;

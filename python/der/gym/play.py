@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What an action has led to; the first axis of each array is that of members.
+    """The outcome of an action; the first axis of each array is that of members.
 
     Attributes
     ----------

@@ -150,7 +150,7 @@ def _run_member(
 
 @dataclass(frozen=True)
 class _Reading:
-    """What a row tells of a run.
+    """The columns of a row that tell of a run.
 
     Attributes
     ----------

@@ -28,7 +28,7 @@ _MARGIN = {"implicit_euler": 6.0}
 
 @dataclasses.dataclass(frozen=True)
 class Answer:
-    """What became of one problem: solved, wrong, flagged by der as doubtful, or a status."""
+    """The outcome of one problem: solved, wrong, flagged by der as doubtful, or a status."""
 
     name: str
     kind: str
@@ -83,7 +83,7 @@ def _at_rest(drawn: Drawn, first: Units, second: Units) -> tuple[str, str]:
 
 
 def _fault(simulation: der.Simulation, report: der.EquilibriumReport) -> str:
-    """What is wrong with an equilibrium, by its forces and the eigenvalues of its stiffness."""
+    """The faults of an equilibrium, by its forces and the eigenvalues of its stiffness."""
     if simulation.free_dofs.size == 0:
         return ""
     stiffness = simulation.hessian().toarray()

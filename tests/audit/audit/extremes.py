@@ -26,7 +26,7 @@ Scene = dict[str, Any]
 
 @dataclasses.dataclass(frozen=True)
 class Units:
-    """What 1 of the drawing is: length [m], force [N], time [s]; the axes, and the origin [1]."""
+    """The length [m], force [N] and time [s] that 1 stands for; the axes, and the origin [1]."""
 
     length: float
     force: float

@@ -164,7 +164,7 @@ def hard(
 
 @dataclasses.dataclass(frozen=True)
 class Row:
-    """What became of a case in one setting."""
+    """The outcome of a case in one setting."""
 
     case: Case
     setting: Setting

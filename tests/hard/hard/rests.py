@@ -1,4 +1,4 @@
-"""What is at rest stays at rest."""
+"""Rods at rest stay at rest."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ _TURN = np.array([[0.8, -0.6], [0.6, 0.8]])  # and in a planar scene
 
 @dataclasses.dataclass(frozen=True)
 class Setting:
-    """What a case is tried in.
+    """The setting that a case is tried in.
 
     Cases are thought in a plane with the coordinates x and y. In the scene their axes are inclined,
     and so is the plane in the models of space, so that nothing is 0 or exact by chance: `vector`

@@ -60,7 +60,7 @@ class Segment:
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """What a boundary value problem found."""
+    """The answer of a boundary value problem."""
 
     segments: Sequence[Segment]
     EI: float

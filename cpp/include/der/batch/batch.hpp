@@ -87,7 +87,7 @@ class Batch {
   /// Sets all of these in every member that has not failed, as Simulation::set. Throws Error, which
   /// names the member, and then sets nothing.
   void set(const std::vector<Setting>& settings, std::optional<double> over);
-  /// What `set` warns of, of the first such member, with the number of others.
+  /// The warnings of `set` for the first such member, with the number of others.
   [[nodiscard]] std::vector<std::string> take_warnings();
   /// Values of a component that a support prescribes, one for each member.
   struct Prescription {

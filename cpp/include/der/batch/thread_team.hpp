@@ -17,7 +17,7 @@ namespace der {
 /// ran has none of them and starts its own.
 class ThreadTeam {
  public:
-  /// What is common to all items of one call.
+  /// The data common to all items of one call.
   class Call {
    public:
     /// Whether an exception was thrown: work that goes on for long ends early then.

@@ -38,65 +38,72 @@ struct RestGradient<Stretch<Dim>> {
   }
 };
 
-template <class Curvature>
-struct RestGradient<PlanarBend<Curvature>> {
-  using Kernel = PlanarBend<Curvature>;
+/// The same for elements that bend or twist: the opposite of a moment or torque for each strain.
+template <class Kernel, int Size>
+struct BendingRestGradient {
+  using Constants = typename Kernel::Constants;
+  using Local = Eigen::Matrix<double, Kernel::kDofs, 1>;
+  using Moments = Eigen::Matrix<double, Size, 1>;
   static constexpr bool kExists = true;
-  static constexpr int kSize = 1;
-  static const RestShift& shift(const typename Kernel::Constants& c) { return c.actuated; }
-  static Eigen::Matrix<double, kSize, 1> of(const typename Kernel::Constants& c,
-                                            const Configuration& here,
-                                            const Eigen::Matrix<double, Kernel::kDofs, 1>& x) {
-    const auto [before, after] = Kernel::edges(x);
-    const double kappa = Curvature::of(angle_between(before, after)).kappa;
-    return Eigen::Matrix<double, kSize, 1>(-c.stiffness_per_length *
-                                           (kappa - c.natural(here.controls)));
+  static constexpr int kSize = Size;
+  static const RestShift& shift(const Constants& c) { return c.actuated; }
+
+ protected:
+  /// In a plane, at the curvature measure `kappa` [rad].
+  static Moments planar(const Constants& c, const Configuration& here, double kappa) {
+    return Moments(-c.stiffness_per_length * (kappa - c.natural(here.controls)));
+  }
+  /// In space, of a joint's strain.
+  template <class Strain>
+  static Moments spatial(const Constants& c, const Configuration& here, const Strain& strain) {
+    const auto [q1, q2, torque] = c.actuated_joint(here.controls).load(strain);
+    return {-q1, -q2, -torque};
   }
 };
 
 template <class Curvature>
-struct RestGradient<PlanarClamp<Curvature>> {
+struct RestGradient<PlanarBend<Curvature>> : BendingRestGradient<PlanarBend<Curvature>, 1> {
+  using Kernel = PlanarBend<Curvature>;
+  using Base = BendingRestGradient<Kernel, 1>;
+  static auto of(const typename Base::Constants& c, const Configuration& here,
+                 const typename Base::Local& x) {
+    const auto [before, after] = Kernel::edges(x);
+    return Base::planar(c, here, Curvature::of(angle_between(before, after)).kappa);
+  }
+};
+
+template <class Curvature>
+struct RestGradient<PlanarClamp<Curvature>> : BendingRestGradient<PlanarClamp<Curvature>, 1> {
   using Kernel = PlanarClamp<Curvature>;
-  static constexpr bool kExists = true;
-  static constexpr int kSize = 1;
-  static const RestShift& shift(const typename Kernel::Constants& c) { return c.actuated; }
-  static Eigen::Matrix<double, kSize, 1> of(const typename Kernel::Constants& c,
-                                            const Configuration& here,
-                                            const Eigen::Matrix<double, Kernel::kDofs, 1>& x) {
+  using Base = BendingRestGradient<Kernel, 1>;
+  static auto of(const typename Base::Constants& c, const Configuration& here,
+                 const typename Base::Local& x) {
     const Vec2 edge = x.template tail<2>() - x.template head<2>();
-    const double kappa = Curvature::of(Kernel::turning_angle(c, here.controls, edge)).kappa;
-    return Eigen::Matrix<double, kSize, 1>(-c.stiffness_per_length *
-                                           (kappa - c.natural(here.controls)));
+    const double angle = Kernel::turning_angle(c, here.controls, edge);
+    return Base::planar(c, here, Curvature::of(angle).kappa);
   }
 };
 
 template <class Curvature, class AJoint>
-struct RestGradient<SpatialBend<Curvature, AJoint>> {
+struct RestGradient<SpatialBend<Curvature, AJoint>>
+    : BendingRestGradient<SpatialBend<Curvature, AJoint>, 3> {
   using Kernel = SpatialBend<Curvature, AJoint>;
-  static constexpr bool kExists = true;
-  static constexpr int kSize = 3;
-  static const RestShift& shift(const typename Kernel::Constants& c) { return c.actuated; }
-  static Vec3 of(const typename Kernel::Constants& c, const Configuration& here,
-                 const Eigen::Matrix<double, Kernel::kDofs, 1>& x) {
+  using Base = BendingRestGradient<Kernel, 3>;
+  static auto of(const typename Base::Constants& c, const Configuration& here,
+                 const typename Base::Local& x) {
     const auto [a, b, twist] = Kernel::frames(c, here.controls, x);
-    const JointKinematics<Curvature> kinematics(a.frame, b.frame, twist);
-    const auto [q1, q2, torque] = c.actuated_joint(here.controls).load(kinematics.strain());
-    return {-q1, -q2, -torque};
+    return Base::spatial(c, here, JointKinematics<Curvature>(a.frame, b.frame, twist).strain());
   }
 };
 
 template <class Curvature>
-struct RestGradient<SpatialClamp<Curvature>> {
+struct RestGradient<SpatialClamp<Curvature>> : BendingRestGradient<SpatialClamp<Curvature>, 3> {
   using Kernel = SpatialClamp<Curvature>;
-  static constexpr bool kExists = true;
-  static constexpr int kSize = 3;
-  static const RestShift& shift(const typename Kernel::Constants& c) { return c.actuated; }
-  static Vec3 of(const typename Kernel::Constants& c, const Configuration& here,
-                 const Eigen::Matrix<double, Kernel::kDofs, 1>& x) {
+  using Base = BendingRestGradient<Kernel, 3>;
+  static auto of(const typename Base::Constants& c, const Configuration& here,
+                 const typename Base::Local& x) {
     const auto [edge, a, b, twist] = Kernel::frames(c, here.controls, x);
-    const JointKinematics<Curvature> kinematics(a, b, twist);
-    const auto [q1, q2, torque] = c.actuated_joint(here.controls).load(kinematics.strain());
-    return {-q1, -q2, -torque};
+    return Base::spatial(c, here, JointKinematics<Curvature>(a, b, twist).strain());
   }
 };
 

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "der/core/types.hpp"
-#include "der/kinematics/section_frame.hpp"
 
 namespace der {
 
@@ -30,13 +29,5 @@ struct ActuatedTurn {
     return value([&](Index control) { return controls[control]; });
   }
 };
-
-/// The axes about which a section turns towards its two directors and about its tangent: bending
-/// towards a director turns about the other one.
-inline Mat3 turning_axes(const SectionFrame& section) {
-  Mat3 axes;
-  axes << section.second, -section.first, section.tangent;
-  return axes;
-}
 
 }  // namespace der

@@ -10,12 +10,12 @@ namespace der {
 struct RestShift {
   Index entry = -1;  ///< -1: no actuation reaches the element
 
-  /// Of an extension [m] or a turning angle [-].
+  /// The shift of an extension [m] or a turning angle [-].
   template <class Values>
   [[nodiscard]] double value(const Values& controls) const {
     return entry < 0 ? 0.0 : controls[entry];
   }
-  /// Of two integrated curvatures and a twist, which are three entries [-].
+  /// The shifts of two integrated curvatures and a twist, which are three entries [-].
   template <class Values>
   [[nodiscard]] JointStrain strain(const Values& controls) const {
     if (entry < 0) return {};

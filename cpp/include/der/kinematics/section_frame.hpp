@@ -30,6 +30,14 @@ struct SectionFrameOf {
 };
 using SectionFrame = SectionFrameOf<double>;
 
+/// The axes about which a section turns towards its two directors and about its tangent: bending
+/// towards a director turns about the other one.
+inline Mat3 turning_axes(const SectionFrame& section) {
+  Mat3 axes;
+  axes << section.second, -section.first, section.tangent;
+  return axes;
+}
+
 /// Parallel transport of `v` from the unit tangent `from` to the unit tangent `to`: the smallest
 /// rotation that takes one to the other (Bergou et al. 2008, section 4.1). Not defined where the
 /// two are opposite.

@@ -13,7 +13,7 @@ namespace scenario {
 struct Scene;
 }
 
-/// What a load needs to know of the scene and of itself besides its own keys.
+/// The facts of the scene and of a load that it needs besides its own keys.
 struct LoadContext {
   const scenario::Scene& scene;
   const std::string& name;  ///< of the load; empty: it has none

@@ -36,9 +36,9 @@ struct RestEntries {
   Index cells = -1;   ///< entry of the first cell; -1: none changes curvatures or twist
   Index strains = 1;  ///< entries of a cell: 1 in a plane, 3 in space
 
-  /// Of the length of an edge.
+  /// Entry of the length of an edge.
   [[nodiscard]] RestShift edge(Index number) const { return {edges < 0 ? -1 : edges + number}; }
-  /// Of the cell about the node at a position in the rod, or of that on one side of a clamp there:
+  /// Entry of the cell about the node at a position in the rod, or on one side of a clamp there:
   /// between it and the edge that leaves it (`leaves`) or that arrives.
   [[nodiscard]] RestShift cell(Index position, bool leaves) const {
     return {cells < 0 ? -1 : cells + strains * (2 * position + (leaves ? 1 : 0))};

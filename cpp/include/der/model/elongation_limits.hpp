@@ -26,7 +26,7 @@ struct ShortenedEdge {
   bool at_clamp = false;
   std::vector<Part> parts;
 
-  /// What the elongation by a control has to be greater than, with the others as they are.
+  /// The bound that the elongation by a control must exceed, with the others as they are.
   [[nodiscard]] double least_of(Index control) const;
   /// The elongations but that by a control, in words: "'a' is -0.6 and 'b' is -0.2".
   [[nodiscard]] std::string of_others(Index control) const;

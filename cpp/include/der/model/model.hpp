@@ -8,6 +8,7 @@
 
 #include "der/core/hidden.hpp"
 #include "der/core/types.hpp"
+#include "der/kinematics/actuated_turn.hpp"
 #include "der/kinematics/held_frame.hpp"
 #include "der/kinematics/joint_strain.hpp"
 #include "der/model/actuated_stretch.hpp"
@@ -69,6 +70,7 @@ struct MomentPlace {
   double stiffness = 0.0;       ///< of the springs together [N m/rad]
   Index spring = -1;            ///< number of their element in its list; -1: no spring
   Index followed = -1;          ///< place in Model::followed_edges of the first edge, with a spring
+  ActuatedTurn actuated;        ///< of the tangent there, beyond these edges (with loads)
 
   /// Stiffness of springs and cell in series against that of the springs, 1/(1 + k c/EI); the part
   /// of the loads' moments that turns the edges.
@@ -91,6 +93,7 @@ struct ForcePlace {
 struct SpatialMomentPlace {
   double arc_length = 0.0;  ///< [m]
   Index load = 0;           ///< number in ElementLists::circulatory
+  ActuatedTurn actuated;    ///< of the section there, beyond the edges that the load turns
 };
 
 /// A place at which springs hold the section of a rod in space against turning.

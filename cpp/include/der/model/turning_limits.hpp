@@ -21,7 +21,8 @@ struct SharpTurn {
   bool is_possible = true;         ///< whether edges can turn so far
 };
 
-/// What the curvatures that programs set turn the edges of a model by, several together.
+/// The angles by which the curvatures that programs set, several together, turn the edges of a
+/// model.
 class TurningLimits {
  public:
   explicit TurningLimits(const Model& model);

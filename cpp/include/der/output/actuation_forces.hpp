@@ -29,7 +29,7 @@ struct ActuationForce {
 /// Reads them off a state.
 class ActuationForces {
  public:
-  /// Of all actuations, or of the one that is called `only`.
+  /// Reads all actuations, or the one that is called `only`.
   explicit ActuationForces(const Model& model,
                            const std::optional<std::string>& only = std::nullopt);
   ~ActuationForces();

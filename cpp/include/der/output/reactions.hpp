@@ -36,7 +36,7 @@ struct Reaction {
 /// solver leaves (docs/mechanics.md, "Reactions").
 class Reactions {
  public:
-  /// Of all supports, or of number `only`.
+  /// Reads all supports, or number `only`.
   Reactions(const scenario::Scene& scene, const Model& model,
             std::optional<std::size_t> only = std::nullopt);
   ~Reactions();

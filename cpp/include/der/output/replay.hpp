@@ -22,7 +22,7 @@ struct RodSeries {
   FrameTable values;               ///< frames x samples
 };
 
-/// What supports bear at every frame.
+/// Reactions of the supports at every frame.
 struct ReactionSeries {
   std::vector<Reaction> places;  ///< of the last frame; the tables follow them
   FrameTable points;             ///< frames x (places * 3) [m]
@@ -30,7 +30,7 @@ struct ReactionSeries {
   FrameTable moments;            ///< frames x (places * 3) [N m]
 };
 
-/// What actuations exert at every frame.
+/// Forces and moments that actuations exert at every frame.
 struct ActuationForceSeries {
   std::vector<ActuationForce> actuations;  ///< of the last frame; the table follows them
   FrameTable values;                       ///< frames x (actuations * 2) [N m] or [N]
@@ -67,11 +67,11 @@ class Replay {
   /// also where they have a kink, and twice where they jump. Throws Error for an unknown rod or
   /// quantity, and for one that the model has not.
   RodSeries along(const std::string& rod, const std::string& quantity, const SavedFrames& frames);
-  /// What the supports bear at every frame, at each place of each support: force and moment that
+  /// Reactions at every frame, at each place of each support: the force and moment that
   /// they exert on the rod. Forces that a program added to those of the scene are not known.
   /// `spin` [rad/s]: frames x edges, or x 0 without sections.
   ReactionSeries reactions(const SavedFrames& frames, const Eigen::Ref<const FrameTable>& spin);
-  /// What the actuations exert on the rods at every frame, with the values that the scene has.
+  /// Forces and moments of the actuations at every frame, with the values that the scene has.
   ActuationForceSeries actuation_forces(const SavedFrames& frames);
   /// Director 1 of the section of each edge at every frame: frames x (edges * 3).
   FrameTable directors(const SavedFrames& frames);

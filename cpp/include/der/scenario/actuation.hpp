@@ -16,10 +16,10 @@ enum class Profile {
   Smooth,    ///< sin^2: 0 at both ends, with slope 0, and 1 in the middle
 };
 
-/// What an actuation changes of the rest shape.
+/// The part of the rest shape that an actuation changes.
 enum class Actuated { Curvature, Twist, Length };
 
-/// What elongations have to be greater than, in sum at each place: on the edge beside a clamp,
+/// The bound that the sum of elongations must exceed at each place: on the edge beside a clamp,
 /// whose pivot takes a fifth of it, so that some length is left.
 constexpr double kLeastElongation = -1.0;
 constexpr double kLeastElongationAtClamp = -0.75;

@@ -34,7 +34,7 @@ enum class Varied { Loads, Supports, Actuations };
 struct ContinuationAnalysis {
   static constexpr const char* kName = "continuation";
   Varied vary = Varied::Loads;
-  /// Of the one load, support or actuation that varies; absent: all.
+  /// Name of the one load, support or actuation that varies; absent: all.
   std::optional<int> number;
   std::string name;    ///< of that one, until the checks find its number
   double from = 0.0;   ///< first factor

@@ -29,7 +29,7 @@ double fine_nodes(double curvature, double length);
 /// model/clamp_cell.hpp).
 inline constexpr double kEdgePivot = 1.0 / 5.0;
 
-/// What an edge turns by, against what is before it and what is after it against the edge, where
+/// Turns of an edge against the rod before it, and of the rod after it against the edge, where
 /// the curvature is 1 times a profile [m]. The edge has the mean direction of the curve along it;
 /// from a clamp's pivot on it is shorter and turns by more (docs/actuation.md, "On the mesh").
 struct EdgeTurns {

@@ -38,6 +38,17 @@ void for_each_turning_control(const Clamp& clamp, const Use& use) {
   }
 }
 
+/// The same for all clamps of a model.
+template <class Use>
+void for_each_turning_control(const Model& model, const Use& use) {
+  for (const RodLayout& rod : model.rods) {
+    for (const Clamp& clamp : rod.clamps) for_each_turning_control(clamp, use);
+  }
+}
+
+/// The largest absolute value [rad] of the controls that turn the clamps of a model.
+double largest_turn_of_clamps(const Model& model, const Vector& controls);
+
 /// Whether a place is beside a clamp that turns (model/location.hpp).
 bool is_beside_turning_clamp(const RodLayout& rod, double s);
 

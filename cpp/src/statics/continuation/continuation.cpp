@@ -47,19 +47,6 @@ PathMetric first_metric(const Model& model, double range) {
   return {model.dofs, 1.0 / (model.num_nodes * model.size() * model.size()), range};
 }
 
-/// By how much a unit of the factor turns a clamp at most [rad].
-double largest_clamp_turn(const Model& model) {
-  double largest = 0.0;
-  for (const RodLayout& rod : model.rods) {
-    for (const Clamp& clamp : rod.clamps) {
-      for_each_turning_control(clamp, [&](Index control) {
-        largest = std::max(largest, std::abs(model.load_variation->controls.change[control]));
-      });
-    }
-  }
-  return largest;
-}
-
 /// Traces a path of equilibria and the branches that leave it.
 class PathTracer {
  public:
@@ -69,7 +56,7 @@ class PathTracer {
       : model_(model),
         options_(options),
         range_(options.to - options.from),
-        largest_clamp_turn_(largest_clamp_turn(model)),
+        largest_clamp_turn_(largest_turn_of_clamps(model, model.load_variation->controls.change)),
         equations_(model, assembler, solver, options.newton, first_metric(model, range_),
                    positions),
         events_(equations_, options.largest_step),

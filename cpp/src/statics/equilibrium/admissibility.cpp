@@ -78,18 +78,6 @@ bool planar_is_turned_inside_out(const Model& model, const Vector& positions) {
   });
 }
 
-/// The largest angle [rad] by which a clamp turns a rod: sections follow it without limit.
-double largest_turn_of_clamps(const Model& model, const Vector& controls) {
-  double largest = 0.0;
-  for (const RodLayout& rod : model.rods) {
-    for (const Clamp& clamp : rod.clamps) {
-      for_each_turning_control(
-          clamp, [&](Index control) { largest = std::max(largest, std::abs(controls[control])); });
-    }
-  }
-  return largest;
-}
-
 }  // namespace
 
 Admissibility::Admissibility(const Model& model, const Vector& force, Vector origin)
@@ -98,6 +86,7 @@ Admissibility::Admissibility(const Model& model, const Vector& force, Vector ori
       largest_drift_(kDrift * (model.size() + spring_travel(model, force.lpNorm<1>()))) {}
 
 std::optional<FailedSearch> Admissibility::check(const Configuration& here) const {
+  // Sections follow the clamps of a rod without limit.
   const double turned = model_.dofs.length() * largest_turn_of_clamps(model_, here.controls);
   if (model_.dofs.largest_motion(here.coordinates - origin_) > largest_drift_ + 2.0 * turned) {
     return FailedSearch{EquilibriumFailure::DriftsAway, {}};

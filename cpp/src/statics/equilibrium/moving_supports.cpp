@@ -19,30 +19,23 @@ constexpr double kFirstStep = 1e-9;
 /// [rad]: that much the rod may bend there.
 constexpr double kBentBesideClamp = 1.0;
 
-template <class Use>
-void for_each_clamp(const Model& model, const Use& use) {
-  for (const RodLayout& rod : model.rods) {
-    for (const Clamp& clamp : rod.clamps) use(clamp);
-  }
-}
-
 /// The controls with all clamps at their initial angles.
 Vector drawn_controls(const Model& model, Vector controls) {
-  for_each_clamp(model, [&](const Clamp& clamp) {
-    for_each_turning_control(clamp, [&](Index control) { controls[control] = 0.0; });
-  });
+  for_each_turning_control(model, [&](Index control) { controls[control] = 0.0; });
   return controls;
 }
 
 /// The controls with each clamp of a planar rod turned as far as the edge beside it.
 Vector present_controls(const Model& model, Vector controls, const Vector& followed) {
-  for_each_clamp(model, [&](const Clamp& clamp) {
-    if (clamp.followed < 0) return;
-    const double turn = followed[clamp.followed];
-    if (std::abs(turn - controls[clamp.rotation]) > kBentBesideClamp) {
-      controls[clamp.rotation] = turn;
+  for (const RodLayout& rod : model.rods) {
+    for (const Clamp& clamp : rod.clamps) {
+      if (clamp.followed < 0) continue;
+      const double turn = followed[clamp.followed];
+      if (std::abs(turn - controls[clamp.rotation]) > kBentBesideClamp) {
+        controls[clamp.rotation] = turn;
+      }
     }
-  });
+  }
   return controls;
 }
 

@@ -1,0 +1,32 @@
+"""The scene that tests of sweeps vary, and its rows for comparison bit by bit."""
+
+FORCE = "loads.0.point_force.force.1"
+STIFFNESS = "rods.arm.cross_section.stiffness.EI"
+
+
+def cantilever(nodes=11):
+    """A clamped rod of length 1 and EI = 1 under a transverse force at its tip."""
+    return {
+        "title": "Cantilever",
+        "rods": [
+            {
+                "name": "arm",
+                "nodes": nodes,
+                "from": [0, 0],
+                "to": [1, 0],
+                "cross_section": {"stiffness": {"EA": 1e6, "EI": 1.0, "mass_per_length": 0.1}},
+            }
+        ],
+        "supports": [{"rod": "arm", "at": "start", "clamp": True}],
+        "loads": [{"point_force": {"rod": "arm", "at": "end", "force": [0, -1]}}],
+        "analysis": "static",
+        "output": {"probes": {"tip_y": {"rod": "arm", "at": "end", "quantity": "y"}}},
+    }
+
+
+def bits(sweep):
+    """Return the rows without their run times, floats as exact texts."""
+    return [
+        {name: repr(value) for name, value in row.items() if name != "seconds"}
+        for row in sweep.rows
+    ]

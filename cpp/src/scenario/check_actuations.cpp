@@ -180,7 +180,7 @@ class ActuatedTurns {
       Values curvature;
       for (const Part& part : cell.parts) {
         const Values& values = values_[part.actuation][time];
-        for (const std::size_t c : {0, 1}) {
+        for (std::size_t c = 0; c < 2; ++c) {
           turn[c].add(values[c], part.weight);
           curvature[c].add(values[c], 1.0);
         }

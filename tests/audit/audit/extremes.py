@@ -45,6 +45,7 @@ class Drawn:
     supports: list[Scene]
     loads: list[Scene]
     time: Scene | None  # duration, tolerance and integrator of a motion
+    velocities: Array | None = None  # at its start; at rest if absent
 
     @property
     def ratio(self) -> float:
@@ -69,6 +70,8 @@ class Drawn:
         }
         if "natural" in self.rod:
             rod["natural_curvature"] = (np.asarray(self.rod["natural"]) / a).tolist()
+        if self.velocities is not None:
+            rod["initial_velocity"] = (a / t * self.velocities @ axes.T).tolist()
         supports = copy.deepcopy(self.supports)
         for support in supports:
             support["rod"] = "rod"
@@ -150,6 +153,8 @@ def extremes(rng: Random) -> Drawn:
     elif natural < 0.5:
         rod["natural"] = rng.uniform(-1, 1, None if dimension == 2 else 2) * (3 if moves else 10)
     held = _supports(rng, dimension)
+    if nodes == 2 and "spring" not in held[-1]:
+        held = [{"at": "start", "clamp": True}]  # with both nodes held nothing could move
     largest = 1.0 if moves else 3.0
     loads = [_load(rng, dimension, power(rng, -1, largest)) for _ in range(rng.integers(1, 4))]
     time = None

@@ -34,10 +34,16 @@ def der_run(*arguments: object, loops: str | None) -> subprocess.CompletedProces
     )
 
 
+def loops_of(loops: str | None) -> str:
+    done = python("import der; print(der.loops())", loops)
+    assert done.stderr == ""
+    return done.stdout.strip()
+
+
 @pytest.fixture(scope="module")
 def fastest() -> str:
     """The loops that run when nothing is asked for."""
-    return python("import der; print(der.loops())", None).stdout.strip()
+    return loops_of(None)
 
 
 @pytest.fixture
@@ -74,7 +80,7 @@ def test_the_environment_chooses_and_the_summary_says(scene, tmp_path, fastest):
         run(scene, tmp_path / "run", loops)
         summary = json.loads((tmp_path / "run/summary.json").read_text())
         assert summary["loops"] == expected
-        assert python("import der; print(der.loops())", loops).stdout.strip() == expected
+        assert loops_of(loops) == expected
 
 
 def test_the_same_bits_in_two_processes_and_rounding_between_loops(scene, tmp_path, fastest):

@@ -19,5 +19,6 @@ void bind_saved_run(py::module_& module);
 void bind_simulation(py::module_& module);
 void bind_batch(py::module_& module);
 void bind_steppers(py::module_& module);
+void bind_loops(py::module_& module);
 
 }  // namespace der::python

@@ -16,4 +16,5 @@ PYBIND11_MODULE(_core, module) {
   bindings::bind_simulation(module);
   bindings::bind_batch(module);
   bindings::bind_steppers(module);
+  bindings::bind_loops(module);
 }

@@ -19,7 +19,12 @@ constexpr const char* kFooter =
     "  der_run configs/cantilever.yaml --set rods.arm.nodes=101 --out runs/fine\n"
     "  der_run configs/cantilever.yaml --check\n"
     "\n"
-    "Exit codes: 0 completed, 1 mistake in the scene, 2 mistake on the command line,\n"
+    "DER_LOOPS=plain in the environment keeps the innermost loops to what every processor has, "
+    "for\n"
+    "the same bits on all of one kind; DER_LOOPS=avx2 refuses processors without AVX2.\n"
+    "\n"
+    "Exit codes: 0 completed, 1 mistake in the scene, 2 mistake on the command line or in "
+    "DER_LOOPS,\n"
     "3 not converged or diverged, 4 file or folder not readable or writable,\n"
     "130 interrupted by Ctrl-C, 143 by SIGTERM (what has been computed is saved; see --resume).";
 

@@ -112,6 +112,8 @@ ExitCode guarded(const Options& options) {
     return fail(ExitCode::SceneError, error);
   } catch (const IoError& error) {
     return fail(ExitCode::IoFailure, error.what());
+  } catch (const EnvironmentError& error) {
+    return fail(ExitCode::Usage, error.what());
   } catch (const NotConvergedError& error) {
     return fail(ExitCode::NumericalFailure, error.what());
   } catch (const Error& error) {

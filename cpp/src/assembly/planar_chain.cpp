@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "der/core/index.hpp"
-#include "der/core/processor.hpp"
+#include "der/core/loops.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/energies/stretch.hpp"
@@ -172,16 +172,14 @@ void PlanarChain::add_measured(const Model& model, const Configuration& here, Ve
   }
 }
 
-DER_FOR_EACH_PROCESSOR
 void PlanarChain::add_gradient(const Model& model, const Configuration& here,
                                Vector& gradient) const {
-  add<Derivatives::Gradient>(model, here, gradient, nullptr);
+  run_loop([&] { add<Derivatives::Gradient>(model, here, gradient, nullptr); });
 }
 
-DER_FOR_EACH_PROCESSOR
 void PlanarChain::add_gradient_and_hessian(const Model& model, const Configuration& here,
                                            Vector& gradient, double* values) const {
-  add<Derivatives::Hessian>(model, here, gradient, values);
+  run_loop([&] { add<Derivatives::Hessian>(model, here, gradient, values); });
 }
 
 }  // namespace der

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "der/core/index.hpp"
-#include "der/core/processor.hpp"
+#include "der/core/loops.hpp"
 #include "der/core/two_lanes.hpp"
 #include "der/energies/elements_of.hpp"
 
@@ -397,16 +397,14 @@ void SpatialChain::add_last_node(const LaneStarts<Terms>& first, std::ptrdiff_t 
   }
 }
 
-DER_FOR_EACH_PROCESSOR
 void SpatialChain::add_gradient(const Model& model, const Configuration& here,
                                 Vector& gradient) const {
-  add<Derivatives::Gradient>(model, here, gradient, nullptr);
+  run_loop([&] { add<Derivatives::Gradient>(model, here, gradient, nullptr); });
 }
 
-DER_FOR_EACH_PROCESSOR
 void SpatialChain::add_gradient_and_hessian(const Model& model, const Configuration& here,
                                             Vector& gradient, double* values) const {
-  add<Derivatives::Hessian>(model, here, gradient, values);
+  run_loop([&] { add<Derivatives::Hessian>(model, here, gradient, values); });
 }
 
 }  // namespace der

@@ -2,21 +2,19 @@
 
 #include <algorithm>
 
-#include "der/core/processor.hpp"
+#include "der/core/loops.hpp"
 
 namespace der {
 namespace {
 
 // The loops see plain arrays.
 
-DER_FOR_EACH_PROCESSOR
 double largest_of(Index size, const double* x) {
   std::int64_t largest = 0;
   for (Index i = 0; i < size; ++i) largest = std::max(largest, magnitude_bits(x[i]));
   return magnitude_of(largest);
 }
 
-DER_FOR_EACH_PROCESSOR
 double largest_of(Index size, const double* x, const std::int64_t* counts) {
   std::int64_t largest = 0;
   for (Index i = 0; i < size; ++i) largest = std::max(largest, magnitude_bits(x[i]) & counts[i]);
@@ -25,10 +23,12 @@ double largest_of(Index size, const double* x, const std::int64_t* counts) {
 
 }  // namespace
 
-double largest_magnitude(Index size, const double* x) { return largest_of(size, x); }
+double largest_magnitude(Index size, const double* x) {
+  return run_loop([&] { return largest_of(size, x); });
+}
 
 double largest_magnitude(Index size, const double* x, const std::int64_t* counts) {
-  return largest_of(size, x, counts);
+  return run_loop([&] { return largest_of(size, x, counts); });
 }
 
 }  // namespace der

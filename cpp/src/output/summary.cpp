@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "der/core/loops.hpp"
 #include "der/output/datasets.hpp"
 #include "der/output/hints.hpp"
 #include "der/output/out_of_plane_verdict.hpp"
@@ -231,6 +232,7 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
   const UsedSolver solver = used_solver(simulation);
   summary["linear_solver"] = solver.name;
   summary["linear_solver_reason"] = solver.reason;
+  summary["loops"] = name_of(loops());
   summary["nodes"] = model.num_nodes;
   summary["dofs"] = model.num_dofs();
   summary["free_dofs"] = model.num_free();

@@ -10,6 +10,7 @@
 #include "der/building/builder.hpp"
 #include "der/building/out_of_plane_model.hpp"
 #include "der/core/error.hpp"
+#include "der/core/loops.hpp"
 #include "der/scenario/out_of_plane.hpp"
 #include "der/scenario/scenario.hpp"
 #include "simulation/stepper_options.hpp"
@@ -107,6 +108,7 @@ Simulation::Simulation(std::shared_ptr<const Constants> constants, const Simulat
       support_motion_(model_),
       horizon_(scenario_.scene().time.duration),
       state_(initial_state(model_)) {
+  loops();  // refuses a wrong DER_LOOPS here, and not as the failure of a step
   start_anew();
   const scenario::Scene& scene = scenario_.scene();
   const scenario::Time& time = scene.time;

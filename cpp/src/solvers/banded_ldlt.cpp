@@ -1,6 +1,6 @@
 #include "der/solvers/banded_ldlt.hpp"
 
-#include "der/core/processor.hpp"
+#include "der/core/loops.hpp"
 #include "solvers/band_kernels.hpp"
 
 namespace der {
@@ -12,19 +12,16 @@ constexpr BandedLdlt::Kernels kKernels{factorize_band<kWidth, double>, eliminate
 
 // The usual widths are innermost loops.
 template <Index kWidth>
-DER_FOR_EACH_PROCESSOR Inertia factorize_chain(Index size, Index /*width*/, double* band,
-                                               double* scratch) {
-  return factorize_band<kWidth>(size, kWidth, band, scratch);
+Inertia factorize_chain(Index size, Index /*width*/, double* band, double* scratch) {
+  return run_loop([&] { return factorize_band<kWidth>(size, kWidth, band, scratch); });
 }
 template <Index kWidth>
-DER_FOR_EACH_PROCESSOR void eliminate_chain(Index size, Index /*width*/, const double* band,
-                                            double* b) {
-  eliminate<kWidth>(size, kWidth, band, b);
+void eliminate_chain(Index size, Index /*width*/, const double* band, double* b) {
+  run_loop([&] { eliminate<kWidth>(size, kWidth, band, b); });
 }
 template <Index kWidth>
-DER_FOR_EACH_PROCESSOR void substitute_chain(Index size, Index /*width*/, const double* band,
-                                             double* b) {
-  substitute<kWidth>(size, kWidth, band, b);
+void substitute_chain(Index size, Index /*width*/, const double* band, double* b) {
+  run_loop([&] { substitute<kWidth>(size, kWidth, band, b); });
 }
 template <Index kWidth>
 constexpr BandedLdlt::Kernels kChainKernels{factorize_chain<kWidth>, eliminate_chain<kWidth>,

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "der/core/index.hpp"
-#include "der/core/processor.hpp"
+#include "der/core/loops.hpp"
 
 namespace der {
 namespace {
@@ -110,20 +110,21 @@ void backward(const Columns& columns, Index any_width, Index any_stride, const d
 
 // The usual widths are innermost loops.
 template <Index kWidth, Index kStride>
-DER_FOR_EACH_PROCESSOR Inertia factorize_ring(const Columns& columns, Index /*width*/,
-                                              Index /*stride*/, double* band, double* border,
-                                              double* corner, double* scratch) {
-  return factorize<kWidth, kStride>(columns, kWidth, kStride, band, border, corner, scratch);
+Inertia factorize_ring(const Columns& columns, Index /*width*/, Index /*stride*/, double* band,
+                       double* border, double* corner, double* scratch) {
+  return run_loop([&] {
+    return factorize<kWidth, kStride>(columns, kWidth, kStride, band, border, corner, scratch);
+  });
 }
 template <Index kWidth, Index kStride>
-DER_FOR_EACH_PROCESSOR void forward_ring(const Columns& columns, Index /*width*/, Index /*stride*/,
-                                         const double* band, const double* border, double* b) {
-  forward<kWidth, kStride>(columns, kWidth, kStride, band, border, b);
+void forward_ring(const Columns& columns, Index /*width*/, Index /*stride*/, const double* band,
+                  const double* border, double* b) {
+  run_loop([&] { forward<kWidth, kStride>(columns, kWidth, kStride, band, border, b); });
 }
 template <Index kWidth, Index kStride>
-DER_FOR_EACH_PROCESSOR void backward_ring(const Columns& columns, Index /*width*/, Index /*stride*/,
-                                          const double* band, const double* border, double* b) {
-  backward<kWidth, kStride>(columns, kWidth, kStride, band, border, b);
+void backward_ring(const Columns& columns, Index /*width*/, Index /*stride*/, const double* band,
+                   const double* border, double* b) {
+  run_loop([&] { backward<kWidth, kStride>(columns, kWidth, kStride, band, border, b); });
 }
 template <Index kWidth, Index kStride>
 constexpr BorderedLdlt::Kernels kRingKernels{

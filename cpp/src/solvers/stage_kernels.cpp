@@ -2,15 +2,14 @@
 
 #include <algorithm>
 
+#include "der/core/loops.hpp"
 #include "der/core/magnitude.hpp"
-#include "der/core/processor.hpp"
 
 namespace der {
 namespace {
 
 // The loops see plain arrays that do not overlap.
 
-DER_FOR_EACH_PROCESSOR
 double subtract(Index size, const double* __restrict force, double* __restrict residual) {
   std::int64_t largest = 0;
   for (Index i = 0; i < size; ++i) {
@@ -20,7 +19,6 @@ double subtract(Index size, const double* __restrict force, double* __restrict r
   return magnitude_of(largest);
 }
 
-DER_FOR_EACH_PROCESSOR
 double add_inertia(Index size, double factor, const double* __restrict lumped,
                    const double* __restrict displacement, const double* __restrict target,
                    double* __restrict acceleration, double* __restrict residual) {
@@ -39,8 +37,10 @@ double add_inertia(Index size, double factor, const double* __restrict lumped,
 
 double subtract_force(const DofMap& dofs, const Vector& force, Vector& residual) {
   return largest_over(dofs.blocks(), [&](const DofBlock& block) {
-    return subtract(block.count, force.data() + block.first, residual.data() + block.first) /
-           block.length;
+    const Index i = block.first;
+    const double largest =
+        run_loop([&] { return subtract(block.count, force.data() + i, residual.data() + i); });
+    return largest / block.length;
   });
 }
 
@@ -49,9 +49,11 @@ double add_lumped_inertia(const DofMap& dofs, double factor, const Vector& lumpe
                           Vector& residual) {
   return largest_over(dofs.blocks(), [&](const DofBlock& block) {
     const Index i = block.first;
-    return add_inertia(block.count, factor, lumped.data() + i, displacement.data() + i,
-                       target.data() + i, acceleration.data() + i, residual.data() + i) /
-           block.length;
+    const double largest = run_loop([&] {
+      return add_inertia(block.count, factor, lumped.data() + i, displacement.data() + i,
+                         target.data() + i, acceleration.data() + i, residual.data() + i);
+    });
+    return largest / block.length;
   });
 }
 

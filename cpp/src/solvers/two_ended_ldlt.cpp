@@ -2,23 +2,24 @@
 
 #include <array>
 
-#include "der/core/processor.hpp"
+#include "der/core/loops.hpp"
 #include "solvers/band_kernels.hpp"
 
 namespace der {
 namespace {
 
 template <Index kWidth>
-DER_FOR_EACH_PROCESSOR Inertia factorize_halves(Index columns, TwoLanes* band) {
-  return factorize_band<kWidth>(columns, kWidth, band, static_cast<TwoLanes*>(nullptr));
+Inertia factorize_halves(Index columns, TwoLanes* band) {
+  TwoLanes* const none = nullptr;
+  return run_loop([&] { return factorize_band<kWidth>(columns, kWidth, band, none); });
 }
 template <Index kWidth>
-DER_FOR_EACH_PROCESSOR void eliminate_halves(Index columns, const TwoLanes* band, TwoLanes* b) {
-  eliminate<kWidth>(columns, kWidth, band, b);
+void eliminate_halves(Index columns, const TwoLanes* band, TwoLanes* b) {
+  run_loop([&] { eliminate<kWidth>(columns, kWidth, band, b); });
 }
 template <Index kWidth>
-DER_FOR_EACH_PROCESSOR void substitute_halves(Index columns, const TwoLanes* band, TwoLanes* b) {
-  substitute<kWidth>(columns, kWidth, band, b);
+void substitute_halves(Index columns, const TwoLanes* band, TwoLanes* b) {
+  run_loop([&] { substitute<kWidth>(columns, kWidth, band, b); });
 }
 
 }  // namespace

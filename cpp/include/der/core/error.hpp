@@ -48,6 +48,12 @@ class UnreadableSceneError : public SceneError {
       : SceneError(file, {{0, 0, "", reason}}) {}
 };
 
+/// An environment variable with a value that means nothing here.
+class EnvironmentError : public Error {
+ public:
+  explicit EnvironmentError(const std::string& message) : Error("environment_error", message) {}
+};
+
 /// Newton's method found no solution, even with the smallest allowed time step; or there is no
 /// equilibrium, for a reason that `status` names (EquilibriumReport).
 class NotConvergedError : public Error {

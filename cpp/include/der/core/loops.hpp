@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string_view>
+
+namespace der {
+
+/// The processors that the innermost loops are compiled for.
+enum class Loops {
+  Plain,  ///< all that the rest of the library runs on
+  Avx2,   ///< those with AVX2 and fused multiply-add
+};
+
+/// The loops that run: those named by the environment variable DER_LOOPS, else the last of `Loops`
+/// that the processor has. They are chosen at the first call. Throws EnvironmentError at every call
+/// if DER_LOOPS names none, or one that the processor does not have.
+Loops loops();
+
+/// "plain" or "avx2".
+std::string_view name_of(Loops loops);
+
+// Clang inlines but one level of calls into a function of another target.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define DER_HAS_AVX2_LOOPS
+#endif
+
+namespace compiled {
+
+template <class Loop>
+__attribute__((flatten)) auto plain(const Loop& loop) {
+  return loop();
+}
+
+#ifdef DER_HAS_AVX2_LOOPS
+// Not arch=haswell: GCC inlines no function that is compiled for another architecture.
+template <class Loop>
+__attribute__((target("avx2,fma"), flatten)) auto avx2(const Loop& loop) {
+  return loop();
+}
+#endif
+
+}  // namespace compiled
+
+/// Calls `loop`, which is compiled with all that it calls inlined, once for each of `Loops`. For
+/// the few innermost loops: each choice costs some nanoseconds, so that a loop is one over a whole
+/// rod.
+template <class Loop>
+auto run_loop(const Loop& loop) {
+#ifdef DER_HAS_AVX2_LOOPS
+  if (loops() == Loops::Avx2) return compiled::avx2(loop);
+#endif
+  return compiled::plain(loop);
+}
+
+}  // namespace der

@@ -1,0 +1,75 @@
+#include "der/core/loops.hpp"
+
+#include <array>
+#include <cstdlib>
+#include <string>
+
+#include "der/core/error.hpp"
+
+namespace der {
+namespace {
+
+struct Choice {
+  Loops loops;
+  std::string_view name;
+  bool (*suits_processor)();
+};
+
+bool suits_avx2() {
+#ifdef DER_HAS_AVX2_LOOPS
+  return __builtin_cpu_supports("avx2") > 0 && __builtin_cpu_supports("fma") > 0;
+#else
+  return false;
+#endif
+}
+
+/// In the order of `Loops`.
+constexpr std::array<Choice, 2> kChoices{{
+    {Loops::Plain, "plain", [] { return true; }},
+    {Loops::Avx2, "avx2", suits_avx2},
+}};
+
+Loops fastest() {
+  Loops found = Loops::Plain;
+  for (const Choice& choice : kChoices) {
+    if (choice.suits_processor()) found = choice.loops;
+  }
+  return found;
+}
+
+std::string names() {
+  std::string text;
+  for (const Choice& choice : kChoices) {
+    text += (text.empty() ? "'" : " or '") + std::string(choice.name) + "'";
+  }
+  return text;
+}
+
+Loops named(const std::string& name) {
+  for (const Choice& choice : kChoices) {
+    if (choice.name != name) continue;
+    if (choice.suits_processor()) return choice.loops;
+    throw EnvironmentError("the environment variable DER_LOOPS asks for the loops '" + name +
+                           "', which this processor or this build does not have: unset it, or "
+                           "write 'plain'");
+  }
+  throw EnvironmentError("the environment variable DER_LOOPS is '" + name +
+                         "': unset it, or write " + names());
+}
+
+Loops chosen() {
+  const char* name = std::getenv("DER_LOOPS");  // NOLINT(concurrency-mt-unsafe)
+  return name == nullptr || *name == '\0' ? fastest() : named(name);
+}
+
+}  // namespace
+
+Loops loops() {
+  // Left open by an exception: the next call throws it again.
+  static const Loops loops = chosen();
+  return loops;
+}
+
+std::string_view name_of(Loops loops) { return kChoices[static_cast<std::size_t>(loops)].name; }
+
+}  // namespace der

@@ -11,7 +11,8 @@ struct BaseRun {
   std::string bytes;
 };
 
-/// In an order that must not change: inputs name them by number.
+/// Inputs name them by number, modulo how many there are: another one would change what the
+/// regressions mean.
 const std::vector<BaseRun>& base_runs();
 
 /// The folder that the target writes its files to; it is removed at the end of the process.

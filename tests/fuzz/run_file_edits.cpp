@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <type_traits>
+#include <variant>
 
 namespace der::fuzz {
 namespace {
@@ -264,10 +265,12 @@ void put_text(hid_t file, const std::string& name, const Edit& edit) {
   }
 }
 
-/// Edits of numbers that der writes, of objects of HDF5, of bytes.
+/// Edits of numbers that der writes, of objects of HDF5, of bytes. Inputs name them by number,
+/// modulo how many there are: another one would change what the regressions mean.
 enum What : std::uint8_t {
   kStateNumber,
   kStateRamp,
+  kStateMemory,
   kSetAttribute,
   kReplaceAttribute,
   kRemoveAttribute,
@@ -337,6 +340,14 @@ void edit_bytes(const std::string& path, const Edit& edit) {
   file.write(reinterpret_cast<const char*>(&bytes), 1 + edit.kind % 4);
 }
 
+/// Puts the same numbers into each Vector of what a stepper remembers.
+template <class Memory>
+void fill(Memory& memory, const Vector& numbers) {
+  for_each_field(memory, [&](const auto& /*field*/, auto& value) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Vector>) value = numbers;
+  });
+}
+
 }  // namespace
 
 Edits parse_edits(const std::uint8_t* data, std::size_t size) {
@@ -353,14 +364,19 @@ Edits parse_edits(const std::uint8_t* data, std::size_t size) {
   return edits;
 }
 
-bool is_of_state(const Edit& edit) {
-  return what(edit) == kStateNumber || what(edit) == kStateRamp;
-}
+bool is_of_state(const Edit& edit) { return what(edit) <= kStateMemory; }
 
 void edit_state(State& state, const Edit& edit) {
   if (what(edit) == kStateRamp) {
     const auto number = bits<double>(edit.value);
     state.ramps.push_back({edit.part, number, number, number, number, 0.0, 0.0, 0.0});
+    return;
+  }
+  if (what(edit) == kStateMemory) {
+    constexpr auto kinds = static_cast<std::int64_t>(std::variant_size_v<StepperMemory>);
+    emplace_alternative(state.memory, edit.kind % kinds);
+    const Vector numbers = Vector::Constant(edit.part % 32, bits<double>(edit.value));
+    std::visit([&](auto& memory) { fill(memory, numbers); }, state.memory);
     return;
   }
   std::size_t field = 0;

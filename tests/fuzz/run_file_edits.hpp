@@ -31,7 +31,7 @@ Edits parse_edits(const std::uint8_t* data, std::size_t size);
 
 /// True for an edit of numbers that der writes itself, with the right checksums.
 bool is_of_state(const Edit& edit);
-/// Changes one number of a state, or appends a ramp. None of the sizes changes.
+/// Changes one number of a state, appends a ramp, or lets the stepper remember something else.
 void edit_state(State& state, const Edit& edit);
 /// Makes the other edits of a file: first those of its objects, then those of its bytes.
 void edit_file(const std::string& path, const std::vector<Edit>& edits);

@@ -260,6 +260,11 @@ const std::vector<Mistake>& mistakes() {
       {"checksum: none", without("checksum")},
       {"checksum: signed", dataset("checksum", H5T_NATIVE_INT64, {5})},
       {"rods: none", without("rods")},
+      {"rods: without one", without("rods/rod")},
+      {"rods: one under two names",
+       [](hid_t file) {
+         H5Lcreate_hard(file, "rods/rod", file, "rods/again", H5P_DEFAULT, H5P_DEFAULT);
+       }},
       {"rods: nodes of doubles", dataset("rods/rod/nodes", H5T_NATIVE_DOUBLE, {3})},
       {"rods: nodes without a checksum", dataset("rods/rod/nodes", H5T_NATIVE_INT, {3})},
       {"rods: nodes changed",

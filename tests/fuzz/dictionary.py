@@ -1,4 +1,4 @@
-"""The words of the scene reader for libFuzzer: all keys and words of `der schema`, and YAML's signs."""
+"""Words of the scene reader for libFuzzer: those of `der schema`, and the signs of YAML."""
 
 from __future__ import annotations
 

@@ -212,6 +212,8 @@ void set_extent(hid_t file, const std::string& name, const Edit& edit) {
   if (rank <= 0) return;
   Dimensions dimensions(static_cast<std::size_t>(rank));
   H5Sget_simple_extent_dims(space, dimensions.data(), nullptr);
+  // HDF5 goes through all chunks of a dataset that becomes smaller.
+  if (H5Sget_simple_extent_npoints(space) > static_cast<hssize_t>(kMostBytes)) return;
   dimensions[edit.part % dimensions.size()] = edit.kind % 2 == 0 ? edit.value % 64 : edit.value;
   H5Dset_extent(dataset, dimensions.data());
 }

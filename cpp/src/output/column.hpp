@@ -26,7 +26,8 @@ class Column {
     hdf5::write_attribute(dataset.id(), "unit", unit);
     return {std::move(dataset), row, 0};
   }
-  /// Throws IoError where the dataset is of another type or has other rows.
+  /// Throws IoError where the dataset is of another type, has other rows, or more of them than its
+  /// file can hold: HDF5 goes through all of them when they are dropped.
   static Column open(hid_t parent, const std::string& name, const std::vector<hsize_t>& row) {
     hdf5::Handle dataset = hdf5::open_dataset(parent, name, hdf5::native_type<T>());
     std::vector<hsize_t> dimensions = hdf5::dimensions_of(dataset.id());
@@ -35,7 +36,9 @@ class Column {
         std::vector<hsize_t>(dimensions.begin() + 1, dimensions.end()) != row) {
       throw IoError("the rows of '" + name + "' are of another size than they should be");
     }
-    return {std::move(dataset), row, rows};
+    Column column(std::move(dataset), row, rows);
+    hdf5::check_stored(column.id(), rows, column.row_length());
+    return column;
   }
 
   [[nodiscard]] hsize_t rows() const { return rows_; }

@@ -289,6 +289,8 @@ void FrameColumns::resize_data(hsize_t count) {
 }
 
 FrameData FrameColumns::read(hsize_t first, hsize_t count) const {
+  // Datasets can share their place in a file: all together must not be more than it holds, either.
+  hdf5::check_stored(checksum_.id(), count, bytes_per_frame() / sizeof(double));
   FrameData data;
   data.times = time_.read(first, count);
   data.steps = step_.read(first, count);

@@ -337,8 +337,9 @@ std::string read_text_attribute(hid_t object, const std::string& name) {
   if (H5Tget_class(type.id()) != H5T_STRING || H5Tis_variable_str(type.id()) != 0) {
     refuse(name, "should be an attribute of text of fixed length");
   }
-  std::string text(H5Tget_size(type.id()), '\0');
-  if (text.size() > kLongestText) refuse(name, "is longer than an attribute can be");
+  const std::size_t length = H5Tget_size(type.id());
+  if (length > kLongestText) refuse(name, "is longer than an attribute can be");
+  std::string text(length, '\0');
   check(H5Aread(attribute.id(), type.id(), text.data()), "read attribute '" + name + "'");
   return text.substr(0, text.find('\0'));
 }

@@ -117,11 +117,18 @@ void write_status(hid_t file, const std::string& status) {
   hdf5::write_attribute_of_length(file, "status", status, kStatusLength);
 }
 
-std::vector<SavedRod> read_rods(hid_t file) {
+std::vector<SavedRod> read_rods(hid_t file, hsize_t nodes) {
   const Handle group = hdf5::open_group(file, "rods");
   std::vector<SavedRod> rods;
+  hsize_t found = 0;
   for (const std::string& name : hdf5::names_in(group.id())) {
     rods.push_back(read_rod(group.id(), name));
+    found += rods.back().nodes.size();
+    if (found > nodes) break;  // one rod under many names would fill the memory
+  }
+  if (found != nodes) {
+    throw IoError("its rods have " + std::to_string(found) + " nodes" +
+                  (found > nodes ? " or more" : "") + ", and its frames " + std::to_string(nodes));
   }
   return rods;
 }

@@ -22,7 +22,8 @@ constexpr std::int64_t kFormatVersion = 4;
 /// Attributes of the file, the scene, and the rods.
 void write_head(hid_t file, const Scenario& scenario, const Model& model);
 void write_status(hid_t file, const std::string& status);
-std::vector<SavedRod> read_rods(hid_t file);
+/// Throws IoError unless they have that many nodes together.
+std::vector<SavedRod> read_rods(hid_t file, hsize_t nodes);
 
 /// Writes what an analysis found, in groups of their own.
 void write_datasets(hid_t file, const std::vector<Dataset>& datasets);

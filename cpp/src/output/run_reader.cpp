@@ -85,7 +85,7 @@ LastFrame read_last_frame(hid_t file) {
   last.model = hdf5::read_text_attribute(file, "model");
   last.positions = joined(frame.positions, frame.theta);
   last.velocities = joined(frame.velocities, frame.spin);
-  last.rods = read_rods(file);
+  last.rods = read_rods(file, columns.layout().nodes);
   last.scene = read_text(file, "scene");
   check_rods(last.rods, columns.layout());
   last.section_frames = joined(frame.section_frames, {});
@@ -109,7 +109,7 @@ SavedRun read_run(hid_t file) {
   if (run.status != run_status::kRunning) {
     run.data = read_datasets(file, layout.nodes, layout.dimension, columns.size());
   }
-  check_rods(read_rods(file), layout);
+  check_rods(read_rods(file, layout.nodes), layout);
   return run;
 }
 

@@ -90,11 +90,20 @@ std::string warning_of(const CheckContext& context, const Node& a, const Node& b
 
 class TouchFinder {
  public:
-  explicit TouchFinder(CheckContext& context) : context_(context), nodes_(nodes_of(context)) {}
+  explicit TouchFinder(CheckContext& context)
+      : context_(context), nodes_(nodes_of(context)), next_end_(nodes_.size() + 1) {
+    next_end_.back() = nodes_.size();
+    for (std::size_t k = nodes_.size(); k-- > 0;) {
+      next_end_[k] = nodes_[k].is_end ? k : next_end_[k + 1];
+    }
+  }
 
   void run() {
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      for (std::size_t k = i + 1; k < nodes_.size() && near(nodes_[i], nodes_[k]); ++k) {
+      // Only ends touch. In a scene that lies across the axis of `along` all nodes are near.
+      const auto candidate = [&](std::size_t k) { return nodes_[i].is_end ? k : next_end_[k]; };
+      for (std::size_t k = candidate(i + 1); k < nodes_.size() && near(nodes_[i], nodes_[k]);
+           k = candidate(k + 1)) {
         if (!touch(nodes_[i], nodes_[k])) continue;
         if (++found_ > kMostWarnings) {
           warn("there are more places where rods touch and nothing joins them");
@@ -123,6 +132,7 @@ class TouchFinder {
 
   CheckContext& context_;
   std::vector<Node> nodes_;
+  std::vector<std::size_t> next_end_;  // the first end from each node on; as many as nodes: none
   std::size_t found_ = 0;
 };
 

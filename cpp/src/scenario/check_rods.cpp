@@ -305,6 +305,26 @@ void check_bends(CheckContext& context, int i) {
 
 }  // namespace
 
+bool fit_into_memory(CheckContext& context) {
+  constexpr std::size_t most = 4'000'000;
+  std::size_t nodes = 0;
+  int number = 0;
+  for (const RodText& rod : context.scene.given_rods) {
+    const bool straight = rod.given_points.empty();
+    nodes += straight ? static_cast<std::size_t>(rod.nodes.value_or(0)) : rod.given_points.size();
+    if (nodes > most) {
+      context.diagnostics.add(
+          rod_path(number) / (straight ? "nodes" : "points"),
+          fmt::format("with this rod the scene has {} nodes, and it can have {}: give its rods "
+                      "fewer nodes, or let each be a scene of its own",
+                      nodes, most));
+      return false;
+    }
+    ++number;
+  }
+  return true;
+}
+
 void check_rods(CheckContext& context) {
   const auto count = static_cast<int>(context.scene.given_rods.size());
   context.lines.resize(context.scene.given_rods.size());

@@ -145,6 +145,7 @@ bool does_not_bend(const Rod& rod) {
 void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   if (diagnostics.vectors_differ()) return;
   CheckContext context{scene, diagnostics};
+  if (!fit_into_memory(context)) return;
   check_rods(context);
   check_supports(context);
   if (diagnostics.size() == 0) {

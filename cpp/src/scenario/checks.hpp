@@ -67,6 +67,9 @@ struct CheckContext {
 /// Whether a rod has no stiffness against bending, EI.
 bool does_not_bend(const Rod& rod);
 
+/// A line of text asks for a million nodes: reports the rod with which all together are too many,
+/// if there is one, and returns whether there is none. Nothing else is to be checked then.
+bool fit_into_memory(CheckContext& context);
 /// Checks the rods by themselves and completes `Scene::rods`.
 void check_rods(CheckContext& context);
 /// All but the springs, which depend on what other supports hold.

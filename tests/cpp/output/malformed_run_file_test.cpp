@@ -239,6 +239,7 @@ const std::vector<Mistake>& mistakes() {
          H5Lcreate_soft("/energies/bend", file, "time", H5P_DEFAULT, H5P_DEFAULT);
        }},
       {"step: of doubles", dataset("step", H5T_NATIVE_DOUBLE, {5})},
+      {"step: of 1e15 rows", [](hid_t file) { set_length(file, "step", {1000000000000000U}); }},
       {"step: too short", [](hid_t file) { set_length(file, "step", {1}); }},
       {"positions: a list", dataset("positions", H5T_NATIVE_DOUBLE, {30})},
       {"positions: of no nodes", dataset("positions", H5T_NATIVE_DOUBLE, {5, 0, 2})},
@@ -260,6 +261,11 @@ const std::vector<Mistake>& mistakes() {
       {"checksum: none", without("checksum")},
       {"checksum: signed", dataset("checksum", H5T_NATIVE_INT64, {5})},
       {"rods: none", without("rods")},
+      {"rods: without one", without("rods/rod")},
+      {"rods: one under two names",
+       [](hid_t file) {
+         H5Lcreate_hard(file, "rods/rod", file, "rods/again", H5P_DEFAULT, H5P_DEFAULT);
+       }},
       {"rods: nodes of doubles", dataset("rods/rod/nodes", H5T_NATIVE_DOUBLE, {3})},
       {"rods: nodes without a checksum", dataset("rods/rod/nodes", H5T_NATIVE_INT, {3})},
       {"rods: nodes changed",

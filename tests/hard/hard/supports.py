@@ -59,9 +59,9 @@ REFUSED: dict[str, tuple[Make, str]] = {
     expected=lambda s: REFUSED[s.label][1],
     limits=(
         Limit(
-            "Refused by another name.",
-            ("too_fine",),
-            lambda s: not s.planar and s.value is _crushed,
+            "Refused by another name, which rounding decides.",
+            ("too_fine", "not_converged"),
+            lambda s: s.value is _crushed,
         ),
     ),
 )

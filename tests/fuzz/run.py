@@ -19,6 +19,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from dictionary import dictionary
@@ -178,19 +179,23 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--seconds", type=int, default=60, help="for each target")
     parser.add_argument("--only", default="", choices=["", *(t.name for t in TARGETS)])
+    parser.add_argument("--jobs", type=int, default=1, help="targets at once")
     parser.add_argument("--no-build", action="store_true", help="the fuzzers are built already")
     arguments = parser.parse_args()
     if not arguments.no_build:
         build()
     memory = Path("/dev/shm")  # run files need no disk
     print(HEADER)
+    chosen = [target for target in TARGETS if arguments.only in ("", target.name)]
     findings = 0
-    with tempfile.TemporaryDirectory(dir=memory if memory.is_dir() else None) as scratch:
-        for target in TARGETS:
-            if arguments.only in ("", target.name):
-                outcome = fuzz(target, arguments.seconds, Path(scratch))
-                print(outcome.row(target.name), flush=True)
-                findings += bool(outcome.finding)
+    with (
+        tempfile.TemporaryDirectory(dir=memory if memory.is_dir() else None) as scratch,
+        ThreadPoolExecutor(arguments.jobs) as pool,
+    ):
+        outcomes = pool.map(lambda each: fuzz(each, arguments.seconds, Path(scratch)), chosen)
+        for target, outcome in zip(chosen, outcomes, strict=True):
+            print(outcome.row(target.name), flush=True)
+            findings += bool(outcome.finding)
     return 1 if findings else 0
 
 

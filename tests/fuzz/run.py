@@ -116,9 +116,11 @@ def build() -> None:
 
 
 def place_of(log: str) -> str:
-    """Whose code a crash is in: that of HDF5 and yaml-cpp is not ours to mend."""
-    first = re.search(r"^ *#\d+ .*(libhdf5|libyaml-cpp|/der/|/src/)", log, re.MULTILINE)
-    return f" in {first[1].strip('/')}" if first else ""
+    """Whose code the innermost known frame is in: that of HDF5 and yaml-cpp is not ours to mend."""
+    frame = re.search(
+        r"^ *#\d+ .*?(libhdf5|libyaml-cpp|cpp/src|cpp/include|tests/fuzz)", log, re.MULTILINE
+    )
+    return f" in {frame[1]}" if frame else ""
 
 
 def outcome_of(log: str) -> Outcome:
@@ -128,7 +130,7 @@ def outcome_of(log: str) -> Outcome:
         found = re.findall(pattern, log)
         return int(found[-1]) if found else 0
 
-    error = re.search(r"^(?:==\d+==ERROR: |SUMMARY: )(.*)$", log, re.MULTILINE)
+    error = re.search(r"^(?:==\d+== ?ERROR: |SUMMARY: )(.*)$", log, re.MULTILINE)
     uncaught = re.search(r"^terminate called .*\n(?:  what\(\): .*)?", log, re.MULTILINE)
     finding = " ".join(match[0] for match in (uncaught, error) if match)
     return Outcome(

@@ -85,15 +85,16 @@ class Outcome:
     edges: int
     features: int
     memory_mib: int
-    slowest: float
+    slowest: int  # in whole seconds
     finding: str
 
     def row(self, name: str) -> str:
         """A row of the table."""
         rate = self.executions / max(1, self.seconds)
+        slowest = f"{self.slowest} s" if self.slowest else "under 1 s"
         return (
             f"| `{name}` | {self.seconds} s | {self.executions} | {rate:.0f} | {self.edges} | "
-            f"{self.features} | {self.memory_mib} MiB | {self.slowest:g} s | "
+            f"{self.features} | {self.memory_mib} MiB | {slowest} | "
             f"{self.finding or 'none'} |"
         )
 

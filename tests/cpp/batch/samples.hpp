@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "der/scenario/reader.hpp"
 #include "der/scenario/scenario.hpp"
 
 namespace der::test {

@@ -18,6 +18,13 @@ Loops loops();
 /// "plain" or "avx2".
 std::string_view name_of(Loops loops);
 
+// Sanitizers add so much to each call that the compiler would take minutes for a whole loop in one.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define DER_INLINE_ALL
+#else
+#define DER_INLINE_ALL __attribute__((flatten))
+#endif
+
 // Clang inlines but one level of calls into a function of another target.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define DER_HAS_AVX2_LOOPS
@@ -26,14 +33,14 @@ std::string_view name_of(Loops loops);
 namespace compiled {
 
 template <class Loop>
-__attribute__((flatten)) auto plain(const Loop& loop) {
+DER_INLINE_ALL auto plain(const Loop& loop) {
   return loop();
 }
 
 #ifdef DER_HAS_AVX2_LOOPS
 // Not arch=haswell: GCC inlines no function that is compiled for another architecture.
 template <class Loop>
-__attribute__((target("avx2,fma"), flatten)) auto avx2(const Loop& loop) {
+DER_INLINE_ALL __attribute__((target("avx2,fma"))) auto avx2(const Loop& loop) {
   return loop();
 }
 #endif

@@ -1,8 +1,9 @@
-"""A short run of the audit: what must hold of every error bar."""
+"""Short runs of the audit: what must hold of every error bar, and of scenes of extreme numbers."""
 
 from audit import KINDS, aims_missed
+from audit.answers import aims_of_answers_missed
 from audit.score import report, summarise
-from run import audit
+from run import answers, audit
 
 # Scenes of each kind; about 30 s on one core. The long run: docs/validation.md.
 SCENES = {
@@ -23,3 +24,8 @@ def test_true_values_are_inside_and_right_values_are_not_flagged() -> None:
     rows = [row for outcome in outcomes for row in outcome.rows]
     assert len(rows) > 300
     assert not aims_missed(summarise(rows)), report(outcomes)
+
+
+def test_extreme_scenes_are_right_or_refused() -> None:
+    """The first that take a few seconds together. The long run: docs/robustness.md."""
+    assert aims_of_answers_missed(answers(36, seed=1)) == []

@@ -53,13 +53,26 @@ loads:
 )" + more;
 }
 
-/// Allocations of 40 steps, after a few that fill what a method remembers; explicit ones look at
+/// Allocations of 40 calls, after a few that fill what a method remembers; explicit steps look at
 /// the stable step on the way.
-long allocations_of_steps(Simulation& simulation) {
-  for (int i = 0; i < 3; ++i) simulation.step();
+template <class Call>
+long allocations_of_calls(const Call& call) {
+  for (int i = 0; i < 3; ++i) call();
   const long before = allocations;
-  for (int i = 0; i < 40; ++i) simulation.step();
+  for (int i = 0; i < 40; ++i) call();
   return allocations - before;
+}
+
+long allocations_of_steps(Simulation& simulation) {
+  return allocations_of_calls([&] { simulation.step(); });
+}
+
+/// The same of steps whose probes are read.
+long allocations_of_steps(Simulation& simulation, Recorder& recorder) {
+  return allocations_of_calls([&] {
+    simulation.step();
+    recorder.observe(simulation);
+  });
 }
 
 TEST_CASE("a step allocates nothing, with any stepper") {
@@ -167,16 +180,7 @@ output:
   }
   Simulation simulation(Scenario::parse(scene));
   Recorder recorder(simulation);
-  for (int i = 0; i < 3; ++i) {
-    simulation.step();
-    recorder.observe(simulation);
-  }
-  const long before = allocations;
-  for (int i = 0; i < 20; ++i) {
-    simulation.step();
-    recorder.observe(simulation);
-  }
-  CHECK(allocations == before);
+  CHECK(allocations_of_steps(simulation, recorder) == 0);
   CHECK(recorder.summaries().size() == probes);
 }
 
@@ -202,16 +206,7 @@ output:
     force: {quantity: actuation_force, actuation: grow}
 )"));
   Recorder recorder(simulation);
-  for (int i = 0; i < 3; ++i) {
-    simulation.step();
-    recorder.observe(simulation);
-  }
-  const long before = allocations;
-  for (int i = 0; i < 20; ++i) {
-    simulation.step();
-    recorder.observe(simulation);
-  }
-  CHECK(allocations == before);
+  CHECK(allocations_of_steps(simulation, recorder) == 0);
 }
 
 }  // namespace der::test

@@ -186,7 +186,7 @@ ROUND = np.array([[0.10, 0.02], [0.08, -0.05], [0.05, -0.08], [0.06, 0.05]])  # 
 
 @dataclass(frozen=True)
 class Track:
-    """What a run to one target after the other recorded, at its start and after every action."""
+    """A run to one target after the other: its start, and its state after every action."""
 
     times: Array  # s
     tips: Array  # m, (actions + 1, 2)

@@ -18,8 +18,7 @@ class ActuationForce:
     It is conjugate to what the actuation changes: its integral over ``length`` times the value, a
     turning angle, a twist or an elongation, is the work of the actuation. So it is the mean of the
     rod's moment, torque or tension over the stretch, weighted by the profile, with the opposite
-    sign. Of a simulation it is that at its present state; of a result it has the frames as its
-    first axis.
+    sign. A simulation gives that at its present state; a result has the frames as its first axis.
 
     Attributes
     ----------
@@ -30,8 +29,8 @@ class ActuationForce:
     length
         Integral of the profile over the stretch [m].
     force
-        Of a natural curvature the moment [N m], of a twist the torque [N m], of an elongation the
-        force [N]: a number or shape (frames,). Of a curvature in space the two moments towards the
+        The moment [N m] of a natural curvature, the torque [N m] of a twist, or the force [N] of an
+        elongation: a number or shape (frames,). A curvature in space has two moments, towards the
         directors: shape (2,) or (frames, 2).
     """
 

@@ -33,7 +33,7 @@ class MemberFailure:
     time
         Time of its last good state [s].
     message
-        What happened, where, and what to try.
+        The failure, its place, and the remedy to try.
     """
 
     member: int

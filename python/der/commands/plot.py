@@ -1,7 +1,7 @@
 """Draw a run or a sweep.
 
-Of a run the shapes, coloured by time, and the probes against time. Of a sweep the probes over its
-parameters: lines over one, maps over two, parallel axes over more; failed members are marked.
+A run shows its shapes, coloured by time, and its probes against time. A sweep shows its probes over
+its parameters: lines over one, maps over two, parallel axes over more; failed members are marked.
 """
 
 from __future__ import annotations

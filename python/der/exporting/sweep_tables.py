@@ -21,7 +21,7 @@ def export_sweep(sweep: SweepData, format: SweepFormat, out: str | os.PathLike[s
     Parameters
     ----------
     sweep
-        What to write.
+        The sweep to write.
     format
         ``csv``: a table, empty where a member has no value. ``npz``: an array for each column, for
         NumPy, and the ``scene``. ``parquet``: a table with the unit of each column; requires the

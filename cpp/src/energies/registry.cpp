@@ -1,9 +1,9 @@
 #include "der/energies/registry.hpp"
 
-#include <tuple>
 #include <utility>
 
 #include "der/energies/elements_of.hpp"
+#include "energies/every_kind.hpp"
 
 namespace der {
 
@@ -28,17 +28,13 @@ const ElementList<Kernel>& elements_of(const ElementLists& elements) {
 namespace {
 
 template <class Kernel>
-using Accessors = std::pair<ElementList<Kernel>& (*)(ElementLists&),
-                            const ElementList<Kernel>& (*)(const ElementLists&)>;
+struct Accessors {
+  static constexpr std::pair<ElementList<Kernel>& (*)(ElementLists&),
+                             const ElementList<Kernel>& (*)(const ElementLists&)>
+      value{&elements_of<Kernel>, &elements_of<Kernel>};
+};
 
-template <class... Kernels>
-constexpr auto accessors_of(const std::tuple<ElementList<Kernels>...>* /*lists*/) {
-  return std::tuple{Accessors<Kernels>{&elements_of<Kernels>, &elements_of<Kernels>}...};
-}
-
-// Instantiates both functions for every kernel.
-[[gnu::used]] constexpr auto kAccessors =
-    accessors_of(static_cast<const ElementLists::Lists*>(nullptr));
+[[gnu::used]] constexpr auto kAccessors = of_every_kind<Accessors>();
 
 }  // namespace
 }  // namespace der

@@ -2,10 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <tuple>
 #include <type_traits>
-#include <utility>
 
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
@@ -27,10 +26,8 @@ double energy_change(const ElementList<Kernel>& list, const Configuration& from,
   double total = 0.0;
   for (std::size_t e = 0; e < list.size(); ++e) {
     const auto& constants = list.constants[e];
-    Kernel::template evaluate<Derivatives::Energy>(constants, from,
-                                                   gather(list.dofs[e], from.coordinates), before);
-    Kernel::template evaluate<Derivatives::Energy>(constants, from, gather(list.dofs[e], to),
-                                                   after);
+    energy_of_element<Kernel>(constants, from, gather(list.dofs[e], from.coordinates), before);
+    energy_of_element<Kernel>(constants, from, gather(list.dofs[e], to), after);
     double change = after.energy - before.energy;
     if constexpr (HasPeriod<Kernel>::value) {
       const double period = Kernel::period(constants, from);
@@ -41,12 +38,11 @@ double energy_change(const ElementList<Kernel>& list, const Configuration& from,
   return total;
 }
 
-/// The displacement that may be taken from all nodes of an element at no cost of energy: that of
-/// its first node. The coordinates of the element are those of nodes, then angles.
-struct Shared {
-  int components = 0;  ///< of a node; 0: none may
-  int positions = 0;   ///< number of coordinates of nodes
-};
+template <class... Kernels>
+constexpr int most_dofs(const std::tuple<ElementList<Kernels>...>* /*lists*/) {
+  return std::max({Kernels::kDofs...});
+}
+constexpr int kMostDofs = most_dofs(static_cast<const ElementLists::Lists*>(nullptr));
 
 template <class Kernel, class = void>
 struct NumPositions : std::integral_constant<int, Kernel::kDofs> {};
@@ -54,38 +50,52 @@ template <class Kernel>
 struct NumPositions<Kernel, std::enable_if_t<(Kernel::kDofs > 3 * Kernel::kNodes)>>
     : std::integral_constant<int, 3 * Kernel::kNodes> {};
 
-/// Calls use(dofs, hessian, shared) for each element.
+/// The Hessian of an element of any kind. Its size is not part of the type: what is made of it is
+/// compiled once.
+struct ElementHessian {
+  using Part = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostDofs, 1>;
+  using Parts = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostDofs>;
+
+  const Index* dofs = nullptr;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostDofs, kMostDofs> values;
+  int components = 0;     ///< of a node, if the displacement of a node costs no energy when all
+                          ///< nodes of the element have it; else 0
+  int num_positions = 0;  ///< coordinates of nodes; those of angles follow
+
+  /// The element's part of a displacement, less that of its first node if it costs no energy.
+  template <class Displacement>
+  [[nodiscard]] Part relative(const Displacement& displacement) const {
+    Part d(values.rows());
+    for (Eigen::Index i = 0; i < d.size(); ++i) {
+      d[i] = displacement[dofs[i]];
+      if (components > 0 && i < num_positions) d[i] -= displacement[dofs[i % components]];
+    }
+    return d;
+  }
+};
+
+/// Calls use(element) for each element.
 template <class Use>
 void for_each_hessian(const Model& model, const Configuration& here, const Use& use) {
+  ElementHessian element;
   for_each_list(*model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
-    constexpr int kDofs = Kernel::kDofs;
-    LocalTerm<kDofs> local;
+    LocalTerm<Kernel::kDofs> local;
+    element.components = HoldsElement<Kernel>::value ? 0 : model.dimension;
+    element.num_positions = NumPositions<Kernel>::value;
     for (std::size_t e = 0; e < list.size(); ++e) {
-      Kernel::template evaluate<Derivatives::Hessian>(
-          list.constants[e], here, gather(list.dofs[e], here.coordinates), local);
-      const Eigen::Matrix<double, kDofs, kDofs> hessian =
-          local.hessian.template selfadjointView<Eigen::Lower>();
-      use(list.dofs[e], hessian,
-          Shared{HoldsElement<Kernel>::value ? 0 : model.dimension, NumPositions<Kernel>::value});
+      hessian_of_element<Kernel>(list.constants[e], here, gather(list.dofs[e], here.coordinates),
+                                 local);
+      element.dofs = list.dofs[e].data();
+      element.values.resize(Kernel::kDofs, Kernel::kDofs);
+      for (int i = 0; i < Kernel::kDofs; ++i) {
+        for (int j = 0; j <= i; ++j) {
+          element.values(i, j) = element.values(j, i) = local.hessian(i, j);
+        }
+      }
+      use(element);
     }
   });
-}
-
-/// An element's part of a displacement, less what its nodes share.
-template <std::size_t N, class Displacement>
-Eigen::Matrix<double, static_cast<int>(N), 1> relative(const std::array<Index, N>& dofs,
-                                                       const Displacement& displacement,
-                                                       const Shared& shared) {
-  Eigen::Matrix<double, static_cast<int>(N), 1> d;
-  for (std::size_t i = 0; i < N; ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    d[k] = displacement[dofs[i]];
-    if (shared.components > 0 && k < shared.positions) {
-      d[k] -= displacement[dofs[i % static_cast<std::size_t>(shared.components)]];
-    }
-  }
-  return d;
 }
 
 }  // namespace
@@ -104,10 +114,10 @@ double second_variation(const Model& model, const Configuration& here, const Vec
 SummedVariation summed_variation(const Model& model, const Configuration& here,
                                  const Vector& direction) {
   SummedVariation total;
-  for_each_hessian(model, here, [&](const auto& dofs, const auto& hessian, const Shared& shared) {
-    const auto d = relative(dofs, direction, shared);
-    total.value += d.dot(hessian * d);
-    total.terms += d.cwiseAbs().dot(hessian.cwiseAbs() * d.cwiseAbs());
+  for_each_hessian(model, here, [&](const ElementHessian& element) {
+    const auto d = element.relative(direction);
+    total.value += d.dot(element.values.lazyProduct(d));
+    total.terms += d.cwiseAbs().dot(element.values.cwiseAbs().lazyProduct(d.cwiseAbs()));
   });
   return total;
 }
@@ -116,26 +126,24 @@ SecondVariations second_variations(const Model& model, const Configuration& here
                                    const Eigen::MatrixXd& directions) {
   const Eigen::Index count = directions.cols();
   SecondVariations result{Eigen::MatrixXd::Zero(count, count), Vector::Zero(count)};
-  for_each_hessian(model, here, [&](const auto& dofs, const auto& hessian, const Shared& shared) {
-    constexpr int kDofs = std::decay_t<decltype(hessian)>::RowsAtCompileTime;
-    Eigen::Matrix<double, kDofs, Eigen::Dynamic> d(kDofs, count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      d.col(i) = relative(dofs, directions.col(i), shared);
-    }
-    result.values.noalias() += d.transpose() * (hessian * d).eval();
-    const auto terms = d.cwiseAbs().cwiseProduct(hessian.cwiseAbs() * d.cwiseAbs()).eval();
-    result.terms += terms.colwise().sum().transpose();
+  ElementHessian::Parts d;
+  ElementHessian::Parts forces;
+  for_each_hessian(model, here, [&](const ElementHessian& element) {
+    d.resize(element.values.rows(), count);
+    for (Eigen::Index i = 0; i < count; ++i) d.col(i) = element.relative(directions.col(i));
+    forces = element.values.lazyProduct(d);
+    result.values += d.transpose().lazyProduct(forces);
+    forces = element.values.cwiseAbs().lazyProduct(d.cwiseAbs());
+    result.terms += d.cwiseAbs().cwiseProduct(forces).colwise().sum().transpose();
   });
   return result;
 }
 
 Vector stiffness_product(const Model& model, const Configuration& here, const Vector& direction) {
   Vector product = Vector::Zero(direction.size());
-  for_each_hessian(model, here, [&](const auto& dofs, const auto& hessian, const Shared& shared) {
-    const auto force = (hessian * relative(dofs, direction, shared)).eval();
-    for (std::size_t i = 0; i < dofs.size(); ++i) {
-      product[dofs[i]] += force[static_cast<Eigen::Index>(i)];
-    }
+  for_each_hessian(model, here, [&](const ElementHessian& element) {
+    const ElementHessian::Part force = element.values.lazyProduct(element.relative(direction));
+    for (Eigen::Index i = 0; i < force.size(); ++i) product[element.dofs[i]] += force[i];
   });
   return product;
 }

@@ -4,6 +4,7 @@
 
 #include "der/core/constants.hpp"
 #include "der/core/types.hpp"
+#include "der/energies/element_energy.hpp"
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/energies/planar_bend.hpp"
@@ -41,7 +42,7 @@ void discrete_gradient(KernelTag<Kernel> /*kernel*/, const typename Kernel::Cons
                        const Configuration& here, const Local<Kernel::kDofs>& start,
                        const Local<Kernel::kDofs>& end, Local<Kernel::kDofs>& gradient) {
   LocalTerm<Kernel::kDofs> middle;
-  Kernel::template evaluate<Derivatives::Gradient>(c, here, 0.5 * (start + end), middle);
+  gradient_of_element<Kernel>(c, here, 0.5 * (start + end), middle);
   gradient = middle.gradient;
 }
 

@@ -149,10 +149,6 @@ Index MatrixLayout::slot_or_spare(Index i, Index j) const {
   return i < 0 || j < 0 ? num_values_ : slot(std::max(i, j), std::min(i, j));
 }
 
-void MatrixLayout::shift_diagonal(double shift, Vector& values) const {
-  for (Index i = 0; i < size_; ++i) values[slot(i, i)] += shift;
-}
-
 Index MatrixLayout::slot(Index row, Index column) const {
   assert(row >= column);
   if (pattern_ == nullptr) {

@@ -72,6 +72,14 @@ void DofMap::set_length(double length) {
   }
 }
 
+Vector DofMap::unit_masses() const {
+  Vector masses = Vector::Ones(size());
+  for (const DofBlock& block : blocks_) {
+    masses.segment(block.first, block.count).setConstant(block.length * block.length);
+  }
+  return masses;
+}
+
 double DofMap::largest_motion(const Vector& displacement) const {
   return largest_over(blocks_, [&](const DofBlock& block) {
     return block.length * largest_magnitude(block.count, displacement.data() + block.first);

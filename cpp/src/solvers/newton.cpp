@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "der/core/index.hpp"
+
 namespace der {
 namespace {
 
@@ -10,6 +12,23 @@ namespace {
 constexpr int kFullStepIterations = 12;
 /// A step below this share of the size may well be the last: look before building a new matrix.
 constexpr double kNearSolution = 1e-3;
+
+/// Adds `shift` [N/m] to the diagonal, in the units of each degree of freedom.
+void shift_diagonal(const DofMap& dofs, const MatrixLayout& layout, double shift, Vector& values) {
+  for (Index i = 0; i < dofs.num_free(); ++i) {
+    values[layout.slot(i, i)] += shift * std::pow(dofs.motion_of(dofs.free()[to_size(i)], 1.0), 2);
+  }
+}
+
+/// The largest stiffness [N/m] on the diagonal, by size.
+double largest_on_diagonal(const DofMap& dofs, const MatrixLayout& layout, const Vector& values) {
+  double largest = 0.0;
+  for (Index i = 0; i < dofs.num_free(); ++i) {
+    const double unit = dofs.motion_of(dofs.free()[to_size(i)], 1.0);
+    largest = std::max(largest, std::abs(values[layout.slot(i, i)]) / (unit * unit));
+  }
+  return largest;
+}
 
 }  // namespace
 
@@ -112,12 +131,12 @@ bool Newton::factorize(bool positive, NewtonReport& report) {
   report.negative_pivots = inertia.negative_pivots;
   if (inertia.factorised && (!positive || inertia.negative_pivots == 0)) return true;
   // Shift by ever more until positive definite, starting a little below the last shift needed.
-  const double largest = values_.lpNorm<Eigen::Infinity>();
-  if (!std::isfinite(largest)) return false;
+  if (!std::isfinite(values_.lpNorm<Eigen::Infinity>())) return false;
+  const double largest = largest_on_diagonal(dofs_, solver_.layout(), values_);
   double shift = std::max(1e-12 * largest, 0.1 * last_shift_);
   double applied = 0.0;
   do {
-    solver_.layout().shift_diagonal(shift - applied, values_);
+    shift_diagonal(dofs_, solver_.layout(), shift - applied, values_);
     applied = shift;
     shift *= 4.0;
     inertia = solver_.factorize(values_);

@@ -119,15 +119,20 @@ double StageProblem::position_rounding() const {
   return rounding(model_.dofs.largest_motion(here_->coordinates));
 }
 
-/// Positions are known to their rounding, displacements to their own.
+/// Positions and angles are known to their rounding, displacements to their own.
 double StageProblem::residual_rounding(Vector& values) {
   assembler_.gradient_and_hessian(*here_, term_, values);
+  double elastic = 0.0;
+  for (const DofBlock& block : model_.dofs.blocks()) {
+    const double coordinate =
+        largest_magnitude(block.count, here_->coordinates.data() + block.first);
+    elastic += assembler_.largest_diagonal(block, values) * coordinate / block.length;
+  }
   const auto largest_term = [&](const Vector& diagonal) {
     term_ = diagonal.cwiseProduct(displacement_);
     return model_.dofs.largest_force(term_);
   };
-  return rounding(largest_magnitude(values) * largest_magnitude(here_->coordinates) +
-                  stage_->inertia * largest_term(stage_->mass.lumped) +
+  return rounding(elastic + stage_->inertia * largest_term(stage_->mass.lumped) +
                   stage_->velocity_factor * largest_term(model_.damping));
 }
 

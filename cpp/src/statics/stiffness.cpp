@@ -49,16 +49,6 @@ double tension_rounding(const Model& model, const Configuration& here, const Vec
   return kDeviations * std::sqrt(squares);
 }
 
-/// By which shifts of the stiffness are multiplied: 1, and of angles the square of the length that
-/// a radian counts as.
-Mass unit_masses(const DofMap& dofs) {
-  Mass units{Vector::Ones(dofs.size()), {}};
-  for (const DofBlock& block : dofs.blocks()) {
-    units.lumped.segment(block.first, block.count).setConstant(block.length * block.length);
-  }
-  return units;
-}
-
 }  // namespace
 
 Stiffness::Stiffness(const Model& model, const Assembler& assembler, LinearSolver& solver)
@@ -67,7 +57,7 @@ Stiffness::Stiffness(const Model& model, const Assembler& assembler, LinearSolve
       solver_(solver),
       gradient_(Vector::Zero(model.num_dofs())),
       values_(Vector::Zero(assembler.num_values())),
-      units_(unit_masses(model.dofs)) {}
+      units_{model.dofs.unit_masses(), {}} {}
 
 void Stiffness::evaluate(const Configuration& here) {
   assembler_.gradient_and_hessian(here, gradient_, values_);

@@ -62,8 +62,6 @@ class MatrixLayout {
     return pattern_ == other.pattern_ && width_ == other.width_ && half_ == other.half_ &&
            num_values_ == other.num_values_;
   }
-  /// Adds `shift` to every entry of the diagonal.
-  void shift_diagonal(double shift, Vector& values) const;
 
  private:
   MatrixLayout() = default;

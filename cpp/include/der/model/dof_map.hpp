@@ -86,6 +86,9 @@ class DofMap {
   [[nodiscard]] double force_of(Index dof, double force) const {
     return std::abs(force) / (dof < num_positions() ? 1.0 : length_);
   }
+  /// Masses [kg] and moments of inertia [kg m^2] of all degrees of freedom with which motions of
+  /// the same magnitude weigh the same: 1 for positions.
+  [[nodiscard]] Vector unit_masses() const;
   [[nodiscard]] const std::vector<DofBlock>& blocks() const { return blocks_; }
 
   /// Largest motion [m] among displacements of all degrees of freedom: angles count times the

@@ -24,7 +24,7 @@ StaticNewton::StaticNewton(const Model& model, const Assembler& assembler, Linea
 
 Stage StaticNewton::stage_of(const StaticLoads& loads) const {
   Stage stage(model_);
-  stage.mass = {Vector::Ones(model_.num_dofs()), {}};
+  stage.mass = {model_.dofs.unit_masses(), {}};
   stage.force = loads.force;
   return stage;
 }

@@ -182,8 +182,8 @@ def folded(s: Setting, apart: float) -> Scene:
     values={f"{d:g} apart": d for d in (0.5, 0.1, 1e-2, 1e-4)},
     limits=(
         Limit(
-            "The answer is not found to the precision that is asked for, and refused.",
-            ("too_fine",),
+            "The answer is not found to the precision that is asked for; the fold is named.",
+            ("folded",),
             lambda s: s.model == "spatial" and s.value == 1e-4,
         ),
     ),

@@ -20,7 +20,7 @@ Eigen::Matrix<double, static_cast<int>(N), 1> gather(const std::array<Index, N>&
 }
 
 // Kernel::evaluate<Derivatives::Energy>, <Derivatives::Gradient> and <Derivatives::Hessian> of one
-// element at its coordinates x. Each is compiled for all kinds in one file (src/energies/): a loop
+// element at its coordinates x. They are compiled for all kinds in element_energy.cpp alone: a loop
 // over all kinds that calls the kernels themselves takes the compiler a minute. In assembly/, where
 // calls count, the kernels are inlined.
 

@@ -86,7 +86,7 @@ class Inverse:
     times
         When the target is at these points [s], shape (points,).
     pressures
-        Those of the three chambers [kPa], shape (points, 3).
+        The pressures of the three chambers [kPa], shape (points, 3).
     slopes
         How the tip [m] changes with the pressures [kPa], shape (points, 3, 3).
     error

@@ -43,7 +43,7 @@ def truth(scenario):
     spheres at every node keep theirs), and in time with 64 times the steps of another stepper, or 8
     times those of an explicit one."""
     finer = with_elements(scenario, 16)
-    # What rounding leaves of so many elements is not much less.
+    # Rounding errors of so many elements put much tighter tolerances out of reach.
     tight = {"solver.residual_tolerance": 1e-11, "solver.step_tolerance": 1e-11}
     if scenario.is_static:
         try:

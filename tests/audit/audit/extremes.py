@@ -165,7 +165,7 @@ def extremes(rng: Random) -> Drawn:
         duration = float(rng.uniform(0.05, 0.4))
         time = {"duration": duration, "tolerance": tolerance, "integrator": stepper.name}
     if dimension == 3 and "natural" in rod:
-        # Two components mean what the directors say, which must turn with the axes.
+        # The directors define the two components, so they are given and turn with the axes.
         rod.setdefault("director", rng.standard_normal(3))
     # At most one weight; the last load that the draw has is kept otherwise.
     weights = [load for load in loads if "gravity" in load]

@@ -73,11 +73,7 @@ void DofMap::set_length(double length) {
 }
 
 Vector DofMap::unit_masses() const {
-  Vector masses = Vector::Ones(size());
-  for (const DofBlock& block : blocks_) {
-    masses.segment(block.first, block.count).setConstant(block.length * block.length);
-  }
-  return masses;
+  return Vector::NullaryExpr(size(), [this](Index dof) { return unit_mass(dof); });
 }
 
 double DofMap::largest_motion(const Vector& displacement) const {

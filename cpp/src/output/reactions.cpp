@@ -289,7 +289,7 @@ void Reactions::Reader::add_elements(const Model& model) {
       const auto& dofs = list.dofs[e];
       const auto& constants = list.constants[e];
       const auto coordinates = gather(dofs, here_.coordinates);
-      gradient_of_element<Kernel>(constants, here_, coordinates, local);
+      evaluate_element<Kernel, Derivatives::Gradient>(constants, here_, coordinates, local);
       for (std::size_t i = 0; i < dofs.size(); ++i) {
         gradient_[dofs[i]] += local.gradient[static_cast<Index>(i)];
       }

@@ -13,20 +13,21 @@ constexpr int kFullStepIterations = 12;
 /// A step below this share of the size may well be the last: look before building a new matrix.
 constexpr double kNearSolution = 1e-3;
 
-/// Adds `shift` [N/m] to the diagonal, in the units of each degree of freedom.
-void shift_diagonal(const DofMap& dofs, const MatrixLayout& layout, double shift, Vector& values) {
+/// Calls use(entry, unit_mass) for each entry of the diagonal.
+template <class Values, class Use>
+void for_each_on_diagonal(const DofMap& dofs, const MatrixLayout& layout, Values& values,
+                          const Use& use) {
   for (Index i = 0; i < dofs.num_free(); ++i) {
-    values[layout.slot(i, i)] += shift * std::pow(dofs.motion_of(dofs.free()[to_size(i)], 1.0), 2);
+    use(values[layout.slot(i, i)], dofs.unit_mass(dofs.free()[to_size(i)]));
   }
 }
 
-/// The largest stiffness [N/m] on the diagonal, by size.
+/// The largest stiffness on the diagonal [N/m], by size.
 double largest_on_diagonal(const DofMap& dofs, const MatrixLayout& layout, const Vector& values) {
   double largest = 0.0;
-  for (Index i = 0; i < dofs.num_free(); ++i) {
-    const double unit = dofs.motion_of(dofs.free()[to_size(i)], 1.0);
-    largest = std::max(largest, std::abs(values[layout.slot(i, i)]) / (unit * unit));
-  }
+  for_each_on_diagonal(dofs, layout, values, [&](double entry, double unit_mass) {
+    largest = std::max(largest, std::abs(entry) / unit_mass);
+  });
   return largest;
 }
 
@@ -136,7 +137,9 @@ bool Newton::factorize(bool positive, NewtonReport& report) {
   double shift = std::max(1e-12 * largest, 0.1 * last_shift_);
   double applied = 0.0;
   do {
-    shift_diagonal(dofs_, solver_.layout(), shift - applied, values_);
+    for_each_on_diagonal(dofs_, solver_.layout(), values_, [&](double& entry, double unit_mass) {
+      entry += (shift - applied) * unit_mass;
+    });
     applied = shift;
     shift *= 4.0;
     inertia = solver_.factorize(values_);

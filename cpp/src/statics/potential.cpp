@@ -10,6 +10,7 @@
 #include "der/energies/elements_of.hpp"
 #include "der/energies/registry.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "energies/every_kind.hpp"
 
 namespace der {
 namespace {
@@ -26,8 +27,9 @@ double energy_change(const ElementList<Kernel>& list, const Configuration& from,
   double total = 0.0;
   for (std::size_t e = 0; e < list.size(); ++e) {
     const auto& constants = list.constants[e];
-    energy_of_element<Kernel>(constants, from, gather(list.dofs[e], from.coordinates), before);
-    energy_of_element<Kernel>(constants, from, gather(list.dofs[e], to), after);
+    evaluate_element<Kernel, Derivatives::Energy>(constants, from,
+                                                  gather(list.dofs[e], from.coordinates), before);
+    evaluate_element<Kernel, Derivatives::Energy>(constants, from, gather(list.dofs[e], to), after);
     double change = after.energy - before.energy;
     if constexpr (HasPeriod<Kernel>::value) {
       const double period = Kernel::period(constants, from);
@@ -38,11 +40,10 @@ double energy_change(const ElementList<Kernel>& list, const Configuration& from,
   return total;
 }
 
-template <class... Kernels>
-constexpr int most_dofs(const std::tuple<ElementList<Kernels>...>* /*lists*/) {
-  return std::max({Kernels::kDofs...});
-}
-constexpr int kMostDofs = most_dofs(static_cast<const ElementLists::Lists*>(nullptr));
+template <class Kernel>
+struct NumDofs : std::integral_constant<int, Kernel::kDofs> {};
+constexpr int kMostDofs =
+    std::apply([](auto... n) { return std::max({n...}); }, of_every_kind<NumDofs>());
 
 template <class Kernel, class = void>
 struct NumPositions : std::integral_constant<int, Kernel::kDofs> {};
@@ -50,19 +51,19 @@ template <class Kernel>
 struct NumPositions<Kernel, std::enable_if_t<(Kernel::kDofs > 3 * Kernel::kNodes)>>
     : std::integral_constant<int, 3 * Kernel::kNodes> {};
 
-/// The Hessian of an element of any kind. Its size is not part of the type: what is made of it is
-/// compiled once.
+/// The Hessian of an element of any kind. Its size is no part of the type, so that the functions
+/// below are compiled once for all kinds.
 struct ElementHessian {
   using Part = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostDofs, 1>;
   using Parts = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostDofs>;
 
   const Index* dofs = nullptr;
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostDofs, kMostDofs> values;
-  int components = 0;     ///< of a node, if the displacement of a node costs no energy when all
-                          ///< nodes of the element have it; else 0
+  int components = 0;     ///< of a node, where a translation of the element costs no energy; else 0
   int num_positions = 0;  ///< coordinates of nodes; those of angles follow
 
-  /// The element's part of a displacement, less that of its first node if it costs no energy.
+  /// The element's part of a displacement, less that of its first node where a translation
+  /// costs no energy.
   template <class Displacement>
   [[nodiscard]] Part relative(const Displacement& displacement) const {
     Part d(values.rows());
@@ -84,15 +85,10 @@ void for_each_hessian(const Model& model, const Configuration& here, const Use& 
     element.components = HoldsElement<Kernel>::value ? 0 : model.dimension;
     element.num_positions = NumPositions<Kernel>::value;
     for (std::size_t e = 0; e < list.size(); ++e) {
-      hessian_of_element<Kernel>(list.constants[e], here, gather(list.dofs[e], here.coordinates),
-                                 local);
+      evaluate_element<Kernel, Derivatives::Hessian>(list.constants[e], here,
+                                                     gather(list.dofs[e], here.coordinates), local);
       element.dofs = list.dofs[e].data();
-      element.values.resize(Kernel::kDofs, Kernel::kDofs);
-      for (int i = 0; i < Kernel::kDofs; ++i) {
-        for (int j = 0; j <= i; ++j) {
-          element.values(i, j) = element.values(j, i) = local.hessian(i, j);
-        }
-      }
+      element.values = local.hessian.template selfadjointView<Eigen::Lower>();
       use(element);
     }
   });
@@ -127,14 +123,14 @@ SecondVariations second_variations(const Model& model, const Configuration& here
   const Eigen::Index count = directions.cols();
   SecondVariations result{Eigen::MatrixXd::Zero(count, count), Vector::Zero(count)};
   ElementHessian::Parts d;
-  ElementHessian::Parts forces;
+  ElementHessian::Parts products;
   for_each_hessian(model, here, [&](const ElementHessian& element) {
     d.resize(element.values.rows(), count);
     for (Eigen::Index i = 0; i < count; ++i) d.col(i) = element.relative(directions.col(i));
-    forces = element.values.lazyProduct(d);
-    result.values += d.transpose().lazyProduct(forces);
-    forces = element.values.cwiseAbs().lazyProduct(d.cwiseAbs());
-    result.terms += d.cwiseAbs().cwiseProduct(forces).colwise().sum().transpose();
+    products = element.values.lazyProduct(d);
+    result.values += d.transpose().lazyProduct(products);
+    products = element.values.cwiseAbs().lazyProduct(d.cwiseAbs());
+    result.terms += d.cwiseAbs().cwiseProduct(products).colwise().sum().transpose();
   });
   return result;
 }

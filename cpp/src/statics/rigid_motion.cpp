@@ -172,8 +172,8 @@ double spring_variation(const Model& model, const Configuration& here, const Vec
     if constexpr (Kernel::kTerm == EnergyTerm::Spring) {
       LocalTerm<Kernel::kDofs> local;
       for (std::size_t e = 0; e < list.size(); ++e) {
-        hessian_of_element<Kernel>(list.constants[e], here, gather(list.dofs[e], here.coordinates),
-                                   local);
+        evaluate_element<Kernel, Derivatives::Hessian>(
+            list.constants[e], here, gather(list.dofs[e], here.coordinates), local);
         const auto moved = gather(list.dofs[e], displacement);
         total += moved.dot(local.hessian * moved);
       }

@@ -154,7 +154,8 @@ double StableStepBound::term_bound(EnergyTerm term, Index node, const Configurat
       const auto& dofs = list.dofs[e];
       const auto is_here = [&](Index dof) { return map.node_of(dof) == node && map.is_free(dof); };
       if (std::none_of(dofs.begin(), dofs.end(), is_here)) continue;
-      hessian_of_element<Kernel>(list.constants[e], here, gather(dofs, here.coordinates), local);
+      evaluate_element<Kernel, Derivatives::Hessian>(list.constants[e], here,
+                                                     gather(dofs, here.coordinates), local);
       for (int i = 0; i < Kernel::kDofs; ++i) {
         for (int j = 0; j < Kernel::kDofs; ++j) {
           const Index row = dofs[to_size(i)];

@@ -100,8 +100,8 @@ double moment_work(const Model& model, const Configuration& here, const Vector& 
     if constexpr (Kernel::kTerm == EnergyTerm::Load) {
       LocalTerm<Kernel::kDofs> local;
       for (std::size_t e = 0; e < list.size(); ++e) {
-        gradient_of_element<Kernel>(list.constants[e], here, gather(list.dofs[e], here.coordinates),
-                                    local);
+        evaluate_element<Kernel, Derivatives::Gradient>(
+            list.constants[e], here, gather(list.dofs[e], here.coordinates), local);
         work -= local.gradient.dot(gather(list.dofs[e], displacement));
       }
     }

@@ -28,7 +28,8 @@ inline Derivatives2 sum_of_kernels(const Model& model, const Configuration& here
     LocalTerm<Kernel::kDofs> local;
     for (std::size_t e = 0; e < list.size(); ++e) {
       const auto& dofs = list.dofs[e];
-      hessian_of_element<Kernel>(list.constants[e], here, gather(dofs, here.coordinates), local);
+      evaluate_element<Kernel, Derivatives::Hessian>(list.constants[e], here,
+                                                     gather(dofs, here.coordinates), local);
       for (Index i = 0; i < Kernel::kDofs; ++i) {
         sum.gradient[dofs[to_size(i)]] += local.gradient[i];
         for (Index j = 0; j <= i; ++j) {

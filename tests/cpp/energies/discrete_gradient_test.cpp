@@ -1,7 +1,6 @@
 // The discrete gradient of every energy in the registry: what defines it (Gonzalez, J. Nonlinear
 // Sci. 6, 1996, section 3), what keeps the momenta, and where its quotients would lose digits.
 #include "der/energies/discrete_gradient.hpp"
-#include "der/energies/element_energy.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,6 +8,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "der/energies/element_energy.hpp"
 #include "der/energies/registry.hpp"
 #include "energies/sample_elements.hpp"
 
@@ -33,12 +33,12 @@ struct Element {
 
   [[nodiscard]] double energy(const Coordinates& x) const {
     LocalTerm<n> term;
-    energy_of_element<Kernel>(constants, here, x, term);
+    evaluate_element<Kernel, Derivatives::Energy>(constants, here, x, term);
     return term.energy;
   }
   [[nodiscard]] Coordinates gradient(const Coordinates& x) const {
     LocalTerm<n> term;
-    gradient_of_element<Kernel>(constants, here, x, term);
+    evaluate_element<Kernel, Derivatives::Gradient>(constants, here, x, term);
     return term.gradient;
   }
   [[nodiscard]] Coordinates discrete(const Coordinates& start, const Coordinates& end) const {

@@ -36,16 +36,16 @@ void check_derivatives(Shape shape, Random& random) {
 
   const auto energy = [&](const Coordinates& y) {
     LocalTerm<n> term;
-    energy_of_element<Kernel>(constants, here, y, term);
+    evaluate_element<Kernel, Derivatives::Energy>(constants, here, y, term);
     return term.energy;
   };
   const auto gradient = [&](const Coordinates& y) {
     LocalTerm<n> term;
-    gradient_of_element<Kernel>(constants, here, y, term);
+    evaluate_element<Kernel, Derivatives::Gradient>(constants, here, y, term);
     return term.gradient;
   };
   LocalTerm<n> exact;
-  hessian_of_element<Kernel>(constants, here, x, exact);
+  evaluate_element<Kernel, Derivatives::Hessian>(constants, here, x, exact);
   CHECK(exact.energy == energy(x));
   CHECK(exact.gradient == gradient(x));
 
@@ -79,7 +79,7 @@ void check_rigid_motion(Shape shape, Random& random) {
   const Configuration here = sample_configuration(random);
   const auto x = sample_positions<Kernel>(shape, random);
   LocalTerm<n> before;
-  gradient_of_element<Kernel>(constants, here, x, before);
+  evaluate_element<Kernel, Derivatives::Gradient>(constants, here, x, before);
 
   // No net force, and no net moment about the origin.
   Vec2 force = Vec2::Zero();
@@ -101,7 +101,7 @@ void check_rigid_motion(Shape shape, Random& random) {
         rotation * x.template segment<2>(2 * node) + Vec2{0.3, -0.7};
   }
   LocalTerm<n> after;
-  energy_of_element<Kernel>(constants, here, moved, after);
+  evaluate_element<Kernel, Derivatives::Energy>(constants, here, moved, after);
   CHECK(after.energy == doctest::Approx(before.energy).epsilon(1e-11));
 }
 

@@ -1,12 +1,12 @@
 // The derivative of the energy of each kind of element by its rest shape against differences of its
 // energy, in which that is of second degree: central ones are exact.
 #include "der/energies/rest_gradient.hpp"
-#include "der/energies/element_energy.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 
+#include "der/energies/element_energy.hpp"
 #include "der/energies/registry.hpp"
 #include "energies/sample_elements.hpp"
 
@@ -23,7 +23,7 @@ void check_rest_gradient(Random& random) {
 
   const auto energy = [&](const Configuration& there) {
     LocalTerm<Kernel::kDofs> term;
-    energy_of_element<Kernel>(constants, there, x, term);
+    evaluate_element<Kernel, Derivatives::Energy>(constants, there, x, term);
     return term.energy;
   };
   const auto gradient = Rest::of(constants, here, x);

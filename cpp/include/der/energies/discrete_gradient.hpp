@@ -42,7 +42,7 @@ void discrete_gradient(KernelTag<Kernel> /*kernel*/, const typename Kernel::Cons
                        const Configuration& here, const Local<Kernel::kDofs>& start,
                        const Local<Kernel::kDofs>& end, Local<Kernel::kDofs>& gradient) {
   LocalTerm<Kernel::kDofs> middle;
-  gradient_of_element<Kernel>(c, here, 0.5 * (start + end), middle);
+  evaluate_element<Kernel, Derivatives::Gradient>(c, here, 0.5 * (start + end), middle);
   gradient = middle.gradient;
 }
 

@@ -19,25 +19,13 @@ Eigen::Matrix<double, static_cast<int>(N), 1> gather(const std::array<Index, N>&
   return local;
 }
 
-// Kernel::evaluate<Derivatives::Energy>, <Derivatives::Gradient> and <Derivatives::Hessian> of one
-// element at its coordinates x. They are compiled for all kinds in element_energy.cpp alone: a loop
-// over all kinds that calls the kernels themselves takes the compiler a minute. In assembly/, where
-// calls count, the kernels are inlined.
-
-template <class Kernel>
-void energy_of_element(const typename Kernel::Constants& constants, const Configuration& here,
-                       const Eigen::Matrix<double, Kernel::kDofs, 1>& x,
-                       LocalTerm<Kernel::kDofs>& out);
-
-template <class Kernel>
-void gradient_of_element(const typename Kernel::Constants& constants, const Configuration& here,
-                         const Eigen::Matrix<double, Kernel::kDofs, 1>& x,
-                         LocalTerm<Kernel::kDofs>& out);
-
-template <class Kernel>
-void hessian_of_element(const typename Kernel::Constants& constants, const Configuration& here,
-                        const Eigen::Matrix<double, Kernel::kDofs, 1>& x,
-                        LocalTerm<Kernel::kDofs>& out);
+/// `Kernel::evaluate<D>` of one element at its coordinates x. It is compiled for all kinds in
+/// element_energy.cpp alone: a loop over all kinds that calls the kernels themselves takes the
+/// compiler a minute. In assembly/, where calls count, the kernels are inlined.
+template <class Kernel, Derivatives D>
+void evaluate_element(const typename Kernel::Constants& constants, const Configuration& here,
+                      const Eigen::Matrix<double, Kernel::kDofs, 1>& x,
+                      LocalTerm<Kernel::kDofs>& out);
 
 /// Energy [J] of all elements of one kind with the controls of a configuration, at other
 /// coordinates.
@@ -47,7 +35,8 @@ double element_energy(const ElementList<Kernel>& list, const Configuration& here
   LocalTerm<Kernel::kDofs> local;
   double total = 0.0;
   for (std::size_t e = 0; e < list.size(); ++e) {
-    energy_of_element<Kernel>(list.constants[e], here, gather(list.dofs[e], coordinates), local);
+    evaluate_element<Kernel, Derivatives::Energy>(list.constants[e], here,
+                                                  gather(list.dofs[e], coordinates), local);
     total += local.energy;
   }
   return total;

@@ -86,8 +86,12 @@ class DofMap {
   [[nodiscard]] double force_of(Index dof, double force) const {
     return std::abs(force) / (dof < num_positions() ? 1.0 : length_);
   }
-  /// Masses [kg] and moments of inertia [kg m^2] of all degrees of freedom with which motions of
-  /// the same magnitude weigh the same: 1 for positions.
+  /// Mass [kg] or moment of inertia [kg m^2] with which motions of the same magnitude weigh the
+  /// same in every degree of freedom: 1 for positions.
+  [[nodiscard]] double unit_mass(Index dof) const {
+    return dof < num_positions() ? 1.0 : length_ * length_;
+  }
+  /// That of all degrees of freedom.
   [[nodiscard]] Vector unit_masses() const;
   [[nodiscard]] const std::vector<DofBlock>& blocks() const { return blocks_; }
 

@@ -31,8 +31,8 @@ double spring_travel(const Model& model, double load) {
     if constexpr (HoldsElement<Kernel>::value) {
       LocalTerm<Kernel::kDofs> drawn;
       for (std::size_t e = 0; e < list.size(); ++e) {
-        energy_of_element<Kernel>(list.constants[e], {},
-                                  gather(list.dofs[e], model.initial_positions), drawn);
+        evaluate_element<Kernel, Derivatives::Energy>(
+            list.constants[e], {}, gather(list.dofs[e], model.initial_positions), drawn);
         for (int c = 0; c < model.dimension; ++c) {
           const double stiffness = Kernel::holding_stiffness(list.constants[e], c);
           if (stiffness == 0.0) continue;

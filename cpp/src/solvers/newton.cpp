@@ -12,6 +12,10 @@ namespace {
 constexpr int kFullStepIterations = 12;
 /// A step below this share of the size may well be the last: look before building a new matrix.
 constexpr double kNearSolution = 1e-3;
+/// Where the residual no longer falls below this share of the one before, steps this short [size]
+/// are suspected to be those of rounding, which no iteration makes shorter.
+constexpr double kStalledFall = 0.5;
+constexpr double kStalledStep = 1e-9;
 
 /// Calls use(entry, unit_mass) for each entry of the diagonal.
 template <class Values, class Use>
@@ -108,8 +112,10 @@ NewtonReport Newton::iterate(NewtonProblem& problem, Mode mode) {
     // Far from the origin positions themselves are only known to their rounding.
     const bool is_short = next_step <= options_.step_tolerance * dofs_.length() ||
                           next_step <= problem.position_rounding();
-    if (is_short) {
-      report.converged = report.residual <= options_.residual_tolerance * report.force_scale;
+    const bool is_stalled = fall > kStalledFall && step <= kStalledStep * dofs_.length();
+    if (is_short || is_stalled) {
+      report.converged =
+          is_short && report.residual <= options_.residual_tolerance * report.force_scale;
       if (!report.converged) {
         report.converged = report.residual <= problem.residual_rounding(values_);
         have_system = false;

@@ -114,6 +114,33 @@ TEST_CASE("a step that cannot be solved is retried in smaller ones, then named")
   CHECK(simulation.state().positions.allFinite());
 }
 
+TEST_CASE("steps that rounding keeps long are short enough") {
+  // 800 edges in space: rounding of the forces alone makes Newton's steps 1e-12 of the size.
+  const auto found = [](const char* tolerance) {
+    Simulation simulation(Scenario::parse(R"(
+title: Cantilever in space
+rods:
+  - name: rod
+    nodes: 801
+    from: [0, 0, 0]
+    to: [1, 0, 0]
+    cross_section: {stiffness: {EA: 1e6, EI: 1, GJ: 0.7, mass_per_length: 1}}
+supports: [{rod: rod, at: start, clamp: true}]
+loads:
+  - point_force: {rod: rod, at: end, force: [0.1, 1, 0.5]}
+  - moment: {rod: rod, at: end, moment: [0.3, 0, 0.1]}
+analysis: static
+)",
+                                          "scene", {{"solver.step_tolerance", tolerance}}));
+    const EquilibriumReport report = simulation.equilibrium();
+    return std::make_pair(simulation.state().positions, report.newton_iterations);
+  };
+  const auto [usual, iterations] = found("1e-9");
+  const auto [tight, more] = found("1e-16");
+  CHECK((tight - usual).lpNorm<Eigen::Infinity>() < 1e-9);
+  CHECK(more < 2 * iterations);
+}
+
 TEST_CASE("a retried step ends where a run with small steps ends") {
   // A gentle push across the axis: two iterations do not solve a step of 50 ms, but its pieces.
   // Each piece is at least as accurate as the whole step, which is off by 3e-4 m here.

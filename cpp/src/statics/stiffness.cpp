@@ -66,7 +66,7 @@ void Stiffness::evaluate(const Configuration& here) {
 
 Inertia Stiffness::factorize(double shift, const Mass& mass) {
   constexpr int kTrials = 5;
-  double nudge = rounding() / mass.lumped.lpNorm<Eigen::Infinity>() * 1e-2;
+  double nudge = 1e-2 * rounding() / mass.lumped.cwiseQuotient(units_.lumped).maxCoeff();
   Inertia inertia;
   for (int trial = 0; trial < kTrials && !inertia.factorised; ++trial, nudge *= 10.0) {
     shifted_ = values_;
@@ -77,8 +77,9 @@ Inertia Stiffness::factorize(double shift, const Mass& mass) {
 }
 
 double Stiffness::rounding() const {
-  // The spare slot at the end collects what belongs to held degrees of freedom.
-  return kRoundings * kEpsilon * values_.head(values_.size() - 1).lpNorm<Eigen::Infinity>();
+  return kRoundings * kEpsilon * largest_over(model_.dofs.blocks(), [this](const DofBlock& block) {
+           return assembler_.largest_diagonal(block, values_) / (block.length * block.length);
+         });
 }
 
 double Stiffness::rounding_over(const Vector& mass) const {
@@ -86,10 +87,8 @@ double Stiffness::rounding_over(const Vector& mass) const {
   constexpr double kEliminated = 32.0;
   double largest = 0.0;
   for (const DofBlock& block : model_.dofs.blocks()) {
-    const double error =
-        block.kind == DofKind::Position
-            ? rounding()
-            : kEliminated * kRoundings * kEpsilon * assembler_.largest_diagonal(block, values_);
+    const double roundings = kRoundings * (block.kind == DofKind::Position ? 1.0 : kEliminated);
+    const double error = roundings * kEpsilon * assembler_.largest_diagonal(block, values_);
     for (Index dof = block.first; dof < block.first + block.count; ++dof) {
       if (model_.dofs.is_free(dof)) largest = std::max(largest, error / mass[dof]);
     }

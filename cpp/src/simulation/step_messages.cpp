@@ -20,9 +20,11 @@ std::string Simulation::describe_inaccuracy(const AdaptiveReport& report) const 
   const scenario::Time& time = scenario_.scene().time;
   const std::string what = fmt::format(
       "the error in time stays above the tolerance: a step of {:.3g} s from t = {:.6g} s may add "
-      "its share of time.tolerance {:g}, but the error estimated at {} is {:.2g} times that",
-      report.tried, state_.time, time.tolerance, describe_dof(model_, report.last.worst_dof),
-      report.error);
+      "its share of {}, but the error estimated at {} is {:.2g} times that",
+      report.tried, state_.time,
+      report.is_of_edge ? "half an edge's length"
+                        : fmt::format("time.tolerance {:g}", time.tolerance),
+      describe_dof(model_, report.last.worst_dof), report.error);
   return what + (report.at_rounding
                      ? ". That is the rounding of positions, which no step makes smaller: raise "
                        "time.tolerance."

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "der/model/edge_change.hpp"
+
 namespace der {
 namespace {
 
@@ -18,6 +20,9 @@ constexpr double kRetryFactor = 0.25;
 /// Differences below this fraction of the positions are not significant: they come from rounding
 /// and from the tolerance of Newton's method.
 constexpr double kRounding = 1e-14;
+/// Share of its length by which the ends of an edge may be off against each other, gathered over
+/// the duration. An edge that is shorter than the tolerance could otherwise turn over within it.
+constexpr double kEdgeError = 0.5;
 /// If the remainder would be shorter than this fraction of the step, the step is extended to the
 /// end.
 constexpr double kSliver = 1e-9;
@@ -30,6 +35,12 @@ std::vector<double> table_entries(const Model& model) {
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
+}
+
+double shortest_edge(const Model& model) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Edge& edge : model.edges) shortest = std::min(shortest, edge.rest_length);
+  return shortest;
 }
 
 /// With steps no longer than see every sine swing.
@@ -50,6 +61,7 @@ AdaptiveStepper::AdaptiveStepper(const Model& model, const Assembler& assembler,
       error_factor_(info.error_factor),
       options_(resolving_sines(options, model)),
       breakpoints_(table_entries(model)),
+      shortest_edge_(shortest_edge(model)),
       support_motion_(model),
       start_(initial_state(model)),
       middle_(start_),
@@ -123,9 +135,14 @@ void AdaptiveStepper::measure(const State& state, AdaptiveReport& report) {
   const Index worst = model_.dofs.most_moved(difference_);
   const double difference = model_.dofs.motion_of(worst, difference_[worst]);
   report.last.worst_dof = worst;
+  const double rounding = kRounding * model_.dofs.largest_motion(state.positions);
+  const double of_position = difference / (options_.tolerance * model_.size());
+  const double change = largest_edge_change(model_, difference_);
+  const double of_edge = change * shortest_edge_ <= rounding ? 0.0 : change / kEdgeError;
   const double share = report.tried / options_.duration;
-  report.error = error_factor_ * difference / (options_.tolerance * model_.size() * share);
-  report.at_rounding = difference <= kRounding * model_.dofs.largest_motion(state.positions);
+  report.error = error_factor_ * std::max(of_position, of_edge) / share;
+  report.is_of_edge = of_edge > of_position;
+  report.at_rounding = difference <= rounding;
 }
 
 /// The time in which the motion covers a distance of the tolerance; from rest a small fraction of

@@ -25,6 +25,7 @@ struct AdaptiveReport {
   int newton_iterations = 0;  ///< of all attempts
   int rejected = 0;           ///< attempts whose error was too large, or that did not converge
   double error = 0.0;         ///< of the last attempt, over what it was allowed; 0: not known
+  bool is_of_edge = false;    ///< whether that is the error of an edge, and not of a position
   bool at_rounding = false;   ///< whether that error is no more than the rounding of positions
 };
 
@@ -35,10 +36,11 @@ struct AdaptiveReport {
 /// Ordinary Differential Equations I, section II.4); `StepperInfo::error_factor` takes about three
 /// times as much, since errors grow further in the motion. A step may add `tolerance * size` times
 /// its share of the duration, so that the sum of all estimates stays below `tolerance * size` and
-/// the error follows the tolerance in proportion. The next length comes from a
-/// proportional-integral controller (Gustafsson, ACM Trans. Math. Softw. 17, 1991). Entries of
-/// tables over time and ends of ramps, where forces have kinks, are hit exactly, and no step is
-/// longer than a quarter of the period of a sine.
+/// the error follows the tolerance in proportion. The same holds for the change of each edge and
+/// half its length, whatever the tolerance: an edge shorter than it could turn over. The next
+/// length comes from a proportional-integral controller (Gustafsson, ACM Trans. Math. Softw. 17,
+/// 1991). Entries of tables over time and ends of ramps, where forces have kinks, are hit exactly,
+/// and no step is longer than a quarter of the period of a sine.
 class AdaptiveStepper {
  public:
   AdaptiveStepper(const Model& model, const Assembler& assembler, Stepper& stepper,
@@ -71,6 +73,7 @@ class AdaptiveStepper {
   double error_factor_;
   AdaptiveOptions options_;
   std::vector<double> breakpoints_;  // [s] ascending
+  double shortest_edge_;             // [m]
   double longest_step_ = 0.0;        // [s]
   SupportMotion support_motion_;
   State start_;  // of the last step

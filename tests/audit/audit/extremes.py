@@ -4,9 +4,11 @@ Drawn in units of their own (length about 1, weakest EI = 1) and written in any 
 from nanometres to kilometres, turned, far from the origin. `Drawn.written` gives the same problem
 in other units, whose answer must be the same.
 
-EA L^2/EI from 1e2 to 1e10; 2 to 120 nodes, edges up to 1e3 apart in length; straight, wavy and
-crumpled shapes; natural curvature up to 10; sections of two stiffnesses; forces up to 1000 EI/L^2
-at rest and 10 in motion; stiff and soft springs; every stepper, with a tolerance.
+EA L^2/EI from 1e2 to 1e10; 2 to 120 nodes, edges up to 1e3 apart in length at rest and 10 in
+motion; straight, wavy and crumpled shapes; natural curvature up to 10, as far as the mesh can carry
+it; sections of two stiffnesses; forces up to 1000 EI/L^2 at rest and 10 in motion; stiff and soft
+springs; every stepper, with a tolerance that it can keep in seconds, over up to a fifth of the time
+scale of the stiffer bending.
 """
 
 from __future__ import annotations
@@ -45,7 +47,6 @@ class Drawn:
     supports: list[Scene]
     loads: list[Scene]
     time: Scene | None  # duration, tolerance and integrator of a motion
-    velocities: Array | None = None  # at its start; at rest if absent
 
     @property
     def ratio(self) -> float:
@@ -70,8 +71,6 @@ class Drawn:
         }
         if "natural" in self.rod:
             rod["natural_curvature"] = (np.asarray(self.rod["natural"]) / a).tolist()
-        if self.velocities is not None:
-            rod["initial_velocity"] = (a / t * self.velocities @ axes.T).tolist()
         supports = copy.deepcopy(self.supports)
         for support in supports:
             support["rod"] = "rod"
@@ -135,7 +134,7 @@ def extremes(rng: Random) -> Drawn:
     dimension = int(rng.choice([2, 3]))
     moves = bool(rng.random() < 0.4)
     nodes = round(power(rng, np.log10(2), np.log10(20 if moves else 120)))
-    points = _points(rng, nodes, dimension)
+    points = _points(rng, nodes, dimension, 10.0 if moves else 1e3)
     steppers = [s for s in der.steppers() if dimension == 2 or s.name != "energy_momentum"]
     stepper = steppers[rng.integers(len(steppers))]
     rod: Scene = {"EA": power(rng, 2, _stiffest(stepper) if moves else 10), "mass_per_length": 1.0}
@@ -151,7 +150,9 @@ def extremes(rng: Random) -> Drawn:
     if natural < 0.25:
         rod["natural"] = 0.0 if dimension == 2 else np.zeros(2)
     elif natural < 0.5:
-        rod["natural"] = rng.uniform(-1, 1, None if dimension == 2 else 2) * (3 if moves else 10)
+        # What the mesh can carry: edges turn by less than half a turn.
+        largest = min(3.0 if moves else 10.0, 1.0 / _longest_cell(points))
+        rod["natural"] = rng.uniform(-1, 1, None if dimension == 2 else 2) * largest
     held = _supports(rng, dimension)
     if nodes == 2 and "spring" not in held[-1]:
         held = [{"at": "start", "clamp": True}]  # with both nodes held nothing could move
@@ -161,8 +162,8 @@ def extremes(rng: Random) -> Drawn:
     if moves:
         if rng.random() < 0.4:
             loads.append({"damping": power(rng, -1, 2)})
-        tolerance = power(rng, -3, -2)
-        duration = float(rng.uniform(0.05, 0.4))
+        tolerance = power(rng, -3, -2) * (10 if stepper.order == 1 else 1)
+        duration = float(rng.uniform(0.02, 0.2)) / np.sqrt(rod.get("EI1", 1.0))
         time = {"duration": duration, "tolerance": tolerance, "integrator": stepper.name}
     if dimension == 3 and "natural" in rod:
         # The directors define the two components, so they are given and turn with the axes.
@@ -173,12 +174,18 @@ def extremes(rng: Random) -> Drawn:
     return Drawn(dimension, points, rod, held, loads, time)
 
 
-def _points(rng: Random, nodes: int, dimension: int) -> Array:
-    """A straight, wavy or crumpled line from the origin, of even or very uneven edges."""
+def _longest_cell(points: Array) -> float:
+    """The largest Voronoi length of the inner nodes."""
+    edges = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    return float((edges[1:] + edges[:-1]).max() / 2)
+
+
+def _points(rng: Random, nodes: int, dimension: int, uneven: float) -> Array:
+    """A straight, wavy or crumpled line from the origin; one of five has very uneven edges."""
     edges = nodes - 1
     lengths = np.ones(edges)
     if rng.random() < 0.2:
-        lengths = 10.0 ** rng.uniform(-3, 0, edges)
+        lengths = np.array([power(rng, -np.log10(uneven), 0) for _ in range(edges)])
     lengths /= lengths.sum()
     s = np.cumsum(lengths) - lengths / 2
     angle = np.full(edges, rng.uniform(-np.pi, np.pi))

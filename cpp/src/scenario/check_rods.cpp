@@ -37,9 +37,22 @@ void place_evenly(RodText& rod) {
   rod.points.back() = rod.to;
 }
 
-bool finite_length(const RestLine& line, const Path& path, Diagnostics& diagnostics) {
-  if (std::isfinite(line.length())) return true;
-  diagnostics.add(path, "the rod is too long for double-precision numbers");
+/// The longest length [m] whose fourth power is a double, and so are the reciprocals.
+constexpr double kLongest = 1e70;
+
+/// Whether what is computed of the rod's lengths, up to their fourth powers, are numbers.
+bool is_computable(const RodText& rod, const RestLine& line, const Path& path,
+                   Diagnostics& diagnostics) {
+  double farthest = line.length();
+  for (const Components& point : rod.points) {
+    for (const double component : point) farthest = std::max(farthest, std::abs(component));
+  }
+  const double shortest = line.length() / (line.num_nodes() - 1);
+  if (farthest < kLongest && shortest > 1.0 / kLongest) return true;
+  diagnostics.add(path,
+                  fmt::format("the rod is too {} for double-precision numbers: write lengths "
+                              "and coordinates between {:g} and {:g} m",
+                              farthest < kLongest ? "short" : "long", 1.0 / kLongest, kLongest));
   return false;
 }
 
@@ -49,14 +62,14 @@ bool check_straight(const RodText& rod, const RestLine& line, const Path& path,
     diagnostics.add(path / "to", "must differ from 'from': the rod has no length");
     return false;
   }
-  return finite_length(line, path / "to", diagnostics);
+  return is_computable(rod, line, path / "to", diagnostics);
 }
 
 /// No edge without length, no edge that runs straight back over the one before.
 bool check_polyline(const RodText& rod, const RestLine& line, const Path& path,
                     Diagnostics& diagnostics) {
   const Path points = path / "points";
-  if (!finite_length(line, points, diagnostics)) return false;
+  if (!is_computable(rod, line, points, diagnostics)) return false;
   const std::size_t before = diagnostics.size();
   const int count = line.num_nodes();
   Vec3 before_it = Vec3::Zero();  // the edge before

@@ -5,8 +5,8 @@
 
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
+#include "der/energies/elements_of.hpp"
 #include "der/energies/registry.hpp"
-#include "der/energies/stretched_edges.hpp"
 #include "der/statics/potential.hpp"
 #include "der/supports/clamp.hpp"
 
@@ -45,20 +45,32 @@ double spring_travel(const Model& model, double load) {
   return farthest;
 }
 
-/// Smallest ratio of the length of an edge to its rest length; 1 if none is shortened.
+/// Smallest ratio of the length of an edge, as its stretching sees it, to its rest length; 1 if
+/// none is shortened.
+template <int Dim, class PivotKind>
 double smallest_length_ratio(const Model& model, const Configuration& here) {
+  using Plain = Stretch<Dim>;
+  using Clamped = FromPivot<Plain, PivotKind>;
   double smallest = 1.0;
-  for_each_stretched_edge(*model.elements,
-                          [&](const EffectiveEdge& edge, const Stretch<2>::Constants& c) {
-                            smallest = std::min(smallest, edge.vector(here).norm() / c.rest_length);
-                          });
-  if (model.dimension == 3) {
-    for (const Edge& edge : model.edges) {
-      const double length = along_edge<3>(edge, here.coordinates).norm();
-      smallest = std::min(smallest, length / edge.rest_length);
-    }
+  const auto take = [&](const auto& ends, const typename Plain::Constants& c) {
+    smallest = std::min(smallest, Plain::edge(ends).norm() / c.rest_length);
+  };
+  const auto& plain = elements_of<Plain>(*model.elements);
+  for (std::size_t i = 0; i < plain.size(); ++i) {
+    take(gather(plain.dofs[i], here.coordinates), plain.constants[i]);
+  }
+  const auto& clamped = elements_of<Clamped>(*model.elements);
+  for (std::size_t i = 0; i < clamped.size(); ++i) {
+    const auto& c = clamped.constants[i];
+    const auto ends = gather(clamped.dofs[i], here.coordinates);
+    take(Clamped::from_pivots(c, here.controls, ends), c.element);
   }
   return smallest;
+}
+
+bool has_collapsed(const Model& model, const Configuration& here) {
+  return (model.dimension == 2 ? smallest_length_ratio<2, Pivot>(model, here)
+                               : smallest_length_ratio<3, SpatialPivot>(model, here)) < kCollapsed;
 }
 
 /// Whether an edge that supports guide along an axis, so that it cannot turn, points backwards.
@@ -91,8 +103,7 @@ std::optional<FailedSearch> Admissibility::check(const Configuration& here) cons
   if (model_.dofs.largest_motion(here.coordinates - origin_) > largest_drift_ + 2.0 * turned) {
     return FailedSearch{EquilibriumFailure::DriftsAway, {}};
   }
-  if (smallest_length_ratio(model_, here) < kCollapsed ||
-      planar_is_turned_inside_out(model_, here.coordinates)) {
+  if (has_collapsed(model_, here) || planar_is_turned_inside_out(model_, here.coordinates)) {
     return FailedSearch{EquilibriumFailure::Collapsed, {}};
   }
   return std::nullopt;

@@ -229,7 +229,7 @@ def strip_in_motion(case, edges, steps, stepper, spins=True):
     return histories(scene, ["middle", "end"], XYZ, duration / 8)[0]
 
 
-def untwisting(edges, steps, stepper):
+def untwisting(edges, steps, stepper, duration=0.24):
     """A slightly curved rod that is drawn without its natural twist and let go."""
     s = np.linspace(0, 0.5, edges + 1)
     points = np.column_stack([(1 - np.cos(2 * s)) / 2, 0 * s, np.sin(2 * s) / 2])
@@ -239,9 +239,9 @@ def untwisting(edges, steps, stepper):
     }
     round_section = {"circle": {"radius": 0.01}, "director": [1, 0, 0]}
     support = {**START, "clamp": True}
-    time = {"duration": 0.24, "step": 0.24 / steps, "integrator": stepper}
+    time = {"duration": duration, "step": duration / steps, "integrator": stepper}
     scene = rod_through(points, round_section, supports=[support], rod=rod, time=time)
-    return histories(scene, ["middle", "end"], XYZ, 0.03)[0]
+    return histories(scene, ["middle", "end"], XYZ, duration / 8)[0]
 
 
 def paths(spatial_reference, case):
@@ -276,6 +276,38 @@ def test_space_and_time_converge_at_order_2(spatial_reference, fitted_order, cas
     errors = [in_motion(case, n, 20 * n, "implicit_midpoint") - exact for n in sizes]
     assert fitted_order([1 / n for n in sizes], [np.sqrt(np.mean(e**2)) for e in errors]) > 1.9
     assert np.abs(errors[-1]).max() < bound
+    # Both meshes together, extrapolated with order 2: 1e-4 of the length of 0.5 m.
+    ratio = (sizes[-1] / sizes[-2]) ** 2
+    assert np.abs(ratio * errors[-1] - errors[-2]).max() / (ratio - 1) < 5e-5
+
+
+#: Steppers with the order that they have in time where sections twist.
+ORDERS = {
+    **dict.fromkeys(("implicit_euler", "explicit_euler"), 1),
+    **dict.fromkeys(("implicit_midpoint", "generalized_alpha", "newmark", "bdf2"), 2),
+    **dict.fromkeys(("tr_bdf2", "sdirk4", "sdirk5", "verlet"), 2),
+}
+
+
+@pytest.fixture(scope="module")
+def untwisted():
+    """The motion of one mesh: steps of the midpoint rule, extrapolated with order 2 to 3e-13 m."""
+    coarse, fine = (untwisting(10, steps, "implicit_midpoint", 0.06) for steps in (1600, 3200))
+    return (4 * fine - coarse) / 3
+
+
+@pytest.mark.parametrize("stepper", ORDERS)
+def test_order_in_time_where_sections_twist(fitted_order, untwisted, stepper):
+    """`sdirk4` and `sdirk5` have order 2 here, with errors far below those of the others."""
+    steps = [200, 400, 800]
+    errors = [np.abs(untwisting(10, n, stepper, 0.06) - untwisted).max() for n in steps]
+    assert fitted_order([1 / n for n in steps], errors) >= ORDERS[stepper] - 0.1
+    if stepper in ("sdirk4", "sdirk5"):  # the midpoint rule has 2.5e-6 m
+        assert errors[0] < 1e-8
+
+
+def test_every_stepper_for_rods_in_space_has_its_order_in_time():
+    assert {info.name for info in der.steppers()} == {*ORDERS, "energy_momentum"}
 
 
 def falling_strip(edges):

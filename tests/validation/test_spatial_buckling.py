@@ -1,5 +1,5 @@
 """Loads at which straight and planar equilibria become unstable in space, found by the count of
-unstable directions. References: `references/spatial_buckling.py`.
+unstable directions, or by the answer to a seed. References: `references/spatial_buckling.py`.
 """
 
 import numpy as np
@@ -69,3 +69,42 @@ def test_greenhill(spatial_reference, fitted_order, thrust):
         errors.append(critical(is_unstable, 0.8 * exact, 1.1 * exact, 1e-7) / exact - 1)
     assert fitted_order([1 / n for n in SIZES], errors) > 1.9
     assert np.abs(errors[-1]) < 0.02
+
+
+@pytest.mark.parametrize("thrust", [-5, 0, 5])
+@pytest.mark.parametrize("ends", ["axial", "tangential"])
+def test_greenhill_with_hinged_ends(spatial_reference, fitted_order, ends, thrust):
+    """Greenhill 1883: 2 pi EI/L without thrust, whether the moments are vectors along the axis or
+    follow the tangents. Such moments have no potential and the verdict is `not_judged`, so that
+    the critical moment is the one at which the answer to a seed grows beyond all bounds: the zero
+    of one over that answer, a smooth function of the moment, by a cubic through four moments."""
+    exact = spatial_reference("spatial_buckling", f"twist.{ends}.thrust{thrust}")
+    if thrust == 0:
+        assert exact == pytest.approx(2 * np.pi, rel=1e-12)
+    rod = section(EA=SLENDER, EI=1.0, GJ=2.0)
+    supports = [
+        {**START, "fix": ["x", "y", "z"]},
+        {**END, "fix": ["y", "z"]},
+        # Hinges leave the rod free to spin, which this holds without any torque.
+        {"rod": "rod", "at": "middle", "spring": {"rotational_stiffness": [0, 0, 10]}},
+    ]
+    follows = {"follower": True} if ends == "tangential" else {}
+    seed = {"point_force": {"rod": "rod", "at": 0.3, "force": [0, 1e-6, 0]}}
+    push = {"point_force": {**END, "force": [-thrust, 0, 0]}}
+    shares = np.array([0.9, 0.93, 0.96, 0.98])
+    sizes, errors = [20, 40, 80], []
+    for n in sizes:
+        inverse = []
+        for moment in shares * exact:
+            moments = [
+                {"moment": {**place, "moment": [sign * moment, 0, 0], **follows}}
+                for place, sign in ((START, -1), (END, 1))
+            ]
+            scene = straight_rod(n, rod, supports=supports, loads=[*moments, push, seed])
+            values, result = measured(scene, ["middle"], "yz")
+            assert result.summary["stability"] == "not_judged"
+            inverse.append(1 / np.linalg.norm(values))
+        zeros = np.roots(np.polyfit(shares, inverse, 3))
+        errors.append(zeros[np.argmin(np.abs(zeros - 1))].real - 1)
+    assert fitted_order([1 / n for n in sizes], errors) >= 1.9
+    assert np.abs(errors[-1]) < 1e-3

@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, Any
 import der
 import matplotlib.pyplot as plt
 import numpy as np
-from der.plotting import PALETTE, style
-from der.plotting.style import look
+from der.plotting import PALETTE, style, time_colours
+from der.plotting.style import MUTED, look
 from tutorials import beam_study, control, falling_rod, finger, fitting
 
 if TYPE_CHECKING:
@@ -188,6 +188,56 @@ def actuated_finger() -> Figure:
 def helix_spring() -> Figure:
     """Draw a wire in space that coils up to its natural shape."""
     return der.run(CONFIGS / "helix_spring.yaml").plot()
+
+
+def bent_cantilever_45() -> Figure:
+    """Draw the arc from above and from the side under growing loads; published tips beside it."""
+    scene = der.load(CONFIGS / "bent_cantilever_45.yaml", model="spatial")
+    # Both views have one scale: the size [inches] of a unit of length, and the views' heights.
+    scale, width, heights = 0.064, 79, (36, 62)
+    size = (width * scale + 0.85, sum(heights) * scale + 1.4)
+    figure = plt.figure(figsize=size)
+    panels = []
+    for low, height in ((heights[1] * scale + 1.05, heights[0]), (0.55, heights[1])):
+        box = (0.7, low, width * scale, height * scale)
+        panels.append(figure.add_axes([x / size[i % 2] for i, x in enumerate(box)]))
+    loads = range(0, 601, 100)
+    for load, colour in zip(loads, reversed(time_colours(len(loads))), strict=True):
+        line = der.run(scene.with_(**{"loads.0.point_force.force": [0, 0, load]})).positions[-1]
+        for axes, across in zip(panels, (1, 2), strict=True):
+            axes.plot(line[:, 0], line[:, across], color=colour, linewidth=2.5, label=f"{load} N")
+    # The rod without shear of tests/validation/references/bent_cantilever.py.
+    for axes, tips in zip(panels, ((22.2453, 15.6854), (40.1894, 53.4718)), strict=True):
+        axes.plot([0, 0], [-3, 3], color=MUTED, linewidth=4, zorder=3)  # the wall
+        axes.scatter(
+            [58.7802, 47.1522], tips, s=100, color="none", edgecolor=MUTED, label="published"
+        )
+        axes.set(xlim=(-3, width - 3), xlabel="x")
+    panels[0].set(title="from above", ylabel="y", ylim=(-4, heights[0] - 4), xlabel="")
+    panels[1].set(title="from the side", ylabel="z", ylim=(-4, heights[1] - 4))
+    panels[1].legend(loc="upper left")
+    return figure
+
+
+def hanging_coil() -> Figure:
+    """Draw coils of five lengths beside each other, seen along y and along x."""
+    scene = der.load(CONFIGS / "hanging_coil.yaml")
+    figure, panels = plt.subplots(1, 2, figsize=(9.6, 4.6), sharey=True, layout="constrained")
+    for place, length in enumerate((0.08, 0.1, 0.2, 0.3, 0.4)):
+        line = der.run(scene.with_(**{"rods.rod.to": [0, 2.5e-4 * length, -length]})).positions[-1]
+        left = 0.06 * place
+        colour = PALETTE[0] if np.ptp(line[:, 1]) < 1e-3 else PALETTE[1]  # in the plane, or not
+        for axes, seen in zip(panels, (0, 1), strict=True):
+            axes.plot(left + line[:, seen], line[:, 2], color=colour, linewidth=2.5)
+            axes.plot([left - 0.008, left + 0.008], [0, 0], color=MUTED, linewidth=4, zorder=1)
+            axes.text(left, 0.014, f"{100 * length:g} cm", ha="center", color=colour)
+    for axes in panels:
+        axes.set(aspect="equal", xlim=(-0.035, 0.29), ylim=(-0.29, 0.03), xticks=[])
+        axes.spines.bottom.set_visible(False)
+        axes.grid(axis="x", visible=False)
+    panels[0].set(title="seen along y", ylabel="z [m]")
+    panels[1].set(title="seen along x: the shortest hangs in its plane")
+    return figure
 
 
 def spun_strip() -> Figure:
@@ -434,6 +484,8 @@ FIGURES: dict[str, Callable[[], Figure]] = {
         snap_through_arch,
         actuated_finger,
         helix_spring,
+        bent_cantilever_45,
+        hanging_coil,
         spun_strip,
         helical_buckling,
         twisted_ring,

@@ -117,6 +117,20 @@ TEST_CASE("model: springs against turning in the plane, and out of it") {
   CHECK(spring("2", kAlongZ) == "spatial");
 }
 
+TEST_CASE("model: springs that pull in the plane, and out of it") {
+  const auto spring = [](const std::string& keys) {
+    return model_of({{"supports",
+                      "[{rod: beam, at: start, clamp: true}, {rod: beam, at: end, "
+                      "spring: {" +
+                          keys + "}}]"}});
+  };
+  CHECK(spring("stiffness: 2, anchor: [1, 1, 0]").kind == ModelChoice::Planar);
+  CHECK(spring("stiffness: [2, 2, 0], anchor: [1, 0, 1]").kind == ModelChoice::Planar);
+  const ChosenModel pulled = spring("stiffness: [2, 2, 1e-6], anchor: [1, 0, 1e-6]");
+  CHECK(pulled.kind == ModelChoice::SpatialBend);
+  CHECK(pulled.reason == "the spring of supports.1 pulls along z, and no rod can twist");
+}
+
 TEST_CASE("model: supports that move in the plane, and out of it") {
   const auto support = [](const std::string& keys) {
     return chosen({{"supports", "[{rod: beam, at: start, " + keys + "}]"}});
@@ -133,6 +147,11 @@ TEST_CASE("model: supports that move in the plane, and out of it") {
   CHECK(turned("true", "[0, 1, 1]") == "spatial_bend");
   CHECK(turned("true", "[1e-6, 1, 1]") == "spatial");  // it spins the section
   CHECK(turned("tangent", "[1e-6, 1, 1]") == "spatial_bend");
+  // A rotation that stays as it is spins a section only if it has a name, so that a program may
+  // change it.
+  const std::string still = "clamp: true, prescribe: {rotation: {axis: [1, 1, 0], angle: 0}}";
+  CHECK(support(still) == "spatial_bend");
+  CHECK(support("name: hand, " + still) == "spatial");
   CHECK(support("clamp: true, prescribe: {twist: 0}") == "planar");
   CHECK(support("clamp: true, prescribe: {twist: {times: [0, 1], values: [0, 1]}}") == "spatial");
 }
@@ -190,6 +209,18 @@ TEST_CASE("model: bending without twist takes equal bending stiffnesses") {
   CHECK(direct("EI: 1, rotary_inertia: 1e-6") == "spatial");
 }
 
+TEST_CASE("model: a rotary inertia counts where something moves") {
+  const Overrides spins =
+      kAlongZ + Overrides{{"rods.beam.material", ""},
+                          {"rods.beam.cross_section",
+                           "{stiffness: {EA: 1, EI: 1, GJ: 1, mass_per_length: 1, "
+                           "rotary_inertia: 1}}"},
+                          {"supports", "[{rod: beam, at: start, clamp: true}]"}};
+  CHECK(chosen(spins) == "spatial");  // over time
+  CHECK(chosen(spins + Overrides{{"time", ""}, {"analysis", "modes"}}) == "spatial");
+  CHECK(chosen(spins + Overrides{{"time", ""}, {"analysis", "static"}}) == "spatial_bend");
+}
+
 TEST_CASE("model: bending without twist takes rods that are straight without stress") {
   CHECK(chosen(kAlongZ + Overrides{{"rods.beam.from", "[0.1, 0.2, 0.3]"},
                                    {"rods.beam.to", "[0.7, 0.9, 1.3]"}}) == "spatial_bend");
@@ -235,6 +266,15 @@ TEST_CASE("model: bending without twist takes at most one section of a rod that 
         "loads.0.point_force has a z component, and supports.0 and supports.1 both hold the "
         "section of rod 'beam'");
   CHECK(held("true", "true").kind == ModelChoice::Spatial);
+
+  const auto held_all_along = [](const std::string& clamp) {
+    return model_of({{"loads", "[{gravity: [0, 0, -1]}]"},
+                     {"supports", "[{rod: beam, at: all, clamp: " + clamp + "}]"}});
+  };
+  CHECK(held_all_along("tangent").kind == ModelChoice::SpatialBend);
+  CHECK(held_all_along("true").kind == ModelChoice::Spatial);
+  CHECK(held_all_along("true").reason ==
+        "loads.0.gravity has a z component, and supports.0 holds every section of rod 'beam'");
 }
 
 TEST_CASE("model: one that is asked for may be larger than needed, not smaller") {

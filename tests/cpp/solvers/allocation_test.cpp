@@ -86,9 +86,9 @@ TEST_CASE("a step allocates nothing, with any stepper") {
   }
 }
 
-TEST_CASE("a step in space allocates nothing, with any stepper that it has") {
-  for (const char* const model : {"spatial_bend", "spatial"}) {
-    const std::string scene = std::string("model: ") + model + R"(
+/// A rod in space that is held at one end and falls, with `more` of the scene.
+std::string falling_in_space(const std::string& model, const std::string& more) {
+  return "model: " + model + R"(
 rods:
   - name: rod
     nodes: 9
@@ -101,16 +101,66 @@ supports:
   - {rod: rod, at: start, clamp: tangent}
 loads:
   - gravity: [0, -9.81, 1]
-time: {duration: 1, step: 2e-4}
-)";
-    for (const StepperInfo& info : stepper_registry()) {
-      if (std::string(info.name) == "energy_momentum") continue;  // for planar rods alone
-      CAPTURE(model);
-      CAPTURE(info.name);
-      Simulation simulation(
-          Scenario::parse(scene, "scene", {{"time.integrator", std::string(info.name)}}));
-      CHECK(allocations_of_steps(simulation) == 0);
-    }
+)" + more;
+}
+
+/// Calls `check(scene, stepper)` for all steppers that a scene in space has.
+template <class Check>
+void for_each_stepper_in_space(const std::string& scene, const Check& check) {
+  for (const StepperInfo& info : stepper_registry()) {
+    if (std::string(info.name) == "energy_momentum") continue;  // for planar rods alone
+    CAPTURE(info.name);
+    Simulation simulation(
+        Scenario::parse(scene, "scene", {{"time.integrator", std::string(info.name)}}));
+    check(simulation);
+  }
+}
+
+TEST_CASE("a step in space allocates nothing, with any stepper that it has") {
+  for (const char* const model : {"spatial_bend", "spatial"}) {
+    CAPTURE(model);
+    for_each_stepper_in_space(
+        falling_in_space(model, "time: {duration: 1, step: 2e-4}\n"),
+        [](Simulation& simulation) { CHECK(allocations_of_steps(simulation) == 0); });
+  }
+}
+
+TEST_CASE("an adaptive step in space allocates nothing, with any stepper, rejected ones included") {
+  for (const char* const model : {"spatial_bend", "spatial"}) {
+    CAPTURE(model);
+    for_each_stepper_in_space(falling_in_space(model, "time: {duration: 1, tolerance: 1e-4}\n"),
+                              [](Simulation& simulation) {
+                                CHECK(allocations_of_steps(simulation) == 0);
+                                // A blow to the end, for which the next step is too long.
+                                simulation.state().velocities.segment<3>(24) << 0.0, 0.0, 10.0;
+                                const long before = allocations;
+                                simulation.step();
+                                CHECK(allocations == before);
+                                CHECK(simulation.counters().rejected_steps > 0);
+                              });
+  }
+}
+
+TEST_CASE("a step of a ring allocates nothing, in the plane and in space") {
+  for (const char* const model : {"planar", "spatial_bend", "spatial"}) {
+    CAPTURE(model);
+    Simulation simulation(Scenario::parse("model: " + std::string(model) + R"(
+rods:
+  - name: ring
+    closed: true
+    points: [[1, 0, 0], [0.7, 0.7, 0], [0, 1, 0], [-0.7, 0.7, 0], [-1, 0, 0], [-0.7, -0.7, 0],
+             [0, -1, 0], [0.7, -0.7, 0]]
+    natural_curvature: [0, 0]
+    cross_section: {circle: {radius: 0.01}}
+    material: {youngs_modulus: 1e6, poissons_ratio: 0.3, density: 1000}
+supports:
+  - {rod: ring, at: start, fix: [x, y, z]}
+loads:
+  - gravity: [0, -9.81, 0]
+time: {duration: 1, step: 1e-3, integrator: implicit_midpoint}
+)"));
+    CHECK(allocations_of_steps(simulation) == 0);
+    CHECK(simulation.counters().newton_iterations >= 40);
   }
 }
 

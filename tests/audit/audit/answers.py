@@ -150,7 +150,7 @@ def _growth(drawn: Drawn, given: Units) -> float:
             starts.append(motion.save_state())
         motion.run()
         end = motion.positions.copy()
-        growths = []
+        growths: list[float] = []
         for start in starts:
             for simulation, count in ((long, 1), (halves, 2)):
                 simulation.restore_state(start)

@@ -20,8 +20,8 @@ using test::diagnostics;
 
 /// The value that a number in the text is read as.
 double read(const std::string& text) {
-  const Scenario scene = beam({{"rods.beam.to", "[" + text + ", 0]"}});
-  return scene.scene().rods[0].points.back()[0];
+  const Scenario scene = beam({{"rods.beam.initial_velocity", "[" + text + ", 0]"}});
+  return scene.scene().rods[0].initial_velocity.back()[0];
 }
 
 TEST_CASE("numbers: decimal notations") {

@@ -318,11 +318,11 @@ TEST_CASE("a rod pressed onto the pivot of its clamp has collapsed, in the plane
     CAPTURE(model);
     const std::string outcome =
         failure("title: t\nmodel: " + model + "\nrods:\n  - {name: rod, nodes: 60, from: [0, 0" +
-                    zero + "], to: [0.6, 0.8" + zero +
-                    "], cross_section: {stiffness: {EA: 100, EI: 1, mass_per_length: 1}}}\n"
-                    "supports:\n  - {rod: rod, at: start, clamp: true}\n"
-                    "loads:\n  - gravity: [-865, -292" +
-                    zero + "]\nanalysis: static\n", );
+                zero + "], to: [0.6, 0.8" + zero +
+                "], cross_section: {stiffness: {EA: 100, EI: 1, mass_per_length: 1}}}\n"
+                "supports:\n  - {rod: rod, at: start, clamp: true}\n"
+                "loads:\n  - gravity: [-865, -292" +
+                zero + "]\nanalysis: static\n");
     CHECK(outcome.rfind("collapsed: ", 0) == 0);
   }
 }

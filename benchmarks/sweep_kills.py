@@ -1,11 +1,14 @@
 """Kill the driver and the workers of a sweep at random moments; show that no row suffers.
 
-    python benchmarks/sweep_kills.py [--kills N] [--seed N]
+    pip install .[dask]
+    python benchmarks/sweep_kills.py [--kills N] [--members N] [--seed N]
 
-The driver of a sweep is killed by SIGKILL and the sweep resumed, N times; then workers of a Dask
-cluster of this machine are killed by SIGKILL while they run a sweep, N times. After each kill every
-row that was there is there as it was, to its cost, and none twice; at the end all rows are those of
-a sweep that nobody disturbed, bit for bit but for their cost. Fails with exit code 1 otherwise.
+A sweep runs on a Dask cluster of processes on this machine. First its driver, the command
+``der sweep --dask``, is killed by SIGKILL and the sweep resumed, N times; then a worker is killed
+by SIGKILL, N times while it sweeps. The rows that are there at each kill are compared with those at
+the end, to their cost, and the rows at the end with those of a sweep on threads that nobody
+disturbed, bit for bit but for their cost. Ends with a table, and with exit code 1 if a row is lost,
+twice or different.
 """
 
 from __future__ import annotations
@@ -19,14 +22,84 @@ import sys
 import tempfile
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import der
+
+if TYPE_CHECKING:
+    from distributed import Client, LocalCluster
 
 SCENE = Path(__file__).parent.parent / "configs/cantilever.yaml"
 NODES = 401
 WORKERS = 2
 VARIED = {"loads.0.point_force.force.1": "-5:0:{members}", "rods.arm.nodes": str(NODES)}
+#: The mean time between two kills, as a share of that of a sweep divided by the kills. Below 1, so
+#: that a sweep seldom ends before the last kill; then another is begun.
+PACE = 0.8
+#: How long a worker may take to start again before the kills go on [s].
+PATIENCE = 60.0
+
+Row: TypeAlias = dict[str, Any]
+
+
+@dataclass
+class Outcome:
+    """What became of sweeps that were killed again and again.
+
+    Attributes
+    ----------
+    killed
+        Who was killed.
+    folder
+        Where the folders of the sweeps are. There is more than one only if a sweep ended before the
+        last kill.
+    seen
+        For each kill the number of the sweep, and the rows that were there.
+    sweeps
+        How many there were.
+    """
+
+    killed: str
+    folder: Path
+    seen: list[tuple[int, list[Row]]] = field(default_factory=list)
+    sweeps: int = 1
+
+    @property
+    def out(self) -> Path:
+        """The folder of the last sweep."""
+        return self.folder / f"{self.killed} {self.sweeps}"
+
+    def note(self, moment: float) -> None:
+        """Note the rows that are there after a kill."""
+        rows = rows_of(self.out)
+        self.seen.append((self.sweeps, rows))
+        print(
+            f"{self.killed} {len(self.seen)}: killed after {moment:.2f} s, {len(rows)} rows are "
+            f"there in sweep {self.sweeps}",
+            flush=True,
+        )
+
+    def check(self, reference: dict[int, Row]) -> dict[str, int]:
+        """Count the rows that are lost, twice and different."""
+        counts = {"lost": 0, "twice": 0, "different": 0}
+        for number in range(1, self.sweeps + 1):
+            rows = rows_of(self.folder / f"{self.killed} {number}")
+            last = by_member(rows)
+            lost = set(reference) - set(last)
+            different = {n for n, row in last.items() if without_cost(row) != reference.get(n)}
+            counts["twice"] += len(rows) - len(last)
+            for earlier in (rows for sweep, rows in self.seen if sweep == number):
+                known = by_member(earlier)
+                counts["twice"] += len(earlier) - len(known)
+                lost |= set(known) - set(last)
+                # To the cost, which tells whether a row was run again.
+                different |= {n for n, row in known.items() if n in last and last[n] != row}
+            counts["lost"] += len(lost)
+            counts["different"] += len(different)
+        return counts
 
 
 def vary(members: int) -> dict[str, str]:
@@ -34,111 +107,158 @@ def vary(members: int) -> dict[str, str]:
     return {path: values.format(members=members) for path, values in VARIED.items()}
 
 
-def bits(sweep: der.Sweep) -> list[dict[str, str]]:
-    """Return the rows without their costs, floats as exact texts."""
-    return [
-        {name: repr(value) for name, value in row.items() if name != "seconds"}
-        for row in sweep.rows
-    ]
+def exact(sweep: der.Sweep) -> list[Row]:
+    """Return the rows, floats as exact texts: NaN is not equal to itself."""
+    return [{name: repr(value) for name, value in row.items()} for row in sweep.rows]
 
 
-def rows_of(out: Path) -> dict[int, dict[str, object]]:
-    """Return the rows by the number of their member; fail if one is twice."""
+def by_member(rows: list[Row]) -> dict[int, Row]:
+    """Return the rows by the number of their member."""
+    return {int(row["member"]): row for row in rows}
+
+
+def without_cost(row: Row) -> Row:
+    """Return a row without what no two runs have in common."""
+    return {name: value for name, value in row.items() if name != "seconds"}
+
+
+def rows_of(out: Path) -> list[Row]:
+    """Return the rows that are in a folder."""
     try:
-        rows = der.load_sweep(out).rows
+        return exact(der.load_sweep(out))
     except (FileNotFoundError, ValueError):  # it was killed before it began
-        return {}
-    found = {row["member"]: row for row in rows}
-    if len(found) != len(rows):
-        raise SystemExit(f"{len(rows) - len(found)} rows are twice")
-    return found
+        return []
 
 
-def check_kept(before: dict[int, dict[str, object]], after: dict[int, dict[str, object]]) -> None:
-    """Fail if a row is lost or changed."""
-    lost = [number for number, row in before.items() if after.get(number) != row]
-    if lost:
-        raise SystemExit(f"rows that are lost or changed: {lost}")
-
-
-def command(members: int, out: Path) -> list[str]:
-    """Return the command line of a sweep."""
+def command(members: int, out: Path, address: str) -> list[str]:
+    """Return the command line of a sweep on a cluster."""
     line = [sys.executable, "-m", "der", "sweep", str(SCENE), "--out", str(out), "--resume"]
     for path, values in vary(members).items():
         line += ["--vary", f"{path}={values}"]
-    return line
+    return [*line, "--dask", address]
 
 
-def kill_drivers(kills: int, members: int, chance: random.Random, out: Path) -> der.Sweep:
-    """Sweep by the command, killed so many times, and return what it has in the end."""
+def seconds_of(line: list[str]) -> float:
+    """Run a command to its end, and return how long it takes [s]."""
     begun = time.monotonic()
-    silent = {"check": True, "stdout": subprocess.DEVNULL}
-    subprocess.run(command(members, out.with_name("undisturbed")), **silent)
-    whole = time.monotonic() - begun
-    kept: dict[int, dict[str, object]] = {}
-    for number in range(kills):
-        process = subprocess.Popen(command(members, out), stdout=subprocess.DEVNULL)
-        time.sleep(chance.uniform(0.0, 0.4 * whole))
-        process.send_signal(signal.SIGKILL)
-        if process.wait() == 0:
-            print("it was finished before it could be killed: give more --members")
-        found = rows_of(out)
-        check_kept(kept, found)
-        print(f"driver {number + 1}: {len(kept)} -> {len(found)} rows of {members}")
-        kept = found
-    subprocess.run(command(members, out), **silent)
-    check_kept(kept, rows_of(out))
-    return der.load_sweep(out)
+    subprocess.run(line, check=True, stdout=subprocess.DEVNULL)
+    return time.monotonic() - begun
 
 
-def kill_workers(kills: int, members: int, chance: random.Random, out: Path) -> der.Sweep:
-    """Sweep on a Dask cluster, some worker of which is killed so many times."""
-    import distributed
+def kill_drivers(
+    cluster: LocalCluster, kills: int, members: int, chance: random.Random, folder: Path
+) -> Outcome:
+    """Kill the command so many times, each at a random moment, and let it end at last."""
+    address = cluster.scheduler_address
+    start = seconds_of(command(2, folder / "start", address))
+    whole = seconds_of(command(members, folder / "undisturbed", address))
+    longest = start + 2.0 * PACE * max(whole - start, 0.0) / kills
+    outcome = Outcome("driver", folder)
+    while len(outcome.seen) < kills:
+        begun = time.monotonic()
+        process = subprocess.Popen(
+            command(members, outcome.out, address), stdout=subprocess.DEVNULL
+        )
+        time.sleep(chance.uniform(0.0, longest))
+        process.kill()
+        moment = time.monotonic() - begun
+        if process.wait() == -signal.SIGKILL:
+            outcome.note(moment)
+        else:
+            outcome.sweeps += 1
+    subprocess.run(command(members, outcome.out, address), check=True, stdout=subprocess.DEVNULL)
+    return outcome
 
-    done = threading.Event()
-    with (
-        distributed.LocalCluster(
-            WORKERS, threads_per_worker=1, dashboard_address=None, silence_logs=50
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
 
-        def kill() -> None:
-            for number in range(kills):
-                victims: list[int] = []
-                if not done.wait(chance.uniform(0.2, 3.0)):
-                    # One that is killed while it starts may not be started again.
-                    while len(victims) < WORKERS and not done.wait(0.1):
-                        victims = list(client.run(os.getpid, on_error="ignore").values())
-                if done.is_set():
-                    print("it was finished before all kills: give more --members")
-                    return
-                os.kill(chance.choice(victims), signal.SIGKILL)
-                print(f"worker {number + 1}: killed")
+def all_workers(cluster: LocalCluster, client: Client, done: threading.Event) -> list[int]:
+    """Return the processes of all workers, once they are all there."""
+    found: list[int] = []
+    give_up = time.monotonic() + PATIENCE
+    while len(found) < WORKERS and not done.wait(0.1):
+        if time.monotonic() > give_up:
+            raise RuntimeError("a worker was not started again")
+        # Dask starts a worker again, but not one that was killed while it started; it forgets that
+        # one after a while, and then this asks for another.
+        cluster.scale(WORKERS)
+        found = list(client.run(os.getpid, on_error="ignore").values())
+    return found
 
-        killer = threading.Thread(target=kill)
-        killer.start()
-        swept = der.sweep(SCENE, vary(members), out=out, executor=client)
-        done.set()
-        killer.join()
-    return swept
+
+def kill_till_done(
+    cluster: LocalCluster,
+    client: Client,
+    kills: int,
+    chance: random.Random,
+    longest: float,
+    outcome: Outcome,
+    done: threading.Event,
+) -> None:
+    """Kill workers at random moments until there were enough, or the sweep is done."""
+    begun = time.monotonic()
+    while len(outcome.seen) < kills:
+        done.wait(chance.uniform(0.0, longest))
+        victims = all_workers(cluster, client, done)
+        if done.is_set():
+            return
+        os.kill(chance.choice(victims), signal.SIGKILL)
+        outcome.note(time.monotonic() - begun)
+
+
+def kill_workers(
+    cluster: LocalCluster, kills: int, members: int, chance: random.Random, folder: Path
+) -> Outcome:
+    """Sweep while some worker is killed so many times, each at a random moment."""
+    from distributed import Client
+
+    outcome = Outcome("worker", folder)
+    with Client(cluster) as client:
+        begun = time.monotonic()
+        der.sweep(SCENE, vary(members), out=folder / "calm", executor=client)
+        longest = 2.0 * PACE * (time.monotonic() - begun) / kills
+        while True:
+            done = threading.Event()
+            with ThreadPoolExecutor(1) as killers:
+                killer = killers.submit(
+                    kill_till_done, cluster, client, kills, chance, longest, outcome, done
+                )
+                der.sweep(SCENE, vary(members), out=outcome.out, executor=client)
+                done.set()
+                killer.result()
+            if len(outcome.seen) == kills:
+                return outcome
+            outcome.sweeps += 1
 
 
 def main() -> None:
-    """Kill, and compare."""
+    """Kill, compare, and print a table."""
+    from distributed import LocalCluster
+
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--kills", type=int, default=10, metavar="N")
-    parser.add_argument("--members", type=int, default=10000, metavar="N")
+    parser.add_argument("--members", type=int, default=6000, metavar="N")
     parser.add_argument("--seed", type=int, default=0, metavar="N")
-    arguments = parser.parse_args()
-    chance = random.Random(arguments.seed)
-    with tempfile.TemporaryDirectory() as folder:
-        reference = bits(der.sweep(SCENE, vary(arguments.members)))
+    options = parser.parse_args()
+    chance = random.Random(options.seed)
+    threads = exact(der.sweep(SCENE, vary(options.members)))
+    reference = {number: without_cost(row) for number, row in by_member(threads).items()}
+    checked = []
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        LocalCluster(
+            WORKERS, threads_per_worker=1, dashboard_address=None, silence_logs=50
+        ) as cluster,
+    ):
         for way in (kill_drivers, kill_workers):
-            swept = way(arguments.kills, arguments.members, chance, Path(folder) / way.__name__)
-            if bits(swept) != reference:
-                raise SystemExit(f"{way.__name__}: rows differ from those of a sweep undisturbed")
-            print(f"{way.__name__}: {len(swept)} rows, none lost, none twice, none different")
+            outcome = way(cluster, options.kills, options.members, chance, Path(folder))
+            checked.append((outcome, outcome.check(reference)))
+    print("\n| killed by SIGKILL | rows there at the kills | lost | twice | different |")
+    print("|---|---|---|---|---|")
+    for outcome, counts in checked:
+        there = ", ".join(str(len(rows)) for _, rows in outcome.seen)
+        numbers = " | ".join(map(str, counts.values()))
+        print(f"| {outcome.killed}, {len(outcome.seen)} times | {there} | {numbers} |")
+    if any(any(counts.values()) for _, counts in checked):
+        raise SystemExit(1)
 
 
 if __name__ == "__main__":

@@ -10,13 +10,13 @@ import fcntl
 import json
 import os
 import sqlite3
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from der.errors import DerError
-from der.sweeps.design import Design
+from der.sweeps.design import Design, Member
 from der.sweeps.table import RUN_COLUMNS, Column, Kind, Table
 from der.sweeps.values import stored
 
@@ -156,29 +156,28 @@ class Store:
         names = ", ".join(map(_quoted, paths))
         return set(self._ask(f"SELECT {names} FROM runs"))
 
-    def write(self, table: Table, parameters: dict[int, dict[str, Any]]) -> None:
+    def write(self, table: Table, paths: Iterable[str], values: Mapping[int, Member]) -> None:
         """Add finished members, all of them or none.
 
         Parameters
         ----------
         table
             Their rows.
-        parameters
-            By number, the values of their parameters by path.
+        paths, values
+            The parameters, and by number those of each member.
         """
-        names = [column.name for column in RUN_COLUMNS]
-        names += next(iter(parameters.values()), {})
-        names += table.columns
-        for row in table.rows:
-            own = parameters[row["member"]]
-            row.update((path, stored(value)) for path, value in own.items())
+        run, found = [column.name for column in RUN_COLUMNS], list(table.columns)
+        names = [*run, *paths, *found]
         places = ", ".join("?" * len(names))
+        rows = (
+            (*map(row.get, run), *map(stored, values[row["member"]]), *map(row.get, found))
+            for row in table.rows
+        )
         with self._transaction():
             for column in table.columns.values():
                 self._add_column(column)
             self._base.executemany(
-                f"INSERT INTO runs ({', '.join(map(_quoted, names))}) VALUES ({places})",
-                table.tuples(names),
+                f"INSERT INTO runs ({', '.join(map(_quoted, names))}) VALUES ({places})", rows
             )
 
     def last(self) -> int:

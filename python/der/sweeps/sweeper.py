@@ -264,11 +264,7 @@ class _Sweeper:
             table = self._table_of(chunk, future)
             if table is None:
                 continue
-            names = {
-                number: dict(zip(chunk.paths, values, strict=True))
-                for number, values in chunk.members
-            }
-            self._store.write(table, names)
+            self._store.write(table, chunk.paths, dict(chunk.members))
             self._finished += len(table.rows)
             self._seconds += sum(row["seconds"] for row in table.rows)
             if self._progress is not None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -71,8 +70,3 @@ class Table:
         if name not in self.columns:
             self.columns[name] = Column(name, kind, unit)
         self.rows[-1][name] = value
-
-    def tuples(self, names: list[str]) -> Iterator[tuple[Any, ...]]:
-        """Yield the rows with the columns of these names; None where a member has no value."""
-        for row in self.rows:
-            yield tuple(map(row.get, names))

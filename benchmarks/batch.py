@@ -1,6 +1,6 @@
 """The cost of `der.Batch` beside the simulations in it, in one run; best on a machine that is idle.
 
-    python benchmarks/batch.py [--quick] [--cpp PROGRAM]
+    python benchmarks/batch.py [--quick] [--cpp PROGRAM] [--peers]
 
 1. Swings: 1,000 soft rods of 24 elements, clamped at one end, fall for 1 s in 300 steps of
    `implicit_midpoint`: those with which benchmarks/peers.py finds the tip within 1e-3 m of the
@@ -10,9 +10,12 @@
    `batch` and `loop_over_simulations` of der_benchmarks (`--cpp`; left out if it is not built).
 3. Building, memory and resets of members of 51 nodes, of one scene and with a modulus of its own
    for each.
+4. With `--peers` (`pip install .[peers]`): swings for a second of one core in a batch of `der`, in
+   `mujoco.rollout` and in a block of PyElastica, with the error of each.
 
 Ways are taken in turns, and the best of several times counts, so that other work on the machine
-disturbs all alike. Seconds are those of the clock but for building and resets: those of the CPU.
+disturbs all alike. Seconds are those of the clock but for building, resets and
+peers: those of the CPU.
 """
 
 from __future__ import annotations
@@ -31,9 +34,10 @@ from typing import Any
 
 import der
 import numpy as np
-from comparison.run_der import controls, implicit
+from comparison.codes import DER, MUJOCO, PYELASTICA, missing_text
+from comparison.run_der import controls, implicit, run_batch
 from comparison.scene import FRAMES, distance, steps_per_frame
-from comparison.swing import code_der, problem
+from comparison.swing import batches, code_der, problem
 
 SWING = implicit(24, 3, "implicit_midpoint")
 ROOT = Path(__file__).resolve().parents[1]
@@ -47,13 +51,8 @@ def swing(elements: int) -> der.Scenario:
 
 def tip_error(scene: der.Scenario) -> float:
     """Return the largest distance [m] of a batch's tips from the continuum's over all frames."""
-    batch = der.Batch(scene, 2)
-    path = [batch.positions[:, -1].copy()]
-    for _ in range(FRAMES):
-        batch.step(steps_per_frame(SWING))
-        path.append(batch.positions[:, -1].copy())
-    tips = np.array(path)
-    return max(distance(tips[:, i], problem.reference()) for i in range(2))
+    _, tips = run_batch(der.Batch(scene, 2), steps_per_frame(SWING))
+    return max(distance(tip, problem.reference()) for tip in tips)
 
 
 def best_of(ways: dict[str, Callable[[], object]], repeats: int) -> dict[str, float]:
@@ -176,6 +175,14 @@ def print_building(members: int) -> None:
         )
 
 
+def peers(repeats: int, quick: bool) -> None:
+    """Print members a second of each code that is installed."""
+    codes = (DER, MUJOCO, PYELASTICA)
+    for code in codes:
+        print(f"{code.title} {code.version()}" if code.is_installed() else missing_text(code))
+    print(batches.table(batches.measure(repeats, quick)))
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure and print."""
     parser = argparse.ArgumentParser(
@@ -189,6 +196,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         metavar="PROGRAM",
         help="der_benchmarks, as built by the preset `release`",
     )
+    parser.add_argument("--peers", action="store_true", help="compare with other codes as well")
     options = parser.parse_args(arguments)
     throughput(100 if options.quick else 1000, 2 if options.quick else 5)
     if options.cpp.exists():
@@ -196,6 +204,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     else:
         print(f"no program {options.cpp}: build it with `cmake --preset release`, or name it")
     print_building(1000 if options.quick else 10_000)
+    if options.peers:
+        peers(2 if options.quick else 5, options.quick)
     return 0
 
 

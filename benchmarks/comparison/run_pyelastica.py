@@ -7,6 +7,7 @@ from functools import cache
 
 import elastica
 import numpy as np
+from numpy.typing import NDArray
 
 from comparison import scene
 from comparison.scene import Config, Path
@@ -37,8 +38,9 @@ def run(
     seconds, path
         CPU seconds of the time loop and the path of the last node.
     """
-    _compile()
-    return _march(rod, config, gravity, dimension)
+    compile_kernels()
+    seconds, paths = march([rod], config, gravity, dimension)
+    return seconds, paths[0]
 
 
 def extrapolate(path: Callable[[int], Path], quick: bool) -> Path:
@@ -49,7 +51,7 @@ def extrapolate(path: Callable[[int], Path], quick: bool) -> Path:
 
 
 @cache
-def _compile() -> None:
+def compile_kernels() -> None:
     """Let Numba compile everything before anything is timed."""
     rod = elastica.CosseratRod.straight_rod(
         4,
@@ -62,13 +64,20 @@ def _compile() -> None:
         youngs_modulus=1e6,
         shear_modulus=4e5,
     )
-    _march(rod, {"steps": 200}, (0.0, 0.0, 0.0), 3)
+    march([rod], {"steps": 200}, (0.0, 0.0, 0.0), 3)
 
 
-def _march(
-    rod: elastica.CosseratRod, config: Config, gravity: Sequence[float], dimension: int
-) -> tuple[float, Path]:
-    simulator = _simulator(rod, gravity)
+def march(
+    rods: Sequence[elastica.CosseratRod], config: Config, gravity: Sequence[float], dimension: int
+) -> tuple[float, list[Path]]:
+    """Run rods of one simulation, which PyElastica steps as one block of memory.
+
+    Returns
+    -------
+    seconds, paths
+        CPU seconds of the time loop, and the path of the last node of each rod.
+    """
+    simulator = _simulator(rods, gravity)
     stepper, step = elastica.PositionVerlet(), np.float64(scene.time_step(config))
     time, steps = np.float64(0.0), scene.steps_per_frame(config)
 
@@ -77,16 +86,21 @@ def _march(
         for _ in range(steps):
             time = stepper.step(simulator, time, step)
 
+    def tips() -> NDArray[np.float64]:
+        return np.concatenate([rod.position_collection[:dimension, -1] for rod in rods])
+
     with np.errstate(all="ignore"):  # an unstable run is found out by where the tip is
-        return scene.march(advance, lambda: rod.position_collection[:dimension, -1])
+        seconds, joined = scene.march(advance, tips)
+    return seconds, np.split(joined, len(rods), axis=1)
 
 
-def _simulator(rod: elastica.CosseratRod, gravity: Sequence[float]) -> _Simulator:
+def _simulator(rods: Sequence[elastica.CosseratRod], gravity: Sequence[float]) -> _Simulator:
     simulator = _Simulator()
-    simulator.append(rod)
-    simulator.constrain(rod).using(
-        elastica.OneEndFixedBC, constrained_position_idx=(0,), constrained_director_idx=(0,)
-    )
-    simulator.add_forcing_to(rod).using(elastica.GravityForces, acc_gravity=np.array(gravity))
+    for rod in rods:
+        simulator.append(rod)
+        simulator.constrain(rod).using(
+            elastica.OneEndFixedBC, constrained_position_idx=(0,), constrained_director_idx=(0,)
+        )
+        simulator.add_forcing_to(rod).using(elastica.GravityForces, acc_gravity=np.array(gravity))
     simulator.finalize()
     return simulator

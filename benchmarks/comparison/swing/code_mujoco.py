@@ -31,7 +31,7 @@ def run(config: Config) -> tuple[float, Path]:
     ``stretch``, and ``clamp``: the first link is held while it straddles the wall, or turns in the
     wall on a spring of the half cell there.
     """
-    model, tip_body, tip_offset = _links(config) if config["model"] == "links" else _rod(config)
+    model, tip_body, tip_offset = links(config) if config["model"] == "links" else _rod(config)
     return run_mujoco.run(model, config, tip_body, tip_offset, dimension=2)
 
 
@@ -39,29 +39,30 @@ def grid(quick: bool) -> list[Config]:
     """Return the configurations that are tried, each at its largest stable step."""
     if quick:
         return [
-            _links_config(20, "Euler", "straddle", False),
-            _links_config(20, "Euler", "straddle", True),
+            links_config(20, "Euler", "straddle", False),
+            links_config(20, "Euler", "straddle", True),
             _rod_config(20, "Euler"),
         ]
     integrators = ("Euler", "RK4", "implicitfast", "discrete")
     return [
         *(
-            _links_config(n, integrator, clamp, False)
+            links_config(n, integrator, clamp, False)
             for n, integrator, clamp in product(
                 (10, 14, 20, 28, 40), integrators, ("straddle", "wall")
             )
         ),
         *(
-            _links_config(n, integrator, "straddle", True)
+            links_config(n, integrator, "straddle", True)
             for n, integrator in product((14, 20, 28, 40), integrators)
         ),
-        *(_links_config(n, "Euler", "straddle", True) for n in (48, 56, 64, 80, 160)),
+        *(links_config(n, "Euler", "straddle", True) for n in (48, 56, 64, 80, 160)),
         *(_rod_config(n, integrator) for n, integrator in product((20, 40, 60), ("Euler", "RK4"))),
         *(_rod_config(n, "Euler") for n in (80, 120, 140, 200)),
     ]
 
 
-def _links_config(elements: int, integrator: str, clamp: str, stretch: bool) -> Config:
+def links_config(elements: int, integrator: str, clamp: str, stretch: bool) -> Config:
+    """Return the configuration of a chain of links, at its largest stable step."""
     return {
         "elements": elements,
         "model": "links",
@@ -76,18 +77,18 @@ def _rod_config(elements: int, integrator: str) -> Config:
     return {"elements": elements, "model": "rod", "integrator": integrator, "steps": "fewest"}
 
 
-def _links(config: Config) -> tuple[mujoco.MjModel, int, float]:
+def links(config: Config) -> tuple[mujoco.MjModel, int, float]:
     """Return a chain of links, its last body, and the distance of the tip from its origin [m]."""
-    links = int(config["elements"])
+    count = int(config["elements"])
     straddles = config["clamp"] == "straddle"
-    edge = problem.LENGTH / (links + 0.5 if straddles else links)
+    edge = problem.LENGTH / (count + 0.5 if straddles else count)
     mass = problem.DENSITY * problem.AREA * edge
     # The mass sits at the two ends of a link, as in other discrete rods: more accurate here than
     # the inertia of a bar.
     inertia = f"{mass * edge**2 / 4.0!r}"
     slide = f'<joint type="slide" axis="1 0 0" stiffness="{AXIAL / edge!r}"/>'
     bodies = []
-    for link in range(links):
+    for link in range(count):
         start = edge if link else (0.5 * edge if straddles else 0.0)
         stiffness = BENDING / (edge if link or straddles else 0.5 * edge)
         bodies.append(
@@ -99,9 +100,9 @@ def _links(config: Config) -> tuple[mujoco.MjModel, int, float]:
         )
     model = mujoco.MjModel.from_xml_string(
         f"<mujoco>{run_mujoco.option(config, GRAVITY)}"
-        f"<worldbody>{''.join(bodies)}{'</body>' * links}</worldbody></mujoco>"
+        f"<worldbody>{''.join(bodies)}{'</body>' * count}</worldbody></mujoco>"
     )
-    return model, links, edge
+    return model, count, edge
 
 
 def _rod(config: Config) -> tuple[mujoco.MjModel, int, float]:

@@ -24,7 +24,7 @@ GRAVITY = (*problem.GRAVITY, 0.0)
 
 def run(config: Config) -> tuple[float, Path]:
     """Run one configuration; return CPU seconds of the time loop and the path of the tip."""
-    return run_pyelastica.run(_rod(int(config["elements"])), config, GRAVITY, dimension=2)
+    return run_pyelastica.run(rod(int(config["elements"])), config, GRAVITY, dimension=2)
 
 
 def grid(quick: bool) -> list[Config]:
@@ -38,7 +38,8 @@ def limit(quick: bool) -> Path:
     return run_pyelastica.extrapolate(lambda n: run({"elements": n, "steps": 2 * n + 60})[1], quick)
 
 
-def _rod(elements: int) -> elastica.CosseratRod:
+def rod(elements: int) -> elastica.CosseratRod:
+    """Return the rod, which is not part of a simulation yet."""
     edge = problem.LENGTH / (elements - 0.5)
     return elastica.CosseratRod.straight_rod(
         elements,

@@ -12,11 +12,12 @@
 namespace der {
 namespace {
 
-/// K0 + a K1, and the number of critical factors below a.
+/// K0 + a K1, and the number of critical factors below a. Shapes have the length 1 where angles
+/// count times the length of the model: `units` are the unit masses of the free degrees of freedom.
 class Pencil {
  public:
-  Pencil(LinearSolver& solver, Vector k0, Vector k1)
-      : solver_(solver), k0_(std::move(k0)), k1_(std::move(k1)) {}
+  Pencil(LinearSolver& solver, Vector k0, Vector k1, Vector units)
+      : solver_(solver), k0_(std::move(k0)), k1_(std::move(k1)), units_(std::move(units)) {}
   Index critical_below(double factor) {
     return solver_.factorize(k0_ + factor * k1_).negative_pivots;
   }
@@ -31,22 +32,29 @@ class Pencil {
   }
   /// The shape that is critical at `factor`: inverse iteration, kept orthogonal to `others`, which
   /// belong to the same factor.
-  Vector shape(double factor, const std::vector<Vector>& others, Index size) {
+  Vector shape(double factor, const std::vector<Vector>& others) {
     solver_.factorize(k0_ + factor * (1.0 + 1e-11) * k1_);
-    Vector x = unstructured_vector(size);
+    Vector x = unstructured_vector(units_.size()).cwiseQuotient(units_.cwiseSqrt());
     for (int i = 0; i < 4; ++i) {
-      for (const Vector& other : others) x -= other.dot(x) * other;
-      x.normalize();
+      make_orthogonal(others, x);
+      x = units_.cwiseProduct(x);
       solver_.solve(x);
     }
-    for (const Vector& other : others) x -= other.dot(x) * other;
-    return x.normalized();
+    make_orthogonal(others, x);
+    return x;
   }
 
  private:
+  /// To shapes of length 1; makes its length 1 as well.
+  void make_orthogonal(const std::vector<Vector>& others, Vector& x) const {
+    for (const Vector& other : others) x -= other.dot(units_.cwiseProduct(x)) * other;
+    x /= std::sqrt(x.dot(units_.cwiseProduct(x)));
+  }
+
   LinearSolver& solver_;
   Vector k0_;
   Vector k1_;
+  Vector units_;
 };
 
 /// The shape with its largest displacement 1; the largest angle of a shape that only twists.
@@ -80,7 +88,7 @@ std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& st
   const double unit = entries(k0) / entries(k1);
   constexpr double kLeast = 1e-18;
   constexpr double kMost = 1e8;
-  Pencil pencil(solver, k0, unit * k1);
+  Pencil pencil(solver, k0, unit * k1, model.dofs.unit_masses()(model.dofs.free()));
   const Index available = std::min<Index>(count, pencil.critical_below(kMost));
   std::vector<BucklingMode> modes;
   std::vector<Vector> same;  // shapes of the current factor
@@ -89,14 +97,13 @@ std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& st
   for (Index i = 0; i < available; ++i) {
     const double factor = pencil.bisect(i, low, kMost);
     if (factor > before * (1.0 + 1e-9)) same.clear();
-    same.push_back(pencil.shape(factor, same, model.num_free()));
+    same.push_back(pencil.shape(factor, same));
     const Vector shape = over_all_dofs(model, same.back());
     // Taken element by element, the quotient keeps the digits of slender rods.
     const double exact = -second_variation(model, here, shape) / stress.variation(shape);
     if (!(std::abs(exact / (unit * factor) - 1.0) < kTrusted)) {
       // Where K1 is much larger than K0, its rounding errors cause spurious critical factors.
-      const double rounding = stiffness.rounding() * same.back().squaredNorm();
-      if (rounding < kHidden * unit * factor * std::abs(stress.variation(shape))) break;
+      if (stiffness.rounding() < kHidden * unit * factor * std::abs(stress.variation(shape))) break;
       throw NotConvergedError(
           "the buckling loads are lost in the rounding errors of the stiffness against stretching: "
           "give the rods fewer nodes, or a smaller EA",

@@ -143,12 +143,16 @@ struct SectionSpring {
       }
       slopes = of_strains * weights.transpose();
     }
-    /// The second derivatives of the strains times `moment`, by the edge's vector and angle.
+    /// The second derivatives of the strains times `moment`, by the edge's vector and angle. A
+    /// joint as stiff as the moment is large has them, and its slopes beside, which are taken off:
+    /// any other stiffness would leave roundings of its own.
     [[nodiscard]] Eigen::Matrix4d curving(const Vec3& moment) const {
-      JointResponse whole = response<true>(moment, Vec3::Ones());
+      const double stiffness = moment.lpNorm<Eigen::Infinity>();
+      if (stiffness == 0.0) return Eigen::Matrix4d::Zero();
+      JointResponse whole = response<true>(moment, Vec3::Constant(stiffness));
       for (int k = 0; k < 3; ++k) {
         const Vec3 slope = response<false>(Vec3::Unit(k), Vec3::Ones()).moment;
-        whole.stiffness -= slope * slope.transpose();
+        whole.stiffness -= stiffness * slope * slope.transpose();
       }
       return map.transpose() * whole.stiffness * map + edge.geometric_stiffness(whole.moment);
     }

@@ -19,6 +19,7 @@
 #include "der/scenario/load.hpp"
 #include "der/scenario/model_choice.hpp"
 #include "der/scenario/scenario.hpp"
+#include "der/supports/spatial_clamp.hpp"
 #include "der/supports/supports.hpp"
 
 namespace der {
@@ -81,11 +82,12 @@ Vec3 first_director(const scenario::Rod& rod, const Vec3& tangent) {
   return across_plane.cross(tangent).norm() > 1e-6 ? across_plane : Vec3(tangent.unitOrthogonal());
 }
 
-/// The director is transported along the drawn edges without twist, then turned by the initial
-/// twist.
+/// The director stands across the tangent at the rod's start, not across its first edge, which
+/// leans against it on a curve. It is transported along the drawn edges without twist, then turned
+/// by the initial twist.
 void draw_sections(const scenario::Rod& rod, RodLayout& layout, const Model& model) {
   layout.initial_twist = rod.initial_twist;
-  Vec3 tangent = along_edge<3>(layout.edge(0, model), model.initial_positions).normalized();
+  Vec3 tangent = initial_tangent(layout, 0, model);
   Vec3 director = made_perpendicular(first_director(rod, tangent), tangent);
   for (Index edge = 0; edge < layout.num_edges(); ++edge) {
     const Vec3 next = along_edge<3>(layout.edge(edge, model), model.initial_positions).normalized();

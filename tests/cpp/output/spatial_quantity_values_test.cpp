@@ -68,7 +68,9 @@ std::string in_yaml(const Vec3& v) {
 std::string scene_with(const std::string& probe, const std::string& actuation = "[]") {
   std::string points;
   for (const Vec3& point : corners(0.0)) points += "      - " + in_yaml(point) + "\n";
-  const Vec3 director = std::cos(kDirector) * kAcross + std::sin(kDirector) * kAxis;
+  // Towards the arc's centre from its very start, half an edge before the middle of the first edge.
+  const Vec3 normal = std::cos(0.5 * kTurn) * kAcross + std::sin(0.5 * kTurn) * kAlong;
+  const Vec3 director = std::cos(kDirector) * normal + std::sin(kDirector) * kAxis;
   return fmt::format(R"(
 rods:
   - name: arm

@@ -8,6 +8,7 @@ d2 by -u1.
 
 from itertools import pairwise
 
+import der
 import numpy as np
 import pytest
 from references.curved_twisted_rod import NATURAL, rest_position
@@ -298,3 +299,60 @@ def test_a_wire_with_corners(fitted_order, stiffness):
         errors.append(np.linalg.norm(tip[0] - CORNERS[-1] - exact))
     assert fitted_order([1 / n for n in SIZES], errors) > 1.9
     assert errors[-1] < 2e-4 * np.linalg.norm(exact)
+
+
+def test_director_stands_across_the_start_of_a_curve(fitted_order):
+    """The default director, on a curve that leaves its first edge: differences of order 2.
+
+    Across the first edge instead of the tangent at the start, the sections are turned by an angle
+    of order 1, and all answers with them.
+    """
+
+    def tip(n):
+        t = np.linspace(0, 5, n + 1)
+        points = np.column_stack([np.cos(t), 0.8 * np.sin(t), 0.2 * np.sin(2 * t + 1)]) / 5
+        section = {"EA": 1e4, "EI1": 0.5, "EI2": 3, "GJ": 0.7, "mass_per_length": 1}
+        simulation = der.Simulation(
+            {
+                "model": "spatial",
+                "rods": [
+                    {
+                        "name": "rod",
+                        "points": points.tolist(),
+                        "cross_section": {"stiffness": section},
+                    }
+                ],
+                "supports": [{"rod": "rod", "at": "start", "clamp": True}],
+                "loads": [{"point_force": {"rod": "rod", "at": "end", "force": [0, 1, 3]}}],
+                "analysis": "static",
+            }
+        )
+        simulation.equilibrium()
+        return np.array(simulation.positions[-1])
+
+    sizes = [40, 80, 160, 320]
+    tips = [tip(n) for n in sizes]
+    changes = [np.linalg.norm(b - a) for a, b in pairwise(tips)]
+    assert fitted_order([1 / n for n in sizes[1:]], changes) > 1.9
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_a_clamp_that_would_part_sections_is_refused(closed):
+    angle = np.linspace(0, 5, 12)
+    section = {"EA": 1e4, "EI1": 1, "EI2": 2, "GJ": 1, "mass_per_length": 1}
+    points = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle]).tolist()
+    scene = {
+        "model": "spatial",
+        "rods": [
+            {
+                "name": "rod",
+                "points": points,
+                "closed": closed,
+                "cross_section": {"stiffness": section},
+            }
+        ],
+        "supports": [{"rod": "rod", "at": {"node": 0 if closed else 5}, "clamp": "tangent"}],
+        "analysis": "static",
+    }
+    with pytest.raises(der.DerError, match="pass on no torque"):
+        der.Simulation(scene)

@@ -619,7 +619,8 @@ def test_components_jump_where_a_ring_is_glued_turned():
 
     def drawn(first):
         ring = Drawn(circle(count), first)
-        tangent = (ring.points[1] - ring.points[0]) / ring.edges[0]
+        tangent = ring.points[1] - ring.points[-1]  # at the first node
+        tangent /= np.linalg.norm(tangent)
         angle = np.pi * first / count
         up = np.eye(3)[2]
         director = np.cos(angle) * up + np.sin(angle) * np.cross(tangent, up)

@@ -34,7 +34,8 @@ class Pencil {
   /// belong to the same factor.
   Vector shape(double factor, const std::vector<Vector>& others) {
     solver_.factorize(k0_ + factor * (1.0 + 1e-11) * k1_);
-    Vector x = unstructured_vector(units_.size()).cwiseQuotient(units_.cwiseSqrt());
+    Vector x =
+        unstructured_vector(static_cast<Index>(units_.size())).cwiseQuotient(units_.cwiseSqrt());
     for (int i = 0; i < 4; ++i) {
       make_orthogonal(others, x);
       x = units_.cwiseProduct(x);

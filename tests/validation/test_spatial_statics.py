@@ -12,11 +12,21 @@ import der
 import numpy as np
 import pytest
 from references.curved_twisted_rod import NATURAL, rest_position
-from references.kirchhoff_rod import UPRIGHT, Held, Rod, follow, rotation
+from references.kirchhoff_rod import (
+    UPRIGHT,
+    Held,
+    HeldTangent,
+    Rod,
+    constant,
+    directors,
+    follow,
+    natural_shape,
+    rotation,
+)
 from scenes import END, START, tip_force
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
-from spatial_scenes import measured, rod_through, section, straight_rod
+from spatial_scenes import QUANTITIES, measured, rod_through, section, straight_rod
 
 XYZ = ("x", "y", "z")
 SIZES = [16, 32, 64]
@@ -188,6 +198,80 @@ def test_clamp_turned_about_an_axis(fitted_order, axis, angle, twist, shift):
     assert errors[-1][0] < 5e-6
     assert max(errors[-1][1:7]) < 1e-4
     assert errors[-1][7] < 0.008  # of a tension of up to 40, which is EA times a strain of 4e-3
+
+
+STRIP = {"EA": 1e6, "EI1": 8.0, "EI2": 1.0, "GJ": 1.5}
+TURN = np.pi
+ASIDE = np.array([-0.01, 0.1, 0.05])
+
+
+def test_section_that_spins_in_a_clamp_that_holds_the_tangent(fitted_order):
+    """The rod is curved, and bends, about the directors that have spun with it, by half a turn and
+    what it twists; at the clamp, too."""
+    natural = np.array([-0.9, 0.6, 1.0])
+    rod = Rod(1.0, (1.0, 8.0), 1.5, 1e6, constant(*natural))
+    first = Held((0, 0, 0), UPRIGHT @ rotation((0, 0, 1), TURN))
+    loose = natural_shape(rod, first, np.linspace(0, 1, 3), 16).values[-1, :, -1]
+    chord, loose_tangent, along = loose[:3], directors(loose[3:7])[:, 2], np.array([1.0, 0, 0])
+
+    def end(share):
+        # A rod that goes aside gets shorter by the square of the way.
+        aside = np.array([share**2, share, share]) * ASIDE
+        tangent = (1 - share) * loose_tangent + share * along
+        place = (1 - share) * chord + share * along + aside
+        return HeldTangent(place, tangent / np.linalg.norm(tangent))
+
+    found = follow(rod, first, end, steps=24, segments=2, degree=20)
+    assert found.shooting_error() < 1e-10
+    places = np.array([0.0, 0.5, 1.0])
+    u1, u2, u3, _ = found.strains(places)
+    m1, m2, torque = rod.stiffness[:, None] * (found.strains(places)[:3] - natural[:, None])
+    exact = np.vstack([found.at(places)[:3], u2, -u1, u3, m2, -m1, torque]).T
+
+    supports = [
+        {**START, "clamp": True, "prescribe": {"twist": TURN}},
+        {**END, "clamp": "tangent", "prescribe": dict(zip(XYZ, ASIDE.tolist(), strict=True))},
+    ]
+    curved = {"natural_curvature": [0.6, 0.9], "natural_twist": 1.0}
+    sizes, errors = [128, 256, 512], []  # asymptotic for a rod that is bent this much
+    for n in sizes:
+        scene = straight_rod(n, section([0, 1, 0], **STRIP), supports=supports, rod=curved)
+        values, _ = measured(scene, places.tolist())
+        errors.append(np.abs(values[:, :9] - exact))
+    scale = np.abs(exact).max(axis=0)
+    assert (errors[-1] < 3e-4 * scale).all()
+    for i, place in enumerate(places):
+        for k, size in enumerate(scale):
+            column = np.array([error[i, k] for error in errors])
+            if column.max() > 1e-9 * size:  # else held, or known
+                assert fitted_order([1 / n for n in sizes], column) > 1.9, (place, k, column)
+
+
+@pytest.mark.parametrize("measure", ["angle", "tangent"])
+@pytest.mark.parametrize(("loose", "held"), [(START, END), (END, START)])
+def test_how_far_a_section_has_spun_in_its_clamp_does_not_count(loose, held, measure):
+    """A rod that spins in the clamp of its tangent, as the section at its other end is turned, is
+    the rod that is drawn turned."""
+
+    def shape(turned, director, actuated):
+        motion = {"y": 0.2, "z": 0.1, "x": 0.0, "twist": turned}
+        supports = [{**loose, "clamp": "tangent"}, {**held, "clamp": True, "prescribe": motion}]
+        curved = {"natural_curvature": [0.6, 0.9], "curvature": measure}
+        scene = straight_rod(
+            8, section(director, **(STRIP | {"EA": 1e3})), supports=supports, rod=curved
+        )
+        if actuated:
+            scene["actuation"] = [{"name": "winding", "rod": "rod", "natural_twist": 1.0}]
+        else:
+            scene["rods"][0]["natural_twist"] = 1.0
+        values, result = measured(scene, ["start", 0.3, "end"], QUANTITIES)
+        return result.positions[-1], values
+
+    drawn, values = shape(0.0, [0, np.cos(TURN / 3), np.sin(TURN / 3)], False)
+    for actuated in (False, True):
+        spun, same = shape(TURN / 3, [0, 1, 0], actuated)
+        assert spun == pytest.approx(drawn, abs=1e-9)
+        assert same == pytest.approx(values, abs=1e-6)
 
 
 def test_tension_at_clamps(fitted_order):

@@ -336,7 +336,8 @@ class SectionElements {
         .add(
             {own.start, own.start + 1, own.start + 2, own.end, own.end + 1, own.end + 2, own.theta},
             {{stiffness_of(rod_, joint, clamp.holds_section), held_frame,
-              FrameBlock::of(number(beside)), leaves ? 1.0 : -1.0, rest_shift(rod_, joint)},
+              FrameBlock::of(number(beside)), leaves ? 1.0 : -1.0, rest_shift(rod_, joint),
+              clamp.holds_section},
              own.first,
              own.last});
     follow({leaves ? -1 : number(beside), leaves ? number(beside) : -1, held_frame},

@@ -67,6 +67,10 @@ Sides sides_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
   return sides;
 }
 
+bool holds_section(const RodJoint& joint, const RodLayout& rod) {
+  return joint.clamp < 0 || rod.clamps[to_size(joint.clamp)].holds_section;
+}
+
 template <class Curvature>
 JointKinematics<Curvature> kinematics_of(const RodJoint& joint, const RodLayout& rod,
                                          const Model& model, const State& state) {
@@ -77,7 +81,10 @@ JointKinematics<Curvature> kinematics_of(const RodJoint& joint, const RodLayout&
   const Index first = static_cast<Index>(model.followed_edges.size());
   const double twist = nearest_turn(twist_between(sides.before, sides.after),
                                     sides.turned + state.followed[first + entry]);
-  return {sides.before, sides.after, twist};
+  if (holds_section(joint, rod)) return {sides.before, sides.after, twist};
+  return JointKinematics<Curvature>::with_free_side(
+      joint.before < 0 ? FreeSide::Before : FreeSide::After, sides.before, sides.after, twist,
+      rest_strain(joint, rod, model, state).twist);
 }
 
 /// The stiffness of a corner; null if the joint is none.
@@ -104,7 +111,7 @@ const CoupledJoint* corner_of(const RodJoint& joint, const RodLayout& rod, const
 template <class Curvature>
 Vec3 response_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
                  const State& state) {
-  const bool twists = joint.clamp < 0 || rod.clamps[to_size(joint.clamp)].holds_section;
+  const bool twists = holds_section(joint, rod);
   const JointStrain rest = rest_strain(joint, rod, model, state);
   const auto kinematics = kinematics_of<Curvature>(joint, rod, model, state);
   JointResponse response;

@@ -93,9 +93,10 @@ struct StressedClamp {
                           const Eigen::Matrix<double, 7, 1>& d,
                           const typename SpatialClamp<Curvature>::Constants& c,
                           const Vector& values) {
-    const auto [edge, a, b, twist] = SpatialClamp<Curvature>::frames(c, values, x);
+    const auto frames = SpatialClamp<Curvature>::frames(c, values, x);
+    const EdgeFrame& edge = frames.edge;
     JointResponse response;
-    JointKinematics<Curvature>(a, b, twist)
+    SpatialClamp<Curvature>::kinematics(c, values, frames)
         .template respond<true>(c.actuated_joint(values), response);
     const Vec3 none = Vec3::Zero();
     const Vec3 omega = turned(edge, d, 0, 6);

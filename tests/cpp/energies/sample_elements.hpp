@@ -169,7 +169,10 @@ template <class Curvature>
 typename SpatialClamp<Curvature>::Constants sample_constants(const SpatialClamp<Curvature>&,
                                                              Random& random) {
   const double side = uniform(random, 0.0, 1.0) < 0.5 ? -1.0 : 1.0;
-  return {sample_joint(random), sample_held_frame(random), FrameBlock::of(0), side, {kStrains}};
+  const bool holds_section = uniform(random, 0.0, 1.0) < 0.5;
+  Joint joint = sample_joint(random);
+  if (!holds_section) joint.twist = 0.0;
+  return {joint, sample_held_frame(random), FrameBlock::of(0), side, {kStrains}, holds_section};
 }
 
 template <class Kernel>

@@ -110,6 +110,14 @@ class Held:
 
 
 @dataclass(frozen=True)
+class HeldTangent:
+    """An end whose position and tangent (a unit vector) are held, but not its turn about that."""
+
+    position: Vector
+    tangent: Vector
+
+
+@dataclass(frozen=True)
 class Loaded:
     """A free end with a dead force, a dead moment (fixed axes) and a moment that follows the
     section (components along d1, d2, d3).
@@ -157,7 +165,7 @@ def constant(k1: float, k2: float, k3: float) -> Callable[[Array], Array]:
 def problem(
     rod: Rod,
     start: Held,
-    end: Held | Loaded,
+    end: Held | HeldTangent | Loaded,
     weight: Vector = (0, 0, 0),
     inside: Inside = (),
     share: float = 1.0,
@@ -192,7 +200,7 @@ def problem(
     return Boundary(rate, ends)
 
 
-def _end(rod: Rod, end: Held | Loaded, y: Numbers) -> Numbers:
+def _end(rod: Rod, end: Held | HeldTangent | Loaded, y: Numbers) -> Numbers:
     """The six conditions at the end s = length."""
     d = directors(y[3:7])
     if isinstance(end, Held):
@@ -201,6 +209,11 @@ def _end(rod: Rod, end: Held | Loaded, y: Numbers) -> Numbers:
         skew = [product[2, 1] - product[1, 2], product[0, 2] - product[2, 0]]
         skew.append(product[1, 0] - product[0, 1])
         return np.concatenate([y[:3] - np.asarray(end.position) / rod.length, np.stack(skew)])
+    if isinstance(end, HeldTangent):
+        # The tangent lies across two directions, and no torque passes.
+        across = np.linalg.svd(np.asarray(end.tangent, dtype=float)[None])[2][1:]
+        turns = np.concatenate([across @ d[:, 2], (y[10:13] * d[:, 2]).sum()[None]])
+        return np.concatenate([y[:3] - np.asarray(end.position) / rod.length, turns])
     force = np.asarray(end.force) / rod.units[7]
     moment = (np.asarray(end.moment) + 0.0) / rod.units[10]
     follower = np.asarray(end.follower) / rod.units[10]
@@ -268,7 +281,7 @@ def natural_shape(rod: Rod, start: Held, breaks: Array, degree: int) -> Solution
 def solve(
     rod: Rod,
     start: Held,
-    end: Held | Loaded,
+    end: Held | HeldTangent | Loaded,
     guess: Solution,
     weight: Vector = (0.0, 0.0, 0.0),
     inside: Inside = (),
@@ -283,7 +296,7 @@ def solve(
 def follow(
     rod: Rod,
     start: Held,
-    end: Callable[[float], Held | Loaded],
+    end: Callable[[float], Held | HeldTangent | Loaded],
     steps: int,
     weight: Vector = (0.0, 0.0, 0.0),
     segments: int | Array = 3,

@@ -60,6 +60,9 @@ struct JointResponseOf {
 };
 using JointResponse = JointResponseOf<double>;
 
+/// The side of a joint on which nothing holds the section against turning about the tangent.
+enum class FreeSide { Before, After };
+
 /// The joint as its two frames see it: kb = f ta x tb, read in the frame of edge a turned by half
 /// of the twist, so that bending a rod of a round section does not depend on its twist however
 /// large.
@@ -68,14 +71,16 @@ class JointKinematics {
  public:
   /// `twist` is the whole twist [rad] between the two frames, whole turns included.
   JointKinematics(const SectionFrameOf<T>& a, const SectionFrameOf<T>& b, const T& twist)
-      : ta_(a.tangent),
-        tb_(b.tangent),
-        cosine_(ta_.dot(tb_)),
-        factor_(Binormal<Curvature>::of(cosine_)) {
-    const SectionFrameOf<T> middle = a.turned(0.5 * twist);
-    m1_ = middle.first;
-    m2_ = middle.second;
-    strain_ = {factor_.f * m1_.dot(tb_), factor_.f * m2_.dot(tb_), twist};
+      : JointKinematics(a, b, twist, 0.5 * twist, 0.5) {}
+
+  /// The joint to a side that holds the tangent alone. The section there spins with the edge on the
+  /// other side, from which it differs by `natural`, the rest twist [rad], since no torque passes;
+  /// `twist` is that between the two frames as before, which the held one does not follow.
+  static JointKinematics with_free_side(FreeSide side, const SectionFrameOf<T>& a,
+                                        const SectionFrameOf<T>& b, const T& twist,
+                                        const T& natural) {
+    if (side == FreeSide::Before) return {a, b, natural, twist - 0.5 * natural, 1.0};
+    return {a, b, natural, 0.5 * natural, 0.0};
   }
 
   [[nodiscard]] const JointStrainOf<T>& strain() const { return strain_; }
@@ -99,8 +104,9 @@ class JointKinematics {
     const T h = factor_.log_slope;
     const Vector3<T> w = tb_.cross(ta_);
     const Vector3<T> gt = 1.0 / (1.0 + cosine_) * (ta_ + tb_);
-    return {h * strain_.kappa_1 * w + factor_.f * tb_.cross(m1_) + 0.5 * strain_.kappa_2 * gt,
-            h * strain_.kappa_2 * w + factor_.f * tb_.cross(m2_) - 0.5 * strain_.kappa_1 * gt, gt};
+    return {h * strain_.kappa_1 * w + factor_.f * tb_.cross(m1_) + share_ * strain_.kappa_2 * gt,
+            h * strain_.kappa_2 * w + factor_.f * tb_.cross(m2_) - share_ * strain_.kappa_1 * gt,
+            gt};
   }
 
   /// Sets the energy and M, and S if `with_stiffness`.
@@ -123,9 +129,10 @@ class JointKinematics {
     const Vector3<T> turned = q1 * g2 - q2 * g1;
     const Vector3<T> lean = h * in_line * ta_ + factor_.f * (q1 * m1_ + q2 * m2_);
     // Coefficients of w and of gt in symmetric products with them.
-    const Vector3<T> with_w = h * bend + 0.5 * factor_.log_change * in_line * w -
-                              (0.5 * half * torque + (0.5 * h + 0.25 * half) * across) * gt;
-    const Vector3<T> with_gt = 0.5 * turned + 0.125 * in_line * gt;
+    const Vector3<T> with_w =
+        h * bend + 0.5 * factor_.log_change * in_line * w -
+        (0.5 * half * torque + (share_ * h + 0.5 * share_ * half) * across) * gt;
+    const Vector3<T> with_gt = share_ * turned + 0.5 * share_ * share_ * in_line * gt;
     Matrix3<T> half_sum = 0.5 * joint.stiffness(g1, g2, gt) + w * with_w.transpose() +
                           gt * with_gt.transpose() + 0.5 * tb_ * lean.transpose();
     half_sum.diagonal().array() -= 0.5 * in_line * (1.0 + h * cosine_);
@@ -133,10 +140,25 @@ class JointKinematics {
   }
 
  private:
+  /// The curvature is read in the frame of a turned by `turn` [rad], `share` of each further twist.
+  JointKinematics(const SectionFrameOf<T>& a, const SectionFrameOf<T>& b, const T& strain,
+                  const T& turn, double share)
+      : ta_(a.tangent),
+        tb_(b.tangent),
+        cosine_(ta_.dot(tb_)),
+        factor_(Binormal<Curvature>::of(cosine_)),
+        share_(share) {
+    const SectionFrameOf<T> middle = a.turned(turn);
+    m1_ = middle.first;
+    m2_ = middle.second;
+    strain_ = {factor_.f * m1_.dot(tb_), factor_.f * m2_.dot(tb_), strain};
+  }
+
   Vector3<T> ta_;
   Vector3<T> tb_;
   T cosine_;
   BinormalFactor<T> factor_;
+  double share_;
   Vector3<T> m1_;
   Vector3<T> m2_;
   JointStrainOf<T> strain_;

@@ -102,8 +102,15 @@ struct RestGradient<SpatialClamp<Curvature>> : BendingRestGradient<SpatialClamp<
   using Base = BendingRestGradient<Kernel, 3>;
   static auto of(const typename Base::Constants& c, const Configuration& here,
                  const typename Base::Local& x) {
-    const auto [edge, a, b, twist] = Kernel::frames(c, here.controls, x);
-    return Base::spatial(c, here, JointKinematics<Curvature>(a, b, twist).strain());
+    const auto frames = Kernel::frames(c, here.controls, x);
+    const JointStrain strain = Kernel::kinematics(c, here.controls, frames).strain();
+    auto moments = Base::spatial(c, here, strain);
+    // Natural twist turns the section of a clamp that does not hold it, half as far in the cell's
+    // middle.
+    if (!c.holds_section) {
+      moments[2] += 0.5 * c.side * (moments[0] * strain.kappa_2 - moments[1] * strain.kappa_1);
+    }
+    return moments;
   }
 };
 

@@ -140,6 +140,7 @@ struct SpatialClamp {
     FrameBlock edge;
     double side = 1.0;  ///< +1: the edge leaves the clamp, -1: it arrives there
     RestShift actuated{};
+    bool holds_section = true;  ///< against turning about the tangent
 
     [[nodiscard]] Joint actuated_joint(const Vector& controls) const {
       return der::actuated_joint(joint, actuated, controls);
@@ -168,18 +169,28 @@ struct SpatialClamp {
             whole_twist(edge.frame, held, x[6], turned, values[c.edge.twist_at_end()])};
   }
 
+  static JointKinematics<Curvature> kinematics(const Constants& c, const Vector& values,
+                                               const Frames& frames) {
+    const auto& [edge, a, b, twist] = frames;
+    if (c.holds_section) return {a, b, twist};
+    const FreeSide side = c.side > 0.0 ? FreeSide::Before : FreeSide::After;
+    return JointKinematics<Curvature>::with_free_side(side, a, b, twist,
+                                                      c.actuated_joint(values).rest.twist);
+  }
+
   template <Derivatives D>
   static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
-    const auto [edge, a, b, twist] = frames(c, here.controls, x);
-    const JointKinematics<Curvature> kinematics(a, b, twist);
+    const Frames here_frames = frames(c, here.controls, x);
+    const EdgeFrame& edge = here_frames.edge;
+    const JointKinematics<Curvature> seen = kinematics(c, here.controls, here_frames);
     const Joint joint = c.actuated_joint(here.controls);
     if constexpr (D == Derivatives::Energy) {
-      out.energy = kinematics.energy(joint);
+      out.energy = seen.energy(joint);
       return;
     }
     JointResponse response;
-    kinematics.template respond<D == Derivatives::Hessian>(joint, response);
+    seen.template respond<D == Derivatives::Hessian>(joint, response);
     out.energy = response.energy;
     const Vec3 moment = c.side * response.moment;
     const Eigen::Matrix<double, 3, 4> turn = edge.rotation();

@@ -17,7 +17,6 @@
 #include "der/scenario/load.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/solvers/linear_solver.hpp"
-#include "der/solvers/stage.hpp"
 
 namespace der {
 namespace {
@@ -67,6 +66,8 @@ scenario::Scene cantilever(int nodes, scenario::ModelChoice model, bool closed) 
 constexpr std::array kModels{scenario::ModelChoice::Planar, scenario::ModelChoice::SpatialBend,
                              scenario::ModelChoice::Spatial};
 
+constexpr double kInertia = 1e6;  // [1/s^2], of a time step of 1 ms
+
 struct Problem {
   explicit Problem(const benchmark::State& state)
       : model(build_model(cantilever(static_cast<int>(state.range(0)),
@@ -76,17 +77,16 @@ struct Problem {
         solver(make_linear_solver("banded", pattern, Elimination::FromBothEnds).solver),
         assembler(model, solver->layout()),
         here(configuration_of(model, initial_state(model))),
-        stage(model),
         gradient(Vector::Zero(model.num_dofs())),
         values(Vector::Zero(assembler.num_values())),
+        mass_values(values),
         right_side(Vector::Zero(model.num_free())) {
-    stage.inertia = 1e6;  // a time step of 1 ms
-    stage.inertia_target = here.coordinates;
+    assembler.add_mass(model.mass, 1.0, mass_values);
   }
 
   void assemble() {
-    assembler.gradient_and_hessian(here, gradient, values);
-    assembler.add_mass(stage.mass, stage.inertia, values);
+    values = kInertia * mass_values;
+    assembler.add_hessian(here, gradient, values);
   }
 
   void newton_iteration() {
@@ -104,9 +104,9 @@ struct Problem {
   std::unique_ptr<LinearSolver> solver;
   Assembler assembler;
   Configuration here;
-  Stage stage;
   Vector gradient;
   Vector values;
+  Vector mass_values;
   Vector right_side;
 };
 

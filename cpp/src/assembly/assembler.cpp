@@ -153,7 +153,6 @@ template <Derivatives D>
 void Assembler::ScatterMaps::assemble(const Model& model, const Configuration& here,
                                       Vector& gradient, Vector* values) const {
   gradient.setZero();
-  if constexpr (D == Derivatives::Hessian) values->setZero();
   const auto add = [&](const auto& chains) {
     for (const auto& chain : chains) {
       if constexpr (D == Derivatives::Hessian) {
@@ -198,6 +197,11 @@ void Assembler::gradient(const Configuration& here, Vector& gradient) const {
 
 void Assembler::gradient_and_hessian(const Configuration& here, Vector& gradient,
                                      Vector& values) const {
+  values.setZero();
+  add_hessian(here, gradient, values);
+}
+
+void Assembler::add_hessian(const Configuration& here, Vector& gradient, Vector& values) const {
   maps_->assemble<Derivatives::Hessian>(model_, here, gradient, &values);
 }
 

@@ -49,10 +49,10 @@ void DiscreteGradientAssembler::gradient(const Configuration& middle, Vector& gr
   add_circulatory_forces(circulatory_loads(*model_.elements), middle, -1.0, gradient);
 }
 
-void DiscreteGradientAssembler::gradient_and_hessian(const Configuration& middle, Vector& gradient,
-                                                     Vector& values) {
+void DiscreteGradientAssembler::add_hessian(const Configuration& middle, Vector& gradient,
+                                            Vector& values) {
   this->gradient(middle, gradient);
-  assembler_.gradient_and_hessian(middle, at_middle_, values);
+  assembler_.add_hessian(middle, at_middle_, values);
   // The force over the mean edge vector is EA/l (1 - 2 l/(l0 + l1)), at the middle
   // EA/l (1 - l/l_middle).
   const auto& edges = elements_of<Stretch<2>>(*model_.elements);

@@ -47,9 +47,11 @@ void Simulation::step() {
   Undo undo(state_, before_step_);
   if (const std::string found = find_nonfinite(); !found.empty()) throw DivergedError(found);
   check_rest_shape();
-  if (energy_watch_.was_written(state_)) der::follow(model_, state_);
+  if (energy_watch_.was_written(state_)) {
+    der::follow(model_, state_);
+    energy_watch_.enter_written(state_);
+  }
   const bool was_finished = finished();
-  energy_watch_.before_step(state_);
   if (adaptive_) {
     advance_adaptively();
   } else {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "der/assembly/discrete_gradient_assembler.hpp"
 #include "der/core/index.hpp"
@@ -39,20 +40,23 @@ LowRank circulatory_rank(const Model& model) {
 }  // namespace
 
 Stage::Stage(const Model& model)
-    : mass(model.mass),
-      origin(Vector::Zero(model.num_dofs())),
+    : origin(Vector::Zero(model.num_dofs())),
       inertia_target(Vector::Zero(model.num_dofs())),
       velocity_reference(Vector::Zero(model.num_dofs())),
       force(Vector::Zero(model.num_dofs())) {}
 
-StageProblem::StageProblem(const Model& model, const Assembler& assembler)
+StageProblem::StageProblem(const Model& model, const Assembler& assembler, Mass mass)
     : model_(model),
       assembler_(assembler),
+      mass_(std::move(mass)),
+      mass_values_(Vector::Zero(assembler.num_values())),
       tension_(model, assembler),
       circulatory_(circulatory_rank(model)),
       guess_(Vector::Zero(model.num_dofs())),
       displacement_(Vector::Zero(model.num_dofs())),
-      term_(Vector::Zero(model.num_dofs())) {}
+      term_(Vector::Zero(model.num_dofs())) {
+  assembler_.add_mass(mass_, 1.0, mass_values_);
+}
 
 void StageProblem::pose(const Stage& stage, Configuration& here) {
   stage_ = &stage;
@@ -89,14 +93,14 @@ void StageProblem::residual(Vector& residual) {
 }
 
 void StageProblem::system(Vector& residual, Vector& values) {
+  values = stage_->inertia * mass_values_;
   if (stage_->discrete_gradient != nullptr) {
-    stage_->discrete_gradient->gradient_and_hessian(*here_, residual, values);
+    stage_->discrete_gradient->add_hessian(*here_, residual, values);
   } else {
-    assembler_.gradient_and_hessian(*here_, residual, values);
+    assembler_.add_hessian(*here_, residual, values);
   }
   add_stage_forces(residual);
   set_circulatory_tangent();
-  if (stage_->inertia != 0.0) assembler_.add_mass(stage_->mass, stage_->inertia, values);
   if (stage_->velocity_factor != 0.0 && model_.damped) {
     assembler_.add_diagonal(model_.damping, stage_->velocity_factor, values);
   }
@@ -132,7 +136,7 @@ double StageProblem::residual_rounding(Vector& values) {
     term_ = diagonal.cwiseProduct(displacement_);
     return model_.dofs.largest_force(term_);
   };
-  return rounding(elastic + stage_->inertia * largest_term(stage_->mass.lumped) +
+  return rounding(elastic + stage_->inertia * largest_term(mass_.lumped) +
                   stage_->velocity_factor * largest_term(model_.damping));
 }
 
@@ -153,14 +157,14 @@ void StageProblem::add_spin_forces(Vector& residual) const {
   const auto rate = [&](Index dof) { return velocity(dof); };
   const auto force = [&](const SpatialEdge& edge, Index number, const Vec3& vector) -> Vec3 {
     return transport_force(vector, number, residual[edge.theta], here_->controls) +
-           gyroscopic_force(edge, vector, stage_->mass, rate);
+           gyroscopic_force(edge, vector, mass_, rate);
   };
   take_pairs(model_, *here_, force, residual);
 }
 
 double StageProblem::gyroscopic_share() const {
   double largest = 0.0;
-  const Vector& lumped = stage_->mass.lumped;
+  const Vector& lumped = mass_.lumped;
   for (const SpatialEdge& edge : model_.framed_edges) {
     const double spin = lumped[edge.theta] * std::abs(velocity(edge.theta));
     const double squared = edge.vector(here_->coordinates, here_->controls).squaredNorm();
@@ -176,10 +180,10 @@ void StageProblem::add_stage_forces(Vector& residual) {
   acting_ = std::max(subtract_force(dofs, stage_->force, residual), external_);
   if (stage_->inertia != 0.0) {
     Vector& acceleration = term_;  // minus it
-    acting_ = std::max(acting_,
-                       add_lumped_inertia(dofs, stage_->inertia, stage_->mass.lumped, displacement_,
-                                          stage_->inertia_target, acceleration, residual));
-    for (const auto& [a, b, mass] : stage_->mass.coupling) {
+    acting_ =
+        std::max(acting_, add_lumped_inertia(dofs, stage_->inertia, mass_.lumped, displacement_,
+                                             stage_->inertia_target, acceleration, residual));
+    for (const auto& [a, b, mass] : mass_.coupling) {
       const double inertial = mass * (acceleration[a] - acceleration[b]);
       residual[a] -= inertial;
       residual[b] += inertial;

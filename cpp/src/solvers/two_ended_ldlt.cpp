@@ -1,6 +1,7 @@
 #include "der/solvers/two_ended_ldlt.hpp"
 
-#include <array>
+#include <cstring>
+#include <type_traits>
 
 #include "der/core/loops.hpp"
 #include "solvers/band_kernels.hpp"
@@ -22,16 +23,35 @@ void substitute_halves(Index columns, const TwoLanes* band, TwoLanes* b) {
   run_loop([&] { substitute<kWidth>(columns, kWidth, band, b); });
 }
 
+// The middle is a full matrix of the band's width.
+template <Index kWidth>
+Inertia factorize_middle_of(double* band) {
+  double* const none = nullptr;
+  return run_loop([&] { return factorize_band<kWidth>(kWidth, kWidth, band, none); });
+}
+template <Index kWidth>
+void solve_middle_of(const double* band, double* b) {
+  run_loop([&] {
+    eliminate<kWidth>(kWidth, kWidth, band, b);
+    substitute<kWidth>(kWidth, kWidth, band, b);
+  });
+}
+
+template <Index kWidth>
+constexpr TwoEndedLdlt::Kernels kKernels{factorize_halves<kWidth>, eliminate_halves<kWidth>,
+                                         substitute_halves<kWidth>, factorize_middle_of<kWidth>,
+                                         solve_middle_of<kWidth>};
+
 }  // namespace
 
 TwoEndedLdlt::Kernels TwoEndedLdlt::kernels_of(Index half_bandwidth) {
   switch (half_bandwidth) {
     case 5:  // chains in the plane
-      return {factorize_halves<5>, eliminate_halves<5>, substitute_halves<5>};
+      return kKernels<5>;
     case 8:  // chains in space
-      return {factorize_halves<8>, eliminate_halves<8>, substitute_halves<8>};
+      return kKernels<8>;
     case 10:  // the same with angles of sections
-      return {factorize_halves<10>, eliminate_halves<10>, substitute_halves<10>};
+      return kKernels<10>;
     default:
       return {};
   }
@@ -57,9 +77,8 @@ TwoEndedLdlt::TwoEndedLdlt(const Pattern& pattern)
 }
 
 Inertia TwoEndedLdlt::factorize(const Vector& values) {
-  for (std::size_t k = 0; k < band_.size(); ++k) {
-    band_[k] = {values[2 * static_cast<Index>(k)], values[2 * static_cast<Index>(k) + 1]};
-  }
+  static_assert(sizeof(TwoLanes) == 2 * sizeof(double) && std::is_trivially_copyable_v<TwoLanes>);
+  std::memcpy(band_.data(), values.data(), band_.size() * sizeof(TwoLanes));
   if (padding_ > 0) band_[0] = {band_[0].lane(0), 1.0};
   Inertia inertia = kernels_.factorize(columns_, band_.data());
   if (!inertia.factorised) {
@@ -87,8 +106,7 @@ Inertia TwoEndedLdlt::factorize_middle() {
           rest[column * stride + below].lane(0) + rest[reversed * stride + below].lane(1);
     }
   }
-  std::array<double, 10> scratch;
-  return factorize_band<0>(width_, width_, middle_.data(), scratch.data());
+  return kernels_.factorize_middle(middle_.data());
 }
 
 void TwoEndedLdlt::solve(Vector& b) {
@@ -115,8 +133,7 @@ void TwoEndedLdlt::solve_middle() {
     middle_right_side_[i] = rest[i].lane(0) + rest[width_ - 1 - i].lane(1);
   }
   middle_right_side_.tail(width_).setZero();
-  eliminate<0>(width_, width_, middle_.data(), middle_right_side_.data());
-  substitute<0>(width_, width_, middle_.data(), middle_right_side_.data());
+  kernels_.solve_middle(middle_.data(), middle_right_side_.data());
   for (Index i = 0; i < width_; ++i) {
     rest[i] = {middle_right_side_[i], middle_right_side_[width_ - 1 - i]};
   }

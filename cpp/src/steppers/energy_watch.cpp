@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <tuple>
 
 #include "der/core/index.hpp"
@@ -34,31 +35,41 @@ double strain_energy(const Model& model, double strain) {
   return energy;
 }
 
-/// The two edges that an element of bending lies between.
-struct Corner {
-  double cosine;  ///< times both lengths
-  Vec3 binormal;  ///< the sine, likewise, times the axis
-};
-template <int Dim, class Dofs>
-Corner corner(const Dofs& dofs, const Vector& positions) {
-  const auto edge = [&](std::size_t node) {
-    Vec3 vector = Vec3::Zero();
-    vector.head<Dim>() =
-        positions.segment<Dim>(dofs[Dim * (node + 1)]) - positions.segment<Dim>(dofs[Dim * node]);
-    return vector;
-  };
-  const Vec3 before = edge(0);
-  const Vec3 after = edge(1);
-  return {before.dot(after), before.cross(after)};
+/// Faster than comparing numbers. A zero that has changed its sign counts as another number.
+bool same_bits(const Vector& a, const Vector& b) {
+  return std::memcmp(a.data(), b.data(), to_size(a.size()) * sizeof(double)) == 0;
 }
+
+/// The two edges that an element of bending lies between.
+template <int Dim>
+struct Corner {
+  Eigen::Matrix<double, Dim, 1> before;
+  Eigen::Matrix<double, Dim, 1> after;
+
+  template <class Dofs>
+  Corner(const Dofs& dofs, const Vector& positions)
+      : before(positions.segment<Dim>(dofs[Dim]) - positions.segment<Dim>(dofs[0])),
+        after(positions.segment<Dim>(dofs[2 * Dim]) - positions.segment<Dim>(dofs[Dim])) {}
+
+  /// Times both lengths.
+  [[nodiscard]] double cosine() const { return before.dot(after); }
+  /// The sine, likewise, times the axis.
+  [[nodiscard]] Vec3 binormal() const {
+    Vec3 a = Vec3::Zero();
+    Vec3 b = Vec3::Zero();
+    a.head<Dim>() = before;
+    b.head<Dim>() = after;
+    return a.cross(b);
+  }
+};
 
 template <int Dim, class Kernel>
 Index folded_node_of(const Model& model, const Vector& before, const Vector& after) {
   for (const auto& dofs : elements_of<Kernel>(*model.elements).dofs) {
-    const Corner now = corner<Dim>(dofs, after);
-    if (now.cosine >= 0.0) continue;
-    const Corner then = corner<Dim>(dofs, before);
-    if (then.cosine < 0.0 && now.binormal.dot(then.binormal) < 0.0) {
+    const Corner<Dim> now(dofs, after);
+    if (now.cosine() >= 0.0) continue;
+    const Corner<Dim> then(dofs, before);
+    if (then.cosine() < 0.0 && now.binormal().dot(then.binormal()) < 0.0) {
       return model.dofs.node_of(dofs[Dim]);
     }
   }
@@ -108,11 +119,10 @@ EnergyWatch::EnergyWatch(const Model& model)
 void EnergyWatch::begin(const State& state) { keep(state); }
 
 bool EnergyWatch::was_written(const State& state) const {
-  return state.positions != positions_ || state.velocities != velocities_;
+  return !same_bits(state.positions, positions_) || !same_bits(state.velocities, velocities_);
 }
 
-void EnergyWatch::before_step(State& state) {
-  if (!was_written(state)) return;
+void EnergyWatch::enter_written(State& state) {
   configuration_of(model_, state, here_);
   const double now = energies(model_, here_, state.velocities).total();
   here_.coordinates = positions_;

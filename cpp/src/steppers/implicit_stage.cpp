@@ -20,7 +20,7 @@ ImplicitStage::ImplicitStage(const Model& model, const Assembler& assembler, Lin
     : equation(model),
       here{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       model_(model),
-      problem_(model, assembler),
+      problem_(model, assembler, model.mass),
       newton_(model.dofs, solver, assembler.num_values(), options),
       finisher_(model),
       held_controls_(Vector::Zero(model.tables.size())),
@@ -84,7 +84,7 @@ void ImplicitStage::accumulate_forces(const Vector& displacement, Work& work) co
   }
   for (const HeldDof& held : model_.held) {
     // Without the inertia and the drag that the scheme gives the held node; `finish` has them.
-    const double inertial = equation.inertia * equation.mass.lumped[held.dof] *
+    const double inertial = equation.inertia * model_.mass.lumped[held.dof] *
                             (moved[held.dof] - equation.inertia_target[held.dof]);
     const double drag = equation.velocity_factor * model_.damping[held.dof] *
                         (moved[held.dof] - equation.velocity_reference[held.dof]);

@@ -46,7 +46,7 @@ std::vector<double> residuals_of_newton(const Scenario& scenario) {
   Stage stage(model);
   Configuration here = configuration_of(model, start);
   external_force(model, here, start.extra_force, stage.force);
-  StageProblem problem(model, assembler);
+  StageProblem problem(model, assembler, model.mass);
   problem.pose(stage, here);
   std::vector<double> residuals{1.0};
   for (;;) {

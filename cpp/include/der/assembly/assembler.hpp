@@ -34,6 +34,8 @@ class Assembler {
   void gradient(const Configuration& here, Vector& gradient) const;
   /// Sets `gradient` likewise, and `values` to the Hessian [N/m].
   void gradient_and_hessian(const Configuration& here, Vector& gradient, Vector& values) const;
+  /// Sets `gradient` likewise, and adds the Hessian to `values`.
+  void add_hessian(const Configuration& here, Vector& gradient, Vector& values) const;
   /// The largest entry, by size, on the diagonal of `values` among the free degrees of freedom of a
   /// block; 0 if it has none.
   [[nodiscard]] double largest_diagonal(const DofBlock& block, const Vector& values) const;

@@ -27,10 +27,10 @@ class DiscreteGradientAssembler {
   /// Sets `gradient` (all degrees of freedom) [N] to the discrete gradient over the step whose
   /// middle is `middle`.
   void gradient(const Configuration& middle, Vector& gradient);
-  /// Sets `gradient` likewise, and `values` to the Hessian [N/m] at the middle with the tensions of
-  /// the discrete gradient. It is the derivative of the discrete gradient with respect to the
-  /// middle, but for terms that vanish with the step.
-  void gradient_and_hessian(const Configuration& middle, Vector& gradient, Vector& values);
+  /// Sets `gradient` likewise, and adds to `values` the Hessian [N/m] at the middle with the
+  /// tensions of the discrete gradient. It is the derivative of the discrete gradient with respect
+  /// to the middle, but for terms that vanish with the step.
+  void add_hessian(const Configuration& middle, Vector& gradient, Vector& values);
   /// Work [J] of the moments along `displacement` [m], in the step whose middle is `middle`.
   double moment_work(const Configuration& middle, const Vector& displacement);
 

@@ -24,7 +24,6 @@ class DiscreteGradientAssembler;
 struct Stage {
   explicit Stage(const Model& model);
   double inertia = 0.0;          ///< [1/s^2]; 0: statics
-  Mass mass;                     ///< [kg]; the model's, unless a static analysis brings its own
   Vector origin;                 ///< [m]; zero unless set
   Vector inertia_target;         ///< [m] from the origin
   double velocity_factor = 0.0;  ///< [1/s]
@@ -41,7 +40,8 @@ struct Stage {
 /// A stage as Newton's method solves it, on preallocated memory: evaluations allocate nothing.
 class StageProblem final : public NewtonProblem {
  public:
-  StageProblem(const Model& model, const Assembler& assembler);
+  /// `mass` [kg] is the model's, unless a static analysis brings its own.
+  StageProblem(const Model& model, const Assembler& assembler, Mass mass);
 
   /// Poses a stage to be solved for the coordinates of `here`: on entry the guess, with held
   /// degrees of freedom already at their values, and the controls at the stage's time. Both must
@@ -75,6 +75,8 @@ class StageProblem final : public NewtonProblem {
 
   const Model& model_;
   const Assembler& assembler_;
+  Mass mass_;
+  Vector mass_values_;  // the mass matrix as the assembler's values
   const Stage* stage_ = nullptr;
   Configuration* here_ = nullptr;
   PredictedTension tension_;

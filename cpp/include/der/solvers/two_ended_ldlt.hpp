@@ -18,6 +18,15 @@ class TwoEndedLdlt final : public LinearSolver {
   /// Whether there are kernels for the matrix: half-bandwidth 5, 8 or 10, and halves worth it.
   static bool suits(const Pattern& pattern);
 
+  /// The loops of one half-bandwidth.
+  struct Kernels {
+    Inertia (*factorize)(Index columns, TwoLanes* band);
+    void (*eliminate)(Index columns, const TwoLanes* band, TwoLanes* b);
+    void (*substitute)(Index columns, const TwoLanes* band, TwoLanes* b);
+    Inertia (*factorize_middle)(double* band);
+    void (*solve_middle)(const double* band, double* b);
+  };
+
   explicit TwoEndedLdlt(const Pattern& pattern);
   [[nodiscard]] std::string_view name() const override { return "banded"; }
   [[nodiscard]] const MatrixLayout& layout() const override { return layout_; }
@@ -25,11 +34,6 @@ class TwoEndedLdlt final : public LinearSolver {
   void solve(Vector& b) override;
 
  private:
-  struct Kernels {
-    Inertia (*factorize)(Index columns, TwoLanes* band);
-    void (*eliminate)(Index columns, const TwoLanes* band, TwoLanes* b);
-    void (*substitute)(Index columns, const TwoLanes* band, TwoLanes* b);
-  };
   static Kernels kernels_of(Index half_bandwidth);
 
   Inertia factorize_middle();

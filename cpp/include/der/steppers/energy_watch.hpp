@@ -32,8 +32,8 @@ class EnergyWatch {
   void begin(const State& state);
   /// Whether a program has moved the state since the last step.
   [[nodiscard]] bool was_written(const State& state) const;
-  /// To be called before each step: accumulates what a program has written since the last one.
-  void before_step(State& state);
+  /// To be called before a step of a state that was: accumulates the energy of what was written.
+  void enter_written(State& state);
   /// To be called after each step: enters a node that has folded over in it. Allocates nothing.
   void after_step(State& state);
   /// Enters the energies of the present state into its audit.

@@ -18,13 +18,12 @@ constexpr double kLargestLastChange = 0.5;
 StaticNewton::StaticNewton(const Model& model, const Assembler& assembler, LinearSolver& solver,
                            const NewtonOptions& options, Admissibility admissibility)
     : model_(model),
-      problem_(model, assembler),
+      problem_(model, assembler, {model.dofs.unit_masses(), {}}),
       newton_(model.dofs, solver, assembler.num_values(), options),
       admissibility_(std::move(admissibility)) {}
 
 Stage StaticNewton::stage_of(const StaticLoads& loads) const {
   Stage stage(model_);
-  stage.mass = {model_.dofs.unit_masses(), {}};
   stage.force = loads.force;
   return stage;
 }

@@ -1,6 +1,9 @@
 #include "der/assembly/planar_chain.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
 
 #include "der/core/index.hpp"
 #include "der/core/loops.hpp"
@@ -11,44 +14,57 @@
 namespace der {
 namespace {
 
+using std::sqrt;  // of a double, beside that of lanes
+
 /// The slope of an edge's energy by its vector e, and what the elements on both sides of a node
 /// need of the edge.
+template <class T>
 struct EdgeTerms {
-  Vec2 vector;             ///< [m]
-  Vec2 turn;               ///< gradient of its direction angle [1/m]
-  double inverse_squared;  ///< 1 / |e|^2
-  StretchResponse stretch;
+  Vector2<T> vector;  ///< [m]
+  Vector2<T> turn;    ///< gradient of its direction angle [1/m]
+  T inverse_squared;  ///< 1 / |e|^2
+  StretchResponseOf<T> stretch;
 
-  EdgeTerms(const Stretch<2>::Constants& c, double elongation, const double* node)
-      : vector(node[2] - node[0], node[3] - node[1]) {
-    const double squared = vector.squaredNorm();
-    const double length = std::sqrt(squared);
+  EdgeTerms(const Vector2<T>& e, const T& EA, const T& rest_length, const T& elongation)
+      : vector(e) {
+    const T squared = vector.squaredNorm();
+    const T length = sqrt(squared);
     inverse_squared = 1.0 / squared;
-    turn = direction_gradient(vector, inverse_squared);
-    stretch = stretch_response(c.EA, c.rest_length, elongation, length);
+    turn = direction_gradient<T>(vector, inverse_squared);
+    stretch = stretch_response(EA, rest_length, elongation, length);
   }
 };
 
 /// A symmetric 2 x 2 matrix.
+template <class T>
 struct Symmetric {
-  double xx = 0.0;
-  double yx = 0.0;
-  double yy = 0.0;
+  T xx = 0.0;
+  T yx = 0.0;
+  T yy = 0.0;
 };
 
 /// Second derivative of the energy by the vector of an edge; `moment` is the moment of the node at
 /// its start less that at its end, `stiffness` the sum of the nodes' bending stiffnesses.
-Symmetric edge_hessian(const EdgeTerms& edge, double moment, double stiffness) {
-  const double w = edge.inverse_squared;
-  const double along = (edge.stretch.along - edge.stretch.across) * w;
-  const Vec2& e = edge.vector;
-  const Vec2& d = edge.turn;
-  const Mat2 bent = direction_hessian(e, d, w);
+template <class T>
+Symmetric<T> edge_hessian(const EdgeTerms<T>& edge, const T& moment, const T& stiffness) {
+  const T w = edge.inverse_squared;
+  const T along = (edge.stretch.along - edge.stretch.across) * w;
+  const Vector2<T>& e = edge.vector;
+  const Vector2<T>& d = edge.turn;
+  const Eigen::Matrix<T, 2, 2> bent = direction_hessian<T>(e, d, w);
   return {
       along * e.x() * e.x() + edge.stretch.across + stiffness * d.x() * d.x() + moment * bent(0, 0),
       along * e.x() * e.y() + stiffness * d.x() * d.y() + moment * bent(1, 0),
       along * e.y() * e.y() + edge.stretch.across + stiffness * d.y() * d.y() +
           moment * bent(1, 1)};
+}
+
+/// Second derivative of the energy of the joint between two edges by the vector of `next` (rows)
+/// and that of `edge`.
+template <class T>
+Eigen::Matrix<T, 2, 2> coupling(const EdgeTerms<T>& edge, const EdgeTerms<T>& next,
+                                const BendResponseOf<T>& joint) {
+  return -joint.stiffness * next.turn * edge.turn.transpose();
 }
 
 template <class Curvature>
@@ -97,79 +113,140 @@ void PlanarChain::map_nodes(const Model& model, const MatrixLayout& layout) {
 template <Derivatives D>
 void PlanarChain::add(const Model& model, const Configuration& here, Vector& gradient,
                       double* values) const {
-  if (tangent_) {
-    add_measured<D, TangentCurvature>(model, here, gradient, values);
-  } else {
-    add_measured<D, AngleCurvature>(model, here, gradient, values);
-  }
+  const Totals totals{gradient, values};
+  in_spans(edges_.count, [&](const auto& spans) {
+    if (tangent_) {
+      add_in<D, TangentCurvature>(spans, model, here, totals);
+    } else {
+      add_in<D, AngleCurvature>(spans, model, here, totals);
+    }
+  });
 }
 
-/// With F_j, B_j the first and second derivative by the vector of edge j and C_j that by the
-/// vectors of edges j (rows) and j - 1: node j, at the start of edge j, has the gradient
-/// F_{j-1} - F_j and, in its columns of the Hessian,
+/// Adds in each lane its edges, with their part of the bending at both their ends. With F_j, B_j
+/// the first and second derivative by the vector of edge j and C_j that by the vectors of edges j
+/// (rows) and j - 1: node j, at the start of edge j, has the gradient F_{j-1} - F_j and, in its
+/// columns of the Hessian,
 ///   B_{j-1} + B_j - C_j - C_j',  then -B_j + C_j + C_{j+1},  then -C_{j+1}.
-template <Derivatives D, class Curvature>
-void PlanarChain::add_measured(const Model& model, const Configuration& here, Vector& gradient,
-                               double* values) const {
-  const auto* edge_constants =
-      elements_of<Stretch<2>>(*model.elements).constants.data() + edges_.first;
-  const auto* bend_constants =
+template <Derivatives D, class Curvature, class T>
+void PlanarChain::add_in(const LaneSpans<T>& spans, const Model& model, const Configuration& here,
+                         const Totals& totals) const {
+  constexpr bool with_hessian = D == Derivatives::Hessian;
+  using Lane = LaneTraits<T>;
+  using Block = Eigen::Matrix<T, 2, 2>;
+  // One lane has the whole chain, which does not bend beyond its ends.
+  constexpr bool is_whole = Lane::kCount == 1;
+  const auto* stretches = elements_of<Stretch<2>>(*model.elements).constants.data() + edges_.first;
+  const auto* bends =
       elements_of<PlanarBend<Curvature>>(*model.elements).constants.data() + bends_.first;
   const double* x = here.coordinates.data() + first_dof_;
-  double* g = gradient.data() + first_dof_;
+  const std::ptrdiff_t last = static_cast<std::ptrdiff_t>(edges_.count) - 1;
 
-  const bool actuated = actuated_;
-  const auto terms_of = [&](std::size_t j) {
-    const auto& c = edge_constants[j];
-    return EdgeTerms(c, actuated ? c.elongation.value(here.controls) : 0.0, x + 2 * j);
-  };
-  EdgeTerms edge = terms_of(0);
-  BendResponse start;                // of the node at the start of the edge
-  Vec2 force_before = Vec2::Zero();  // F_{j-1}
-  Symmetric before;                  // B_{j-1}
-  Mat2 from_before = Mat2::Zero();   // C_j
-  for (std::size_t j = 0; j < edges_.count; ++j, g += 2) {
-    const bool last = j + 1 == edges_.count;
-    const EdgeTerms next = last ? edge : terms_of(j + 1);
-    BendResponse end;
-    if (!last) {
-      const auto& c = bend_constants[j];
-      const double natural = actuated ? c.natural(here.controls) : c.rest_kappa;
-      end = bend_response<Curvature>(c.stiffness_per_length, natural,
-                                     angle_between(edge.vector, next.vector));
+  // Edges `j` places after the first of each lane; for those beyond the chain's ends, where nothing
+  // bends, its outermost.
+  const auto edge_at = [&](std::ptrdiff_t j) {
+    const auto number = [&](int lane) {
+      return std::clamp<std::ptrdiff_t>(spans.edge(lane, j), 0, last);
+    };
+    const auto component = [&](int c) {
+      return in_lanes<T>([&](int lane) {
+        const double* node = x + 2 * number(lane);
+        return node[c + 2] - node[c];
+      });
+    };
+    T elongation = 0.0;
+    if (actuated_) {
+      elongation = in_lanes<T>(
+          [&](int lane) { return stretches[number(lane)].elongation.value(here.controls); });
     }
-    const double moment = start.moment - end.moment;
-    const Vec2 force = edge.stretch.across * edge.vector + moment * edge.turn;
-    g[0] += force_before.x() - force.x();
-    g[1] += force_before.y() - force.y();
+    return EdgeTerms<T>({component(0), component(1)},
+                        in_lanes<T>([&](int lane) { return stretches[number(lane)].EA; }),
+                        in_lanes<T>([&](int lane) { return stretches[number(lane)].rest_length; }),
+                        elongation);
+  };
+  const auto joint_after = [&](std::ptrdiff_t j, const EdgeTerms<T>& edge,
+                               const EdgeTerms<T>& next) {
+    const auto constants = [&](int lane) -> const auto& {
+      return bends[std::clamp<std::ptrdiff_t>(spans.edge(lane, j), 0, last - 1)];
+    };
+    const T natural = in_lanes<T>([&](int lane) {
+      const auto& c = constants(lane);
+      return actuated_ ? c.natural(here.controls) : c.rest_kappa;
+    });
+    const T stiffness = in_lanes<T>([&](int lane) {
+      const std::ptrdiff_t joint = spans.edge(lane, j);
+      return joint >= 0 && joint < last ? constants(lane).stiffness_per_length : 0.0;
+    });
+    return bend_response<Curvature>(stiffness, natural, angle_between<T>(edge.vector, next.vector));
+  };
+  const auto add_force = [&](int lane, std::ptrdiff_t j, const Vector2<T>& force) {
+    double* g = totals.gradient.data() + first_dof_ + 2 * spans.edge(lane, j);
+    g[0] += Lane::lane(force.x(), lane);
+    g[1] += Lane::lane(force.y(), lane);
+  };
+
+  EdgeTerms<T> edge = edge_at(0);
+  BendResponseOf<T> start;                       // of the node at the start of the edge
+  Vector2<T> force_before = Vector2<T>::Zero();  // F_{j-1}
+  Symmetric<T> before;                           // B_{j-1}
+  Block from_before = Block::Zero();             // C_j
+  if constexpr (!is_whole) {
+    const EdgeTerms<T> previous = edge_at(-1);
+    start = joint_after(-1, previous, edge);
+    from_before = coupling(previous, edge, start);
+  }
+  // The node behind the last edge of a lane, `j` places after its first.
+  const auto add_last_node = [&](int lane, std::ptrdiff_t j) {
+    add_force(lane, j, force_before);
+    if constexpr (with_hessian) {
+      const NodeSlots& slot = slots_[static_cast<std::size_t>(spans.edge(lane, j))];
+      totals.values[slot[0]] += Lane::lane(before.xx, lane);
+      totals.values[slot[1]] += Lane::lane(before.yx, lane);
+      totals.values[slot[2]] += Lane::lane(before.yy, lane);
+    }
+  };
+
+  for (std::ptrdiff_t j = 0; j < spans.count; ++j) {
+    const int lanes = spans.lanes_with(j);
+    for (int lane = lanes; lane < Lane::kCount; ++lane) add_last_node(lane, j);
+    const bool is_last = is_whole && j == last;
+    const EdgeTerms<T> next = is_last ? edge : edge_at(j + 1);
+    BendResponseOf<T> end;
+    if (!is_last) end = joint_after(j, edge, next);
+    const T moment = start.moment - end.moment;
+    const Vector2<T> force = edge.stretch.across * edge.vector + moment * edge.turn;
+    const Vector2<T> force_at_node = force_before - force;
+    for_each_lane<T>(lanes, [&](int lane) { add_force(lane, j, force_at_node); });
     force_before = force;
 
-    if constexpr (D == Derivatives::Hessian) {
-      const Symmetric own = edge_hessian(edge, moment, start.stiffness + end.stiffness);
-      const Mat2 to_next = -end.stiffness * next.turn * edge.turn.transpose();
-      const Index* slot = slots_[j].data();
-      values[slot[0]] += before.xx + own.xx - 2.0 * from_before(0, 0);
-      values[slot[1]] += before.yx + own.yx - from_before(1, 0) - from_before(0, 1);
-      values[slot[2]] += before.yy + own.yy - 2.0 * from_before(1, 1);
-      values[slot[3]] += from_before(0, 0) + to_next(0, 0) - own.xx;
-      values[slot[4]] += from_before(1, 0) + to_next(1, 0) - own.yx;
-      values[slot[5]] += from_before(0, 1) + to_next(0, 1) - own.yx;
-      values[slot[6]] += from_before(1, 1) + to_next(1, 1) - own.yy;
-      for (int k = 0; k < 4; ++k) values[slot[7 + k]] -= to_next.data()[k];
+    if constexpr (with_hessian) {
+      const Symmetric<T> own = edge_hessian<T>(edge, moment, start.stiffness + end.stiffness);
+      const Block to_next = coupling(edge, next, end);
+      const std::array<T, std::tuple_size_v<NodeSlots>> entries{
+          before.xx + own.xx - 2.0 * from_before(0, 0),
+          before.yx + own.yx - from_before(1, 0) - from_before(0, 1),
+          before.yy + own.yy - 2.0 * from_before(1, 1),
+          from_before(0, 0) + to_next(0, 0) - own.xx,
+          from_before(1, 0) + to_next(1, 0) - own.yx,
+          from_before(0, 1) + to_next(0, 1) - own.yx,
+          from_before(1, 1) + to_next(1, 1) - own.yy,
+          -to_next(0, 0),
+          -to_next(1, 0),
+          -to_next(0, 1),
+          -to_next(1, 1)};
+      for_each_lane<T>(lanes, [&](int lane) {
+        const NodeSlots& slot = slots_[static_cast<std::size_t>(spans.edge(lane, j))];
+        for (std::size_t k = 0; k < entries.size(); ++k) {
+          totals.values[slot[k]] += Lane::lane(entries[k], lane);
+        }
+      });
       before = own;
       from_before = to_next;
     }
     edge = next;
     start = end;
   }
-  g[0] += force_before.x();
-  g[1] += force_before.y();
-  if constexpr (D == Derivatives::Hessian) {
-    const Index* slot = slots_.back().data();
-    values[slot[0]] += before.xx;
-    values[slot[1]] += before.yx;
-    values[slot[2]] += before.yy;
-  }
+  for (int lane = 0; lane < spans.longer; ++lane) add_last_node(lane, spans.count);
 }
 
 void PlanarChain::add_gradient(const Model& model, const Configuration& here,

@@ -4,7 +4,6 @@
 
 #include "der/core/index.hpp"
 #include "der/core/loops.hpp"
-#include "der/core/two_lanes.hpp"
 #include "der/energies/elements_of.hpp"
 
 namespace der {
@@ -141,6 +140,43 @@ struct Tangents {
   }
 };
 
+/// Hands the entries of the columns of node j to `add`, one after the other: B_j, B_{j-1} by the
+/// vector, C_j and C_{j+1} (SpatialChain::add_in).
+template <class Terms, class Add>
+void add_columns(const typename Terms::Block& own, const Matrix3<typename Terms::Number>& before,
+                 const typename Terms::Block& from_before, const typename Terms::Block& to_next,
+                 Add&& add) {
+  using T = typename Terms::Number;
+  constexpr int size = Terms::kSize;
+  for (int column = 0; column < size; ++column) {
+    const bool by_angle = column == 3;
+    // The node's own position and angle.
+    for (int row = column; row < size; ++row) {
+      T entry = own(row, column);
+      if (row < 3) {
+        entry += before(row, column) - from_before(row, column) - from_before(column, row);
+      } else if (!by_angle) {
+        entry = from_before(row, column) - entry;
+      }
+      add(entry);
+    }
+    // The next node.
+    for (int row = 0; row < size; ++row) {
+      T entry = to_next(row, column);
+      if (by_angle) {
+        if (row < 3) entry = own(row, column) - entry;
+      } else {
+        entry = row < 3 ? entry + from_before(row, column) - own(row, column) : -entry;
+      }
+      add(entry);
+    }
+    // The position of the node after that.
+    for (int row = 0; row < 3; ++row) {
+      add(by_angle ? to_next(row, column) : -to_next(row, column));
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<SpatialChain> SpatialChain::find(const Model& model, const MatrixLayout& layout) {
@@ -194,39 +230,37 @@ void SpatialChain::map_nodes(const Model& model, const MatrixLayout& layout) {
 template <Derivatives D>
 void SpatialChain::add(const Model& model, const Configuration& here, Vector& gradient,
                        double* values) const {
+  const Totals totals{gradient, values};
   switch (kind_) {
     case Kind::SectionAngle:
-      return add_parts<D, Sections, AngleCurvature>(model, here, gradient, values);
+      return add_measured<D, Sections, AngleCurvature>(model, here, totals);
     case Kind::SectionTangent:
-      return add_parts<D, Sections, TangentCurvature>(model, here, gradient, values);
+      return add_measured<D, Sections, TangentCurvature>(model, here, totals);
     case Kind::IsotropicAngle:
-      return add_parts<D, Tangents, AngleCurvature>(model, here, gradient, values);
+      return add_measured<D, Tangents, AngleCurvature>(model, here, totals);
     case Kind::IsotropicTangent:
-      return add_parts<D, Tangents, TangentCurvature>(model, here, gradient, values);
+      return add_measured<D, Tangents, TangentCurvature>(model, here, totals);
   }
 }
 
-/// The two halves of the chain run side by side in two lanes; an odd edge is left for the end.
 template <Derivatives D, template <class, class> class Terms, class Curvature>
-void SpatialChain::add_parts(const Model& model, const Configuration& here, Vector& gradient,
-                             double* values) const {
-  const auto count = static_cast<std::ptrdiff_t>(edges_.count);
-  const std::ptrdiff_t half = count / 2;
-  const Totals totals{gradient, values};
-  add_part<D, Terms<Curvature, TwoLanes>>({0, half}, half, model, here, totals);
-  if (count > 2 * half) add_part<D, Terms<Curvature, double>>({2 * half}, 1, model, here, totals);
+void SpatialChain::add_measured(const Model& model, const Configuration& here,
+                                const Totals& totals) const {
+  in_spans(edges_.count, [&](const auto& spans) {
+    using Number = typename std::decay_t<decltype(spans)>::Number;
+    add_in<D, Terms<Curvature, Number>>(spans, model, here, totals);
+  });
 }
 
-/// Adds in each lane the `count` edges from `first` on, with their part of the joints at both their
-/// ends. With F_j, B_j the first and second derivative by the variables of edge j, its vector e and
-/// its angle, and C_j that by the variables of edges j (rows) and j - 1: node j, at the start of
-/// edge j, has the gradient F_{j-1} - F_j in its position, and in its columns of the Hessian
+/// Adds in each lane its edges, with their part of the joints at both their ends. With F_j, B_j the
+/// first and second derivative by the variables of edge j, its vector e and its angle, and C_j that
+/// by the variables of edges j (rows) and j - 1: node j, at the start of edge j, has the gradient
+/// F_{j-1} - F_j in its position, and in its columns of the Hessian
 ///   B_{j-1} + B_j - C_j - C_j',  then -B_j + C_j + C_{j+1},  then -C_{j+1}.
 /// The angle of edge j does not enter at the edge's other end.
 template <Derivatives D, class Terms>
-void SpatialChain::add_part(const LaneStarts<Terms>& first, std::ptrdiff_t count,
-                            const Model& model, const Configuration& here,
-                            const Totals& totals) const {
+void SpatialChain::add_in(const LaneSpans<typename Terms::Number>& spans, const Model& model,
+                          const Configuration& here, const Totals& totals) const {
   constexpr bool with_hessian = D == Derivatives::Hessian;
   constexpr int size = Terms::kSize;
   using T = typename Terms::Number;
@@ -234,6 +268,8 @@ void SpatialChain::add_part(const LaneStarts<Terms>& first, std::ptrdiff_t count
   using EdgeTerms = typename Terms::Edge;
   using Block = typename Terms::Block;
   using Response = typename Terms::Response;
+  // One lane has the whole chain, which has no joints beyond its ends.
+  constexpr bool is_whole = Lane::kCount == 1;
   const auto* stretches = elements_of<Stretch<3>>(*model.elements).constants.data() + edges_.first;
   const auto* bends =
       elements_of<typename Terms::Bend>(*model.elements).constants.data() + bends_.first;
@@ -242,13 +278,13 @@ void SpatialChain::add_part(const LaneStarts<Terms>& first, std::ptrdiff_t count
 
   // Edges `j` places after the first of each lane; for those beyond the chain's ends, whose joints
   // count nothing, its outermost.
+  const auto number = [&](int lane, std::ptrdiff_t j) {
+    return std::clamp<std::ptrdiff_t>(spans.edge(lane, j), 0, last);
+  };
   const auto edge_at = [&](std::ptrdiff_t j) {
-    const auto number = [&](int lane) {
-      return std::clamp<std::ptrdiff_t>(first[to_size(lane)] + j, 0, last);
-    };
     const auto component = [&](int c) {
       return in_lanes<T>([&](int lane) {
-        const double* node = x + 3 * number(lane);
+        const double* node = x + 3 * number(lane, j);
         return node[c + 3] - node[c];
       });
     };
@@ -256,13 +292,13 @@ void SpatialChain::add_part(const LaneStarts<Terms>& first, std::ptrdiff_t count
     if constexpr (size == 4) {
       const auto followed = [&](Index entry) {
         return in_lanes<T>([&](int lane) {
-          const std::ptrdiff_t edge = number(lane);
+          const std::ptrdiff_t edge = number(lane, j);
           const FrameBlock& block = edge == 0 ? bends[0].before : bends[edge - 1].after;
           return here.controls[block.first + entry];
         });
       };
       const T theta = in_lanes<T>([&](int lane) {
-        return here.coordinates[first_theta_ + static_cast<Index>(number(lane))];
+        return here.coordinates[first_theta_ + static_cast<Index>(number(lane, j))];
       });
       return EdgeTerms(e, theta, {followed(0), followed(1), followed(2)},
                        {followed(3), followed(4), followed(5)});
@@ -273,66 +309,78 @@ void SpatialChain::add_part(const LaneStarts<Terms>& first, std::ptrdiff_t count
   const auto joint_after = [&](std::ptrdiff_t j, const EdgeTerms& edge, const EdgeTerms& next) {
     return Terms::template joint<with_hessian>(
         [&](int lane) -> const auto& {
-          return bends[std::clamp<std::ptrdiff_t>(first[to_size(lane)] + j, 0, last - 1)];
+          return bends[std::clamp<std::ptrdiff_t>(spans.edge(lane, j), 0, last - 1)];
         },
         edge, next, here.controls, actuated_);
   };
   const auto joint_exists = [&](std::ptrdiff_t j) {
     return in_lanes<T>([&](int lane) {
-      const std::ptrdiff_t joint = first[to_size(lane)] + j;
+      const std::ptrdiff_t joint = spans.edge(lane, j);
       return joint >= 0 && joint < last ? 1.0 : 0.0;
     });
   };
-  const auto add_force = [&](std::ptrdiff_t j, const Vector3<T>& force) {
-    for (int lane = 0; lane < Lane::kCount; ++lane) {
-      double* g = totals.gradient.data() + first_dof_ + 3 * (first[to_size(lane)] + j);
-      for (int c = 0; c < 3; ++c) g[c] += Lane::lane(force[c], lane);
-    }
-  };
-  // Adds entries of the columns of node j, one after the other.
-  const auto entries_of = [&](std::ptrdiff_t j) {
-    return [&, j, k = std::size_t{0}](const T& entry) mutable {
-      for (int lane = 0; lane < Lane::kCount; ++lane) {
-        const NodeSlots& slots = slots_[static_cast<std::size_t>(first[to_size(lane)] + j)];
-        totals.values[slots[k]] += Lane::lane(entry, lane);
-      }
-      ++k;
-    };
+  const auto add_force = [&](int lane, std::ptrdiff_t j, const Vector3<T>& force) {
+    double* g = totals.gradient.data() + first_dof_ + 3 * spans.edge(lane, j);
+    for (int c = 0; c < 3; ++c) g[c] += Lane::lane(force[c], lane);
   };
 
   EdgeTerms edge = edge_at(0);
-  const EdgeTerms previous = edge_at(-1);
-  Response start = joint_after(-1, previous, edge);  // of the joint at the start of the edge
-  Terms::scale(start, joint_exists(-1));
+  Response start;                                // of the joint at the start of the edge
   Vector3<T> force_before = Vector3<T>::Zero();  // F_{j-1}
   Matrix3<T> before = Matrix3<T>::Zero();        // B_{j-1} by the vector
   Block from_before = Block::Zero();             // C_j
-  if constexpr (with_hessian) from_before = Terms::coupling(previous, edge, start);
-  for (std::ptrdiff_t j = 0; j < count; ++j) {
-    const EdgeTerms next = edge_at(j + 1);
-    Response end = joint_after(j, edge, next);
-    if (j + 1 == count) Terms::scale(end, joint_exists(j));
+  if constexpr (!is_whole) {
+    const EdgeTerms previous = edge_at(-1);
+    start = joint_after(-1, previous, edge);
+    Terms::scale(start, joint_exists(-1));
+    if constexpr (with_hessian) from_before = Terms::coupling(previous, edge, start);
+  }
+  // The node behind the last edge of a lane, `j` places after its first.
+  const auto add_last_node = [&](int lane, std::ptrdiff_t j) {
+    add_force(lane, j, force_before);
+    if constexpr (with_hessian) {
+      const Index* slot = slots_[static_cast<std::size_t>(spans.edge(lane, j))].data();
+      for (int column = 0; column < 3; ++column) {
+        const Index* entry = slot;
+        for (int row = column; row < 3; ++row) {
+          totals.values[*entry++] += Lane::lane(before(row, column), lane);
+        }
+        slot += (size - column) + size + 3;
+      }
+    }
+  };
+
+  for (std::ptrdiff_t j = 0; j < spans.count; ++j) {
+    const int lanes = spans.lanes_with(j);
+    for (int lane = lanes; lane < Lane::kCount; ++lane) add_last_node(lane, j);
+    const bool is_last = is_whole && j == last;
+    const EdgeTerms next = is_last ? edge : edge_at(j + 1);
+    Response end;
+    if (!is_last) {
+      end = joint_after(j, edge, next);
+      if (!is_whole && spans.is_near_end(j)) Terms::scale(end, joint_exists(j));
+    }
     const auto constant = [&](double Stretch<3>::Constants::* member) {
-      return in_lanes<T>([&](int lane) { return stretches[first[to_size(lane)] + j].*member; });
+      return in_lanes<T>([&](int lane) { return stretches[number(lane, j)].*member; });
     };
     T elongation = 0.0;
     if (actuated_) {
-      elongation = in_lanes<T>([&](int lane) {
-        return stretches[first[to_size(lane)] + j].elongation.value(here.controls);
-      });
+      elongation = in_lanes<T>(
+          [&](int lane) { return stretches[number(lane, j)].elongation.value(here.controls); });
     }
     const StretchResponseOf<T> stretch =
         stretch_response(constant(&Stretch<3>::Constants::EA),
                          constant(&Stretch<3>::Constants::rest_length), elongation, edge.length);
     const typename Terms::Variables slope = Terms::force(edge, start, end);
     const Vector3<T> force = stretch.tension * edge.tangent + slope.template head<3>();
-    add_force(j, force_before - force);
-    if constexpr (size == 4) {
-      for (int lane = 0; lane < Lane::kCount; ++lane) {
-        totals.gradient[first_theta_ + static_cast<Index>(first[to_size(lane)] + j)] +=
+    const Vector3<T> force_at_node = force_before - force;
+    for_each_lane<T>(lanes, [&](int lane) {
+      add_force(lane, j, force_at_node);
+      if constexpr (size == 4) {
+        totals.gradient[first_theta_ + static_cast<Index>(spans.edge(lane, j))] +=
             Lane::lane(slope[3], lane);
       }
-    }
+    });
     force_before = force;
 
     if constexpr (with_hessian) {
@@ -341,60 +389,22 @@ void SpatialChain::add_part(const LaneStarts<Terms>& first, std::ptrdiff_t count
           (stretch.along - stretch.across) * edge.tangent * edge.tangent.transpose();
       own.diagonal().template head<3>().array() += stretch.across;
       const Block to_next = Terms::coupling(edge, next, end);
-      auto add = entries_of(j);
-      for (int column = 0; column < size; ++column) {
-        const bool by_angle = column == 3;
-        // The node's own position and angle.
-        for (int row = column; row < size; ++row) {
-          T entry = own(row, column);
-          if (row < 3) {
-            entry += before(row, column) - from_before(row, column) - from_before(column, row);
-          } else if (!by_angle) {
-            entry = from_before(row, column) - entry;
-          }
-          add(entry);
-        }
-        // The next node.
-        for (int row = 0; row < size; ++row) {
-          T entry = to_next(row, column);
-          if (by_angle) {
-            if (row < 3) entry = own(row, column) - entry;
-          } else {
-            entry = row < 3 ? entry + from_before(row, column) - own(row, column) : -entry;
-          }
-          add(entry);
-        }
-        // The position of the node after that.
-        for (int row = 0; row < 3; ++row) {
-          add(by_angle ? to_next(row, column) : -to_next(row, column));
-        }
-      }
+      // Adds entries of the columns of the node, one after the other.
+      auto add = [&, k = std::size_t{0}](const T& entry) mutable {
+        for_each_lane<T>(lanes, [&](int lane) {
+          const NodeSlots& slots = slots_[static_cast<std::size_t>(spans.edge(lane, j))];
+          totals.values[slots[k]] += Lane::lane(entry, lane);
+        });
+        ++k;
+      };
+      add_columns<Terms>(own, before, from_before, to_next, add);
       before = own.template topLeftCorner<3, 3>();
       from_before = to_next;
     }
     edge = next;
     start = end;
   }
-  add_force(count, force_before);
-  if constexpr (with_hessian) add_last_node<Terms>(first, count, before, totals.values);
-}
-
-/// B_{j-1} of the node behind the last edge of each lane.
-template <class Terms>
-void SpatialChain::add_last_node(const LaneStarts<Terms>& first, std::ptrdiff_t count,
-                                 const Matrix3<typename Terms::Number>& before,
-                                 double* values) const {
-  using Lane = LaneTraits<typename Terms::Number>;
-  for (int lane = 0; lane < Lane::kCount; ++lane) {
-    const Index* slot = slots_[static_cast<std::size_t>(first[to_size(lane)] + count)].data();
-    for (int column = 0; column < 3; ++column) {
-      const Index* entry = slot;
-      for (int row = column; row < 3; ++row) {
-        values[*entry++] += Lane::lane(before(row, column), lane);
-      }
-      slot += (Terms::kSize - column) + Terms::kSize + 3;
-    }
-  }
+  for (int lane = 0; lane < spans.longer; ++lane) add_last_node(lane, spans.count);
 }
 
 void SpatialChain::add_gradient(const Model& model, const Configuration& here,

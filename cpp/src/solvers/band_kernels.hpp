@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "der/core/index.hpp"
-#include "der/core/two_lanes.hpp"
+#include "der/core/lanes.hpp"
 #include "der/solvers/linear_solver.hpp"
 
 namespace der {

@@ -1,8 +1,5 @@
 #include "der/solvers/two_ended_ldlt.hpp"
 
-#include <cstring>
-#include <type_traits>
-
 #include "der/core/loops.hpp"
 #include "solvers/band_kernels.hpp"
 
@@ -77,8 +74,7 @@ TwoEndedLdlt::TwoEndedLdlt(const Pattern& pattern)
 }
 
 Inertia TwoEndedLdlt::factorize(const Vector& values) {
-  static_assert(sizeof(TwoLanes) == 2 * sizeof(double) && std::is_trivially_copyable_v<TwoLanes>);
-  std::memcpy(band_.data(), values.data(), band_.size() * sizeof(TwoLanes));
+  for (std::size_t k = 0; k < band_.size(); ++k) band_[k] = TwoLanes::load(values.data() + 2 * k);
   if (padding_ > 0) band_[0] = {band_[0].lane(0), 1.0};
   Inertia inertia = kernels_.factorize(columns_, band_.data());
   if (!inertia.factorised) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "der/assembly/chain_run.hpp"
+#include "der/assembly/lane_spans.hpp"
 #include "der/assembly/pattern.hpp"
 #include "der/core/types.hpp"
 #include "der/energies/local_term.hpp"
@@ -48,11 +49,16 @@ class PlanarChain {
   using NodeSlots = std::array<Index, 3 + 4 + 4>;
 
   void map_nodes(const Model& model, const MatrixLayout& layout);
+  struct Totals {
+    Vector& gradient;
+    double* values;
+  };
+
   template <Derivatives D>
   void add(const Model& model, const Configuration& here, Vector& gradient, double* values) const;
-  template <Derivatives D, class Curvature>
-  void add_measured(const Model& model, const Configuration& here, Vector& gradient,
-                    double* values) const;
+  template <Derivatives D, class Curvature, class T>
+  void add_in(const LaneSpans<T>& spans, const Model& model, const Configuration& here,
+              const Totals& totals) const;
 
   ChainRange edges_;
   ChainRange bends_;

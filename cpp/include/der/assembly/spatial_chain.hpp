@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "der/assembly/chain_run.hpp"
+#include "der/assembly/lane_spans.hpp"
 #include "der/assembly/pattern.hpp"
-#include "der/core/two_lanes.hpp"
 #include "der/core/types.hpp"
 #include "der/energies/isotropic_bend.hpp"
 #include "der/energies/local_term.hpp"
@@ -52,9 +52,6 @@ class SpatialChain {
   /// begins there), of the block of the next node below it, and of the position of the node after
   /// that: column by column. Without angles some are not used.
   using NodeSlots = std::array<Index, 10 + 16 + 12>;
-  /// The first edge of each lane.
-  template <class Terms>
-  using LaneStarts = std::array<std::ptrdiff_t, LaneTraits<typename Terms::Number>::kCount>;
   struct Totals {
     Vector& gradient;
     double* values;
@@ -64,14 +61,10 @@ class SpatialChain {
   template <Derivatives D>
   void add(const Model& model, const Configuration& here, Vector& gradient, double* values) const;
   template <Derivatives D, template <class, class> class Terms, class Curvature>
-  void add_parts(const Model& model, const Configuration& here, Vector& gradient,
-                 double* values) const;
+  void add_measured(const Model& model, const Configuration& here, const Totals& totals) const;
   template <Derivatives D, class Terms>
-  void add_part(const LaneStarts<Terms>& first, std::ptrdiff_t count, const Model& model,
-                const Configuration& here, const Totals& totals) const;
-  template <class Terms>
-  void add_last_node(const LaneStarts<Terms>& first, std::ptrdiff_t count,
-                     const Matrix3<typename Terms::Number>& before, double* values) const;
+  void add_in(const LaneSpans<typename Terms::Number>& spans, const Model& model,
+              const Configuration& here, const Totals& totals) const;
 
   Kind kind_ = Kind::SectionAngle;
   ChainRange edges_;

@@ -10,9 +10,11 @@ using Vec2 = Eigen::Vector2d;
 using Mat2 = Eigen::Matrix2d;
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
-/// The same of any number type, for kernels that work on lanes (core/two_lanes.hpp).
+/// The same of any number type, for kernels that work on lanes (core/lanes.hpp).
 template <class T>
 using Vector3 = Eigen::Matrix<T, 3, 1>;
+template <class T>
+using Vector2 = Eigen::Matrix<T, 2, 1>;
 template <class T>
 using Matrix3 = Eigen::Matrix<T, 3, 3>;
 

@@ -14,16 +14,18 @@
 namespace der {
 
 /// First and second derivative of 1/2 EI (kappa(phi) - rest_kappa)^2 / l by the turning angle phi.
-struct BendResponse {
-  double energy = 0.0;
-  double moment = 0.0;     ///< dE/dphi [N m]
-  double stiffness = 0.0;  ///< d2E/dphi2 [N m]
+template <class T>
+struct BendResponseOf {
+  T energy = 0.0;
+  T moment = 0.0;     ///< dE/dphi [N m]
+  T stiffness = 0.0;  ///< d2E/dphi2 [N m]
 };
+using BendResponse = BendResponseOf<double>;
 
-template <class Curvature>
-BendResponse bend_response(double stiffness_per_length, double rest_kappa, double phi) {
-  const CurvatureValue k = Curvature::of(phi);
-  const double excess = k.kappa - rest_kappa;
+template <class Curvature, class T>
+BendResponseOf<T> bend_response(const T& stiffness_per_length, const T& rest_kappa, const T& phi) {
+  const CurvatureValueOf<T> k = Curvature::of(phi);
+  const T excess = k.kappa - rest_kappa;
   return {0.5 * stiffness_per_length * excess * excess, stiffness_per_length * excess * k.first,
           stiffness_per_length * (k.first * k.first + excess * k.second)};
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "der/core/two_lanes.hpp"
+#include "der/core/lanes.hpp"
 #include "der/kinematics/curvature_measure.hpp"
 
 namespace der {
@@ -62,9 +62,10 @@ struct Binormal<AngleCurvature> {
     const double f = std::acos(std::max(-1.0, 1.0 - u)) / std::sqrt(u * (2.0 - u));
     return (f - 1.0 - u / 3.0) / (u * u);
   }
-  static TwoLanes second_quotient(const TwoLanes& u) {
-    if (u.lane(0) < kSmall && u.lane(1) < kSmall) return series(u);
-    return {second_quotient(u.lane(0)), second_quotient(u.lane(1))};
+  template <int N>
+  static Lanes<N> second_quotient(const Lanes<N>& u) {
+    if (in_all_lanes<Lanes<N>>([&](int lane) { return u.lane(lane) < kSmall; })) return series(u);
+    return in_lanes<Lanes<N>>([&](int lane) { return second_quotient(u.lane(lane)); });
   }
 };
 

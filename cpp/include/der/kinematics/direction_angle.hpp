@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "der/core/two_lanes.hpp"
+#include "der/core/lanes.hpp"
 
 namespace der {
 
@@ -29,11 +29,11 @@ inline double direction_angle(double x, double y) {
   if (8.0 * std::abs(y) < x) return small_arc_tangent(y / x);
   return std::atan2(y, x);
 }
-inline TwoLanes direction_angle(const TwoLanes& x, const TwoLanes& y) {
-  if (8.0 * std::abs(y.lane(0)) < x.lane(0) && 8.0 * std::abs(y.lane(1)) < x.lane(1)) {
-    return small_arc_tangent(y / x);
-  }
-  return {direction_angle(x.lane(0), y.lane(0)), direction_angle(x.lane(1), y.lane(1))};
+template <int N>
+Lanes<N> direction_angle(const Lanes<N>& x, const Lanes<N>& y) {
+  const auto is_small = [&](int lane) { return 8.0 * std::abs(y.lane(lane)) < x.lane(lane); };
+  if (in_all_lanes<Lanes<N>>(is_small)) return small_arc_tangent(Lanes<N>(y / x));
+  return in_lanes<Lanes<N>>([&](int lane) { return direction_angle(x.lane(lane), y.lane(lane)); });
 }
 
 }  // namespace der

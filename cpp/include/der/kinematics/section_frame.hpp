@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "der/core/two_lanes.hpp"
+#include "der/core/lanes.hpp"
 #include "der/core/types.hpp"
 #include "der/kinematics/direction_angle.hpp"
 #include "der/kinematics/sine_and_cosine.hpp"
@@ -66,8 +66,10 @@ inline double nearest_turn(double angle, double near) {
   constexpr double turn = 6.283185307179586;
   return angle - turn * std::nearbyint((angle - near) / turn);
 }
-inline TwoLanes nearest_turn(const TwoLanes& angle, const TwoLanes& near) {
-  return {nearest_turn(angle.lane(0), near.lane(0)), nearest_turn(angle.lane(1), near.lane(1))};
+template <int N>
+Lanes<N> nearest_turn(const Lanes<N>& angle, const Lanes<N>& near) {
+  return in_lanes<Lanes<N>>(
+      [&](int lane) { return nearest_turn(angle.lane(lane), near.lane(lane)); });
 }
 
 }  // namespace der

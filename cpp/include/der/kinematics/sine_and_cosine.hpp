@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "der/core/two_lanes.hpp"
+#include "der/core/lanes.hpp"
 
 namespace der {
 
@@ -25,21 +25,21 @@ SineAndCosine<T> small_sine_and_cosine(const T& x) {
   return {x * sine, cosine};
 }
 
+constexpr double kEighthTurn = 0.785398163397448;
+
 /// Most angles of a rod's sections are small: there the series are several times faster than the
 /// library.
 inline SineAndCosine<double> sine_and_cosine(double x) {
-  constexpr double eighth_turn = 0.785398163397448;
-  if (std::abs(x) < eighth_turn) return small_sine_and_cosine(x);
+  if (std::abs(x) < kEighthTurn) return small_sine_and_cosine(x);
   return {std::sin(x), std::cos(x)};
 }
-inline SineAndCosine<TwoLanes> sine_and_cosine(const TwoLanes& x) {
-  constexpr double eighth_turn = 0.785398163397448;
-  if (std::abs(x.lane(0)) < eighth_turn && std::abs(x.lane(1)) < eighth_turn) {
-    return small_sine_and_cosine(x);
-  }
-  const auto [sine_0, cosine_0] = sine_and_cosine(x.lane(0));
-  const auto [sine_1, cosine_1] = sine_and_cosine(x.lane(1));
-  return {{sine_0, sine_1}, {cosine_0, cosine_1}};
+template <int N>
+SineAndCosine<Lanes<N>> sine_and_cosine(const Lanes<N>& x) {
+  using T = Lanes<N>;
+  const auto is_small = [&](int lane) { return std::abs(x.lane(lane)) < kEighthTurn; };
+  if (in_all_lanes<T>(is_small)) return small_sine_and_cosine(x);
+  return {in_lanes<T>([&](int lane) { return sine_and_cosine(x.lane(lane)).sine; }),
+          in_lanes<T>([&](int lane) { return sine_and_cosine(x.lane(lane)).cosine; })};
 }
 
 }  // namespace der

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-#include "der/core/two_lanes.hpp"
+#include "der/core/lanes.hpp"
 #include "der/core/types.hpp"
 #include "der/solvers/linear_solver.hpp"
 

@@ -1,4 +1,4 @@
-#include "der/core/two_lanes.hpp"
+#include "der/core/lanes.hpp"
 
 #include <doctest/doctest.h>
 

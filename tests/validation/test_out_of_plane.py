@@ -8,9 +8,10 @@ import warnings
 import der
 import numpy as np
 import pytest
+from references.kirchhoff_rod import UPRIGHT, Rod, constant, march, rotation
 from scenes import END, START, tip_force
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
+from scipy.optimize import brentq, fsolve
 from spatial_scenes import critical, measured, section, straight_rod
 
 SIZES = [10, 20, 40]
@@ -169,6 +170,93 @@ def test_forks_turn_with_the_rod():
     ]
     assert rates[0] > 0
     assert rates[1] == pytest.approx(rates[0], rel=1e-4)
+
+
+ARC = {"EA": 2e4, "EI1": 0.12, "EI2": 1.0, "GJ": 0.1, "mass_per_length": 0.1}
+BEND = 2.0  # turn of the drawn arc, whose length is 1
+
+
+def arc_under_a_force(n, start):
+    """An arc with a pin at its end, and a force of 1 in its middle."""
+    turn = BEND * np.linspace(0, 1, n + 1)
+    points = np.column_stack([np.sin(turn), 1 - np.cos(turn)]) / BEND
+    rod = {"name": "rod", "points": points.tolist(), "cross_section": {"stiffness": ARC}}
+    supports = [{**START, **start}, {**END, "fix": ["x", "y"]}]
+    force = {"point_force": {"rod": "rod", "at": 0.5, "force": [0, 1]}}
+    return {"rods": [rod], "supports": supports, "loads": [force]}
+
+
+def critical_force_of_the_arc(is_pinned, low, high):
+    """The force at which that arc's equilibrium is neutral out of its plane, by shooting from the
+    start. Of the plane the slope or moment and the forces there are unknown; out of it the tilt or
+    moment, the torque, and the force, of which complex steps give the matrix of the conditions at
+    the end. A pin holds z and the turn of the section about the tangent, and lets it tilt.
+    """
+    half = Rod(0.5, (ARC["EI1"], ARC["EI2"]), ARC["GJ"], ARC["EA"], constant(0.0, BEND, 0.0))
+    tip = np.array([np.sin(BEND), 1 - np.cos(BEND)]) / BEND
+
+    def conditions(force, in_plane, out_of_plane):
+        slope = in_plane[0] if is_pinned else 0.0
+        tilt = out_of_plane[0] if is_pinned else 0.0
+        frame = rotation((0, 0, 1), slope) @ UPRIGHT @ [[1, 0, 0], [0, 1, -tilt], [0, tilt, 1]]
+        moment = [0 if is_pinned else out_of_plane[0], 0 if is_pinned else in_plane[0]]
+        wrench = [*(np.array([*in_plane[1:], out_of_plane[2]]) @ frame), *moment, out_of_plane[1]]
+        y = march(half, np.zeros(3), np.array([0, 0, 0, *frame.ravel(), *wrench]))
+        y[12:15] -= np.array([0, force, 0]) @ y[3:12].reshape(3, 3)
+        y = march(half, np.zeros(3), y)
+        _, d2, d3 = y[3:12].reshape(3, 3).T
+        m = y[3:12].reshape(3, 3) @ y[15:18]
+        across = np.real(np.cross(d3, [0, 0, 1]))
+        return np.array([*(y[:2] - tip), m[2]]), np.array([y[2], d2 @ across, m @ across])
+
+    in_plane = np.zeros(3)
+
+    def determinant(force):
+        nonlocal in_plane
+        zero = np.zeros(3)
+        in_plane = fsolve(lambda x: conditions(force, x, zero)[0].real, in_plane, xtol=1e-12)
+        columns = [conditions(force, in_plane, 1e-30j * unit)[1].imag for unit in np.eye(3)]
+        return np.linalg.det(np.array(columns) * 1e30)
+
+    for share in np.linspace(0, 1, 5):
+        determinant(share * low)
+    return brentq(determinant, low, high, xtol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("start", "low", "high"),
+    [({"fix": ["x", "y"]}, 0.4, 0.8), ({"clamp": True}, 3.0, 3.3)],
+    ids=["pinned", "clamped"],
+)
+def test_pins_hold_the_section_about_the_tangent_of_a_curved_rod(fitted_order, start, low, high):
+    """And not about the edge beside them, which leans against it."""
+    exact = critical_force_of_the_arc("clamp" not in start, low, high)
+    errors = []
+    for n in SIZES:
+        scene = arc_under_a_force(n, start)
+        result = quiet_run({**scene, "analysis": {"continuation": {"to": 1.2 * exact}}})
+        errors.append(result.summary["out_of_plane"]["load_factor"] / exact - 1)
+    assert fitted_order(STEPS, errors) > 1.9
+    assert abs(errors[-1]) < 2e-3
+
+
+@pytest.mark.parametrize("force", [0.0, 0.1])
+def test_a_ring_on_two_pins_turns_about_the_line_between_them(force):
+    """Both tangents lie across that line: nothing holds the ring against turning."""
+    turn = 2 * np.pi * np.arange(40) / 40
+    rod = {
+        "name": "rod",
+        "points": np.column_stack([np.cos(turn), np.sin(turn)]).tolist(),
+        "closed": True,
+        "cross_section": {"stiffness": ARC},
+    }
+    far = {"rod": "rod", "at": {"node": 20}}
+    supports = [{"rod": "rod", "at": {"node": 0}, "fix": ["x", "y"]}, {**far, "fix": ["y"]}]
+    loads = [{"point_force": {**far, "force": [force, 0]}}]
+    scene = {"rods": [rod], "supports": supports, "loads": loads, "analysis": "static"}
+    verdict = planar_verdict(scene)
+    assert verdict.stability == "neutral"
+    assert verdict.neutral_directions == 1
 
 
 def test_beam_between_forks_leaves_its_plane_at_that_load():

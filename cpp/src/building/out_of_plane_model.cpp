@@ -11,12 +11,14 @@
 #include "der/core/index.hpp"
 #include "der/core/nearest_node.hpp"
 #include "der/energies/elements_of.hpp"
+#include "der/energies/fork.hpp"
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/spatial_bend.hpp"
 #include "der/model/frames.hpp"
 #include "der/model/location.hpp"
 #include "der/scenario/load.hpp"
 #include "der/scenario/scenario.hpp"
+#include "model/corner.hpp"
 #include "scenario/conform.hpp"
 #include "scenario/directions.hpp"
 
@@ -119,39 +121,56 @@ void divide_joint(Index first_dof, ElementLists& elements) {
   }
 }
 
-/// Holds the section at a node by the half edges beside it, which twist against it as they do
-/// against a clamp.
-template <class Curvature>
+/// From a place to where an edge beside it has the direction of the tangent [m].
+double reach(const RodLayout& rod, Index place, Index edge) {
+  const double along = tangent_place(rod, edge) - rod.arc_length_at(edge);
+  return edge == place ? along : rod.edge_length[to_size(edge)] - along;
+}
+
+/// The tangent at a place on the side of `edge`: on the line of the directions of this edge and the
+/// one on the other side. At ends and corners, where there is none, on that of the next edge.
+OutOfPlaneModel::ForkTangent tangent_at(const RodLayout& rod, Index place, Index edge,
+                                        const Model& model) {
+  const Index number = rod.first_edge + edge;
+  const Index other = edge == place ? rod.edge_before(place) : rod.edge_after(place);
+  const double own = reach(rod, place, edge);
+  if (other >= 0 && !is_corner(rod, place, model)) {
+    return {number, rod.first_edge + other, own / (own + reach(rod, place, other)), 0};
+  }
+  const Index inner = edge == place ? rod.position(edge + 1) : edge;
+  const Index next = edge == place ? rod.edge_after(inner) : rod.edge_before(inner);
+  if (next < 0 || is_corner(rod, inner, model)) return {number, number, 0.0, 0};
+  const double between = reach(rod, inner, edge) + reach(rod, inner, next);
+  return {number, rod.first_edge + next, -own / between, 0};
+}
+
+/// Holds the section at a node by the half edges beside it.
 void add_fork(const RodLayout& rod, Index place, OutOfPlaneModel& twin) {
+  if (rod.joints.empty() || rod.clamp_at(place) != nullptr) return;
   Model& model = twin.model;
   const Index first_dof = model.dof(rod.nodes[to_size(place)], 0);
-  divide_joint<SpatialBend<Curvature>>(first_dof, *model.elements);
+  divide_joint<SpatialBend<AngleCurvature>>(first_dof, *model.elements);
+  divide_joint<SpatialBend<TangentCurvature>>(first_dof, *model.elements);
   divide_joint<CornerBend>(first_dof, *model.elements);
   for (const Index edge : {rod.edge_before(place), rod.edge_after(place)}) {
     if (edge < 0) continue;
     const Index number = rod.first_edge + edge;
-    const FrameBlock block = FrameBlock::of(number);
     const SpatialEdge& own = model.framed_edges[to_size(number)];
-    HeldFrame held;
-    held.drawn = reference_frame(number, model.drawn_frames);
-    held.rotation = model.tables.add({});
+    const SectionFrame drawn =
+        reference_frame(number, model.drawn_frames).turned(model.initial_positions[own.theta]);
+    OutOfPlaneModel::ForkTangent tangent = tangent_at(rod, place, edge, model);
+    tangent.direction = model.tables.add({});
     const double half = 0.5 * rod.edge_length[to_size(edge)];
-    elements_of<FromSpatialPivot<SpatialClamp<Curvature>>>(*model.elements)
+    elements_of<FromSpatialPivot<Fork>>(*model.elements)
         .add(
             {own.start, own.start + 1, own.start + 2, own.end, own.end + 1, own.end + 2, own.theta},
-            {{{0.0, 0.0, rod.GJ / half, {}}, held, block, edge == place ? 1.0 : -1.0},
+            {{rod.GJ / half,
+              {drawn.first.z(), drawn.second.z()},
+              FrameBlock::of(number),
+              tangent.direction},
              own.first,
              own.last});
-    twin.forks.push_back({number, held.rotation});
-  }
-}
-
-void add_fork(const RodLayout& rod, Index place, OutOfPlaneModel& twin) {
-  if (rod.joints.empty() || rod.clamp_at(place) != nullptr) return;
-  if (rod.curvature == scenario::CurvatureMeasure::Angle) {
-    add_fork<AngleCurvature>(rod, place, twin);
-  } else {
-    add_fork<TangentCurvature>(rod, place, twin);
+    twin.forks.push_back(tangent);
   }
 }
 
@@ -212,9 +231,10 @@ Configuration OutOfPlaneModel::at(const Model& planar, const Configuration& here
     controls.segment<3>(block.first) = tangent;
     controls.segment<3>(block.first + 3) = made_perpendicular(director, tangent);
   }
-  for (const Fork& fork : forks) {
-    controls[fork.rotation] =
-        angle_about_z(drawn_tangent(fork.edge), FrameBlock::of(fork.edge).tangent(controls));
+  for (const ForkTangent& fork : forks) {
+    const Vec3 own = FrameBlock::of(fork.edge).tangent(controls);
+    const Vec3 next = FrameBlock::of(fork.neighbour).tangent(controls);
+    controls[fork.direction] = std::atan2(own.y(), own.x()) + fork.share * angle_about_z(own, next);
   }
   return result;
 }

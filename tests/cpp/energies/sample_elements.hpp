@@ -175,6 +175,11 @@ typename SpatialClamp<Curvature>::Constants sample_constants(const SpatialClamp<
   return {joint, sample_held_frame(random), FrameBlock::of(0), side, {kStrains}, holds_section};
 }
 
+inline Fork::Constants sample_constants(const Fork&, Random& random) {
+  const double angle = uniform(random, -3.0, 3.0);
+  return {uniform(random, 0.5, 5.0), {std::cos(angle), std::sin(angle)}, FrameBlock::of(0), kTurn};
+}
+
 template <class Kernel>
 typename FromSpatialPivot<Kernel>::Constants sample_constants(const FromSpatialPivot<Kernel>&,
                                                               Random& random) {
@@ -316,6 +321,12 @@ void sample_frames(const SpatialClamp<Curvature>& /*kernel*/,
   const SectionFrame held = constants.held.untwisted(here.controls);
   here.controls[constants.edge.twist_at_start()] = twist_between(held, edge);
   here.controls[constants.edge.twist_at_end()] = twist_between(edge, held);
+}
+
+template <class Coordinates>
+void sample_frames(const Fork& /*kernel*/, const Fork::Constants& /*constants*/,
+                   const Coordinates& x, Random& random, Configuration& here) {
+  sample_source(0, x.template segment<3>(3) - x.template segment<3>(0), random, here);
 }
 
 /// The drawn sections are within 2.5 rad of the edges.

@@ -21,10 +21,12 @@ struct Scene;
 /// the centre line, and forces of a constant direction in the plane, springs and foundations
 /// change nothing in this block.
 struct OutOfPlaneModel {
-  /// A fork holds the section of an edge that ends there. It turns in the plane with the edge.
-  struct Fork {
+  /// The tangent of a rod at a fork lies between the directions of two edges, or beyond both.
+  struct ForkTangent {
     Index edge = 0;
-    Index rotation = 0;  ///< control that turns it [rad]
+    Index neighbour = 0;  ///< the edge itself: the tangent has its direction
+    double share = 0.0;   ///< of the turn from the edge to its neighbour
+    Index direction = 0;  ///< control: angle from the x axis [rad]
   };
   /// A table of an actuation, which follows that of the planar model.
   struct Follower {
@@ -33,7 +35,7 @@ struct OutOfPlaneModel {
     double factor = 1.0;  ///< of the planar value
   };
   Model model;
-  std::vector<Fork> forks;
+  std::vector<ForkTangent> forks;
   std::vector<Follower> actuations;
 
   /// The shape and the controls of the planar model in this one. Frames are those of the edges as

@@ -5,6 +5,7 @@
 
 #include "der/energies/circulatory_load.hpp"
 #include "der/energies/element_list.hpp"
+#include "der/energies/fork.hpp"
 #include "der/energies/foundation.hpp"
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/isotropic_bend.hpp"
@@ -47,6 +48,7 @@ struct ElementLists {
                            ElementList<FromSpatialPivot<CornerBend>>,                        //
                            ElementList<FromSpatialPivot<SpatialClamp<AngleCurvature>>>,      //
                            ElementList<FromSpatialPivot<SpatialClamp<TangentCurvature>>>,    //
+                           ElementList<FromSpatialPivot<Fork>>,                              //
                            ElementList<PlanarMoment>,                                        //
                            ElementList<Foundation<2>>,                                       //
                            ElementList<Foundation<3>>,                                       //

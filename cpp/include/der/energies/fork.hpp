@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cmath>
+
+#include "der/core/types.hpp"
+#include "der/energies/edge_blocks.hpp"
+#include "der/energies/local_term.hpp"
+#include "der/kinematics/configuration.hpp"
+#include "der/kinematics/edge_frame.hpp"
+#include "der/kinematics/frame_block.hpp"
+
+namespace der {
+
+/// Twist of the half edge between a fork and the middle of its edge: E = 1/2 GJ psi^2 / (l/2). A
+/// fork stands in the x-y plane; it holds the section of a rod against turning about the rod's
+/// tangent there, t, and lets it tilt. psi = v . (t x z), the sine of the turn of the edge's
+/// section about t, where v is the vector that points along z while the rod lies in the plane.
+///
+/// About the edge's own direction, which is turned by kappa l/2 from t, it would hold a part of the
+/// tilt as well: an error of order 1. Coordinates: the two nodes, then the edge's angle.
+struct Fork {
+  static constexpr int kDofs = 7;
+  static constexpr int kNodes = 2;
+  static constexpr EnergyTerm kTerm = EnergyTerm::Bend;
+  struct Constants {
+    double stiffness = 0.0;        ///< GJ over the half edge [N m]
+    Vec2 upright = Vec2::UnitX();  ///< components of v towards the two directors
+    FrameBlock edge;
+    Index direction = -1;  ///< control: angle of t from the x axis [rad]
+  };
+
+  template <Derivatives D>
+  static void evaluate(const Constants& c, const Configuration& here,
+                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
+    const EdgeFrame edge(x.segment<3>(3) - x.segment<3>(0), x[6], c.edge.tangent(here.controls),
+                         c.edge.director(here.controls));
+    const double angle = here.controls[c.direction];
+    const Vec3 across(std::sin(angle), -std::cos(angle), 0.0);  // t x z
+    const Vec3 v = c.upright[0] * edge.frame.first + c.upright[1] * edge.frame.second;
+    const double psi = v.dot(across);
+    out.energy = 0.5 * c.stiffness * psi * psi;
+    if constexpr (D == Derivatives::Energy) return;
+
+    // A rotation omega of the section changes psi by omega . axis.
+    const Vec3 axis = v.cross(across);
+    const Vec3 moment = c.stiffness * psi * axis;
+    const Eigen::Matrix<double, 3, 4> turn = edge.rotation();
+    const Eigen::Vector4d force = turn.transpose() * moment;
+    out.gradient << -force.head<3>(), force.head<3>(), force[3];
+    if constexpr (D == Derivatives::Gradient) return;
+
+    // The moment's own change without the antisymmetric part that turning it makes.
+    Mat3 change = 0.5 * (v * across.transpose() + across * v.transpose());
+    change.diagonal().array() -= psi;
+    const Mat3 stiffness = c.stiffness * (axis * axis.transpose() + psi * change);
+    const Eigen::Matrix4d own =
+        turn.transpose() * stiffness * turn + edge.geometric_stiffness(moment);
+    auto& h = out.hessian;
+    set_edge_blocks<Mat3>(own.topLeftCorner<3, 3>(), h);
+    h.block<1, 3>(6, 0) = -own.bottomLeftCorner<1, 3>();
+    h.block<1, 3>(6, 3) = own.bottomLeftCorner<1, 3>();
+    h(6, 6) = own(3, 3);
+  }
+};
+
+}  // namespace der

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -143,7 +142,7 @@ def _run_member(
         _add_row(table, number, outcome.value(), message, seconds)
     if outcome.result is not None:  # a failed run has cost something
         for name in ("steps", "newton_iterations"):
-            table.rows[-1][name] = outcome.result.summary[name]
+            table.rows[-1][name] = outcome.result.recording.summary_value(name)
     if verification is not None:
         _add_error_bars(table, verification, outcome.value())
 
@@ -154,8 +153,11 @@ class _Reading:
 
     Attributes
     ----------
-    summary
-        As in ``summary.json``.
+    recording
+        What the engine recorded. Only the few values of its summary that the row has are asked for:
+        all of them take as long as the rest of a row.
+    probes
+        Those of the summary.
     found
         What an analysis finds besides probes.
     on_path
@@ -163,34 +165,33 @@ class _Reading:
         no time.
     """
 
-    summary: dict[str, Any]
+    recording: RunRecording
+    probes: dict[str, dict[str, Any]]
     found: tuple[Reading, ...]
     on_path: bool
 
 
 def _read(scenario: Scenario, recording: RunRecording) -> _Reading:
     # To make a result of it takes a tenth of the time of an equilibrium, and few need one.
-    summary = json.loads(recording.summary_json)
+    probes = recording.summary_value("probes")
     found: tuple[Reading, ...] = ()
     if recording.data and recording.error is None:
         readings = static_readings(recorded_result(scenario, recording))
-        found = tuple(
-            reading for label, reading in readings.items() if label not in summary["probes"]
-        )
-    return _Reading(summary, found, scenario.factor_range is not None)
+        found = tuple(reading for label, reading in readings.items() if label not in probes)
+    return _Reading(recording, probes, found, scenario.factor_range is not None)
 
 
 def _add_row(table: Table, number: int, reading: _Reading, message: str, seconds: float) -> None:
-    summary = reading.summary
+    recording = reading.recording
     row = table.begin(
         member=number,
-        status=summary["status"],
+        status=recording.status,
         message=message or None,
         seconds=seconds,
-        unreliable_from=summary.get("unreliable_from"),
+        unreliable_from=recording.summary_value("unreliable_from"),
         version=__version__,
     )
-    for name, probe in summary["probes"].items():
+    for name, probe in reading.probes.items():
         names = _probe_columns(name)
         if names[0] not in table.columns:
             second = "" if reading.on_path else "s"
@@ -198,8 +199,9 @@ def _add_row(table: Table, number: int, reading: _Reading, message: str, seconds
             for own, unit in zip(names, units, strict=True):
                 table.add(Column(own, "probe", unit))
         row.update(zip(names, _told(probe), strict=True))
-    if not reading.found and "stability" in summary:
-        table.put("stability", "found", "", summary["stability"])
+    stability = recording.summary_value("stability")
+    if not reading.found and stability is not None:
+        table.put("stability", "found", "", stability)
     for found in reading.found:
         table.put(found.label, "found", found.unit, found.value)
 
@@ -212,7 +214,7 @@ def _probe_columns(probe: str) -> tuple[str, ...]:
 
 def _add_error_bars(table: Table, verification: Verification, reading: _Reading) -> None:
     for value in verification.values:
-        of_probe = value.probe in reading.summary["probes"] and value.what in _TOLD
+        of_probe = value.probe in reading.probes and value.what in _TOLD
         name = f"{value.probe}.{value.what}" if of_probe else value.label
         table.put(f"{name}.error", "error", value.unit, value.error_bar)
     table.put("flagged", "error", "", len(verification.flagged))

@@ -184,10 +184,9 @@ void lump_masses(const scenario::Rod& rod, RodLayout& layout, Model& model) {
     }
   }
   for (std::size_t i = 0; i < layout.nodes.size(); ++i) {
-    add_mass(
-        layout.nodes[i],
-        layout.mass_per_length * layout.voronoi_length(static_cast<Index>(i)) + sphere_mass[i],
-        model);
+    add_mass(layout.nodes[i],
+             layout.mass_per_length * layout.voronoi_length(static_cast<Index>(i)) + sphere_mass[i],
+             model);
   }
   if (!model.has_sections()) return;
   for (Index edge = 0; edge < layout.num_edges(); ++edge) {

@@ -117,16 +117,17 @@ class Change {
         entries->erase(entries->begin() + (entry - entries->data()));
       }
     } else {
-      throw Astray{fmt::format("{} is a single value and has no '{}' in it", where(depth), segment)};
+      throw Astray{
+          fmt::format("{} is a single value and has no '{}' in it", where(depth), segment)};
     }
   }
 
   /// The path as far as it has been walked, in quotes.
   [[nodiscard]] std::string where(std::size_t depth) const {
     if (depth == 0) return "the scene";
-    return fmt::format("'{}'", fmt::join(segments_.begin(),
-                                         segments_.begin() + static_cast<std::ptrdiff_t>(depth),
-                                         "."));
+    return fmt::format(
+        "'{}'",
+        fmt::join(segments_.begin(), segments_.begin() + static_cast<std::ptrdiff_t>(depth), "."));
   }
 
   static Entry* const_entry(Mapping& entries, const std::string& key) {

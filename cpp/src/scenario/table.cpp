@@ -13,10 +13,7 @@ namespace {
 class KeyReader {
  public:
   KeyReader(const TableInfo& table, const Place& place, Diagnostics& diagnostics)
-      : table_(table),
-        place_(place),
-        diagnostics_(diagnostics),
-        seen_(table.fields.size()) {}
+      : table_(table), place_(place), diagnostics_(diagnostics), seen_(table.fields.size()) {}
 
   void read_entries(const std::function<bool(int, const Place&)>& read) {
     for (const Entry& entry : *place_.value->mapping()) {

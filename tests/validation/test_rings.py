@@ -63,6 +63,28 @@ def test_order_of_the_critical_twist(spatial_reference, fitted_order):
     assert fitted_order([1 / n for n in sizes], errors) > 1.9
 
 
+@pytest.mark.parametrize("node", [1, 2, 11])
+def test_clamped_ring_is_the_same_wherever_it_begins(node):
+    """Clamped at a node and pulled at the opposite one, it takes the same shape, turned."""
+
+    def shape(node):
+        turn = 2 * np.pi * node / 12
+        pull = {"rod": "rod", "at": {"node": (node + 6) % 12}}
+        scene = ring_through(
+            circle(12)[:, :2],
+            section(EA=3000, EI=0.8),
+            model="planar",
+            supports=[{"rod": "rod", "at": {"node": node}, "clamp": True}],
+            loads=[{"point_force": {**pull, "force": [0.3 * np.cos(turn), 0.3 * np.sin(turn)]}}],
+        )
+        x, y = np.roll(der.run(scene).positions[-1], -node, axis=0).T
+        return np.column_stack(
+            [np.cos(turn) * x + np.sin(turn) * y, np.cos(turn) * y - np.sin(turn) * x]
+        )
+
+    assert shape(node) == pytest.approx(shape(0), abs=1e-9)
+
+
 @pytest.mark.parametrize("plane", ["in_plane", "out_of_plane"])
 def test_frequencies(spatial_reference, fitted_order, plane):
     """Pairs of modes of n = 2, 3 waves of a ring without stress; 6 rigid motions."""

@@ -26,6 +26,8 @@ LOST = "worker_lost"
 #: What is told of each probe.
 _TOLD, _WHEN = ("final", "min", "max"), ("t_min", "t_max")
 _told = itemgetter(*_TOLD, *_WHEN)
+#: What a row has of the summary of a run: to ask for all of it takes as long as the rest of a row.
+_OF_SUMMARY = ("status", "unreliable_from", "stability", "steps", "newton_iterations", "probes")
 #: Run folders in a folder: file systems are slow with more.
 _FOLDERS = 1000
 
@@ -142,7 +144,7 @@ def _run_member(
         _add_row(table, number, outcome.value(), message, seconds)
     if outcome.result is not None:  # a failed run has cost something
         for name in ("steps", "newton_iterations"):
-            table.rows[-1][name] = outcome.result.recording.summary_value(name)
+            table.rows[-1][name] = outcome.result.summary[name]
     if verification is not None:
         _add_error_bars(table, verification, outcome.value())
 
@@ -153,11 +155,8 @@ class _Reading:
 
     Attributes
     ----------
-    recording
-        What the engine recorded. Only the few values of its summary that the row has are asked for:
-        all of them take as long as the rest of a row.
-    probes
-        Those of the summary.
+    summary
+        What the row has of ``summary.json``; None where the key is not in it.
     found
         What an analysis finds besides probes.
     on_path
@@ -165,33 +164,34 @@ class _Reading:
         no time.
     """
 
-    recording: RunRecording
-    probes: dict[str, dict[str, Any]]
+    summary: dict[str, Any]
     found: tuple[Reading, ...]
     on_path: bool
 
 
 def _read(scenario: Scenario, recording: RunRecording) -> _Reading:
     # To make a result of it takes a tenth of the time of an equilibrium, and few need one.
-    probes = recording.summary_value("probes")
+    summary = {key: recording.summary_value(key) for key in _OF_SUMMARY}
     found: tuple[Reading, ...] = ()
     if recording.data and recording.error is None:
         readings = static_readings(recorded_result(scenario, recording))
-        found = tuple(reading for label, reading in readings.items() if label not in probes)
-    return _Reading(recording, probes, found, scenario.factor_range is not None)
+        found = tuple(
+            reading for label, reading in readings.items() if label not in summary["probes"]
+        )
+    return _Reading(summary, found, scenario.factor_range is not None)
 
 
 def _add_row(table: Table, number: int, reading: _Reading, message: str, seconds: float) -> None:
-    recording = reading.recording
+    summary = reading.summary
     row = table.begin(
         member=number,
-        status=recording.status,
+        status=summary["status"],
         message=message or None,
         seconds=seconds,
-        unreliable_from=recording.summary_value("unreliable_from"),
+        unreliable_from=summary["unreliable_from"],
         version=__version__,
     )
-    for name, probe in reading.probes.items():
+    for name, probe in summary["probes"].items():
         names = _probe_columns(name)
         if names[0] not in table.columns:
             second = "" if reading.on_path else "s"
@@ -199,9 +199,8 @@ def _add_row(table: Table, number: int, reading: _Reading, message: str, seconds
             for own, unit in zip(names, units, strict=True):
                 table.add(Column(own, "probe", unit))
         row.update(zip(names, _told(probe), strict=True))
-    stability = recording.summary_value("stability")
-    if not reading.found and stability is not None:
-        table.put("stability", "found", "", stability)
+    if not reading.found and summary["stability"] is not None:
+        table.put("stability", "found", "", summary["stability"])
     for found in reading.found:
         table.put(found.label, "found", found.unit, found.value)
 
@@ -214,7 +213,7 @@ def _probe_columns(probe: str) -> tuple[str, ...]:
 
 def _add_error_bars(table: Table, verification: Verification, reading: _Reading) -> None:
     for value in verification.values:
-        of_probe = value.probe in reading.probes and value.what in _TOLD
+        of_probe = value.probe in reading.summary["probes"] and value.what in _TOLD
         name = f"{value.probe}.{value.what}" if of_probe else value.label
         table.put(f"{name}.error", "error", value.unit, value.error_bar)
     table.put("flagged", "error", "", len(verification.flagged))

@@ -229,6 +229,36 @@ def test_link_is_kept():
     assert np.abs(writhe).max() > 0.5
 
 
+@pytest.mark.parametrize("nodes", [(0,), (5,), (0, 8), (3, 4)], ids=str)
+def test_link_of_a_ring_with_clamps_is_kept(nodes):
+    """A force bends it, and the last of several clamps turns about an axis and twists."""
+    count = 24
+    points = circle(count)
+    points[:, 2] = 0.1 * np.sin(2 * np.arctan2(points[:, 1], points[:, 0]))
+    stiff = section([0, 0, 1], EA=1e4, EI1=1.0, EI2=1.6, GJ=0.8)
+    supports = [{"rod": "rod", "at": {"node": node}, "clamp": True} for node in nodes]
+    if len(nodes) > 1:
+        turn, twist = ({"times": [0, 1], "values": [0, angle]} for angle in (0.8, 3.0))
+        supports[-1]["prescribe"] = {
+            "rotation": {"axis": [1, 0.2, 0], "angle": turn},
+            "twist": twist,
+        }
+    scene = ring_through(
+        points,
+        stiff,
+        supports=supports,
+        loads=[{"point_force": {"rod": "rod", "at": 2.0, "force": [2, 1, 3]}}],
+        time={"duration": 1.0, "step": 0.02},
+        output={
+            "every": 0.1,
+            "probes": {name: {"rod": "rod", "quantity": name} for name in ("link", "writhe")},
+        },
+    )
+    probes = der.run(scene).probes
+    assert np.ptp(probes["link"]) < 1e-12
+    assert np.ptp(probes["writhe"]) > 1e-3
+
+
 def test_link_of_directors_that_close():
     """A ring drawn flat, its sections turned 2 times on the way around: a whole number."""
     points = circle(30)

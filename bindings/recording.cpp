@@ -12,6 +12,7 @@
 #include "der/output/run_arrays.hpp"
 #include "der/output/summary.hpp"
 #include "errors.hpp"
+#include "json.hpp"
 #include "py_simulation.hpp"
 
 namespace der::python {
@@ -126,7 +127,7 @@ std::unique_ptr<RunRecording> record(const py::object& self,
   recording->frames = std::move(static_cast<FrameData&>(memory));
   recording->data = datasets(simulation.engine(), recording->outcome);
   recording->doubt = created_energy_warning(simulation.engine());
-  recording->summary_json = summary_json(simulation.engine(), recorder, recording->outcome);
+  recording->summary = summary(simulation.engine(), recorder, recording->outcome);
   return recording;
 }
 
@@ -180,7 +181,17 @@ void bind_recording(py::module_& module) {
           "The failure that ended it, an exception of its own class; None if it did not fail.")
       .def_readonly("doubt", &RunRecording::doubt,
                     "Why its result is unreliable though it did not fail; empty if it is not.")
-      .def_readonly("summary_json", &RunRecording::summary_json, "Text of summary.json.");
+      .def_property_readonly(
+          "summary", [](const RunRecording& r) { return to_python(r.summary); },
+          "The content of summary.json, a new dict.")
+      .def(
+          "summary_value",
+          [](const RunRecording& r, const std::string& key) -> py::object {
+            const auto entry = r.summary.find(key);
+            return entry == r.summary.end() ? py::none() : to_python(*entry);
+          },
+          py::arg("key"),
+          "One value of the summary, which costs less than all; None where the key is not in it.");
 }
 
 }  // namespace der::python

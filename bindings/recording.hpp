@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,7 +31,7 @@ struct Recording {
 struct RunRecording : Recording {
   RunOutcome outcome;
   std::string doubt;  ///< why its result is unreliable; empty: it is not
-  std::string summary_json;
+  nlohmann::ordered_json summary;
 };
 
 /// The content of a run file.

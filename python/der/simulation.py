@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 from collections.abc import Callable, Mapping
@@ -406,6 +405,4 @@ def as_scenario(scenario: SceneLike) -> Scenario:
 
 def recorded_result(scenario: Scenario, recording: RunRecording) -> Result:
     """Return what the engine recorded of a run as a result."""
-    return to_result(
-        scenario, recording, list(recording.probes), json.loads(recording.summary_json)
-    )
+    return to_result(scenario, recording, list(recording.probes), recording.summary)

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import der
 import h5py
@@ -46,6 +47,15 @@ def test_summary_is_that_of_the_program(tube):
     assert deflection["final"] == result.probes["deflection"][-1]
     # Between the saved frames the beam swings further than in any of them.
     assert deflection["min"] < result.probes["deflection"].min()
+
+
+@pytest.mark.parametrize("scene", ["cantilever", "beam_modes", "snap_through_arch"])
+def test_summary_is_the_content_of_its_file(scene, tmp_path):
+    """In its order, and with whole numbers, texts and truth values as they are there."""
+    file = Path(__file__).resolve().parents[2] / f"configs/{scene}.yaml"
+    result = der.run(file, out=tmp_path / "run")
+    text = (tmp_path / "run/summary.json").read_text(encoding="utf-8")
+    assert json.dumps(result.summary) == json.dumps(json.loads(text))
 
 
 def test_equal_steps_over_close_entries_of_a_table_are_warned_of_by_name(swing):

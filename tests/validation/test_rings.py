@@ -63,6 +63,28 @@ def test_order_of_the_critical_twist(spatial_reference, fitted_order):
     assert fitted_order([1 / n for n in sizes], errors) > 1.9
 
 
+@pytest.mark.parametrize("node", [1, 2, 11])
+def test_clamped_ring_is_the_same_wherever_it_begins(node):
+    """Clamped at a node and pulled at the opposite one, it takes the same shape, turned."""
+
+    def shape(node):
+        turn = 2 * np.pi * node / 12
+        pull = {"rod": "rod", "at": {"node": (node + 6) % 12}}
+        scene = ring_through(
+            circle(12)[:, :2],
+            section(EA=3000, EI=0.8),
+            model="planar",
+            supports=[{"rod": "rod", "at": {"node": node}, "clamp": True}],
+            loads=[{"point_force": {**pull, "force": [0.3 * np.cos(turn), 0.3 * np.sin(turn)]}}],
+        )
+        x, y = np.roll(der.run(scene).positions[-1], -node, axis=0).T
+        return np.column_stack(
+            [np.cos(turn) * x + np.sin(turn) * y, np.cos(turn) * y - np.sin(turn) * x]
+        )
+
+    assert shape(node) == pytest.approx(shape(0), abs=1e-9)
+
+
 @pytest.mark.parametrize("plane", ["in_plane", "out_of_plane"])
 def test_frequencies(spatial_reference, fitted_order, plane):
     """Pairs of modes of n = 2, 3 waves of a ring without stress; 6 rigid motions."""
@@ -205,6 +227,36 @@ def test_link_is_kept():
     assert np.abs(link - link[0]).max() < 1e-11
     assert writhe[0] < 0.01
     assert np.abs(writhe).max() > 0.5
+
+
+@pytest.mark.parametrize("nodes", [(0,), (5,), (0, 8), (3, 4)], ids=str)
+def test_link_of_a_ring_with_clamps_is_kept(nodes):
+    """A force bends it, and the last of several clamps turns about an axis and twists."""
+    count = 24
+    points = circle(count)
+    points[:, 2] = 0.1 * np.sin(2 * np.arctan2(points[:, 1], points[:, 0]))
+    stiff = section([0, 0, 1], EA=1e4, EI1=1.0, EI2=1.6, GJ=0.8)
+    supports = [{"rod": "rod", "at": {"node": node}, "clamp": True} for node in nodes]
+    if len(nodes) > 1:
+        turn, twist = ({"times": [0, 1], "values": [0, angle]} for angle in (0.8, 3.0))
+        supports[-1]["prescribe"] = {
+            "rotation": {"axis": [1, 0.2, 0], "angle": turn},
+            "twist": twist,
+        }
+    scene = ring_through(
+        points,
+        stiff,
+        supports=supports,
+        loads=[{"point_force": {"rod": "rod", "at": 2.0, "force": [2, 1, 3]}}],
+        time={"duration": 1.0, "step": 0.02},
+        output={
+            "every": 0.1,
+            "probes": {name: {"rod": "rod", "quantity": name} for name in ("link", "writhe")},
+        },
+    )
+    probes = der.run(scene).probes
+    assert np.ptp(probes["link"]) < 1e-12
+    assert np.ptp(probes["writhe"]) > 1e-3
 
 
 def test_link_of_directors_that_close():

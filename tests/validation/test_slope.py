@@ -174,6 +174,68 @@ def test_slope_around_a_ring():
     np.testing.assert_allclose(tx[0], np.cos(exact), atol=1e-12)
 
 
+DRAWN, LOADED = 2.0, 1.3  # curvature of the drawn arc, and what an end moment adds [1/m]
+HELD = [("start",), ("end",), ("start", "middle", "end")]
+
+
+def drawn_arc(edges, dimension, held, kind):
+    """A circular arc of length 1 in a plane, from the x axis on, and the length of its edges."""
+    turn = DRAWN * np.arange(edges + 1) / edges
+    points = np.column_stack([np.sin(turn), 1 - np.cos(turn), 0 * turn])[:, :dimension] / DRAWN
+    stiff = section(EA=1e8, EI=1.0)
+    if dimension == 3:
+        stiff = section([0.3, 0.5, 1], EA=1e8, EI1=1.0, EI2=1.0, GJ=0.7)
+    rod = {"name": "rod", "points": points.tolist(), "cross_section": stiff}
+    if dimension == 3:
+        rod["initial_twist"] = 1.5
+    scene = {
+        "model": "planar" if dimension == 2 else "spatial",
+        "rods": [rod],
+        "supports": [{"rod": "rod", "at": at, "clamp": kind} for at in held],
+        "analysis": "static",
+    }
+    return scene, 2 * np.sin(DRAWN / 2 / edges) / DRAWN
+
+
+def beside_clamps(edges, edge):
+    """Arc lengths in edges from the two ends and the middle."""
+    off = np.array([0, 0.25, 0.5, 1, 1.25, 1.5, 2])
+    half = edges // 2
+    return edge * np.concatenate([off, edges - off, half + off, half - off])
+
+
+@pytest.mark.parametrize("held", HELD, ids=str)
+def test_slope_of_a_drawn_arc_is_exact_beside_clamps(held):
+    edges = 20
+    scene, edge = drawn_arc(edges, 2, held, True)
+    places = beside_clamps(edges, edge)
+    found = read(scene, places, "slope")[:, 0]
+    np.testing.assert_allclose(found, DRAWN * places / (edges * edge), atol=1e-12)
+
+
+@pytest.mark.parametrize("held", HELD[:2], ids=str)
+@pytest.mark.parametrize(("dimension", "kind"), [(2, True), (3, True), (3, "tangent")])
+def test_tangent_of_a_drawn_arc_beside_clamps(dimension, kind, held, fitted_order):
+    """A moment at the other end bends the arc to one of another radius."""
+    sizes = [20, 40, 80]
+    errors = []
+    for edges in sizes:
+        scene, edge = drawn_arc(edges, dimension, held, kind)
+        places = beside_clamps(edges, edge)
+        from_start = held == ("start",)
+        value = LOADED if from_start else -LOADED
+        scene["loads"] = [
+            moment("end" if from_start else "start", [0, 0, value] if dimension == 3 else value)
+        ]
+        found = read(scene, places, *("tx", "ty", "tz")[:dimension])
+        s = places / (edges * edge)
+        angle = DRAWN * s + LOADED * (s - (0 if from_start else 1))
+        exact = np.column_stack([np.cos(angle), np.sin(angle), 0 * s])[:, :dimension]
+        errors.append(np.abs(found - exact).max())
+    assert errors[-1] < 1e-3
+    assert fitted_order(sizes, errors) < -1.9
+
+
 def frame(legs, **more):
     """Two legs of length 1, along x and then up."""
     s = np.linspace(0, 1, legs + 1)

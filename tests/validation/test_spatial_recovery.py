@@ -4,7 +4,7 @@ against the boundary value problem of `references/kirchhoff_rod.py`."""
 import der
 import numpy as np
 import pytest
-from references.kirchhoff_rod import UPRIGHT, Held, Loaded, Rod, constant, follow
+from references.kirchhoff_rod import UPRIGHT, Held, Loaded, Rod, constant, directors, follow
 from scenes import END, START, tip_force
 from spatial_scenes import measured, rod_through, section, straight_rod
 
@@ -203,6 +203,35 @@ def test_a_loaded_bow_at_its_clamp(fitted_order):
     assert errors[-1].max() < 1e-4
     for of_place in errors[:, :, 2:].reshape(len(sizes), -1).T:
         assert fitted_order([1 / n for n in sizes], of_place) > 1.9
+
+
+def test_tangents_of_a_loaded_bow_beside_its_clamp(fitted_order):
+    """At shares of the edge there, bent about both axes and twisted."""
+
+    def natural(s):
+        k1, k2, twist = natural_of_the_bow(s)
+        return np.stack([-k2, k1, twist])
+
+    there = follow(
+        Rod(1.0, (WEAK, STRONG), TWISTING, STRETCHING, natural),
+        Held((0, 0, 0), UPRIGHT),
+        lambda share: Loaded(share * np.array(TIP)),
+        steps=4,
+        segments=4,
+        degree=18,
+    )
+    assert there.shooting_error() < 1e-9
+    sizes = (20, 40, 80)
+    errors = []
+    for edges in sizes:
+        s = np.array([0.5, 1, 1.25, 1.5, 2]) / edges
+        exact = directors(there.at(s)[3:7])[:, 2].T
+        length = edges * 2 * np.sin(BOW / 2 / edges) / BOW
+        at = [(place * length, "after") for place in s]
+        found = probed(bow(edges, loads=tip_force(*TIP)), at, ("tx", "ty", "tz"))
+        errors.append(np.abs(found - exact).max())
+    assert errors[-1] < 1e-3
+    assert fitted_order([1 / n for n in sizes], errors) > 1.9
 
 
 def test_a_loaded_bow_in_the_plane(fitted_order):

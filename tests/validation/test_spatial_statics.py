@@ -342,6 +342,29 @@ def test_list_of_natural_twists(fitted_order):
     assert fitted_order([1 / n for n in sizes], errors) > 1.9
 
 
+@pytest.mark.parametrize("at", ["start", "end"])
+def test_natural_twist_that_varies_up_to_a_clamp_of_the_tangent(at):
+    """The section turns freely in the clamp: it has its natural twist, which is linear."""
+    edges = 10
+    natural = 1 + 2 * np.linspace(0, 1, edges + 1)
+    other = {"start": "end", "end": "start"}[at]
+    clamps = [
+        {"rod": "rod", "at": at, "clamp": "tangent"},
+        {"rod": "rod", "at": other, "clamp": True},
+    ]
+    rod = straight_rod(
+        edges,
+        section(EA=1e4, EI=1.0, GJ=1.0),
+        rod={"natural_twist": natural.tolist()},
+        supports=clamps,
+    )
+    places = np.array([0, 0.01, 0.04, 0.06, 0.5, 0.94, 0.96, 0.99, 1])
+    values, _ = measured(rod, places.tolist(), ["twist", "natural_twist", "torque"])
+    assert values[:, 0] == pytest.approx(1 + 2 * places, abs=1e-9)
+    assert values[:, 1] == pytest.approx(1 + 2 * places, abs=1e-12)
+    assert values[:, 2] == pytest.approx(0 * places, abs=1e-9)
+
+
 #: Corners of 90, 54 and 70 degrees; legs of 1, 0.8 and 0.6 m.
 CORNERS = np.array([[0, 0, 0], [1, 0, 0], [1, 0.8, 0], [1, 1.153, 0.485]])
 FORCE = 1e-6 * np.array([0.5, -0.3, 1.0])

@@ -12,6 +12,7 @@
 #include "der/core/constants.hpp"
 #include "der/core/error.hpp"
 #include "der/core/index.hpp"
+#include "der/core/make_room.hpp"
 #include "der/energies/registry.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/cross_section.hpp"
@@ -114,6 +115,9 @@ RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, In
   layout.first_edge = static_cast<Index>(model.edges.size());
   layout.draw_radius = section.draw_radius;
 
+  layout.nodes.reserve(rod.points.size());
+  layout.arc_length.reserve(rod.points.size());
+  layout.edge_length.reserve(rod.points.size());
   double s = 0.0;
   for (std::size_t i = 0; i < rod.points.size(); ++i) {
     const Index node = first_node + static_cast<Index>(i);
@@ -134,6 +138,7 @@ RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, In
     layout.edge_length.push_back(
         (position(model, layout.nodes.front()) - position(model, layout.nodes.back())).norm());
   }
+  make_room(model.edges, to_size(layout.num_edges()));
   for (Index edge = 0; edge < layout.num_edges(); ++edge) {
     model.edges.push_back(layout.edge(edge, model));
   }
@@ -171,18 +176,16 @@ void add_mass(Index node, double mass, Model& model) {
 /// Lumped masses: each node carries its Voronoi cell and its sphere, each edge its inertia against
 /// spin.
 void lump_masses(const scenario::Rod& rod, RodLayout& layout, Model& model) {
-  std::vector<double> sphere_density(layout.nodes.size(), 0.0);
+  std::vector<double> sphere_mass(layout.nodes.size(), 0.0);
   for (const auto& sphere : rod.spheres) {
     for (const Index place : nodes_at(sphere.at, layout)) {
       layout.sphere_radius[to_size(place)] = sphere.radius;
-      sphere_density[to_size(place)] = sphere.density;
+      sphere_mass[to_size(place)] = sphere.density * (4.0 / 3.0 * kPi * std::pow(sphere.radius, 3));
     }
   }
   for (std::size_t i = 0; i < layout.nodes.size(); ++i) {
-    const double volume = 4.0 / 3.0 * kPi * std::pow(layout.sphere_radius[i], 3);
     add_mass(layout.nodes[i],
-             layout.mass_per_length * layout.voronoi_length(static_cast<Index>(i)) +
-                 sphere_density[i] * volume,
+             layout.mass_per_length * layout.voronoi_length(static_cast<Index>(i)) + sphere_mass[i],
              model);
   }
   if (!model.has_sections()) return;
@@ -196,6 +199,7 @@ void lump_masses(const scenario::Rod& rod, RodLayout& layout, Model& model) {
 /// Every other edge first: sums over the list then do not wait for the entry just written.
 void couple_masses(const RodLayout& rod, Model& model) {
   if (rod.mass_per_length == 0.0) return;
+  make_room(model.mass.coupling, to_size(rod.num_edges() * model.dimension));
   for (const Index first : {0, 1}) {
     for (Index edge = first; edge < rod.num_edges(); edge += 2) {
       const double mass = rod.mass_per_length * rod.edge_length[to_size(edge)] / 6.0;

@@ -97,7 +97,7 @@ scenario::Scene rods_in_space(const scenario::Scene& planar_scene, const Model& 
     scene.supports.push_back(hold_z(planar.rods[to_size(rod)].name, node));
   }
   for (scenario::Rod& rod : scene.rods) rod.initial_velocity.clear();
-  conform(scene);
+  conform(scene, scene.model);
   return scene;
 }
 

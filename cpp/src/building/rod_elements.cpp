@@ -1,6 +1,7 @@
 #include "der/building/rod_elements.hpp"
 
 #include "der/core/index.hpp"
+#include "der/core/make_room.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/planar_bend.hpp"
@@ -11,6 +12,13 @@
 
 namespace der {
 namespace {
+
+template <class Kernel>
+void make_room_for_elements(Index count, Model& model) {
+  ElementList<Kernel>& list = elements_of<Kernel>(*model.elements);
+  make_room(list.dofs, to_size(count));
+  make_room(list.constants, to_size(count));
+}
 
 /// Adds an element of the rod to the list of its kind: the plain one, or that of elements between
 /// pivots.
@@ -29,10 +37,21 @@ Vec2 drawn(const EffectiveEdge& effective, const Model& model) {
   return effective.vector(model.initial_positions, 0.0, 0.0);
 }
 
-/// An effective edge from a pivot is shorter than its edge and stretches for all of it.
-void add_stretch(const RodLayout& rod, Model& model) {
+/// One for each edge of the rod.
+std::vector<EffectiveEdge> effective_edges(const RodLayout& rod, const Model& model) {
+  std::vector<EffectiveEdge> edges;
+  edges.reserve(to_size(rod.num_edges()));
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-    const EffectiveEdge effective = effective_edge(rod, edge, model);
+    edges.push_back(effective_edge(rod, edge, model));
+  }
+  return edges;
+}
+
+/// An effective edge from a pivot is shorter than its edge and stretches for all of it.
+void add_stretch(const RodLayout& rod, const std::vector<EffectiveEdge>& edges, Model& model) {
+  make_room_for_elements<Stretch<2>>(rod.num_edges(), model);
+  for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+    const EffectiveEdge& effective = edges[to_size(edge)];
     const double length =
         effective.has_pivot() ? drawn(effective, model).norm() : rod.edge_length[to_size(edge)];
     const double EA = rod.EA * (length / rod.edge_length[to_size(edge)]);
@@ -58,12 +77,13 @@ double rest_angle_between(const RodLayout& rod, Index place, const EffectiveEdge
 }
 
 template <class Curvature>
-void add_bend(RodLayout& rod, Model& model) {
+void add_bend(RodLayout& rod, const std::vector<EffectiveEdge>& edges, Model& model) {
+  make_room_for_elements<PlanarBend<Curvature>>(rod.num_edges(), model);
   // That between the last edge of a ring and its first one stands last.
   for (Index i = 1; i <= rod.num_edges(); ++i) {
     if (!rod.is_inner(i) || rod.clamp_at(i) != nullptr) continue;
-    const EffectiveEdge before = effective_edge(rod, i - 1, model);
-    const EffectiveEdge after = effective_edge(rod, i, model);
+    const EffectiveEdge& before = edges[to_size(i - 1)];
+    const EffectiveEdge& after = edges[to_size(rod.edge_after(i))];
     const double rest = rest_angle_between(rod, i, before, after, model);
     rod.rest_turning_angle[to_size(rod.position(i))] = rest;
     add_element<PlanarBend<Curvature>>({before.dofs[0], before.dofs[1], after.dofs[0],
@@ -78,12 +98,13 @@ void add_bend(RodLayout& rod, Model& model) {
 
 void add_rod_elements(RodLayout& rod, Model& model) {
   rod.rest_turning_angle.assign(rod.nodes.size(), 0.0);
-  add_stretch(rod, model);
+  const std::vector<EffectiveEdge> edges = effective_edges(rod, model);
+  add_stretch(rod, edges, model);
   if (rod.EI == 0.0) return;
   if (rod.curvature == scenario::CurvatureMeasure::Angle) {
-    add_bend<AngleCurvature>(rod, model);
+    add_bend<AngleCurvature>(rod, edges, model);
   } else {
-    add_bend<TangentCurvature>(rod, model);
+    add_bend<TangentCurvature>(rod, edges, model);
   }
   for (const Clamp& clamp : rod.clamps) add_clamp_cells(clamp, rod, model);
   add_rotational_springs(rod, model);

@@ -26,13 +26,14 @@ PresentGravity present_gravity(const scenario::Scene& scene, Model& model) {
 
 void add_load(const scenario::Gravity& /*load*/, const LoadContext& context, Model& model) {
   const auto [constant, controls] = present_gravity(context.scene, model);
-  for (Index i = 0; i < model.num_dofs(); ++i) {
-    if (model.dofs[i].kind != DofKind::Position) continue;
-    const int component = model.dofs[i].component;
-    if (controls[to_size(component)] >= 0) {
-      model.controlled_forces.push_back({i, controls[to_size(component)], model.mass.lumped[i]});
-    } else {
-      model.gravity_force[i] += model.mass.lumped[i] * constant[component];
+  for (Index node = 0; node < model.num_nodes; ++node) {
+    for (int c = 0; c < model.dimension; ++c) {
+      const Index dof = model.dof(node, c);
+      if (controls[to_size(c)] >= 0) {
+        model.controlled_forces.push_back({dof, controls[to_size(c)], model.mass.lumped[dof]});
+      } else {
+        model.gravity_force[dof] += model.mass.lumped[dof] * constant[c];
+      }
     }
   }
   if (!context.name.empty()) {

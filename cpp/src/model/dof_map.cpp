@@ -1,7 +1,6 @@
 #include "der/model/dof_map.hpp"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 namespace der {
@@ -31,16 +30,6 @@ void DofMap::close(Index first_node, Index last_node) {
   number_free();
 }
 
-/// Its node; that of the first node of a ring is the last one.
-Index DofMap::eliminated_with(Index dof) const {
-  const Index node = node_of(dof);
-  if (dof >= num_positions()) return node;
-  for (const Ring& ring : rings_) {
-    if (node == ring.first_node) return ring.last_node;
-  }
-  return node;
-}
-
 void DofMap::hold(const std::vector<Index>& held) {
   for (const Index dof : held) free_index_[to_size(dof)] = -1;
   number_free();
@@ -48,20 +37,26 @@ void DofMap::hold(const std::vector<Index>& held) {
 
 void DofMap::number_free() {
   counts_.setZero(size());
-  // Positions of a node come before the angles of edges that begin there, as they do in storage.
-  std::vector<std::tuple<Index, bool, Index>> ranked;
-  ranked.reserve(to_size(size()));
-  for (Index dof = 0; dof < size(); ++dof) {
-    if (!is_free(dof)) continue;
-    const Index node = eliminated_with(dof);
-    ranked.emplace_back(node, node != node_of(dof), dof);
+  free_.clear();
+  free_.reserve(to_size(size()));
+  const auto number = [this](Index dof) {
+    if (!is_free(dof)) return;
     counts_[dof] = kCounts;
-  }
-  std::sort(ranked.begin(), ranked.end());
-  free_.resize(ranked.size());
-  for (std::size_t i = 0; i < ranked.size(); ++i) {
-    free_[i] = std::get<2>(ranked[i]);
-    free_index_[to_size(free_[i])] = static_cast<Index>(i);
+    free_index_[to_size(dof)] = num_free();
+    free_.push_back(dof);
+  };
+  const auto number_positions = [&](Index node) {
+    for (int c = 0; c < dimension_; ++c) number(position(node, c));
+  };
+  const auto edges = static_cast<Index>(starts_.size());
+  Index edge = 0;
+  for (Index node = 0; node < num_nodes_; ++node) {
+    const auto begins = [node](const Ring& ring) { return ring.first_node == node; };
+    if (std::none_of(rings_.begin(), rings_.end(), begins)) number_positions(node);
+    for (; edge < edges && starts_[to_size(edge)] == node; ++edge) number(angle(edge));
+    for (const Ring& ring : rings_) {
+      if (ring.last_node == node) number_positions(ring.first_node);
+    }
   }
 }
 

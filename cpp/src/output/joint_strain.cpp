@@ -215,9 +215,13 @@ Vec3 bend_axis(const RodJoint& joint, const RodLayout& rod, const Model& model,
   return before.cross(after).normalized();
 }
 
+Vec3 effective_end(const SpatialEdge& edge, bool last, const Model& model, const State& state) {
+  return state.positions.segment<3>(last ? edge.end : edge.start) +
+         offset(last ? edge.last : edge.first, model, state);
+}
+
 Vec3 effective_vector(const SpatialEdge& edge, const Model& model, const State& state) {
-  return state.positions.segment<3>(edge.end) + offset(edge.last, model, state) -
-         state.positions.segment<3>(edge.start) - offset(edge.first, model, state);
+  return effective_end(edge, true, model, state) - effective_end(edge, false, model, state);
 }
 
 }  // namespace der

@@ -2,10 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include "der/core/constants.hpp"
-#include "der/core/index.hpp"
 #include "der/output/joint_strain.hpp"
+#include "der/supports/spatial_clamp.hpp"
 
 namespace der {
 namespace {
@@ -32,46 +34,39 @@ double crossing_angle(const Vec3& start, const Vec3& end, const Vec3& other_star
   return solid_angle(a, c, b) + solid_angle(a, d, c);
 }
 
-/// Twist [rad] from the edge before a clamp to the edge after it, which is what writhe goes with.
-/// The twists of its two cells, by way of the held tangent, tell the whole turns.
-double twist_across(const RodJoint& arriving, const RodJoint& leaving, const RodLayout& rod,
-                    const Model& model, const State& state) {
-  const auto frame = [&](Index edge) { return section_frame(model, rod.first_edge + edge, state); };
-  const double cells =
-      strain_of(arriving, rod, model, state).twist + strain_of(leaving, rod, model, state).twist;
-  const SectionFrame after = frame(leaving.after).turned(-arriving.glued);
-  return nearest_turn(twist_between(frame(arriving.before), after), cells);
+/// The corners [m] of the polygon whose sides the joints of a ring turn against each other. It is
+/// that of the nodes, but for its way along the held tangent from one pivot of a clamp to the other
+/// (supports/clamp.hpp), where it passes through the node.
+std::vector<Vec3> polygon_of(const RodLayout& rod, const Model& model, const State& state) {
+  std::vector<Vec3> corners;
+  for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+    const SpatialEdge own = spatial_edge(rod, edge, model);
+    corners.push_back(effective_end(own, false, model, state));
+    if (own.last.distance != 0.0) corners.push_back(effective_end(own, true, model, state));
+  }
+  return corners;
 }
 
 /// Twist [rad] of all joints of a ring.
 double whole_twist_of(const RodLayout& rod, const Model& model, const State& state) {
-  const std::size_t count = rod.joints.size();
   double sum = 0.0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const RodJoint& joint = rod.joints[i];
-    if (joint.clamp < 0) {
-      sum += strain_of(joint, rod, model, state).twist;
-    } else if (joint.before >= 0) {
-      sum += twist_across(joint, rod.joints[(i + 1) % count], rod, model, state);
-    }
-  }
+  for (const RodJoint& joint : rod.joints) sum += strain_of(joint, rod, model, state).twist;
   return sum;
 }
 
 }  // namespace
 
 double writhe_of(const RodLayout& rod, const Model& model, const State& state) {
-  const auto point = [&](Index place) -> Vec3 {
-    return state.positions.segment<3>(model.dof(rod.node(place), 0));
-  };
-  const Index edges = rod.num_edges();
+  const std::vector<Vec3> corners = polygon_of(rod, model, state);
+  const std::size_t sides = corners.size();
+  const auto end_of = [&](std::size_t side) { return corners[(side + 1) % sides]; };
   double sum = 0.0;
-  for (Index i = 0; i < edges; ++i) {
-    const Vec3 start = point(i);
-    const Vec3 end = point(i + 1);
+  for (std::size_t i = 0; i < sides; ++i) {
     // Neighbours lie in a plane: no direction shows them crossing.
-    const Index last = i == 0 ? edges - 1 : edges;
-    for (Index j = i + 2; j < last; ++j) sum += crossing_angle(start, end, point(j), point(j + 1));
+    const std::size_t last = i == 0 ? sides - 1 : sides;
+    for (std::size_t j = i + 2; j < last; ++j) {
+      sum += crossing_angle(corners[i], end_of(i), corners[j], end_of(j));
+    }
   }
   return sum / (2.0 * kPi);
 }

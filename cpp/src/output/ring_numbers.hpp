@@ -6,10 +6,10 @@
 namespace der {
 
 /// Writhe of a ring in space: the mean, over all directions of view, of the signed crossings that
-/// its polygon shows. It is the sum over all pairs of edges of the signed solid angle of the
-/// directions from one to the other, over 2 pi (Banchoff, Indiana Univ. Math. J. 25, 1976; Klenin
-/// and Langowski, Biopolymers 54, 2000): exact, in a time that grows with the square of the number
-/// of edges.
+/// its polygon shows, which at a clamp goes from pivot to pivot (supports/clamp.hpp). It is the sum
+/// over all pairs of sides of the signed solid angle of the directions from one to the other, over
+/// 2 pi (Banchoff, Indiana Univ. Math. J. 25, 1976; Klenin and Langowski, Biopolymers 54, 2000):
+/// exact, in a time that grows with the square of the number of edges.
 double writhe_of(const RodLayout& rod, const Model& model, const State& state);
 
 /// Link of a ring whose sections count: how many turns these make around it, its whole twist over 2

@@ -240,10 +240,13 @@ class SectionField : public EdgewiseField<Vec3> {
     if (!rod.natural_curvatures.empty()) {
       result.head<2>() = last ? rod.natural_curvatures.back() : rod.natural_curvatures.front();
     }
-    if (!rod.natural_twist.empty()) {
-      result[2] = last ? rod.natural_twist.back() : rod.natural_twist.front();
-    }
+    if (!rod.natural_twist.empty()) result[2] = natural_twist_at_end(rod, last);
     return result;
+  }
+
+  /// As given [rad/m].
+  static double natural_twist_at_end(const RodLayout& rod, bool last) {
+    return last ? rod.natural_twist.back() : rod.natural_twist.front();
   }
 
   /// `by_twist`: where the chain twists, in place of where it bends.
@@ -259,6 +262,12 @@ class SectionField : public EdgewiseField<Vec3> {
       return result;
     }
     result.natural = natural_of(*joint);
+    // A clamp that holds the tangent alone lets the section turn.
+    const bool lets_turn = joint->clamp >= 0 && !rod.clamps[to_size(joint->clamp)].holds_section;
+    if (by_twist && lets_turn) {
+      if (!rod.natural_twist.empty()) result.natural[2] = natural_twist_at_end(rod, last);
+      return result;
+    }
     if (rod.closed && !last && joint->place() > edge) {
       // The joint at the end of a ring is at its start, too, on the other side of the glue.
       result.joint_ahead = rod.rest_length();
@@ -272,9 +281,6 @@ class SectionField : public EdgewiseField<Vec3> {
       result.natural.head<2>() = natural_at_end_of_leg(rod, edge, last, recovery).head<2>();
     }
     result.twist_place = joint->twist_place - result.joint_ahead;
-    // A clamp that holds the tangent alone lets the section turn.
-    const bool lets_turn = joint->clamp >= 0 && !rod.clamps[to_size(joint->clamp)].holds_section;
-    if (by_twist && lets_turn) return result;
     result.joint = &*joint;
     result.arc_length = (by_twist ? joint->twist_place : joint->bend_place) - result.joint_ahead;
     return result;

@@ -19,7 +19,7 @@
 namespace der {
 namespace {
 
-using Json = nlohmann::ordered_json;  // keys stay in the order in which a person wants to read them
+using Json = nlohmann::ordered_json;
 
 /// Rotation [rad] or strain up to which a structure is much like its shape without loads. (Pinned
 /// arches under a point load: linear buckling is 67 % high where it is 0.06, 9 % where it is
@@ -207,8 +207,7 @@ std::vector<std::string> warnings(const Simulation& simulation, const RunOutcome
   return found;
 }
 
-std::string summary_json(const Simulation& simulation, const Recorder& recorder,
-                         const RunOutcome& outcome) {
+Json summary(const Simulation& simulation, const Recorder& recorder, const RunOutcome& outcome) {
   const scenario::Scene& scene = simulation.scenario().scene();
   const Model& model = simulation.model();
   const bool is_static = !scene.is_dynamic();
@@ -267,8 +266,15 @@ std::string summary_json(const Simulation& simulation, const Recorder& recorder,
   summary["probes"] = probes_json(recorder);
   summary["scene"] = simulation.scenario().source();
   summary["der_version"] = version;
+  return summary;
+}
+
+std::string summary_json(const Simulation& simulation, const Recorder& recorder,
+                         const RunOutcome& outcome) {
   // A title that is not UTF-8 must not cost the results.
-  return summary.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return summary(simulation, recorder, outcome)
+             .dump(2, ' ', false, Json::error_handler_t::replace) +
+         "\n";
 }
 
 }  // namespace der

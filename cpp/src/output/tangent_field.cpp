@@ -7,10 +7,13 @@
 #include "der/core/index.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/model/followed.hpp"
+#include "der/model/frames.hpp"
+#include "der/model/location.hpp"
 #include "der/output/joint_strain.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spatial_clamp.hpp"
 #include "output/moment_recovery.hpp"
+#include "output/natural_curvature.hpp"
 #include "output/tangent_line.hpp"
 
 namespace der {
@@ -40,6 +43,19 @@ std::vector<FreeEnd> free_ends(const RodLayout& rod) {
     ends.push_back({last, last ? node - 1 : 0, bend_length(rod, next)});
   }
   return ends;
+}
+
+/// How much further [m] than the middle of an edge beside a clamp lies its knot.
+double knot_beyond_middle(const RodLayout& rod, Index edge) {
+  return tangent_place(rod, edge) - rod.edge_middle(edge);
+}
+
+/// Whether an edge beside a clamp leans against a rod that is stress-free as drawn: from its pivot
+/// to a node on the drawn curve it is turned by more than the tangent at its knot. Where the scene
+/// gives the natural curvature, the cell of the clamp has it, and the edge does not.
+bool leans_as_drawn(const RodLayout& rod, Index edge) {
+  return rod.natural_curvature.empty() && rod.natural_curvatures.empty() &&
+         (rod.clamp_at(edge) != nullptr || rod.clamp_at(edge + 1) != nullptr);
 }
 
 /// The turns towards the two directors [rad], in a plane the first of them.
@@ -135,7 +151,21 @@ class PlanarDirection : public DirectionField<double> {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) {
       edges_.push_back(effective_edge(rod, edge, model));
     }
+    find_drawn_leans(model);
     find_reference(model);
+  }
+
+  void find_drawn_leans(const Model& model) {
+    const NaturalCurvature natural(rod_, model);
+    for (Index edge = 0; edge < rod_.num_edges(); ++edge) {
+      drawn_leans_.push_back(0.0);
+      if (!leans_as_drawn(rod_, edge)) continue;
+      const Vec2 chord = along_edge(rod_.edge(edge, model), model.initial_positions);
+      const Vec2 effective = edges_[to_size(edge)].vector(model.initial_positions, 0.0, 0.0);
+      drawn_leans_.back() =
+          angle_between(chord, effective) -
+          knot_beyond_middle(rod_, edge) * natural.at(edge, rod_.edge_middle(edge));
+    }
   }
 
   /// The knot from which whole turns count: a clamp, an edge that the state follows, or the first
@@ -192,7 +222,10 @@ class PlanarDirection : public DirectionField<double> {
       knots.push_back(angle);
       if (i == reference_) offset = reference_angle(here, model, state) - angle;
     }
-    for (double& knot : knots) knot += offset;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      knots[i] += offset;
+      if (places[i].clamp < 0) knots[i] -= drawn_leans_[to_size(rod_.position(places[i].edge))];
+    }
     for (const FreeEnd& end : ends_) {
       (end.last ? knots.back() : knots.front()) -= lean(end, model, state);
     }
@@ -227,6 +260,7 @@ class PlanarDirection : public DirectionField<double> {
   std::optional<int> component_;
   RodLayout rod_;
   std::vector<EffectiveEdge> edges_;
+  std::vector<double> drawn_leans_;  // of each edge [rad]
   std::vector<FreeEnd> ends_;
   std::optional<MomentRecovery> spread_;  // where moments at free ends may matter
   std::optional<SpreadMoments> moments_;
@@ -259,19 +293,32 @@ class SpatialDirection : public DirectionField<Vec3> {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) {
       edges_.push_back(spatial_edge(rod, edge, model));
     }
+    drawn_leans_.assign(edges_.size(), Vec2::Zero());
     if (!model.has_sections() || rod.joints.empty()) return;
+    find_drawn_leans(model);
     ends_ = free_ends(rod);
     if (moments_ && !ends_.empty()) spread_.emplace(rod, model);
+  }
+
+  void find_drawn_leans(const Model& model) {
+    for (const RodJoint& joint : rod_.joints) {
+      if (joint.clamp < 0) continue;
+      const Index edge = joint.leaves_clamp() ? joint.after : joint.before;
+      if (!leans_as_drawn(rod_, edge)) continue;
+      const Vec3 chord = along_edge<3>(rod_.edge(edge, model), model.initial_positions);
+      const SectionFrame section = drawn_frame(model, rod_.first_edge + edge);
+      const Vec3 leant = section.tangent - chord.normalized();
+      drawn_leans_[to_size(edge)] = Vec2(leant.dot(section.first), leant.dot(section.second)) -
+                                    knot_beyond_middle(rod_, edge) * joint.natural_curvature;
+    }
   }
 
   void read(const Model& model, const State& state, std::vector<Vec3>& knots,
             std::vector<Vec3>& kinks) const override {
     for (const TangentLine::Knot& knot : line().knots()) {
-      knots.push_back(
-          knot.clamp >= 0
-              ? held_frame(rod_.clamps[to_size(knot.clamp)].held, model, state).tangent
-              : effective_vector(edges_[to_size(rod_.position(knot.edge))], model, state)
-                    .normalized());
+      knots.push_back(knot.clamp >= 0
+                          ? held_frame(rod_.clamps[to_size(knot.clamp)].held, model, state).tangent
+                          : tangent_of_edge(rod_.position(knot.edge), model, state));
     }
     for (const FreeEnd& end : ends_) {
       (end.last ? knots.back() : knots.front()) -= lean(end, model, state);
@@ -282,6 +329,16 @@ class SpatialDirection : public DirectionField<Vec3> {
       kinks.emplace_back(
           -change_by(moments_->value(i, model, state).whole, 1.0, frame(edge, model, state)));
     }
+  }
+
+  /// At its knot.
+  [[nodiscard]] Vec3 tangent_of_edge(Index edge, const Model& model, const State& state) const {
+    Vec3 tangent = effective_vector(edges_[to_size(edge)], model, state).normalized();
+    const Vec2& leans = drawn_leans_[to_size(edge)];
+    if (leans.isZero(0.0)) return tangent;
+    const SectionFrame section = frame(edge, model, state);
+    tangent -= leans[0] * section.first + leans[1] * section.second;
+    return tangent;
   }
 
   [[nodiscard]] SectionFrame frame(Index edge, const Model& model, const State& state) const {
@@ -327,6 +384,7 @@ class SpatialDirection : public DirectionField<Vec3> {
   int component_;
   RodLayout rod_;
   std::vector<SpatialEdge> edges_;
+  std::vector<Vec2> drawn_leans_;  // of each edge, towards its two directors
   std::vector<FreeEnd> ends_;
   std::optional<MomentRecovery> spread_;  // where moments at free ends may matter
   std::optional<SpreadMoments> moments_;

@@ -135,7 +135,7 @@ Format<Analysis> word_format() {
   for (const auto& [word, analysis] : options) shape.words.push_back(word);
   return {std::move(shape), [options](const Shape& self, const Place& place,
                                       Diagnostics& diagnostics, Analysis& out) {
-            const int chosen = read_word(self, expected(self), place, diagnostics);
+            const int chosen = read_word(self, self, place, diagnostics);
             if (chosen >= 0) out = options[static_cast<std::size_t>(chosen)].second;
             return chosen >= 0;
           }};

@@ -40,9 +40,10 @@ void check_twisting(const Rod& rod, const Path& path, const std::string& reason,
 
 }  // namespace
 
-void check_model(const SceneText& scene, Diagnostics& diagnostics) {
-  const ChosenModel model = choose_model(scene);
-  if (const std::string obstacle = why_not(model.kind, scene); !obstacle.empty()) {
+void check_model(const SceneText& scene, const ChosenModel& model, Diagnostics& diagnostics) {
+  const bool asked_for = scene.model != ModelChoice::Auto;
+  if (const std::string obstacle = asked_for ? why_not(model.kind, scene) : std::string();
+      !obstacle.empty()) {
     diagnostics.add({"model"},
                     fmt::format("'{}' cannot represent this scene: {}. Write 'auto' for the "
                                 "smallest model that can",

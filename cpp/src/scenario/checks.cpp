@@ -159,10 +159,12 @@ void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   check_names(context);
   check_time(context);
   check_probes(context);
-  if (diagnostics.size() == 0) check_model(scene, diagnostics);
+  if (diagnostics.size() > 0) return;
+  const ChosenModel model = choose_model(scene);
+  check_model(scene, model, diagnostics);
   if (diagnostics.size() > 0) return;
   warn_of_touching_rods(context);
-  conform(scene);
+  conform(scene, model.kind);
 }
 
 }  // namespace der::scenario

@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "der/scenario/model_choice.hpp"
 #include "scenario/rest_line.hpp"
 #include "scenario/scene_text.hpp"
 
@@ -84,8 +85,8 @@ void check_names(CheckContext& context);
 void check_time(CheckContext& context);
 void check_probes(CheckContext& context);
 /// Checks that the model that the scene asks for can represent it, and that this version has in
-/// that model all that the scene needs.
-void check_model(const SceneText& scene, Diagnostics& diagnostics);
+/// the chosen model all that the scene needs.
+void check_model(const SceneText& scene, const ChosenModel& model, Diagnostics& diagnostics);
 /// Reports what this version does not have in a model (check_spatial.cpp).
 void check_availability(const SceneText& scene, ModelChoice kind, Diagnostics& diagnostics);
 /// Reports natural shapes that a mesh cannot take, and warns of those that it hardly resolves.

@@ -14,8 +14,7 @@ namespace {
 
 class Conform {
  public:
-  explicit Conform(Scene& scene)
-      : scene_(scene), planar_(choose_model(scene).kind == ModelChoice::Planar) {}
+  Conform(Scene& scene, ModelChoice model) : scene_(scene), planar_(model == ModelChoice::Planar) {}
 
   void run() {
     scene_.dimension = planar_ ? 2 : 3;
@@ -156,6 +155,6 @@ class Conform {
 
 }  // namespace
 
-void conform(Scene& scene) { Conform(scene).run(); }
+void conform(Scene& scene, ModelChoice model) { Conform(scene, model).run(); }
 
 }  // namespace der::scenario

@@ -46,9 +46,12 @@ std::string item_text(const Sequence& items, int index) {
 
 }  // namespace
 
-Path operator/(Path path, Segment next) {
-  path.push_back(std::move(next));
-  return path;
+Path operator/(const Path& path, Segment next) {
+  Path longer;
+  longer.reserve(path.size() + 1);  // many are made, and few are told
+  longer = path;
+  longer.push_back(std::move(next));
+  return longer;
 }
 
 void Diagnostics::add(const Place& place, std::string message) {

@@ -35,7 +35,7 @@ struct Segment {
   int index = -1;
 };
 using Path = std::vector<Segment>;
-Path operator/(Path path, Segment next);
+Path operator/(const Path& path, Segment next);
 
 /// More diagnostics than these help nobody, and a text with a million mistakes is read no further.
 inline constexpr std::size_t kMaxDiagnostics = 100;

@@ -254,20 +254,21 @@ Format<CurvaturePair> pair(std::string unit) {
   return {std::move(shape), read_pair};
 }
 
-int read_word(const Shape& shape, const std::string& what, const Place& place,
+int read_word(const Shape& shape, const Shape& whole, const Place& place,
               Diagnostics& diagnostics) {
   const std::string* written = text_of(*place.value);
-  const std::vector<std::string> names = names_of(shape.words);
   if (written) {
-    const auto known = std::find(names.begin(), names.end(), *written);
-    if (known != names.end()) return static_cast<int>(known - names.begin());
+    const auto known = std::find_if(shape.words.begin(), shape.words.end(),
+                                    [&](const Word& word) { return word.name == *written; });
+    if (known != shape.words.end()) return static_cast<int>(known - shape.words.begin());
     for (const ReservedWord& word : shape.reserved) {
       if (word.name != *written) continue;
       diagnostics.add(place, word.message);
       return -1;
     }
   }
-  report_expected(what, place, diagnostics, written ? did_you_mean(*written, names) : "");
+  report_expected(expected(whole), place, diagnostics,
+                  written ? did_you_mean(*written, names_of(shape.words)) : "");
   return -1;
 }
 

@@ -54,9 +54,8 @@ Format<Components> section_triple(std::string unit);
 Format<CurvaturePair> pair(std::string unit);
 
 /// Position among the shape's words of the one that is written; -1 after a diagnostic, which says
-/// that `what` was expected.
-int read_word(const Shape& shape, const std::string& what, const Place& place,
-              Diagnostics& diagnostics);
+/// that `whole` was expected, the shape or one that it is a part of.
+int read_word(const Shape& shape, const Shape& whole, const Place& place, Diagnostics& diagnostics);
 
 /// One of some words, as the value that belongs to it.
 template <class E>
@@ -71,7 +70,7 @@ Format<E> choice(const std::vector<std::pair<Word, E>>& options,
   shape.reserved = std::move(reserved);
   return {std::move(shape),
           [values](const Shape& self, const Place& place, Diagnostics& diagnostics, E& out) {
-            const int chosen = read_word(self, expected(self), place, diagnostics);
+            const int chosen = read_word(self, self, place, diagnostics);
             if (chosen >= 0) out = values[static_cast<std::size_t>(chosen)];
             return chosen >= 0;
           },
@@ -103,7 +102,8 @@ Format<std::vector<T>> list_of(Format<T> item, int min_items) {
                                             Diagnostics& diagnostics, std::vector<T>& out) {
             if (!is_list(self, place, diagnostics)) return false;
             const Sequence& items = *place.value->sequence();
-            out.assign(items.size(), T{});
+            out.clear();
+            out.resize(items.size());
             int mistakes = 0;
             for (std::size_t i = 0; i < items.size(); ++i) {
               const Place here = place.at(static_cast<int>(i), items[i]);

@@ -30,7 +30,7 @@ Format<Location> location_of(const std::vector<std::pair<Word, Location::Kind>>&
             const bool is_word = written && !written->empty() &&
                                  std::isalpha(static_cast<unsigned char>(written->front())) != 0;
             if (is_word) {
-              const int chosen = read_word(word.shape, expected(self), place, diagnostics);
+              const int chosen = read_word(word.shape, self, place, diagnostics);
               if (chosen >= 0) out.kind = kinds[static_cast<std::size_t>(chosen)];
               return chosen >= 0;
             }

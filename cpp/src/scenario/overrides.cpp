@@ -1,6 +1,6 @@
 #include "scenario/overrides.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
@@ -39,13 +39,14 @@ std::optional<std::size_t> index_of(const std::string& segment) {
   return index;
 }
 
-/// Position of the item that a segment names, by number or by `name`.
-std::size_t item_index(const Sequence& items, const std::string& segment,
-                       const std::string& where) {
+/// Position of the item that a segment names, by number or by `name`; `where()` says in words what
+/// the items are those of.
+template <class Where>
+std::size_t item_index(const Sequence& items, const std::string& segment, const Where& where) {
   if (const auto index = index_of(segment)) {
     if (*index < items.size()) return *index;
-    throw Astray{items.empty() ? fmt::format("{} is empty", where)
-                               : fmt::format("{} has the items 0 to {}, but no item {}", where,
+    throw Astray{items.empty() ? fmt::format("{} is empty", where())
+                               : fmt::format("{} has the items 0 to {}, but no item {}", where(),
                                              items.size() - 1, *index)};
   }
   std::vector<std::string> names;
@@ -59,7 +60,7 @@ std::size_t item_index(const Sequence& items, const std::string& segment,
   if (hint.empty()) {
     hint = names.empty() ? "; name its items by number" : "; it has " + listed(names);
   }
-  throw Astray{fmt::format("{} has no item '{}'{}", where, segment, hint)};
+  throw Astray{fmt::format("{} has no item '{}'{}", where(), segment, hint)};
 }
 
 /// Takes the marks of another text off a value.
@@ -92,18 +93,15 @@ class Change {
   Change(const std::string& path, Value value)
       : segments_(segments_of(path)), value_(std::move(value)) {}
 
-  void apply(Value& root) { descend(root, 0, "the scene"); }
+  void apply(Value& root) { descend(root, 0); }
 
  private:
-  /// `where` is the path so far, in quotes.
-  void descend(Value& here, std::size_t depth, const std::string& where) {
+  void descend(Value& here, std::size_t depth) {
     const std::string& segment = segments_[depth];
     const bool last = depth + 1 == segments_.size();
-    const std::string next =
-        depth == 0 ? "'" + segment + "'" : where.substr(0, where.size() - 1) + "." + segment + "'";
     if (auto* items = std::get_if<Sequence>(&here.content)) {
-      const std::size_t index = item_index(*items, segment, where);
-      if (!last) return descend((*items)[index], depth + 1, next);
+      const std::size_t index = item_index(*items, segment, [&] { return where(depth); });
+      if (!last) return descend((*items)[index], depth + 1);
       if (!value_.is_null()) {
         (*items)[index] = std::move(value_);
       } else {
@@ -111,16 +109,25 @@ class Change {
       }
     } else if (auto* entries = std::get_if<Mapping>(&here.content)) {
       Entry* entry = const_entry(*entries, segment);
-      if (!entry) entry = &added(*entries, segment, depth, where);
-      if (!last) return descend(entry->value, depth + 1, next);
+      if (!entry) entry = &added(*entries, segment, depth);
+      if (!last) return descend(entry->value, depth + 1);
       if (!value_.is_null()) {
         entry->value = std::move(value_);
       } else {
         entries->erase(entries->begin() + (entry - entries->data()));
       }
     } else {
-      throw Astray{fmt::format("{} is a single value and has no '{}' in it", where, segment)};
+      throw Astray{
+          fmt::format("{} is a single value and has no '{}' in it", where(depth), segment)};
     }
+  }
+
+  /// The path as far as it has been walked, in quotes.
+  [[nodiscard]] std::string where(std::size_t depth) const {
+    if (depth == 0) return "the scene";
+    return fmt::format(
+        "'{}'",
+        fmt::join(segments_.begin(), segments_.begin() + static_cast<std::ptrdiff_t>(depth), "."));
   }
 
   static Entry* const_entry(Mapping& entries, const std::string& key) {
@@ -131,15 +138,14 @@ class Change {
 
   /// A key that the scene leaves to its default so far; whether there is such a key is for the
   /// reader to say.
-  Entry& added(Mapping& entries, const std::string& key, std::size_t depth,
-               const std::string& where) const {
+  Entry& added(Mapping& entries, const std::string& key, std::size_t depth) const {
     const bool last = depth + 1 == segments_.size();
     const bool item_follows = !last && index_of(segments_[depth + 1]);
     if ((last && value_.is_null()) || item_follows) {
       std::vector<std::string> keys;
       for (const Entry& entry : entries) keys.push_back(entry.key);
       const std::string near = did_you_mean(key, keys);
-      throw Astray{fmt::format("{} has no '{}'{}", where, key,
+      throw Astray{fmt::format("{} has no '{}'{}", where(depth), key,
                                near.empty() && !keys.empty() ? "; it has " + listed(keys) : near)};
     }
     entries.push_back({key, make_mapping({}), {}});

@@ -13,11 +13,7 @@ namespace {
 class KeyReader {
  public:
   KeyReader(const TableInfo& table, const Place& place, Diagnostics& diagnostics)
-      : table_(table),
-        noun_(with_article(table.name)),
-        place_(place),
-        diagnostics_(diagnostics),
-        seen_(table.fields.size()) {}
+      : table_(table), place_(place), diagnostics_(diagnostics), seen_(table.fields.size()) {}
 
   void read_entries(const std::function<bool(int, const Place&)>& read) {
     for (const Entry& entry : *place_.value->mapping()) {
@@ -59,28 +55,31 @@ class KeyReader {
     }
     if (given.size() == 1) return;
     if (given.empty()) {
-      diagnostics_.add(place_, fmt::format("{} needs one of the keys {}", noun_,
+      diagnostics_.add(place_, fmt::format("{} needs one of the keys {}", noun(),
                                            listed(table_.kinds(), " or ")));
       return;
     }
     diagnostics_.add(place_,
                      fmt::format("{} has one key, which says what it is, but here are {}: {} (is "
                                  "a list dash '- ' missing, or the indentation wrong?)",
-                                 noun_, given.size(), listed(given)));
+                                 noun(), given.size(), listed(given)));
   }
 
  private:
+  /// "a rod"
+  [[nodiscard]] std::string noun() const { return with_article(table_.name); }
+
   void report(const Entry& entry, std::string message) {
     diagnostics_.add_key(place_, entry.key, entry.mark, std::move(message));
   }
 
   void report_missing(const std::string& key, const std::string& why) {
     diagnostics_.add_key(place_, key, place_.value->mark,
-                         fmt::format("{} needs the key '{}'{}", noun_, key, why));
+                         fmt::format("{} needs the key '{}'{}", noun(), key, why));
   }
 
   [[nodiscard]] std::string unknown_key(const std::string& key) const {
-    const std::string message = fmt::format("{} has no key '{}'", noun_, shortened(key));
+    const std::string message = fmt::format("{} has no key '{}'", noun(), shortened(key));
     if (const std::size_t colon = key.find(':'); colon != std::string::npos && colon > 0) {
       return fmt::format("{}; is a space missing after the colon?", message);
     }
@@ -136,12 +135,11 @@ class KeyReader {
       }
     } else if (alternatives.required) {
       diagnostics_.add_key(place_, alternatives.branches.front().front(), place_.value->mark,
-                           fmt::format("{} needs {}", noun_, described(alternatives)));
+                           fmt::format("{} needs {}", noun(), described(alternatives)));
     }
   }
 
   const TableInfo& table_;
-  std::string noun_;  // "a rod"
   const Place& place_;
   Diagnostics& diagnostics_;
   std::vector<const Entry*> seen_;  // by field

@@ -93,7 +93,8 @@ void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod,
 }
 
 EffectiveEdge effective_edge(const RodLayout& rod, Index edge, const Model& model) {
-  return {rod.edge_dofs(edge, model), pivot_at(rod, edge, edge), pivot_at(rod, edge + 1, edge)};
+  const Index own = rod.position(edge);  // behind the last edge of a ring its first one follows
+  return {rod.edge_dofs(own, model), pivot_at(rod, own, own), pivot_at(rod, own + 1, own)};
 }
 
 Vec2 effective_end(const EffectiveEdge& effective, bool last, const Model& model,

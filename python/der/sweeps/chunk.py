@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -27,6 +26,8 @@ LOST = "worker_lost"
 #: What is told of each probe.
 _TOLD, _WHEN = ("final", "min", "max"), ("t_min", "t_max")
 _told = itemgetter(*_TOLD, *_WHEN)
+#: What a row has of the summary of a run: to ask for all of it takes as long as the rest of a row.
+_OF_SUMMARY = ("status", "unreliable_from", "stability", "steps", "newton_iterations", "probes")
 #: Run folders in a folder: file systems are slow with more.
 _FOLDERS = 1000
 
@@ -155,7 +156,7 @@ class _Reading:
     Attributes
     ----------
     summary
-        As in ``summary.json``.
+        What the row has of ``summary.json``; None where the key is not in it.
     found
         What an analysis finds besides probes.
     on_path
@@ -170,7 +171,7 @@ class _Reading:
 
 def _read(scenario: Scenario, recording: RunRecording) -> _Reading:
     # To make a result of it takes a tenth of the time of an equilibrium, and few need one.
-    summary = json.loads(recording.summary_json)
+    summary = {key: recording.summary_value(key) for key in _OF_SUMMARY}
     found: tuple[Reading, ...] = ()
     if recording.data and recording.error is None:
         readings = static_readings(recorded_result(scenario, recording))
@@ -187,7 +188,7 @@ def _add_row(table: Table, number: int, reading: _Reading, message: str, seconds
         status=summary["status"],
         message=message or None,
         seconds=seconds,
-        unreliable_from=summary.get("unreliable_from"),
+        unreliable_from=summary["unreliable_from"],
         version=__version__,
     )
     for name, probe in summary["probes"].items():
@@ -198,7 +199,7 @@ def _add_row(table: Table, number: int, reading: _Reading, message: str, seconds
             for own, unit in zip(names, units, strict=True):
                 table.add(Column(own, "probe", unit))
         row.update(zip(names, _told(probe), strict=True))
-    if not reading.found and "stability" in summary:
+    if not reading.found and summary["stability"] is not None:
         table.put("stability", "found", "", summary["stability"])
     for found in reading.found:
         table.put(found.label, "found", found.unit, found.value)

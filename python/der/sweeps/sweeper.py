@@ -245,7 +245,7 @@ class _Sweeper:
         self._left = (
             (number, member)
             for number, member in enumerate(design, first)
-            if tuple(map(stored, member)) not in done
+            if not done or tuple(map(stored, member)) not in done
         )
         # With rows of other requests among `done`, the members of this one have to be counted.
         self._total = len(design) - (

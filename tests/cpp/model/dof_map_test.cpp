@@ -39,6 +39,17 @@ TEST_CASE("free degrees of freedom are eliminated node by node, angles after the
   for (Index i = 0; i < map.num_free(); ++i) CHECK(map.free_index(map.free()[to_size(i)]) == i);
 }
 
+TEST_CASE("the first node of a ring is eliminated after its last one, between two open rods") {
+  // A node; a ring of three nodes and three edges; a node.
+  DofMap map{2, 5, {1, 2, 3}};
+  map.close(1, 3);
+  CHECK(map.free() == std::vector<Index>{0, 1, 10, 4, 5, 11, 6, 7, 12, 2, 3, 8, 9});
+  map.hold({3, 6, 11});
+  CHECK(map.free() == std::vector<Index>{0, 1, 10, 4, 5, 7, 12, 2, 8, 9});
+  CHECK(map.free_index(2) == 7);
+  CHECK(map.free_index(11) == -1);
+}
+
 TEST_CASE("norms count a radian as the model's length") {
   DofMap map = spatial_map();
   map.set_length(4.0);

@@ -50,7 +50,8 @@ double largest_over(const std::vector<DofBlock>& blocks, const Value& value) {
 class DofMap {
  public:
   DofMap() = default;
-  /// `edge_starts`: the first node of each edge that has an angle. All are free at first.
+  /// `edge_starts`: the first node of each edge that has an angle, in ascending order. All are free
+  /// at first.
   DofMap(int dimension, Index num_nodes, std::vector<Index> edge_starts = {});
 
   [[nodiscard]] Index size() const { return num_positions() + static_cast<Index>(starts_.size()); }
@@ -112,7 +113,6 @@ class DofMap {
   };
 
   void number_free();
-  [[nodiscard]] Index eliminated_with(Index dof) const;
 
   int dimension_ = 2;
   double length_ = 1.0;

@@ -36,7 +36,11 @@ Vec3 cell_moment(const RodJoint& joint, const RodLayout& rod, const Model& model
 /// Unit vector about which a rod in space bends at a joint; zero where it does not.
 Vec3 bend_axis(const RodJoint& joint, const RodLayout& rod, const Model& model, const State& state);
 
-/// Vector [m] of an edge of a rod in space as its elements see it.
+/// The point [m] at which an edge of a rod in space begins or ends as its elements see it: a
+/// clamp's pivot, or the node.
+Vec3 effective_end(const SpatialEdge& edge, bool last, const Model& model, const State& state);
+
+/// Vector [m] between these points.
 Vec3 effective_vector(const SpatialEdge& edge, const Model& model, const State& state);
 
 }  // namespace der

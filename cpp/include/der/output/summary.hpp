@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -23,9 +24,13 @@ std::string created_energy_warning(const Simulation& simulation);
 /// steps that are too long to resolve a table; a structure to which linear buckling does not apply.
 std::vector<std::string> warnings(const Simulation& simulation, const RunOutcome& outcome);
 
-/// The summary of an ended run as JSON text (keys: docs/results.md). Values that the run did not
-/// come to (the probes of an equilibrium that was not found) are left out; no number is NaN or
-/// infinite.
+/// The summary of an ended run (keys: docs/results.md), in the order in which a person wants to
+/// read it. Values that the run did not come to (the probes of an equilibrium that was not found)
+/// are left out; no number is NaN or infinite.
+nlohmann::ordered_json summary(const Simulation& simulation, const Recorder& recorder,
+                               const RunOutcome& outcome);
+
+/// The text of summary.json.
 std::string summary_json(const Simulation& simulation, const Recorder& recorder,
                          const RunOutcome& outcome);
 

@@ -37,7 +37,7 @@ double strain_energy(const Model& model, double strain) {
 
 /// Faster than comparing numbers. A zero that has changed its sign counts as another number.
 bool same_bits(const Vector& a, const Vector& b) {
-  return std::memcmp(a.data(), b.data(), to_size(a.size()) * sizeof(double)) == 0;
+  return std::memcmp(a.data(), b.data(), static_cast<std::size_t>(a.size()) * sizeof(double)) == 0;
 }
 
 /// The two edges that an element of bending lies between.

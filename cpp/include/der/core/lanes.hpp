@@ -18,7 +18,8 @@ struct LaneRegister<2> {
 };
 template <>
 struct LaneRegister<4> {
-  typedef double type __attribute__((vector_size(32)));  // NOLINT(modernize-use-using)
+  // Eigen aligns its matrices to 16 bytes.
+  typedef double type __attribute__((vector_size(32), aligned(16)));  // NOLINT(modernize-use-using)
 };
 
 /// `N` numbers that run through the same operations in one register, each as if it were alone.
@@ -41,7 +42,8 @@ class Lanes {
       : Lanes([&](int /*lane*/) { return value; }, All{}) {}
   /// One number for each lane.
   template <class... Rest, class = std::enable_if_t<sizeof...(Rest) + 1 == N>>
-  Lanes(double first, Rest... rest) : values_{first, rest...} {}
+  Lanes(double first, Rest... rest)  // NOLINT(google-explicit-constructor)
+      : values_{first, rest...} {}
 
   /// The numbers f(0) .. f(N - 1).
   template <class F>

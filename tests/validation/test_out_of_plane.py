@@ -406,6 +406,20 @@ def test_unknown_stiffness(change, reason):
     assert reason in verdict["not_tested"]
 
 
+@pytest.mark.parametrize("hold", [{"fix": ["x", "y"]}, {"spring": {"stiffness": 1e5}}])
+def test_a_support_at_a_corner_is_not_tested(hold):
+    """A fork has no tangent there; an edge away from the corner it has."""
+    leg = np.linspace(0, 0.5, 11)
+    points = [*([x, 0] for x in leg), *([0.5, y] for y in leg[1:])]
+    rod = {"name": "rod", "points": points, "cross_section": {"stiffness": ARC}}
+    for node, tested in ((10, False), (9, True)):
+        supports = [{**START, "clamp": True}, {"rod": "rod", "at": {"node": node}, **hold}]
+        scene = {"rods": [rod], "supports": supports, "loads": tip_force(-0.1, 0)}
+        verdict = planar_verdict({**scene, "analysis": "static"})
+        assert (not verdict.not_tested) == tested
+        assert tested or "supports.1 stands at a corner" in verdict.not_tested
+
+
 def test_no_potential_in_space():
     scene = strip(10, CANTILEVER, [{"moment": {**END, "moment": 0.1}}], 0.1, 0.1)
     assert planar_verdict(scene).not_tested == "loads.0.moment has no potential in space"

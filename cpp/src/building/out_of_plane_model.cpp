@@ -1,5 +1,7 @@
 #include "der/building/out_of_plane_model.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -101,23 +103,17 @@ scenario::Scene rods_in_space(const scenario::Scene& planar_scene, const Model& 
   return scene;
 }
 
-void take_out_twist(Joint& joint) { joint.twist = 0.0; }
-void take_out_twist(CoupledJoint& joint) {
-  joint.coefficients.row(2).setZero();
-  joint.coefficients.col(2).setZero();
-}
-
 /// Takes the twist out of the joint at a node, which a fork divides in two.
 template <class Kernel>
 void divide_joint(Index first_dof, ElementLists& elements) {
   auto& plain = elements_of<Kernel>(elements);
   for (std::size_t i = 0; i < plain.size(); ++i) {
-    if (plain.dofs[i][3] == first_dof) take_out_twist(plain.constants[i].joint);
+    if (plain.dofs[i][3] == first_dof) plain.constants[i].joint.twist = 0.0;
   }
   auto& beside_clamps = elements_of<FromSpatialPivot<Kernel>>(elements);
   for (std::size_t i = 0; i < beside_clamps.size(); ++i) {
     if (beside_clamps.dofs[i][3] != first_dof) continue;
-    take_out_twist(beside_clamps.constants[i].element.joint);
+    beside_clamps.constants[i].element.joint.twist = 0.0;
   }
 }
 
@@ -127,17 +123,17 @@ double reach(const RodLayout& rod, Index place, Index edge) {
   return edge == place ? along : rod.edge_length[to_size(edge)] - along;
 }
 
-/// The tangent at a place on the side of `edge`: on the line of the directions of this edge and the
-/// one on the other side. At ends and corners, where there is none, on that of the next edge.
+/// The tangent at a place, on the side of `edge`: on the line of the directions of this edge and
+/// the one on the other side, at an end on that of the next one.
 OutOfPlaneModel::ForkTangent tangent_at(const RodLayout& rod, Index place, Index edge,
                                         const Model& model) {
   const Index number = rod.first_edge + edge;
   const Index other = edge == place ? rod.edge_before(place) : rod.edge_after(place);
   const double own = reach(rod, place, edge);
-  if (other >= 0 && !is_corner(rod, place, model)) {
+  if (other >= 0) {
     return {number, rod.first_edge + other, own / (own + reach(rod, place, other)), 0};
   }
-  const Index inner = edge == place ? rod.position(edge + 1) : edge;
+  const Index inner = edge == place ? edge + 1 : edge;
   const Index next = edge == place ? rod.edge_after(inner) : rod.edge_before(inner);
   if (next < 0 || is_corner(rod, inner, model)) return {number, number, 0.0, 0};
   const double between = reach(rod, inner, edge) + reach(rod, inner, next);
@@ -151,7 +147,6 @@ void add_fork(const RodLayout& rod, Index place, OutOfPlaneModel& twin) {
   const Index first_dof = model.dof(rod.nodes[to_size(place)], 0);
   divide_joint<SpatialBend<AngleCurvature>>(first_dof, *model.elements);
   divide_joint<SpatialBend<TangentCurvature>>(first_dof, *model.elements);
-  divide_joint<CornerBend>(first_dof, *model.elements);
   for (const Index edge : {rod.edge_before(place), rod.edge_after(place)}) {
     if (edge < 0) continue;
     const Index number = rod.first_edge + edge;
@@ -252,6 +247,23 @@ OutOfPlaneModel build_out_of_plane_model(const scenario::Scene& scene, const Mod
     if (std::exchange(done, 1) == 0) add_fork(layout, place, twin);
   }
   return twin;
+}
+
+std::string fork_at_corner(const scenario::Scene& scene, const Model& planar) {
+  for (std::size_t i = 0; i < scene.supports.size(); ++i) {
+    if (scene.supports[i].clamps()) continue;
+    for (const auto& [rod, node] : places_of(scene.supports[i], planar)) {
+      const RodLayout& layout = planar.rods[to_size(rod)];
+      if (layout.EI == 0.0 || layout.clamp_at(node) != nullptr || !layout.is_inner(node)) continue;
+      if (!is_corner(layout, node, planar)) continue;
+      return fmt::format(
+          "supports.{} stands at a corner, where the rod has no tangent about which it could hold "
+          "the section: put it an edge beside the corner, or write 'model: spatial' and what it "
+          "holds there",
+          i);
+    }
+  }
+  return {};
 }
 
 bool is_held_out_of_plane(const scenario::Scene& scene, const Model& planar) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "der/kinematics/configuration.hpp"
@@ -49,5 +50,9 @@ OutOfPlaneModel build_out_of_plane_model(const scenario::Scene& scene, const Mod
 
 /// Whether supports hold every node, and no section can twist.
 bool is_held_out_of_plane(const scenario::Scene& scene, const Model& planar);
+
+/// The support, and what to write, that stands at a corner of a rod, where there is no tangent
+/// about which a fork could hold the section; empty if there is none.
+std::string fork_at_corner(const scenario::Scene& scene, const Model& planar);
 
 }  // namespace der

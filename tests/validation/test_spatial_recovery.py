@@ -167,19 +167,15 @@ def test_drawn_curvature_at_clamps(fitted_order, clamps):
             assert fitted_order([1 / n for n in sizes], of_place) > 1.9
 
 
-def test_a_loaded_bow_at_its_clamp(fitted_order):
-    """All that is probed at the clamp of a rod that is drawn curved and turned.
-
-    The order of the curvatures is in the test before.
-    """
+def loaded_bow():
+    """The boundary value problem of the bow under a force at its tip."""
 
     def natural(s):
         k1, k2, twist = natural_of_the_bow(s)
         return np.stack([-k2, k1, twist])  # turning about directors 1 and 2
 
-    rod = Rod(1.0, (WEAK, STRONG), TWISTING, STRETCHING, natural)
     there = follow(
-        rod,
+        Rod(1.0, (WEAK, STRONG), TWISTING, STRETCHING, natural),
         Held((0, 0, 0), UPRIGHT),
         lambda share: Loaded(share * np.array(TIP)),
         steps=4,
@@ -187,10 +183,19 @@ def test_a_loaded_bow_at_its_clamp(fitted_order):
         degree=18,
     )
     assert there.shooting_error() < 1e-9
+    return there
+
+
+def test_a_loaded_bow_at_its_clamp(fitted_order):
+    """All that is probed at the clamp of a rod that is drawn curved and turned.
+
+    The order of the curvatures is in the test before.
+    """
+    there = loaded_bow()
     places = [(0.0, "after"), (0.3, "after")]
     s = np.array([place for place, _ in places])
     u1, u2, u3, strain = there.strains(s)
-    n1, n2, n3 = natural(s)
+    n1, n2, n3 = there.rod.natural(s)
     moments = [STRONG * (u2 - n2), -WEAK * (u1 - n1), TWISTING * (u3 - n3)]
     exact = np.vstack([u2, -u1, u3, *moments, STRETCHING * strain]).T
     sizes = (80, 160, 320)
@@ -207,20 +212,7 @@ def test_a_loaded_bow_at_its_clamp(fitted_order):
 
 def test_tangents_of_a_loaded_bow_beside_its_clamp(fitted_order):
     """At shares of the edge there, bent about both axes and twisted."""
-
-    def natural(s):
-        k1, k2, twist = natural_of_the_bow(s)
-        return np.stack([-k2, k1, twist])
-
-    there = follow(
-        Rod(1.0, (WEAK, STRONG), TWISTING, STRETCHING, natural),
-        Held((0, 0, 0), UPRIGHT),
-        lambda share: Loaded(share * np.array(TIP)),
-        steps=4,
-        segments=4,
-        degree=18,
-    )
-    assert there.shooting_error() < 1e-9
+    there = loaded_bow()
     sizes = (20, 40, 80)
     errors = []
     for edges in sizes:

@@ -156,7 +156,7 @@ class _Reading:
     Attributes
     ----------
     summary
-        What the row has of ``summary.json``; None where the key is not in it.
+        The values of ``summary.json`` that the row has; None where a key is not in it.
     found
         What an analysis finds besides probes.
     on_path

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "der/core/types.hpp"
-#include "der/energies/edge_blocks.hpp"
+#include "der/energies/edge_moment.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/kinematics/edge_frame.hpp"
@@ -43,23 +43,11 @@ struct Fork {
 
     // A rotation omega of the section changes psi by omega . axis.
     const Vec3 axis = v.cross(across);
-    const Vec3 moment = c.stiffness * psi * axis;
-    const Eigen::Matrix<double, 3, 4> turn = edge.rotation();
-    const Eigen::Vector4d force = turn.transpose() * moment;
-    out.gradient << -force.head<3>(), force.head<3>(), force[3];
-    if constexpr (D == Derivatives::Gradient) return;
-
     // The moment's own change without the antisymmetric part that turning it makes.
     Mat3 change = 0.5 * (v * across.transpose() + across * v.transpose());
     change.diagonal().array() -= psi;
     const Mat3 stiffness = c.stiffness * (axis * axis.transpose() + psi * change);
-    const Eigen::Matrix4d own =
-        turn.transpose() * stiffness * turn + edge.geometric_stiffness(moment);
-    auto& h = out.hessian;
-    set_edge_blocks<Mat3>(own.topLeftCorner<3, 3>(), h);
-    h.block<1, 3>(6, 0) = -own.bottomLeftCorner<1, 3>();
-    h.block<1, 3>(6, 3) = own.bottomLeftCorner<1, 3>();
-    h(6, 6) = own(3, 3);
+    set_edge_moment<D>(edge, c.stiffness * psi * axis, stiffness, out);
   }
 };
 

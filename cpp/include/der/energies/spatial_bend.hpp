@@ -2,6 +2,7 @@
 
 #include "der/core/types.hpp"
 #include "der/energies/edge_blocks.hpp"
+#include "der/energies/edge_moment.hpp"
 #include "der/energies/joint_response.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/configuration.hpp"
@@ -182,7 +183,6 @@ struct SpatialClamp {
   static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     const Frames here_frames = frames(c, here.controls, x);
-    const EdgeFrame& edge = here_frames.edge;
     const JointKinematics<Curvature> seen = kinematics(c, here.controls, here_frames);
     const Joint joint = c.actuated_joint(here.controls);
     if constexpr (D == Derivatives::Energy) {
@@ -192,19 +192,7 @@ struct SpatialClamp {
     JointResponse response;
     seen.template respond<D == Derivatives::Hessian>(joint, response);
     out.energy = response.energy;
-    const Vec3 moment = c.side * response.moment;
-    const Eigen::Matrix<double, 3, 4> turn = edge.rotation();
-    const Eigen::Vector4d force = turn.transpose() * moment;
-    out.gradient << -force.head<3>(), force.head<3>(), force[3];
-    if constexpr (D == Derivatives::Gradient) return;
-
-    const Eigen::Matrix4d own =
-        turn.transpose() * response.stiffness * turn + edge.geometric_stiffness(moment);
-    auto& h = out.hessian;
-    set_edge_blocks<Mat3>(own.topLeftCorner<3, 3>(), h);
-    h.template block<1, 3>(6, 0) = -own.bottomLeftCorner<1, 3>();
-    h.template block<1, 3>(6, 3) = own.bottomLeftCorner<1, 3>();
-    h(6, 6) = own(3, 3);
+    set_edge_moment<D>(here_frames.edge, c.side * response.moment, response.stiffness, out);
   }
 };
 

@@ -1,7 +1,5 @@
 #include "der/building/out_of_plane_model.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -12,6 +10,7 @@
 #include "der/building/builder.hpp"
 #include "der/core/index.hpp"
 #include "der/core/nearest_node.hpp"
+#include "der/energies/corner_fork.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/fork.hpp"
 #include "der/energies/from_pivot.hpp"
@@ -123,49 +122,104 @@ double reach(const RodLayout& rod, Index place, Index edge) {
   return edge == place ? along : rod.edge_length[to_size(edge)] - along;
 }
 
-/// The tangent at a place, on the side of `edge`: on the line of the directions of this edge and
-/// the one on the other side, at an end on that of the next one.
-OutOfPlaneModel::ForkTangent tangent_at(const RodLayout& rod, Index place, Index edge,
-                                        const Model& model) {
+/// The tangent at a place on the side of `edge`: on the line of the directions of this edge and the
+/// one on the other side, at an end or a corner on that of the next one.
+OutOfPlaneModel::Tangent tangent_at(const RodLayout& rod, Index place, Index edge,
+                                    const Model& model) {
   const Index number = rod.first_edge + edge;
   const Index other = edge == place ? rod.edge_before(place) : rod.edge_after(place);
   const double own = reach(rod, place, edge);
-  if (other >= 0) {
-    return {number, rod.first_edge + other, own / (own + reach(rod, place, other)), 0};
+  if (other >= 0 && !is_corner(rod, place, model)) {
+    return {number, rod.first_edge + other, own / (own + reach(rod, place, other))};
   }
-  const Index inner = edge == place ? edge + 1 : edge;
+  const Index inner = rod.position(edge == place ? edge + 1 : edge);
   const Index next = edge == place ? rod.edge_after(inner) : rod.edge_before(inner);
-  if (next < 0 || is_corner(rod, inner, model)) return {number, number, 0.0, 0};
+  if (next < 0 || is_corner(rod, inner, model)) return {number, number, 0.0};
   const double between = reach(rod, inner, edge) + reach(rod, inner, next);
-  return {number, rod.first_edge + next, -own / between, 0};
+  return {number, rod.first_edge + next, -own / between};
 }
 
-/// Holds the section at a node by the half edges beside it.
+/// The components towards the two directors of the vector of a section that points along z.
+Vec2 upright(const SectionFrame& drawn) { return {drawn.first.z(), drawn.second.z()}; }
+
+/// Holds the section by the half edge on one side of a node.
+void add_half_fork(const RodLayout& rod, Index place, Index edge, OutOfPlaneModel& twin) {
+  Model& model = twin.model;
+  const Index number = rod.first_edge + edge;
+  const SpatialEdge& own = model.framed_edges[to_size(number)];
+  const OutOfPlaneModel::Tangent tangent = tangent_at(rod, place, edge, model);
+  const Index direction = model.tables.add({});
+  const double half = 0.5 * rod.edge_length[to_size(edge)];
+  elements_of<FromSpatialPivot<Fork>>(*model.elements)
+      .add({own.start, own.start + 1, own.start + 2, own.end, own.end + 1, own.end + 2, own.theta},
+           {{rod.GJ / half, upright(drawn_frame(model, number)), FrameBlock::of(number), direction},
+            own.first,
+            own.last});
+  twin.forks.push_back({tangent, tangent, direction});
+}
+
+/// Stiffness [N m] of the half of a joint's cell that lies on an edge against rotations about axes
+/// in the plane; `share` of the cell.
+Eigen::Matrix2d half_stiffness(const RodLayout& rod, const RodJoint& joint, double share,
+                               const SectionFrame& edge) {
+  const Vec2 along = edge.tangent.head<2>().normalized();
+  const Vec2 across(-along.y(), along.x());
+  const Vec2 upward = upright(edge).cwiseAbs2();
+  const double twisting = rod.GJ / (share * joint.twist_length);
+  const double bending =
+      (rod.EI_1 * upward[0] + rod.EI_2 * upward[1]) / (share * joint.bend_length);
+  return twisting * along * along.transpose() + bending * across * across.transpose();
+}
+
+/// Holds the section at a corner by what the corner's joint leaves between the two edges.
+void add_corner_fork(const RodLayout& rod, const RodJoint& joint, OutOfPlaneModel& twin) {
+  Model& model = twin.model;
+  const Index place = rod.position(joint.place());
+  OutOfPlaneModel::ForkAxis axis{tangent_at(rod, place, joint.before, model),
+                                 tangent_at(rod, place, joint.after, model), 0};
+  const double angle = axis.direction(model.drawn_frames);
+  const Vec2 tangent(std::cos(angle), std::sin(angle));
+  axis.control = model.tables.add({});
+
+  const Index before = rod.first_edge + joint.before;
+  const Index after = rod.first_edge + joint.after;
+  const SectionFrame section_before = drawn_frame(model, before);
+  const SectionFrame section_after = drawn_frame(model, after);
+  const double length = rod.edge_length[to_size(joint.before)];
+  const double share = length / (length + rod.edge_length[to_size(joint.after)]);
+  const Eigen::Matrix2d own = half_stiffness(rod, joint, share, section_before);
+  const Eigen::Matrix2d other = half_stiffness(rod, joint, 1.0 - share, section_after);
+  const Vec2 turned = (own + other).inverse() * tangent;
+  const Eigen::Rotation2Dd from_axis(-angle);
+  const SpatialEdge& a = model.framed_edges[to_size(before)];
+  const SpatialEdge& b = model.framed_edges[to_size(after)];
+  elements_of<FromSpatialPivot<CornerFork>>(*model.elements)
+      .add({a.start, a.start + 1, a.start + 2, b.start, b.start + 1, b.start + 2, b.end, b.end + 1,
+            b.end + 2, a.theta, b.theta},
+           {{1.0 / tangent.dot(turned),
+             {upright(section_before), from_axis * (own * turned), FrameBlock::of(before)},
+             {upright(section_after), from_axis * (other * turned), FrameBlock::of(after)},
+             axis.control},
+            a.first,
+            b.last});
+  twin.forks.push_back(axis);
+}
+
+/// Holds the section at a node: on a smooth curve by each of the half edges beside it.
 void add_fork(const RodLayout& rod, Index place, OutOfPlaneModel& twin) {
   if (rod.joints.empty() || rod.clamp_at(place) != nullptr) return;
-  Model& model = twin.model;
-  const Index first_dof = model.dof(rod.nodes[to_size(place)], 0);
-  divide_joint<SpatialBend<AngleCurvature>>(first_dof, *model.elements);
-  divide_joint<SpatialBend<TangentCurvature>>(first_dof, *model.elements);
+  if (is_corner(rod, place, twin.model)) {
+    const auto here = [&](const RodJoint& joint) {
+      return joint.clamp < 0 && rod.position(joint.place()) == place;
+    };
+    add_corner_fork(rod, *std::find_if(rod.joints.begin(), rod.joints.end(), here), twin);
+    return;
+  }
+  const Index first_dof = twin.model.dof(rod.nodes[to_size(place)], 0);
+  divide_joint<SpatialBend<AngleCurvature>>(first_dof, *twin.model.elements);
+  divide_joint<SpatialBend<TangentCurvature>>(first_dof, *twin.model.elements);
   for (const Index edge : {rod.edge_before(place), rod.edge_after(place)}) {
-    if (edge < 0) continue;
-    const Index number = rod.first_edge + edge;
-    const SpatialEdge& own = model.framed_edges[to_size(number)];
-    const SectionFrame drawn =
-        reference_frame(number, model.drawn_frames).turned(model.initial_positions[own.theta]);
-    OutOfPlaneModel::ForkTangent tangent = tangent_at(rod, place, edge, model);
-    tangent.direction = model.tables.add({});
-    const double half = 0.5 * rod.edge_length[to_size(edge)];
-    elements_of<FromSpatialPivot<Fork>>(*model.elements)
-        .add(
-            {own.start, own.start + 1, own.start + 2, own.end, own.end + 1, own.end + 2, own.theta},
-            {{rod.GJ / half,
-              {drawn.first.z(), drawn.second.z()},
-              FrameBlock::of(number),
-              tangent.direction},
-             own.first,
-             own.last});
-    twin.forks.push_back(tangent);
+    if (edge >= 0) add_half_fork(rod, place, edge, twin);
   }
 }
 
@@ -191,6 +245,17 @@ double angle_about_z(const Vec3& from, const Vec3& to) {
 }
 
 }  // namespace
+
+double OutOfPlaneModel::Tangent::direction(const Vector& values) const {
+  const Vec3 own = FrameBlock::of(edge).tangent(values);
+  const Vec3 next = FrameBlock::of(neighbour).tangent(values);
+  return std::atan2(own.y(), own.x()) + share * angle_about_z(own, next);
+}
+
+double OutOfPlaneModel::ForkAxis::direction(const Vector& values) const {
+  const double first = before.direction(values);
+  return first + 0.5 * nearest_turn(after.direction(values) - first, 0.0);
+}
 
 Configuration OutOfPlaneModel::at(const Model& planar, const Configuration& here) const {
   Configuration result;
@@ -226,11 +291,7 @@ Configuration OutOfPlaneModel::at(const Model& planar, const Configuration& here
     controls.segment<3>(block.first) = tangent;
     controls.segment<3>(block.first + 3) = made_perpendicular(director, tangent);
   }
-  for (const ForkTangent& fork : forks) {
-    const Vec3 own = FrameBlock::of(fork.edge).tangent(controls);
-    const Vec3 next = FrameBlock::of(fork.neighbour).tangent(controls);
-    controls[fork.direction] = std::atan2(own.y(), own.x()) + fork.share * angle_about_z(own, next);
-  }
+  for (const ForkAxis& fork : forks) controls[fork.control] = fork.direction(controls);
   return result;
 }
 
@@ -247,23 +308,6 @@ OutOfPlaneModel build_out_of_plane_model(const scenario::Scene& scene, const Mod
     if (std::exchange(done, 1) == 0) add_fork(layout, place, twin);
   }
   return twin;
-}
-
-std::string fork_at_corner(const scenario::Scene& scene, const Model& planar) {
-  for (std::size_t i = 0; i < scene.supports.size(); ++i) {
-    if (scene.supports[i].clamps()) continue;
-    for (const auto& [rod, node] : places_of(scene.supports[i], planar)) {
-      const RodLayout& layout = planar.rods[to_size(rod)];
-      if (layout.EI == 0.0 || layout.clamp_at(node) != nullptr || !layout.is_inner(node)) continue;
-      if (!is_corner(layout, node, planar)) continue;
-      return fmt::format(
-          "supports.{} stands at a corner, where the rod has no tangent about which it could hold "
-          "the section: put it an edge beside the corner, or write 'model: spatial' and what it "
-          "holds there",
-          i);
-    }
-  }
-  return {};
 }
 
 bool is_held_out_of_plane(const scenario::Scene& scene, const Model& planar) {

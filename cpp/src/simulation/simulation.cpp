@@ -50,7 +50,6 @@ std::string why_not_tested_out_of_plane(const scenario::Scene& scene, const Mode
   if (why_not.empty() && is_held_out_of_plane(scene, model)) {
     why_not = "supports hold every node there, and no section can twist";
   }
-  if (why_not.empty()) why_not = fork_at_corner(scene, model);
   return why_not;
 }
 

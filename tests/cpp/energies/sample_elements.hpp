@@ -180,6 +180,16 @@ inline Fork::Constants sample_constants(const Fork&, Random& random) {
   return {uniform(random, 0.5, 5.0), {std::cos(angle), std::sin(angle)}, FrameBlock::of(0), kTurn};
 }
 
+inline CornerFork::Constants sample_constants(const CornerFork&, Random& random) {
+  const auto side = [&](Index edge) -> CornerFork::Side {
+    const double angle = uniform(random, -3.0, 3.0);
+    return {{std::cos(angle), std::sin(angle)},
+            {uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0)},
+            FrameBlock::of(edge)};
+  };
+  return {uniform(random, 0.5, 5.0), side(0), side(1), kTurn};
+}
+
 template <class Kernel>
 typename FromSpatialPivot<Kernel>::Constants sample_constants(const FromSpatialPivot<Kernel>&,
                                                               Random& random) {
@@ -327,6 +337,13 @@ template <class Coordinates>
 void sample_frames(const Fork& /*kernel*/, const Fork::Constants& /*constants*/,
                    const Coordinates& x, Random& random, Configuration& here) {
   sample_source(0, x.template segment<3>(3) - x.template segment<3>(0), random, here);
+}
+
+template <class Coordinates>
+void sample_frames(const CornerFork& /*kernel*/, const CornerFork::Constants& /*constants*/,
+                   const Coordinates& x, Random& random, Configuration& here) {
+  sample_source(0, x.template segment<3>(3) - x.template segment<3>(0), random, here);
+  sample_source(1, x.template segment<3>(6) - x.template segment<3>(3), random, here);
 }
 
 /// The drawn sections are within 2.5 rad of the edges.

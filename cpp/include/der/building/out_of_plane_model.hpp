@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "der/kinematics/configuration.hpp"
@@ -18,16 +17,28 @@ struct Scene;
 ///
 /// Supports of the plane hold the rods out of it, too: a clamp holds the tangent and the
 /// section (or the tangent alone, as the scene says), and every other support, springs included,
-/// holds z of its node and the section against turning about the rod, as a fork does. Loads act on
+/// holds z of its node and the section against turning about the rod, as a fork does, at a corner
+/// about the mean of its two tangents. Loads act on
 /// the centre line, and forces of a constant direction in the plane, springs and foundations
 /// change nothing in this block.
 struct OutOfPlaneModel {
-  /// The tangent of a rod at a fork lies between the directions of two edges, or beyond both.
-  struct ForkTangent {
+  /// The tangent of a rod at a place lies between the directions of two edges, or beyond both.
+  struct Tangent {
     Index edge = 0;
     Index neighbour = 0;  ///< the edge itself: the tangent has its direction
     double share = 0.0;   ///< of the turn from the edge to its neighbour
-    Index direction = 0;  ///< control: angle from the x axis [rad]
+
+    /// Angle [rad] from the x axis; `values` begin with the blocks of all edges.
+    [[nodiscard]] double direction(const Vector& values) const;
+  };
+  /// What a fork holds a section about: the mean of the tangents on its two sides, which are the
+  /// same but at corners.
+  struct ForkAxis {
+    Tangent before;
+    Tangent after;
+    Index control = 0;  ///< its angle from the x axis [rad]
+
+    [[nodiscard]] double direction(const Vector& values) const;
   };
   /// A table of an actuation, which follows that of the planar model.
   struct Follower {
@@ -36,7 +47,7 @@ struct OutOfPlaneModel {
     double factor = 1.0;  ///< of the planar value
   };
   Model model;
-  std::vector<ForkTangent> forks;
+  std::vector<ForkAxis> forks;
   std::vector<Follower> actuations;
 
   /// The shape and the controls of the planar model in this one. Frames are those of the edges as
@@ -50,9 +61,5 @@ OutOfPlaneModel build_out_of_plane_model(const scenario::Scene& scene, const Mod
 
 /// Whether supports hold every node, and no section can twist.
 bool is_held_out_of_plane(const scenario::Scene& scene, const Model& planar);
-
-/// The support, and what to write, that stands at a corner of a rod, where there is no tangent
-/// about which a fork could hold the section; empty if there is none.
-std::string fork_at_corner(const scenario::Scene& scene, const Model& planar);
 
 }  // namespace der

@@ -5,6 +5,7 @@
 #include "der/core/types.hpp"
 #include "der/energies/edge_moment.hpp"
 #include "der/energies/local_term.hpp"
+#include "der/energies/turn_from_plane.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/kinematics/edge_frame.hpp"
 #include "der/kinematics/frame_block.hpp"
@@ -13,8 +14,8 @@ namespace der {
 
 /// Twist of the half edge between a fork and the middle of its edge: E = 1/2 GJ psi^2 / (l/2). A
 /// fork stands in the x-y plane; it holds the section of a rod against turning about the rod's
-/// tangent there, t, and lets it tilt. psi = v . (t x z), the sine of the turn of the edge's
-/// section about t, where v is the vector that points along z while the rod lies in the plane.
+/// tangent there, t, and lets it tilt. psi is the sine of the turn of the edge's section about t
+/// (TurnFromPlane).
 ///
 /// About the edge's own direction, which is turned by kappa l/2 from t, it would hold a part of the
 /// tilt as well: an error of order 1. Coordinates: the two nodes, then the edge's angle.
@@ -35,19 +36,11 @@ struct Fork {
     const EdgeFrame edge(x.segment<3>(3) - x.segment<3>(0), x[6], c.edge.tangent(here.controls),
                          c.edge.director(here.controls));
     const double angle = here.controls[c.direction];
-    const Vec3 across(std::sin(angle), -std::cos(angle), 0.0);  // t x z
-    const Vec3 v = c.upright[0] * edge.frame.first + c.upright[1] * edge.frame.second;
-    const double psi = v.dot(across);
-    out.energy = 0.5 * c.stiffness * psi * psi;
+    const TurnFromPlane turn(edge.frame, c.upright, {std::cos(angle), std::sin(angle)});
+    out.energy = 0.5 * c.stiffness * turn.psi * turn.psi;
     if constexpr (D == Derivatives::Energy) return;
-
-    // A rotation omega of the section changes psi by omega . axis.
-    const Vec3 axis = v.cross(across);
-    // The moment's own change without the antisymmetric part that turning it makes.
-    Mat3 change = 0.5 * (v * across.transpose() + across * v.transpose());
-    change.diagonal().array() -= psi;
-    const Mat3 stiffness = c.stiffness * (axis * axis.transpose() + psi * change);
-    set_edge_moment<D>(edge, c.stiffness * psi * axis, stiffness, out);
+    set_edge_moment<D>(edge, c.stiffness * turn.psi * turn.axis,
+                       turn.stiffness(c.stiffness, turn.psi), out);
   }
 };
 

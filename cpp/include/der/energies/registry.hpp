@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "der/energies/circulatory_load.hpp"
+#include "der/energies/corner_fork.hpp"
 #include "der/energies/element_list.hpp"
 #include "der/energies/fork.hpp"
 #include "der/energies/foundation.hpp"
@@ -49,6 +50,7 @@ struct ElementLists {
                            ElementList<FromSpatialPivot<SpatialClamp<AngleCurvature>>>,      //
                            ElementList<FromSpatialPivot<SpatialClamp<TangentCurvature>>>,    //
                            ElementList<FromSpatialPivot<Fork>>,                              //
+                           ElementList<FromSpatialPivot<CornerFork>>,                        //
                            ElementList<PlanarMoment>,                                        //
                            ElementList<Foundation<2>>,                                       //
                            ElementList<Foundation<3>>,                                       //

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "der/core/types.hpp"
-#include "der/energies/edge_blocks.hpp"
 #include "der/energies/edge_moment.hpp"
 #include "der/energies/joint_response.hpp"
 #include "der/energies/local_term.hpp"
@@ -90,38 +89,9 @@ struct SpatialBend {
     JointResponse response;
     kinematics.template respond<D == Derivatives::Hessian>(joint, response);
     out.energy = response.energy;
-    const Eigen::Matrix<double, 3, 4> turn_a = a.rotation();
-    const Eigen::Matrix<double, 3, 4> turn_b = b.rotation();
-    const Eigen::Vector4d force_a = -turn_a.transpose() * response.moment;
-    const Eigen::Vector4d force_b = turn_b.transpose() * response.moment;
-    out.gradient << -force_a.head<3>(), force_a.head<3>() - force_b.head<3>(), force_b.head<3>(),
-        force_a[3], force_b[3];
-    if constexpr (D == Derivatives::Gradient) return;
-
-    // By the vectors and angles of the edges, then by the nodes that these run between.
     const Mat3& stiffness = response.stiffness;
-    const Eigen::Matrix4d aa =
-        turn_a.transpose() * stiffness * turn_a + a.geometric_stiffness(-response.moment);
-    const Eigen::Matrix4d bb =
-        turn_b.transpose() * stiffness * turn_b + b.geometric_stiffness(response.moment);
-    const Eigen::Matrix4d ba =
-        -turn_b.transpose() * (stiffness + 0.5 * cross_matrix(response.moment)) * turn_a;
-    auto& h = out.hessian;
-    set_joint_blocks<Mat3>(aa.topLeftCorner<3, 3>(), ba.topLeftCorner<3, 3>(),
-                           bb.topLeftCorner<3, 3>(), h);
-    const Eigen::RowVector3d aa_te = aa.bottomLeftCorner<1, 3>();
-    const Eigen::RowVector3d bb_te = bb.bottomLeftCorner<1, 3>();
-    const Eigen::RowVector3d ba_te = ba.bottomLeftCorner<1, 3>();            // theta_b by e_a
-    const Eigen::RowVector3d ab_te = ba.topRightCorner<3, 1>().transpose();  // theta_a by e_b
-    h.template block<1, 3>(9, 0) = -aa_te;
-    h.template block<1, 3>(9, 3) = aa_te - ab_te;
-    h.template block<1, 3>(9, 6) = ab_te;
-    h.template block<1, 3>(10, 0) = -ba_te;
-    h.template block<1, 3>(10, 3) = ba_te - bb_te;
-    h.template block<1, 3>(10, 6) = bb_te;
-    h(9, 9) = aa(3, 3);
-    h(10, 9) = ba(3, 3);
-    h(10, 10) = bb(3, 3);
+    set_edge_moments<D>({a, -response.moment, stiffness}, {b, response.moment, stiffness},
+                        -stiffness - 0.5 * cross_matrix(response.moment), out);
   }
 };
 

@@ -23,8 +23,8 @@ struct TurnFromPlane {
     change.diagonal().array() -= psi;
   }
 
-  /// The change by omega of the moment k * turn * axis [N m], in the same sense; `turn` is psi, with
-  /// what other sections add to it.
+  /// The change by omega of the moment k * turn * axis [N m], in the same sense; `turn` is psi,
+  /// with what other sections add to it.
   [[nodiscard]] Mat3 stiffness(double k, double turn) const {
     return k * (axis * axis.transpose() + turn * change);
   }

@@ -20,9 +20,9 @@ namespace der {
 /// E = 1/2 k psi^2, psi = p_a . omega_a + p_b . omega_b = t . omega_c, p_i = K_i (K_a + K_b)^-1 t,
 /// k = 1/(t . (K_a + K_b)^-1 t). Turns are those of TurnFromPlane.
 ///
-/// Stiffnesses turn with t, whose directions must be of order 2. Those of the edges against t are
-/// so of order 1 alone, and that suffices: p_a + p_b = t remains, and omega_b - omega_a and psi are
-/// as small as the edges are short. Coordinates: the three nodes, then the angles of the two edges.
+/// t is of order 2. The p_i turn with it, and so lie to the edges as drawn to order 1 alone. That
+/// suffices: p_a + p_b = t remains, and omega_b - omega_a and psi are as small as the edges are
+/// short. Coordinates: the three nodes, then the angles of the two edges.
 struct CornerFork {
   static constexpr int kDofs = 11;
   static constexpr int kNodes = 3;

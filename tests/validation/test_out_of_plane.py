@@ -5,6 +5,7 @@ the bending before buckling, and Prandtl's equation of the narrow beam, without 
 
 import warnings
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import der
 import numpy as np
@@ -371,6 +372,83 @@ def test_a_corner_is_the_limit_of_a_round():
     values = [critical_factor_of_a_frame(frame, fillet) for fillet in fillets]
     assert values[-1] / exact > 1.01
     assert np.polyfit(fillets, values, 2)[-1] == pytest.approx(exact, rel=3e-4)
+
+
+def rounded(frame, n, fillet, arcs):
+    """The scene of a frame whose corner is a round of `arcs` edges between legs of `n` edges."""
+    angles = frame.turn * np.linspace(0, 1, arcs + 1)[:, None]
+    start, end = (np.array([np.cos(a), np.sin(a)]) for a in (0, frame.turn))
+    before, after = (length - fillet / 2 for length in frame.legs)
+    first = np.linspace(0, before, n + 1)[:, None] * start
+    arc = first[-1] + fillet / frame.turn * np.hstack([np.sin(angles), 1 - np.cos(angles)])
+    last = arc[-1] + np.linspace(0, after, n + 1)[:, None] * end
+    scene = frame.scene(n)
+    scene["rods"][0]["points"] = np.concatenate([first, arc[1:], last[1:]]).tolist()
+    scene["supports"][-1]["at"] = {"node": n + arcs // 2}
+    return scene
+
+
+@pytest.mark.parametrize("edge", [1e-3, 1e-4, 1e-5])
+def test_a_round_of_very_short_edges(fitted_order, edge):
+    """Rounding of the stiffness of its edges, EI/edge^3, does not move the place where a path
+    leaves the plane."""
+    frame = replace(FRAMES["GJ0.12"], high=1.1)
+    fillet = 8 * edge
+    exact = critical_factor_of_a_frame(frame, fillet)
+    errors = []
+    for n in SIZES:
+        summary = quiet_run(rounded(frame, n, fillet, 8)).summary
+        errors.append(summary["out_of_plane"]["load_factor"] / exact - 1)
+    assert fitted_order(STEPS, errors) > 1.9
+    assert abs(errors[-1]) < 2e-3
+
+
+def graded_column(edge, weak):
+    """A pinned column with 20 edges of that length in its middle, and the factor at which its chain
+    is neutral in its plane: the deflection y and the angles of the edges, from the start on, as
+    M = -P y bends each node."""
+    half = np.linspace(0, 0.5 - 10 * edge, 21)
+    x = np.concatenate([half, 0.5 + edge * np.arange(-9, 10), 1 - half[::-1]])
+    scene = strip(20, BEAM, tip_force(-1, 0), weak, 0.7)
+    rod = {key: scene["rods"][0][key] for key in ("name", "cross_section")}
+    scene["rods"] = [{**rod, "points": np.column_stack([x, 0 * x]).tolist()}]
+    lengths = np.diff(x)
+
+    def at_end(load):
+        y, angle = lengths[0], 1.0
+        for before, after in pairwise(lengths):
+            angle -= load * y * (before + after) / 2
+            y += after * angle
+        return y
+
+    load = brentq(at_end, 8, 11, xtol=1e-13)
+    return scene, load * (1 + load / SLENDER)  # bent about edges that are compressed
+
+
+@pytest.mark.parametrize("edge", [1e-3, 1e-4, 1e-5])
+def test_a_column_with_very_short_edges(edge):
+    """The critical factor of a path in the plane and out of it, and no other."""
+    scene, exact = graded_column(edge, 0.9)
+    path = quiet_run({**scene, "analysis": {"continuation": {"to": 12}}}).path
+    assert path.factor[path.rows("bifurcation")] == pytest.approx([exact], rel=1e-6)
+    assert path.factor[path.rows("out_of_plane")] == pytest.approx([0.9 * exact], rel=1e-6)
+
+
+@pytest.mark.parametrize("analysis", ["buckling", "modes"])
+def test_what_very_short_edges_hide_is_refused(analysis):
+    scene, _ = graded_column(1e-6, 0.9)
+    with pytest.raises(der.DerError, match="rounding errors of the stiffness of the shortest"):
+        der.run({**scene, "analysis": analysis})
+
+
+def test_a_path_says_where_rounding_hides_its_stability():
+    scene, _ = graded_column(1e-6, 0.9)
+    verdict = quiet_run({**scene, "analysis": {"continuation": {"to": 12}}}).summary["out_of_plane"]
+    assert verdict["stability"] == "not_tested"
+    assert "rounding hides whether the path is stable out of its plane" in verdict["not_tested"]
+    scene, _ = graded_column(1e-7, 0.9)
+    with pytest.raises(der.DerError, match="no start whose stability is known"):
+        der.run({**scene, "analysis": {"continuation": {"to": 12}}})
 
 
 def test_verdict_at_a_corner_is_that_of_the_path():

@@ -92,7 +92,7 @@ std::vector<Dataset> datasets(const Simulation& simulation, const RunOutcome& ou
         [](const PlacedPoint& p) { return p.second->stability.unstable_directions; });
     if (model.dimension == 2 && simulation.not_tested_out_of_plane().empty()) {
       add("unstable_out_of_plane",
-          [](const PlacedPoint& p) { return p.second->unstable_out_of_plane; });
+          [](const PlacedPoint& p) { return p.second->out_of_plane.unstable_directions; });
     }
     add("event", [](const PlacedPoint& p) { return static_cast<int>(p.second->event); });
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "der/scenario/scenario.hpp"
@@ -22,14 +23,16 @@ std::string directions(Index count) {
   return fmt::format("{} {}", count, count == 1 ? "direction" : "directions");
 }
 
-/// The first load factor of the first branch from which on there are more unstable directions out
-/// of the plane; that of its start, if there are some already.
-std::optional<double> leaves_plane_at(const std::vector<PathBranch>& path) {
-  if (path.empty()) return std::nullopt;
-  for (const PathPoint& point : path.front().points) {
-    if (point.unstable_out_of_plane > 0) return point.factor;
-  }
-  return std::nullopt;
+/// The first point of the first branch from which on there are unstable directions out of the
+/// plane, or rounding hides whether there are; null if there is none.
+const PathPoint* leaves_plane_at(const std::vector<PathBranch>& path) {
+  if (path.empty()) return nullptr;
+  const auto& points = path.front().points;
+  const auto first = std::find_if(points.begin(), points.end(), [](const PathPoint& point) {
+    const Stability& stability = point.out_of_plane;
+    return stability.unstable_directions + stability.unknown_directions > 0;
+  });
+  return first == points.end() ? nullptr : &*first;
 }
 
 /// One overload for each kind of analysis.
@@ -58,8 +61,16 @@ struct Judge {
         *verdict.load_factor);
   }
   void operator()(const scenario::ContinuationAnalysis& /*analysis*/) const {
-    verdict.load_factor = leaves_plane_at(outcome.path);
-    if (!verdict.load_factor) return;
+    const PathPoint* point = leaves_plane_at(outcome.path);
+    if (point == nullptr) return;
+    if (point->out_of_plane.unknown_directions > 0) {
+      verdict.not_tested = fmt::format(
+          "from the load factor {:.6g} on, rounding hides whether the path is stable out of its "
+          "plane: its shortest edges are too short",
+          point->factor);
+      return;
+    }
+    verdict.load_factor = point->factor;
     verdict.warning = fmt::format(
         "the path leaves its plane at the load factor {:.6g}: equilibria beyond it are unstable "
         "against motion out of the plane. {}",

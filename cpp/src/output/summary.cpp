@@ -73,7 +73,7 @@ Json path_json(const RunOutcome& outcome, const Recorder& recorder) {
                                 {"branch", number},
                                 {"load_factor", point.factor},
                                 {"unstable_directions", point.stability.unstable_directions},
-                                {"unstable_out_of_plane", point.unstable_out_of_plane},
+                                {"unstable_out_of_plane", point.out_of_plane.unstable_directions},
                                 {"probes", std::move(probes)}});
     }
   }

@@ -133,6 +133,12 @@ std::vector<PathBranch> Simulation::follow() {
                     start.stability.neutral_directions),
         status_of(EquilibriumFailure::NotHeld));
   }
+  if (start.stability.unknown_directions > 0) {
+    throw NotConvergedError(
+        "the path has no start whose stability is known: the rounding errors of its shortest edges "
+        "hide it. Give the rods fewer nodes, or longer edges",
+        status_of(EquilibriumFailure::LostInRoundoff));
+  }
   ContinuationOptions options;
   options.newton = stepper_options(scenario_.scene()).newton;
   options.from = analysis->from;

@@ -73,6 +73,13 @@ Vector scaled(const Model& model, const Vector& shape) {
 
 }  // namespace
 
+NotConvergedError hidden_buckling() {
+  return NotConvergedError(
+      "the buckling loads are lost in the rounding errors of the stiffness of the shortest edges: "
+      "give the rods fewer nodes, longer edges, or a smaller EA",
+      status_of(EquilibriumFailure::LostInRoundoff));
+}
+
 std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& stiffness,
                                          LinearSolver& solver, const Configuration& here,
                                          const InitialStress& stress, int count) {
@@ -105,10 +112,7 @@ std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& st
     if (!(std::abs(exact / (unit * factor) - 1.0) < kTrusted)) {
       // Where K1 is much larger than K0, its rounding errors cause spurious critical factors.
       if (stiffness.rounding() < kHidden * unit * factor * std::abs(stress.variation(shape))) break;
-      throw NotConvergedError(
-          "the buckling loads are lost in the rounding errors of the stiffness against stretching: "
-          "give the rods fewer nodes, or a smaller EA",
-          status_of(EquilibriumFailure::LostInRoundoff));
+      throw hidden_buckling();
     }
     modes.push_back({exact, scaled(model, shape)});
     before = factor;
@@ -137,12 +141,12 @@ LinearBuckling linear_buckling(const Model& model, const Assembler& assembler, L
   const Vector loaded = evaluate(1.0);
   const Vector unloaded = evaluate(0.0);
   const Stability stability = stiffness.stability();
-  if (stability.unstable_directions + stability.neutral_directions + stability.unknown_directions >
-      0) {
+  if (stability.unstable_directions + stability.neutral_directions > 0) {
     throw NotConvergedError(
         "the structure without its loads is not stable: it has no buckling loads",
         status_of(EquilibriumFailure::NotHeld));
   }
+  if (stability.unknown_directions > 0) throw hidden_buckling();
   Vector step = loaded - unloaded;
   stiffness.factorize();
   stiffness.solve(step);

@@ -11,6 +11,7 @@
 #include "der/core/constants.hpp"
 #include "der/core/error.hpp"
 #include "der/core/index.hpp"
+#include "der/statics/equilibrium_failure.hpp"
 #include "der/statics/potential.hpp"
 #include "der/statics/stiffness.hpp"
 
@@ -145,6 +146,16 @@ void check_masses(const Model& model) {
   if (model.mass.lumped(model.dofs.free()).minCoeff() > 0.0) return;
   throw Error("model_error",
               "a node without mass has no vibration: give the rod a density, or spheres");
+}
+
+/// Squares that are zero to rounding are those of motions that nothing resists. Where there are
+/// fewer of these, rounding has hidden vibrations.
+void check_resolved(Index zeros, Stiffness& stiffness) {
+  if (zeros == 0 || zeros <= stiffness.stability().neutral_directions) return;
+  throw NotConvergedError(
+      "the lowest frequencies are lost in the rounding errors of the stiffness of the shortest "
+      "edges: give the rods fewer nodes, longer edges, or a smaller EA",
+      status_of(EquilibriumFailure::LostInRoundoff));
 }
 
 Vector over_all(const Model& model, const Vector& free) {
@@ -299,11 +310,16 @@ std::vector<Mode> vibration_modes(const Model& model, const Assembler& assembler
                     .lowest(std::max(wanted, noise.below + noise.near_zero), noise);
   shapes.resize(to_size(wanted));
 
+  const auto free_to_move = [&noise](const Shape& shape) {
+    constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+    return std::abs(shape.square) <= kRounding * shape.terms + noise.left;
+  };
+  const auto zeros = std::count_if(shapes.begin(), shapes.end(), free_to_move);
+  check_resolved(static_cast<Index>(zeros), stiffness);
+
   std::vector<Mode> modes;
   for (Shape& shape : shapes) {
-    constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
-    const bool free_to_move = std::abs(shape.square) <= kRounding * shape.terms + noise.left;
-    const double rate = free_to_move ? 0.0 : std::sqrt(std::abs(shape.square));
+    const double rate = free_to_move(shape) ? 0.0 : std::sqrt(std::abs(shape.square));
     const bool grows = shape.square < 0.0;
     modes.push_back(
         {grows ? 0.0 : rate / (2.0 * kPi), grows ? rate : 0.0, std::move(shape.vector)});

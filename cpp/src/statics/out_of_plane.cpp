@@ -17,9 +17,14 @@ Stability OutOfPlaneTest::stability(const Configuration& planar) {
   return stiffness_.stability();
 }
 
-Index OutOfPlaneTest::unstable_directions(const Configuration& planar) {
+bool OutOfPlaneTest::is_clear(const Configuration& planar) {
   stiffness_.evaluate(twin_.at(planar_, planar));
-  return stiffness_.factorize(stiffness_.rounding()).negative_pivots;
+  return stiffness_.is_clear();
+}
+
+Stability OutOfPlaneTest::stability_by_pivots(const Configuration& planar) {
+  stiffness_.evaluate(twin_.at(planar_, planar));
+  return stiffness_.stability_by_pivots();
 }
 
 double OutOfPlaneTest::growth_rate(const Configuration& planar) {
@@ -34,7 +39,9 @@ std::optional<double> OutOfPlaneTest::buckling_factor(const Configuration& unloa
                                                       const Vector& response) {
   const Configuration here = twin_.at(planar_, unloaded);
   stiffness_.evaluate(here);
-  if (std::string_view(stiffness_.stability().name()) != "stable") return std::nullopt;
+  const Stability stability = stiffness_.stability();
+  if (stability.unstable_directions + stability.neutral_directions > 0) return std::nullopt;
+  if (stability.unknown_directions > 0) throw hidden_buckling();
   Vector displacement = Vector::Zero(twin_.model.num_dofs());
   for (Index node = 0; node < planar_.num_nodes; ++node) {
     for (const int c : {0, 1}) {

@@ -106,6 +106,18 @@ Stability Stiffness::stability() {
   return result;
 }
 
+bool Stiffness::is_clear() {
+  constexpr double kClear = 1e3;
+  const double near = kClear * rounding();
+  return factorize(near).negative_pivots == factorize(-near).negative_pivots;
+}
+
+Stability Stiffness::stability_by_pivots() {
+  Stability result;
+  result.unstable_directions = factorize().negative_pivots;
+  return result;
+}
+
 void Stiffness::judge_doubtful(Stability& stability) {
   const Index count = stability.unstable_directions + stability.doubtful_directions;
   if (count > kMostDoubtful) {

@@ -25,7 +25,7 @@ struct PathPoint {
   double factor = 0.0;  ///< of the loads
   double arc = 0.0;     ///< [-] length of the path so far
   Stability stability;
-  Index unstable_out_of_plane = 0;  ///< directions; 0 where that is not tested
+  Stability out_of_plane;  ///< no directions where that is not tested
   PathEvent event = PathEvent::None;
   Vector positions;  ///< all degrees of freedom [m]
   Vector followed;   ///< as in the state [rad]
@@ -68,8 +68,9 @@ struct ContinuationOptions {
 /// path, too.
 ///
 /// A branch ends at the factor `to`, at the opposite limit 2 from - to, at its largest number of
-/// points, where it closes on itself or meets another one, or where no further point is found.
-/// `start` is an equilibrium at the factor `from`, and the model has a load variation.
+/// points, where it closes on itself or meets another one, where no further point is found, or
+/// where rounding hides the stability. `start` is an equilibrium at the factor `from`, and the
+/// model has a load variation.
 std::vector<PathBranch> follow_path(const Model& model, const Assembler& assembler,
                                     LinearSolver& solver, const ContinuationOptions& options,
                                     OutOfPlaneTest* out_of_plane, const State& start);

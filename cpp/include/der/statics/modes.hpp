@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "der/assembly/assembler.hpp"
+#include "der/core/error.hpp"
 #include "der/core/types.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
@@ -26,7 +27,8 @@ struct Mode {
 /// tensions, moments and curved shapes count. Lanczos' method on the sparse factorisation of K - s
 /// M (Ericsson and Ruhe, Math. Comp. 35, 1980; the library Spectra), repeated until the inertia of
 /// the factorisation says that none is missing. Damping is left out. Throws Error if a degree of
-/// freedom has no mass, NotConvergedError if modes cannot be found.
+/// freedom has no mass, NotConvergedError if modes cannot be found, or are
+/// lost in rounding errors.
 std::vector<Mode> vibration_modes(const Model& model, const Assembler& assembler,
                                   LinearSolver& solver, const Configuration& here, int count);
 
@@ -51,6 +53,9 @@ struct LinearBuckling {
   /// modes.
   bool reversed = false;
 };
+
+/// The error that the buckling loads are lost in the rounding errors of the stiffness.
+NotConvergedError hidden_buckling();
 
 /// The `count` lowest positive factors a at which (K0 + a K1) v = 0 has a solution, fewer if there
 /// are not so many: by bisection on the inertia of the sparse factorisation. `stiffness` is the

@@ -30,8 +30,9 @@ class OutOfPlaneTest {
 
   /// Stability of an equilibrium of the planar model.
   Stability stability(const Configuration& planar);
-  /// Number of unstable directions alone, not counting those that rounding leaves in doubt.
-  Index unstable_directions(const Configuration& planar);
+  /// As in Stiffness, of what lies out of the plane.
+  bool is_clear(const Configuration& planar);
+  Stability stability_by_pivots(const Configuration& planar);
   /// Growth rate [1/s] of the fastest motion out of the plane; 0 if the equilibrium is stable, and
   /// if a section has no inertia against spin.
   /// Throws as `vibration_modes` does.

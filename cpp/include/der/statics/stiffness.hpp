@@ -70,6 +70,12 @@ class Stiffness {
   /// error to either side. Those between are judged by second variations, which keep their digits:
   /// each element's terms are taken of differences.
   Stability stability();
+  /// Whether rounding leaves the eigenvalues alone: none is nearer to zero than 1e3 times
+  /// `rounding()`. At shapes near this one the pivots then find the place where one passes zero to
+  /// 1e-4 of its size at worst, and in practice to 1e-6.
+  bool is_clear();
+  /// The stability by the signs of the pivots alone, for shapes near one that is clear.
+  Stability stability_by_pivots();
   /// The eigenvector of the smallest eigenvalue, to a few digits: by inverse iteration with a shift
   /// just beyond it, found from the inertia, or, if it is too small for the matrix, by second
   /// variations. Its sign makes the largest component positive.

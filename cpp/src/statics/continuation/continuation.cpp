@@ -79,7 +79,7 @@ class PathTracer {
   [[nodiscard]] const PathMetric& metric() const { return equations_.metric(); }
 
   void add_point(PathBranch& branch, const PathNode& node, double arc, PathEvent event) const {
-    branch.points.push_back({node.at.factor, arc, node.stability, node.unstable_out_of_plane, event,
+    branch.points.push_back({node.at.factor, arc, node.stability, node.out_of_plane, event,
                              node.positions, node.followed});
   }
 
@@ -253,6 +253,15 @@ class PathTracer {
     }
   }
 
+  /// Whether rounding hides the stability at a node, or beside an event on the way to it.
+  [[nodiscard]] static bool is_hidden(const PathNode& node,
+                                      const std::vector<LocatedEvent>& events) {
+    return node.stability.unknown_directions > 0 ||
+           std::any_of(events.begin(), events.end(), [](const LocatedEvent& event) {
+             return event.node.stability.unknown_directions > 0;
+           });
+  }
+
   /// Traces a branch from `node` on, along its tangent. `root` is the number of the
   /// bifurcation at which it begins, if any.
   void trace(PathNode node, std::optional<std::size_t> root, int side) {
@@ -275,6 +284,10 @@ class PathTracer {
         step *= 0.5;
         if (step < kShortestStep * options_.largest_step) branch.ending = "no further point found";
         continue;
+      }
+      if (is_hidden(*found, events)) {
+        branch.ending = "rounding hides the stability";
+        break;
       }
       events_.merge(events, node);
       for (LocatedEvent& event : events) plane_.look(event.node);

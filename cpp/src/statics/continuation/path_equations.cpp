@@ -92,12 +92,15 @@ Vector PathEquations::factor_derivative(const Vector& followed, const PathPositi
   return (residual_at(followed, forward) - residual_at(followed, backward)) / (2.0 * step);
 }
 
-/// Unit tangent of the path at a point just evaluated, factor rising. The inertia is that of the
+/// Unit tangent of the path at a point just evaluated, factor rising. The stability is that of the
 /// stiffness itself, without a margin for rounding, which would move the events.
 PathPosition PathEquations::tangent(const Vector& followed, const PathPosition& point,
                                     Stability& stability) {
   const Vector derivative = factor_derivative(followed, point);
-  stability.unstable_directions = stiffness_.factorize().negative_pivots;
+  if (!by_pivots_) by_pivots_ = stiffness_.is_clear();
+  std::optional<Stability> judged;
+  if (!*by_pivots_) judged = stiffness_.stability();
+  stability = judged.value_or(stiffness_.stability_by_pivots());  // factorises K for the tangent
   PathPosition result{-derivative, 1.0};
   stiffness_.solve(result.x);
   return metric_.unit(result);

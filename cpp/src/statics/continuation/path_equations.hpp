@@ -20,7 +20,7 @@ struct PathNode {
   Vector positions;      ///< all degrees of freedom [m]
   Vector followed;       ///< of the followed edges [rad]
   Stability stability;
-  Index unstable_out_of_plane = 0;  ///< directions (PlaneWatch)
+  Stability out_of_plane;  ///< (PlaneWatch)
   [[nodiscard]] bool rising() const { return tangent.factor > 0.0; }
 };
 
@@ -89,6 +89,7 @@ class PathEquations {
   Vector force_;
   Vector residual_;
   double force_scale_ = 0.0;
+  std::optional<bool> by_pivots_;  // whether these tell the stability; set at the first node
 };
 
 }  // namespace der::statics

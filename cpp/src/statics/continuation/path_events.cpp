@@ -56,6 +56,8 @@ bool EventLocator::bisect(const PathNode& start, double whole, Interval interval
   if (equations_.metric().distance(after.at, before.at) > kJump * largest_step_) return false;
   const Index lost = after.stability.unstable_directions - before.stability.unstable_directions;
   events.push_back({high, after, before.rising() != after.rising(), lost, 0.0});
+  Index& unknown = events.back().node.stability.unknown_directions;
+  unknown = std::max(unknown, before.stability.unknown_directions);
   return true;
 }
 

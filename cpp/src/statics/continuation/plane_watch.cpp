@@ -13,15 +13,18 @@ constexpr double kPlace = 1e-11;
 
 void PlaneWatch::look(PathNode& node) {
   if (test_ == nullptr) return;
-  node.unstable_out_of_plane = test_->unstable_directions(equations_.configuration_at(node));
+  const Configuration& here = equations_.configuration_at(node);
+  if (!by_pivots_) by_pivots_ = test_->is_clear(here);
+  node.out_of_plane = *by_pivots_ ? test_->stability_by_pivots(here) : test_->stability(here);
 }
 
 void PlaneWatch::locate(const PathNode& start, double reached, const PathNode& end,
                         std::vector<LocatedEvent>& events) {
+  const auto unstable = [](const PathNode& node) { return node.out_of_plane.unstable_directions; };
   PathNode before = start;
   double low = 0.0;
   // Directions may change at several places, the first of which bisection finds each time.
-  while (before.unstable_out_of_plane != end.unstable_out_of_plane) {
+  while (unstable(before) != unstable(end)) {
     PathNode after = end;
     double high = reached;
     while (high - low > kPlace * reached) {
@@ -30,7 +33,7 @@ void PlaneWatch::locate(const PathNode& start, double reached, const PathNode& e
       auto found = equations_.next(start, middle, iterations);
       if (!found) break;
       look(*found);
-      if (found->unstable_out_of_plane == before.unstable_out_of_plane) {
+      if (unstable(*found) == unstable(before)) {
         low = middle;
         before = std::move(*found);
       } else {
@@ -40,8 +43,10 @@ void PlaneWatch::locate(const PathNode& start, double reached, const PathNode& e
     }
     LocatedEvent& event = events.emplace_back();
     event.step = high;
-    event.lost_directions = after.unstable_out_of_plane - before.unstable_out_of_plane;
+    event.lost_directions = unstable(after) - unstable(before);
     event.out_of_plane = true;
+    Index& unknown = after.out_of_plane.unknown_directions;
+    unknown = std::max(unknown, before.out_of_plane.unknown_directions);
     before = after;
     low = high;
     event.node = std::move(after);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "der/statics/out_of_plane.hpp"
@@ -14,17 +15,19 @@ class PlaneWatch {
   /// `test` is null where nothing is tested.
   PlaneWatch(PathEquations& equations, OutOfPlaneTest* test) : equations_(equations), test_(test) {}
 
-  /// Counts the unstable directions of a node.
+  /// Judges the stability of a node.
   void look(PathNode& node);
 
   /// Adds the places between two neighbours, `reached` apart, at which the number of unstable
-  /// directions changes, to the events there, in their order. Both have been looked at.
+  /// directions changes, to the events there, in their order. Both have been looked at. Where
+  /// rounding hides the stability beside such a place, the place has unknown directions.
   void locate(const PathNode& start, double reached, const PathNode& end,
               std::vector<LocatedEvent>& events);
 
  private:
   PathEquations& equations_;
   OutOfPlaneTest* test_;
+  std::optional<bool> by_pivots_;  // whether these tell the stability; set at the first node
 };
 
 }  // namespace der::statics

@@ -16,17 +16,27 @@ struct Choice {
 };
 
 bool suits_avx2() {
-#ifdef DER_HAS_AVX2_LOOPS
-  return __builtin_cpu_supports("avx2") > 0 && __builtin_cpu_supports("fma") > 0;
+#ifdef DER_HAS_WIDE_LOOPS
+  return __builtin_cpu_supports("avx2") > 0;
+#else
+  return false;
+#endif
+}
+
+bool suits_avx512() {
+#ifdef DER_HAS_WIDE_LOOPS
+  return suits_avx2() && __builtin_cpu_supports("avx512f") > 0 &&
+         __builtin_cpu_supports("avx512dq") > 0 && __builtin_cpu_supports("avx512vl") > 0;
 #else
   return false;
 #endif
 }
 
 /// In the order of `Loops`.
-constexpr std::array<Choice, 2> kChoices{{
+constexpr std::array<Choice, 3> kChoices{{
     {Loops::Plain, "plain", [] { return true; }},
     {Loops::Avx2, "avx2", suits_avx2},
+    {Loops::Avx512, "avx512", suits_avx512},
 }};
 
 Loops fastest() {
@@ -40,7 +50,7 @@ Loops fastest() {
 std::string names() {
   std::string text;
   for (const Choice& choice : kChoices) {
-    text += (text.empty() ? "'" : " or '") + std::string(choice.name) + "'";
+    text += (text.empty() ? "'" : ", '") + std::string(choice.name) + "'";
   }
   return text;
 }
@@ -54,7 +64,7 @@ Loops named(const std::string& name) {
                            "write 'plain'");
   }
   throw EnvironmentError("the environment variable DER_LOOPS is '" + name +
-                         "': unset it, or write " + names());
+                         "': unset it, or write one of " + names());
 }
 
 Loops chosen() {

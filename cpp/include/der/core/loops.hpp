@@ -7,7 +7,8 @@ namespace der {
 /// The processors that the innermost loops are compiled for.
 enum class Loops {
   Plain,  ///< all that the rest of the library runs on
-  Avx2,   ///< those with AVX2 and fused multiply-add
+  Avx2,   ///< those with AVX2
+  Avx512  ///< those with AVX-512, for loops over members of a batch; other loops are those of AVX2
 };
 
 /// The loops that run: those named by the environment variable DER_LOOPS, else the last of `Loops`
@@ -15,7 +16,7 @@ enum class Loops {
 /// if DER_LOOPS names none, or one that the processor does not have.
 Loops loops();
 
-/// "plain" or "avx2".
+/// "plain", "avx2" or "avx512".
 std::string_view name_of(Loops loops);
 
 // Sanitizers add so much to each call that the compiler would take minutes for a whole loop in one.
@@ -27,7 +28,7 @@ std::string_view name_of(Loops loops);
 
 // Clang inlines but one level of calls into a function of another target.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define DER_HAS_AVX2_LOOPS
+#define DER_HAS_WIDE_LOOPS
 #endif
 
 namespace compiled {
@@ -37,10 +38,17 @@ DER_INLINE_ALL auto plain(const Loop& loop) {
   return loop();
 }
 
-#ifdef DER_HAS_AVX2_LOOPS
+#ifdef DER_HAS_WIDE_LOOPS
 // Not arch=haswell: GCC inlines no function that is compiled for another architecture.
+// Multiplications and additions are not fused, so that all processors find the same numbers to the
+// last bit.
 template <class Loop>
-DER_INLINE_ALL __attribute__((target("avx2,fma"))) auto avx2(const Loop& loop) {
+DER_INLINE_ALL __attribute__((target("avx2"))) auto avx2(const Loop& loop) {
+  return loop();
+}
+template <class Loop>
+DER_INLINE_ALL __attribute__((target("avx512f,avx512dq,avx512vl,prefer-vector-width=512"))) auto
+avx512(const Loop& loop) {
   return loop();
 }
 #endif
@@ -52,8 +60,8 @@ DER_INLINE_ALL __attribute__((target("avx2,fma"))) auto avx2(const Loop& loop) {
 /// rod.
 template <class Loop>
 auto run_loop(const Loop& loop) {
-#ifdef DER_HAS_AVX2_LOOPS
-  if (loops() == Loops::Avx2) return compiled::avx2(loop);
+#ifdef DER_HAS_WIDE_LOOPS
+  if (loops() != Loops::Plain) return compiled::avx2(loop);
 #endif
   return compiled::plain(loop);
 }

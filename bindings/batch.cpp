@@ -293,6 +293,9 @@ void bind_facts(BatchClass& cls) {
           "threads", [](PyBatch& b) { return b.engine().threads(); },
           "How many threads step the members.")
       .def_property_readonly(
+          "lanes", [](PyBatch& b) { return b.engine().lanes(); },
+          "How many members do their steps together, in the lanes of one register; 1: each alone.")
+      .def_property_readonly(
           "model", [](PyBatch& b) -> const Model& { return b.engine().model(); },
           py::return_value_policy::reference_internal,
           "The model of member 0; those of the others have other numbers at most.")

@@ -81,6 +81,21 @@ class Simulation {
   /// Where the integrator creates too much energy that is a DivergedError ("unstable_motion") after
   /// the step, unless the scene allows it.
   void step();
+  // Steps that are done for several simulations at once (lanes/member_groups.hpp).
+  /// The time [s] at the end of the next step if it is a plain one: of equal steps, in one piece,
+  /// from a state that no program has written into.
+  [[nodiscard]] std::optional<double> end_of_plain_step() const;
+  /// Enters such a step, which began at the present time. Its positions, velocities, accelerations
+  /// and works may come later. True: `watch_energy` is due, for which the works have to be there.
+  [[nodiscard]] bool enter_step(double end, int newton_iterations);
+  /// Looks at the energies `now`. Throws DivergedError ("unstable_motion") as `step`.
+  void watch_energy(const Energies& now);
+  /// Says that the positions and velocities of the state are those of steps entered.
+  void keep_steps() { energy_watch_.begin(state_); }
+  /// Whether a program has written positions or velocities since the last step, or numbers that are
+  /// not finite.
+  [[nodiscard]] bool was_written() const;
+
   /// Takes the present state as the start of a motion: of a new ledger, with no steps before it.
   void start_anew();
   /// Enters the energy that the integrator has created by now into the state's audit; steps do so
@@ -184,6 +199,8 @@ class Simulation {
   /// Whether the scene's duration is reached; a static scene always is there.
   [[nodiscard]] bool finished() const;
   [[nodiscard]] const StepperInfo& integrator() const { return stepper_info_; }
+  [[nodiscard]] const Assembler& assembler() const { return *assembler_; }
+  [[nodiscard]] const Pattern& pattern() const { return *pattern_; }
   [[nodiscard]] std::string_view linear_solver() const { return solver_.solver->name(); }
   [[nodiscard]] const std::string& linear_solver_reason() const { return solver_.reason; }
 
@@ -220,7 +237,8 @@ class Simulation {
   void advance_to(double target);
   double stable_piece(double left, double whole, double dt);
   void advance_adaptively();
-  void watch_energy(bool at_end);
+  [[nodiscard]] std::int64_t audit_stride() const;
+  [[nodiscard]] bool is_audit_due(bool was_finished) const;
   [[noreturn]] void fail(const StepReport& report, double dt);
   /// The first position, velocity or extra force that is not a finite number, as a program may have
   /// written it, in words; empty if there is none.

@@ -11,7 +11,7 @@
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/registry.hpp"
-#include "der/kinematics/planar_edge.hpp"
+#include "der/energies/stiffness_across.hpp"
 #include "der/model/dimension.hpp"
 
 namespace der {
@@ -77,16 +77,6 @@ struct CouplingSlots {
   Index ab;  // the entry between them
 };
 
-/// A stiffness [N/m] across an edge vector.
-Mat2 across(const Vec2& e, double length, double stiffness) {
-  const Vec2 normal = perpendicular(e) / length;
-  return stiffness * normal * normal.transpose();
-}
-Mat3 across(const Vec3& e, double length, double stiffness) {
-  const Vec3 tangent = e / length;
-  return stiffness * (Mat3::Identity() - tangent * tangent.transpose());
-}
-
 constexpr auto kKinds = std::make_index_sequence<std::tuple_size_v<ElementLists::Lists>>{};
 
 }  // namespace
@@ -110,6 +100,8 @@ struct Assembler::ScatterMaps {
   template <Derivatives D>
   void assemble(const Model& model, const Configuration& here, Vector& gradient,
                 Vector* values) const;
+  template <Derivatives D>
+  void add_loose(const LooseMember* members, int count) const;
 };
 
 Assembler::~Assembler() = default;
@@ -164,32 +156,69 @@ void Assembler::ScatterMaps::assemble(const Model& model, const Configuration& h
   };
   add(planar_chains);
   add(spatial_chains);
+  const LooseMember all{&model,
+                        &here,
+                        {here.coordinates.data()},
+                        {gradient.data()},
+                        {values != nullptr ? values->data() : nullptr}};
+  add_loose<D>(&all, 1);
+  add_circulatory_forces(circulatory_loads(*model.elements), here, -1.0, gradient);
+}
+
+template <Derivatives D>
+void Assembler::ScatterMaps::add_loose(const LooseMember* members, int count) const {
   for_each_pair(
-      model.elements->lists, elements,
-      [&](const auto& list, const auto& map) {
-        using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+      members->model->elements->lists, elements,
+      [&](const auto& first, const auto& map) {
+        using List = std::decay_t<decltype(first)>;
+        using Kernel = typename List::KernelType;
         constexpr int n = Kernel::kDofs;
+        if (map.elements.empty()) return;
         LocalTerm<n> local;
-        for (std::size_t k = 0; k < map.elements.size(); ++k) {
-          const std::size_t e = map.elements[k];
-          const auto& dofs = list.dofs[e];
-          Kernel::template evaluate<D>(list.constants[e], here, gather(dofs, here.coordinates),
-                                       local);
-          for (int i = 0; i < n; ++i) gradient[dofs[to_size(i)]] += local.gradient[i];
-          if constexpr (D == Derivatives::Hessian) {
-            const Index* slot = map.slots[k].data();
-            double* entries = values->data();
-            for (int column = 0; column < n; ++column) {
-              for (int row = column; row < n; ++row) {
-                entries[*slot++] += local.hessian(row, column);
+        for (const LooseMember* member = members; member != members + count; ++member) {
+          const auto& list = std::get<List>(member->model->elements->lists);
+          for (std::size_t k = 0; k < map.elements.size(); ++k) {
+            const std::size_t e = map.elements[k];
+            const auto& dofs = list.dofs[e];
+            Kernel::template evaluate<D>(list.constants[e], *member->here,
+                                         gather(dofs, member->coordinates), local);
+            for (int i = 0; i < n; ++i) member->gradient[dofs[to_size(i)]] += local.gradient[i];
+            if constexpr (D == Derivatives::Hessian) {
+              const Index* slot = map.slots[k].data();
+              for (int column = 0; column < n; ++column) {
+                for (int row = column; row < n; ++row) {
+                  member->values[*slot++] += local.hessian(row, column);
+                }
               }
             }
           }
         }
       },
       kKinds);
-  add_circulatory_forces(circulatory_loads(*model.elements), here, -1.0, gradient);
 }
+
+void Assembler::add_loose_gradient(const LooseMember* members, int count) const {
+  maps_->add_loose<Derivatives::Gradient>(members, count);
+}
+
+void Assembler::add_loose_hessian(const LooseMember* members, int count) const {
+  maps_->add_loose<Derivatives::Hessian>(members, count);
+}
+
+bool Assembler::has_loose() const {
+  return std::apply([](const auto&... map) { return (!map.elements.empty() || ...); },
+                    maps_->elements);
+}
+
+const std::vector<PlanarChain>& Assembler::planar_chains() const { return maps_->planar_chains; }
+
+const std::vector<SpatialChain>& Assembler::spatial_chains() const { return maps_->spatial_chains; }
+
+const std::vector<std::array<Index, 10>>& Assembler::planar_edge_slots() const {
+  return maps_->planar_edges;
+}
+
+const std::vector<Index>& Assembler::diagonal_slots() const { return maps_->diagonal; }
 
 void Assembler::gradient(const Configuration& here, Vector& gradient) const {
   maps_->assemble<Derivatives::Gradient>(model_, here, gradient, nullptr);
@@ -227,7 +256,7 @@ void Assembler::add_tension_stiffness(const Configuration& here, const Vector& t
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const auto e = Stretch<Dim>::edge(gather(edges.dofs[i], here.coordinates));
     const double length = e.norm();
-    const auto block = across(e, length, tension[static_cast<Index>(i)] / length);
+    const auto block = stiffness_across(e, length, tension[static_cast<Index>(i)] / length);
     const Index* slot = maps_->edges<Dim>()[i].data();
     for (int column = 0; column < 2 * Dim; ++column) {
       for (int row = column; row < 2 * Dim; ++row) {

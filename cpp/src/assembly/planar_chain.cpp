@@ -35,6 +35,10 @@ struct EdgeTerms {
   }
 };
 
+/// Entries of the Hessian in the columns of a node, in the order of PlanarChain::NodeSlots.
+template <class T>
+using NodeEntries = std::array<T, std::tuple_size_v<PlanarChain::NodeSlots>>;
+
 /// A symmetric 2 x 2 matrix.
 template <class T>
 struct Symmetric {
@@ -65,6 +69,244 @@ template <class T>
 Eigen::Matrix<T, 2, 2> coupling(const EdgeTerms<T>& edge, const EdgeTerms<T>& next,
                                 const BendResponseOf<T>& joint) {
   return -joint.stiffness * next.turn * edge.turn.transpose();
+}
+
+/// Slope of the energy by the vector of an edge.
+template <class T>
+Vector2<T> edge_force(const EdgeTerms<T>& edge, const T& moment) {
+  return edge.stretch.across * edge.vector + moment * edge.turn;
+}
+
+/// A chain in the lanes of a number type, for `add_chain`:
+///   Number                      the number type
+///   kIsWhole                    whether the lanes' first edge is that of the chain
+///   count()                     number of edges of the longest lane
+///   edge(j), edge_before()      edge `j` of each lane, and the one before edge 0
+///   joint(j, edge, next)        response of the joint behind edge j; zero beyond the chain's ends
+///   last_is_shorter()           whether the lane that has the chain's end lacks the last edge
+///   add_force, add_entries      add to the node at the start of edge j
+///   add_end(force, block)       adds to the node at the end of the chain
+/// The lanes hold parts of one rod:
+template <class Curvature, class T>
+class RodParts {
+ public:
+  using Number = T;
+  static constexpr bool kIsWhole = LaneTraits<T>::kCount == 1;
+
+  RodParts(const LaneSpans<T>& spans, const Model& model, const PlanarChain& chain,
+           const Configuration& here, Vector& gradient, double* values)
+      : spans_(spans),
+        chain_(chain),
+        stretches_(elements_of<Stretch<2>>(*model.elements).constants.data() + chain.edges().first),
+        bends_(elements_of<PlanarBend<Curvature>>(*model.elements).constants.data() +
+               chain.bends().first),
+        controls_(here.controls),
+        x_(here.coordinates.data() + chain.first_dof()),
+        gradient_(gradient.data() + chain.first_dof()),
+        values_(values) {}
+
+  [[nodiscard]] std::ptrdiff_t count() const { return spans_.count; }
+  [[nodiscard]] bool last_is_shorter() const { return spans_.longer < LaneTraits<T>::kCount; }
+
+  /// Beyond the ends of the chain, where nothing bends, its outermost edge.
+  [[nodiscard]] EdgeTerms<T> edge(std::ptrdiff_t j) const {
+    const auto constant = [&](double Stretch<2>::Constants::* member) {
+      return in_lanes<T>([&](int lane) { return stretches_[number(lane, j)].*member; });
+    };
+    T elongation = 0.0;
+    if (chain_.is_actuated()) {
+      elongation = in_lanes<T>(
+          [&](int lane) { return stretches_[number(lane, j)].elongation.value(controls_); });
+    }
+    return EdgeTerms<T>({component(j, 0), component(j, 1)}, constant(&Stretch<2>::Constants::EA),
+                        constant(&Stretch<2>::Constants::rest_length), elongation);
+  }
+  /// Without a force where there is none.
+  [[nodiscard]] EdgeTerms<T> edge_before() const {
+    EdgeTerms<T> edge = this->edge(-1);
+    const T exists = in_lanes<T>([&](int lane) { return spans_.edge(lane, -1) < 0 ? 0.0 : 1.0; });
+    edge.stretch.along *= exists;
+    edge.stretch.across *= exists;
+    return edge;
+  }
+  [[nodiscard]] BendResponseOf<T> joint(std::ptrdiff_t j, const EdgeTerms<T>& edge,
+                                        const EdgeTerms<T>& next) const {
+    const auto constants = [&](int lane) -> const auto& {
+      return bends_[std::clamp<std::ptrdiff_t>(spans_.edge(lane, j), 0, last() - 1)];
+    };
+    const T natural = in_lanes<T>([&](int lane) {
+      const auto& c = constants(lane);
+      return chain_.is_actuated() ? c.natural(controls_) : c.rest_kappa;
+    });
+    const T stiffness = in_lanes<T>([&](int lane) {
+      const std::ptrdiff_t joint = spans_.edge(lane, j);
+      return joint >= 0 && joint < last() ? constants(lane).stiffness_per_length : 0.0;
+    });
+    return bend_response<Curvature>(stiffness, natural, angle_between<T>(edge.vector, next.vector));
+  }
+
+  void add_force(std::ptrdiff_t j, const Vector2<T>& force) const {
+    for_each_lane<T>(spans_.lanes_with(j), [&](int lane) {
+      double* g = gradient_ + 2 * spans_.edge(lane, j);
+      g[0] += LaneTraits<T>::lane(force.x(), lane);
+      g[1] += LaneTraits<T>::lane(force.y(), lane);
+    });
+  }
+  void add_entries(std::ptrdiff_t j, const NodeEntries<T>& entries) const {
+    for_each_lane<T>(spans_.lanes_with(j), [&](int lane) {
+      const PlanarChain::NodeSlots& slot = chain_.slots(spans_.edge(lane, j));
+      for (std::size_t k = 0; k < entries.size(); ++k) {
+        values_[slot[k]] += LaneTraits<T>::lane(entries[k], lane);
+      }
+    });
+  }
+  void add_end(const Vector2<T>& force, const Symmetric<T>& block) const {
+    constexpr int lane = LaneTraits<T>::kCount - 1;
+    double* g = gradient_ + 2 * (last() + 1);
+    g[0] += LaneTraits<T>::lane(force.x(), lane);
+    g[1] += LaneTraits<T>::lane(force.y(), lane);
+    if (values_ == nullptr) return;
+    const PlanarChain::NodeSlots& slot = chain_.slots(last() + 1);
+    values_[slot[0]] += LaneTraits<T>::lane(block.xx, lane);
+    values_[slot[1]] += LaneTraits<T>::lane(block.yx, lane);
+    values_[slot[2]] += LaneTraits<T>::lane(block.yy, lane);
+  }
+
+ private:
+  [[nodiscard]] std::ptrdiff_t last() const {
+    return static_cast<std::ptrdiff_t>(chain_.edges().count) - 1;
+  }
+  [[nodiscard]] std::ptrdiff_t number(int lane, std::ptrdiff_t j) const {
+    return std::clamp<std::ptrdiff_t>(spans_.edge(lane, j), 0, last());
+  }
+  [[nodiscard]] T component(std::ptrdiff_t j, int c) const {
+    return in_lanes<T>([&](int lane) {
+      const double* node = x_ + 2 * number(lane, j);
+      return node[c + 2] - node[c];
+    });
+  }
+
+  const LaneSpans<T>& spans_;
+  const PlanarChain& chain_;
+  const Stretch<2>::Constants* stretches_;
+  const typename PlanarBend<Curvature>::Constants* bends_;
+  const Vector& controls_;
+  const double* x_;
+  double* gradient_;
+  double* values_;
+};
+
+/// The lanes hold the same chain of several members.
+template <class Curvature, class T>
+class MemberChains {
+ public:
+  using Number = T;
+  static constexpr bool kIsWhole = true;
+
+  MemberChains(const PlanarChain& chain, const PlanarChainConstants<T>& constants, const T* x,
+               T* gradient, T* values)
+      : chain_(chain),
+        constants_(constants),
+        x_(x + chain.first_dof()),
+        gradient_(gradient + chain.first_dof()),
+        values_(values) {}
+
+  [[nodiscard]] std::ptrdiff_t count() const { return constants_.EA.ssize(); }
+  [[nodiscard]] static bool last_is_shorter() { return false; }
+  [[nodiscard]] EdgeTerms<T> edge(std::ptrdiff_t j) const {
+    const T* node = x_ + 2 * j;
+    return EdgeTerms<T>({node[2] - node[0], node[3] - node[1]}, constants_.EA[j],
+                        constants_.rest_length[j], 0.0);
+  }
+  [[nodiscard]] BendResponseOf<T> joint(std::ptrdiff_t j, const EdgeTerms<T>& edge,
+                                        const EdgeTerms<T>& next) const {
+    return bend_response<Curvature>(constants_.bend_stiffness[j], constants_.rest_kappa[j],
+                                    angle_between<T>(edge.vector, next.vector));
+  }
+  void add_force(std::ptrdiff_t j, const Vector2<T>& force) const {
+    gradient_[2 * j] += force.x();
+    gradient_[2 * j + 1] += force.y();
+  }
+  void add_entries(std::ptrdiff_t j, const NodeEntries<T>& entries) const {
+    const PlanarChain::NodeSlots& slot = chain_.slots(j);
+    for (std::size_t k = 0; k < entries.size(); ++k) values_[slot[k]] += entries[k];
+  }
+  void add_end(const Vector2<T>& force, const Symmetric<T>& block) const {
+    add_force(count(), force);
+    if (values_ == nullptr) return;
+    const PlanarChain::NodeSlots& slot = chain_.slots(count());
+    values_[slot[0]] += block.xx;
+    values_[slot[1]] += block.yx;
+    values_[slot[2]] += block.yy;
+  }
+
+ private:
+  const PlanarChain& chain_;
+  const PlanarChainConstants<T>& constants_;
+  const T* x_;
+  T* gradient_;
+  T* values_;
+};
+
+/// Adds in each lane its edges and the nodes at their starts. With F_j, B_j the first and second
+/// derivative by the vector of edge j and C_j that by the vectors of edges j (rows) and j - 1: node
+/// j, at the start of edge j, has the gradient F_{j-1} - F_j and, in its columns of the Hessian,
+///   B_{j-1} + B_j - C_j - C_j',  then -B_j + C_j + C_{j+1},  then -C_{j+1}.
+/// The sums do not depend, to the last bit, on how a chain is shared out to lanes.
+template <Derivatives D, class Parts>
+void add_chain(const Parts& parts) {
+  constexpr bool with_hessian = D == Derivatives::Hessian;
+  using T = typename Parts::Number;
+  using Block = Eigen::Matrix<T, 2, 2>;
+
+  EdgeTerms<T> edge = parts.edge(0);
+  BendResponseOf<T> start;                       // of the node at the start of the edge
+  Vector2<T> force_before = Vector2<T>::Zero();  // F_{j-1}
+  Symmetric<T> before;                           // B_{j-1}
+  Block from_before = Block::Zero();             // C_j
+  if constexpr (!Parts::kIsWhole) {
+    const EdgeTerms<T> previous = parts.edge_before();
+    const BendResponseOf<T> outer = parts.joint(-2, parts.edge(-2), previous);
+    start = parts.joint(-1, previous, edge);
+    const T moment = outer.moment - start.moment;
+    force_before = edge_force(previous, moment);
+    if constexpr (with_hessian) {
+      before = edge_hessian<T>(previous, moment, outer.stiffness + start.stiffness);
+      from_before = coupling(previous, edge, start);
+    }
+  }
+
+  const std::ptrdiff_t count = parts.count();
+  for (std::ptrdiff_t j = 0; j < count; ++j) {
+    const bool is_last = j + 1 == count;
+    if (is_last && parts.last_is_shorter()) parts.add_end(force_before, before);
+    const bool is_end = Parts::kIsWhole && is_last;
+    const EdgeTerms<T> next = is_end ? edge : parts.edge(j + 1);
+    BendResponseOf<T> end;
+    if (!is_end) end = parts.joint(j, edge, next);
+    const T moment = start.moment - end.moment;
+    const Vector2<T> force = edge_force(edge, moment);
+    parts.add_force(j, force_before - force);
+    force_before = force;
+
+    if constexpr (with_hessian) {
+      const Symmetric<T> own = edge_hessian<T>(edge, moment, start.stiffness + end.stiffness);
+      const Block to_next = coupling(edge, next, end);
+      parts.add_entries(
+          j,
+          {before.xx + own.xx - 2.0 * from_before(0, 0),
+           before.yx + own.yx - from_before(1, 0) - from_before(0, 1),
+           before.yy + own.yy - 2.0 * from_before(1, 1), from_before(0, 0) + to_next(0, 0) - own.xx,
+           from_before(1, 0) + to_next(1, 0) - own.yx, from_before(0, 1) + to_next(0, 1) - own.yx,
+           from_before(1, 1) + to_next(1, 1) - own.yy, -to_next(0, 0), -to_next(1, 0),
+           -to_next(0, 1), -to_next(1, 1)});
+      before = own;
+      from_before = to_next;
+    }
+    edge = next;
+    start = end;
+  }
+  if (!parts.last_is_shorter()) parts.add_end(force_before, before);
 }
 
 template <class Curvature>
@@ -113,140 +355,14 @@ void PlanarChain::map_nodes(const Model& model, const MatrixLayout& layout) {
 template <Derivatives D>
 void PlanarChain::add(const Model& model, const Configuration& here, Vector& gradient,
                       double* values) const {
-  const Totals totals{gradient, values};
   in_spans(edges_.count, [&](const auto& spans) {
+    using T = typename std::decay_t<decltype(spans)>::Number;
     if (tangent_) {
-      add_in<D, TangentCurvature>(spans, model, here, totals);
+      add_chain<D>(RodParts<TangentCurvature, T>(spans, model, *this, here, gradient, values));
     } else {
-      add_in<D, AngleCurvature>(spans, model, here, totals);
+      add_chain<D>(RodParts<AngleCurvature, T>(spans, model, *this, here, gradient, values));
     }
   });
-}
-
-/// Adds in each lane its edges, with their part of the bending at both their ends. With F_j, B_j
-/// the first and second derivative by the vector of edge j and C_j that by the vectors of edges j
-/// (rows) and j - 1: node j, at the start of edge j, has the gradient F_{j-1} - F_j and, in its
-/// columns of the Hessian,
-///   B_{j-1} + B_j - C_j - C_j',  then -B_j + C_j + C_{j+1},  then -C_{j+1}.
-template <Derivatives D, class Curvature, class T>
-void PlanarChain::add_in(const LaneSpans<T>& spans, const Model& model, const Configuration& here,
-                         const Totals& totals) const {
-  constexpr bool with_hessian = D == Derivatives::Hessian;
-  using Lane = LaneTraits<T>;
-  using Block = Eigen::Matrix<T, 2, 2>;
-  // One lane has the whole chain, which does not bend beyond its ends.
-  constexpr bool is_whole = Lane::kCount == 1;
-  const auto* stretches = elements_of<Stretch<2>>(*model.elements).constants.data() + edges_.first;
-  const auto* bends =
-      elements_of<PlanarBend<Curvature>>(*model.elements).constants.data() + bends_.first;
-  const double* x = here.coordinates.data() + first_dof_;
-  const std::ptrdiff_t last = static_cast<std::ptrdiff_t>(edges_.count) - 1;
-
-  // Edges `j` places after the first of each lane; for those beyond the chain's ends, where nothing
-  // bends, its outermost.
-  const auto edge_at = [&](std::ptrdiff_t j) {
-    const auto number = [&](int lane) {
-      return std::clamp<std::ptrdiff_t>(spans.edge(lane, j), 0, last);
-    };
-    const auto component = [&](int c) {
-      return in_lanes<T>([&](int lane) {
-        const double* node = x + 2 * number(lane);
-        return node[c + 2] - node[c];
-      });
-    };
-    T elongation = 0.0;
-    if (actuated_) {
-      elongation = in_lanes<T>(
-          [&](int lane) { return stretches[number(lane)].elongation.value(here.controls); });
-    }
-    return EdgeTerms<T>({component(0), component(1)},
-                        in_lanes<T>([&](int lane) { return stretches[number(lane)].EA; }),
-                        in_lanes<T>([&](int lane) { return stretches[number(lane)].rest_length; }),
-                        elongation);
-  };
-  const auto joint_after = [&](std::ptrdiff_t j, const EdgeTerms<T>& edge,
-                               const EdgeTerms<T>& next) {
-    const auto constants = [&](int lane) -> const auto& {
-      return bends[std::clamp<std::ptrdiff_t>(spans.edge(lane, j), 0, last - 1)];
-    };
-    const T natural = in_lanes<T>([&](int lane) {
-      const auto& c = constants(lane);
-      return actuated_ ? c.natural(here.controls) : c.rest_kappa;
-    });
-    const T stiffness = in_lanes<T>([&](int lane) {
-      const std::ptrdiff_t joint = spans.edge(lane, j);
-      return joint >= 0 && joint < last ? constants(lane).stiffness_per_length : 0.0;
-    });
-    return bend_response<Curvature>(stiffness, natural, angle_between<T>(edge.vector, next.vector));
-  };
-  const auto add_force = [&](int lane, std::ptrdiff_t j, const Vector2<T>& force) {
-    double* g = totals.gradient.data() + first_dof_ + 2 * spans.edge(lane, j);
-    g[0] += Lane::lane(force.x(), lane);
-    g[1] += Lane::lane(force.y(), lane);
-  };
-
-  EdgeTerms<T> edge = edge_at(0);
-  BendResponseOf<T> start;                       // of the node at the start of the edge
-  Vector2<T> force_before = Vector2<T>::Zero();  // F_{j-1}
-  Symmetric<T> before;                           // B_{j-1}
-  Block from_before = Block::Zero();             // C_j
-  if constexpr (!is_whole) {
-    const EdgeTerms<T> previous = edge_at(-1);
-    start = joint_after(-1, previous, edge);
-    from_before = coupling(previous, edge, start);
-  }
-  // The node behind the last edge of a lane, `j` places after its first.
-  const auto add_last_node = [&](int lane, std::ptrdiff_t j) {
-    add_force(lane, j, force_before);
-    if constexpr (with_hessian) {
-      const NodeSlots& slot = slots_[static_cast<std::size_t>(spans.edge(lane, j))];
-      totals.values[slot[0]] += Lane::lane(before.xx, lane);
-      totals.values[slot[1]] += Lane::lane(before.yx, lane);
-      totals.values[slot[2]] += Lane::lane(before.yy, lane);
-    }
-  };
-
-  for (std::ptrdiff_t j = 0; j < spans.count; ++j) {
-    const int lanes = spans.lanes_with(j);
-    for (int lane = lanes; lane < Lane::kCount; ++lane) add_last_node(lane, j);
-    const bool is_last = is_whole && j == last;
-    const EdgeTerms<T> next = is_last ? edge : edge_at(j + 1);
-    BendResponseOf<T> end;
-    if (!is_last) end = joint_after(j, edge, next);
-    const T moment = start.moment - end.moment;
-    const Vector2<T> force = edge.stretch.across * edge.vector + moment * edge.turn;
-    const Vector2<T> force_at_node = force_before - force;
-    for_each_lane<T>(lanes, [&](int lane) { add_force(lane, j, force_at_node); });
-    force_before = force;
-
-    if constexpr (with_hessian) {
-      const Symmetric<T> own = edge_hessian<T>(edge, moment, start.stiffness + end.stiffness);
-      const Block to_next = coupling(edge, next, end);
-      const std::array<T, std::tuple_size_v<NodeSlots>> entries{
-          before.xx + own.xx - 2.0 * from_before(0, 0),
-          before.yx + own.yx - from_before(1, 0) - from_before(0, 1),
-          before.yy + own.yy - 2.0 * from_before(1, 1),
-          from_before(0, 0) + to_next(0, 0) - own.xx,
-          from_before(1, 0) + to_next(1, 0) - own.yx,
-          from_before(0, 1) + to_next(0, 1) - own.yx,
-          from_before(1, 1) + to_next(1, 1) - own.yy,
-          -to_next(0, 0),
-          -to_next(1, 0),
-          -to_next(0, 1),
-          -to_next(1, 1)};
-      for_each_lane<T>(lanes, [&](int lane) {
-        const NodeSlots& slot = slots_[static_cast<std::size_t>(spans.edge(lane, j))];
-        for (std::size_t k = 0; k < entries.size(); ++k) {
-          totals.values[slot[k]] += Lane::lane(entries[k], lane);
-        }
-      });
-      before = own;
-      from_before = to_next;
-    }
-    edge = next;
-    start = end;
-  }
-  for (int lane = 0; lane < spans.longer; ++lane) add_last_node(lane, spans.count);
 }
 
 void PlanarChain::add_gradient(const Model& model, const Configuration& here,
@@ -258,5 +374,68 @@ void PlanarChain::add_gradient_and_hessian(const Model& model, const Configurati
                                            Vector& gradient, double* values) const {
   run_loop([&] { add<Derivatives::Hessian>(model, here, gradient, values); });
 }
+
+template <class T>
+PlanarChainConstants<T> PlanarChain::constants_of(const MemberModels<T>& models) const {
+  PlanarChainConstants<T> constants;
+  const auto set = [&](MemberVector<T>& all, std::size_t count, const auto& value) {
+    all.resize(static_cast<Index>(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      all[static_cast<Index>(i)] =
+          in_lanes<T>([&](int lane) { return value(*models[to_size(lane)]->elements, i); });
+    }
+  };
+  const auto edge = [&](double Stretch<2>::Constants::* member) {
+    return [this, member](const ElementLists& elements, std::size_t i) {
+      return elements_of<Stretch<2>>(elements).constants[edges_.first + i].*member;
+    };
+  };
+  set(constants.EA, edges_.count, edge(&Stretch<2>::Constants::EA));
+  set(constants.rest_length, edges_.count, edge(&Stretch<2>::Constants::rest_length));
+  const auto set_bends = [&](auto curvature) {
+    using Bend = PlanarBend<decltype(curvature)>;
+    const auto bend = [&](double Bend::Constants::* member) {
+      return [this, member](const ElementLists& elements, std::size_t i) {
+        return elements_of<Bend>(elements).constants[bends_.first + i].*member;
+      };
+    };
+    set(constants.bend_stiffness, bends_.count, bend(&Bend::Constants::stiffness_per_length));
+    set(constants.rest_kappa, bends_.count, bend(&Bend::Constants::rest_kappa));
+  };
+  if (tangent_) {
+    set_bends(TangentCurvature{});
+  } else {
+    set_bends(AngleCurvature{});
+  }
+  return constants;
+}
+
+template <Derivatives D, class T>
+void PlanarChain::add_members(const PlanarChainConstants<T>& constants, const T* coordinates,
+                              T* gradient, T* values) const {
+  run_member_loop<T>([&] {
+    if (tangent_) {
+      add_chain<D>(
+          MemberChains<TangentCurvature, T>(*this, constants, coordinates, gradient, values));
+    } else {
+      add_chain<D>(
+          MemberChains<AngleCurvature, T>(*this, constants, coordinates, gradient, values));
+    }
+  });
+}
+
+template PlanarChainConstants<FourLanes> PlanarChain::constants_of(
+    const MemberModels<FourLanes>&) const;
+template void PlanarChain::add_members<Derivatives::Gradient>(
+    const PlanarChainConstants<FourLanes>&, const FourLanes*, FourLanes*, FourLanes*) const;
+template void PlanarChain::add_members<Derivatives::Hessian>(const PlanarChainConstants<FourLanes>&,
+                                                             const FourLanes*, FourLanes*,
+                                                             FourLanes*) const;
+template PlanarChainConstants<EightLanes> PlanarChain::constants_of(
+    const MemberModels<EightLanes>&) const;
+template void PlanarChain::add_members<Derivatives::Gradient>(
+    const PlanarChainConstants<EightLanes>&, const EightLanes*, EightLanes*, EightLanes*) const;
+template void PlanarChain::add_members<Derivatives::Hessian>(
+    const PlanarChainConstants<EightLanes>&, const EightLanes*, EightLanes*, EightLanes*) const;
 
 }  // namespace der

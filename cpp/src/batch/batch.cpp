@@ -57,6 +57,10 @@ Batch::Batch(const Scenario& scenario, std::size_t members,
   check(members, variations);
   members_.resize(members);
   build(scenario, variations, beat);
+  std::vector<Simulation*> simulations;
+  simulations.reserve(members);
+  for (const Member& member : members_) simulations.push_back(member.simulation.get());
+  groups_ = MemberGroups::make(simulations, team_.size());
   make_arrays();
   if (variations.empty()) {
     start_alike();
@@ -180,12 +184,45 @@ void Batch::step(std::int64_t count, const Beat& beat) {
   if (!members_.front().simulation->scenario().scene().is_dynamic()) {
     throw Error("model_error", "a static scene has no time steps: use equilibrium()");
   }
+  if (groups_) return step_in_lanes(count, beat);
   all_that_go_on(
       [&](std::size_t number, const auto& goes_on) {
         Simulation& simulation = *members_[number].simulation;
         for (std::int64_t i = 0; i < count && goes_on(); ++i) simulation.step();
       },
       beat);
+}
+
+void Batch::step_in_lanes(std::int64_t count, const Beat& beat) {
+  const auto lanes = static_cast<std::size_t>(groups_->lanes());
+  team_.for_each((size() + lanes - 1) / lanes,
+                 [&](std::size_t group, bool on_caller, const ThreadTeam::Call& call) {
+                   std::int64_t left = count;
+                   const auto goes_on = [&] {
+                     if (on_caller) beat_if_due(beat);
+                     return left-- > 0 && !call.is_given_up();
+                   };
+                   std::vector<std::size_t> stepped;
+                   const auto takes_part = [&](std::size_t number) {
+                     if (failed_[number] != 0) return false;
+                     stepped.push_back(number);
+                     take_rows(number);
+                     return true;
+                   };
+                   const auto write_all = [&] {
+                     for (const std::size_t number : stepped) write_rows(number);
+                   };
+                   try {
+                     groups_->step(
+                         group, takes_part, goes_on,
+                         [&](std::size_t number, const Error& error) { fail(number, error); });
+                   } catch (...) {
+                     write_all();
+                     throw;
+                   }
+                   write_all();
+                 },
+                 beat);
 }
 
 std::vector<std::optional<EquilibriumReport>> Batch::equilibrium(bool leave_saddles,

@@ -1,13 +1,18 @@
 #include "der/model/gravity.hpp"
 
 #include "der/core/index.hpp"
+#include "der/core/sum_of.hpp"
 #include "der/model/model.hpp"
 
 namespace der {
 
 double gravity_energy(const Model& model, const Configuration& here) {
   const double driven = driven_gravity_energy(model, here);
-  if (!model.load_variation) return driven - model.gravity_force.dot(here.coordinates);
+  if (!model.load_variation) {
+    return driven - sum_of<double>(model.num_dofs(), [&](Index dof) {
+             return model.gravity_force[dof] * here.coordinates[dof];
+           });
+  }
   return driven - model.load_variation->gravity_force.at(here.load_factor).dot(here.coordinates);
 }
 

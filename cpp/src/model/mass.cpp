@@ -1,5 +1,7 @@
 #include "der/model/mass.hpp"
 
+#include "der/core/sum_of.hpp"
+
 namespace der {
 
 Vector Mass::momentum(const Vector& velocities) const {
@@ -13,7 +15,9 @@ Vector Mass::momentum(const Vector& velocities) const {
 }
 
 double Mass::kinetic_energy(const Vector& velocities) const {
-  double twice = velocities.dot(lumped.cwiseProduct(velocities));
+  double twice = sum_of<double>(static_cast<Index>(velocities.size()), [&](Index i) {
+    return velocities[i] * (lumped[i] * velocities[i]);
+  });
   for (const auto& [a, b, mass] : coupling) {
     const double difference = velocities[a] - velocities[b];
     twice -= mass * difference * difference;

@@ -61,16 +61,46 @@ void Simulation::step() {
   ++counters_.steps;
   undo.keep();
   energy_watch_.after_step(state_);
-  watch_energy(finished() && !was_finished);
+  if (is_audit_due(was_finished)) watch_energy(energy_watch_.energies_of(state_));
 }
 
-void Simulation::watch_energy(bool at_end) {
-  const std::int64_t stride = EnergyWatch::kStride * (stepper_info_.implicit ? 1 : 4);
-  // From rest there is nothing to compare with at first: early looks see what is exchanged only.
-  const bool is_early = state_.step < stride;
-  if (!is_early && !at_end && state_.step % stride != 0) return;
+std::optional<double> Simulation::end_of_plain_step() const {
+  if (adaptive_ || stability_) return std::nullopt;
+  const double end = plan_.next_time(state_.time);
+  const double whole = end - state_.time;
+  if (!(whole > 0.0) || support_motion_.longest_step(state_) < whole) return std::nullopt;
+  return end;
+}
+
+bool Simulation::enter_step(double end, int newton_iterations) {
+  const bool was_finished = finished();
+  state_.last_step = end - state_.time;
+  state_.time = end;
+  ++state_.step;
+  ++counters_.steps;
+  counters_.newton_iterations += newton_iterations;
+  return is_audit_due(was_finished);
+}
+
+bool Simulation::was_written() const {
+  return energy_watch_.was_written(state_) || !find_nonfinite().empty();
+}
+
+std::int64_t Simulation::audit_stride() const {
+  return EnergyWatch::kStride * (stepper_info_.implicit ? 1 : 4);
+}
+
+/// After a step. From rest there is nothing to compare with at first: early looks see what is
+/// exchanged only.
+bool Simulation::is_audit_due(bool was_finished) const {
+  const std::int64_t stride = audit_stride();
+  return state_.step < stride || state_.step % stride == 0 || (finished() && !was_finished);
+}
+
+void Simulation::watch_energy(const Energies& now) {
+  const bool is_early = state_.step < audit_stride();
   const EnergyAudit before = state_.audit;
-  energy_watch_.look(state_);
+  energy_watch_.enter_energies(now, state_);
   if (is_early) {
     state_.audit.created = before.created;
     state_.audit.unreliable_from = before.unreliable_from;

@@ -4,18 +4,10 @@
 #include <cmath>
 
 #include "der/core/index.hpp"
+#include "der/solvers/newton_step.hpp"
 
 namespace der {
 namespace {
-
-/// Plain Newton steps that have not converged by then rarely do.
-constexpr int kFullStepIterations = 12;
-/// A step below this share of the size may well be the last: look before building a new matrix.
-constexpr double kNearSolution = 1e-3;
-/// Where the residual no longer falls below this share of the one before, steps this short [size]
-/// are suspected to be those of rounding, which no iteration makes shorter.
-constexpr double kStalledFall = 0.5;
-constexpr double kStalledStep = 1e-9;
 
 /// Calls use(entry, unit_mass) for each entry of the diagonal.
 template <class Values, class Use>
@@ -104,15 +96,9 @@ NewtonReport Newton::iterate(NewtonProblem& problem, Mode mode) {
     }
     measure(problem, report);
 
-    // The next step is about as much smaller than this one as the residual has become; but the
-    // residual of stiff stretching hides that of soft bending, so also no less than what the
-    // rotation of the edges, which a Newton step leaves out, makes of this step.
-    const double fall = residual_before > 0.0 ? report.residual / residual_before : 0.0;
-    const double next_step = step * std::min(1.0, std::max(fall, change_));
-    // Far from the origin positions themselves are only known to their rounding.
-    const bool is_short = next_step <= options_.step_tolerance * dofs_.length() ||
-                          next_step <= problem.position_rounding();
-    const bool is_stalled = fall > kStalledFall && step <= kStalledStep * dofs_.length();
+    const auto [is_short, is_stalled] =
+        progress_of({step, change_, residual_before, report.residual}, options_.step_tolerance,
+                    dofs_.length(), [&] { return problem.position_rounding(); });
     if (is_short || is_stalled) {
       report.converged =
           is_short && report.residual <= options_.residual_tolerance * report.force_scale;

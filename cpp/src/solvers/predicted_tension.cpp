@@ -2,6 +2,7 @@
 
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
+#include "der/energies/stiffness_across.hpp"
 #include "der/energies/stretch.hpp"
 #include "der/model/dimension.hpp"
 
@@ -16,11 +17,9 @@ void PredictedTension::set_excess(const Configuration& here, const Vector& step)
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const auto after = Stretch<Dim>::edge(gather(edges.dofs[i], here.coordinates));
     const auto change = Stretch<Dim>::edge(gather(edges.dofs[i], step));
-    const auto before = (after - change).eval();
-    const double length = before.norm();
-    const double predicted = length + before.dot(change) / length;
     const auto& c = edges.constants[i];
-    excess_[static_cast<Index>(i)] = c.EA * (predicted - after.norm()) / c.rest_length;
+    excess_[static_cast<Index>(i)] =
+        excess_tension<double, Dim>(after, change, c.EA, c.rest_length);
   }
 }
 

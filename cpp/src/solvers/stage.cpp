@@ -2,25 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "der/assembly/discrete_gradient_assembler.hpp"
 #include "der/core/index.hpp"
+#include "der/core/loops.hpp"
 #include "der/energies/circulatory_load.hpp"
 #include "der/model/edge_change.hpp"
 #include "der/model/spin.hpp"
+#include "der/solvers/newton_step.hpp"
 #include "solvers/stage_kernels.hpp"
 
 namespace der {
 namespace {
-
-/// No step changes an edge by more than this, over its length: as an angle [rad], beyond it the
-/// quadratic model says nothing.
-constexpr double kLargestEdgeChange = 0.7;
-
-/// A few rounding errors of numbers up to this.
-double rounding(double largest) { return 8.0 * std::numeric_limits<double>::epsilon() * largest; }
 
 /// B of the tangents of all circulatory loads side by side, with N = 0.
 LowRank circulatory_rank(const Model& model) {
@@ -114,13 +108,11 @@ void StageProblem::correct_after(const Vector& step, Vector& values) {
 
 /// Rigid translation does not count.
 StepBound StageProblem::largest_step(const Vector& step) {
-  const double change = largest_edge_change(model_, step);
-  if (change <= kLargestEdgeChange) return {1.0, change};
-  return {kLargestEdgeChange / change, kLargestEdgeChange};
+  return bound_of_change(largest_edge_change(model_, step));
 }
 
 double StageProblem::position_rounding() const {
-  return rounding(model_.dofs.largest_motion(here_->coordinates));
+  return rounding_of(model_.dofs.largest_motion(here_->coordinates));
 }
 
 /// Positions and angles are known to their rounding, displacements to their own.
@@ -136,8 +128,8 @@ double StageProblem::residual_rounding(Vector& values) {
     term_ = diagonal.cwiseProduct(displacement_);
     return model_.dofs.largest_force(term_);
   };
-  return rounding(elastic + stage_->inertia * largest_term(mass_.lumped) +
-                  stage_->velocity_factor * largest_term(model_.damping));
+  return rounding_of(elastic + stage_->inertia * largest_term(mass_.lumped) +
+                     stage_->velocity_factor * largest_term(model_.damping));
 }
 
 /// One block of N for each load.
@@ -174,15 +166,37 @@ double StageProblem::gyroscopic_share() const {
   return largest;
 }
 
+/// Takes the external forces from `residual`; returns the largest force [N] that was there.
+double StageProblem::subtract_external(Vector& residual) const {
+  return largest_over(model_.dofs.blocks(), [&](const DofBlock& block) {
+    const Index i = block.first;
+    const double largest = run_loop(
+        [&] { return subtract_force(block.count, stage_->force.data() + i, residual.data() + i); });
+    return largest / block.length;
+  });
+}
+
+/// Adds factor * diagonal (displacement - target), and sets `term_` to that without the diagonal;
+/// returns the largest of these forces [N].
+double StageProblem::add_diagonal_forces(double factor, const Vector& diagonal,
+                                         const Vector& target, Vector& residual) {
+  return largest_over(model_.dofs.blocks(), [&](const DofBlock& block) {
+    const Index i = block.first;
+    const double largest = run_loop([&] {
+      return add_lumped_inertia(block.count, factor, diagonal.data() + i, displacement_.data() + i,
+                                target.data() + i, term_.data() + i, residual.data() + i);
+    });
+    return largest / block.length;
+  });
+}
+
 void StageProblem::add_stage_forces(Vector& residual) {
   if (stage_->is_motion) add_spin_forces(residual);
-  const DofMap& dofs = model_.dofs;
-  acting_ = std::max(subtract_force(dofs, stage_->force, residual), external_);
+  acting_ = std::max(subtract_external(residual), external_);
   if (stage_->inertia != 0.0) {
-    Vector& acceleration = term_;  // minus it
-    acting_ =
-        std::max(acting_, add_lumped_inertia(dofs, stage_->inertia, mass_.lumped, displacement_,
-                                             stage_->inertia_target, acceleration, residual));
+    acting_ = std::max(acting_, add_diagonal_forces(stage_->inertia, mass_.lumped,
+                                                    stage_->inertia_target, residual));
+    const Vector& acceleration = term_;  // minus it
     for (const auto& [a, b, mass] : mass_.coupling) {
       const double inertial = mass * (acceleration[a] - acceleration[b]);
       residual[a] -= inertial;
@@ -190,9 +204,8 @@ void StageProblem::add_stage_forces(Vector& residual) {
     }
   }
   if (stage_->velocity_factor != 0.0 && model_.damped) {
-    acting_ = std::max(
-        acting_, add_lumped_inertia(dofs, stage_->velocity_factor, model_.damping, displacement_,
-                                    stage_->velocity_reference, term_, residual));
+    acting_ = std::max(acting_, add_diagonal_forces(stage_->velocity_factor, model_.damping,
+                                                    stage_->velocity_reference, residual));
   }
 }
 

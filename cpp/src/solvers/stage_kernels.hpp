@@ -1,21 +1,41 @@
 #pragma once
 
+#include "der/core/lanes.hpp"
 #include "der/core/types.hpp"
-#include "der/model/dof_map.hpp"
 
 namespace der {
 
-// The loops over all degrees of freedom that every Newton iteration runs, in one pass each.
+// The loops over degrees of freedom that every Newton iteration runs, in one pass each, over plain
+// arrays that do not overlap.
 
-/// Takes the external `force` from `residual`; returns the largest force [N] that was there.
-double subtract_force(const DofMap& dofs, const Vector& force, Vector& residual);
+/// Takes the external `force` from `residual`; returns the largest force that was there.
+template <class T>
+T subtract_force(Index size, const T* __restrict force, T* __restrict residual) {
+  LargestMagnitude<T> largest;
+  for (Index i = 0; i < size; ++i) {
+    largest.see(residual[i]);
+    residual[i] -= force[i];
+  }
+  return largest.value();
+}
 
 /// Adds the lumped inertial forces at `displacement`, those of the stage
 ///   factor * lumped (displacement - target),
 /// to `residual`, and sets `acceleration` to the factor of `lumped`. Returns the largest of these
-/// forces [N].
-double add_lumped_inertia(const DofMap& dofs, double factor, const Vector& lumped,
-                          const Vector& displacement, const Vector& target, Vector& acceleration,
-                          Vector& residual);
+/// forces.
+template <class T>
+T add_lumped_inertia(Index size, const T& factor, const T* __restrict lumped,
+                     const T* __restrict displacement, const T* __restrict target,
+                     T* __restrict acceleration, T* __restrict residual) {
+  LargestMagnitude<T> largest;
+  for (Index i = 0; i < size; ++i) {
+    const T a = factor * (displacement[i] - target[i]);
+    const T force = lumped[i] * a;
+    acceleration[i] = a;
+    residual[i] += force;
+    largest.see(force);
+  }
+  return largest.value();
+}
 
 }  // namespace der

@@ -147,9 +147,12 @@ void EnergyWatch::keep(const State& state) {
   velocities_ = state.velocities;
 }
 
-void EnergyWatch::look(State& state) {
+Energies EnergyWatch::energies_of(const State& state) {
   configuration_of(model_, state, here_);
-  const Energies now = energies(model_, here_, state.velocities);
+  return energies(model_, here_, state.velocities);
+}
+
+void EnergyWatch::enter_energies(const Energies& now, State& state) const {
   const double kinetic = now[EnergyTerm::Kinetic];
   const Work& work = state.work;
   EnergyAudit& audit = state.audit;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "der/core/sum_of.hpp"
 #include "der/loads/external_force.hpp"
 #include "der/model/dimension.hpp"
 #include "der/model/prescribed_motion.hpp"
@@ -109,9 +110,13 @@ void ExplicitForce::evaluate_loads(const State& state, const Vector& positions, 
 
 void ExplicitForce::accumulate(const Vector& velocities, const Vector& displacement,
                                Work& work) const {
+  const auto size = static_cast<Index>(displacement.size());
   work.loads +=
-      displacement.dot(force_ - model_.gravity_force) + moment_work(model_, here_, displacement);
-  work.drag += displacement.dot(model_.damping.cwiseProduct(velocities));
+      sum_of<double>(
+          size, [&](Index i) { return displacement[i] * (force_[i] - model_.gravity_force[i]); }) +
+      moment_work(model_, here_, displacement);
+  work.drag += sum_of<double>(
+      size, [&](Index i) { return displacement[i] * (model_.damping[i] * velocities[i]); });
   for (const HeldDof& held : model_.held) {
     // The step's finisher has the drag on held nodes.
     work.drag -= displacement[held.dof] * model_.damping[held.dof] * velocities[held.dof];

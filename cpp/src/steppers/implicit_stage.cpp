@@ -1,8 +1,11 @@
 #include "der/steppers/implicit_stage.hpp"
 
 #include <algorithm>
+#include <vector>
 
 #include "der/assembly/discrete_gradient_assembler.hpp"
+#include "der/core/index.hpp"
+#include "der/core/sum_of.hpp"
 #include "der/loads/external_force.hpp"
 #include "der/model/prescribed_motion.hpp"
 #include "der/steppers/work.hpp"
@@ -23,33 +26,20 @@ ImplicitStage::ImplicitStage(const Model& model, const Assembler& assembler, Lin
       problem_(model, assembler, model.mass),
       newton_(model.dofs, solver, assembler.num_values(), options),
       finisher_(model),
+      controls_(model),
       held_controls_(Vector::Zero(model.tables.size())),
-      start_controls_(Vector::Zero(model.tables.size())),
       displacement_(Vector::Zero(model.num_dofs())) {
   equation.is_motion = true;
 }
 
 void ImplicitStage::apply_prescribed_motion_at(const State& state, double time, Vector& where) {
-  evaluate_controls(state, time, held_controls_);
+  controls_.evaluate(state, time, held_controls_);
   apply_prescribed_motion(model_, held_controls_, where);
-}
-
-void ImplicitStage::evaluate_controls(const State& state, double time, Vector& controls) {
-  der::evaluate_controls(model_, state, std::min(time, step_end_), controls);
-  if (time <= step_end_) return;
-  der::evaluate_controls(model_, state, state.time, start_controls_);
-  const double beyond = (time - step_end_) / (step_end_ - state.time);
-  controls += beyond * (controls - start_controls_);
-  for (const Index control : model_.tables.without_kinks()) {
-    if (find_ramp(state, control) != nullptr) continue;
-    controls[control] = value_at(model_.tables[control], time);
-  }
-  model_.rest_shape.enter(controls);
 }
 
 StepReport ImplicitStage::solve(const State& state, double time) {
   here.load_factor = state.load_factor;
-  evaluate_controls(state, time, here.controls);
+  controls_.evaluate(state, time, here.controls);
   external_force(model_, here, state.extra_force, equation.force);
   equation.origin = state.positions;
   problem_.pose(equation, here);
@@ -77,10 +67,18 @@ void ImplicitStage::accumulate(const Vector& displacement, Work& work) const {
 
 void ImplicitStage::accumulate_forces(const Vector& displacement, Work& work) const {
   const Vector& moved = newton_.displacement();
-  work.loads += displacement.dot(equation.force - model_.gravity_force) + moments(displacement);
+  const auto size = static_cast<Index>(displacement.size());
+  work.loads +=
+      sum_of<double>(size,
+                     [&](Index i) {
+                       return displacement[i] * (equation.force[i] - model_.gravity_force[i]);
+                     }) +
+      moments(displacement);
   if (model_.damped) {
-    work.drag += equation.velocity_factor *
-                 displacement.dot(model_.damping.cwiseProduct(moved - equation.velocity_reference));
+    work.drag += equation.velocity_factor * sum_of<double>(size, [&](Index i) {
+                   return displacement[i] *
+                          (model_.damping[i] * (moved[i] - equation.velocity_reference[i]));
+                 });
   }
   for (const HeldDof& held : model_.held) {
     // Without the inertia and the drag that the scheme gives the held node; `finish` has them.
@@ -102,7 +100,11 @@ double ImplicitStage::moments(const Vector& displacement) const {
 
 void ImplicitStage::accumulate_solver(const Vector& displacement, Work& work) const {
   const Vector& residual = newton_.residual();
-  for (const Index dof : model_.dofs.free()) work.solver += displacement[dof] * residual[dof];
+  const std::vector<Index>& free = model_.dofs.free();
+  work.solver += sum_of<double>(model_.num_free(), [&](Index i) {
+    const Index dof = free[to_size(i)];
+    return displacement[dof] * residual[dof];
+  });
 }
 
 void ImplicitStage::accumulate_and_finish(const Vector& new_positions,

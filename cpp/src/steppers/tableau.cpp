@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace der {
 namespace {
@@ -55,5 +56,19 @@ constexpr Tableau kSdirk5{
     {-2522702558582.0 / 12162329469185.0, 1018267903655.0 / 12907234417901.0,
      4542392826351.0 / 13702606430957.0, 5001116467727.0 / 12224457745473.0,
      1509636094297.0 / 3891594770934.0}};
+
+const Tableau* find_tableau(std::string_view integrator) {
+  constexpr std::array<std::pair<std::string_view, const Tableau*>, 5> kTableaus{{
+      {"implicit_euler", &kImplicitEuler},
+      {"implicit_midpoint", &kImplicitMidpoint},
+      {"tr_bdf2", &kTrBdf2},
+      {"sdirk4", &kSdirk4},
+      {"sdirk5", &kSdirk5},
+  }};
+  for (const auto& [name, tableau] : kTableaus) {
+    if (name == integrator) return tableau;
+  }
+  return nullptr;
+}
 
 }  // namespace der

@@ -100,10 +100,11 @@ EffectiveEdge effective_edge(const RodLayout& rod, Index edge, const Model& mode
 Vec2 effective_end(const EffectiveEdge& effective, bool last, const Model& model,
                    const State& state) {
   const Pivot& pivot = last ? effective.last : effective.first;
-  const double turn = pivot.rotation >= 0 ? control_value(model, state, pivot.rotation) : 0.0;
+  const Vec2 offset = pivot.rotation >= 0
+                          ? pivot.offset(control_value(model, state, pivot.rotation))
+                          : pivot.drawn_offset;
   const std::size_t x = last ? 2 : 0;
-  return Vec2(state.positions[effective.dofs[x]], state.positions[effective.dofs[x + 1]]) +
-         pivot.offset(turn);
+  return Vec2(state.positions[effective.dofs[x]], state.positions[effective.dofs[x + 1]]) + offset;
 }
 
 Vec2 effective_vector(const EffectiveEdge& effective, const Model& model, const State& state) {

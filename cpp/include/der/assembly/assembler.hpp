@@ -1,13 +1,19 @@
 #pragma once
 
+#include <array>
 #include <memory>
+#include <vector>
 
 #include "der/assembly/pattern.hpp"
+#include "der/core/strided.hpp"
 #include "der/core/types.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 
 namespace der {
+
+class PlanarChain;
+class SpatialChain;
 
 /// Sums the elements of a model into a gradient over all degrees of freedom and a Hessian over the
 /// free ones, straight into the solver's array of values: chains as a whole, the other elements one
@@ -36,6 +42,26 @@ class Assembler {
   void gradient_and_hessian(const Configuration& here, Vector& gradient, Vector& values) const;
   /// Sets `gradient` likewise, and adds the Hessian to `values`.
   void add_hessian(const Configuration& here, Vector& gradient, Vector& values) const;
+  /// A member of a batch in its lane, at coordinates besides those of `here`.
+  struct LooseMember {
+    const Model* model = nullptr;
+    const Configuration* here = nullptr;
+    Strided<const double> coordinates;
+    Strided<double> gradient;
+    Strided<double> values;
+  };
+  /// Adds to the gradients of `count` members, and for the Hessian to their values, what the
+  /// elements outside of chains give. The members' models have the structure of this one.
+  void add_loose_gradient(const LooseMember* members, int count) const;
+  void add_loose_hessian(const LooseMember* members, int count) const;
+  [[nodiscard]] bool has_loose() const;
+  [[nodiscard]] const std::vector<PlanarChain>& planar_chains() const;
+  [[nodiscard]] const std::vector<SpatialChain>& spatial_chains() const;
+  /// Slots of the lower triangle of every plain planar stretch element, column by column.
+  [[nodiscard]] const std::vector<std::array<Index, 10>>& planar_edge_slots() const;
+  /// Slot on the diagonal of every free degree of freedom.
+  [[nodiscard]] const std::vector<Index>& diagonal_slots() const;
+
   /// The largest entry, by size, on the diagonal of `values` among the free degrees of freedom of a
   /// block; 0 if it has none.
   [[nodiscard]] double largest_diagonal(const DofBlock& block, const Vector& values) const;

@@ -14,6 +14,7 @@
 #include "der/batch/thread_team.hpp"
 #include "der/core/error.hpp"
 #include "der/core/types.hpp"
+#include "der/lanes/member_groups.hpp"
 #include "der/output/pacer.hpp"
 #include "der/output/probe.hpp"
 #include "der/scenario/value_override.hpp"
@@ -68,6 +69,8 @@ class Batch {
 
   [[nodiscard]] std::size_t size() const { return members_.size(); }
   [[nodiscard]] int threads() const { return team_.size(); }
+  /// How many members do their steps together, in the lanes of one register; 1: each alone.
+  [[nodiscard]] int lanes() const { return groups_ ? groups_->lanes() : 1; }
   /// The simulation of a member; what its rows say may be newer.
   [[nodiscard]] const Simulation& member(std::size_t number) const;
   /// The model of the first member, of which all have the structure.
@@ -145,6 +148,7 @@ class Batch {
   /// Does `change` for all members that have not failed, or for none if it throws.
   template <class Change>
   void change_ramps(const Change& change);
+  void step_in_lanes(std::int64_t count, const Beat& beat);
   void fail(std::size_t number, const Error& error);
   void take_rows(std::size_t number);
   void write_rows(std::size_t number);
@@ -154,6 +158,7 @@ class Batch {
   ThreadTeam team_;
   Pacer pacer_{Pacer::Seconds{0.05}};  // of the beats between steps
   std::vector<Member> members_;
+  std::unique_ptr<MemberGroups> groups_;  // null: no lanes
   RowMatrix positions_;
   RowMatrix velocities_;
   RowMatrix extra_force_;

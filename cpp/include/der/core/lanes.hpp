@@ -3,24 +3,37 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 #include <utility>
+
+#include "der/core/magnitude.hpp"
 
 namespace der {
 
 template <int N>
 struct LaneRegister;
 // A `using` cannot have this attribute, and GCC does not take it with the size of a template.
+// NOLINTBEGIN(modernize-use-using)
 template <>
 struct LaneRegister<2> {
-  typedef double type __attribute__((vector_size(16)));  // NOLINT(modernize-use-using)
+  typedef double type __attribute__((vector_size(16)));
+  typedef std::int64_t bits __attribute__((vector_size(16)));
 };
+// Eigen aligns its matrices to 16 bytes.
 template <>
 struct LaneRegister<4> {
-  // Eigen aligns its matrices to 16 bytes.
-  typedef double type __attribute__((vector_size(32), aligned(16)));  // NOLINT(modernize-use-using)
+  typedef double type __attribute__((vector_size(32), aligned(16)));
+  typedef std::int64_t bits __attribute__((vector_size(32), aligned(16)));
 };
+template <>
+struct LaneRegister<8> {
+  typedef double type __attribute__((vector_size(64), aligned(16)));
+  typedef std::int64_t bits __attribute__((vector_size(64), aligned(16)));
+};
+// NOLINTEND(modernize-use-using)
 
 /// `N` numbers that run through the same operations in one register, each as if it were alone.
 /// Kernels that are templates over their number type take `double` or this; it is a scalar type
@@ -58,6 +71,34 @@ class Lanes {
   }
 
   [[nodiscard]] double lane(int number) const { return values_[number]; }
+  void set_lane(int number, double value) { values_[number] = value; }
+
+  /// In each lane `a` where `condition` is not zero, else `b`.
+  static Lanes select(const Lanes& condition, const Lanes& a, const Lanes& b) {
+    Lanes lanes;
+    lanes.values_ = condition.values_ != 0.0 ? a.values_ : b.values_;
+    return lanes;
+  }
+  /// In each lane the larger of |a| and |b|; NaN is above infinity, as in `magnitude_bits`.
+  static Lanes larger_magnitude(const Lanes& a, const Lanes& b) {
+    Bits x;
+    Bits y;
+    set_magnitude_bits(a, x);
+    set_magnitude_bits(b, y);
+    const Bits larger = x > y ? x : y;
+    Lanes lanes;
+    std::memcpy(&lanes.values_, &larger, sizeof larger);
+    return lanes;
+  }
+  /// In each lane 1 where the number is above zero and finite, else 0.
+  static Lanes is_positive(const Lanes& x) {
+    Lanes lanes;
+    const Register one = Lanes(1.0).values_;
+    const Register zero = Lanes(0.0).values_;
+    const Register finite = x.values_ <= std::numeric_limits<double>::max() ? one : zero;
+    lanes.values_ = x.values_ > 0.0 ? finite : zero;
+    return lanes;
+  }
 
   Lanes& operator+=(const Lanes& other) {
     values_ += other.values_;
@@ -89,10 +130,38 @@ class Lanes {
   Lanes(const F& f, std::integer_sequence<int, I...> /*lanes*/) : values_{f(I)...} {}
 
   using Register = typename LaneRegister<N>::type;
+  using Bits = typename LaneRegister<N>::bits;
+  static void set_magnitude_bits(const Lanes& x, Bits& bits) {
+    std::memcpy(&bits, &x.values_, sizeof bits);
+    bits &= kCounts;
+  }
   Register values_;
 };
 using TwoLanes = Lanes<2>;
 using FourLanes = Lanes<4>;
+using EightLanes = Lanes<8>;
+
+/// The largest magnitude of numbers seen one by one, in each lane; NaN if one of them is NaN.
+template <class T>
+class LargestMagnitude;
+template <>
+class LargestMagnitude<double> {
+ public:
+  void see(double x) { largest_ = largest_ > magnitude_bits(x) ? largest_ : magnitude_bits(x); }
+  [[nodiscard]] double value() const { return magnitude_of(largest_); }
+
+ private:
+  std::int64_t largest_ = 0;
+};
+template <int N>
+class LargestMagnitude<Lanes<N>> {
+ public:
+  void see(const Lanes<N>& x) { largest_ = Lanes<N>::larger_magnitude(largest_, x); }
+  [[nodiscard]] Lanes<N> value() const { return largest_; }
+
+ private:
+  Lanes<N> largest_ = 0.0;
+};
 
 /// Number of lanes of a number type, and access to them.
 template <class T>

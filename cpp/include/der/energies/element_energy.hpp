@@ -11,9 +11,9 @@
 namespace der {
 
 /// The entries of a field over all degrees of freedom that belong to one element's stencil.
-template <std::size_t N>
+template <std::size_t N, class Field>
 Eigen::Matrix<double, static_cast<int>(N), 1> gather(const std::array<Index, N>& dofs,
-                                                     const Vector& field) {
+                                                     const Field& field) {
   Eigen::Matrix<double, static_cast<int>(N), 1> local;
   for (std::size_t i = 0; i < N; ++i) local[static_cast<Index>(i)] = field[dofs[i]];
   return local;

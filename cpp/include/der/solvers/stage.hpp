@@ -71,6 +71,9 @@ class StageProblem final : public NewtonProblem {
   }
   void set_circulatory_tangent();
   void add_spin_forces(Vector& residual) const;
+  double subtract_external(Vector& residual) const;
+  double add_diagonal_forces(double factor, const Vector& diagonal, const Vector& target,
+                             Vector& residual);
   void add_stage_forces(Vector& residual);
 
   const Model& model_;

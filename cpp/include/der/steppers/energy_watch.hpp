@@ -37,7 +37,9 @@ class EnergyWatch {
   /// To be called after each step: enters a node that has folded over in it. Allocates nothing.
   void after_step(State& state);
   /// Enters the energies of the present state into its audit.
-  void look(State& state);
+  void look(State& state) { enter_energies(energies_of(state), state); }
+  [[nodiscard]] Energies energies_of(const State& state);
+  void enter_energies(const Energies& now, State& state) const;
 
  private:
   void keep(const State& state);

@@ -1,13 +1,12 @@
 #pragma once
 
-#include <limits>
-
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 #include "der/solvers/newton.hpp"
 #include "der/solvers/stage.hpp"
 #include "der/steppers/explicit_force.hpp"
+#include "der/steppers/stage_controls.hpp"
 #include "der/steppers/step_finisher.hpp"
 #include "der/steppers/stepper.hpp"
 
@@ -29,7 +28,7 @@ class ImplicitStage {
 
   /// Sets the end of the current step [s]. Stages beyond it extrapolate tables that have a kink
   /// there.
-  void end_step_at(double time) { step_end_ = time; }
+  void end_step_at(double time) { controls_.end_step_at(time); }
   /// Puts the held degrees of freedom of `where` to where the tables have them at `time`.
   void apply_prescribed_motion_at(const State& state, double time, Vector& where);
   /// Solves with tables and external forces at `time`.
@@ -55,7 +54,6 @@ class ImplicitStage {
                              double place, ExplicitForce& at_start, State& state);
 
  private:
-  void evaluate_controls(const State& state, double time, Vector& controls);
   void accumulate_forces(const Vector& displacement, Work& work) const;
   void accumulate_solver(const Vector& displacement, Work& work) const;
   /// Work [J] of the moments.
@@ -65,10 +63,9 @@ class ImplicitStage {
   StageProblem problem_;
   Newton newton_;
   StepFinisher finisher_;
+  StageControls controls_;
   Vector held_controls_;  // those of `here` are the solved stage's until it is accumulated
-  Vector start_controls_;
   Vector displacement_;
-  double step_end_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace der

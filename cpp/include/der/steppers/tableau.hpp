@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string_view>
 
 #include "der/core/index.hpp"
 #include "der/core/types.hpp"
@@ -46,5 +47,8 @@ extern const Tableau kSdirk4;
 /// Order 5, L-stable (SDIRK5()5L[1] of Kennedy and Carpenter, Diagonally Implicit Runge-Kutta
 /// Methods for Ordinary Differential Equations, NASA/TM-2016-219173, section 5.3).
 extern const Tableau kSdirk5;
+
+/// The method that a scene names as its integrator; null where that is another kind of stepper.
+const Tableau* find_tableau(std::string_view integrator);
 
 }  // namespace der

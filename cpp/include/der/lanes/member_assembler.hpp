@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "der/assembly/assembler.hpp"
+#include "der/assembly/planar_chain.hpp"
+#include "der/lanes/member_controls.hpp"
+#include "der/lanes/member_model.hpp"
+
+namespace der {
+
+/// The assemblers of the members.
+template <class T>
+using MemberAssemblers = std::array<const Assembler*, to_size(LaneTraits<T>::kCount)>;
+
+/// Assembler for several members: chains in lanes, the other elements one by one. Each member has,
+/// to the last bit, what its Assembler gives.
+template <class T>
+class MemberAssembler {
+ public:
+  /// Elements outside of chains read the `controls`.
+  MemberAssembler(const MemberModel<T>& model, const MemberAssemblers<T>& assemblers,
+                  const MemberControls<T>& controls);
+
+  /// Of an array of values, spare slot included.
+  [[nodiscard]] Index num_values() const { return assembler_.num_values(); }
+  /// Sets `gradient` (all degrees of freedom) [N].
+  void gradient(const MemberVector<T>& coordinates, MemberVector<T>& gradient) const;
+  /// Sets `gradient` likewise, and `values` to `inertia` times the mass matrix and the Hessian.
+  void system(const T& inertia, const MemberVector<T>& coordinates, MemberVector<T>& gradient,
+              MemberVector<T>& values) const;
+  /// Puts into `values` the tensions that `step`, which led to `coordinates`, predicted
+  /// (PredictedTension).
+  void use_predicted_tension(const MemberVector<T>& coordinates, const MemberVector<T>& step,
+                             MemberVector<T>& values) const;
+  /// The sum over kinds of degrees of freedom of the largest stiffness on the diagonal of `values`
+  /// times the largest coordinate [N].
+  [[nodiscard]] T largest_elastic_force(const MemberVector<T>& coordinates,
+                                        const MemberVector<T>& values) const;
+  /// Adds `factor` times the damping to the diagonal.
+  void add_damping(const T& factor, MemberVector<T>& values) const;
+
+ private:
+  void set_masses(const MemberAssemblers<T>& assemblers);
+
+  const MemberModel<T>& model_;
+  const Assembler& assembler_;  // of the first: they share what is needed of it
+  bool has_loose_;
+  const MemberControls<T>& controls_;
+  std::vector<PlanarChainConstants<T>> chains_;
+  std::vector<Index> mass_slots_;  // of the entries of the mass matrix
+  MemberVector<T> masses_;
+  // Of the plain stretch elements.
+  MemberVector<T> EA_;
+  MemberVector<T> rest_length_;
+};
+
+}  // namespace der

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "der/assembly/member_lanes.hpp"
+#include "der/model/state.hpp"
+
+namespace der {
+
+/// What a step reads and changes of the states of several members (State).
+template <class T>
+struct MemberState {
+  explicit MemberState(Index dofs)
+      : positions(dofs), velocities(dofs), accelerations(dofs), extra_force(dofs) {}
+
+  MemberVector<T> positions;      ///< [m]
+  MemberVector<T> velocities;     ///< [m/s]
+  MemberVector<T> accelerations;  ///< [m/s^2]
+  MemberVector<T> extra_force;    ///< [N]
+  /// Works [J] that a step adds to.
+  struct Work {
+    T loads = 0.0;
+    T supports = 0.0;
+    T drag = 0.0;
+    T solver = 0.0;
+  };
+  Work work;
+
+  void load(int lane, const State& state) {
+    positions.set_lane(lane, state.positions);
+    velocities.set_lane(lane, state.velocities);
+    accelerations.set_lane(lane, state.accelerations);
+    extra_force.set_lane(lane, state.extra_force);
+    work.loads.set_lane(lane, state.work.loads);
+    work.supports.set_lane(lane, state.work.supports);
+    work.drag.set_lane(lane, state.work.drag);
+    work.solver.set_lane(lane, state.work.solver);
+  }
+  /// Extra forces do not change in a step.
+  void store(int lane, State& state) const {
+    positions.get_lane(lane, state.positions);
+    velocities.get_lane(lane, state.velocities);
+    accelerations.get_lane(lane, state.accelerations);
+    store_works(lane, state);
+  }
+  void store_works(int lane, State& state) const {
+    state.work.loads = work.loads.lane(lane);
+    state.work.supports = work.supports.lane(lane);
+    state.work.drag = work.drag.lane(lane);
+    state.work.solver = work.solver.lane(lane);
+  }
+};
+
+}  // namespace der

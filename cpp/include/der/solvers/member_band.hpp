@@ -1,0 +1,57 @@
+#pragma once
+
+#include "der/assembly/member_lanes.hpp"
+#include "der/core/lane_pair.hpp"
+#include "der/core/types.hpp"
+#include "der/solvers/linear_solver.hpp"
+
+namespace der {
+
+/// The band matrices of several members, each in its lane, factorised as BandedLdlt and
+/// TwoEndedLdlt do: of each member to the last bit as they would. Positive definite ones alone.
+template <class T>
+class MemberBand {
+ public:
+  /// Whether there are kernels for a matrix.
+  static bool suits(const Pattern& pattern);
+  /// For the values in the layout of TwoEndedLdlt or of BandedLdlt.
+  MemberBand(const Pattern& pattern, Elimination order);
+
+  /// In each lane 1 if its matrix was positive definite, else 0: its solutions are worth nothing
+  /// then.
+  T factorize(const MemberVector<T>& values);
+  /// Solves for the entries of `b`, in place.
+  void solve(MemberVector<T>& b);
+
+ private:
+  struct Kernels {
+    T (*factorize)(Index columns, T* band);
+    void (*eliminate)(Index columns, const T* band, T* b);
+    void (*substitute)(Index columns, const T* band, T* b);
+    T (*factorize_pairs)(Index columns, LanePair<T>* band);
+    void (*eliminate_pairs)(Index columns, const LanePair<T>* band, LanePair<T>* b);
+    void (*substitute_pairs)(Index columns, const LanePair<T>* band, LanePair<T>* b);
+  };
+  static Kernels kernels_of(Index half_bandwidth);
+  template <Index kWidth>
+  static Kernels kernels();
+
+  T factorize_from_both_ends(const MemberVector<T>& values);
+  void solve_from_both_ends(MemberVector<T>& b);
+  [[nodiscard]] LanePair<T>* pairs(MemberVector<T>& numbers) {
+    return reinterpret_cast<LanePair<T>*>(numbers.data());
+  }
+
+  Index size_ = 0;
+  Index width_ = 0;
+  Elimination order_;
+  Index columns_ = 0;  ///< of each half (TwoEndedLdlt)
+  Index padding_ = 0;
+  Kernels kernels_;
+  MemberVector<T> band_;        ///< of the halves in turns, if there are two
+  MemberVector<T> right_side_;  ///< likewise
+  MemberVector<T> middle_;
+  MemberVector<T> middle_right_side_;
+};
+
+}  // namespace der

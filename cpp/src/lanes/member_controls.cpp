@@ -1,0 +1,80 @@
+#include "der/lanes/member_controls.hpp"
+
+namespace der {
+
+template <class T>
+MemberControls<T>::MemberControls(const MemberModel<T>& model, const MemberStates<T>& states)
+    : model_(model), states_(states), has_tables_(model.structure().tables.size() > 0) {
+  for (std::size_t lane = 0; lane < states.size(); ++lane) {
+    here_[lane].controls.setZero(model.structure().tables.size());
+    stages_.emplace_back(*model.models[lane]);
+  }
+}
+
+template <class T>
+void MemberControls<T>::begin_step(const T& dt) {
+  if (!has_tables_) return;
+  for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
+    stages_[to_size(lane)].end_step_at(states_[to_size(lane)]->time + dt.lane(lane));
+  }
+}
+
+template <class T>
+void MemberControls<T>::evaluate(const T& dt, double share) {
+  if (!has_tables_) return;
+  for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
+    const State& state = *states_[to_size(lane)];
+    stages_[to_size(lane)].evaluate(state, state.time + share * dt.lane(lane),
+                                    here_[to_size(lane)].controls);
+  }
+}
+
+template <class T>
+void MemberControls<T>::set_force(const MemberVector<T>& extra_force,
+                                  MemberVector<T>& force) const {
+  run_member_loop<T>([&] {
+    for (Index i = 0; i < force.size(); ++i) {
+      force[i] = model_.gravity_force[i] + model_.dead_force[i] + extra_force[i];
+    }
+  });
+  const auto& controlled = model_.structure().controlled_forces;
+  for (std::size_t i = 0; i < controlled.size(); ++i) {
+    T& sum = force[controlled[i].dof];
+    for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
+      const double weight = model_.models[to_size(lane)]->controlled_forces[i].weight;
+      const double value = here_[to_size(lane)].controls[controlled[i].control];
+      sum.set_lane(lane, sum.lane(lane) + weight * value);
+    }
+  }
+}
+
+template <class T>
+void MemberControls<T>::hold(MemberVector<T>& positions) const {
+  const std::vector<HeldDof>& held = model_.structure().held;
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    const Index control = held[i].displacement;
+    T displacement = 0.0;
+    if (control >= 0) {
+      displacement = in_lanes<T>([&](int lane) { return here_[to_size(lane)].controls[control]; });
+    }
+    positions[held[i].dof] = model_.held_places[static_cast<Index>(i)] + displacement;
+  }
+}
+
+template <class T>
+T MemberControls<T>::driven_gravity_energy(const MemberVector<T>& positions) const {
+  const Model& structure = model_.structure();
+  T energy = 0.0;
+  if (structure.gravity_controls[0] < 0) return energy;
+  for (Index dof = 0; dof < structure.dofs.num_positions(); ++dof) {
+    const Index control = structure.gravity_controls[to_size(structure.dofs[dof].component)];
+    const T gravity = in_lanes<T>([&](int lane) { return here_[to_size(lane)].controls[control]; });
+    energy -= model_.lumped[dof] * gravity * positions[dof];
+  }
+  return energy;
+}
+
+template class MemberControls<FourLanes>;
+template class MemberControls<EightLanes>;
+
+}  // namespace der

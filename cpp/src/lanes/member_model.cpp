@@ -1,0 +1,150 @@
+#include "der/lanes/member_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+#include "der/energies/elements_of.hpp"
+#include "der/energies/registry.hpp"
+
+namespace der {
+namespace {
+
+using std::sqrt;
+
+template <class T>
+MemberVector<T> in_lanes_of(const MemberModels<T>& models, const Vector Model::* member) {
+  MemberVector<T> all(static_cast<Index>((models[0]->*member).size()));
+  for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
+    all.set_lane(lane, models[to_size(lane)]->*member);
+  }
+  return all;
+}
+
+/// `value(model, i)` for i below `count`.
+template <class T, class Value>
+MemberVector<T> in_lanes_of(const MemberModels<T>& models, std::size_t count, const Value& value) {
+  MemberVector<T> all(static_cast<Index>(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    all[static_cast<Index>(i)] =
+        in_lanes<T>([&](int lane) { return value(*models[to_size(lane)], i); });
+  }
+  return all;
+}
+
+/// Moments, the work of which is that of their elements.
+bool any_element_is_a_load(const Model& model) {
+  bool found = false;
+  for_each_list(*model.elements, [&](const auto& list) {
+    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+    if constexpr (Kernel::kTerm == EnergyTerm::Load) found |= list.size() > 0;
+  });
+  return found;
+}
+
+}  // namespace
+
+bool suits_lanes(const Model& model) {
+  return model.dimension == 2 && !model.rest_shape.is_actuated() && !model.load_variation &&
+         model.followed_edges.empty() && circulatory_loads(*model.elements).empty() &&
+         !any_element_is_a_load(model) &&
+         std::none_of(model.rods.begin(), model.rods.end(), [](const RodLayout& rod) {
+           return rod.closed || !rod.moment_places.empty();
+         });
+}
+
+template <class T>
+MemberModel<T>::MemberModel(const MemberModels<T>& members)
+    : models(members),
+      size(in_lanes<T>([&](int lane) { return members[to_size(lane)]->size(); })),
+      lumped(in_lanes_of<T>(members, to_size(structure().num_dofs()),
+                            [](const Model& model, std::size_t i) {
+                              return model.mass.lumped[static_cast<Index>(i)];
+                            })),
+      coupling(in_lanes_of<T>(
+          members, structure().mass.coupling.size(),
+          [](const Model& model, std::size_t i) { return model.mass.coupling[i].mass; })),
+      damping(in_lanes_of<T>(members, &Model::damping)),
+      gravity_force(in_lanes_of<T>(members, &Model::gravity_force)),
+      dead_force(in_lanes_of<T>(members, &Model::dead_force)),
+      held_places(in_lanes_of<T>(members, structure().held.size(),
+                                 [](const Model& model, std::size_t i) {
+                                   return model.initial_positions[model.held[i].dof];
+                                 })),
+      per_squared_length(in_lanes_of<T>(
+          members, structure().edges.size(),
+          [](const Model& model, std::size_t i) { return model.edges[i].per_squared_length; })) {
+  const DofMap& dofs = structure().dofs;
+  for (std::size_t k = 0; k < dofs.blocks().size(); ++k) {
+    Block& block = blocks.emplace_back();
+    block.first = dofs.blocks()[k].first;
+    block.count = dofs.blocks()[k].count;
+    block.length =
+        in_lanes<T>([&](int lane) { return members[to_size(lane)]->dofs.blocks()[k].length; });
+    for (Index dof = block.first; dof < block.first + block.count; ++dof) {
+      if (dofs.is_free(dof)) block.free.push_back(dof);
+    }
+  }
+}
+
+template <class T>
+T MemberModel<T>::largest_motion(const MemberVector<T>& displacement) const {
+  T result = 0.0;
+  run_member_loop<T>([&] {
+    for (const Block& block : blocks) {
+      LargestMagnitude<T> largest;
+      for (Index i = block.first; i < block.first + block.count; ++i) largest.see(displacement[i]);
+      result = T::larger_magnitude(result, block.length * largest.value());
+    }
+  });
+  return result;
+}
+
+template <class T>
+T MemberModel<T>::largest_force(const MemberVector<T>& force) const {
+  T result = 0.0;
+  run_member_loop<T>([&] {
+    for (const Block& block : blocks) {
+      LargestMagnitude<T> largest;
+      for (Index i = block.first; i < block.first + block.count; ++i) largest.see(force[i]);
+      result = T::larger_magnitude(result, largest.value() / block.length);
+    }
+  });
+  return result;
+}
+
+template <class T>
+T MemberModel<T>::largest_free_force(const MemberVector<T>& force) const {
+  T result = 0.0;
+  run_member_loop<T>([&] {
+    for (const Block& block : blocks) {
+      LargestMagnitude<T> largest;
+      for (const Index i : block.free) largest.see(force[i]);
+      result = T::larger_magnitude(result, largest.value() / block.length);
+    }
+  });
+  return result;
+}
+
+template <class T>
+T MemberModel<T>::largest_edge_change(const MemberVector<T>& displacement) const {
+  T result = 0.0;
+  run_member_loop<T>([&] {
+    LargestMagnitude<T> largest;  // squared
+    const std::vector<Edge>& edges = structure().edges;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const T* first = displacement.data() + edges[i].first;
+      const T* last = displacement.data() + edges[i].last;
+      const T x = last[0] - first[0];
+      const T y = last[1] - first[1];
+      largest.see((x * x + y * y) * per_squared_length[static_cast<Index>(i)]);
+    }
+    result = sqrt(largest.value());
+  });
+  return result;
+}
+
+template struct MemberModel<FourLanes>;
+template struct MemberModel<EightLanes>;
+
+}  // namespace der

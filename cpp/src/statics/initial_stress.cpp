@@ -83,10 +83,34 @@ struct StressedJoint {
   }
 };
 
+/// A joint without stiffness that bears a load whatever its strain.
+struct LoadedJoint {
+  JointStrain rest;
+  JointStrain moments;  ///< [N m]
+  [[nodiscard]] const JointStrain& load(const JointStrain& /*strain*/) const { return moments; }
+  [[nodiscard]] static Mat3 stiffness(const Vec3& /*g1*/, const Vec3& /*g2*/, const Vec3& /*gt*/) {
+    return Mat3::Zero();
+  }
+};
+
+/// S of the moments of a joint's response to the rotation `turn` of one frame relative to the other:
+/// moments times the second derivatives of the strains.
+template <class Curvature>
+Mat3 bent_stiffness(const JointKinematics<Curvature>& kinematics, const Joint& joint,
+                    const Vec3& turn) {
+  const auto [g1, g2, gt] = kinematics.gradients();
+  const JointStrain moments{joint.bend_1 * g1.dot(turn), joint.bend_2 * g2.dot(turn),
+                            joint.twist * gt.dot(turn)};
+  JointResponse response;
+  kinematics.template respond<true>(LoadedJoint{joint.rest, moments}, response);
+  return response.stiffness;
+}
+
 /// The same between an edge and a clamp, which does not turn.
 struct StressedClamp {
   EdgeFrame edge;
-  Vec3 moment;  ///< [N m] on the edge
+  Vec3 moment;                    ///< [N m] on the edge
+  Mat3 free_side = Mat3::Zero();  ///< S [N m] of a clamp that lets the section turn
 
   template <class Curvature>
   static StressedClamp of(const Eigen::Matrix<double, 7, 1>& x,
@@ -95,13 +119,24 @@ struct StressedClamp {
                           const Vector& values) {
     const auto frames = SpatialClamp<Curvature>::frames(c, values, x);
     const EdgeFrame& edge = frames.edge;
+    const auto kinematics = SpatialClamp<Curvature>::kinematics(c, values, frames);
+    const Joint joint = c.actuated_joint(values);
     JointResponse response;
-    SpatialClamp<Curvature>::kinematics(c, values, frames)
-        .template respond<true>(c.actuated_joint(values), response);
+    kinematics.template respond<true>(joint, response);
     const Vec3 none = Vec3::Zero();
     const Vec3 omega = turned(edge, d, 0, 6);
-    return {edge, c.side * (c.side > 0.0 ? moment_change(response, none, omega)
-                                         : moment_change(response, omega, none))};
+    StressedClamp clamp{edge, c.side * (c.side > 0.0 ? moment_change(response, none, omega)
+                                                     : moment_change(response, omega, none))};
+    // In directors of half the twist, strains have second derivatives of the size of the strains.
+    // Directors that spin with the edge turn through all of it, far more than the cell bends.
+    if (!c.holds_section) clamp.free_side = bent_stiffness(kinematics, joint, c.side * omega);
+    return clamp;
+  }
+
+  /// By vector and angle of the edge.
+  [[nodiscard]] Eigen::Matrix4d stiffness() const {
+    const EdgeFrame::Rotation turn = edge.rotation();
+    return own_stiffness(edge, moment) + turn.transpose() * free_side * turn;
   }
 };
 
@@ -211,7 +246,7 @@ void InitialStress::add_joints(const Model& model, const Configuration& here,
         const auto clamp =
             StressedClamp::of<Curvature>(x, gather(dofs, displacement), c, here.controls);
         Term& term = add_term(clamp.moment, 4);
-        term.matrix = own_stiffness(clamp.edge, clamp.moment);
+        term.matrix = clamp.stiffness();
         add_variables(dofs, 0, 6, 0, term);
       });
 }

@@ -93,11 +93,11 @@ struct LoadedJoint {
   }
 };
 
-/// S of the moments of a joint's response to the rotation `turn` of one frame relative to the other:
-/// moments times the second derivatives of the strains.
+/// The part of S that is the moments times the second derivatives of the strains: of the moments
+/// that the rotation `turn` of frame b relative to frame a causes.
 template <class Curvature>
-Mat3 bent_stiffness(const JointKinematics<Curvature>& kinematics, const Joint& joint,
-                    const Vec3& turn) {
+Mat3 strain_stiffness(const JointKinematics<Curvature>& kinematics, const Joint& joint,
+                      const Vec3& turn) {
   const auto [g1, g2, gt] = kinematics.gradients();
   const JointStrain moments{joint.bend_1 * g1.dot(turn), joint.bend_2 * g2.dot(turn),
                             joint.twist * gt.dot(turn)};
@@ -109,8 +109,8 @@ Mat3 bent_stiffness(const JointKinematics<Curvature>& kinematics, const Joint& j
 /// The same between an edge and a clamp, which does not turn.
 struct StressedClamp {
   EdgeFrame edge;
-  Vec3 moment;                    ///< [N m] on the edge
-  Mat3 free_side = Mat3::Zero();  ///< S [N m] of a clamp that lets the section turn
+  Vec3 moment;                      ///< [N m] on the edge
+  Mat3 with_strain = Mat3::Zero();  ///< [N m] that the strains' second derivatives add
 
   template <class Curvature>
   static StressedClamp of(const Eigen::Matrix<double, 7, 1>& x,
@@ -127,16 +127,17 @@ struct StressedClamp {
     const Vec3 omega = turned(edge, d, 0, 6);
     StressedClamp clamp{edge, c.side * (c.side > 0.0 ? moment_change(response, none, omega)
                                                      : moment_change(response, omega, none))};
-    // In directors of half the twist, strains have second derivatives of the size of the strains.
-    // Directors that spin with the edge turn through all of it, far more than the cell bends.
-    if (!c.holds_section) clamp.free_side = bent_stiffness(kinematics, joint, c.side * omega);
+    // In directors of half the twist the second derivatives of the strains are as small as the
+    // strains, and left out, as they are between two edges. In those that spin with the edge they
+    // are not.
+    if (!c.holds_section) clamp.with_strain = strain_stiffness(kinematics, joint, c.side * omega);
     return clamp;
   }
 
   /// By vector and angle of the edge.
   [[nodiscard]] Eigen::Matrix4d stiffness() const {
     const EdgeFrame::Rotation turn = edge.rotation();
-    return own_stiffness(edge, moment) + turn.transpose() * free_side * turn;
+    return own_stiffness(edge, moment) + turn.transpose() * with_strain * turn;
   }
 };
 

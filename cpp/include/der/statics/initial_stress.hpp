@@ -18,12 +18,12 @@ namespace der {
 /// that turn by omega_a and omega_b makes the quadratic form
 ///   omega_b . (omega_a x M),
 /// and what remains of it where an edge is turned by a force: M across the tangent t couples the
-/// turning of an edge with its angle (EdgeFrame::geometric_stiffness). A clamp that lets the section
-/// turn reads the moment in directors that spin with the edge, which couples spin and bending once
-/// more. The part of an edge that couples the
-/// turning with stretching is left out: it would make a straight beam buckle under a load across it
-/// of about sqrt(EA EI), where terms of second order in the displacement, left out too, cancel it.
-/// In a plane nothing remains of moments, nor where sections do not count.
+/// turning of an edge with its angle (EdgeFrame::geometric_stiffness). A clamp that lets the
+/// section turn reads M in directors that spin with the edge, and the second derivatives of its
+/// strains are not small: they add a part that couples spin and bending. The part that couples the
+/// turning of an edge with its stretching is left out: it would make a straight beam buckle under a
+/// load across it of about sqrt(EA EI), where terms of second order in the displacement, left out
+/// too, cancel it. In a plane nothing remains of moments, nor where sections do not count.
 class InitialStress {
  public:
   /// `displacement` has all degrees of freedom, `here` the frames of the shape itself.

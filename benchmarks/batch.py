@@ -5,7 +5,8 @@
 1. Swings: 1,000 soft rods of 24 elements, clamped at one end, fall for 1 s in 300 steps of
    `implicit_midpoint`: those with which benchmarks/peers.py finds the tip within 1e-3 m of the
    continuum's at 101 times. The error is measured here, too. Swings a second of a loop over
-   `Simulation.step(300)`, which is one C++ loop for each, of a batch on one thread and on two.
+   `Simulation.step(300)`, which is one C++ loop for each, of a batch on one thread and on two. With
+   DER_LOOPS=avx2 members go in four lanes, with DER_LOOPS=avx512 in eight.
 2. One step of all of many short rods: a loop in C++ against `Batch`, by the Google benchmarks
    `batch` and `loop_over_simulations` of der_benchmarks (`--cpp`; left out if it is not built).
 3. Building, memory and resets of members of 51 nodes, of one scene and with a modulus of its own
@@ -70,7 +71,7 @@ def throughput(members: int, repeats: int) -> None:
     """Print swings a second of a loop, of one thread and of two."""
     scene = swing(int(SWING["elements"]))
     steps = FRAMES * steps_per_frame(SWING)
-    print(f"{members} swings of 1 s, error {tip_error(scene):.1e} m:")
+    print(f"{members} swings of 1 s, error {tip_error(scene):.1e} m, loops {der.loops()}:")
     simulations = [der.Simulation(scene) for _ in range(members)]
     start = simulations[0].save_state()
     batches = {threads: der.Batch(scene, members, threads) for threads in (1, 2)}
@@ -103,7 +104,8 @@ def throughput(members: int, repeats: int) -> None:
         for batch in batches.values()
         for i in range(members)
     )
-    print(f"  the same bits: {'yes' if same else 'NO'}")
+    lanes = " and ".join(str(batch.lanes) for batch in batches.values())
+    print(f"  members in lanes: {lanes}; the same bits: {'yes' if same else 'NO'}")
 
 
 def overheads(program: Path, repeats: int) -> None:

@@ -71,6 +71,31 @@ TEST_CASE("members have the bits of simulations on their own, on any number of t
   }
 }
 
+TEST_CASE("members in lanes have the bits of simulations on their own, on any number of threads") {
+  constexpr std::size_t kMembers = 19;
+  const std::string varied_path = "rods.rod.cross_section.stiffness.EI";
+  for (const char* integrator : {"implicit_midpoint", "tr_bdf2"}) {
+    CAPTURE(integrator);
+    const Scenario scene = Scenario::parse(
+        kPlanar, "scene", {{"supports.0.prescribe", "{x: 0}"}, {"time.integrator", integrator}});
+    const Variation variation = varied(varied_path, 1e-2, kMembers);
+    for (const int threads : {1, 2, 4}) {
+      CAPTURE(threads);
+      Batch batch(scene, kMembers, {variation}, threads, no_beat);
+      CHECK(batch.lanes() >= 4);
+      batch.step(20, no_beat);
+      batch.reset(3, nullptr);
+      batch.step(5, no_beat);
+      for (std::size_t i = 0; i < kMembers; ++i) {
+        CAPTURE(i);
+        Simulation alone(with_values(scene, {{varied_path, variation.values[i]}}));
+        for (int step = 0; step < (i == 3 ? 5 : 25); ++step) alone.step();
+        CHECK(difference(batch, i, alone) == "");
+      }
+    }
+  }
+}
+
 TEST_CASE("members of one scene share their model") {
   const Scenario scene = Scenario::parse(kPlanar);
   Batch batch(scene, 3, {}, 2, no_beat);

@@ -219,6 +219,58 @@ def test_members_of_many_kinds_at_once() -> None:
         assert state_of(batch, member) == state_of(one), member
 
 
+@pytest.mark.parametrize(
+    ("load", "path", "values"),
+    [
+        (
+            {"at": "end", "force": [0, 0.1]},
+            "loads.0.point_force.at",
+            ["start", "end", 0.4, "middle"],
+        ),
+        ({"at": 0.43, "force": [0, 0.1]}, "rods.rod.to", [[1, 0], [0.6, 0], [2, 0], [0, 3]]),
+        ({"force": [0, 1.0], "from": 0.2}, "loads.0.distributed_force.from", [0.1, 0.2, 0.5, 0.8]),
+    ],
+    ids=["another node", "another length", "another part"],
+)
+def test_loads_act_on_other_nodes_in_each_member(load: Scene, path: str, values: list[Any]) -> None:
+    kind = "point_force" if "at" in load else "distributed_force"
+    scene = swing(loads=[{"name": "push", kind: {"rod": "rod", **load}}])
+    batch = der.Batch(scene, 8, 1, vary={path: values * 2})
+    assert batch.lanes == WIDEST
+    batch.set("push.x", np.linspace(0.0, 0.2, 8))
+    batch.step(9)
+    for member, value in enumerate(values * 2):
+        one = alone(scene, **{path: value})
+        one.set("push.x", np.linspace(0.0, 0.2, 8)[member])
+        one.step(9)
+        assert state_of(batch, member) == state_of(one), member
+
+
+def test_supports_that_change_places_go_one_by_one() -> None:
+    """The same components are held, but not in the same order."""
+    scene = swing(
+        supports=[
+            {"name": "a", "rod": "rod", "at": "start", "fix": ["y"], "prescribe": {"x": 0}},
+            {"name": "b", "rod": "rod", "at": "end", "fix": ["y"], "prescribe": {"x": 0}},
+        ]
+    )
+    places = ["start", "end"] * 4
+    batch = der.Batch(
+        scene, 8, 1, vary={"supports.a.at": places, "supports.b.at": places[1:] + places[:1]}
+    )
+    assert batch.lanes == 1
+    batch.prescribe(0, x=0.01)
+    batch.step(5)
+    for member in range(8):
+        one = alone(
+            scene,
+            **{"supports.a.at": places[member], "supports.b.at": (places[1:] + places[:1])[member]},
+        )
+        one.prescribe(0, x=0.01)
+        one.step(5)
+        assert state_of(batch, member) == state_of(one), member
+
+
 @pytest.mark.parametrize("integrator", ["implicit_midpoint", "tr_bdf2", "sdirk5"])
 def test_programs_set_values_of_each_member(integrator: str) -> None:
     scene = copy.deepcopy(SCENES["what programs set"])

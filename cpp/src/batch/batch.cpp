@@ -195,34 +195,35 @@ void Batch::step(std::int64_t count, const Beat& beat) {
 
 void Batch::step_in_lanes(std::int64_t count, const Beat& beat) {
   const auto lanes = static_cast<std::size_t>(groups_->lanes());
-  team_.for_each((size() + lanes - 1) / lanes,
-                 [&](std::size_t group, bool on_caller, const ThreadTeam::Call& call) {
-                   std::int64_t left = count;
-                   const auto goes_on = [&] {
-                     if (on_caller) beat_if_due(beat);
-                     return left-- > 0 && !call.is_given_up();
-                   };
-                   std::vector<std::size_t> stepped;
-                   const auto takes_part = [&](std::size_t number) {
-                     if (failed_[number] != 0) return false;
-                     stepped.push_back(number);
-                     take_rows(number);
-                     return true;
-                   };
-                   const auto write_all = [&] {
-                     for (const std::size_t number : stepped) write_rows(number);
-                   };
-                   try {
-                     groups_->step(
-                         group, takes_part, goes_on,
-                         [&](std::size_t number, const Error& error) { fail(number, error); });
-                   } catch (...) {
-                     write_all();
-                     throw;
-                   }
-                   write_all();
-                 },
-                 beat);
+  const auto work = [&](std::size_t group, bool on_caller, const ThreadTeam::Call& call) {
+    std::int64_t left = count;
+    const auto between_steps = [&] {
+      if (on_caller) beat_if_due(beat);
+    };
+    const auto goes_on = [&] {
+      between_steps();
+      return left-- > 0 && !call.is_given_up();
+    };
+    std::vector<std::size_t> stepped;
+    const auto takes_part = [&](std::size_t number) {
+      if (failed_[number] != 0) return false;
+      stepped.push_back(number);
+      take_rows(number);
+      return true;
+    };
+    const auto write_all = [&] {
+      for (const std::size_t number : stepped) write_rows(number);
+    };
+    try {
+      groups_->step(group, takes_part, goes_on, between_steps,
+                    [&](std::size_t number, const Error& error) { fail(number, error); });
+    } catch (...) {
+      write_all();
+      throw;
+    }
+    write_all();
+  };
+  team_.for_each((size() + lanes - 1) / lanes, work, beat);
 }
 
 std::vector<std::optional<EquilibriumReport>> Batch::equilibrium(bool leave_saddles,

@@ -37,13 +37,12 @@ void MemberControls<T>::set_force(const MemberVector<T>& extra_force,
       force[i] = model_.gravity_force[i] + model_.dead_force[i] + extra_force[i];
     }
   });
-  const auto& controlled = model_.structure().controlled_forces;
-  for (std::size_t i = 0; i < controlled.size(); ++i) {
-    T& sum = force[controlled[i].dof];
-    for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
-      const double weight = model_.models[to_size(lane)]->controlled_forces[i].weight;
-      const double value = here_[to_size(lane)].controls[controlled[i].control];
-      sum.set_lane(lane, sum.lane(lane) + weight * value);
+  // They may act on other nodes in each member.
+  for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
+    for (const ControlledForce& each : model_.models[to_size(lane)]->controlled_forces) {
+      T& sum = force[each.dof];
+      const double value = here_[to_size(lane)].controls[each.control];
+      sum.set_lane(lane, sum.lane(lane) + each.weight * value);
     }
   }
 }

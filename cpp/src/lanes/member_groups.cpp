@@ -70,9 +70,10 @@ class Session {
     }
   }
 
-  /// Does a step. False: nobody takes part any more.
-  template <class Fail>
-  bool step(const Fail& fail) {
+  /// Does a step. False: nobody takes part any more. Steps that members do alone take a while:
+  /// `between_steps()` is called before each.
+  template <class Fail, class BetweenSteps>
+  bool step(const Fail& fail, const BetweenSteps& between_steps) {
     std::array<double, kLanes<T>> ends{};
     T dt = 1.0;
     LaneSet together;
@@ -88,15 +89,18 @@ class Session {
     const LaneSet done = together.empty() ? together : stepper_.step(together, dt, state_);
     LaneSet due;
     for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
-      if (!taking_part_.has(lane)) continue;
-      if (!done.has(lane)) {
-        attempt(lane, fail, [&] { step_alone(lane); });
-      } else if (simulations_[to_size(lane)]->enter_step(ends[to_size(lane)],
-                                                         stepper_.newton_iterations(lane))) {
+      if (done.has(lane) && simulations_[to_size(lane)]->enter_step(
+                                ends[to_size(lane)], stepper_.newton_iterations(lane))) {
         due.add(lane);
       }
     }
+    const LaneSet others = taking_part_.without(done);
     if (!due.empty()) watch_energies(due, fail);
+    for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
+      if (!others.has(lane)) continue;
+      between_steps();
+      attempt(lane, fail, [&] { step_alone(lane); });
+    }
     return !taking_part_.empty();
   }
 
@@ -157,7 +161,8 @@ class Groups final : public MemberGroups {
   [[nodiscard]] int lanes() const override { return LaneTraits<T>::kCount; }
 
   void step(std::size_t number, const std::function<bool(std::size_t)>& takes_part,
-            const std::function<bool()>& goes_on, const Fail& fail) override {
+            const std::function<bool()>& goes_on, const std::function<void()>& between_steps,
+            const Fail& fail) override {
     const std::size_t first = number * kLanes<T>;
     const std::size_t count = std::min(kLanes<T>, members_.size() - first);
     LaneSet lanes;
@@ -173,7 +178,7 @@ class Groups final : public MemberGroups {
       const auto fail_in_lane = [&](int lane, const Error& error) {
         fail(first + to_size(lane), error);
       };
-      while (goes_on() && session.step(fail_in_lane)) {
+      while (goes_on() && session.step(fail_in_lane, between_steps)) {
       }
     }
     give_back(std::move(workspace));
@@ -233,12 +238,23 @@ class Groups final : public MemberGroups {
   std::vector<std::unique_ptr<Workspace<T>>> idle_;
 };
 
+/// Whether supports hold the same degrees of freedom in the same order, and they and gravity follow
+/// the same tables.
+bool follow_alike(const Model& first, const Model& other) {
+  return first.tables.size() == other.tables.size() &&
+         first.gravity_controls == other.gravity_controls &&
+         std::equal(first.held.begin(), first.held.end(), other.held.begin(), other.held.end(),
+                    [](const HeldDof& a, const HeldDof& b) {
+                      return a.dof == b.dof && a.displacement == b.displacement;
+                    });
+}
+
 /// Whether the steps of a member are of the same kind as those of the first one.
 bool are_alike(const Simulation& first, const Simulation& other) {
   return first.integrator().name == other.integrator().name &&
          first.linear_solver() == other.linear_solver() &&
-         first.model().damped == other.model().damped && suits_lanes(other.model()) &&
-         !other.adaptive();
+         first.model().damped == other.model().damped && !other.adaptive() &&
+         suits_lanes(other.model()) && follow_alike(first.model(), other.model());
 }
 
 /// Whether there are steps in lanes for members like this one.

@@ -57,13 +57,6 @@ REFUSED: dict[str, tuple[Make, str]] = {
     "refused by name",
     values={name: make for name, (make, _) in REFUSED.items()},
     expected=lambda s: REFUSED[s.label][1],
-    limits=(
-        Limit(
-            "Refused by another name, which rounding decides.",
-            ("too_fine", "not_converged"),
-            lambda s: s.value is _crushed,
-        ),
-    ),
 )
 def no_equilibrium(s: Setting) -> Reading:
     der.run(s.value(s))

@@ -31,9 +31,11 @@ class MemberGroups {
   /// Called for a member that takes part no more, as `Simulation::step` throws for it.
   using Fail = std::function<void(std::size_t member, const Error& error)>;
   /// Does steps of the members of a group for which `takes_part(member)`, as long as `goes_on()`.
-  /// Whatever throws leaves each of them between two of its steps.
+  /// `between_steps()` is called before each step that a member does alone. Whatever throws leaves
+  /// each of them between two of its steps.
   virtual void step(std::size_t group, const std::function<bool(std::size_t)>& takes_part,
-                    const std::function<bool()>& goes_on, const Fail& fail) = 0;
+                    const std::function<bool()>& goes_on,
+                    const std::function<void()>& between_steps, const Fail& fail) = 0;
 };
 
 }  // namespace der

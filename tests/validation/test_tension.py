@@ -173,3 +173,32 @@ def test_extreme_of_a_position_within_the_outermost_edge():
     }
     low = der.run(der.Scenario.from_dict(scene)).probes["low"][-1]
     assert low == pytest.approx(0.0, abs=1e-4)
+
+
+@pytest.mark.parametrize("model", ["planar", "spatial_bend"])
+def test_tension_of_a_cable_that_is_given_a_natural_curvature(model):
+    """A rod without bending stiffness hangs from its start: half its weight is at its middle."""
+    scene = {
+        "title": "Cable",
+        "model": model,
+        "rods": [
+            {
+                "name": "rod",
+                "nodes": 9,
+                "from": [0, 0, 0],
+                "to": [0, -1, 0],
+                "natural_curvature": -3.0,
+                "cross_section": {"stiffness": {"EA": 1e4, "EI": 0, "mass_per_length": 0.2}},
+            }
+        ],
+        "supports": [{"rod": "rod", "at": "start", "fix": ["x", "y", "z"]}],
+        "loads": [{"gravity": [0, -10, 0]}],
+        "analysis": "static",
+        "output": {"probes": {"middle": {"rod": "rod", "at": 0.5, "quantity": "tension"}}},
+    }
+    if model == "planar":
+        scene["rods"][0].update({"from": [0, 0], "to": [0, -1]})
+        scene["supports"][0]["fix"] = ["x", "y"]
+        scene["loads"] = [{"gravity": [0, -10]}]
+    tension = der.run(der.Scenario.from_dict(scene)).probes["middle"][-1]
+    assert tension == pytest.approx(1.0, rel=1e-6)

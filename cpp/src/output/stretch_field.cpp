@@ -67,6 +67,8 @@ class EffectiveVectors {
 class LeaningEdges {
  public:
   LeaningEdges(const RodLayout& rod, const Model& model) : rod_(rod), actuated_(rod) {
+    const bool bends = model.dimension == 2 ? rod.EI > 0.0 : !rod.joints.empty();
+    if (!bends) return;
     for (const Clamp& clamp : rod.clamps) {
       for (const Index edge : {rod.edge_before(clamp.place), rod.edge_after(clamp.place)}) {
         if (edge < 0) continue;

@@ -122,21 +122,38 @@ double reach(const RodLayout& rod, Index place, Index edge) {
   return edge == place ? along : rod.edge_length[to_size(edge)] - along;
 }
 
-/// The tangent at a place on the side of `edge`: on the line of the directions of this edge and the
-/// one on the other side, at an end or a corner on that of the next one.
-OutOfPlaneModel::Tangent tangent_at(const RodLayout& rod, Index place, Index edge,
-                                    const Model& model) {
+/// The tangent at a place as the rod on the side of `edge` alone has it: on the line of the
+/// directions of this edge and the next one on its side.
+OutOfPlaneModel::Tangent one_sided_tangent_at(const RodLayout& rod, Index place, Index edge,
+                                              const Model& model) {
   const Index number = rod.first_edge + edge;
-  const Index other = edge == place ? rod.edge_before(place) : rod.edge_after(place);
-  const double own = reach(rod, place, edge);
-  if (other >= 0 && !is_corner(rod, place, model)) {
-    return {number, rod.first_edge + other, own / (own + reach(rod, place, other))};
-  }
   const Index inner = rod.position(edge == place ? edge + 1 : edge);
   const Index next = edge == place ? rod.edge_after(inner) : rod.edge_before(inner);
-  if (next < 0 || is_corner(rod, inner, model)) return {number, number, 0.0};
+  if (next < 0 || is_corner(rod, inner, model)) return {number, number};
   const double between = reach(rod, inner, edge) + reach(rod, inner, next);
-  return {number, rod.first_edge + next, -own / between};
+  return {number, rod.first_edge + next, -reach(rod, place, edge) / between};
+}
+
+/// The tangent at a place: between the directions of `edge` and of the one on the other side, as
+/// the rod bends there in one piece; of what is drawn, the mean of both sides. At an end or a
+/// corner that of the one side.
+OutOfPlaneModel::Tangent tangent_at(const RodLayout& rod, Index place, Index edge,
+                                    const Model& model) {
+  const Index other = edge == place ? rod.edge_before(place) : rod.edge_after(place);
+  const OutOfPlaneModel::Tangent own_side = one_sided_tangent_at(rod, place, edge, model);
+  if (other < 0 || is_corner(rod, place, model)) return own_side;
+  const OutOfPlaneModel::Tangent other_side = one_sided_tangent_at(rod, place, other, model);
+  const double own = reach(rod, place, edge);
+  OutOfPlaneModel::Tangent tangent{own_side.edge, other_side.edge,
+                                   own / (own + reach(rod, place, other))};
+  const bool both_continue =
+      own_side.neighbour != own_side.edge && other_side.neighbour != other_side.edge;
+  if (!both_continue) return tangent;
+  const Vector& drawn = model.drawn_frames;
+  const double first = own_side.direction(drawn);
+  const double mean = first + 0.5 * nearest_turn(other_side.direction(drawn) - first, 0.0);
+  tangent.lean = nearest_turn(mean - tangent.direction(drawn), 0.0);
+  return tangent;
 }
 
 /// The components towards the two directors of the vector of a section that points along z.
@@ -249,7 +266,7 @@ double angle_about_z(const Vec3& from, const Vec3& to) {
 double OutOfPlaneModel::Tangent::direction(const Vector& values) const {
   const Vec3 own = FrameBlock::of(edge).tangent(values);
   const Vec3 next = FrameBlock::of(neighbour).tangent(values);
-  return std::atan2(own.y(), own.x()) + share * angle_about_z(own, next);
+  return std::atan2(own.y(), own.x()) + share * angle_about_z(own, next) + lean;
 }
 
 double OutOfPlaneModel::ForkAxis::direction(const Vector& values) const {

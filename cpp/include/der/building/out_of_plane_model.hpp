@@ -27,6 +27,8 @@ struct OutOfPlaneModel {
     Index edge = 0;
     Index neighbour = 0;  ///< the edge itself: the tangent has its direction
     double share = 0.0;   ///< of the turn from the edge to its neighbour
+    /// Angle [rad] by which the tangent as drawn lies beyond that, where the drawn curvature jumps.
+    double lean = 0.0;
 
     /// Angle [rad] from the x axis; `values` begin with the blocks of all edges.
     [[nodiscard]] double direction(const Vector& values) const;

@@ -130,13 +130,30 @@ std::string attribute_name(hid_t object, unsigned number) {
   return name.data();
 }
 
-/// Writes the same bytes into all values of an attribute or dataset, if these are numbers.
-std::vector<std::uint64_t> repeated(hid_t type, hid_t space, std::uint64_t value) {
+/// How many values of so many bytes an attribute or dataset has; 0 if they are too many to write.
+std::size_t num_values(hid_t space, std::size_t bytes) {
   const hssize_t count = H5Sget_simple_extent_npoints(space);
+  if (count < 0 || bytes == 0 || static_cast<hsize_t>(count) > kMostBytes / bytes) return 0;
+  return static_cast<std::size_t>(count);
+}
+
+/// The same text, cut or filled up to its type's length, for all values of an attribute.
+std::string repeated_text(hid_t type, hid_t space, std::uint64_t number) {
+  const std::size_t length = H5Tget_size(type);
+  const std::size_t count = num_values(space, length);
+  if (count == 0) return {};
+  std::string text = word(number);
+  text.resize(length);
+  std::string all;
+  for (std::size_t i = 0; i < count; ++i) all += text;
+  return all;
+}
+
+/// The same bytes for all values of an attribute or dataset, if these are numbers.
+std::vector<std::uint64_t> repeated(hid_t type, hid_t space, std::uint64_t value) {
   const H5T_class_t kind = H5Tget_class(type);
-  if (count < 0 || (kind != H5T_INTEGER && kind != H5T_FLOAT)) return {};
-  if (static_cast<hsize_t>(count) > kMostBytes / sizeof(value)) return {};
-  return std::vector<std::uint64_t>(static_cast<std::size_t>(count), value);
+  if (kind != H5T_INTEGER && kind != H5T_FLOAT) return {};
+  return std::vector<std::uint64_t>(num_values(space, sizeof(value)), value);
 }
 
 void set_attribute(hid_t object, const Edit& edit) {
@@ -146,9 +163,8 @@ void set_attribute(hid_t object, const Edit& edit) {
   const Open type(H5Aget_type(attribute), H5Tclose);
   const Open space(H5Aget_space(attribute), H5Sclose);
   if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0) {
-    std::string text = word(edit.value);
-    text.resize(H5Tget_size(type));
-    H5Awrite(attribute, type, text.data());
+    const std::string texts = repeated_text(type, space, edit.value);
+    if (!texts.empty()) H5Awrite(attribute, type, texts.data());
   } else if (const auto values = repeated(type, space, edit.value); !values.empty()) {
     H5Awrite(attribute, type, values.data());
   }

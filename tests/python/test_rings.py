@@ -117,6 +117,20 @@ def test_refined_corners_of_rings_stay_corners(first):
     assert on_side.all()
 
 
+@pytest.mark.parametrize("first", [0, 3])
+def test_refined_straight_sides_of_rings_stay_straight(first):
+    """Two straight sides and two half circles, from a junction on and from within a side."""
+    angle = np.linspace(0.0, np.pi, 13)[:-1]
+    arc = np.column_stack([1.0 + 0.3 * np.sin(angle), -0.3 * np.cos(angle)])
+    side = np.column_stack([np.arange(8) / 8, np.full(8, -0.3)])
+    half = np.vstack([side, arc])
+    ring = np.vstack([half, [1.0, 0.0] - half])
+    fine = np.roll(resample_ring(np.roll(ring, -first, axis=0), Fraction(4)), 4 * first, axis=0)
+    assert fine[::4] == pytest.approx(ring, abs=1e-12)
+    assert fine[:33, 1] == pytest.approx(-0.3, abs=1e-12)
+    assert np.linalg.norm(fine[32:81] - [1.0, 0.0], axis=1) == pytest.approx(0.3, abs=1e-4)
+
+
 def test_places_on_a_refined_ring():
     scene = pressed()
     scene["rods"][0]["natural_twist"] = np.cos(2 * np.pi * np.arange(COUNT) / COUNT).tolist()

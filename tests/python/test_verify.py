@@ -13,7 +13,12 @@ from der.accuracy.error_bars import ErrorEstimate, estimate_error
 from der.accuracy.event_matching import match_places
 from der.accuracy.probe_extremes import parabola_top, probe_values
 from der.accuracy.refinement import rods_that_cannot_be_refined, with_elements, with_time
-from der.accuracy.resampling import find_corners, resample_line, resample_list
+from der.accuracy.resampling import (
+    find_corners,
+    find_curvature_jumps,
+    resample_line,
+    resample_list,
+)
 from der.accuracy.static_verifier import StaticVerifier
 from der.accuracy.verification import Verification, VerifiedValue
 from der.accuracy.verification_runs import VerificationRuns
@@ -70,6 +75,14 @@ def half_circle(arm):
     for key in ("nodes", "from", "to"):
         del arm["rods"][0][key]
     return arm
+
+
+def crook(edges):
+    """A straight leg of 0.5 m that runs into a quarter arc of radius 0.3 m."""
+    angle = np.linspace(0.0, np.pi / 2, edges + 1)[1:]
+    leg = np.column_stack([np.linspace(0.0, 0.5, edges + 1), np.zeros(edges + 1)])
+    arc = np.column_stack([0.5 + 0.3 * np.sin(angle), 0.3 - 0.3 * np.cos(angle)])
+    return np.vstack([leg, arc])
 
 
 @pytest.fixture
@@ -270,6 +283,45 @@ def test_a_list_of_natural_twists_is_refined():
         scene = {"rods": [rod | {"natural_twist": twist}], "analysis": "static"}
         refined = with_elements(der.Scenario.from_dict(scene), 2).to_dict()["rods"][0]
         assert np.allclose(refined["natural_twist"], finer)
+
+
+@pytest.mark.parametrize("edges", [5, 10, 20])
+def test_jumps_of_the_curvature_stay_jumps(edges):
+    """The straight leg stays straight, and the arc is left by what a spline leaves a circle."""
+    points = crook(edges)
+    assert find_curvature_jumps(points) == [edges]
+    finer = resample_line(points, Fraction(4))
+    assert finer[: 4 * edges + 1, 1] == pytest.approx(0.0, abs=1e-12)
+    radii = np.linalg.norm(finer[4 * edges :] - [0.5, 0.3], axis=1)
+    turn = np.pi / 2 / edges
+    assert radii == pytest.approx(0.3, abs=0.3 * turn**4 / 30)
+
+
+def test_smooth_curves_have_no_jumps_of_the_curvature():
+    x = np.linspace(0.0, 4 * np.pi, 41)
+    ellipse = np.column_stack([2 * np.cos(x / 2), np.sin(x / 2)])
+    helix = np.column_stack([np.cos(x), np.sin(x), 0.3 * x])
+    for curve in (np.column_stack([x, np.sin(x)]), ellipse, helix, crook(20)[:21]):
+        assert find_curvature_jumps(curve) == []
+    # An arc has none either where the points are rounded.
+    rounded = np.round(crook(20)[20:], 7)
+    assert find_curvature_jumps(rounded) == []
+
+
+def test_bars_hold_where_the_curvature_jumps(arm):
+    """Hardly loaded: the tangent at the junction is that of the straight leg."""
+    rod = arm["rods"][0]
+    for key in ("nodes", "from", "to"):
+        del rod[key]
+    arm["loads"][0]["point_force"]["force"] = [0, 1e-9]
+    probe = {"rod": "arm", "at": {"node": 10}, "quantity": "slope"}
+    arm["output"]["probes"] = {"slope": probe}
+    rod["points"] = crook(10).tolist()
+    verification = der.verify(arm)
+    slope = verification["slope"]
+    assert not verification.flagged
+    assert abs(slope.value) < 1e-8
+    assert slope.error_bar < 3e-4  # 0.021 with one spline through all points, which rounds it
 
 
 def test_coarser_points_drop_nodes_but_no_corner():

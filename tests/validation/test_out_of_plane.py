@@ -212,6 +212,109 @@ def test_beam_that_spins_in_a_clamp(fitted_order, spins, in_space):
     assert abs(errors[-1]) < 3e-3
 
 
+SPINS = [{**START, "clamp": "tangent"}]
+
+
+def buckling_out_of_plane(scene):
+    return quiet_run({**scene, "analysis": "buckling"}).summary["out_of_plane"]
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.7])
+def test_column_that_spins_in_its_clamp(fitted_order, angle):
+    """The spin has no stiffness, and the load does not act on it: Euler's load about the weak axis
+    all the same, which the clamp that holds the section has, too."""
+    weak = 0.1
+    exact = weak * (np.pi / 2) ** 2
+    along = np.array([np.cos(angle), np.sin(angle)])
+    errors = []
+    for n in [*SIZES, 160]:
+        factors = []
+        for supports in (SPINS, CANTILEVER):
+            scene = strip(n, supports, tip_force(*-along), weak, 0.1)
+            scene["rods"][0]["to"] = along.tolist()
+            factors.append(buckling_out_of_plane(scene)["load_factor"])
+        assert factors[0] == pytest.approx(factors[1], rel=1e-8)
+        errors.append(factors[0] / exact - 1)
+    assert fitted_order(STEPS, errors[: len(SIZES)]) > 1.9
+    assert abs(errors[-1]) < 1e-4
+
+
+@pytest.mark.parametrize("others", [1, 3])
+def test_a_rod_that_spins_beside_another_takes_no_verdict_away(others):
+    """And has no part in it: no load acts on it."""
+    alone = strip(40, CANTILEVER, tip_force(0, -0.5), 0.1, 0.1)
+    factor = buckling_out_of_plane(alone)["load_factor"]
+    assert factor == pytest.approx(4.0126 * 0.1 / 0.5, rel=1e-3)  # Prandtl and Michell
+    both = {key: list(alone[key]) for key in ("rods", "supports", "loads")}
+    for y in range(1, others + 1):
+        name = f"other{y}"
+        both["rods"].append({**alone["rods"][0], "name": name, "from": [0, y], "to": [1, y]})
+        both["supports"].append({**SPINS[0], "rod": name})
+    assert buckling_out_of_plane(both)["load_factor"] == pytest.approx(factor, rel=1e-8)
+
+
+def test_more_spins_than_are_looked_at():
+    scene = strip(4, CANTILEVER, tip_force(0, -0.5), 0.1, 0.1)
+    for y in range(1, 50):
+        name = f"other{y}"
+        scene["rods"].append({**scene["rods"][0], "name": name, "from": [0, y], "to": [1, y]})
+        scene["supports"] = [*scene["supports"], {**SPINS[0], "rod": name}]
+    assert "too many of its rods are free to spin" in buckling_out_of_plane(scene)["not_tested"]
+
+
+def test_a_spin_that_the_loads_drive_is_not_decided():
+    """They bend the rod, which then may spin to its weak axis: a term of second order in them."""
+    scene = strip(20, SPINS, tip_force(0, -1), 0.1, 0.1)
+    verdict = buckling_out_of_plane(scene)
+    assert verdict["stability"] == "not_tested"
+    assert "load_factor" not in verdict
+    assert "of rod 'rod'" in verdict["not_tested"]
+    assert "hold its section ('clamp: true')" in verdict["not_tested"]
+
+
+def ring_on_two_pins(node, force, **stiffness):
+    turn = 2 * np.pi * np.arange(40) / 40
+    rod = {
+        "name": "rod",
+        "points": np.column_stack([np.cos(turn), np.sin(turn)]).tolist(),
+        "closed": True,
+        "cross_section": {"stiffness": {**ARC, **stiffness}},
+    }
+    far = {"rod": "rod", "at": {"node": 20}}
+    supports = [{"rod": "rod", "at": {"node": 0}, "fix": ["x", "y"]}, {**far, "fix": ["y"]}]
+    loads = [{"point_force": {"rod": "rod", "at": {"node": node}, "force": force}}]
+    return {"rods": [rod], "supports": supports, "loads": loads, "analysis": "static"}
+
+
+def test_a_motion_that_nothing_resists_and_the_loads_drive_has_the_factor_zero():
+    """A ring that may turn about the line between its pins, under a force at its top: it falls
+    over, and hangs under one that pulls it up."""
+    scene = {**ring_on_two_pins(10, [0, -1]), "analysis": "buckling"}
+    with pytest.warns(der.DerWarning, match="leaves its plane under any load"):
+        verdict = der.run(scene).summary["out_of_plane"]
+    assert verdict["load_factor"] == 0.0
+    hanging = buckling_out_of_plane(ring_on_two_pins(10, [0, 1]))
+    assert "is not decided by linear theory" in hanging["not_tested"]
+
+
+def test_a_motion_that_nothing_resists_and_the_loads_leave_alone_has_no_part():
+    """The same ring pressed along that line. A section that is too stiff to buckle out of the plane
+    by itself leaves nothing else there."""
+    weak, stiff = (
+        buckling_out_of_plane(ring_on_two_pins(20, [1, 0], EI1=EI, GJ=EI)) for EI in (0.01, 1.0)
+    )
+    assert stiff["load_factor"] == pytest.approx(100 * weak["load_factor"], rel=1e-3)
+
+
+def test_a_shape_that_is_unstable_without_loads_has_no_factor():
+    """A rod of a natural curvature, held straight by its supports, turns sideways."""
+    loads = [{"point_force": {"rod": "rod", "at": "middle", "force": [1, 0]}}]
+    scene = strip(20, [*CANTILEVER, {**END, "clamp": True}], loads, 0.02, 0.02)
+    scene["rods"][0] |= {"natural_curvature": 6.0}
+    verdict = buckling_out_of_plane(scene)
+    assert "without its loads" in verdict["not_tested"]
+
+
 def test_forks_turn_with_the_rod():
     """A beam drawn straight and bent by a load, and one that is drawn as it is bent: the same."""
     loads = [{"point_force": {"rod": "rod", "at": {"node": 8}, "force": [0, -6]}}]
@@ -547,18 +650,7 @@ def test_a_ring_may_begin_at_the_corner_that_is_held():
 @pytest.mark.parametrize("force", [0.0, 0.1])
 def test_a_ring_on_two_pins_turns_about_the_line_between_them(force):
     """Both tangents lie across that line: nothing holds the ring against turning."""
-    turn = 2 * np.pi * np.arange(40) / 40
-    rod = {
-        "name": "rod",
-        "points": np.column_stack([np.cos(turn), np.sin(turn)]).tolist(),
-        "closed": True,
-        "cross_section": {"stiffness": ARC},
-    }
-    far = {"rod": "rod", "at": {"node": 20}}
-    supports = [{"rod": "rod", "at": {"node": 0}, "fix": ["x", "y"]}, {**far, "fix": ["y"]}]
-    loads = [{"point_force": {**far, "force": [force, 0]}}]
-    scene = {"rods": [rod], "supports": supports, "loads": loads, "analysis": "static"}
-    verdict = planar_verdict(scene)
+    verdict = planar_verdict(ring_on_two_pins(20, [force, 0]))
     assert verdict.stability == "neutral"
     assert verdict.neutral_directions == 1
 

@@ -3,7 +3,7 @@
 import der
 import numpy as np
 import pytest
-from references.kirchhoff_rod import Held, Rod, natural_shape, solve
+from references.kirchhoff_rod import Held, Rod, natural_shape, rotation, solve
 from references.writhe import figure_eight, torus_knot
 from scipy.integrate import solve_bvp
 from spatial_scenes import critical, measured, rod_through, section
@@ -212,6 +212,32 @@ def test_writhe_of_polygons(spatial_reference, name, count):
     assert der.run(scene).probes["writhe"][-1] == pytest.approx(exact, abs=1e-11)
 
 
+@pytest.mark.parametrize("tilt", [0.0, 0.3])
+@pytest.mark.parametrize("count", [10, 20, 40])
+@pytest.mark.parametrize("curve", ["doubly covered", "figure eight"])
+def test_flat_rings_that_cross_themselves_have_no_writhe(curve, count, tilt):
+    """Only the directions of their plane show a crossing. One that is lifted counts in full."""
+    angle = 2 * np.pi * np.arange(count) / count + 0.01
+    if curve == "doubly covered":
+        points = np.column_stack([np.cos(2 * angle), np.sin(2 * angle), 0 * angle])
+    else:
+        points = np.column_stack([np.sin(angle), np.sin(angle) * np.cos(angle), 0 * angle])
+    turn, _ = np.linalg.qr(np.eye(3) + tilt * np.random.default_rng(2).normal(size=(3, 3)))
+
+    def writhe(lift):
+        lifted = points + np.outer(lift * np.cos(angle), np.eye(3)[2])
+        probes = {name: {"rod": "rod", "quantity": name} for name in ("writhe", "link")}
+        scene = ring_through(
+            (lifted + 1) @ turn, section(EI=1.0, GJ=1.0), output={"probes": probes}
+        )
+        return float(der.Simulation(scene).probes["writhe"])
+
+    assert writhe(0.0) == pytest.approx(0.0, abs=1e-12)
+    if curve == "figure eight":
+        above, below = writhe(1e-9), writhe(-1e-9)
+        assert [abs(above), above + below] == pytest.approx([1.0, 0.0], abs=1e-5)
+
+
 def test_link_is_kept():
     """A twisted ring that buckles in a motion: its twist becomes writhe."""
     turns = 3
@@ -274,6 +300,70 @@ def test_link_of_directors_that_close():
 
 def strip(**stiffnesses):
     return section(EA=1e4, EI1=3.0, EI2=1.0, GJ=0.6, rotary_inertia=0.01, **stiffnesses)
+
+
+TILT, _ = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))
+SKEW = np.array([0.9, 1.0, 1.0])
+
+
+def first_director(points, director=SKEW):
+    simulation = der.Simulation(
+        ring_through(np.array(points) @ TILT.T, strip(director=TILT @ director))
+    )
+    return TILT.T @ simulation.directors[0]
+
+
+def across(vector, tangent):
+    tangent = tangent / np.linalg.norm(tangent)
+    rest = vector - tangent * (vector @ tangent)
+    return rest / np.linalg.norm(rest)
+
+
+@pytest.mark.parametrize("edges", [1, 2, 8])
+def test_director_of_a_ring_that_starts_at_a_corner(edges):
+    """It stands across the side that begins there, as in an open rod, and in a ring that starts on
+    that side."""
+    corners = np.array([[0, 0, 0], [1, 0, 0], [1.2, 1, 0], [0, 1, 0.0]])
+    sides = zip(corners, np.roll(corners, -1, axis=0), strict=True)
+    points = np.concatenate([np.linspace(a, b, edges + 1)[:-1] for a, b in sides])
+    exact = across(SKEW, corners[1])
+    assert first_director(points) == pytest.approx(exact, abs=1e-12)
+    if edges > 1:
+        assert first_director(np.roll(points, -1, axis=0)) == pytest.approx(exact, abs=1e-12)
+    upright = ring_through(points @ TILT.T, strip())
+    exact = across(np.eye(3)[2], TILT @ corners[1])
+    assert der.Simulation(upright).directors[0] == pytest.approx(exact, abs=1e-12)
+
+
+def test_director_of_a_ring_that_starts_where_its_curvature_jumps():
+    """A stadium of two sides of length 1 and two half circles: at the begin of a side, and at that
+    of a half circle, whose first edge leans against the tangent there."""
+    exact = across(SKEW, np.eye(3)[0])
+    for count in (8, 32):
+        s, radius = np.arange(count) / count, 0.4
+        side = np.column_stack([s, 0 * s - radius, 0 * s])
+        arc = [1, 0, 0] + radius * np.column_stack([np.sin(np.pi * s), -np.cos(np.pi * s), 0 * s])
+        half = np.concatenate([side, arc])
+        points = np.concatenate([half, [1, 0, 0] - half])
+        assert first_director(points) == pytest.approx(exact, abs=1e-12)
+        leaning = rotation((0, 0, 1), 0.5 * np.pi / count) @ exact
+        found = first_director(np.roll(points, -count, axis=0))
+        assert found == pytest.approx(leaning, abs=1e-12)
+
+
+def test_director_of_a_smooth_ring():
+    """Across the circle through the start and the nodes beside it, wherever the start is."""
+    angle = 2 * np.pi * np.arange(30) / 30
+    points = np.column_stack([2 * np.cos(angle), np.sin(angle), 0 * angle])
+    for first in range(30):
+        ring = np.roll(points, -first, axis=0)
+        before, after = ring[0] - ring[-1], ring[1] - ring[0]
+        lengths = np.linalg.norm([before, after], axis=1)
+        turn = np.arctan2(np.cross(before, after)[2], before @ after)
+        # The tangent turns in proportion to the length between the middles of the two edges.
+        lean = rotation((0, 0, 1), turn * lengths[1] / lengths.sum())
+        exact = lean @ across(SKEW, lean.T @ after)
+        assert first_director(ring) == pytest.approx(exact, abs=1e-12)
 
 
 def test_twisted_ring_stays_at_rest():

@@ -1,8 +1,9 @@
 """Springs and foundations in space.
 
 References: beam theory for small loads; `references/springs.py` for large ones, of an elastically
-clamped elastica; `references/curved_twisted_rod.py` for curved rods; the planar models, whose own
-references are in test_springs.py and test_foundation.py.
+clamped elastica; `references/springs_in_space.py` for springs that are soft about some axes;
+`references/curved_twisted_rod.py` for curved rods; the planar models, whose own references are in
+test_springs.py and test_foundation.py.
 """
 
 from itertools import pairwise
@@ -11,6 +12,13 @@ import numpy as np
 import pytest
 from references.curved_twisted_rod import NATURAL, rest_position
 from references.kirchhoff_rod import rotation
+from references.springs_in_space import (
+    CASES,
+    STRETCHING,
+    TOWARDS_FIRST,
+    TOWARDS_SECOND,
+)
+from references.springs_in_space import TWISTING as TORSIONAL
 from scenes import START
 from scipy.optimize import root
 from spatial_scenes import CLAMPED, measured, rod_through, section, straight_rod
@@ -104,6 +112,90 @@ def test_an_elastic_clamp_under_a_large_load(reference, fitted_order, stiffness,
         tip = measured(scene, ["end"], XYZ)[0][0] @ turn
         errors.append([np.linalg.norm(tip - [*exact, 0])])
     check_order(errors, fitted_order, 1e-5, sizes)
+
+
+def sprung(case, n, turn, **more):
+    """A rod of references/springs_in_space.py, all of it turned."""
+    supports = CLAMPED if case.clamped else [{**START, "fix": list(XYZ)}]
+    springs = [turning_spring(*spring.stiffness, at=spring.place) for spring in case.springs]
+    rod = section(
+        turn @ [0, 1, 0],
+        EA=STRETCHING,
+        EI1=TOWARDS_FIRST,
+        EI2=TOWARDS_SECOND,
+        GJ=TORSIONAL,
+    )
+    natural = {"natural_curvature": list(case.natural[:2]), "natural_twist": case.natural[2]}
+    return straight_rod(
+        n,
+        rod,
+        to=turn @ [1, 0, 0],
+        rod=natural if any(case.natural) else {},
+        supports=[*supports, *springs],
+        loads=[force(*(turn @ case.force))],
+        **more,
+    )
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_springs_soft_about_some_axes(spatial_reference, fitted_order, name):
+    """They turn far about these and bear moments about the others. The rod between a spring and
+    the next edges bends about axes that have turned with it."""
+    case = CASES[name]
+    turn = rotation(np.array([2, 1, -2]) / 3, 0.7)
+
+    def exact(place, quantities):
+        return [spatial_reference("springs_in_space", f"{name}.{place}.{q}") for q in quantities]
+
+    moments = ("moment_1", "moment_2", "torque")
+    ends = [
+        place for place, s in (("start", 0.0), ("end", 1.0)) if s in {k.place for k in case.springs}
+    ]
+    errors = []
+    for n in (20, 40, 80):
+        values, result = measured(sprung(case, n, turn), ["end", *ends], [*XYZ, *moments])
+        errors.append(
+            [
+                np.linalg.norm(values[0, :3] @ turn - exact("end", XYZ)),
+                *(
+                    np.linalg.norm(row[3:] - exact(place, moments))
+                    for place, row in zip(ends, values[1:], strict=True)
+                ),
+            ]
+        )
+        assert result.summary["stability"] == "stable"
+    check_order(errors, fitted_order, 1e-4, (20, 40, 80))
+
+
+def test_a_motion_on_soft_springs_keeps_its_energy(fitted_order):
+    """What the implicit midpoint rule loses is of order 2 in the step."""
+    losses = []
+    for step in (2e-3, 1e-3, 5e-4):
+        time = {"duration": 0.5, "step": step, "integrator": "implicit_midpoint"}
+        scene = sprung(CASES["soft"], 8, np.eye(3), time=time)
+        scene["rods"][0]["cross_section"]["stiffness"]["rotary_inertia"] = 1e-2
+        losses.append(abs(measured(scene, ["end"], XYZ)[1].work["numerical"][-1]))
+    assert fitted_order([2e-3, 1e-3, 5e-4], losses) > 1.9
+    assert losses[-1] < 2e-6
+
+
+@pytest.mark.parametrize("share", [0.05, 0.3, 0.49])
+def test_a_turning_spring_beside_a_clamp_that_turns(share):
+    """Within half an edge of it, the rod on to the end being straight: beam theory, exactly."""
+    k, edges, turned = 3.0, 10, 0.02
+    place = share / edges
+    rod = section([0, 1, 0], EA=1e6, EI1=STRONG, EI2=WEAK, GJ=TWISTING)
+    spring = turning_spring(k, k, k, at=place)
+    for axis, stiffness in (("x", TWISTING), ("z", STRONG), ("y", WEAK)):
+        motion = {"rotation": {"axis": [float(axis == a) for a in XYZ], "angle": turned}}
+        if axis == "x":
+            motion = {"twist": turned}
+        supports = [{**START, "clamp": True, "prescribe": motion}, spring]
+        _, result = measured(straight_rod(edges, rod, supports=supports), ["end"], XYZ)
+        edge = np.diff(result.positions[-1], axis=0)[-1]
+        found = {"x": result.theta[-1][-1], "y": -edge[2] / edge[0], "z": edge[1] / edge[0]}[axis]
+        exact = turned / (1 + k * place / stiffness)
+        assert found == pytest.approx(exact, rel=3e-4)
 
 
 @pytest.mark.parametrize("s", [0.3, 0.3717, 1.0])

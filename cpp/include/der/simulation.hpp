@@ -154,10 +154,9 @@ class Simulation {
   /// Growth rate [1/s] of the fastest motion of the present equilibrium out of the plane of a
   /// planar model; 0 if there is none, or if that is not tested.
   [[nodiscard]] double growth_rate_out_of_plane();
-  /// The lowest factor of the loads at which the structure of a planar model buckles out of its
-  /// plane; nothing if there is none, or if that is not tested. `in_plane` is what `buckling`
-  /// returned last.
-  std::optional<double> buckling_factor_out_of_plane(const LinearBuckling& in_plane);
+  /// Linear buckling of the structure of a planar model out of its plane; nothing in space.
+  /// `in_plane` is what `buckling` returned last.
+  OutOfPlaneBuckling buckling_out_of_plane(const LinearBuckling& in_plane);
   /// Why equilibria of the scene are not tested against motion out of their plane, as a clause;
   /// empty if they are, and where the model is one in space.
   [[nodiscard]] const std::string& not_tested_out_of_plane() const {

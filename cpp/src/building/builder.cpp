@@ -88,7 +88,7 @@ Vec3 first_director(const scenario::Rod& rod, const Vec3& tangent) {
 /// by the initial twist.
 void draw_sections(const scenario::Rod& rod, RodLayout& layout, const Model& model) {
   layout.initial_twist = rod.initial_twist;
-  Vec3 tangent = initial_tangent(layout, 0, model);
+  Vec3 tangent = first_tangent(layout, model);
   Vec3 director = made_perpendicular(first_director(rod, tangent), tangent);
   for (Index edge = 0; edge < layout.num_edges(); ++edge) {
     const Vec3 next = along_edge<3>(layout.edge(edge, model), model.initial_positions).normalized();

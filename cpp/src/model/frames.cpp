@@ -15,11 +15,11 @@ void follow_frames(const Model& model, const Vector& coordinates, const Vector& 
                    Eigen::Ref<Vector> frames) {
   for (Index edge = 0; edge < static_cast<Index>(model.framed_edges.size()); ++edge) {
     const FrameBlock block = FrameBlock::of(edge);
-    const Vec3 tangent =
-        model.framed_edges[to_size(edge)].vector(coordinates, controls).normalized();
-    const Vec3 moved = transport(block.director(frames), block.tangent(frames), tangent);
-    frames.segment<3>(block.first) = tangent;
-    frames.segment<3>(block.first + 3) = made_perpendicular(moved, tangent);
+    const SectionFrame moved =
+        moved_frame<double>(block.tangent(frames), block.director(frames),
+                            model.framed_edges[to_size(edge)].vector(coordinates, controls));
+    frames.segment<3>(block.first) = moved.tangent;
+    frames.segment<3>(block.first + 3) = moved.first;
   }
   for (const FramedJoint& joint : model.framed_joints) {
     const SectionFrame before =

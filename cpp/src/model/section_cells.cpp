@@ -18,28 +18,20 @@ double stored_by_moments(const RodLayout& rod, const Model& model, const Configu
   return energy;
 }
 
-/// The energy that the cell of a spring and a cell in series stores: the springs have 1/2 m K^-1 m.
 template <int Edges>
-double stored_beside_spring(const SectionSpringPlace& spring, const Model& model,
-                            const Configuration& here) {
+double stored_beside_spring(Index element, const Model& model, const Configuration& here) {
   using Kernel = SectionSpring<Edges>;
   const auto& springs = elements_of<Kernel>(*model.elements);
-  const std::size_t number = to_size(spring.element);
-  const auto [rotation, moment] = Kernel::response(springs.constants[number], here,
-                                                   gather(springs.dofs[number], here.coordinates));
-  double energy = 0.5 * rotation.dot(moment);
-  for (Index axis = 0; axis < 3; ++axis) {
-    const double stiffness = spring.stiffness[axis];
-    if (stiffness > 0.0) energy -= 0.5 * moment[axis] * moment[axis] / stiffness;
-  }
-  return energy;
+  const std::size_t number = to_size(element);
+  return Kernel::stored_on_the_way(springs.constants[number], here,
+                                   gather(springs.dofs[number], here.coordinates));
 }
 
 double stored_beside_springs(const RodLayout& rod, const Model& model, const Configuration& here) {
   double energy = 0.0;
   for (const SectionSpringPlace& spring : rod.section_springs) {
-    energy += spring.on_one_edge ? stored_beside_spring<1>(spring, model, here)
-                                 : stored_beside_spring<2>(spring, model, here);
+    energy += spring.on_one_edge ? stored_beside_spring<1>(spring.element, model, here)
+                                 : stored_beside_spring<2>(spring.element, model, here);
   }
   return energy;
 }

@@ -6,6 +6,7 @@
 #include "der/core/index.hpp"
 #include "der/model/moment_place.hpp"
 #include "model/corner.hpp"
+#include "output/legs.hpp"
 
 namespace der {
 namespace {
@@ -34,8 +35,10 @@ MomentRecovery::MomentRecovery(const RodLayout& rod, const Model& model)
       moments_(rod, model),
       edges_(to_size(rod.num_edges())),
       kinks_(loaded_nodes(rod, model)),
-      corners_(rod.nodes.size()) {
+      corners_(rod.nodes.size()),
+      bounds_(rod.nodes.size()) {
   for (const Index corner : corners_of(rod, model)) corners_[to_size(corner)] = true;
+  for (const Index bound : leg_bounds(rod, model)) bounds_[to_size(bound)] = true;
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     const std::optional<Index> start = clamp_before(rod, edge);
     const std::optional<Index> end = clamp_beyond(rod, edge);
@@ -237,7 +240,7 @@ bool MomentRecovery::jumps_at(Index node) const {
   };
   const std::vector<double> places = rod_.moment_arc_lengths();
   const auto& stretches = rod_.actuated_stretches;
-  return rod_.clamp_at(node) != nullptr || is_corner(node) ||
+  return rod_.clamp_at(node) != nullptr || bounds_legs(node) ||
          std::any_of(places.begin(), places.end(), stands_here) ||
          std::any_of(stretches.begin(), stretches.end(), [&](const ActuatedStretch& stretch) {
            return stretch.strains() && ((stretch.jumps(false) && stands_here(stretch.from)) ||

@@ -60,11 +60,15 @@ class MomentRecovery {
   /// Inside an edge, in the order of the arc length.
   [[nodiscard]] std::vector<Break> breaks(Index edge) const;
   /// Whether the moment, its components or the curvature jump at a node: at an inner clamp, at a
-  /// moment, and at a corner.
+  /// moment, at a corner, and where the drawn curvature jumps.
   [[nodiscard]] bool jumps_at(Index node) const;
   /// Whether a place is a corner (model/corner.hpp).
   [[nodiscard]] bool is_corner(Index place) const {
     return corners_[static_cast<std::size_t>(rod_.position(place))];
+  }
+  /// Whether a leg of the rod ends at a place: at a corner, or where the drawn curvature jumps.
+  [[nodiscard]] bool bounds_legs(Index place) const {
+    return bounds_[static_cast<std::size_t>(rod_.position(place))];
   }
   /// Whether a force at a node, of a load or a support, may give the moment a kink there.
   [[nodiscard]] bool has_kink_at(Index node) const {
@@ -115,6 +119,7 @@ class MomentRecovery {
   std::vector<EdgeTerms> edges_;
   std::vector<bool> kinks_;
   std::vector<bool> corners_;  // for each node
+  std::vector<bool> bounds_;   // for each node, of legs
 };
 
 }  // namespace der

@@ -4,7 +4,7 @@
 
 #include "der/core/index.hpp"
 #include "der/kinematics/planar_edge.hpp"
-#include "model/corner.hpp"
+#include "output/legs.hpp"
 
 namespace der {
 namespace {
@@ -16,7 +16,8 @@ Vec2 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
 }  // namespace
 
 NaturalCurvature::NaturalCurvature(const RodLayout& rod, const Model& model) {
-  for (const Index corner : corners_of(rod, model)) legs_.push_back({corner, {}, {}});
+  const std::vector<Index> bounds = leg_bounds(rod, model);
+  for (const Index bound : bounds) legs_.push_back({bound, {}, {}});
   legs_.push_back({rod.num_edges(), {}, {}});
   if (!rod.natural_curvature.empty()) {
     Leg& whole = legs_.front();
@@ -30,7 +31,7 @@ NaturalCurvature::NaturalCurvature(const RodLayout& rod, const Model& model) {
   }
   auto leg = legs_.begin();
   for (Index i = 0; i <= rod.num_edges(); ++i) {
-    if (is_corner(rod, i, model)) {
+    if (std::binary_search(bounds.begin(), bounds.end(), rod.position(i))) {
       if (i < rod.num_edges()) ++leg;
       continue;
     }

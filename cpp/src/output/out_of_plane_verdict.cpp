@@ -48,12 +48,19 @@ struct Judge {
     of_equilibrium(rate > 0.0 ? fmt::format(", where a motion grows by {:.4g}/s", rate) : "");
   }
   void operator()(const scenario::BucklingAnalysis& /*analysis*/) const {
-    verdict.load_factor = outcome.out_of_plane.buckling_factor;
+    verdict.not_tested = outcome.out_of_plane.buckling.not_tested;
+    verdict.load_factor = outcome.out_of_plane.buckling.load_factor;
     if (!verdict.load_factor) return;
     const auto& modes = outcome.buckling.modes;
     if (!modes.empty()) {
       const double in_plane = modes.front().load_factor;
       if (*verdict.load_factor >= in_plane - kSameLoad * std::abs(in_plane)) return;
+    }
+    if (*verdict.load_factor == 0.0) {
+      verdict.warning =
+          "the structure leaves its plane under any load: nothing resists a motion out of it that "
+          "the loads drive. Hold the rods with more supports";
+      return;
     }
     verdict.warning = fmt::format(
         "the structure buckles out of its plane first, at the load factor {:.6g}. For the shape, "

@@ -1,8 +1,10 @@
 #include "output/ring_numbers.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "der/core/constants.hpp"
@@ -12,26 +14,34 @@
 namespace der {
 namespace {
 
-/// Signed solid angle of the triangle between three directions (Van Oosterom and Strackee, IEEE
-/// Trans. Biomed. Eng. 30, 1983); 0 of vectors without length.
-double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
+/// Signed solid angle of the triangle between three directions whose triple product is `volume`
+/// (Van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30, 1983); 0 of vectors without length.
+double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c, double volume) {
   const double la = a.norm();
   const double lb = b.norm();
   const double lc = c.norm();
-  const double volume = a.dot(b.cross(c));
   const double rest = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
   return 2.0 * std::atan2(volume, rest);
 }
 
-/// Solid angle of the directions from the points of one edge to those of another, positive where
-/// they are seen to cross right-handed.
+/// Solid angle of the directions from the points of one side to those of another, positive where
+/// they are seen to cross right-handed. Sides in a plane are seen to cross from nowhere, whether or
+/// not they meet; `rounding` is that of the coordinates [m].
 double crossing_angle(const Vec3& start, const Vec3& end, const Vec3& other_start,
-                      const Vec3& other_end) {
+                      const Vec3& other_end, double rounding) {
   const Vec3 a = other_start - start;
   const Vec3 b = other_end - start;
   const Vec3 c = other_end - end;
   const Vec3 d = other_start - end;
-  return solid_angle(a, c, b) + solid_angle(a, d, c);
+  const Vec3 side = end - start;
+  const Vec3 other = other_end - other_start;
+  // By up to four faces of the tetrahedron between the sides, each of which has one of them.
+  constexpr double kFaces = 8.0;
+  const double length = std::max(side.norm(), other.norm());
+  const double apart = std::max({a.norm(), b.norm(), c.norm(), d.norm()});
+  const double volume = a.dot(other.cross(side));
+  if (std::abs(volume) <= kFaces * rounding * length * apart) return 0.0;
+  return solid_angle(a, c, b, volume) + solid_angle(a, d, c, volume);
 }
 
 /// The corners [m] of the polygon whose sides the joints of a ring turn against each other. It is
@@ -60,12 +70,15 @@ double writhe_of(const RodLayout& rod, const Model& model, const State& state) {
   const std::vector<Vec3> corners = polygon_of(rod, model, state);
   const std::size_t sides = corners.size();
   const auto end_of = [&](std::size_t side) { return corners[(side + 1) % sides]; };
+  double largest = 0.0;
+  for (const Vec3& corner : corners) largest = std::max(largest, corner.lpNorm<Eigen::Infinity>());
+  const double rounding = 2.0 * std::numeric_limits<double>::epsilon() * largest;
   double sum = 0.0;
   for (std::size_t i = 0; i < sides; ++i) {
-    // Neighbours lie in a plane: no direction shows them crossing.
+    // Neighbours lie in a plane.
     const std::size_t last = i == 0 ? sides - 1 : sides;
     for (std::size_t j = i + 2; j < last; ++j) {
-      sum += crossing_angle(corners[i], end_of(i), corners[j], end_of(j));
+      sum += crossing_angle(corners[i], end_of(i), corners[j], end_of(j), rounding);
     }
   }
   return sum / (2.0 * kPi);

@@ -48,8 +48,7 @@ struct Analyse {
   }
   std::string operator()(const scenario::BucklingAnalysis& analysis) const {
     outcome.buckling = simulation.buckling(analysis.count);
-    outcome.out_of_plane.buckling_factor =
-        simulation.buckling_factor_out_of_plane(outcome.buckling);
+    outcome.out_of_plane.buckling = simulation.buckling_out_of_plane(outcome.buckling);
     recorder.observe(simulation);
     return run_status::kCompleted;
   }

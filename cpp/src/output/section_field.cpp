@@ -199,13 +199,14 @@ class SectionField : public EdgewiseField<Vec3> {
   };
 
   /// Natural shapes of the two joints of a leg next to its last end, beyond `edge`, or to its first
-  /// end; fewer where it has no more. Corners bend on their two legs and belong to none.
+  /// end; fewer where it has no more. Joints between two legs bend on both and belong to none.
   static std::vector<NaturalAt> naturals_beside_end(const RodLayout& rod, Index edge, bool last,
                                                     const MomentRecovery& recovery) {
     std::vector<NaturalAt> found;
     const Index step = last ? -1 : 1;
     const auto is_of_leg = [&](Index place) {
-      return (rod.closed || (0 <= place && place <= rod.num_edges())) && !recovery.is_corner(place);
+      return (rod.closed || (0 <= place && place <= rod.num_edges())) &&
+             !recovery.bounds_legs(place);
     };
     for (Index place = last ? edge : edge + 1; found.size() < 2 && is_of_leg(place);
          place += step) {
@@ -277,12 +278,16 @@ class SectionField : public EdgewiseField<Vec3> {
       if (!rod.natural_curvatures.empty())
         result.natural.head<2>() = rod.natural_curvatures.front();
     }
-    if (recovery.is_corner(joint->place())) {
+    const bool ends_leg = recovery.bounds_legs(joint->place()) && joint->clamp < 0;
+    if (ends_leg) {
       result.natural.head<2>() = natural_at_end_of_leg(rod, edge, last, recovery).head<2>();
     }
     result.twist_place = joint->twist_place - result.joint_ahead;
     result.joint = &*joint;
-    result.arc_length = (by_twist ? joint->twist_place : joint->bend_place) - result.joint_ahead;
+    // Beside the node between two legs the torque has another slope.
+    const bool where_it_twists = by_twist && !ends_leg;
+    result.arc_length =
+        (where_it_twists ? joint->twist_place : joint->bend_place) - result.joint_ahead;
     return result;
   }
 
@@ -308,7 +313,7 @@ class SectionField : public EdgewiseField<Vec3> {
     Vec3 moment = stiffness_.cwiseProduct(excess);
     if (model.has_sections()) {
       const Vec3 actuated = actuated_mean(*known.joint, model, state);
-      moment = turned(moved(moment, known, excess, actuated), known.glued);
+      moment = turned(moved(moment, known, last, excess, actuated), known.glued);
     }
     return natural + (is_moment(quantity_) ? moment : Vec3(moment.cwiseQuotient(stiffness_))) +
            in_section(edge, missing, model, state);
@@ -359,16 +364,15 @@ class SectionField : public EdgewiseField<Vec3> {
   /// frame at the known place. The joint's tangent is the mean of those beside it, and its
   /// directors are those in the middle of the length over which it twists. At inner nodes of an
   /// even mesh all these places are one.
-  [[nodiscard]] Vec3 moved(const Vec3& moment, const Known& known, const Vec3& excess,
+  [[nodiscard]] Vec3 moved(const Vec3& moment, const Known& known, bool last, const Vec3& excess,
                            const Vec3& actuated) const {
     const RodJoint& joint = *known.joint;
     const double place = known.arc_length + known.joint_ahead;
     const Vec3 natural = mean_natural(joint);
     const double turned = place - joint.twist_place;
     const Vec2 bent = (place - tangent_place(joint, der::tangent_place)) * excess.head<2>() +
-                      (place - tangent_place(joint, natural_tangent_place)) * natural.head<2>() +
-                      (place - tangent_place(joint, mean_tangent_place)) * actuated.head<2>() +
-                      tilt_at_glue(joint);
+                      natural_turn(known, last, place) +
+                      (place - tangent_place(joint, mean_tangent_place)) * actuated.head<2>();
     // Bending towards a director turns about the other one.
     const auto about = [](const Vec3& parts) { return Vec3(-parts[1], parts[0], parts[2]); };
     const Vec3 turn = about({bent[0], bent[1], turned * (natural + actuated + excess)[2]});
@@ -376,12 +380,25 @@ class SectionField : public EdgewiseField<Vec3> {
     return moment + Vec3(change[1], -change[0], change[2]);
   }
 
-  /// How far the tangent at a joint is turned against the mean of those beside it as natural
-  /// curvature jumps there [rad].
-  [[nodiscard]] Vec2 tilt_at_glue(const RodJoint& joint) const {
-    if (!is_glued_turned(joint)) return Vec2::Zero();
-    const Vec3 beyond_mean = natural_of(joint) - mean_natural(joint);
-    return 0.5 * rod_.edge_length[to_size(joint.before)] * beyond_mean.head<2>();
+  /// How far the tangent at a place is turned, without stress, against the mean of those beside a
+  /// joint [rad]. Where the natural curvature jumps, `known` has that of one side, and the cell the
+  /// mean of both.
+  [[nodiscard]] Vec2 natural_turn(const Known& known, bool last, double place) const {
+    const RodJoint& joint = *known.joint;
+    const Vec2 mean = mean_natural(joint).head<2>();
+    if (joint.clamp >= 0) return (place - tangent_place(joint, natural_tangent_place)) * mean;
+    const Vec2 own = turned(known.natural, -known.glued).head<2>();
+    const double node = rod_.arc_length_at(joint.place());
+    const double length_before = rod_.edge_length[to_size(joint.before)];
+    const double length_after = rod_.edge_length[to_size(joint.after)];
+    const double other_share = last ? length_before / length_after : length_after / length_before;
+    const Vec2 other = mean + other_share * (mean - own);
+    const Vec2& before = last ? own : other;
+    const Vec2& after = last ? other : own;
+    const double to_before = node - natural_tangent_place(rod_, joint.place() - 1);
+    const double to_after = natural_tangent_place(rod_, joint.place()) - node;
+    return 0.5 * (to_before * before - to_after * after) +
+           (place - node) * (place < node ? before : after);
   }
 
   /// Arc length [m] in the middle between the places where the rod has the directions of the two

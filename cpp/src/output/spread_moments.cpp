@@ -14,7 +14,8 @@
 namespace der {
 namespace {
 
-/// The moments that a spring exerts on its edges, and their sum.
+/// The moments that a spring exerts on its edges, and their sum, of which a clamp beside it has a
+/// part.
 template <int Edges>
 EdgeMoments moments_of_spring(std::size_t number, const Model& model, const State& state) {
   using Kernel = SectionSpring<Edges>;
@@ -79,18 +80,7 @@ EdgeMoments SpreadMoments::value_of(SpatialLoad load, const Model& model, const 
 
 EdgeMoments SpreadMoments::value_of(SpatialSpring<1> spring, const Model& model,
                                     const State& state) {
-  const auto& held =
-      elements_of<SectionSpring<1>>(*model.elements).constants[spring.number].edges.front();
-  EdgeMoments moments = moments_of_spring<1>(spring.number, model, state);
-  // Beside a clamp the edge takes a part of it, and the clamp the rest.
-  const Vec3 t = section_frame(model, held.block.first / FrameBlock::kSize, state).tangent;
-  const Vec3 torque = moments.whole.dot(t) * t;
-  const auto whole = [](const Vec3& part, double weight) -> Vec3 {
-    return weight > 0.0 ? Vec3(part / weight) : Vec3(Vec3::Zero());
-  };
-  moments.whole =
-      whole(moments.whole - torque, held.weights(0, 0)) + whole(torque, held.weights(2, 2));
-  return moments;
+  return moments_of_spring<1>(spring.number, model, state);
 }
 
 EdgeMoments SpreadMoments::value_of(SpatialSpring<2> spring, const Model& model,

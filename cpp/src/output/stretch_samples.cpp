@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "der/core/index.hpp"
-#include "model/corner.hpp"
+#include "output/legs.hpp"
 
 namespace der {
 namespace {
@@ -27,7 +27,7 @@ std::vector<Weighted> line_weights(const std::vector<double>& middles, Index fir
 class Layout {
  public:
   Layout(const RodLayout& rod, const SpreadForces& forces, const Model& model)
-      : rod_(rod), forces_(forces), corners_(corners_of(rod, model)) {
+      : rod_(rod), forces_(forces), bounds_(leg_bounds(rod, model)) {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) middles_.push_back(rod.edge_middle(edge));
     find_breaks(model);
   }
@@ -60,7 +60,7 @@ class Layout {
       const double s = forces_[f].place.arc_length;
       if (0.0 <= s && s <= rod_.rest_length()) breaks_.push_back(s);
     }
-    for (const Index corner : corners_) breaks_.push_back(rod_.arc_length[to_size(corner)]);
+    for (const Index bound : bounds_) breaks_.push_back(rod_.arc_length[to_size(bound)]);
     for (const double place : rod_.moment_arc_lengths()) breaks_.push_back(place);
     for (const DistributedPlace& place : rod_.distributed_places) {
       breaks_.push_back(place.from);
@@ -176,19 +176,19 @@ class Layout {
   [[nodiscard]] std::vector<Weighted> direction_at(double s) const {
     Index first = 0;
     Index last = rod_.num_edges() - 1;
-    for (const Index corner : corners_) {
-      if (rod_.arc_length_at(corner) > s) {
-        last = corner - 1;
+    for (const Index bound : bounds_) {
+      if (rod_.arc_length_at(bound) > s) {
+        last = bound - 1;
         break;
       }
-      first = corner;
+      first = bound;
     }
     return line_weights(middles_, first, last, s);
   }
 
   const RodLayout& rod_;
   const SpreadForces& forces_;
-  std::vector<Index> corners_;
+  std::vector<Index> bounds_;    // between the legs
   std::vector<double> middles_;  // of the edges [m]
   std::vector<double> breaks_;   // ascending, the ends of the rod too [m]
 };

@@ -12,6 +12,7 @@
 #include "der/output/joint_strain.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spatial_clamp.hpp"
+#include "model/curvature_jump.hpp"
 #include "output/moment_recovery.hpp"
 #include "output/natural_curvature.hpp"
 #include "output/tangent_line.hpp"
@@ -56,6 +57,13 @@ double knot_beyond_middle(const RodLayout& rod, Index edge) {
 bool leans_as_drawn(const RodLayout& rod, Index edge) {
   return rod.natural_curvature.empty() && rod.natural_curvatures.empty() &&
          (rod.clamp_at(edge) != nullptr || rod.clamp_at(edge + 1) != nullptr);
+}
+
+/// Adds the arc lengths [m] at which the drawn curvature jumps.
+void add_drawn_jumps(const RodLayout& rod, const Model& model, std::vector<double>& kinks) {
+  for (const CurvatureJump& jump : curvature_jumps_of(rod, model)) {
+    kinks.push_back(rod.arc_length_at(jump.place));
+  }
 }
 
 /// The turns towards the two directors [rad], in a plane the first of them.
@@ -137,6 +145,7 @@ class PlanarDirection : public DirectionField<double> {
     if (rod.EI > 0.0) {
       for (const MomentPlace& place : rod.moment_places) kinks.push_back(place.arc_length);
     }
+    add_drawn_jumps(rod, model, kinks);
     return std::unique_ptr<RodField>(
         new PlanarDirection(component, rod, model, TangentLine(rod, std::move(kinks), model)));
   }
@@ -152,6 +161,9 @@ class PlanarDirection : public DirectionField<double> {
       edges_.push_back(effective_edge(rod, edge, model));
     }
     find_drawn_leans(model);
+    for (const CurvatureJump& jump : curvature_jumps_of(rod, model)) {
+      drawn_jumps_.push_back(jump.turn.z());
+    }
     find_reference(model);
   }
 
@@ -229,10 +241,10 @@ class PlanarDirection : public DirectionField<double> {
     for (const FreeEnd& end : ends_) {
       (end.last ? knots.back() : knots.front()) -= lean(end, model, state);
     }
-    if (!moments_) return;
-    for (std::size_t i = 0; i < moments_->size(); ++i) {
+    for (std::size_t i = 0; moments_ && i < moments_->size(); ++i) {
       kinks.emplace_back(-moments_->value(i, model, state).whole.z() / rod_.EI);
     }
+    kinks.insert(kinks.end(), drawn_jumps_.begin(), drawn_jumps_.end());
   }
 
   /// How far the outermost edge is turned beyond the curve [rad].
@@ -261,6 +273,7 @@ class PlanarDirection : public DirectionField<double> {
   RodLayout rod_;
   std::vector<EffectiveEdge> edges_;
   std::vector<double> drawn_leans_;  // of each edge [rad]
+  std::vector<double> drawn_jumps_;  // of the curvature [1/m]
   std::vector<FreeEnd> ends_;
   std::optional<MomentRecovery> spread_;  // where moments at free ends may matter
   std::optional<SpreadMoments> moments_;
@@ -278,6 +291,7 @@ class SpatialDirection : public DirectionField<Vec3> {
       for (std::size_t i = 0; i < moments->size(); ++i) kinks.push_back((*moments)[i].arc_length);
       if (kinks.empty()) moments.reset();
     }
+    add_drawn_jumps(rod, model, kinks);
     TangentLine line(rod, std::move(kinks), model);
     return std::unique_ptr<RodField>(
         new SpatialDirection(component, rod, model, std::move(line), std::move(moments)));
@@ -296,6 +310,7 @@ class SpatialDirection : public DirectionField<Vec3> {
     drawn_leans_.assign(edges_.size(), Vec2::Zero());
     if (!model.has_sections() || rod.joints.empty()) return;
     find_drawn_leans(model);
+    find_drawn_jumps(model);
     ends_ = free_ends(rod);
     if (moments_ && !ends_.empty()) spread_.emplace(rod, model);
   }
@@ -313,6 +328,15 @@ class SpatialDirection : public DirectionField<Vec3> {
     }
   }
 
+  void find_drawn_jumps(const Model& model) {
+    for (const auto& [place, turn] : curvature_jumps_of(rod_, model)) {
+      const Index edge = rod_.edge_before(place);
+      const SectionFrame section = drawn_frame(model, rod_.first_edge + edge);
+      const Vec3 bent = turn.cross(section.tangent);
+      drawn_jumps_.emplace_back(edge, Vec2(bent.dot(section.first), bent.dot(section.second)));
+    }
+  }
+
   void read(const Model& model, const State& state, std::vector<Vec3>& knots,
             std::vector<Vec3>& kinks) const override {
     for (const TangentLine::Knot& knot : line().knots()) {
@@ -323,11 +347,14 @@ class SpatialDirection : public DirectionField<Vec3> {
     for (const FreeEnd& end : ends_) {
       (end.last ? knots.back() : knots.front()) -= lean(end, model, state);
     }
-    if (!moments_) return;
-    for (std::size_t i = 0; i < moments_->size(); ++i) {
+    for (std::size_t i = 0; moments_ && i < moments_->size(); ++i) {
       const Index edge = rod_.position((*moments_)[i].first_edge);
       kinks.emplace_back(
           -change_by(moments_->value(i, model, state).whole, 1.0, frame(edge, model, state)));
+    }
+    for (const auto& [edge, jump] : drawn_jumps_) {
+      const SectionFrame section = frame(edge, model, state);
+      kinks.emplace_back(jump[0] * section.first + jump[1] * section.second);
     }
   }
 
@@ -385,6 +412,8 @@ class SpatialDirection : public DirectionField<Vec3> {
   RodLayout rod_;
   std::vector<SpatialEdge> edges_;
   std::vector<Vec2> drawn_leans_;  // of each edge, towards its two directors
+  /// Jumps of the drawn curvature behind edges, towards their two directors [1/m].
+  std::vector<std::pair<Index, Vec2>> drawn_jumps_;
   std::vector<FreeEnd> ends_;
   std::optional<MomentRecovery> spread_;  // where moments at free ends may matter
   std::optional<SpreadMoments> moments_;

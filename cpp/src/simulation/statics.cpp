@@ -39,12 +39,12 @@ double Simulation::growth_rate_out_of_plane() {
   return test == nullptr ? 0.0 : test->growth_rate(configuration_of(model_, state_));
 }
 
-std::optional<double> Simulation::buckling_factor_out_of_plane(const LinearBuckling& in_plane) {
+OutOfPlaneBuckling Simulation::buckling_out_of_plane(const LinearBuckling& in_plane) {
   OutOfPlaneTest* test = out_of_plane_test();
-  if (test == nullptr) return std::nullopt;
+  if (test == nullptr) return {constants_->not_tested, {}};
   State unloaded = state_;
   unloaded.load_factor = 0.0;
-  return test->buckling_factor(configuration_of(model_, unloaded), in_plane.response);
+  return test->buckling(configuration_of(model_, unloaded), in_plane.response);
 }
 
 EquilibriumReport Simulation::settle(bool leave_saddles) {

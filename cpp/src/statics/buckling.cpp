@@ -71,14 +71,14 @@ Vector scaled(const Model& model, const Vector& shape) {
   return shape / (std::abs(displacement) > kNone * std::abs(all) ? displacement : all);
 }
 
-}  // namespace
-
 NotConvergedError hidden_buckling() {
   return NotConvergedError(
       "the buckling loads are lost in the rounding errors of the stiffness of the shortest edges: "
       "give the rods fewer nodes, longer edges, or a smaller EA",
       status_of(EquilibriumFailure::LostInRoundoff));
 }
+
+}  // namespace
 
 std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& stiffness,
                                          LinearSolver& solver, const Configuration& here,

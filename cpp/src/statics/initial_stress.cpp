@@ -9,6 +9,7 @@
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/from_pivot.hpp"
+#include "der/energies/section_spring.hpp"
 #include "der/energies/spatial_bend.hpp"
 #include "der/energies/stretched_edges.hpp"
 
@@ -83,16 +84,6 @@ struct StressedJoint {
   }
 };
 
-/// A joint without stiffness that bears a load whatever its strain.
-struct LoadedJoint {
-  JointStrain rest;
-  JointStrain moments;  ///< [N m]
-  [[nodiscard]] const JointStrain& load(const JointStrain& /*strain*/) const { return moments; }
-  [[nodiscard]] static Mat3 stiffness(const Vec3& /*g1*/, const Vec3& /*g2*/, const Vec3& /*gt*/) {
-    return Mat3::Zero();
-  }
-};
-
 /// The part of S that is the moments times the second derivatives of the strains: of the moments
 /// that the rotation `turn` of frame b relative to frame a causes.
 template <class Curvature>
@@ -141,6 +132,44 @@ struct StressedClamp {
   }
 };
 
+/// Springs against turning on one or two edges.
+template <int Edges>
+struct StressedSpring {
+  using Kernel = SectionSpring<Edges>;
+  typename Kernel::Response at;
+  HeldSection::Stress stress;
+
+  StressedSpring(const typename Kernel::Constants& c, const Configuration& here,
+                 const Eigen::Matrix<double, Kernel::kDofs, 1>& x,
+                 const Eigen::Matrix<double, Kernel::kDofs, 1>& d)
+      : at(c, here, x), stress(at.held.stress(rotations(at, d))) {}
+
+  /// By vector and angle of each edge.
+  [[nodiscard]] Eigen::Matrix<double, 4 * Edges, 4 * Edges> stiffness() const {
+    Eigen::Matrix<double, 4 * Edges, 4 * Edges> matrix;
+    for (std::size_t i = 0; i < Edges; ++i) {
+      for (std::size_t j = 0; j < Edges; ++j) {
+        Eigen::Matrix4d block =
+            at.edges[i].rotation().transpose() * stress.stiffness[i][j] * at.edges[j].rotation();
+        if (i == j) block += own_stiffness(at.edges[i], stress.moments[i]);
+        matrix.template block<4, 4>(4 * Index(i), 4 * Index(j)) = block;
+      }
+    }
+    return matrix;
+  }
+
+ private:
+  /// A clamp beside the springs does not turn.
+  static std::array<Vec3, HeldSection::kMost> rotations(
+      const typename Kernel::Response& at, const Eigen::Matrix<double, Kernel::kDofs, 1>& d) {
+    std::array<Vec3, HeldSection::kMost> result{Vec3::Zero(), Vec3::Zero()};
+    for (int i = 0; i < Edges; ++i) {
+      result[std::size_t(i)] = turned(at.edges[std::size_t(i)], d, i, 3 * Kernel::kNodes + i);
+    }
+    return result;
+  }
+};
+
 /// Calls `f(dofs, constants, x)` for the elements of a kernel between pivots; x are the coordinates
 /// that the kernel sees.
 template <class Kernel, class F>
@@ -174,6 +203,8 @@ InitialStress::InitialStress(const Model& model, const Configuration& here,
   add_spatial_edges(model, here, displacement);
   add_joints<AngleCurvature>(model, here, displacement);
   add_joints<TangentCurvature>(model, here, displacement);
+  add_springs<1>(model, here, displacement);
+  add_springs<2>(model, here, displacement);
 }
 
 template <int Dim>
@@ -211,33 +242,37 @@ void InitialStress::add_spatial_edges(const Model& model, const Configuration& h
       });
 }
 
+InitialStress::Term& InitialStress::add_term(double moment, double size, int variables) {
+  largest_ = std::max(largest_, moment / size);
+  Term& term = terms_.emplace_back();
+  term.size = variables;
+  return term;
+}
+
+/// The vector and the angle of an edge between nodes `node` and `node + 1` of an element, as
+/// variables from number `first` on.
+template <class Dofs>
+void InitialStress::set_edge(const Dofs& dofs, std::size_t node, std::size_t angle,
+                             std::size_t first, Term& term) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    term.variables[first + i] = {dofs[3 * node + 3 + i], dofs[3 * node + i]};
+  }
+  term.variables[first + 3] = {dofs[angle], -1};
+}
+
 template <class Curvature>
 void InitialStress::add_joints(const Model& model, const Configuration& here,
                                const Vector& displacement) {
-  // By the vector and the angle of an edge between nodes `node` and `node + 1` of an element.
-  const auto add_variables = [](const auto& dofs, std::size_t node, std::size_t angle,
-                                std::size_t first, Term& term) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      term.variables[first + i] = {dofs[3 * node + 3 + i], dofs[3 * node + i]};
-    }
-    term.variables[first + 3] = {dofs[angle], -1};
-  };
-  const auto add_term = [&](const Vec3& moment, int size) -> Term& {
-    largest_ = std::max(largest_, moment.norm() / model.size());
-    Term& term = terms_.emplace_back();
-    term.size = size;
-    return term;
-  };
   const auto add_joints_of = [&](const auto& kind) {
     using AJoint = std::decay_t<decltype(kind)>;
     for_each_element<SpatialBend<Curvature, AJoint>>(
         model, here, [&](const auto& dofs, const auto& c, const auto& x) {
           const auto joint =
               StressedJoint::of<Curvature, AJoint>(x, gather(dofs, displacement), c, here.controls);
-          Term& term = add_term(joint.moment, 8);
+          Term& term = add_term(joint.moment.norm(), model.size(), 8);
           term.matrix = joint.stiffness();
-          add_variables(dofs, 0, 9, 0, term);
-          add_variables(dofs, 1, 10, 4, term);
+          set_edge(dofs, 0, 9, 0, term);
+          set_edge(dofs, 1, 10, 4, term);
         });
   };
   add_joints_of(Joint{});
@@ -246,10 +281,30 @@ void InitialStress::add_joints(const Model& model, const Configuration& here,
       model, here, [&](const auto& dofs, const auto& c, const auto& x) {
         const auto clamp =
             StressedClamp::of<Curvature>(x, gather(dofs, displacement), c, here.controls);
-        Term& term = add_term(clamp.moment, 4);
+        Term& term = add_term(clamp.moment.norm(), model.size(), 4);
         term.matrix = clamp.stiffness();
-        add_variables(dofs, 0, 6, 0, term);
+        set_edge(dofs, 0, 6, 0, term);
       });
+}
+
+template <int Edges>
+void InitialStress::add_springs(const Model& model, const Configuration& here,
+                                const Vector& displacement) {
+  const auto& springs = elements_of<SectionSpring<Edges>>(*model.elements);
+  for (std::size_t number = 0; number < springs.size(); ++number) {
+    const auto& dofs = springs.dofs[number];
+    const StressedSpring<Edges> spring(springs.constants[number], here,
+                                       gather(dofs, here.coordinates), gather(dofs, displacement));
+    double moment = 0.0;
+    for (std::size_t i = 0; i < Edges; ++i) {
+      moment = std::max(moment, spring.stress.moments[i].norm());
+    }
+    Term& term = add_term(moment, model.size(), 4 * Edges);
+    term.matrix = spring.stiffness();
+    for (std::size_t i = 0; i < Edges; ++i) {
+      set_edge(dofs, i, 3 * (Edges + 1) + i, 4 * i, term);
+    }
+  }
 }
 
 Vector InitialStress::stiffness(const Model& model, const MatrixLayout& layout) const {
@@ -284,15 +339,32 @@ Vector InitialStress::stiffness(const Model& model, const MatrixLayout& layout) 
 
 double InitialStress::variation(const Vector& direction) const {
   double total = 0.0;
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1> d;
   for (const Term& term : terms_) {
-    d.resize(term.size);
-    for (int i = 0; i < term.size; ++i) {
-      d[i] = term.variables[static_cast<std::size_t>(i)].of(direction);
-    }
+    const Values d = term.of(direction);
     total += d.dot(term.matrix * d);
   }
   return total;
+}
+
+Vector InitialStress::product(const Vector& direction) const {
+  Vector product = Vector::Zero(direction.size());
+  for (const Term& term : terms_) {
+    const Values force = term.matrix * term.of(direction);
+    for (int i = 0; i < term.size; ++i) {
+      const Variable& variable = term.variables[static_cast<std::size_t>(i)];
+      product[variable.plus] += force[i];
+      if (variable.minus >= 0) product[variable.minus] -= force[i];
+    }
+  }
+  return product;
+}
+
+InitialStress::Values InitialStress::Term::of(const Vector& direction) const {
+  Values values(size);
+  for (int i = 0; i < size; ++i) {
+    values[i] = variables[static_cast<std::size_t>(i)].of(direction);
+  }
+  return values;
 }
 
 void InitialStress::reverse() {

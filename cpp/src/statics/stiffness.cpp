@@ -8,6 +8,7 @@
 #include <random>
 #include <utility>
 
+#include "der/core/index.hpp"
 #include "der/model/dimension.hpp"
 #include "der/statics/potential.hpp"
 
@@ -110,6 +111,27 @@ bool Stiffness::is_clear() {
   constexpr double kClear = 1e3;
   const double near = kClear * rounding();
   return factorize(near).negative_pivots == factorize(-near).negative_pivots;
+}
+
+Eigen::MatrixXd Stiffness::softest_directions(Index count) {
+  return softest_space(count).directions.leftCols(count);
+}
+
+void Stiffness::hold(const Eigen::MatrixXd& neutral) {
+  // Pivots of the basis: the springs see each of its combinations.
+  const std::vector<Index>& free = model_.dofs.free();
+  const Vector lengths = units_.lumped(free).cwiseSqrt();
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(
+      (lengths.asDiagonal() * neutral).transpose());
+  for (const DofBlock& block : model_.dofs.blocks()) {
+    const double spring = assembler_.largest_diagonal(block, values_);
+    for (Eigen::Index i = 0; i < neutral.cols(); ++i) {
+      const Index held = qr.colsPermutation().indices()[i];
+      const Index dof = free[to_size(held)];
+      if (dof < block.first || dof >= block.first + block.count) continue;
+      values_[solver_.layout().slot(held, held)] += spring;
+    }
+  }
 }
 
 Stability Stiffness::stability_by_pivots() {

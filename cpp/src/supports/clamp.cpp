@@ -12,6 +12,7 @@
 #include "der/model/location.hpp"
 #include "der/scenario/support.hpp"
 #include "model/corner.hpp"
+#include "model/curvature_jump.hpp"
 
 namespace der {
 namespace {
@@ -24,13 +25,15 @@ Vec2 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
 double direction(const Vec2& e) { return std::atan2(e.y(), e.x()); }
 
 /// Turning angle at the node nearest to `place` that has two edges, per metre [1/m]; none between
-/// `place` and a corner.
+/// `place` and a corner. Where the curvature jumps, that of the edge after `place`.
 double initial_curvature(const RodLayout& rod, Index place, const Model& model) {
   if (rod.num_edges() < 2) return 0.0;
   const Index inner = inner_place_near(rod, place);
   if (inner != place && is_corner(rod, inner, model)) return 0.0;
-  return angle_between(drawn_edge(rod, inner - 1, model), drawn_edge(rod, inner, model)) /
-         rod.voronoi_length(inner);
+  const double mean =
+      angle_between(drawn_edge(rod, inner - 1, model), drawn_edge(rod, inner, model)) /
+      rod.voronoi_length(inner);
+  return inner == place ? mean + curvature_beyond_mean(rod, place, model).z() : mean;
 }
 
 /// +1 if the edge leaves the clamp, -1 if it arrives there.

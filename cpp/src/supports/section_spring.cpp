@@ -8,6 +8,7 @@
 #include "der/energies/elements_of.hpp"
 #include "der/energies/section_spring.hpp"
 #include "der/model/frames.hpp"
+#include "der/model/location.hpp"
 #include "der/model/section_place.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spring.hpp"
@@ -36,9 +37,9 @@ Index follow_twist(Index number, const SectionFrame& drawn, Model& model) {
   return same ? followed.twist() : -1;
 }
 
-/// The springs at a place between the middles of two edges, or on one, as the rod feels them.
+/// The rod between springs at a place and the edges beside it.
 struct SectionHold {
-  Mat3 stiffness = Mat3::Zero();
+  Mat3 on_the_way = Mat3::Zero();  // its compliance
   std::array<Mat3, 2> weights;
   SectionFrame section;      // the drawn one that the springs hold
   SectionFrame of_natural;   // the one that lies there where no moment acts and no edge has turned
@@ -119,19 +120,12 @@ SectionFrame turned_back(const SectionFrame& section, const Vec3& rotation) {
   return SectionFrame::of(turn * section.tangent, turn * section.first);
 }
 
-/// In series with the cell in which the rod turns on to the place.
-double in_series(double stiffness, double cell_length, double stiffness_of_rod) {
-  return stiffness / (1.0 + stiffness * cell_length / stiffness_of_rod);
-}
-
 /// On one edge, or between two with nearly the same section.
 SectionHold smooth_hold(const SectionSpringPlace& spring, const SectionPlace& place,
                         const RodLayout& rod, const Model& model) {
   SectionHold hold;
-  const Vec3& stiffness = spring.stiffness;
-  hold.stiffness.diagonal() = Vec3(in_series(stiffness[0], place.bend_cell, rod.EI_1),
-                                   in_series(stiffness[1], place.bend_cell, rod.EI_2),
-                                   in_series(stiffness[2], place.twist_cell, rod.GJ));
+  hold.on_the_way.diagonal() =
+      Vec3(place.bend_cell / rod.EI_1, place.bend_cell / rod.EI_2, place.twist_cell / rod.GJ);
   for (std::size_t i = 0; i < place.across.size(); ++i) {
     hold.weights[i] = Vec3(place.across[i], place.across[i], place.along[i]).asDiagonal();
   }
@@ -145,8 +139,7 @@ SectionHold smooth_hold(const SectionSpringPlace& spring, const SectionPlace& pl
 /// with the compliances A and B about all axes. The moment of the springs on the rod, m, makes the
 /// one in it jump, and the section turns by B (A + B)^-1 r_a + A (A + B)^-1 r_b + D m, with the
 /// rotations of the two edges and D = A (A + B)^-1 B.
-SectionHold corner_hold(const Vec3& stiffness, double s, Index first_edge, const RodLayout& rod,
-                        const Model& model) {
+SectionHold corner_hold(double s, Index first_edge, const RodLayout& rod, const Model& model) {
   const Index second_edge = first_edge + 1;
   const double corner = rod.arc_length_at(second_edge);
   const double start = rod.edge_middle(first_edge);
@@ -171,8 +164,7 @@ SectionHold corner_hold(const Vec3& stiffness, double s, Index first_edge, const
   const Mat3 stiffness_between = (before + beyond).inverse();
   hold.weights = {beyond * stiffness_between, before * stiffness_between};
   const Mat3 cell = before * stiffness_between * beyond;
-  const Mat3 springs = stiffness.asDiagonal();
-  hold.stiffness = (Mat3::Identity() + springs * cell).inverse() * springs;
+  hold.on_the_way = 0.5 * (cell + cell.transpose());
   return hold;
 }
 
@@ -188,18 +180,19 @@ SectionHold hold_at(const SectionSpringPlace& spring, const SectionPlace& place,
                     const RodLayout& rod, const Model& model) {
   const bool resists = rod.EI_1 > 0.0 && rod.EI_2 > 0.0 && rod.GJ > 0.0;
   if (resists && place.across.size() == 2 && sections_differ(place.first_edge, rod, model)) {
-    return corner_hold(spring.stiffness, spring.arc_length, place.first_edge, rod, model);
+    return corner_hold(spring.arc_length, place.first_edge, rod, model);
   }
   return smooth_hold(spring, place, rod, model);
 }
 
 /// Returns the number of the element in its list.
 template <int Edges>
-Index add_element(const SectionHold& hold, Index first_edge, const RodLayout& rod, Model& model) {
+Index add_element(const SectionHold& hold, const SectionSpringPlace& spring, Index first_edge,
+                  const RodLayout& rod, Model& model) {
   using Kernel = SectionSpring<Edges>;
   std::array<Index, Kernel::kDofs> dofs{};
   typename Kernel::Constants constants;
-  constants.stiffness = hold.stiffness;
+  constants.spring = {spring.stiffness, hold.on_the_way, hold.section};
   for (Index i = 0; i < Edges; ++i) {
     const Index number = number_of(rod, first_edge + i);
     const SpatialEdge& edge = model.framed_edges[to_size(number)];
@@ -216,7 +209,10 @@ Index add_element(const SectionHold& hold, Index first_edge, const RodLayout& ro
     const SectionFrame own = drawn_frame(model, number);
     if (hold.counts_turns) held.reference_twist = follow_twist(number, own, model);
     held.carried = axes_of(own).transpose() * axes_of(hold.of_natural);
-    held.drawn = hold.section;
+  }
+  if (const auto beside = place_beside_clamp(rod, spring.arc_length)) {
+    const HeldFrame& held = rod.clamps[to_size(beside->clamp)].held;
+    constants.clamp = {held, axes_of(held.drawn).transpose() * axes_of(hold.of_natural)};
   }
   auto& springs = elements_of<Kernel>(*model.elements);
   springs.add(dofs, constants);
@@ -236,16 +232,12 @@ void add_to_section_spring(double s, const Vec3& stiffness, RodLayout& rod) {
 
 void add_section_springs(RodLayout& rod, Model& model) {
   for (SectionSpringPlace& spring : rod.section_springs) {
-    SectionPlace place = section_place(spring.arc_length, rod);
-    if (is_beside_turning_clamp(rod, spring.arc_length)) {
-      // The clamp's turn is not among the coordinates of the spring, which acts on the edge alone.
-      place.across = place.along = {1.0};
-      place.bend_cell = place.twist_cell = 0.0;
-    }
+    const SectionPlace place = section_place(spring.arc_length, rod);
     const SectionHold hold = hold_at(spring, place, rod, model);
     spring.on_one_edge = place.across.size() == 1;
-    spring.element = spring.on_one_edge ? add_element<1>(hold, place.first_edge, rod, model)
-                                        : add_element<2>(hold, place.first_edge, rod, model);
+    spring.element = spring.on_one_edge
+                         ? add_element<1>(hold, spring, place.first_edge, rod, model)
+                         : add_element<2>(hold, spring, place.first_edge, rod, model);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "der/scenario/support.hpp"
 #include "der/supports/clamp.hpp"
 #include "model/corner.hpp"
+#include "model/curvature_jump.hpp"
 
 namespace der {
 namespace {
@@ -17,18 +18,43 @@ Vec3 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
   return along_edge<3>(rod.edge(edge, model), model.initial_positions);
 }
 
-/// Rotation vector of the turning angle at the node nearest to `place` that has two edges, per
-/// metre [1/m]; zero between `place` and a corner.
-Vec3 initial_curvature(const RodLayout& rod, Index place, const Model& model) {
-  if (rod.num_edges() < 2) return Vec3::Zero();
-  const Index inner = inner_place_near(rod, place);
-  if (inner != place && is_corner(rod, inner, model)) return Vec3::Zero();
+/// Rotation vector of the turning angle at a place with two edges, per metre [1/m].
+Vec3 initial_curvature(const RodLayout& rod, Index inner, const Model& model) {
   const Vec3 before = drawn_edge(rod, inner - 1, model);
   const Vec3 after = drawn_edge(rod, inner, model);
   const Vec3 axis = before.cross(after);
   const double sine = axis.norm();
   if (sine == 0.0) return Vec3::Zero();
   return std::atan2(sine, before.dot(after)) / (sine * rod.voronoi_length(inner)) * axis;
+}
+
+/// Whether the drawn curvature changes at the start of a ring by much more than beside it, where a
+/// smooth curve that is resolved changes half as much. A jump that is not told apart shifts the
+/// tangent by the square of the edges' length only.
+bool jumps_at_start(const RodLayout& ring, const Model& model) {
+  constexpr double kLeast = 0.01;  // of the larger curvature
+  constexpr double kAlone = 10.0;
+  const auto curvature = [&](Index place) { return initial_curvature(ring, place, model); };
+  const Vec3 before = curvature(-1);
+  const Vec3 after = curvature(1);
+  const double change = (after - before).norm();
+  return change > kLeast * std::max(before.norm(), after.norm()) &&
+         change > kAlone * std::max((before - curvature(-2)).norm(), (curvature(2) - after).norm());
+}
+
+/// The tangent at a place on the circle that has the curvature at `inner`, the place itself or one
+/// next to it: straight between the place and a corner, and where no two edges meet. Where the
+/// curvature jumps at the place, that of the edge after it.
+Vec3 tangent_on_circle(const RodLayout& rod, Index place, Index inner, const Model& model) {
+  const Index edge = edge_beside(rod, place);
+  const Vec3 chord = drawn_edge(rod, edge, model).normalized();
+  if (!rod.is_inner(inner) || (inner != place && is_corner(rod, inner, model))) return chord;
+  Vec3 curvature = initial_curvature(rod, inner, model);
+  if (inner == place) curvature += curvature_beyond_mean(rod, place, model);
+  const double half = (edge == place ? -0.5 : 0.5) * rod.edge_length[to_size(edge)];
+  const double angle = curvature.norm() * half;
+  if (angle == 0.0) return chord;
+  return Eigen::AngleAxisd(angle, curvature.normalized()) * chord;
 }
 
 SectionFrame drawn_section(const RodLayout& rod, Index place, const Model& model) {
@@ -52,13 +78,13 @@ SpatialPivot pivot_at(const RodLayout& rod, Index place, Index edge) {
 }  // namespace
 
 Vec3 initial_tangent(const RodLayout& rod, Index place, const Model& model) {
-  const Vec3 curvature = initial_curvature(rod, place, model);
-  const Index edge = edge_beside(rod, place);
-  const Vec3 chord = drawn_edge(rod, edge, model).normalized();
-  const double half = (edge == place ? -0.5 : 0.5) * rod.edge_length[to_size(edge)];
-  const double angle = curvature.norm() * half;
-  if (angle == 0.0) return chord;
-  return Eigen::AngleAxisd(angle, curvature.normalized()) * chord;
+  const Index inner = rod.num_edges() < 2 ? place : inner_place_near(rod, place);
+  return tangent_on_circle(rod, place, inner, model);
+}
+
+Vec3 first_tangent(const RodLayout& rod, const Model& model) {
+  const bool is_smooth = rod.closed && !is_corner(rod, 0, model) && !jumps_at_start(rod, model);
+  return tangent_on_circle(rod, 0, is_smooth ? 0 : 1, model);
 }
 
 void hold_section(const scenario::Support& support, Index place, RodLayout& rod, Model& model) {

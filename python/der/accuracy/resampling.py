@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,10 @@ _SHARP_TURN = np.pi / 3.0
 _ISOLATED_TURN = 3.0
 #: A turn below this is rounding [rad].
 _NO_TURN = 1e-6
+#: A jump of the curvature is this many times all that is uncertain about it.
+_CLEAR_JUMP = 2.0
+#: Nodes on either side of a jump, of the same leg, from which it is known.
+_BESIDE_JUMP = 2
 
 
 def find_corners(points: Array) -> list[int]:
@@ -42,6 +47,52 @@ def find_corners(points: Array) -> list[int]:
     return [int(i) + 1 for i in np.flatnonzero(alone | (size > _SHARP_TURN))]
 
 
+def find_curvature_jumps(points: Array) -> list[int]:
+    """Return the inner nodes, corners apart, at which the curvature of a line jumps.
+
+    On either side of a node the curvature is that of the two nodes next to it, extrapolated. It
+    jumps if the two values differ by more than twice what the extrapolations change and what the
+    turn at the node differs from that of the two sides, all added (`model/curvature_jump.hpp`).
+
+    Parameters
+    ----------
+    points
+        Nodes [m], shape (nodes, dim).
+
+    Returns
+    -------
+    list of int
+        Node numbers, ascending.
+    """
+    beside = _BESIDE_JUMP
+    inner = len(points) - 2
+    if inner <= 2 * beside:
+        return []
+    size, axes = _turns(points)
+    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    cells = 0.5 * (lengths[:-1] + lengths[1:])
+    curvature = size[:, None] * axes / cells[:, None]
+    nodes = np.cumsum(lengths)[:-1]
+    places = nodes + (lengths[1:] - lengths[:-1]) / 3.0
+    here = np.arange(beside, inner - beside)
+
+    def extrapolated(step: int) -> tuple[Array, Array]:
+        near, far = here + step, here + 2 * step
+        reach = (nodes[here] - places[near]) / (places[near] - places[far])
+        change = reach[:, None] * (curvature[near] - curvature[far])
+        return curvature[near] + change, np.linalg.norm(change, axis=1)
+
+    before, change_before = extrapolated(-1)
+    after, change_after = extrapolated(1)
+    share = (0.5 * lengths[here] / cells[here])[:, None]
+    between = share * before + (1.0 - share) * after
+    uncertain = change_before + change_after + np.linalg.norm(curvature[here] - between, axis=1)
+    jump = np.linalg.norm(after - before, axis=1)
+    found = here[(jump > _CLEAR_JUMP * uncertain) & (jump * cells[here] > _NO_TURN)] + 1
+    corners = find_corners(points)
+    return [int(i) for i in found if all(abs(i - corner) > beside for corner in corners)]
+
+
 def _turns(points: Array) -> tuple[Array, Array]:
     """Return the angle at each inner node [rad] and the unit vector about which the line turns."""
     edges = np.diff(np.pad(points, ((0, 0), (0, 3 - points.shape[1]))), axis=0)
@@ -57,7 +108,7 @@ def resample_line(points: Array, factor: Fraction) -> Array:
 
     Between corners the new nodes lie on a cubic spline through the old ones, over chord length, so
     that a curve drawn by points becomes rounder with every refinement. Straight parts stay
-    straight.
+    straight. Where the curvature of the points jumps, so does that of the spline.
 
     Parameters
     ----------
@@ -75,7 +126,7 @@ def resample_line(points: Array, factor: Fraction) -> Array:
     if factor.numerator == 1:
         return _every_nth(points, len(points) - 1, factor.denominator, corners)
     _demand_whole(factor, len(points) - 1)
-    return _refine_between(points, corners, factor.numerator)
+    return _refine_between(points, corners, find_curvature_jumps(points), factor.numerator)
 
 
 def resample_ring(points: Array, factor: Fraction) -> Array:
@@ -96,19 +147,29 @@ def resample_ring(points: Array, factor: Fraction) -> Array:
         As `resample_line`.
     """
     count = len(points)
-    around = np.vstack([points[-2:], points, points[:2]])
-    corners = [i - 2 for i in find_corners(around) if 2 <= i < count + 2]
+    beside = _BESIDE_JUMP + 1
+    around = np.take(points, np.arange(-beside, count + beside), axis=0, mode="wrap")
+
+    def on_ring(places: list[int]) -> list[int]:
+        return [i - beside for i in places if beside <= i < count + beside]
+
+    corners = on_ring(find_corners(around))
     if factor.numerator == 1:
         return _every_nth(points, count, factor.denominator, corners)
     _demand_whole(factor, count)
-    if not corners:
-        line = np.vstack([points, points[:1]])
-        return _refine_piece(line, factor.numerator, ends="periodic")[:-1]
-    first = corners[0]
+    jumps = on_ring(find_curvature_jumps(around))
+    first = min(corners or jumps or [0])
     rolled = np.roll(points, -first, axis=0)
-    inner = [corner - first for corner in corners[1:]]
-    line = _refine_between(np.vstack([rolled, rolled[:1]]), inner, factor.numerator)
-    return np.roll(line[:-1], first * factor.numerator, axis=0)
+    line = np.vstack([rolled, rolled[:1]])
+    first_jumps = first in jumps
+    jumps = sorted((jump - first) % count for jump in jumps if jump != first)
+    if corners:
+        inner = [corner - first for corner in corners[1:]]
+        refined = _refine_between(line, inner, jumps, factor.numerator)
+    else:
+        ends = "jump" if first_jumps else "smooth"
+        refined = _refine_leg(line, jumps, factor.numerator, ends)
+    return np.roll(refined[:-1], first * factor.numerator, axis=0)
 
 
 def _demand_whole(factor: Fraction, elements: int) -> None:
@@ -116,10 +177,13 @@ def _demand_whole(factor: Fraction, elements: int) -> None:
         raise ValueError(f"a rod drawn by points takes whole multiples of its {elements} elements")
 
 
-def _refine_between(points: Array, corners: list[int], factor: int) -> Array:
+def _refine_between(points: Array, corners: list[int], jumps: list[int], factor: int) -> Array:
     ends = [0, *corners, len(points) - 1]
-    pieces = [_refine_piece(points[a : b + 1], factor) for a, b in itertools.pairwise(ends)]
-    return np.vstack([*(piece[:-1] for piece in pieces), points[-1:]])
+    legs = [
+        _refine_leg(points[a : b + 1], [jump - a for jump in jumps if a < jump < b], factor)
+        for a, b in itertools.pairwise(ends)
+    ]
+    return np.vstack([*(leg[:-1] for leg in legs), points[-1:]])
 
 
 def _every_nth(points: Array, elements: int, step: int, corners: list[int]) -> Array:
@@ -130,15 +194,47 @@ def _every_nth(points: Array, elements: int, step: int, corners: list[int]) -> A
     return points[::step]
 
 
-def _refine_piece(points: Array, factor: int, ends: str = "not-a-knot") -> Array:
+def _refine_leg(points: Array, jumps: list[int], factor: int, ends: str = "free") -> Array:
+    """Put new nodes on the cubic splines of a leg, one from each jump of the curvature to the next.
+
+    `ends` is "smooth" or "jump" for a ring whose two ends meet like this.
+    """
     from scipy.interpolate import CubicSpline  # here, because it takes long to load
 
     chord = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     old = np.arange(len(points))
-    new = np.arange(factor * (len(points) - 1) + 1) / factor
-    refined: Array = CubicSpline(chord, points, bc_type=ends)(np.interp(new, old, chord))
+    new = np.interp(np.arange(factor * (len(points) - 1) + 1) / factor, old, chord)
+    if ends == "smooth" and not jumps:
+        refined: Array = CubicSpline(chord, points, bc_type="periodic")(new)
+        refined[::factor] = points
+        return refined
+    bounds = list(itertools.pairwise([0, *jumps, len(points) - 1]))
+    pieces = [(chord[a : b + 1], points[a : b + 1]) for a, b in bounds]
+    splines = [CubicSpline(*piece) for piece in pieces]
+    slopes: list[list[Any]] = [["not-a-knot", "not-a-knot"] for _ in pieces]
+    for after in range(0 if ends == "jump" else 1, len(pieces)):
+        slopes[after - 1][1], slopes[after][0] = _common_slopes(splines[after - 1], splines[after])
+    refined = np.empty((len(new), points.shape[1]))
+    for (a, b), piece, slope in zip(bounds, pieces, slopes, strict=True):
+        here = slice(factor * a, factor * b + 1)
+        refined[here] = CubicSpline(*piece, bc_type=tuple(slope))(new[here])
     refined[::factor] = points
     return refined
+
+
+def _common_slopes(before: Any, after: Any) -> tuple[tuple[int, Array], tuple[int, Array]]:
+    """Return the slopes at the end of a spline and the start of the next in one direction.
+
+    An error in the direction of a spline's end is like the cube of what it turns along an edge, so
+    that a straight leg gives the direction to the arc that it runs into.
+    """
+    slopes = before(before.x[-1], 1), after(after.x[0], 1)
+    turn_before = np.linalg.norm(before(before.x[-1], 2)) * (before.x[-1] - before.x[-2])
+    turn_after = np.linalg.norm(after(after.x[0], 2)) * (after.x[1] - after.x[0])
+    sizes = [float(np.linalg.norm(slope)) for slope in slopes]
+    mean = turn_after**3 * slopes[0] / sizes[0] + turn_before**3 * slopes[1] / sizes[1]
+    mean /= np.linalg.norm(mean)
+    return (1, sizes[0] * mean), (1, sizes[1] * mean)
 
 
 def resample_list(values: Array, elements: int, *, closed: bool = False) -> Array:

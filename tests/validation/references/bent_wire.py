@@ -77,8 +77,8 @@ class Wire:
         return np.array(points)
 
     def solve(self, places: Sequence[tuple[int, float]]) -> Array:
-        """At places, each a leg and a share of it, shape (places, 10): x, y, z, curvatures towards
-        d1 and d2, twist, their moments, tension.
+        """At places, each a leg and a share of it, shape (places, 13): x, y, z, curvatures towards
+        d1 and d2, twist, their moments, tension, and the components of the tangent.
         """
         found = root(lambda m: self._march(m, ())[0], np.zeros(3), tol=1e-13)
         assert np.abs(found.fun).max() < 1e-9
@@ -133,6 +133,7 @@ class Wire:
                         *(u[1], -u[0], u[2]),
                         *(about[1], -about[0], about[2]),
                         n @ d[:, 2],
+                        *d[:, 2],
                     ]
                 y = run.y[:, -1]
                 point, frame, moment = y[:3], y[3:12].reshape(3, 3), y[12:]

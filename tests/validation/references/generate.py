@@ -42,6 +42,7 @@ SPATIAL = (
     "hanging_coil",
     "spatial_frequencies",
     "curved_twisted_rod",
+    "springs_in_space",
     "writhe",
     "deployable_ring",
     "spatial_motion",

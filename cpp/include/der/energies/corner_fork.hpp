@@ -55,9 +55,9 @@ struct CornerFork {
     out.energy = 0.5 * c.stiffness * psi * psi;
     if constexpr (D == Derivatives::Energy) return;
     const double torque = c.stiffness * psi;
-    set_edge_moments<D>({a, torque * of_a.axis, of_a.stiffness(c.stiffness, psi)},
-                        {b, torque * of_b.axis, of_b.stiffness(c.stiffness, psi)},
-                        c.stiffness * of_b.axis * of_a.axis.transpose(), out);
+    set_edge_moments<D, double>({a, torque * of_a.axis, of_a.stiffness(c.stiffness, psi)},
+                                {b, torque * of_b.axis, of_b.stiffness(c.stiffness, psi)},
+                                c.stiffness * of_b.axis * of_a.axis.transpose(), out);
   }
 };
 

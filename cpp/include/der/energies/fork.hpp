@@ -39,8 +39,8 @@ struct Fork {
     const TurnFromPlane turn(edge.frame, c.upright, {std::cos(angle), std::sin(angle)});
     out.energy = 0.5 * c.stiffness * turn.psi * turn.psi;
     if constexpr (D == Derivatives::Energy) return;
-    set_edge_moment<D>(edge, c.stiffness * turn.psi * turn.axis,
-                       turn.stiffness(c.stiffness, turn.psi), out);
+    set_edge_moment<D, double>(edge, c.stiffness * turn.psi * turn.axis,
+                               turn.stiffness(c.stiffness, turn.psi), out);
   }
 };
 

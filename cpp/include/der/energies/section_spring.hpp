@@ -2,22 +2,24 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <utility>
 
 #include "der/core/types.hpp"
 #include "der/energies/edge_moments.hpp"
-#include "der/energies/spatial_bend.hpp"
+#include "der/energies/held_section.hpp"
+#include "der/energies/local_term.hpp"
+#include "der/kinematics/configuration.hpp"
+#include "der/kinematics/edge_frame.hpp"
+#include "der/kinematics/frame_block.hpp"
 #include "der/kinematics/held_frame.hpp"
 
 namespace der {
 
-/// RotationalSpring in space: E = 1/2 r . K r with r = sum_i W_i kappa_i, and kappa_i the
-/// rotation of edge i from its drawn place, as a joint between the drawn section at the spring and
-/// the same section, carried by the edge, would measure it (JointKinematics): towards the first
-/// director, towards the second, and the twist about the tangent, whole turns included. The weights
-/// of two edges add up to the unit matrix; supports/section_spring.hpp says how the section of a
-/// rod at a place is such a sum. Both are diagonal but at corners. Coordinates: the nodes, then the
-/// angles.
+/// RotationalSpring in space: springs against turning in series with the rod between them and the
+/// edges (HeldSection), whose sections are those at the springs as each edge, and a clamp beside
+/// them, would carry them. supports/section_spring.hpp says how the section of a rod at a place is
+/// a weighted sum of these. Coordinates: the nodes, then the angles.
 template <int Edges>
 struct SectionSpring {
   static_assert(Edges == 1 || Edges == 2);
@@ -28,18 +30,23 @@ struct SectionSpring {
     FrameBlock block;
     SpatialPivot first;  ///< of the edge, beside a clamp
     SpatialPivot last;
-    SectionFrame drawn;  ///< of the rod, at the spring
     /// The section that the edge carries, by its directors and its tangent in the edge's own. It is
-    /// the drawn one where the spring exerts no moment.
+    /// the drawn one where the springs exert no moment.
     Mat3 carried = Mat3::Identity();
     /// Control: twist [rad] from the edge's reference director to the drawn section, whole turns
     /// included; -1: they do not count.
     Index reference_twist = -1;
     Mat3 weights = Mat3::Identity();  ///< W_i [-]
   };
+  /// The section that a clamp holds. It has the rest of the weights.
+  struct HeldBeside {
+    HeldFrame held;
+    Mat3 carried = Mat3::Identity();  ///< as that of an edge
+  };
   struct Constants {
-    Mat3 stiffness = Mat3::Zero();  ///< K [N m/rad], symmetric
+    SpringInSeries spring;
     std::array<HeldEdge, Edges> edges;
+    std::optional<HeldBeside> clamp;  ///< beside the springs on one edge
   };
 
   /// The section that turns with an edge, and therefore by the same rotation.
@@ -50,29 +57,44 @@ struct SectionSpring {
     return {carried.col(2), carried.col(0), carried.col(1)};
   }
 
-  /// The rotation r that it measures [rad], and the moment K r [N m], towards the directors and
-  /// about the tangent.
+  using EdgeFrames = std::array<EdgeFrame, Edges>;
+  /// The edges, the sections beside the springs, and theirs.
   struct Response {
-    Vec3 rotation;
-    Vec3 moment;
+    EdgeFrames edges;
+    std::size_t count;  ///< of carried sections: those of the edges, and that of a clamp
+    HeldSection::CarriedSections carried;
+    HeldSection held;
+
+    Response(const Constants& c, const Configuration& here,
+             const Eigen::Matrix<double, kDofs, 1>& x)
+        : edges(edge_frames(c, here, x)),
+          count(c.clamp ? 2 : Edges),
+          carried(carried_sections(c, edges, here, x)),
+          held(c.spring, carried, count) {}
+    // `held` refers to `carried`.
+    Response(const Response&) = delete;
+    Response& operator=(const Response&) = delete;
+    Response(Response&&) = delete;
+    Response& operator=(Response&&) = delete;
+    ~Response() = default;
   };
-  static Response response(const Constants& c, const Configuration& here,
-                           const Eigen::Matrix<double, kDofs, 1>& x) {
-    const auto measured = measure(c, here, x, std::make_index_sequence<Edges>{});
-    const Vec3 rotation = weighted_rotation(c, measured);
-    return {rotation, c.stiffness * rotation};
+
+  /// The part of the energy [J] that the rod on the way to the springs stores.
+  static double stored_on_the_way(const Constants& c, const Configuration& here,
+                                  const Eigen::Matrix<double, kDofs, 1>& x) {
+    return Response(c, here, x).held.energy_on_the_way();
   }
 
-  /// The moments that the spring exerts on its edges, and their sum.
+  /// The moments that the springs exert on their edges, and their sum, of which a clamp may have a
+  /// part.
   static EdgeMoments moments(const Constants& c, const Configuration& here,
                              const Eigen::Matrix<double, kDofs, 1>& x) {
-    std::array<Measured, Edges> measured = measure(c, here, x, std::make_index_sequence<Edges>{});
-    const Vec3 moment = c.stiffness * weighted_rotation(c, measured);
+    const Response response(c, here, x);
     EdgeMoments result;
-    for (std::size_t i = 0; i < Edges; ++i) {
-      measured[i].find_slopes(c.edges[i].weights);
-      result.on_edge[i] = -(measured[i].slopes * moment);
-      result.whole += result.on_edge[i];
+    for (std::size_t i = 0; i < response.count; ++i) {
+      const Vec3 moment = -response.held.moment(i);
+      result.whole += moment;
+      if (i < Edges) result.on_edge[i] = moment;
     }
     return result;
   }
@@ -80,111 +102,73 @@ struct SectionSpring {
   template <Derivatives D>
   static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
-    std::array<Measured, Edges> measured = measure(c, here, x, std::make_index_sequence<Edges>{});
-    const Vec3 rotation = weighted_rotation(c, measured);
-    const Vec3 moment = c.stiffness * rotation;
-    out.energy = 0.5 * moment.dot(rotation);
+    const Response response(c, here, x);
+    out.energy = response.held.energy();
     if constexpr (D == Derivatives::Energy) return;
 
-    for (std::size_t i = 0; i < Edges; ++i) {
-      measured[i].find_slopes(c.edges[i].weights);
-    }
+    std::array<EdgeFrame::Rotation, Edges> maps;
     out.gradient.setZero();
     for (int i = 0; i < Edges; ++i) {
-      const Measured& own = measured[std::size_t(i)];
-      const Eigen::Vector4d force = own.map.transpose() * (own.slopes * moment);
+      maps[std::size_t(i)] = response.edges[std::size_t(i)].rotation();
+      const Eigen::Vector4d force =
+          maps[std::size_t(i)].transpose() * response.held.moment(std::size_t(i));
       out.gradient.template segment<3>(3 * i) -= force.head<3>();
       out.gradient.template segment<3>(3 * i + 3) += force.head<3>();
       out.gradient[3 * kNodes + i] = force[3];
     }
     if constexpr (D == Derivatives::Gradient) return;
 
+    const HeldSection::Stiffness stiffness = response.held.stiffness();
     out.hessian.setZero();
-    for (int i = 0; i < Edges; ++i) {
-      for (int j = 0; j <= i; ++j) {
-        const Measured& row = measured[std::size_t(i)];
-        const Measured& column = measured[std::size_t(j)];
-        Eigen::Matrix4d block = row.map.transpose() *
-                                (row.slopes * c.stiffness * column.slopes.transpose()) * column.map;
-        if (i == j) block += row.curving(c.edges[std::size_t(i)].weights.transpose() * moment);
-        add_block(i, j, block, out.hessian);
-        if (i != j) add_block(j, i, block.transpose(), out.hessian);
+    for (std::size_t i = 0; i < Edges; ++i) {
+      for (std::size_t j = 0; j < Edges; ++j) {
+        Eigen::Matrix4d block = maps[i].transpose() * stiffness[i][j] * maps[j];
+        if (i == j) block += response.edges[i].geometric_stiffness(response.held.moment(i));
+        add_block(int(i), int(j), block, out.hessian);
       }
     }
   }
 
  private:
-  /// The rotation of one edge with its derivatives.
-  struct Measured {
-    EdgeFrame edge;
-    JointKinematics<AngleCurvature> kinematics;
-    Eigen::Matrix<double, 3, 4> map;  // omega by the edge's vector and angle
-    Mat3 slopes;                      // of the weighted strains by omega, one a column
-
-    [[nodiscard]] Vec3 strain() const {
-      const JointStrain& s = kinematics.strain();
-      return {s.kappa_1, s.kappa_2, s.twist};
+  static HeldSection::CarriedSections carried_sections(const Constants& c, const EdgeFrames& frames,
+                                                       const Configuration& here,
+                                                       const Eigen::Matrix<double, kDofs, 1>& x) {
+    HeldSection::CarriedSections carried;
+    double turned = 0.0;
+    if (c.clamp) {
+      turned = c.clamp->held.twist_angle(here.controls);
+      const SectionFrame section =
+          carried_by(c.clamp->held.untwisted(here.controls).turned(turned), c.clamp->carried);
+      carried[1] = {section, nearest_turn(twist_between(c.spring.drawn, section), turned),
+                    Mat3::Identity() - c.edges[0].weights};
     }
-    /// The response to `moment` [N m] on the strains, which stays as it is.
-    template <bool with_stiffness>
-    [[nodiscard]] JointResponse response(const Vec3& moment, const Vec3& stiffness) const {
-      // A joint whose strain has the moment as its force.
-      const Vec3 rest = strain() - moment.cwiseQuotient(stiffness);
-      JointResponse result;
-      kinematics.template respond<with_stiffness>(
-          {stiffness[0], stiffness[1], stiffness[2], {rest[0], rest[1], rest[2]}}, result);
-      return result;
+    for (int i = 0; i < Edges; ++i) {
+      const HeldEdge& edge = c.edges[std::size_t(i)];
+      const SectionFrame section = carried_by(frames[std::size_t(i)].frame, edge.carried);
+      const double near = edge.reference_twist < 0
+                              ? turned
+                              : x[3 * kNodes + i] - here.controls[edge.reference_twist];
+      const double twist = nearest_turn(twist_between(c.spring.drawn, section), near);
+      carried[std::size_t(i)] = {section, twist, edge.weights};
     }
-    void find_slopes(const Mat3& weights) {
-      map = edge.rotation();
-      Mat3 of_strains;
-      for (int k = 0; k < 3; ++k) {
-        of_strains.col(k) = response<false>(Vec3::Unit(k), Vec3::Ones()).moment;
-      }
-      slopes = of_strains * weights.transpose();
-    }
-    /// The second derivatives of the strains times `moment`, by the edge's vector and angle. A
-    /// joint as stiff as the moment is large has them, and its slopes beside, which are taken off:
-    /// any other stiffness would leave roundings of its own.
-    [[nodiscard]] Eigen::Matrix4d curving(const Vec3& moment) const {
-      const double stiffness = moment.lpNorm<Eigen::Infinity>();
-      if (stiffness == 0.0) return Eigen::Matrix4d::Zero();
-      JointResponse whole = response<true>(moment, Vec3::Constant(stiffness));
-      for (int k = 0; k < 3; ++k) {
-        const Vec3 slope = response<false>(Vec3::Unit(k), Vec3::Ones()).moment;
-        whole.stiffness -= stiffness * slope * slope.transpose();
-      }
-      return map.transpose() * whole.stiffness * map + edge.geometric_stiffness(whole.moment);
-    }
-  };
-
-  /// sum_i W_i kappa_i, one component for each axis.
-  static Vec3 weighted_rotation(const Constants& c, const std::array<Measured, Edges>& measured) {
-    Vec3 rotation = Vec3::Zero();
-    for (std::size_t i = 0; i < Edges; ++i) {
-      rotation += c.edges[i].weights * measured[i].strain();
-    }
-    return rotation;
+    return carried;
   }
 
+  static EdgeFrames edge_frames(const Constants& c, const Configuration& here,
+                                const Eigen::Matrix<double, kDofs, 1>& x) {
+    return edge_frames(c, here, x, std::make_index_sequence<Edges>{});
+  }
   template <std::size_t... i>
-  static std::array<Measured, Edges> measure(const Constants& c, const Configuration& here,
-                                             const Eigen::Matrix<double, kDofs, 1>& x,
-                                             std::index_sequence<i...> /*edges*/) {
-    return {{measure(c, here, x, int(i))...}};
+  static EdgeFrames edge_frames(const Constants& c, const Configuration& here,
+                                const Eigen::Matrix<double, kDofs, 1>& x,
+                                std::index_sequence<i...> /*edges*/) {
+    return {{edge_frame(c.edges[i], here.controls, x, int(i))...}};
   }
-  static Measured measure(const Constants& c, const Configuration& here,
-                          const Eigen::Matrix<double, kDofs, 1>& x, int i) {
-    const Vector& values = here.controls;
-    const HeldEdge& held = c.edges[std::size_t(i)];
-    const double theta = x[3 * kNodes + i];
-    const Vec3 vector = x.template segment<3>(3 * i + 3) + held.last.offset(values) -
-                        x.template segment<3>(3 * i) - held.first.offset(values);
-    const EdgeFrame edge(vector, theta, held.block.tangent(values), held.block.director(values));
-    const SectionFrame section = carried_by(edge.frame, held.carried);
-    const double near = held.reference_twist < 0 ? 0.0 : theta - values[held.reference_twist];
-    const double twist = nearest_turn(twist_between(held.drawn, section), near);
-    return {edge, {held.drawn, section, twist}, {}, {}};
+  static EdgeFrame edge_frame(const HeldEdge& edge, const Vector& values,
+                              const Eigen::Matrix<double, kDofs, 1>& x, int i) {
+    const Vec3 vector = x.template segment<3>(3 * i + 3) + edge.last.offset(values) -
+                        x.template segment<3>(3 * i) - edge.first.offset(values);
+    return {vector, x[3 * kNodes + i], edge.block.tangent(values), edge.block.director(values)};
   }
 
   /// Adds a block by the vectors and angles of edges i and j.

@@ -2,6 +2,7 @@
 
 #include "der/core/types.hpp"
 #include "der/kinematics/frame_block.hpp"
+#include "der/kinematics/section_frame.hpp"
 #include "der/kinematics/spatial_edge.hpp"
 
 namespace der {
@@ -20,6 +21,16 @@ struct FramedJoint {
                       : FrameBlock::of(before).twist_at_end();
   }
 };
+
+/// The reference frame of an edge that has the unit tangent `source` and the reference director
+/// `director`, moved to the present vector of the edge.
+template <class T>
+SectionFrameOf<T> moved_frame(const Vector3<T>& source, const Vector3<T>& director,
+                              const Vector3<T>& vector) {
+  const Vector3<T> tangent = unit_vector(vector);
+  const Vector3<T> moved = transport<T>(director, source, tangent);
+  return SectionFrameOf<T>::of(tangent, made_perpendicular<T>(moved, tangent));
+}
 
 /// Moves the frames of all edges in `frames` to the shape at `coordinates`: parallel transport in
 /// time of their reference directors, and reference twists that change by less than half a turn

@@ -16,8 +16,9 @@ namespace der {
 /// opposite on the start, by which a section resists the turning of its tangent t: the angular
 /// momentum `spin` [kg m^2/s] along t changes by spin t', and the couple on the nodes is the
 /// opposite. Linear in the velocities, at right angles to t', so that it does no work.
-inline Vec3 gyroscopic_force(const Vec3& edge, const Vec3& rate, double spin) {
-  const double length = edge.norm();
+template <class T>
+Vector3<T> gyroscopic_force(const Vector3<T>& edge, const Vector3<T>& rate, const T& spin) {
+  const T length = edge.norm();
   return edge.cross(rate) * (spin / (length * length * length));
 }
 
@@ -36,8 +37,12 @@ void take_pairs(const Model& model, const Configuration& here, Force&& force, Ve
 
 /// The part T a of the elastic force on an edge's end [N]: what the transport of frames from their
 /// source, with its spin a, makes of the torque T [N m].
+template <class T>
+Vector3<T> transport_force(const Vector3<T>& edge, const Vector3<T>& source, const T& torque) {
+  return torque * transport_spin<T>(edge, source);
+}
 inline Vec3 transport_force(const Vec3& edge, Index number, double torque, const Vector& controls) {
-  return torque * transport_spin(edge, FrameBlock::of(number).tangent(controls));
+  return transport_force<double>(edge, FrameBlock::of(number).tangent(controls), torque);
 }
 
 /// The gyroscopic force on an edge's end [N], where `velocity(dof)` is the rate of a degree of
@@ -49,7 +54,7 @@ Vec3 gyroscopic_force(const SpatialEdge& edge, const Vec3& vector, const Mass& m
                       Velocity&& velocity) {
   Vec3 rate;
   for (int c = 0; c < 3; ++c) rate[c] = velocity(edge.end + c) - velocity(edge.start + c);
-  return gyroscopic_force(vector, rate, mass.lumped[edge.theta] * velocity(edge.theta));
+  return gyroscopic_force<double>(vector, rate, mass.lumped[edge.theta] * velocity(edge.theta));
 }
 
 }  // namespace der

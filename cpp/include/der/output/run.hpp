@@ -19,8 +19,8 @@ using StepCallback = std::function<bool(const Simulation&)>;
 /// Results of the analysis of a planar model for motion out of the plane. The report of the
 /// equilibrium has its own (EquilibriumReport::out_of_plane), and so have the points of a path.
 struct OutOfPlaneAnswer {
-  double growth_rate = 0.0;               ///< [1/s] of the fastest motion, of a modes analysis
-  std::optional<double> buckling_factor;  ///< the lowest, of a buckling analysis
+  double growth_rate = 0.0;     ///< [1/s] of the fastest motion, of a modes analysis
+  OutOfPlaneBuckling buckling;  ///< of a buckling analysis
 };
 
 /// How a run ended. `status` is one of catalog/run_status.hpp or that of the error.

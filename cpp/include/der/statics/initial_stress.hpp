@@ -20,10 +20,12 @@ namespace der {
 /// and what remains of it where an edge is turned by a force: M across the tangent t couples the
 /// turning of an edge with its angle (EdgeFrame::geometric_stiffness). A clamp that lets the
 /// section turn reads M in directors that spin with the edge, and the second derivatives of its
-/// strains are not small: they add a part that couples spin and bending. The part that couples the
-/// turning of an edge with its stretching is left out: it would make a straight beam buckle under a
-/// load across it of about sqrt(EA EI), where terms of second order in the displacement, left out
-/// too, cancel it. In a plane nothing remains of moments, nor where sections do not count.
+/// strains are not small: they add a part that couples spin and bending. So do springs against
+/// turning, whose section follows the edges beside it as it does without stress. The part that
+/// couples the turning of an edge with its stretching is left out: it would make a straight beam
+/// buckle under a load across it of about sqrt(EA EI), where terms of second order in the
+/// displacement, left out too, cancel it. In a plane nothing remains of moments, nor where sections
+/// do not count.
 class InitialStress {
  public:
   /// `displacement` has all degrees of freedom, `here` the frames of the shape itself.
@@ -39,6 +41,8 @@ class InitialStress {
   /// d' K1 d [J] of a displacement d (all degrees of freedom) [m], summed over the elements, each
   /// of which sees differences of it alone.
   [[nodiscard]] double variation(const Vector& direction) const;
+  /// K1 d (all degrees of freedom) [N].
+  [[nodiscard]] Vector product(const Vector& direction) const;
   /// The stresses of the reversed displacement.
   void reverse();
 
@@ -53,10 +57,12 @@ class InitialStress {
   };
   static constexpr int kMost = 8;
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
+  using Values = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1>;
   struct Term {
     int size = 0;
     std::array<Variable, kMost> variables{};
     Matrix matrix;
+    [[nodiscard]] Values of(const Vector& direction) const;
   };
 
   template <int Dim>
@@ -65,6 +71,13 @@ class InitialStress {
                 const Eigen::Matrix<double, Dim, 1>& change, double EA, double rest_length);
   void add_planar_edges(const Model& model, const Configuration& here, const Vector& displacement);
   void add_spatial_edges(const Model& model, const Configuration& here, const Vector& displacement);
+  /// `moment` [N m] of its element, `size` of the model [m], number of variables.
+  Term& add_term(double moment, double size, int variables);
+  template <class Dofs>
+  static void set_edge(const Dofs& dofs, std::size_t node, std::size_t angle, std::size_t first,
+                       Term& term);
+  template <int Edges>
+  void add_springs(const Model& model, const Configuration& here, const Vector& displacement);
   template <class Curvature>
   void add_joints(const Model& model, const Configuration& here, const Vector& displacement);
 

@@ -54,9 +54,6 @@ struct LinearBuckling {
   bool reversed = false;
 };
 
-/// The error that the buckling loads are lost in the rounding errors of the stiffness.
-NotConvergedError hidden_buckling();
-
 /// The `count` lowest positive factors a at which (K0 + a K1) v = 0 has a solution, fewer if there
 /// are not so many: by bisection on the inertia of the sparse factorisation. `stiffness` is the
 /// positive definite K0 at the shape `here`, on the same solver, and `stress` has K1.

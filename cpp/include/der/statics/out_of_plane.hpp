@@ -7,6 +7,7 @@
 #include "der/assembly/pattern.hpp"
 #include "der/building/out_of_plane_model.hpp"
 #include "der/solvers/linear_solver.hpp"
+#include "der/statics/initial_stress.hpp"
 #include "der/statics/stiffness.hpp"
 
 namespace der {
@@ -18,6 +19,13 @@ struct OutOfPlane {
   [[nodiscard]] bool tested() const { return not_tested.empty(); }
   /// As `Stability::name`, or "not_tested".
   [[nodiscard]] const char* name() const { return tested() ? stability.name() : "not_tested"; }
+};
+
+/// Linear buckling of a planar structure out of its plane.
+struct OutOfPlaneBuckling {
+  std::string not_tested;  ///< why it was not tested, as a clause; empty if it was
+  /// The lowest factor of the loads at which it leaves its plane; nothing if no factor does that.
+  std::optional<double> load_factor;
 };
 
 /// Tests shapes of a planar model against motion out of the plane: by the inertia of the block of
@@ -38,11 +46,20 @@ class OutOfPlaneTest {
   /// Throws as `vibration_modes` does.
   double growth_rate(const Configuration& planar);
   /// The lowest factor of the loads at which the structure buckles out of its plane by linear
-  /// theory. `unloaded` is its stable shape without them, `response` the displacement (all degrees
-  /// of freedom of the planar model) that they cause to first order.
-  std::optional<double> buckling_factor(const Configuration& unloaded, const Vector& response);
+  /// theory. `unloaded` is its shape without them, stable in its plane, `response` the displacement
+  /// (all degrees of freedom of the planar model) that they cause to first order. Motions that
+  /// nothing resists, such as the spin of a rod in its clamps, count only where the loads act on
+  /// them.
+  OutOfPlaneBuckling buckling(const Configuration& unloaded, const Vector& response);
 
  private:
+  /// The answer that motions which nothing resists, one a column of `neutral`, give by themselves:
+  /// the factor 0 where the stresses make them unstable. With the force that K1 makes of a motion,
+  /// the curvature changes by the square of the load, too, of which K1 does not have all. Nothing
+  /// where the stresses make no force of them: they then leave the factors alone.
+  [[nodiscard]] OutOfPlaneBuckling of_neutral(const Eigen::MatrixXd& neutral,
+                                              const InitialStress& stress) const;
+
   const Model& planar_;
   const OutOfPlaneModel twin_;
   const Pattern pattern_;

@@ -76,6 +76,14 @@ class Stiffness {
   bool is_clear();
   /// The stability by the signs of the pivots alone, for shapes near one that is clear.
   Stability stability_by_pivots();
+  /// The softest directions, one a column over the free degrees of freedom: those in which
+  /// `stability()` found the potential flat, where it found so many and no unstable ones.
+  Eigen::MatrixXd softest_directions(Index count);
+  /// Adds to K a spring at one degree of freedom for each column of `neutral`, a basis of
+  /// directions d with K d = 0. They are stiff then, and for any symmetric A with A d = 0 nothing
+  /// else changes in K + a A: its other directions with no curvature are those that the springs do
+  /// not see.
+  void hold(const Eigen::MatrixXd& neutral);
   /// The eigenvector of the smallest eigenvalue, to a few digits: by inverse iteration with a shift
   /// just beyond it, found from the inertia, or, if it is too small for the matrix, by second
   /// variations. Its sign makes the largest component positive.

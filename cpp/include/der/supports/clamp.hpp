@@ -46,6 +46,12 @@ void for_each_turning_control(const Model& model, const Use& use) {
   }
 }
 
+inline bool any_clamp_turns(const Model& model) {
+  bool any = false;
+  for_each_turning_control(model, [&](Index /*control*/) { any = true; });
+  return any;
+}
+
 /// The largest absolute value [rad] of the controls that turn the clamps of a model.
 double largest_turn_of_clamps(const Model& model, const Vector& controls);
 

@@ -5,8 +5,8 @@
 
 namespace der {
 
-// Springs against turning in space: those of supports/spring.hpp with section frames. About each
-// axis spring and cell are in series, with the lengths of model/section_place.hpp.
+// Springs against turning in space: those of supports/spring.hpp with section frames. Spring and
+// cell are in series (energies/held_section.hpp), with the lengths of model/section_place.hpp.
 
 /// Enters a spring [N m/rad] against turning of the section at arc length `s` [m] into the layout,
 /// where it joins what is at the same place.

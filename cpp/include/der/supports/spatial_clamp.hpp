@@ -17,6 +17,9 @@ struct Support;
 /// Unit tangent at a node of the initial shape: that of the circle through the node's
 /// neighbourhood.
 Vec3 initial_tangent(const RodLayout& rod, Index place, const Model& model);
+/// The same at the start of a rod, as the rod has it behind its first node: where a ring starts at
+/// a corner, or where its drawn curvature jumps, that of the open rod through its nodes.
+Vec3 first_tangent(const RodLayout& rod, const Model& model);
 
 /// Enters a clamp into the layout of `rod`, which is one of the model's. The rod's elements are
 /// made after it. Without effect on a rod that does not bend.

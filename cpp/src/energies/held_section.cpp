@@ -1,0 +1,253 @@
+#include "der/energies/held_section.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "der/energies/spatial_bend.hpp"
+
+namespace der {
+namespace {
+
+constexpr int kMostSteps = 100;
+/// Steps [rad] below which Newton's method is tried, at first and after steps with care.
+constexpr double kLongStep = 1.0;
+constexpr double kShortStep = 0.1;
+/// After a step [rad] this short the next one is below rounding.
+constexpr double kLastStep = 1e-8;
+
+}  // namespace
+
+HeldSection::Rotation::Rotation(const JointKinematics<AngleCurvature>& joint)
+    : kinematics(joint),
+      strain(joint.strain().kappa_1, joint.strain().kappa_2, joint.strain().twist) {
+  const auto [g1, g2, gt] = joint.gradients();
+  slopes << g1, g2, gt;
+}
+
+Mat3 HeldSection::Rotation::curving(const Vec3& load) const {
+  JointResponse response;
+  kinematics.respond<true>(LoadedJoint{{}, {load[0], load[1], load[2]}}, response);
+  return response.stiffness;
+}
+
+HeldSection::HeldSection(const SpringInSeries& spring, const CarriedSections& carried,
+                         std::size_t count)
+    : spring_(spring),
+      carried_(carried),
+      count_(count),
+      place_(place_at(carried[0].frame, carried[0].twist)) {
+  settle();
+}
+
+/// `near`: the twist from the drawn section [rad], known up to less than half a turn.
+HeldSection::Place HeldSection::place_at(const SectionFrame& section, double near) const {
+  const double twist = nearest_turn(twist_between(spring_.drawn, section), near);
+  const auto rotation_to = [&](std::size_t i) {
+    const CarriedSection& known = carried_[i];
+    const double between = nearest_turn(twist_between(section, known.frame), known.twist - twist);
+    return Rotation(JointKinematics<AngleCurvature>::read_before(section, known.frame, between));
+  };
+  Place place{section,
+              Rotation({spring_.drawn, section, twist}),
+              {rotation_to(0), rotation_to(count_ - 1)},
+              Mat3::Zero(),
+              Mat3::Zero(),
+              Vec3::Zero()};
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Rotation& rotation = place.to_carried[i];
+    place.way += carried_[i].weights * rotation.strain;
+    place.slopes += rotation.slopes * carried_[i].weights.transpose();
+  }
+  place.per_rotation = place.from_drawn.slopes.transpose().inverse();
+  place.slopes = place.per_rotation.transpose() * place.slopes;
+  return place;
+}
+
+/// The place at which z has changed.
+HeldSection::Place HeldSection::turned(const Place& place, const Vec3& change) const {
+  const Vec3 rotation = place.per_rotation * change;
+  const double angle = rotation.norm();
+  if (!(angle > 0.0)) return place;
+  const Mat3 turn = Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
+  const SectionFrame section =
+      SectionFrame::of((turn * place.section.tangent).normalized(), turn * place.section.first);
+  return place_at(section, place.from_drawn.strain.z() + change.z());
+}
+
+/// The place at which psi = C p, from one nearby.
+HeldSection::Place HeldSection::on_the_way(Place place, const Vec3& moment) const {
+  for (int i = 0; i < kMostSteps; ++i) {
+    const Vec3 missing = place.way - spring_.compliance * moment;
+    const Vec3 step = place.slopes.transpose().inverse() * missing;
+    place = turned(place, step);
+    if (!(step.norm() > kLastStep)) break;
+  }
+  return place;
+}
+
+/// The part of the second derivative by z of z . K z/2 + p . psi that is due to the second
+/// derivatives of the rotations, without the change of p.
+Mat3 HeldSection::curving(const Vec3& moment) const {
+  Mat3 own = place_.from_drawn.curving(place_.slopes * moment);
+  for (std::size_t i = 0; i < count_; ++i) own += carried_curving(i, moment);
+  return place_.per_rotation.transpose() * own * place_.per_rotation;
+}
+
+Mat3 HeldSection::carried_curving(std::size_t i, const Vec3& moment) const {
+  return place_.to_carried[i].curving(carried_[i].weights.transpose() * moment);
+}
+
+/// M_i under the moment p.
+Vec3 HeldSection::carried_moment(std::size_t i, const Vec3& moment) const {
+  return place_.to_carried[i].slopes * (carried_[i].weights.transpose() * moment);
+}
+
+/// The derivative of K z - G p and psi - C p by z and p, with G the slopes of the place. Symmetric,
+/// and regular for all stiffnesses of springs and of the rod, the least and the largest.
+HeldSection::Mat6 HeldSection::equations(bool with_curving) const {
+  Mat3 own = Mat3::Zero();
+  if (with_curving) own = curving(moment_);
+  own.diagonal() += spring_.stiffness;
+  Mat6 matrix;
+  matrix << own, -place_.slopes, -place_.slopes.transpose(), -spring_.compliance;
+  return matrix;
+}
+
+HeldSection::Vec6 HeldSection::newton_step(bool with_curving) const {
+  Vec6 missing;
+  missing << place_.slopes * moment_ - spring_.stiffness.cwiseProduct(place_.from_drawn.strain),
+      spring_.compliance * moment_ - place_.way;
+  return equations(with_curving).partialPivLu().solve(missing);
+}
+
+/// E on the way, where it is least in equilibrium.
+double HeldSection::potential(const Place& place, const Vec3& moment) const {
+  const Vec3& z = place.from_drawn.strain;
+  return 0.5 * (z.dot(spring_.stiffness.cwiseProduct(z)) + moment.dot(spring_.compliance * moment));
+}
+
+/// A step on the way that lowers E; false if there is none.
+bool HeldSection::descend() {
+  place_ = on_the_way(place_, moment_);
+  const auto slope_along = [&](const Vec6& step) {
+    return place_.from_drawn.strain.cwiseProduct(spring_.stiffness).dot(step.head<3>()) +
+           moment_.dot(spring_.compliance * step.tail<3>());
+  };
+  Vec6 step = newton_step(true);
+  if (!(slope_along(step) < 0.0)) step = newton_step(false);
+  const double slope = slope_along(step);
+  const double start = potential(place_, moment_);
+  constexpr double least_share = 1e-6;
+  for (double share = 1.0; share > least_share; share *= 0.5) {
+    const Vec3 moment = moment_ + share * step.tail<3>();
+    const Place place = on_the_way(turned(place_, share * step.head<3>()), moment);
+    const bool arrived = (place.way - spring_.compliance * moment).norm() < kLastStep;
+    if (!arrived || !(potential(place, moment) < start + 1e-4 * share * slope)) continue;
+    place_ = place;
+    moment_ = moment;
+    return true;
+  }
+  return false;
+}
+
+/// Newton's method from here on, as long as its steps become shorter than `longest` [rad]. The last
+/// step is one beyond that after which z and p are exact: its equations have the curving under the
+/// final moment.
+bool HeldSection::converge(double longest) {
+  for (double before = longest;;) {
+    const Vec6 step = newton_step(true);
+    const double length = step.head<3>().norm();
+    const bool last = before < kLastStep;
+    if (!last && !(length < before)) return false;
+    place_ = turned(place_, step.head<3>());
+    moment_ += step.tail<3>();
+    if (last) return true;
+    before = length;
+  }
+}
+
+/// Solves for z and p, first from where they would be if spring and way had the same axes. Where
+/// the rod on the way is twisted so far that it would buckle, the search may end before.
+void HeldSection::settle() {
+  const Place start = on_the_way(place_, Vec3::Zero());
+  const Mat3 springs = spring_.stiffness.asDiagonal();
+  const Mat3 in_series = (Mat3::Identity() + springs * spring_.compliance).inverse() * springs;
+  moment_ = in_series * start.from_drawn.strain;
+  place_ = turned(start, -(spring_.compliance * moment_));
+  settled_ = converge(kLongStep);
+  if (settled_) return;
+  moment_.setZero();
+  place_ = start;
+  for (int i = 0; i < kMostSteps && !settled_ && descend(); ++i) settled_ = converge(kShortStep);
+}
+
+double HeldSection::energy_in_springs() const {
+  const Vec3& z = place_.from_drawn.strain;
+  // The moment of stiff springs is G p in equilibrium, while K z has lost its digits.
+  if (settled_) return 0.5 * z.dot(place_.slopes * moment_);
+  return 0.5 * z.dot(spring_.stiffness.cwiseProduct(z));
+}
+
+double HeldSection::energy_on_the_way() const {
+  return 0.5 * moment_.dot(spring_.compliance * moment_);
+}
+
+Vec3 HeldSection::moment(std::size_t i) const { return carried_moment(i, moment_); }
+
+HeldSection::Slopes HeldSection::slopes_of_moments() const {
+  Slopes slopes;
+  for (std::size_t i = 0; i < count_; ++i) {
+    slopes[i] << -(carried_curving(i, moment_) + 0.5 * cross_matrix(moment(i))) *
+                     place_.per_rotation,
+        place_.to_carried[i].slopes * carried_[i].weights.transpose();
+  }
+  return slopes;
+}
+
+HeldSection::Following HeldSection::following(const Slopes& slopes) const {
+  const auto matrix = equations(true).partialPivLu();
+  Following result;
+  for (std::size_t i = 0; i < count_; ++i) result[i] = -matrix.solve(slopes[i].transpose());
+  return result;
+}
+
+HeldSection::Stiffness HeldSection::stiffness() const {
+  const Slopes slopes = slopes_of_moments();
+  const Following change = following(slopes);
+  Stiffness result;
+  for (std::size_t i = 0; i < count_; ++i) {
+    for (std::size_t j = 0; j < count_; ++j) result[i][j] = slopes[i] * change[j];
+    result[i][i] += carried_curving(i, moment_);
+  }
+  return result;
+}
+
+HeldSection::Stress HeldSection::stress(const std::array<Vec3, kMost>& rotations) const {
+  const Following change = following(slopes_of_moments());
+  Vec3 moment = Vec3::Zero();
+  for (std::size_t i = 0; i < count_; ++i) moment += change[i].bottomRows<3>() * rotations[i];
+
+  // The section follows the known ones as it does without the stress, which the second derivative
+  // of the whole energy is taken along.
+  const Mat3 own = curving(moment);
+  std::array<Mat3, kMost> to_section;  // of M_i by z
+  Stress result;
+  for (std::size_t i = 0; i < count_; ++i) {
+    result.moments[i] = carried_moment(i, moment);
+    to_section[i] =
+        -(carried_curving(i, moment) + 0.5 * cross_matrix(result.moments[i])) * place_.per_rotation;
+  }
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Mat3 moved_i = change[i].topRows<3>();
+    for (std::size_t j = 0; j < count_; ++j) {
+      const Mat3 moved_j = change[j].topRows<3>();
+      result.stiffness[i][j] = to_section[i] * moved_j +
+                               moved_i.transpose() * to_section[j].transpose() +
+                               moved_i.transpose() * own * moved_j;
+    }
+    result.stiffness[i][i] += carried_curving(i, moment);
+  }
+  return result;
+}
+
+}  // namespace der

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "der/core/types.hpp"
+#include "der/model/model.hpp"
+
+namespace der {
+
+/// A turn of the rod as drawn, from one edge to the next.
+struct DrawnTurn {
+  double angle = 0.0;        ///< [rad]
+  Vec3 axis = Vec3::Zero();  ///< unit vector
+};
+
+/// The turn at a place; none where no two edges meet.
+DrawnTurn drawn_turn(const RodLayout& rod, Index place, const Model& model);
+
+/// Whether a rod bends and is free of stress as it is drawn.
+bool bends_as_drawn(const RodLayout& rod, const Model& model);
+
+}  // namespace der

@@ -1,0 +1,17 @@
+#include "output/legs.hpp"
+
+#include <algorithm>
+
+#include "model/corner.hpp"
+#include "model/curvature_jump.hpp"
+
+namespace der {
+
+std::vector<Index> leg_bounds(const RodLayout& rod, const Model& model) {
+  std::vector<Index> bounds = corners_of(rod, model);
+  for (const CurvatureJump& jump : curvature_jumps_of(rod, model)) bounds.push_back(jump.place);
+  std::sort(bounds.begin(), bounds.end());
+  return bounds;
+}
+
+}  // namespace der

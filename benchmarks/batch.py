@@ -6,7 +6,9 @@
    `implicit_midpoint`: those with which benchmarks/peers.py finds the tip within 1e-3 m of the
    continuum's at 101 times. The error is measured here, too. Swings a second of a loop over
    `Simulation.step(300)`, which is one C++ loop for each, of a batch on one thread and on two. With
-   DER_LOOPS=avx2 members go in four lanes, with DER_LOOPS=avx512 in eight.
+   DER_LOOPS=avx2 members go in four lanes, with DER_LOOPS=avx512 in eight. The same with the model
+   `spatial_bend`, and for the strip of benchmarks/peers.py, which twists, with as many elements and
+   steps (`spatial`).
 2. One step of all of many short rods: a loop in C++ against `Batch`, by the Google benchmarks
    `batch` and `loop_over_simulations` of der_benchmarks (`--cpp`; left out if it is not built).
 3. Building, memory and resets of members of 51 nodes, of one scene and with a modulus of its own
@@ -38,6 +40,7 @@ import numpy as np
 from comparison.codes import DER, MUJOCO, PYELASTICA, missing_text
 from comparison.run_der import controls, implicit, run_batch
 from comparison.scene import FRAMES, distance, steps_per_frame
+from comparison.strip import code_der as strip
 from comparison.swing import batches, code_der, problem
 
 SWING = implicit(24, 3, "implicit_midpoint")
@@ -67,11 +70,25 @@ def best_of(ways: dict[str, Callable[[], object]], repeats: int) -> dict[str, fl
     return best
 
 
-def throughput(members: int, repeats: int) -> None:
+def kinds() -> dict[str, der.Scenario]:
+    """Return a swing with each model, by what it is called."""
+    elements = int(SWING["elements"])
+    plane = swing(elements)
+    tangent = {"supports": [{"rod": "rod", "at": "start", "clamp": "tangent"}]}
+    wire = {**code_der.scene(elements), **controls(SWING), **tangent, "model": "spatial_bend"}
+    return {
+        f"swings of 1 s, error {tip_error(plane):.1e} m": plane,
+        "swings of 1 s as rods in space": der.Scenario.from_dict(wire),
+        "swings of 1 s of strips": der.Scenario.from_dict(
+            {**strip.scene(elements), **controls(SWING)}
+        ),
+    }
+
+
+def throughput(title: str, scene: der.Scenario, members: int, repeats: int) -> None:
     """Print swings a second of a loop, of one thread and of two."""
-    scene = swing(int(SWING["elements"]))
     steps = FRAMES * steps_per_frame(SWING)
-    print(f"{members} swings of 1 s, error {tip_error(scene):.1e} m, loops {der.loops()}:")
+    print(f"{members} {title}, loops {der.loops()}:")
     simulations = [der.Simulation(scene) for _ in range(members)]
     start = simulations[0].save_state()
     batches = {threads: der.Batch(scene, members, threads) for threads in (1, 2)}
@@ -200,7 +217,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--peers", action="store_true", help="compare with other codes as well")
     options = parser.parse_args(arguments)
-    throughput(100 if options.quick else 1000, 2 if options.quick else 5)
+    for title, scene in kinds().items():
+        throughput(title, scene, 100 if options.quick else 1000, 2 if options.quick else 5)
     if options.cpp.exists():
         overheads(options.cpp, 3 if options.quick else 9)
     else:

@@ -86,6 +86,25 @@ SCENES: dict[str, Scene] = {
             {"point_force": {"rod": "rod", "at": 0.4, "force": [0.1, 0.2]}},
         ],
     ),
+    "springs of four nodes": swing(
+        4,
+        supports=[
+            {"rod": "rod", "at": "start", "clamp": True},
+            {"rod": "rod", "at": 0.47, "spring": {"stiffness": [3.0, 5.0]}},
+        ],
+    ),
+    "springs of three nodes": swing(
+        3,
+        supports=[
+            {"rod": "rod", "at": 0.3, "spring": {"stiffness": [3.0, 5.0]}},
+            {"rod": "rod", "at": "end", "fix": ["x", "y"]},
+        ],
+    ),
+    "tangent measure, both ends": with_rod(
+        swing(supports=[{"rod": "rod", "at": at, "clamp": True} for at in ("start", "end")]),
+        curvature="tangent",
+        natural_curvature=1.0,
+    ),
     "what programs set": swing(
         supports=[
             {
@@ -123,6 +142,74 @@ SCENES: dict[str, Scene] = {
 }
 
 
+def in_space(nodes: int = 12, **changes: Any) -> Scene:
+    """Return a strip, bent and twisted without stress, that falls from a clamp out of its plane."""
+    scene = swing(nodes, loads=[{"gravity": [0, -9.81, 2.0]}], model="spatial")
+    return with_rod(
+        {**scene, **changes},
+        **{"from": [0, 0, 0], "to": [1, 0, 0.2]},
+        cross_section={"rectangle": {"width": 0.03, "height": 0.01}, "director": [0, 0.8, 0.6]},
+        material={"youngs_modulus": 1e7, "poissons_ratio": 0.4, "density": 1000},
+        natural_curvature=[1.5, -0.7],
+        natural_twist=3.0,
+    )
+
+
+def wire(nodes: int = 12, **changes: Any) -> Scene:
+    """Return a rod whose sections do not count, that falls from a pin out of its plane."""
+    scene = swing(nodes, model="spatial_bend", loads=[{"gravity": [0, -9.81, 2.0]}], **changes)
+    if "supports" not in changes:
+        scene["supports"] = [{"rod": "rod", "at": "start", "fix": ["x", "y", "z"]}]
+    return with_rod(scene, **{"from": [0, 0, 0], "to": [1, 0, 0.2]})
+
+
+def tumbling(**changes: Any) -> Scene:
+    """Return a free strip that spins about all its axes."""
+    scene = in_space(supports=[], loads=[], **changes)
+    along = np.linspace(-0.5, 0.5, 12)
+    velocities = np.array([0.1, 0, 0.3]) + np.cross([9.0, 4.0, -3.0], np.outer(along, [1, 0, 0.2]))
+    return with_rod(scene, initial_velocity=velocities.tolist())
+
+
+TANGENT_CLAMPS = [{"rod": "rod", "at": at, "clamp": "tangent"} for at in ("start", "end")]
+
+SPATIAL: dict[str, Scene] = {
+    "strip": in_space(),
+    "strip, tangent measure": with_rod(in_space(), curvature="tangent"),
+    "strip, both ends": in_space(
+        supports=[{"rod": "rod", "at": at, "clamp": True} for at in ("start", "end")]
+    ),
+    "strip, tangents held": in_space(supports=TANGENT_CLAMPS),
+    "strip, hanging": in_space(supports=[{"rod": "rod", "at": "start", "fix": ["x", "y", "z"]}]),
+    "tumbling": tumbling(),
+    "strip, driven": in_space(
+        supports=[
+            {
+                "rod": "rod",
+                "at": "start",
+                "clamp": True,
+                "prescribe": {"x": {"times": [0, 0.02, 1], "values": [0, 0.01, 0]}},
+            },
+            {"rod": "rod", "at": "end", "spring": {"stiffness": [3.0, 5.0, 1.0]}},
+        ],
+        loads=[
+            {"name": "weight", "gravity": [0, -9.81, 1]},
+            {"point_force": {"rod": "rod", "at": 0.43, "force": [0, 0.2, 0.1]}},
+        ],
+    ),
+    "wire": wire(),
+    "wire, tangent measure": with_rod(wire(), curvature="tangent"),
+    "wire, tangents held": wire(supports=TANGENT_CLAMPS),
+    "strip of 5 nodes": in_space(5),
+    "strip of 9 nodes": in_space(9),
+    "strip of 30 nodes": in_space(30),
+    "wire of 3 nodes": wire(3),
+    "wire of 5 nodes": wire(5),
+    "wire of 30 nodes": wire(30),
+}
+SCENES.update(SPATIAL)
+
+
 def state_of(thing: Any, *member: int) -> bytes:
     return pickle.dumps(thing.save_state(*member))
 
@@ -156,7 +243,9 @@ def test_lanes_have_the_bits_of_simulations(name: str) -> None:
 @pytest.mark.parametrize(
     "integrator", ["implicit_euler", "implicit_midpoint", "tr_bdf2", "sdirk4", "sdirk5"]
 )
-@pytest.mark.parametrize("name", ["clamped", "spheres in a fluid", "3 nodes"])
+@pytest.mark.parametrize(
+    "name", ["clamped", "spheres in a fluid", "3 nodes", "strip", "tumbling", "wire"]
+)
 def test_all_runge_kutta_methods_go_in_lanes(name: str, integrator: str) -> None:
     scene = copy.deepcopy(SCENES[name])
     scene["time"]["integrator"] = integrator
@@ -217,6 +306,29 @@ def test_members_of_many_kinds_at_once() -> None:
             one.extra_force[:] = force[member]
             one.step(15)
         assert state_of(batch, member) == state_of(one), member
+
+
+def test_elements_outside_of_chains_have_values_of_each_member() -> None:
+    """Clamps, springs and foundations differ from member to member."""
+    rng = np.random.default_rng(2)
+    count = 8
+    vary = {
+        "rods.rod.to": rng.uniform(-1.5, 1.5, (count, 2)),
+        "rods.rod.natural_curvature": rng.uniform(-2, 2, count),
+        "supports.0.spring.stiffness": rng.uniform(1, 9, (count, 2)),
+        "loads.1.foundation.stiffness": rng.uniform(1, 9, (count, 2)),
+        MODULUS: 10.0 ** rng.uniform(6, 8, count),
+    }
+    for curvature in ("angle", "tangent"):
+        scene = with_rod(copy.deepcopy(SCENES["spring and foundation"]), curvature=curvature)
+        scene["rods"][0]["natural_curvature"] = 0.1
+        batch = der.Batch(scene, count, 1, vary=vary)
+        assert batch.lanes == WIDEST
+        batch.step(30)
+        for member in range(count):
+            one = alone(scene, **{path: values[member].tolist() for path, values in vary.items()})
+            one.step(30)
+            assert state_of(batch, member) == state_of(one), member
 
 
 @pytest.mark.parametrize(
@@ -385,7 +497,18 @@ def test_a_rod_that_folds_over_is_named_in_its_lane() -> None:
 @pytest.mark.parametrize(
     "change",
     [
-        {"model": "spatial_bend"},
+        in_space(
+            supports=[{"rod": "rod", "at": "start", "clamp": True, "prescribe": {"twist": 0}}]
+        ),
+        in_space(
+            loads=[{"moment": {"rod": "rod", "at": "end", "moment": [0.1, 0, 0.1]}}],
+        ),
+        in_space(
+            supports=[
+                {"rod": "rod", "at": "start", "fix": ["x", "y", "z"]},
+                {"rod": "rod", "at": "start", "spring": {"rotational_stiffness": 1.0}},
+            ]
+        ),
         {"time": {"duration": 1, "tolerance": 1e-3}},
         {"time": {"duration": 1, "step": 0.0025, "integrator": "bdf2"}},
         {"solver": {"linear": "simplicial_ldlt"}},
@@ -396,14 +519,19 @@ def test_a_rod_that_folds_over_is_named_in_its_lane() -> None:
         },
         {"loads": [{"moment": {"rod": "rod", "at": "end", "moment": 0.1}}]},
     ],
-    ids=["in space", "adaptive", "several steps", "sparse", "turned clamp", "moment"],
+    ids=[
+        "turned section",
+        "moment in space",
+        "spring in space",
+        "adaptive",
+        "several steps",
+        "sparse",
+        "turned clamp",
+        "moment",
+    ],
 )
 def test_other_steps_are_done_one_by_one(change: Scene) -> None:
-    scene = swing(**change)
-    if "model" in change:
-        scene["supports"][0]["clamp"] = "tangent"
-        scene["rods"][0]["material"]["poissons_ratio"] = 0.3
-    assert_all_as_alone(scene, 9, 1, 1)
+    assert_all_as_alone(change if "rods" in change else swing(**change), 9, 1, 1)
 
 
 def test_ctrl_c_and_forks_leave_whole_steps() -> None:

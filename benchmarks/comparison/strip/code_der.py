@@ -13,7 +13,7 @@ from comparison.strip import problem
 
 def run(config: Config) -> tuple[float, Path]:
     """Run one configuration; return CPU seconds of the time loop and the path of the tip."""
-    return run_der.run(_scene(int(config["elements"])), config)
+    return run_der.run(scene(int(config["elements"])), config)
 
 
 def grid(quick: bool) -> list[Config]:
@@ -43,7 +43,8 @@ def grid(quick: bool) -> list[Config]:
     ]
 
 
-def _scene(elements: int) -> dict[str, Any]:
+def scene(elements: int) -> dict[str, Any]:
+    """Return the parts of the scene that no configuration but the number of elements sets."""
     return {
         "rods": [
             {

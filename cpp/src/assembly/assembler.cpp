@@ -10,9 +10,11 @@
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
+#include "der/energies/lane_values.hpp"
 #include "der/energies/registry.hpp"
 #include "der/energies/stiffness_across.hpp"
 #include "der/model/dimension.hpp"
+#include "energies/every_kind.hpp"
 
 namespace der {
 namespace {
@@ -55,20 +57,22 @@ std::vector<std::size_t> loose_elements(std::size_t size, const std::vector<Plan
   return loose;
 }
 
-/// Where the elements of one kind that no chain assembles go.
-template <class Kernel>
-struct ScatterMap {
-  static constexpr std::size_t kSlots = Kernel::kDofs * (Kernel::kDofs + 1) / 2;
-  std::vector<std::size_t> elements;
-  std::vector<std::array<Index, kSlots>> slots;  // their lower triangles, column by column
+template <class Lists>
+struct LooseOf;
+template <class... Kernels>
+struct LooseOf<std::tuple<ElementList<Kernels>...>> {
+  using type = std::tuple<LooseElements<Kernels>...>;
 };
 
-template <class Lists>
-struct MapsOf;
-template <class... Kernels>
-struct MapsOf<std::tuple<ElementList<Kernels>...>> {
-  using type = std::tuple<ScatterMap<Kernels>...>;
-};
+/// The kinds of loose elements to go through.
+enum class Kinds { All, OneByOne };
+template <Kinds K, class Kernel>
+constexpr bool kIsOf = K == Kinds::All || !GoesInLanes<Kernel>::value;
+
+template <class Kernel>
+bool is_one_by_one(const LooseElements<Kernel>& loose) {
+  return kIsOf<Kinds::OneByOne, Kernel> && !loose.elements.empty();
+}
 
 /// Where a mass between two degrees of freedom goes.
 struct CouplingSlots {
@@ -86,10 +90,10 @@ struct Assembler::ScatterMaps {
   std::vector<CouplingSlots> couplings;  // of each of the model's mass couplings
   std::vector<PlanarChain> planar_chains;
   std::vector<SpatialChain> spatial_chains;
-  MapsOf<ElementLists::Lists>::type elements;
+  LooseOf<ElementLists::Lists>::type elements;
   // Slots of every plain stretch element.
-  std::vector<std::array<Index, 10>> planar_edges;
-  std::vector<std::array<Index, 21>> spatial_edges;
+  EdgeSlots<2> planar_edges;
+  EdgeSlots<3> spatial_edges;
 
   template <int Dim>
   [[nodiscard]] const auto& edges() const {
@@ -100,7 +104,7 @@ struct Assembler::ScatterMaps {
   template <Derivatives D>
   void assemble(const Model& model, const Configuration& here, Vector& gradient,
                 Vector* values) const;
-  template <Derivatives D>
+  template <Derivatives D, Kinds K>
   void add_loose(const LooseMember* members, int count) const;
 };
 
@@ -161,35 +165,28 @@ void Assembler::ScatterMaps::assemble(const Model& model, const Configuration& h
                         {here.coordinates.data()},
                         {gradient.data()},
                         {values != nullptr ? values->data() : nullptr}};
-  add_loose<D>(&all, 1);
+  add_loose<D, Kinds::All>(&all, 1);
   add_circulatory_forces(circulatory_loads(*model.elements), here, -1.0, gradient);
 }
 
-template <Derivatives D>
+template <Derivatives D, Kinds K>
 void Assembler::ScatterMaps::add_loose(const LooseMember* members, int count) const {
   for_each_pair(
       members->model->elements->lists, elements,
       [&](const auto& first, const auto& map) {
         using List = std::decay_t<decltype(first)>;
         using Kernel = typename List::KernelType;
-        constexpr int n = Kernel::kDofs;
-        if (map.elements.empty()) return;
-        LocalTerm<n> local;
-        for (const LooseMember* member = members; member != members + count; ++member) {
-          const auto& list = std::get<List>(member->model->elements->lists);
-          for (std::size_t k = 0; k < map.elements.size(); ++k) {
-            const std::size_t e = map.elements[k];
-            const auto& dofs = list.dofs[e];
-            Kernel::template evaluate<D>(list.constants[e], *member->here,
-                                         gather(dofs, member->coordinates), local);
-            for (int i = 0; i < n; ++i) member->gradient[dofs[to_size(i)]] += local.gradient[i];
-            if constexpr (D == Derivatives::Hessian) {
-              const Index* slot = map.slots[k].data();
-              for (int column = 0; column < n; ++column) {
-                for (int row = column; row < n; ++row) {
-                  member->values[*slot++] += local.hessian(row, column);
-                }
-              }
+        if constexpr (kIsOf<K, Kernel>) {
+          if (map.elements.empty()) return;
+          LocalTerm<Kernel::kDofs> local;
+          for (const LooseMember* member = members; member != members + count; ++member) {
+            const auto& list = std::get<List>(member->model->elements->lists);
+            for (std::size_t k = 0; k < map.elements.size(); ++k) {
+              const std::size_t e = map.elements[k];
+              const auto& dofs = list.dofs[e];
+              Kernel::template evaluate<D>(list.constants[e], *member->here,
+                                           gather(dofs, member->coordinates), local);
+              add_local<D>(local, dofs, map.slots[k], member->gradient, member->values);
             }
           }
         }
@@ -198,25 +195,44 @@ void Assembler::ScatterMaps::add_loose(const LooseMember* members, int count) co
 }
 
 void Assembler::add_loose_gradient(const LooseMember* members, int count) const {
-  maps_->add_loose<Derivatives::Gradient>(members, count);
+  maps_->add_loose<Derivatives::Gradient, Kinds::OneByOne>(members, count);
 }
 
 void Assembler::add_loose_hessian(const LooseMember* members, int count) const {
-  maps_->add_loose<Derivatives::Hessian>(members, count);
+  maps_->add_loose<Derivatives::Hessian, Kinds::OneByOne>(members, count);
 }
 
 bool Assembler::has_loose() const {
-  return std::apply([](const auto&... map) { return (!map.elements.empty() || ...); },
+  return std::apply([](const auto&... loose) { return (is_one_by_one(loose) || ...); },
                     maps_->elements);
 }
+
+template <class Kernel>
+const LooseElements<Kernel>& Assembler::loose() const {
+  return std::get<LooseElements<Kernel>>(maps_->elements);
+}
+
+namespace {
+
+template <class Kernel>
+struct Loose {
+  static constexpr auto value = &Assembler::loose<Kernel>;
+};
+
+[[gnu::used]] constexpr auto kLoose = of_every_kind<Loose>();
+
+}  // namespace
 
 const std::vector<PlanarChain>& Assembler::planar_chains() const { return maps_->planar_chains; }
 
 const std::vector<SpatialChain>& Assembler::spatial_chains() const { return maps_->spatial_chains; }
 
-const std::vector<std::array<Index, 10>>& Assembler::planar_edge_slots() const {
-  return maps_->planar_edges;
+template <int Dim>
+const Assembler::EdgeSlots<Dim>& Assembler::edge_slots() const {
+  return maps_->edges<Dim>();
 }
+template const Assembler::EdgeSlots<2>& Assembler::edge_slots<2>() const;
+template const Assembler::EdgeSlots<3>& Assembler::edge_slots<3>() const;
 
 const std::vector<Index>& Assembler::diagonal_slots() const { return maps_->diagonal; }
 

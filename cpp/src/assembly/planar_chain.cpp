@@ -25,13 +25,12 @@ struct EdgeTerms {
   T inverse_squared;  ///< 1 / |e|^2
   StretchResponseOf<T> stretch;
 
-  EdgeTerms(const Vector2<T>& e, const T& EA, const T& rest_length, const T& elongation)
-      : vector(e) {
+  EdgeTerms(const Vector2<T>& e, const Stretch<2>::Values<T>& values) : vector(e) {
     const T squared = vector.squaredNorm();
     const T length = sqrt(squared);
     inverse_squared = 1.0 / squared;
     turn = direction_gradient<T>(vector, inverse_squared);
-    stretch = stretch_response(EA, rest_length, elongation, length);
+    stretch = Stretch<2>::response<T>(values, length);
   }
 };
 
@@ -118,8 +117,10 @@ class RodParts {
       elongation = in_lanes<T>(
           [&](int lane) { return stretches_[number(lane, j)].elongation.value(controls_); });
     }
-    return EdgeTerms<T>({component(j, 0), component(j, 1)}, constant(&Stretch<2>::Constants::EA),
-                        constant(&Stretch<2>::Constants::rest_length), elongation);
+    const T rest_length = constant(&Stretch<2>::Constants::rest_length);
+    return EdgeTerms<T>(
+        {component(j, 0), component(j, 1)},
+        {constant(&Stretch<2>::Constants::EA) / rest_length, rest_length, elongation});
   }
   /// Without a force where there is none.
   [[nodiscard]] EdgeTerms<T> edge_before() const {
@@ -211,12 +212,12 @@ class MemberChains {
         gradient_(gradient + chain.first_dof()),
         values_(values) {}
 
-  [[nodiscard]] std::ptrdiff_t count() const { return constants_.EA.ssize(); }
+  [[nodiscard]] std::ptrdiff_t count() const { return constants_.along.size(); }
   [[nodiscard]] static bool last_is_shorter() { return false; }
   [[nodiscard]] EdgeTerms<T> edge(std::ptrdiff_t j) const {
     const T* node = x_ + 2 * j;
-    return EdgeTerms<T>({node[2] - node[0], node[3] - node[1]}, constants_.EA[j],
-                        constants_.rest_length[j], 0.0);
+    return EdgeTerms<T>({node[2] - node[0], node[3] - node[1]},
+                        {constants_.along[j], constants_.rest_length[j], 0.0});
   }
   [[nodiscard]] BendResponseOf<T> joint(std::ptrdiff_t j, const EdgeTerms<T>& edge,
                                         const EdgeTerms<T>& next) const {
@@ -390,7 +391,10 @@ PlanarChainConstants<T> PlanarChain::constants_of(const MemberModels<T>& models)
       return elements_of<Stretch<2>>(elements).constants[edges_.first + i].*member;
     };
   };
-  set(constants.EA, edges_.count, edge(&Stretch<2>::Constants::EA));
+  set(constants.along, edges_.count, [&](const ElementLists& elements, std::size_t i) {
+    const auto& c = elements_of<Stretch<2>>(elements).constants[edges_.first + i];
+    return c.EA / c.rest_length;
+  });
   set(constants.rest_length, edges_.count, edge(&Stretch<2>::Constants::rest_length));
   const auto set_bends = [&](auto curvature) {
     using Bend = PlanarBend<decltype(curvature)>;

@@ -3,6 +3,7 @@
 #include "der/energies/elements_of.hpp"
 #include "der/energies/stiffness_across.hpp"
 #include "der/energies/stretch.hpp"
+#include "der/model/dimension.hpp"
 
 namespace der {
 namespace {
@@ -19,7 +20,7 @@ Strided<const double> lane_of(const MemberVector<T>& numbers, int lane) {
 
 template <class T>
 std::array<Assembler::LooseMember, to_size(LaneTraits<T>::kCount)> loose_members(
-    const MemberModel<T>& model, const typename MemberControls<T>::Configurations& here,
+    const MemberModel<T>& model, const MemberConfigurations<T>& here,
     const MemberVector<T>& coordinates, MemberVector<T>& gradient, MemberVector<T>* values) {
   std::array<Assembler::LooseMember, to_size(LaneTraits<T>::kCount)> members;
   for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
@@ -44,13 +45,23 @@ MemberAssembler<T>::MemberAssembler(const MemberModel<T>& model,
     : model_(model),
       assembler_(*assemblers[0]),
       has_loose_(assembler_.has_loose()),
-      controls_(controls) {
-  for (const PlanarChain& chain : assemblers[0]->planar_chains()) {
-    chains_.push_back(chain.constants_of<T>(model.models));
+      controls_(controls),
+      loose_(loose_kinds<T>(assembler_, model.models)) {
+  for (const PlanarChain& chain : assembler_.planar_chains()) {
+    planar_chains_.push_back(chain.constants_of<T>(model.models));
+  }
+  for (const SpatialChain& chain : assembler_.spatial_chains()) {
+    spatial_chains_.push_back(chain.constants_of<T>(model.models));
   }
   set_masses(assemblers);
+  with_dimension(model.structure(), [&](auto dim) { set_edges<dim>(); });
+}
+
+template <class T>
+template <int Dim>
+void MemberAssembler<T>::set_edges() {
   const auto edges = [&](int lane) -> const auto& {
-    return elements_of<Stretch<2>>(*model.models[to_size(lane)]->elements).constants;
+    return elements_of<Stretch<Dim>>(*model_.models[to_size(lane)]->elements).constants;
   };
   const auto count = static_cast<Index>(edges(0).size());
   EA_.resize(count);
@@ -80,14 +91,31 @@ void MemberAssembler<T>::set_masses(const MemberAssemblers<T>& assemblers) {
 }
 
 template <class T>
-void MemberAssembler<T>::gradient(const MemberVector<T>& coordinates,
+void MemberAssembler<T>::follow_frames() {
+  for (const auto& kind : loose_) kind->follow(controls_.here());
+}
+
+template <class T>
+template <Derivatives D>
+void MemberAssembler<T>::add_chains(const MemberVector<T>& coordinates,
+                                    const MemberVector<T>& frames, T* gradient, T* values) const {
+  const std::vector<PlanarChain>& planar = assembler_.planar_chains();
+  for (std::size_t i = 0; i < planar.size(); ++i) {
+    planar[i].add_members<D, T>(planar_chains_[i], coordinates.data(), gradient, values);
+  }
+  const std::vector<SpatialChain>& spatial = assembler_.spatial_chains();
+  for (std::size_t i = 0; i < spatial.size(); ++i) {
+    spatial[i].add_members<D, T>(spatial_chains_[i], coordinates.data(), frames.data(), gradient,
+                                 values);
+  }
+}
+
+template <class T>
+void MemberAssembler<T>::gradient(const MemberVector<T>& coordinates, const MemberVector<T>& frames,
                                   MemberVector<T>& gradient) const {
   run_member_loop<T>([&] { set_zero(gradient); });
-  const std::vector<PlanarChain>& chains = assembler_.planar_chains();
-  for (std::size_t i = 0; i < chains.size(); ++i) {
-    chains[i].add_members<Derivatives::Gradient, T>(chains_[i], coordinates.data(), gradient.data(),
-                                                    nullptr);
-  }
+  add_chains<Derivatives::Gradient>(coordinates, frames, gradient.data(), nullptr);
+  for (const auto& kind : loose_) kind->add_gradient(coordinates, gradient);
   if (!has_loose_) return;
   const auto members = loose_members<T>(model_, controls_.here(), coordinates, gradient, nullptr);
   assembler_.add_loose_gradient(members.data(), LaneTraits<T>::kCount);
@@ -95,7 +123,8 @@ void MemberAssembler<T>::gradient(const MemberVector<T>& coordinates,
 
 template <class T>
 void MemberAssembler<T>::system(const T& inertia, const MemberVector<T>& coordinates,
-                                MemberVector<T>& gradient, MemberVector<T>& values) const {
+                                const MemberVector<T>& frames, MemberVector<T>& gradient,
+                                MemberVector<T>& values) const {
   run_member_loop<T>([&] {
     set_zero(gradient);
     set_zero(values);
@@ -103,11 +132,8 @@ void MemberAssembler<T>::system(const T& inertia, const MemberVector<T>& coordin
       values[mass_slots_[to_size(i)]] = inertia * masses_[i];
     }
   });
-  const std::vector<PlanarChain>& chains = assembler_.planar_chains();
-  for (std::size_t i = 0; i < chains.size(); ++i) {
-    chains[i].add_members<Derivatives::Hessian, T>(chains_[i], coordinates.data(), gradient.data(),
-                                                   values.data());
-  }
+  add_chains<Derivatives::Hessian>(coordinates, frames, gradient.data(), values.data());
+  for (const auto& kind : loose_) kind->add_hessian(coordinates, gradient, values);
   if (!has_loose_) return;
   const auto members = loose_members<T>(model_, controls_.here(), coordinates, gradient, &values);
   assembler_.add_loose_hessian(members.data(), LaneTraits<T>::kCount);
@@ -117,24 +143,38 @@ template <class T>
 void MemberAssembler<T>::use_predicted_tension(const MemberVector<T>& coordinates,
                                                const MemberVector<T>& step,
                                                MemberVector<T>& values) const {
+  with_dimension(model_.structure(),
+                 [&](auto dim) { use_predicted_tension_in<dim>(coordinates, step, values); });
+}
+
+template <class T>
+template <int Dim>
+void MemberAssembler<T>::use_predicted_tension_in(const MemberVector<T>& coordinates,
+                                                  const MemberVector<T>& step,
+                                                  MemberVector<T>& values) const {
   using std::sqrt;
-  const auto& dofs = elements_of<Stretch<2>>(*model_.structure().elements).dofs;
-  const auto& slots = assembler_.planar_edge_slots();
+  using Vec = Eigen::Matrix<T, Dim, 1>;
+  const auto& dofs = elements_of<Stretch<Dim>>(*model_.structure().elements).dofs;
+  const auto& slots = assembler_.template edge_slots<Dim>();
   run_member_loop<T>([&] {
     for (Index i = 0; i < EA_.size(); ++i) {
       const auto& place = dofs[to_size(i)];
       const auto edge = [&](const MemberVector<T>& field) {
-        return Vector2<T>(field[place[2]] - field[place[0]], field[place[3]] - field[place[1]]);
+        Vec vector;
+        for (int c = 0; c < Dim; ++c) {
+          vector[c] = field[place[to_size(Dim + c)]] - field[place[to_size(c)]];
+        }
+        return vector;
       };
-      const Vector2<T> e = edge(coordinates);
-      const T excess = excess_tension<T, 2>(e, edge(step), EA_[i], rest_length_[i]);
+      const Vec e = edge(coordinates);
+      const T excess = excess_tension<T, Dim>(e, edge(step), EA_[i], rest_length_[i]);
       const T length = sqrt(T(e.squaredNorm()));
-      const Eigen::Matrix<T, 2, 2> block = stiffness_across(e, length, T(excess / length));
+      const Eigen::Matrix<T, Dim, Dim> block = stiffness_across(e, length, T(excess / length));
       const Index* slot = slots[to_size(i)].data();
-      for (int column = 0; column < 4; ++column) {
-        for (int row = column; row < 4; ++row) {
-          const T& entry = block(row % 2, column % 2);
-          if (row / 2 == column / 2) {
+      for (int column = 0; column < 2 * Dim; ++column) {
+        for (int row = column; row < 2 * Dim; ++row) {
+          const T& entry = block(row % Dim, column % Dim);
+          if (row / Dim == column / Dim) {
             values[*slot++] += entry;
           } else {
             values[*slot++] -= entry;
@@ -151,15 +191,19 @@ T MemberAssembler<T>::largest_elastic_force(const MemberVector<T>& coordinates,
   const std::vector<Index>& slots = assembler_.diagonal_slots();
   const DofMap& dofs = model_.structure().dofs;
   T sum = 0.0;
-  for (const auto& block : model_.blocks) {
-    LargestMagnitude<T> stiffness;
-    LargestMagnitude<T> coordinate;
-    for (const Index dof : block.free) {
-      stiffness.see(values[slots[to_size(dofs.free_index(dof))]]);
+  run_member_loop<T>([&] {
+    for (const auto& block : model_.blocks) {
+      LargestMagnitude<T> stiffness;
+      LargestMagnitude<T> coordinate;
+      for (const Index dof : block.free) {
+        stiffness.see(values[slots[to_size(dofs.free_index(dof))]]);
+      }
+      for (Index i = block.first; i < block.first + block.count; ++i) {
+        coordinate.see(coordinates[i]);
+      }
+      sum += stiffness.value() * coordinate.value() / block.length;
     }
-    for (Index i = block.first; i < block.first + block.count; ++i) coordinate.see(coordinates[i]);
-    sum += stiffness.value() * coordinate.value() / block.length;
-  }
+  });
   return sum;
 }
 

@@ -4,7 +4,10 @@ namespace der {
 
 template <class T>
 MemberControls<T>::MemberControls(const MemberModel<T>& model, const MemberStates<T>& states)
-    : model_(model), states_(states), has_tables_(model.structure().tables.size() > 0) {
+    : model_(model),
+      states_(states),
+      num_frames_(static_cast<Index>(model.structure().drawn_frames.size())),
+      has_tables_(model.structure().tables.size() > num_frames_) {
   for (std::size_t lane = 0; lane < states.size(); ++lane) {
     here_[lane].controls.setZero(model.structure().tables.size());
     stages_.emplace_back(*model.models[lane]);
@@ -13,9 +16,23 @@ MemberControls<T>::MemberControls(const MemberModel<T>& model, const MemberState
 
 template <class T>
 void MemberControls<T>::begin_step(const T& dt) {
-  if (!has_tables_) return;
+  if (!has_tables_) return enter_frames();
   for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
     stages_[to_size(lane)].end_step_at(states_[to_size(lane)]->time + dt.lane(lane));
+  }
+}
+
+template <class T>
+void MemberControls<T>::evaluate_at_states() {
+  if (!has_tables_) return enter_frames();
+  evaluate(0.0, 0.0);
+}
+
+/// They stay as they are to the end of a step.
+template <class T>
+void MemberControls<T>::enter_frames() {
+  for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
+    here_[to_size(lane)].controls.head(num_frames_) = states_[to_size(lane)]->followed;
   }
 }
 

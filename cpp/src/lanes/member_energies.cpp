@@ -6,24 +6,16 @@
 #include "der/core/sum_of.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
-#include "der/energies/planar_bend.hpp"
+#include "der/energies/lane_values.hpp"
 #include "der/energies/registry.hpp"
-#include "der/energies/stretch.hpp"
 
 namespace der {
 namespace {
 
-using std::sqrt;
-
-template <class T>
-Vector2<T> along(Index from, Index to, const MemberVector<T>& positions) {
-  return {positions[to] - positions[from], positions[to + 1] - positions[from + 1]};
-}
-
-/// Sum over the elements of a kind of `energy(constants, dofs)`, with `constants(member)` for a
-/// constant in all lanes.
-template <class Kernel, class T, class Energy>
-T sum_over(const MemberModel<T>& model, const Energy& energy) {
+/// Of the elements of a kind.
+template <class Kernel, class T>
+T energy_in_lanes(const Members<T>& members, const MemberVector<T>& positions) {
+  const MemberModel<T>& model = members.model;
   const auto& dofs = elements_of<Kernel>(*model.structure().elements).dofs;
   std::array<const typename Kernel::Constants*, to_size(LaneTraits<T>::kCount)> lists;
   for (std::size_t lane = 0; lane < lists.size(); ++lane) {
@@ -31,65 +23,30 @@ T sum_over(const MemberModel<T>& model, const Energy& energy) {
   }
   T total = 0.0;
   run_member_loop<T>([&] {
+    LocalTerm<Kernel::kDofs, T> local;
     for (std::size_t e = 0; e < dofs.size(); ++e) {
-      const auto constant = [&](double Kernel::Constants::* member) {
-        return in_lanes<T>([&](int lane) { return lists[to_size(lane)][e].*member; });
-      };
-      total += energy(constant, dofs[e]);
+      const auto values = values_in_lanes<Kernel, T>([&](int lane) {
+        return Kernel::values(lists[to_size(lane)][e],
+                              members.controls.here()[to_size(lane)].controls);
+      });
+      Kernel::template evaluate<Derivatives::Energy, T>(values, gather<T>(dofs[e], positions),
+                                                        local);
+      total += local.energy;
     }
   });
   return total;
 }
 
-template <class Kernel>
-struct Energy;
-template <>
-struct Energy<Stretch<2>> {
-  template <class T>
-  static T of(const MemberModel<T>& model, const MemberVector<T>& positions) {
-    using C = Stretch<2>::Constants;
-    return sum_over<Stretch<2>>(model, [&](const auto& constant, const auto& dofs) -> T {
-      const Vector2<T> e = along(dofs[0], dofs[2], positions);
-      const StretchResponseOf<T> stretch = stretch_response<T>(
-          constant(&C::EA), constant(&C::rest_length), 0.0, sqrt(T(e.squaredNorm())));
-      return 0.5 * stretch.tension * stretch.extension;
-    });
-  }
-};
-template <class Curvature>
-struct Energy<PlanarBend<Curvature>> {
-  template <class T>
-  static T of(const MemberModel<T>& model, const MemberVector<T>& positions) {
-    using C = typename PlanarBend<Curvature>::Constants;
-    return sum_over<PlanarBend<Curvature>>(model, [&](const auto& constant, const auto& dofs) -> T {
-      return bend_response<Curvature, T>(constant(&C::stiffness_per_length),
-                                         constant(&C::rest_kappa),
-                                         angle_between<T>(along(dofs[0], dofs[2], positions),
-                                                          along(dofs[2], dofs[4], positions)))
-          .energy;
-    });
-  }
-};
-
-/// Of any other kind, one by one: there are few.
-template <class List>
-double energy_of_lane(const List& list, const Configuration& here,
-                      const Strided<const double>& positions) {
-  using Kernel = typename List::KernelType;
-  LocalTerm<Kernel::kDofs> local;
-  double total = 0.0;
-  for (std::size_t e = 0; e < list.size(); ++e) {
-    evaluate_element<Kernel, Derivatives::Energy>(list.constants[e], here,
-                                                  gather(list.dofs[e], positions), local);
-    total += local.energy;
-  }
-  return total;
+/// The same of any other kind, one member after the other.
+template <class Kernel, class T>
+T energy_one_by_one(const Members<T>& members, const MemberVector<T>& positions) {
+  return in_lanes<T>([&](int lane) {
+    const auto* first = reinterpret_cast<const double*>(positions.data());
+    return element_energy(elements_of<Kernel>(*members.model.models[to_size(lane)]->elements),
+                          members.controls.here()[to_size(lane)],
+                          Strided<const double>{first + lane, LaneTraits<T>::kCount});
+  });
 }
-
-template <class Kernel>
-constexpr bool kInLanes =
-    std::is_same_v<Kernel, Stretch<2>> || std::is_same_v<Kernel, PlanarBend<AngleCurvature>> ||
-    std::is_same_v<Kernel, PlanarBend<TangentCurvature>>;
 
 }  // namespace
 
@@ -109,15 +66,10 @@ std::array<Energies, to_size(LaneTraits<T>::kCount)> member_energies(
     using Kernel = typename List::KernelType;
     if constexpr (is_recorded(Kernel::kTerm)) {
       if (structure.size() == 0) return;
-      if constexpr (kInLanes<Kernel>) {
-        add(Kernel::kTerm, Energy<Kernel>::of(model, positions));
+      if constexpr (GoesInLanes<Kernel>::value) {
+        add(Kernel::kTerm, energy_in_lanes<Kernel>(members, positions));
       } else {
-        add(Kernel::kTerm, in_lanes<T>([&](int lane) {
-              const auto* first = reinterpret_cast<const double*>(positions.data());
-              return energy_of_lane(std::get<List>(model.models[to_size(lane)]->elements->lists),
-                                    members.controls.here()[to_size(lane)],
-                                    {first + lane, LaneTraits<T>::kCount});
-            }));
+        add(Kernel::kTerm, energy_one_by_one<Kernel>(members, positions));
       }
     }
   });

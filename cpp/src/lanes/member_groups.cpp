@@ -32,10 +32,10 @@ Elimination order_of(const Pattern& pattern) {
 template <class T>
 struct Workspace {
   explicit Workspace(const Simulation& like)
-      : stepper(*find_tableau(like.integrator().name), like.model(),
-                MemberStage<T>(like.model(), like.assembler().num_values(),
-                               MemberBand<T>(like.pattern(), order_of(like.pattern())))),
-        state(like.model().num_dofs()) {}
+      : stepper(
+            *find_tableau(like.integrator().name), like.model(),
+            MemberStage<T>(like.model(), MemberBand<T>(like.pattern(), order_of(like.pattern())))),
+        state(like.model()) {}
 
   MemberStepper<T> stepper;
   MemberState<T> state;
@@ -54,6 +54,7 @@ class Session {
         members_(members),
         stepper_(workspace.stepper),
         state_(workspace.state),
+        has_frames_(!members.frames.empty()),
         taking_part_(lanes) {
     stepper_.serve(members);
     for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
@@ -87,6 +88,7 @@ class Session {
       }
     }
     const LaneSet done = together.empty() ? together : stepper_.step(together, dt, state_);
+    if (has_frames_) store_frames(done);
     LaneSet due;
     for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
       if (done.has(lane) && simulations_[to_size(lane)]->enter_step(
@@ -105,6 +107,12 @@ class Session {
   }
 
  private:
+  /// Elements that are evaluated one by one see those of the members' states.
+  void store_frames(LaneSet lanes) {
+    for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
+      if (lanes.has(lane)) state_.store_frames(lane, simulations_[to_size(lane)]->state());
+    }
+  }
   void store(int lane) {
     Simulation& simulation = *simulations_[to_size(lane)];
     state_.store(lane, simulation.state());
@@ -121,7 +129,7 @@ class Session {
   /// A look at the energies is due in all members at once, most often.
   template <class Fail>
   void watch_energies(LaneSet due, const Fail& fail) {
-    members_.controls.evaluate(T(0.0), 0.0);
+    members_.controls.evaluate_at_states();
     const auto energies = member_energies(members_, state_.positions, state_.velocities);
     for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
       if (!due.has(lane)) continue;
@@ -146,6 +154,7 @@ class Session {
   Members<T>& members_;
   MemberStepper<T>& stepper_;
   MemberState<T>& state_;
+  bool has_frames_;
   LaneSet taking_part_;
   /// Members whose state is not in their lane: programs have written into it, or they are in a step
   /// of their own.
@@ -249,12 +258,25 @@ bool follow_alike(const Model& first, const Model& other) {
                     });
 }
 
+/// Whether clamps hold the tangent, and the section, at the same places.
+bool clamps_alike(const Model& first, const Model& other) {
+  return std::equal(first.rods.begin(), first.rods.end(), other.rods.begin(),
+                    [](const RodLayout& a, const RodLayout& b) {
+                      return std::equal(a.clamps.begin(), a.clamps.end(), b.clamps.begin(),
+                                        b.clamps.end(), [](const Clamp& x, const Clamp& y) {
+                                          return x.place == y.place &&
+                                                 x.holds_section == y.holds_section;
+                                        });
+                    });
+}
+
 /// Whether the steps of a member are of the same kind as those of the first one.
 bool are_alike(const Simulation& first, const Simulation& other) {
   return first.integrator().name == other.integrator().name &&
          first.linear_solver() == other.linear_solver() &&
          first.model().damped == other.model().damped && !other.adaptive() &&
-         suits_lanes(other.model()) && follow_alike(first.model(), other.model());
+         suits_lanes(other.model()) && follow_alike(first.model(), other.model()) &&
+         clamps_alike(first.model(), other.model());
 }
 
 /// Whether there are steps in lanes for members like this one.

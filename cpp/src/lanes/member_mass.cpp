@@ -19,7 +19,7 @@ MemberMass<T>::MemberMass(const MemberModel<T>& model)
   const Pattern pattern = build_mass_pattern(structure);
   const auto layout = MatrixLayout::band(pattern.size, pattern.half_bandwidth);
   const auto free = [&](Index dof) { return structure.dofs.free_index(dof); };
-  MemberVector<T> values(layout.num_values());
+  MemberVector<T>& values = band_.emplace(pattern, Elimination::FromStart).values();
   for (const Index dof : structure.dofs.free()) {
     values[layout.slot(free(dof), free(dof))] = model.lumped[dof];
   }
@@ -30,7 +30,7 @@ MemberMass<T>::MemberMass(const MemberModel<T>& model)
     values[layout.slot(free(b), free(b))] -= mass;
     values[layout.slot(std::max(free(a), free(b)), std::min(free(a), free(b)))] += mass;
   }
-  band_.emplace(pattern, Elimination::FromStart).factorize(values);
+  band_->factorize();
 }
 
 template <class T>

@@ -6,6 +6,8 @@
 
 #include "der/energies/elements_of.hpp"
 #include "der/energies/registry.hpp"
+#include "der/model/dimension.hpp"
+#include "der/supports/clamp.hpp"
 
 namespace der {
 namespace {
@@ -42,14 +44,32 @@ bool any_element_is_a_load(const Model& model) {
   return found;
 }
 
+/// The largest of `value(block)`.
+template <class T, class Blocks, class Value>
+T largest_over_blocks(const Blocks& blocks, const Value& value) {
+  T largest = 0.0;
+  run_member_loop<T>([&] {
+    for (const auto& block : blocks) largest = T::larger_magnitude(largest, value(block));
+  });
+  return largest;
+}
+
+/// The largest magnitude among the numbers of a block.
+template <class Block, class T>
+T largest_in(const Block& block, const MemberVector<T>& numbers) {
+  LargestMagnitude<T> largest;
+  for (Index i = block.first; i < block.first + block.count; ++i) largest.see(numbers[i]);
+  return largest.value();
+}
+
 }  // namespace
 
 bool suits_lanes(const Model& model) {
-  return model.dimension == 2 && !model.rest_shape.is_actuated() && !model.load_variation &&
-         model.followed_edges.empty() && circulatory_loads(*model.elements).empty() &&
-         !any_element_is_a_load(model) &&
+  return !model.rest_shape.is_actuated() && !model.load_variation && model.followed_edges.empty() &&
+         circulatory_loads(*model.elements).empty() && !any_element_is_a_load(model) &&
+         !any_clamp_turns(model) &&
          std::none_of(model.rods.begin(), model.rods.end(), [](const RodLayout& rod) {
-           return rod.closed || !rod.moment_places.empty();
+           return rod.closed || !rod.moment_places.empty() || !rod.section_springs.empty();
          });
 }
 
@@ -89,41 +109,24 @@ MemberModel<T>::MemberModel(const MemberModels<T>& members)
 
 template <class T>
 T MemberModel<T>::largest_motion(const MemberVector<T>& displacement) const {
-  T result = 0.0;
-  run_member_loop<T>([&] {
-    for (const Block& block : blocks) {
-      LargestMagnitude<T> largest;
-      for (Index i = block.first; i < block.first + block.count; ++i) largest.see(displacement[i]);
-      result = T::larger_magnitude(result, block.length * largest.value());
-    }
+  return largest_over_blocks<T>(blocks, [&](const auto& block) -> T {
+    return block.length * largest_in(block, displacement);
   });
-  return result;
 }
 
 template <class T>
 T MemberModel<T>::largest_force(const MemberVector<T>& force) const {
-  T result = 0.0;
-  run_member_loop<T>([&] {
-    for (const Block& block : blocks) {
-      LargestMagnitude<T> largest;
-      for (Index i = block.first; i < block.first + block.count; ++i) largest.see(force[i]);
-      result = T::larger_magnitude(result, largest.value() / block.length);
-    }
-  });
-  return result;
+  return largest_over_blocks<T>(
+      blocks, [&](const auto& block) -> T { return largest_in(block, force) / block.length; });
 }
 
 template <class T>
 T MemberModel<T>::largest_free_force(const MemberVector<T>& force) const {
-  T result = 0.0;
-  run_member_loop<T>([&] {
-    for (const Block& block : blocks) {
-      LargestMagnitude<T> largest;
-      for (const Index i : block.free) largest.see(force[i]);
-      result = T::larger_magnitude(result, largest.value() / block.length);
-    }
+  return largest_over_blocks<T>(blocks, [&](const auto& block) -> T {
+    LargestMagnitude<T> largest;
+    for (const Index i : block.free) largest.see(force[i]);
+    return largest.value() / block.length;
   });
-  return result;
 }
 
 template <class T>
@@ -132,12 +135,14 @@ T MemberModel<T>::largest_edge_change(const MemberVector<T>& displacement) const
   run_member_loop<T>([&] {
     LargestMagnitude<T> largest;  // squared
     const std::vector<Edge>& edges = structure().edges;
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-      const T* first = displacement.data() + edges[i].first;
-      const T* last = displacement.data() + edges[i].last;
-      const T x = last[0] - first[0];
-      const T y = last[1] - first[1];
-      largest.see((x * x + y * y) * per_squared_length[static_cast<Index>(i)]);
+    with_dimension(structure(), [&](auto dim) {
+      for (std::size_t i = 0; i < edges.size(); ++i) {
+        const T squared = along_edge<dim>(edges[i], displacement).squaredNorm();
+        largest.see(squared * per_squared_length[static_cast<Index>(i)]);
+      }
+    });
+    for (const SpatialEdge& edge : structure().framed_edges) {
+      largest.see(displacement[edge.theta] * displacement[edge.theta]);
     }
     result = sqrt(largest.value());
   });

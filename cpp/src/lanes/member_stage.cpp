@@ -11,7 +11,7 @@
 namespace der {
 
 template <class T>
-MemberStage<T>::MemberStage(const Model& structure, Index num_values, MemberBand<T> band)
+MemberStage<T>::MemberStage(const Model& structure, MemberBand<T> band)
     : inertia_target(structure.num_dofs()),
       velocity_reference(structure.num_dofs()),
       force(structure.num_dofs()),
@@ -19,7 +19,6 @@ MemberStage<T>::MemberStage(const Model& structure, Index num_values, MemberBand
       band_(std::move(band)),
       displacement_(structure.num_dofs()),
       residual_(structure.num_dofs()),
-      values_(num_values),
       direction_(structure.num_free()),
       step_(structure.num_dofs()),
       acceleration_(structure.num_dofs()) {}
@@ -66,7 +65,7 @@ LaneSet MemberStage<T>::solve(LaneSet lanes) {
     lanes = lanes.without(converged);
     if (lanes.empty()) return solved;
     if (!have_system) evaluate_system();
-    members_->assembler.use_predicted_tension(coordinates, step_, values_);
+    members_->assembler.use_predicted_tension(coordinates, step_, band_.values());
   }
 }
 
@@ -113,29 +112,34 @@ T MemberStage<T>::residual_rounding() {
     });
     return model.largest_force(acceleration_);
   };
-  members_->assembler.system(T(0.0), coordinates, acceleration_, values_);
-  const T elastic = members_->assembler.largest_elastic_force(coordinates, values_);
+  members_->assembler.system(T(0.0), coordinates, *frames, acceleration_, band_.values());
+  const T elastic = members_->assembler.largest_elastic_force(coordinates, band_.values());
   return elastic + inertia * largest_term(model.lumped) +
          velocity_factor * largest_term(model.damping);
 }
 
 template <class T>
 void MemberStage<T>::evaluate_residual() {
-  members_->assembler.gradient(coordinates, residual_);
+  members_->assembler.gradient(coordinates, *frames, residual_);
   add_stage_forces();
 }
 
 template <class T>
 void MemberStage<T>::evaluate_system() {
-  members_->assembler.system(inertia, coordinates, residual_, values_);
+  members_->assembler.system(inertia, coordinates, *frames, residual_, band_.values());
   add_stage_forces();
-  if (members_->model.structure().damped) members_->assembler.add_damping(velocity_factor, values_);
+  if (members_->model.structure().damped)
+    members_->assembler.add_damping(velocity_factor, band_.values());
 }
 
 template <class T>
 void MemberStage<T>::add_stage_forces() {
   const auto larger = [](const T& a, const T& b) { return T::larger_magnitude(a, b); };
   run_member_loop<T>([&] {
+    const auto velocity = [&](Index dof) {
+      return velocity_factor * (displacement_[dof] - velocity_reference[dof]);
+    };
+    members_->frames.take_spin_forces(coordinates, *frames, velocity, residual_);
     acting_ = external_;
     const auto add_diagonal = [&](const auto& block, const T& factor,
                                   const MemberVector<T>& diagonal, const MemberVector<T>& target) {
@@ -176,7 +180,7 @@ void MemberStage<T>::measure() {
 /// Sets the step; returns the lanes in which there is one.
 template <class T>
 LaneSet MemberStage<T>::find_step(LaneSet lanes) {
-  const T positive = band_.factorize(values_);
+  const T positive = band_.factorize();
   const std::vector<Index>& free = members_->model.structure().dofs.free();
   run_member_loop<T>([&] {
     for (std::size_t i = 0; i < free.size(); ++i) {

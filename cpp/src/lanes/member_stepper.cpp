@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "der/core/sum_of.hpp"
+#include "der/model/dimension.hpp"
 
 namespace der {
 
@@ -14,6 +15,7 @@ MemberStepper<T>::MemberStepper(const Tableau& tableau, const Model& structure,
       stage_(std::move(stage)),
       start_force_(tableau.explicit_first ? structure.num_dofs() : 0),
       start_gradient_(tableau.explicit_first ? structure.num_dofs() : 0),
+      couple_(tableau.explicit_first && structure.has_sections() ? structure.num_dofs() : 0),
       past_displacement_(structure.num_dofs()),
       past_velocities_(structure.num_dofs()),
       end_positions_(structure.num_dofs()),
@@ -44,6 +46,7 @@ LaneSet MemberStepper<T>::step(LaneSet lanes, const T& dt, MemberState<T>& state
     }
     pose_stage(i, state, dt);
     lanes = stage_.solve(lanes);
+    lanes = lanes.without(members_->frames.turned_too_far(stage_.coordinates, state.frames));
     if (lanes.empty()) return lanes;
     for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
       iterations_[to_size(lane)] += stage_.iterations(lane);
@@ -62,8 +65,10 @@ template <class T>
 void MemberStepper<T>::begin(const MemberState<T>& state, const T& dt) {
   work_ = state.work;
   stage_.origin = &state.positions;
+  stage_.frames = &state.frames;
   members_->controls.begin_step(dt);
   members_->controls.evaluate(dt, 0.0);
+  if (!members_->frames.empty()) members_->assembler.follow_frames();
   driven_gravity_ = members_->controls.driven_gravity_energy(state.positions);
   run_member_loop<T>(
       [&] { std::copy_n(state.positions.data(), end_positions_.size(), end_positions_.data()); });
@@ -77,12 +82,24 @@ void MemberStepper<T>::evaluate_start(const MemberState<T>& state, const T& dt) 
   MemberVector<T>& acceleration = accelerations_[0];
   members_->controls.evaluate(dt, 0.0);
   members_->controls.set_force(state.extra_force, start_force_);
-  members_->assembler.gradient(state.positions, start_gradient_);
+  members_->assembler.gradient(state.positions, state.frames, start_gradient_);
+  const bool has_sections = couple_.size() > 0;
   run_member_loop<T>([&] {
+    if (has_sections) {
+      std::fill_n(couple_.data(), couple_.size(), T(0.0));
+      members_->frames.take_transport(state.positions, state.frames, start_gradient_);
+      members_->frames.add_gyroscopic(
+          state.positions, [&](Index dof) { return state.velocities[dof]; }, couple_);
+    }
     for (Index i = 0; i < acceleration.size(); ++i) {
       acceleration[i] =
           start_force_[i] - start_gradient_[i] - members_->model.damping[i] * state.velocities[i];
       velocities_[0][i] = state.velocities[i];
+    }
+    if (!has_sections) return;
+    for (Index i = 0; i < acceleration.size(); ++i) {
+      acceleration[i] += couple_[i];
+      start_gradient_[i] -= couple_[i];
     }
   });
   members_->mass->solve(acceleration);
@@ -239,24 +256,18 @@ void MemberStepper<T>::set_end(const MemberState<T>& state, const T& dt) {
 template <class T>
 LaneSet MemberStepper<T>::folded() const {
   const std::vector<Edge>& edges = members_->model.structure().edges;
-  T upright = 1.0;
+  T folded = 0.0;
   run_member_loop<T>([&] {
-    for (std::size_t i = 1; i < edges.size(); ++i) {
-      const Index a = edges[i - 1].first;
-      const Index b = edges[i].first;
-      const Index c = edges[i].last;
-      if (edges[i - 1].last != b) continue;
-      const T x = (end_positions_[b] - end_positions_[a]) * (end_positions_[c] - end_positions_[b]);
-      const T y = (end_positions_[b + 1] - end_positions_[a + 1]) *
-                  (end_positions_[c + 1] - end_positions_[b + 1]);
-      upright *= T::is_positive(x + y);
-    }
+    with_dimension(members_->model.structure(), [&](auto dim) {
+      for (std::size_t i = 1; i < edges.size(); ++i) {
+        if (edges[i - 1].last != edges[i].first) continue;
+        const T cosine = along_edge<dim>(edges[i - 1], end_positions_)
+                             .dot(along_edge<dim>(edges[i], end_positions_));
+        folded += 1.0 - T::is_positive(cosine);
+      }
+    });
   });
-  LaneSet folded;
-  for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
-    if (upright.lane(lane) == 0.0) folded.add(lane);
-  }
-  return folded;
+  return LaneSet::where(folded);
 }
 
 /// StepFinisher::finish.
@@ -288,6 +299,7 @@ void MemberStepper<T>::finish(LaneSet done, const T& dt, MemberState<T>& state) 
     take(state.work.drag, work_.drag);
     take(state.work.solver, work_.solver);
   });
+  members_->frames.follow(done, state.positions, state.frames);
 }
 
 template class MemberStepper<FourLanes>;

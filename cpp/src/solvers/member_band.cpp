@@ -58,8 +58,10 @@ typename MemberBand<T>::Kernels MemberBand<T>::kernels_of(Index half_bandwidth) 
   switch (half_bandwidth) {
     case 2:  // mass matrices of planar chains
       return kernels<2>();
-    case 3:  // their stiffness, where they have two free nodes
+    case 3:  // their stiffness, where they have two free nodes; masses in space
       return kernels<3>();
+    case 4:  // masses in space, with angles of sections
+      return kernels<4>();
     case 5:  // chains in the plane
       return kernels<5>();
     case 8:  // chains in space
@@ -90,18 +92,17 @@ MemberBand<T>::MemberBand(const Pattern& pattern, Elimination order)
   columns_ = (size_ - width_ + 1) / 2;
   padding_ = (size_ - width_) % 2;
   const Index rows = columns_ + width_;
-  band_.resize(2 * rows * (width_ + 1));
+  band_.resize(2 * rows * (width_ + 1) + 1);
   right_side_.resize(2 * rows);
   middle_.resize(2 * width_ * (width_ + 1));
   middle_right_side_.resize(2 * width_);
 }
 
 template <class T>
-T MemberBand<T>::factorize(const MemberVector<T>& values) {
-  if (order_ == Elimination::FromBothEnds) return factorize_from_both_ends(values);
-  const Index used = size_ * (width_ + 1);
+T MemberBand<T>::factorize() {
+  if (order_ == Elimination::FromBothEnds) return factorize_from_both_ends();
   run_member_loop<T>([&] {
-    std::copy_n(values.data(), used, band_.data());
+    const Index used = size_ * (width_ + 1);
     std::fill(band_.data() + used, band_.data() + band_.size(), T(0.0));
   });
   return kernels_.factorize(size_, band_.data());
@@ -121,8 +122,7 @@ void MemberBand<T>::solve(MemberVector<T>& b) {
 
 /// The middle's own entries are in the first half; the second has its rows and columns reversed.
 template <class T>
-T MemberBand<T>::factorize_from_both_ends(const MemberVector<T>& values) {
-  run_member_loop<T>([&] { std::copy_n(values.data(), band_.size(), band_.data()); });
+T MemberBand<T>::factorize_from_both_ends() {
   if (padding_ > 0) band_[1] = T(1.0);
   const T halves = kernels_.factorize_pairs(columns_, pairs(band_));
   run_member_loop<T>([&] {

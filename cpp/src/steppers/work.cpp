@@ -10,12 +10,6 @@
 namespace der {
 namespace {
 
-bool any_clamp_turns(const Model& model) {
-  bool any = false;
-  for_each_turning_control(model, [&](Index /*control*/) { any = true; });
-  return any;
-}
-
 /// Energy [J] that elements take up as the controls change from those of `before` to those of
 /// `after`: the mean of that at the coordinates of the ends of a step.
 double energy_given(const Model& model, const Configuration& before, const Configuration& after,

@@ -206,21 +206,32 @@ typename SectionSpring<Edges>::Constants sample_constants(const SectionSpring<Ed
   const auto matrix = [&] {
     return Mat3(Mat3::NullaryExpr([&] { return uniform(random, -1, 1); }));
   };
+  // Springs that are not there, soft, or all but rigid; no rod on the way, or some.
+  constexpr double stiffnesses[] = {0.0, 0.4, 2.0, 1e7};
+  const auto any_stiffness = [&] { return stiffnesses[int(uniform(random, 0.0, 3.999))]; };
+  c.spring.stiffness = {any_stiffness(), any_stiffness(), any_stiffness()};
   const Mat3 factor = matrix();
-  c.stiffness = factor * factor.transpose() + 2.0 * Mat3::Identity();
-  const Mat3 share =
-      Edges == 1 ? Mat3(Mat3::Identity()) : Mat3(0.5 * (Mat3::Identity() + matrix()));
-  // At a corner the section is that of another edge, and turns do not count.
-  const bool at_corner = uniform(random, 0.0, 1.0) < 0.5;
-  const SectionFrame section = sample_frame(direction(random), random);
+  const bool counts_turns = uniform(random, 0.0, 1.0) < 0.5;
+  if (counts_turns) {
+    // Under the torque of whole turns a longer way would buckle.
+    c.spring.stiffness = c.spring.stiffness.cwiseMin(2.0);
+    c.spring.compliance.diagonal().setConstant(uniform(random, 0.0, 0.03));
+  } else if (uniform(random, 0.0, 1.0) < 0.75) {
+    c.spring.compliance = 0.1 * factor * factor.transpose() + 0.03 * Mat3::Identity();
+  } else {
+    c.spring.stiffness = c.spring.stiffness.cwiseMin(2.0);
+  }
+  const bool beside_clamp = Edges == 1 && !counts_turns;
+  if (beside_clamp) c.clamp = {sample_held_frame(random), Mat3::Identity()};
+  const Mat3 share = Edges == 1 && !beside_clamp ? Mat3(Mat3::Identity())
+                                                 : Mat3(0.5 * Mat3::Identity() + 0.3 * matrix());
   for (int i = 0; i < Edges; ++i) {
     auto& held = c.edges[static_cast<std::size_t>(i)];
     held.block = FrameBlock::of(i);
     held.first = {uniform(random, -0.01, 0.01), sample_held_frame(random)};
     held.last = {uniform(random, -0.01, 0.01), sample_held_frame(random)};
-    if (!at_corner) held.reference_twist = held.block.twist_at_end();
+    if (counts_turns) held.reference_twist = held.block.twist_at_end();
     held.weights = i == 0 ? share : Mat3(Mat3::Identity() - share);
-    if (at_corner) held.carried << section.first, section.second, section.tangent;
   }
   return c;
 }
@@ -346,29 +357,43 @@ void sample_frames(const CornerFork& /*kernel*/, const CornerFork::Constants& /*
   sample_source(1, x.template segment<3>(6) - x.template segment<3>(3), random, here);
 }
 
-/// The drawn sections are within 2.5 rad of the edges.
+/// The sections that the edges and the clamp carry are within 0.5 rad of one, and the drawn one
+/// within 1.5 rad and whole turns, or within 0.5 rad where a spring is all but rigid.
 template <int Edges, class Coordinates>
 void sample_frames(const SectionSpring<Edges>& /*kernel*/,
                    typename SectionSpring<Edges>::Constants& constants, const Coordinates& x,
                    Random& random, Configuration& here) {
+  const SectionFrame near = sample_frame(direction(random), random);
+  const auto turned = [&](double most) -> SectionFrame {
+    const Mat3 turn =
+        Eigen::AngleAxisd(uniform(random, 0.0, most), direction(random)).toRotationMatrix();
+    return SectionFrame::of(turn * near.tangent, turn * near.first);
+  };
+  const auto axes = [](const SectionFrame& frame) {
+    Mat3 matrix;
+    matrix << frame.first, frame.second, frame.tangent;
+    return matrix;
+  };
+  const SectionFrame drawn = turned(constants.spring.stiffness.maxCoeff() > 1e6 ? 0.5 : 1.5);
+  constants.spring.drawn = drawn;
+  const double turns = 6.283185307179586 * std::round(uniform(random, -1.5, 1.5));
   for (int i = 0; i < Edges; ++i) {
     auto& held = constants.edges[static_cast<std::size_t>(i)];
     const Vec3 e = x.template segment<3>(3 * i + 3) + held.last.offset(here.controls) -
                    x.template segment<3>(3 * i) - held.first.offset(here.controls);
-    const SectionFrame edge = sample_source(i, e, random, here);
+    const double theta = x[3 * SectionSpring<Edges>::kNodes + i];
+    const SectionFrame edge = sample_source(i, e, random, here).turned(theta);
+    const SectionFrame section = turned(0.5);
+    held.carried = axes(edge).transpose() * axes(section);
     if (held.reference_twist >= 0) {
-      const Vec3 axis = made_perpendicular(direction(random), edge.tangent);
-      const Vec3 drawn = Eigen::AngleAxisd(uniform(random, 0.0, 2.5), axis) * edge.tangent;
-      held.drawn = sample_frame(drawn, random);
-      here.controls[held.reference_twist] = twist_between(edge, held.drawn);
-    } else {
-      const SectionFrame section = SectionSpring<Edges>::carried_by(
-          edge.turned(x[3 * SectionSpring<Edges>::kNodes + i]), held.carried);
-      const Mat3 rotation =
-          Eigen::AngleAxisd(uniform(random, 0.0, 1.5), direction(random)).toRotationMatrix();
-      held.drawn = {rotation * section.tangent, rotation * section.first,
-                    rotation * section.second};
+      here.controls[held.reference_twist] = theta - turns - twist_between(drawn, section);
     }
+  }
+  if (constants.clamp) {
+    const HeldFrame& clamp = constants.clamp->held;
+    const SectionFrame held =
+        clamp.untwisted(here.controls).turned(clamp.twist_angle(here.controls));
+    constants.clamp->carried = axes(held).transpose() * axes(turned(0.5));
   }
 }
 

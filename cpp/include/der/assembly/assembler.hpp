@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "der/assembly/loose_elements.hpp"
 #include "der/assembly/pattern.hpp"
 #include "der/core/strided.hpp"
 #include "der/core/types.hpp"
@@ -50,15 +51,22 @@ class Assembler {
     Strided<double> gradient;
     Strided<double> values;
   };
-  /// Adds to the gradients of `count` members, and for the Hessian to their values, what the
-  /// elements outside of chains give. The members' models have the structure of this one.
+  /// Adds to the gradients of `count` members, and for the Hessian to their values, what elements
+  /// give that are neither in chains nor of a kernel for lanes (energies/lane_values.hpp). The
+  /// members' models have the structure of this one.
   void add_loose_gradient(const LooseMember* members, int count) const;
   void add_loose_hessian(const LooseMember* members, int count) const;
-  [[nodiscard]] bool has_loose() const;
+  [[nodiscard]] bool has_loose() const;  ///< whether there are such elements
+  /// All elements of a kind outside of chains.
+  template <class Kernel>
+  [[nodiscard]] const LooseElements<Kernel>& loose() const;
   [[nodiscard]] const std::vector<PlanarChain>& planar_chains() const;
   [[nodiscard]] const std::vector<SpatialChain>& spatial_chains() const;
-  /// Slots of the lower triangle of every plain planar stretch element, column by column.
-  [[nodiscard]] const std::vector<std::array<Index, 10>>& planar_edge_slots() const;
+  /// Slots of the lower triangle of every plain stretch element, column by column.
+  template <int Dim>
+  using EdgeSlots = std::vector<std::array<Index, Dim * (2 * Dim + 1)>>;
+  template <int Dim>
+  [[nodiscard]] const EdgeSlots<Dim>& edge_slots() const;
   /// Slot on the diagonal of every free degree of freedom.
   [[nodiscard]] const std::vector<Index>& diagonal_slots() const;
 

@@ -9,6 +9,7 @@
 #include "der/core/lanes.hpp"
 #include "der/core/loops.hpp"
 #include "der/core/types.hpp"
+#include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 
 namespace der {
@@ -18,6 +19,10 @@ namespace der {
 /// The models of the members, one for each lane.
 template <class T>
 using MemberModels = std::array<const Model*, to_size(LaneTraits<T>::kCount)>;
+
+/// The configurations of the members, of which the controls are read.
+template <class T>
+using MemberConfigurations = std::array<Configuration, to_size(LaneTraits<T>::kCount)>;
 
 /// Numbers of members, as many for each as a vector of one member has. The memory of wide registers
 /// begins at a cache line.
@@ -35,7 +40,6 @@ class MemberVector {
     for (Index i = 0; i < size; ++i) new (&data_[to_size(i)]) T(0.0);
   }
   [[nodiscard]] Index size() const { return size_; }
-  [[nodiscard]] std::ptrdiff_t ssize() const { return size_; }
   [[nodiscard]] T* data() { return data_.get(); }
   [[nodiscard]] const T* data() const { return data_.get(); }
   T& operator[](std::ptrdiff_t i) { return data_.get()[i]; }
@@ -58,6 +62,14 @@ class MemberVector {
   std::unique_ptr<T[], Delete> data_;
   Index size_ = 0;
 };
+
+/// `along_edge` (model/edge.hpp) of each member.
+template <int Dim, class T>
+Eigen::Matrix<T, Dim, 1> along_edge(const Edge& edge, const MemberVector<T>& field) {
+  Eigen::Matrix<T, Dim, 1> vector;
+  for (int c = 0; c < Dim; ++c) vector[c] = field[edge.last + c] - field[edge.first + c];
+  return vector;
+}
 
 /// `run_loop` of a loop over members: eight lanes need AVX-512, four run on every processor.
 template <class T, class Loop>

@@ -17,10 +17,10 @@
 
 namespace der {
 
-/// What a PlanarChain needs of the models of several members.
+/// The constants of a PlanarChain in the models of several members.
 template <class T>
 struct PlanarChainConstants {
-  MemberVector<T> EA;              ///< of each edge [N]
+  MemberVector<T> along;           ///< of each edge, stiffness along it [N/m]
   MemberVector<T> rest_length;     ///< of each edge [m]
   MemberVector<T> bend_stiffness;  ///< of each joint, over its length [N m]
   MemberVector<T> rest_kappa;      ///< of each joint [-]

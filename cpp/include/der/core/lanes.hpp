@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -92,11 +91,29 @@ class Lanes {
   }
   /// In each lane 1 where the number is above zero and finite, else 0.
   static Lanes is_positive(const Lanes& x) {
+    // Less NaN where x is infinite. GCC 12 takes two conditions of eight numbers one by one.
+    return if_less(0.0, x - 0.0 * x, 1.0, 0.0);
+  }
+  /// In each lane `x` where a < b, else `y`.
+  static Lanes if_less(const Lanes& a, const Lanes& b, const Lanes& x, const Lanes& y) {
     Lanes lanes;
-    const Register one = Lanes(1.0).values_;
-    const Register zero = Lanes(0.0).values_;
-    const Register finite = x.values_ <= std::numeric_limits<double>::max() ? one : zero;
-    lanes.values_ = x.values_ > 0.0 ? finite : zero;
+    lanes.values_ = a.values_ < b.values_ ? x.values_ : y.values_;
+    return lanes;
+  }
+  /// Whether a < b in all lanes.
+  static bool all_less(const Lanes& a, const Lanes& b) {
+    Bits misses;
+    const Register miss = a.values_ < b.values_ ? Lanes(0.0).values_ : Lanes(1.0).values_;
+    std::memcpy(&misses, &miss, sizeof misses);
+    std::int64_t any = 0;
+    for (int lane = 0; lane < N; ++lane) any |= misses[lane];
+    return any == 0;
+  }
+  friend Lanes abs(const Lanes& x) {
+    Bits bits;
+    set_magnitude_bits(x, bits);
+    Lanes lanes;
+    std::memcpy(&lanes.values_, &bits, sizeof bits);
     return lanes;
   }
 
@@ -194,6 +211,26 @@ bool in_all_lanes(const Condition& holds) {
     if (!holds(lane)) return false;
   }
   return true;
+}
+
+/// `x` where a < b, else `y`: of a `double`, or in each lane.
+template <class T>
+T if_less(const T& a, const T& b, const T& x, const T& y) {
+  if constexpr (LaneTraits<T>::kCount == 1) {
+    return a < b ? x : y;
+  } else {
+    return T::if_less(a, b, x, y);
+  }
+}
+
+/// Whether a < b, in all lanes.
+template <class T>
+bool all_less(const T& a, const T& b) {
+  if constexpr (LaneTraits<T>::kCount == 1) {
+    return a < b;
+  } else {
+    return T::all_less(a, b);
+  }
 }
 
 template <int N>

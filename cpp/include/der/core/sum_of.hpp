@@ -23,4 +23,12 @@ T sum_of(Index size, const Term& term) {
   return (first + second) + (third + fourth);
 }
 
+/// a . b of short vectors, in the order of their entries: Eigen's depends on the number type.
+template <class Vec>
+typename Vec::Scalar ordered_dot(const Vec& a, const Vec& b) {
+  typename Vec::Scalar sum = a[0] * b[0];
+  for (Index i = 1; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
 }  // namespace der

@@ -11,10 +11,10 @@
 namespace der {
 
 /// The entries of a field over all degrees of freedom that belong to one element's stencil.
-template <std::size_t N, class Field>
-Eigen::Matrix<double, static_cast<int>(N), 1> gather(const std::array<Index, N>& dofs,
-                                                     const Field& field) {
-  Eigen::Matrix<double, static_cast<int>(N), 1> local;
+template <class T = double, std::size_t N, class Field>
+Eigen::Matrix<T, static_cast<int>(N), 1> gather(const std::array<Index, N>& dofs,
+                                                const Field& field) {
+  Eigen::Matrix<T, static_cast<int>(N), 1> local;
   for (std::size_t i = 0; i < N; ++i) local[static_cast<Index>(i)] = field[dofs[i]];
   return local;
 }
@@ -28,10 +28,10 @@ void evaluate_element(const typename Kernel::Constants& constants, const Configu
                       LocalTerm<Kernel::kDofs>& out);
 
 /// Energy [J] of all elements of one kind with the controls of a configuration, at other
-/// coordinates.
-template <class Kernel>
+/// coordinates (a vector, or Strided).
+template <class Kernel, class Coordinates>
 double element_energy(const ElementList<Kernel>& list, const Configuration& here,
-                      const Vector& coordinates) {
+                      const Coordinates& coordinates) {
   LocalTerm<Kernel::kDofs> local;
   double total = 0.0;
   for (std::size_t e = 0; e < list.size(); ++e) {

@@ -24,6 +24,14 @@ namespace der {
 /// support, the stiffness [N/m] against moving along x (0), y (1) or z (2), 0 where it does not
 /// hold:
 ///   static double holding_stiffness(const Constants&, int component);
+/// Kernels that members of a batch evaluate in lanes are written for every number type. Their
+/// `evaluate` above calls, with `values` of the constants, one of the numbers that they compute
+/// with:
+///   template <class T> struct Values;        with fields(), a tuple of references to its members
+///   static Values<double> values(const Constants&, const Vector& controls);
+///   template <Derivatives D, class T>
+///   static void evaluate(const Values<T>&, const Eigen::Matrix<T, kDofs, 1>& x,
+///                        LocalTerm<kDofs, T>& out);
 template <class Kernel>
 struct ElementList {
   using KernelType = Kernel;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <tuple>
+
+#include "der/core/sum_of.hpp"
 #include "der/core/types.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/configuration.hpp"
@@ -30,16 +33,28 @@ struct Foundation {
     return c.stiffness[component] * c.lengths.sum();
   }
 
-  template <Derivatives D>
-  static void evaluate(const Constants& c, const Configuration& /*here*/, const Ends& x,
-                       LocalTerm<kDofs>& out) {
-    using Columns = Eigen::Matrix<double, Dim, 2>;
-    const Ends displacement = x - c.drawn;
+  template <class T>
+  struct Values {
+    Eigen::Matrix<T, Dim, 1> stiffness;  ///< [N/m^2]
+    Eigen::Matrix<T, kDofs, 1> drawn;    ///< [m]
+    Eigen::Matrix<T, 2, 2> lengths;      ///< [m]
+    auto fields() { return std::tie(stiffness, drawn, lengths); }
+  };
+  static Values<double> values(const Constants& c, const Vector& /*controls*/) {
+    return {c.stiffness, c.drawn, c.lengths};
+  }
+
+  template <Derivatives D, class T>
+  static void evaluate(const Values<T>& c, const Eigen::Matrix<T, kDofs, 1>& x,
+                       LocalTerm<kDofs, T>& out) {
+    using Columns = Eigen::Matrix<T, Dim, 2>;
+    const Eigen::Matrix<T, kDofs, 1> displacement = x - c.drawn;
     // Column i is the force on node i.
     const Columns force =
         c.stiffness.asDiagonal() * (Eigen::Map<const Columns>(displacement.data()) * c.lengths);
-    const Eigen::Map<const Ends> gradient(force.data());
-    out.energy = 0.5 * gradient.dot(displacement);
+    const Eigen::Matrix<T, kDofs, 1> gradient =
+        Eigen::Map<const Eigen::Matrix<T, kDofs, 1>>(force.data());
+    out.energy = 0.5 * ordered_dot(gradient, displacement);
     if constexpr (D == Derivatives::Energy) return;
 
     out.gradient = gradient;
@@ -51,6 +66,11 @@ struct Foundation {
             (c.lengths(i, j) * c.stiffness).asDiagonal();
       }
     }
+  }
+  template <Derivatives D>
+  static void evaluate(const Constants& c, const Configuration& here, const Ends& x,
+                       LocalTerm<kDofs>& out) {
+    evaluate<D, double>(values(c, here.controls), x, out);
   }
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tuple>
+
 #include "der/core/types.hpp"
 #include "der/energies/edge_blocks.hpp"
 #include "der/energies/local_term.hpp"
@@ -29,9 +31,9 @@ IsotropicResponse<T> isotropic_response(const T& stiffness, const T& cosine) {
 
 /// The energy of that joint [J]. The sine is that of the cross product: 1 - d^2 would leave B times
 /// the rounding error of d at every straight joint.
-template <class Curvature>
-double isotropic_energy(double stiffness, const Vec3& ta, const Vec3& tb) {
-  const double f = Binormal<Curvature>::of(ta.dot(tb)).f;
+template <class Curvature, class T>
+T isotropic_energy(const T& stiffness, const Vector3<T>& ta, const Vector3<T>& tb) {
+  const T f = Binormal<Curvature>::template of<T>(ta.dot(tb)).f;
   return 0.5 * stiffness * f * f * ta.cross(tb).squaredNorm();
 }
 
@@ -74,29 +76,45 @@ struct IsotropicBend {
     [[nodiscard]] static bool is_actuated() { return false; }
   };
 
-  template <Derivatives D>
-  static void evaluate(const Constants& c, const Configuration& /*here*/,
-                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
-    const Vec3 ea = x.segment<3>(3) - x.segment<3>(0);
-    const Vec3 eb = x.segment<3>(6) - x.segment<3>(3);
-    const TangentTerm a(ea);
-    const TangentTerm b(eb);
-    out.energy = isotropic_energy<Curvature>(c.stiffness_per_length, a.tangent, b.tangent);
+  template <class T>
+  struct Values {
+    T stiffness_per_length = 0.0;  ///< [N m]
+    auto fields() { return std::tie(stiffness_per_length); }
+  };
+  static Values<double> values(const Constants& c, const Vector& /*controls*/) {
+    return {c.stiffness_per_length};
+  }
+
+  template <Derivatives D, class T>
+  static void evaluate(const Values<T>& c, const Eigen::Matrix<T, kDofs, 1>& x,
+                       LocalTerm<kDofs, T>& out) {
+    using Vec = Vector3<T>;
+    using Mat = Matrix3<T>;
+    const Vec ea = x.template segment<3>(3) - x.template segment<3>(0);
+    const Vec eb = x.template segment<3>(6) - x.template segment<3>(3);
+    const TangentTermOf<T> a(ea);
+    const TangentTermOf<T> b(eb);
+    out.energy = isotropic_energy<Curvature, T>(c.stiffness_per_length, a.tangent, b.tangent);
     if constexpr (D == Derivatives::Energy) return;
-    const double cosine = a.tangent.dot(b.tangent);
-    const auto bend = isotropic_response<Curvature>(c.stiffness_per_length, cosine);
-    const Vec3 by_a = a.first(b.tangent, cosine);
-    const Vec3 by_b = b.first(a.tangent, cosine);
-    const Vec3 force_a = bend.slope * by_a;
-    const Vec3 force_b = bend.slope * by_b;
+    const T cosine = a.tangent.dot(b.tangent);
+    const auto bend = isotropic_response<Curvature, T>(c.stiffness_per_length, cosine);
+    const Vec by_a = a.first(b.tangent, cosine);
+    const Vec by_b = b.first(a.tangent, cosine);
+    const Vec force_a = bend.slope * by_a;
+    const Vec force_b = bend.slope * by_b;
     out.gradient << -force_a, force_a - force_b, force_b;
     if constexpr (D == Derivatives::Gradient) return;
 
-    const Mat3 aa = bend.curvature * by_a * by_a.transpose() + bend.slope * a.second(by_a, cosine);
-    const Mat3 bb = bend.curvature * by_b * by_b.transpose() + bend.slope * b.second(by_b, cosine);
-    const Mat3 ba =
+    const Mat aa = bend.curvature * by_a * by_a.transpose() + bend.slope * a.second(by_a, cosine);
+    const Mat bb = bend.curvature * by_b * by_b.transpose() + bend.slope * b.second(by_b, cosine);
+    const Mat ba =
         bend.curvature * by_b * by_a.transpose() + bend.slope * (b.across() * a.across());
     set_joint_blocks(aa, ba, bb, out.hessian);
+  }
+  template <Derivatives D>
+  static void evaluate(const Constants& c, const Configuration& here,
+                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
+    evaluate<D, double>(values(c, here.controls), x, out);
   }
 };
 
@@ -112,24 +130,38 @@ struct IsotropicClamp {
     HeldFrame held;
   };
 
-  template <Derivatives D>
-  static void evaluate(const Constants& c, const Configuration& here,
-                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
-    const Vec3 e = x.segment<3>(3) - x.segment<3>(0);
-    const TangentTerm edge(e);
-    const Vec3 held = c.held.tangent(here.controls);
-    out.energy = isotropic_energy<Curvature>(c.stiffness_per_length, edge.tangent, held);
+  template <class T>
+  struct Values {
+    T stiffness_per_length = 0.0;  ///< [N m]
+    Vector3<T> held;               ///< tangent
+    auto fields() { return std::tie(stiffness_per_length, held); }
+  };
+  static Values<double> values(const Constants& c, const Vector& controls) {
+    return {c.stiffness_per_length, c.held.tangent(controls)};
+  }
+
+  template <Derivatives D, class T>
+  static void evaluate(const Values<T>& c, const Eigen::Matrix<T, kDofs, 1>& x,
+                       LocalTerm<kDofs, T>& out) {
+    const Vector3<T> e = x.template segment<3>(3) - x.template segment<3>(0);
+    const TangentTermOf<T> edge(e);
+    out.energy = isotropic_energy<Curvature, T>(c.stiffness_per_length, edge.tangent, c.held);
     if constexpr (D == Derivatives::Energy) return;
-    const double cosine = edge.tangent.dot(held);
-    const auto bend = isotropic_response<Curvature>(c.stiffness_per_length, cosine);
-    const Vec3 by_edge = edge.first(held, cosine);
-    const Vec3 force = bend.slope * by_edge;
+    const T cosine = edge.tangent.dot(c.held);
+    const auto bend = isotropic_response<Curvature, T>(c.stiffness_per_length, cosine);
+    const Vector3<T> by_edge = edge.first(c.held, cosine);
+    const Vector3<T> force = bend.slope * by_edge;
     out.gradient << -force, force;
     if constexpr (D == Derivatives::Gradient) return;
 
-    const Mat3 own =
+    const Matrix3<T> own =
         bend.curvature * by_edge * by_edge.transpose() + bend.slope * edge.second(by_edge, cosine);
     set_edge_blocks(own, out.hessian);
+  }
+  template <Derivatives D>
+  static void evaluate(const Constants& c, const Configuration& here,
+                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
+    evaluate<D, double>(values(c, here.controls), x, out);
   }
 };
 

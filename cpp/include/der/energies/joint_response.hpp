@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <tuple>
 
 #include "der/core/types.hpp"
 #include "der/kinematics/curvature_binormal.hpp"
@@ -17,6 +18,9 @@ struct JointOf {
   T twist = 0.0;          ///< GJ over the cell length [N m]
   JointStrainOf<T> rest;  ///< of natural curvature and twist
 
+  template <class U>
+  using In = JointOf<U>;
+  auto fields() { return std::tuple_cat(std::tie(bend_1, bend_2, twist), rest.fields()); }
   /// The derivative of the energy by the strain [N m].
   [[nodiscard]] JointStrainOf<T> load(const JointStrainOf<T>& strain) const {
     return {bend_1 * (strain.kappa_1 - rest.kappa_1), bend_2 * (strain.kappa_2 - rest.kappa_2),
@@ -32,19 +36,38 @@ struct JointOf {
 using Joint = JointOf<double>;
 
 /// A joint whose three strains are coupled, as those at a corner are (building/corner.hpp).
-struct CoupledJoint {
-  Mat3 coefficients = Mat3::Zero();  ///< second derivative of the energy by the strain [N m]
-  JointStrain rest;
+template <class T>
+struct CoupledJointOf {
+  Matrix3<T> coefficients = Matrix3<T>::Zero();  ///< second derivative of the energy by the strain
+                                                 ///< [N m]
+  JointStrainOf<T> rest;
 
-  [[nodiscard]] JointStrain load(const JointStrain& strain) const {
-    const Vec3 q = coefficients * Vec3(strain.kappa_1 - rest.kappa_1, strain.kappa_2 - rest.kappa_2,
-                                       strain.twist - rest.twist);
+  template <class U>
+  using In = CoupledJointOf<U>;
+  auto fields() { return std::tuple_cat(std::tie(coefficients), rest.fields()); }
+  [[nodiscard]] JointStrainOf<T> load(const JointStrainOf<T>& strain) const {
+    const Vector3<T> q =
+        coefficients * Vector3<T>(strain.kappa_1 - rest.kappa_1, strain.kappa_2 - rest.kappa_2,
+                                  strain.twist - rest.twist);
     return {q[0], q[1], q[2]};
   }
-  [[nodiscard]] Mat3 stiffness(const Vec3& g1, const Vec3& g2, const Vec3& gt) const {
-    Mat3 gradients;
+  [[nodiscard]] Matrix3<T> stiffness(const Vector3<T>& g1, const Vector3<T>& g2,
+                                     const Vector3<T>& gt) const {
+    Matrix3<T> gradients;
     gradients << g1, g2, gt;
     return gradients * coefficients * gradients.transpose();
+  }
+};
+using CoupledJoint = CoupledJointOf<double>;
+
+/// A joint without stiffness that bears a load whatever its strain.
+struct LoadedJoint {
+  JointStrain rest;
+  JointStrain moments;  ///< [N m]
+
+  [[nodiscard]] const JointStrain& load(const JointStrain& /*strain*/) const { return moments; }
+  [[nodiscard]] static Mat3 stiffness(const Vec3& /*g1*/, const Vec3& /*g2*/, const Vec3& /*gt*/) {
+    return Mat3::Zero();
   }
 };
 
@@ -83,9 +106,16 @@ class JointKinematics {
     return {a, b, natural, 0.5 * natural, 0.0};
   }
 
+  /// The joint with its curvature read in the directors of a, which have a meaning of their own
+  /// where a bears a moment.
+  static JointKinematics read_before(const SectionFrameOf<T>& a, const SectionFrameOf<T>& b,
+                                     const T& twist) {
+    return {a, b, twist, 0.0, 0.0};
+  }
+
   [[nodiscard]] const JointStrainOf<T>& strain() const { return strain_; }
 
-  /// Energy [J] of a joint, a JointOf<T> or a CoupledJoint.
+  /// Energy [J] of a joint, a JointOf<T> or a CoupledJointOf<T>.
   template <class AJoint>
   [[nodiscard]] T energy(const AJoint& joint) const {
     const auto [q1, q2, torque] = joint.load(strain_);

@@ -12,11 +12,11 @@ enum class Derivatives { Energy, Gradient, Hessian };
 
 /// Energy of one element [J] with its derivatives by the element's own N coordinates. The kernels
 /// fill the members up to the order asked for; of `hessian` only the lower triangle is set.
-template <int N>
+template <int N, class T = double>
 struct LocalTerm {
-  double energy = 0.0;
-  Eigen::Matrix<double, N, 1> gradient;
-  Eigen::Matrix<double, N, N> hessian;
+  T energy = 0.0;
+  Eigen::Matrix<T, N, 1> gradient;
+  Eigen::Matrix<T, N, N> hessian;
 };
 
 }  // namespace der

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "der/core/types.hpp"
@@ -49,37 +50,55 @@ struct PlanarBend {
     }
   };
 
-  /// The vectors of the edges before and after the node, from the values at their ends.
-  static std::pair<Vec2, Vec2> edges(const Eigen::Matrix<double, kDofs, 1>& x) {
-    return {x.segment<2>(2) - x.segment<2>(0), x.segment<2>(4) - x.segment<2>(2)};
+  template <class T>
+  struct Values {
+    T stiffness_per_length = 0.0;  ///< [N m]
+    T natural = 0.0;               ///< [-]
+    auto fields() { return std::tie(stiffness_per_length, natural); }
+  };
+  static Values<double> values(const Constants& c, const Vector& controls) {
+    return {c.stiffness_per_length, c.natural(controls)};
   }
 
-  template <Derivatives D>
-  static void evaluate(const Constants& c, const Configuration& here,
-                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
-    const auto [e0, e1] = edges(x);
-    const BendResponse bend = bend_response<Curvature>(
-        c.stiffness_per_length, c.natural(here.controls), angle_between(e0, e1));
+  /// The vectors of the edges before and after the node, from the values at their ends.
+  template <class T = double>
+  static std::pair<Vector2<T>, Vector2<T>> edges(const Eigen::Matrix<T, kDofs, 1>& x) {
+    return {x.template segment<2>(2) - x.template segment<2>(0),
+            x.template segment<2>(4) - x.template segment<2>(2)};
+  }
+
+  template <Derivatives D, class T>
+  static void evaluate(const Values<T>& c, const Eigen::Matrix<T, kDofs, 1>& x,
+                       LocalTerm<kDofs, T>& out) {
+    using Block = Eigen::Matrix<T, 2, 2>;
+    const auto [e0, e1] = edges<T>(x);
+    const BendResponseOf<T> bend =
+        bend_response<Curvature>(c.stiffness_per_length, c.natural, angle_between<T>(e0, e1));
     out.energy = bend.energy;
     if constexpr (D == Derivatives::Energy) return;
 
     // phi = direction(e1) - direction(e0), hence dphi/de0 = -d0 and dphi/de1 = d1.
-    const double w0 = 1.0 / e0.squaredNorm();
-    const double w1 = 1.0 / e1.squaredNorm();
-    const Vec2 d0 = direction_gradient(e0, w0);
-    const Vec2 d1 = direction_gradient(e1, w1);
-    out.gradient.segment<2>(0) = bend.moment * d0;
-    out.gradient.segment<2>(2) = -bend.moment * (d0 + d1);
-    out.gradient.segment<2>(4) = bend.moment * d1;
+    const T w0 = 1.0 / e0.squaredNorm();
+    const T w1 = 1.0 / e1.squaredNorm();
+    const Vector2<T> d0 = direction_gradient<T>(e0, w0);
+    const Vector2<T> d1 = direction_gradient<T>(e1, w1);
+    out.gradient.template segment<2>(0) = bend.moment * d0;
+    out.gradient.template segment<2>(2) = -bend.moment * (d0 + d1);
+    out.gradient.template segment<2>(4) = bend.moment * d1;
     if constexpr (D == Derivatives::Gradient) return;
 
     // Hessian by the edge vectors (h00, h10 = h01', h11), then by the nodes they run between.
-    const Mat2 h00 =
-        bend.stiffness * d0 * d0.transpose() - bend.moment * direction_hessian(e0, d0, w0);
-    const Mat2 h11 =
-        bend.stiffness * d1 * d1.transpose() + bend.moment * direction_hessian(e1, d1, w1);
-    const Mat2 h10 = -bend.stiffness * d1 * d0.transpose();
+    const Block h00 =
+        bend.stiffness * d0 * d0.transpose() - bend.moment * direction_hessian<T>(e0, d0, w0);
+    const Block h11 =
+        bend.stiffness * d1 * d1.transpose() + bend.moment * direction_hessian<T>(e1, d1, w1);
+    const Block h10 = -bend.stiffness * d1 * d0.transpose();
     set_joint_blocks(h00, h10, h11, out.hessian);
+  }
+  template <Derivatives D>
+  static void evaluate(const Constants& c, const Configuration& here,
+                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
+    evaluate<D, double>(values(c, here.controls), x, out);
   }
 };
 

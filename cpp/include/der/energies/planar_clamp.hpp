@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <tuple>
 
 #include "der/core/types.hpp"
 #include "der/energies/edge_blocks.hpp"
@@ -33,31 +34,55 @@ struct PlanarClamp {
     }
   };
 
-  /// Angle [rad] by which the cell turns, at the vector `e` of its edge.
-  static double turning_angle(const Constants& c, const Vector& controls, const Vec2& e) {
+  template <class T>
+  struct Values {
+    T stiffness_per_length = 0.0;  ///< [N m]
+    T natural = 0.0;               ///< [-]
+    Vector2<T> tangent;            ///< the clamped one
+    T side = 1.0;
+    auto fields() { return std::tie(stiffness_per_length, natural, tangent, side); }
+  };
+  static Values<double> values(const Constants& c, const Vector& controls) {
     const double direction = c.direction + (c.rotation >= 0 ? controls[c.rotation] : 0.0);
-    const Vec2 tangent{std::cos(direction), std::sin(direction)};
-    return c.side * angle_between(tangent, e);
+    return {c.stiffness_per_length,
+            c.natural(controls),
+            {std::cos(direction), std::sin(direction)},
+            c.side};
   }
 
-  template <Derivatives D>
-  static void evaluate(const Constants& c, const Configuration& here,
-                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
-    const Vec2 e = x.tail<2>() - x.head<2>();
-    const BendResponse bend = bend_response<Curvature>(
-        c.stiffness_per_length, c.natural(here.controls), turning_angle(c, here.controls, e));
+  /// Angle [rad] by which the cell turns, at the vector `e` of its edge.
+  template <class T>
+  static T turning_angle(const Values<T>& c, const Vector2<T>& e) {
+    return c.side * angle_between<T>(c.tangent, e);
+  }
+  static double turning_angle(const Constants& c, const Vector& controls, const Vec2& e) {
+    return turning_angle<double>(values(c, controls), e);
+  }
+
+  template <Derivatives D, class T>
+  static void evaluate(const Values<T>& c, const Eigen::Matrix<T, kDofs, 1>& x,
+                       LocalTerm<kDofs, T>& out) {
+    const Vector2<T> e = x.template tail<2>() - x.template head<2>();
+    const BendResponseOf<T> bend =
+        bend_response<Curvature>(c.stiffness_per_length, c.natural, turning_angle<T>(c, e));
     out.energy = bend.energy;
     if constexpr (D == Derivatives::Energy) return;
 
-    const double w = 1.0 / e.squaredNorm();
-    const Vec2 d = direction_gradient(e, w);
-    const double moment = c.side * bend.moment;
-    out.gradient.head<2>() = -moment * d;
-    out.gradient.tail<2>() = moment * d;
+    const T w = 1.0 / e.squaredNorm();
+    const Vector2<T> d = direction_gradient<T>(e, w);
+    const T moment = c.side * bend.moment;
+    out.gradient.template head<2>() = -moment * d;
+    out.gradient.template tail<2>() = moment * d;
     if constexpr (D == Derivatives::Gradient) return;
 
-    const Mat2 h = bend.stiffness * d * d.transpose() + moment * direction_hessian(e, d, w);
+    const Eigen::Matrix<T, 2, 2> h =
+        bend.stiffness * d * d.transpose() + moment * direction_hessian<T>(e, d, w);
     set_edge_blocks(h, out.hessian);
+  }
+  template <Derivatives D>
+  static void evaluate(const Constants& c, const Configuration& here,
+                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
+    evaluate<D, double>(values(c, here.controls), x, out);
   }
 };
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <tuple>
+
+#include "der/core/sum_of.hpp"
 #include "der/core/types.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/configuration.hpp"
@@ -26,13 +29,27 @@ struct PointSpring {
     return c.stiffness[component];
   }
 
-  template <Derivatives D>
-  static void evaluate(const Constants& c, const Configuration& /*here*/,
-                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
-    const Point stretch =
-        Eigen::Map<const Eigen::Matrix<double, Dim, Nodes>>(x.data()) * c.weights - c.anchor;
-    const Point force = c.stiffness.cwiseProduct(stretch);
-    out.energy = 0.5 * force.dot(stretch);
+  template <class T>
+  struct Values {
+    Eigen::Matrix<T, Dim, 1> stiffness;  ///< [N/m]
+    Eigen::Matrix<T, Dim, 1> anchor;     ///< [m]
+    Eigen::Matrix<T, Nodes, 1> weights;
+    auto fields() { return std::tie(stiffness, anchor, weights); }
+  };
+  static Values<double> values(const Constants& c, const Vector& /*controls*/) {
+    return {c.stiffness, c.anchor, c.weights};
+  }
+
+  template <Derivatives D, class T>
+  static void evaluate(const Values<T>& c, const Eigen::Matrix<T, kDofs, 1>& x,
+                       LocalTerm<kDofs, T>& out) {
+    using PointOf = Eigen::Matrix<T, Dim, 1>;
+    // Summed up node by node, so that the order is the same for every number type.
+    PointOf point = x.template head<Dim>() * c.weights[0];
+    for (int i = 1; i < Nodes; ++i) point += x.template segment<Dim>(Dim * i) * c.weights[i];
+    const PointOf stretch = point - c.anchor;
+    const PointOf force = c.stiffness.cwiseProduct(stretch);
+    out.energy = 0.5 * ordered_dot(force, stretch);
     if constexpr (D == Derivatives::Energy) return;
 
     for (int i = 0; i < Nodes; ++i) {
@@ -46,6 +63,11 @@ struct PointSpring {
             (c.weights[i] * c.weights[j] * c.stiffness).asDiagonal();
       }
     }
+  }
+  template <Derivatives D>
+  static void evaluate(const Constants& c, const Configuration& here,
+                       const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
+    evaluate<D, double>(values(c, here.controls), x, out);
   }
 };
 

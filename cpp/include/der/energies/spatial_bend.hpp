@@ -1,5 +1,7 @@
 #pragma once
 
+#include <tuple>
+
 #include "der/core/types.hpp"
 #include "der/energies/edge_moment.hpp"
 #include "der/energies/joint_response.hpp"
@@ -7,6 +9,7 @@
 #include "der/kinematics/configuration.hpp"
 #include "der/kinematics/edge_frame.hpp"
 #include "der/kinematics/frame_block.hpp"
+#include "der/kinematics/held_frame.hpp"
 #include "der/kinematics/rest_shift.hpp"
 
 namespace der {
@@ -25,6 +28,21 @@ template <class T>
 T whole_twist(const SectionFrameOf<T>& before, const SectionFrameOf<T>& after,
               const T& theta_before, const T& theta_after, const T& reference) {
   return nearest_turn(twist_between(before, after), theta_after - theta_before + reference);
+}
+
+/// The frame that the state follows for an edge (FrameBlock), as numbers of a kernel.
+template <class T>
+struct FollowedFrame {
+  Vector3<T> tangent;   ///< of the source
+  Vector3<T> director;  ///< there
+  auto fields() { return std::tie(tangent, director); }
+
+  [[nodiscard]] EdgeFrameOf<T> at(const Vector3<T>& vector, const T& theta) const {
+    return {vector, theta, tangent, director};
+  }
+};
+inline FollowedFrame<double> followed(const FrameBlock& block, const Vector& controls) {
+  return {block.tangent(controls), block.director(controls)};
 }
 
 /// The joint at this moment: its natural shape changes by actuations.
@@ -58,40 +76,64 @@ struct SpatialBend {
     }
   };
 
-  /// The frames of the two edges, that after a glued joint turned back, and the whole twist between
-  /// them [rad].
-  struct Frames {
-    EdgeFrame a;
-    EdgeFrame b;
-    double twist;
+  template <class T>
+  struct Values {
+    typename AJoint::template In<T> joint;
+    FollowedFrame<T> before;
+    FollowedFrame<T> after;
+    T glued = 0.0;      ///< [rad]
+    T reference = 0.0;  ///< reference twist [rad]
+    auto fields() {
+      return std::tuple_cat(joint.fields(), before.fields(), after.fields(),
+                            std::tie(glued, reference));
+    }
   };
-  static Frames frames(const Constants& c, const Vector& values,
-                       const Eigen::Matrix<double, kDofs, 1>& x) {
-    const EdgeFrame a(x.segment<3>(3) - x.segment<3>(0), x[9], c.before.tangent(values),
-                      c.before.director(values));
-    const double theta_after = x[10] - c.glued;
-    const EdgeFrame b(x.segment<3>(6) - x.segment<3>(3), theta_after, c.after.tangent(values),
-                      c.after.director(values));
-    return {a, b,
-            whole_twist(a.frame, b.frame, x[9], theta_after, values[c.after.twist_at_start()])};
+  static Values<double> values(const Constants& c, const Vector& controls) {
+    return {c.actuated_joint(controls), followed(c.before, controls), followed(c.after, controls),
+            c.glued, controls[c.after.twist_at_start()]};
   }
 
+  /// The frames of the two edges, that after a glued joint turned back, and the whole twist between
+  /// them [rad].
+  template <class T>
+  struct Frames {
+    EdgeFrameOf<T> a;
+    EdgeFrameOf<T> b;
+    T twist;
+  };
+  template <class T>
+  static Frames<T> frames(const Values<T>& c, const Eigen::Matrix<T, kDofs, 1>& x) {
+    const auto node = [&](int i) { return x.template segment<3>(3 * i); };
+    const EdgeFrameOf<T> a = c.before.at(node(1) - node(0), x[9]);
+    const T theta_after = x[10] - c.glued;
+    const EdgeFrameOf<T> b = c.after.at(node(2) - node(1), theta_after);
+    return {a, b, whole_twist<T>(a.frame, b.frame, x[9], theta_after, c.reference)};
+  }
+  static Frames<double> frames(const Constants& c, const Vector& controls,
+                               const Eigen::Matrix<double, kDofs, 1>& x) {
+    return frames<double>(values(c, controls), x);
+  }
+
+  template <Derivatives D, class T>
+  static void evaluate(const Values<T>& c, const Eigen::Matrix<T, kDofs, 1>& x,
+                       LocalTerm<kDofs, T>& out) {
+    const auto [a, b, twist] = frames<T>(c, x);
+    const JointKinematics<Curvature, T> kinematics(a.frame, b.frame, twist);
+    if constexpr (D == Derivatives::Energy) {
+      out.energy = kinematics.energy(c.joint);
+      return;
+    }
+    JointResponseOf<T> response;
+    kinematics.template respond<D == Derivatives::Hessian>(c.joint, response);
+    out.energy = response.energy;
+    const Matrix3<T>& stiffness = response.stiffness;
+    set_edge_moments<D, T>({a, -response.moment, stiffness}, {b, response.moment, stiffness},
+                           -stiffness - 0.5 * cross_matrix<T>(response.moment), out);
+  }
   template <Derivatives D>
   static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
-    const auto [a, b, twist] = frames(c, here.controls, x);
-    const JointKinematics<Curvature> kinematics(a.frame, b.frame, twist);
-    const AJoint joint = c.actuated_joint(here.controls);
-    if constexpr (D == Derivatives::Energy) {
-      out.energy = kinematics.energy(joint);
-      return;
-    }
-    JointResponse response;
-    kinematics.template respond<D == Derivatives::Hessian>(joint, response);
-    out.energy = response.energy;
-    const Mat3& stiffness = response.stiffness;
-    set_edge_moments<D>({a, -response.moment, stiffness}, {b, response.moment, stiffness},
-                        -stiffness - 0.5 * cross_matrix(response.moment), out);
+    evaluate<D, double>(values(c, here.controls), x, out);
   }
 };
 
@@ -118,51 +160,88 @@ struct SpatialClamp {
     }
   };
 
+  template <class T>
+  struct Values {
+    JointOf<T> joint;
+    SectionFrameOf<T> held;
+    T turned = 0.0;  ///< of the held section about its tangent [rad]
+    FollowedFrame<T> edge;
+    T reference = 0.0;  ///< reference twist [rad]
+    // The same in all lanes.
+    T side = 1.0;
+    T holds_section = 1.0;  ///< 0: it does not
+    auto fields() {
+      return std::tuple_cat(joint.fields(), held.fields(), edge.fields(),
+                            std::tie(turned, reference, side, holds_section));
+    }
+    [[nodiscard]] bool leaves() const { return LaneTraits<T>::lane(side, 0) > 0.0; }
+  };
+  static Values<double> values(const Constants& c, const Vector& controls) {
+    const double turned = c.held.twist_angle(controls);
+    return {c.actuated_joint(controls),
+            c.held.untwisted(controls).turned(turned),
+            turned,
+            followed(c.edge, controls),
+            controls[c.side > 0.0 ? c.edge.twist_at_start() : c.edge.twist_at_end()],
+            c.side,
+            c.holds_section ? 1.0 : 0.0};
+  }
+
   /// The edge, the frames before and after the cell, one of which is the edge's, and the whole
   /// twist between them [rad].
+  template <class T>
   struct Frames {
-    EdgeFrame edge;
-    SectionFrame a;
-    SectionFrame b;
-    double twist;
+    EdgeFrameOf<T> edge;
+    SectionFrameOf<T> a;
+    SectionFrameOf<T> b;
+    T twist;
   };
-  static Frames frames(const Constants& c, const Vector& values,
-                       const Eigen::Matrix<double, kDofs, 1>& x) {
-    const EdgeFrame edge(x.segment<3>(3) - x.segment<3>(0), x[6], c.edge.tangent(values),
-                         c.edge.director(values));
-    const double turned = c.held.twist_angle(values);
-    const SectionFrame held = c.held.untwisted(values).turned(turned);
-    if (c.side > 0.0) {
-      return {edge, held, edge.frame,
-              whole_twist(held, edge.frame, turned, x[6], values[c.edge.twist_at_start()])};
+  template <class T>
+  static Frames<T> frames(const Values<T>& c, const Eigen::Matrix<T, kDofs, 1>& x) {
+    const EdgeFrameOf<T> edge =
+        c.edge.at(x.template segment<3>(3) - x.template segment<3>(0), x[6]);
+    if (c.leaves()) {
+      return {edge, c.held, edge.frame,
+              whole_twist<T>(c.held, edge.frame, c.turned, x[6], c.reference)};
     }
-    return {edge, edge.frame, held,
-            whole_twist(edge.frame, held, x[6], turned, values[c.edge.twist_at_end()])};
+    return {edge, edge.frame, c.held,
+            whole_twist<T>(edge.frame, c.held, x[6], c.turned, c.reference)};
+  }
+  static Frames<double> frames(const Constants& c, const Vector& controls,
+                               const Eigen::Matrix<double, kDofs, 1>& x) {
+    return frames<double>(values(c, controls), x);
   }
 
-  static JointKinematics<Curvature> kinematics(const Constants& c, const Vector& values,
-                                               const Frames& frames) {
+  template <class T>
+  static JointKinematics<Curvature, T> kinematics(const Values<T>& c, const Frames<T>& frames) {
     const auto& [edge, a, b, twist] = frames;
-    if (c.holds_section) return {a, b, twist};
-    const FreeSide side = c.side > 0.0 ? FreeSide::Before : FreeSide::After;
-    return JointKinematics<Curvature>::with_free_side(side, a, b, twist,
-                                                      c.actuated_joint(values).rest.twist);
+    if (LaneTraits<T>::lane(c.holds_section, 0) > 0.0) return {a, b, twist};
+    const FreeSide side = c.leaves() ? FreeSide::Before : FreeSide::After;
+    return JointKinematics<Curvature, T>::with_free_side(side, a, b, twist, c.joint.rest.twist);
+  }
+  static JointKinematics<Curvature> kinematics(const Constants& c, const Vector& controls,
+                                               const Frames<double>& frames) {
+    return kinematics<double>(values(c, controls), frames);
   }
 
+  template <Derivatives D, class T>
+  static void evaluate(const Values<T>& c, const Eigen::Matrix<T, kDofs, 1>& x,
+                       LocalTerm<kDofs, T>& out) {
+    const Frames<T> here = frames<T>(c, x);
+    const JointKinematics<Curvature, T> seen = kinematics<T>(c, here);
+    if constexpr (D == Derivatives::Energy) {
+      out.energy = seen.energy(c.joint);
+      return;
+    }
+    JointResponseOf<T> response;
+    seen.template respond<D == Derivatives::Hessian>(c.joint, response);
+    out.energy = response.energy;
+    set_edge_moment<D, T>(here.edge, c.side * response.moment, response.stiffness, out);
+  }
   template <Derivatives D>
   static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
-    const Frames here_frames = frames(c, here.controls, x);
-    const JointKinematics<Curvature> seen = kinematics(c, here.controls, here_frames);
-    const Joint joint = c.actuated_joint(here.controls);
-    if constexpr (D == Derivatives::Energy) {
-      out.energy = seen.energy(joint);
-      return;
-    }
-    JointResponse response;
-    seen.template respond<D == Derivatives::Hessian>(joint, response);
-    out.energy = response.energy;
-    set_edge_moment<D>(here_frames.edge, c.side * response.moment, response.stiffness, out);
+    evaluate<D, double>(values(c, here.controls), x, out);
   }
 };
 

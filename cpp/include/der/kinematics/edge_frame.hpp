@@ -13,9 +13,10 @@ Vector3<T> transport_spin(const Vector3<T>& tangent, const T& per_length,
   return (-per_length / (1.0 + source.dot(tangent))) * source.cross(tangent);
 }
 
-inline Vec3 transport_spin(const Vec3& edge, const Vec3& source) {
-  const double per_length = 1.0 / edge.norm();
-  return transport_spin<double>(per_length * edge, per_length, source);
+template <class T>
+Vector3<T> transport_spin(const Vector3<T>& edge, const Vector3<T>& source) {
+  const T per_length = 1.0 / edge.norm();
+  return transport_spin<T>(per_length * edge, per_length, source);
 }
 
 /// The section frame on an edge as a function of the edge vector e and the angle theta: the
@@ -30,7 +31,8 @@ template <class T>
 struct EdgeFrameOf {
   using Variables = Eigen::Matrix<T, 4, 1>;
   using Block = Eigen::Matrix<T, 4, 4>;
-  using Rotation = Eigen::Matrix<T, 3, 4>;
+  /// Not aligned: sums over its columns of three then have the same order in every number type.
+  using Rotation = Eigen::Matrix<T, 3, 4, Eigen::DontAlign>;
 
   SectionFrameOf<T> frame;
   T length = 1.0;                           ///< [m]

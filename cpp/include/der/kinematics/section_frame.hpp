@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <tuple>
 
 #include "der/core/lanes.hpp"
 #include "der/core/types.hpp"
@@ -18,6 +19,7 @@ struct SectionFrameOf {
   Vector3<T> first = Vector3<T>::UnitY();
   Vector3<T> second = Vector3<T>::UnitZ();
 
+  auto fields() { return std::tie(tangent, first, second); }
   /// `first` has to be a unit vector across the unit `tangent`.
   static SectionFrameOf of(const Vector3<T>& tangent, const Vector3<T>& first) {
     return {tangent, first, tangent.cross(first)};
@@ -48,9 +50,20 @@ Vector3<T> transport(const Vector3<T>& v, const Vector3<T>& from, const Vector3<
   return cosine * v + axis.cross(v) + axis.dot(v) / (1.0 + cosine) * axis;
 }
 
+/// v / |v|.
+inline Vec3 unit_vector(const Vec3& v) { return v.normalized(); }
+template <int N>
+Vector3<Lanes<N>> unit_vector(const Vector3<Lanes<N>>& v) {
+  return v / v.norm();
+}
+
 /// A component of the unit vector `v` across the unit `tangent`, as a unit vector.
+template <class T>
+Vector3<T> made_perpendicular(const Vector3<T>& v, const Vector3<T>& tangent) {
+  return unit_vector(Vector3<T>(v - v.dot(tangent) * tangent));
+}
 inline Vec3 made_perpendicular(const Vec3& v, const Vec3& tangent) {
-  return (v - v.dot(tangent) * tangent).normalized();
+  return made_perpendicular<double>(v, tangent);
 }
 
 /// Angle [rad] about the tangent of `after` by which its section is turned against that of

@@ -27,17 +27,48 @@ SineAndCosine<T> small_sine_and_cosine(const T& x) {
 
 constexpr double kEighthTurn = 0.785398163397448;
 
+/// The integer next to |x| < 2^51.
+template <class T>
+T nearest_integer(const T& x) {
+  constexpr double kNoFraction = 6755399441055744.0;  // 1.5 * 2^52
+  return (x + kNoFraction) - kNoFraction;
+}
+
+/// For |x| < kManyTurns: the series at the rest that quarter turns leave (Cody and Waite, Software
+/// Manual for the Elementary Functions, 1980), to rounding.
+constexpr double kManyTurns = 1e5;
+template <class T>
+SineAndCosine<T> reduced_sine_and_cosine(const T& x) {
+  // A quarter turn in three parts; the products with the first two are exact.
+  constexpr double kPart1 = 1.57079632673412561417;
+  constexpr double kPart2 = 6.07710050630396597660e-11;
+  constexpr double kPart3 = 2.02226624879595063154e-21;
+  const T quarters = nearest_integer<T>(x * 0.636619772367581343);
+  const auto [s, c] =
+      small_sine_and_cosine<T>(x - quarters * kPart1 - quarters * kPart2 - quarters * kPart3);
+  // Half turns, an even number of them beside an odd quarter.
+  const T halves = nearest_integer<T>(0.5 * quarters);
+  const T odd = quarters - 2.0 * halves;
+  const T parity = halves - 2.0 * nearest_integer<T>(0.5 * halves);
+  const T sign = (1.0 - odd * odd) * (1.0 - 2.0 * parity * parity);
+  return {sign * s + odd * c, sign * c - odd * s};
+}
+
 /// Most angles of a rod's sections are small: there the series are several times faster than the
 /// library.
 inline SineAndCosine<double> sine_and_cosine(double x) {
   if (std::abs(x) < kEighthTurn) return small_sine_and_cosine(x);
+  if (std::abs(x) < kManyTurns) return reduced_sine_and_cosine(x);
   return {std::sin(x), std::cos(x)};
 }
 template <int N>
 SineAndCosine<Lanes<N>> sine_and_cosine(const Lanes<N>& x) {
   using T = Lanes<N>;
-  const auto is_small = [&](int lane) { return std::abs(x.lane(lane)) < kEighthTurn; };
-  if (in_all_lanes<T>(is_small)) return small_sine_and_cosine(x);
+  const auto is_below = [&](double limit) {
+    return in_all_lanes<T>([&](int lane) { return std::abs(x.lane(lane)) < limit; });
+  };
+  if (is_below(kEighthTurn)) return small_sine_and_cosine(x);
+  if (is_below(kManyTurns)) return reduced_sine_and_cosine(x);
   return {in_lanes<T>([&](int lane) { return sine_and_cosine(x.lane(lane)).sine; }),
           in_lanes<T>([&](int lane) { return sine_and_cosine(x.lane(lane)).cosine; })};
 }

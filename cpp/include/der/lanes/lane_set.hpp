@@ -8,7 +8,15 @@ namespace der {
 class LaneSet {
  public:
   LaneSet() = default;
-  static LaneSet first(int count) { return LaneSet((1U << static_cast<unsigned>(count)) - 1U); }
+  /// The lanes of a number type in which `holds` is not zero.
+  template <class T>
+  static LaneSet where(const T& holds) {
+    LaneSet lanes;
+    for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
+      if (holds.lane(lane) != 0.0) lanes.add(lane);
+    }
+    return lanes;
+  }
   [[nodiscard]] bool has(int lane) const {
     return (bits_ >> static_cast<unsigned>(lane) & 1U) != 0;
   }
@@ -19,7 +27,6 @@ class LaneSet {
   [[nodiscard]] LaneSet without(const LaneSet& others) const {
     return LaneSet(bits_ & ~others.bits_);
   }
-  [[nodiscard]] int count() const { return __builtin_popcount(bits_); }
   /// In the lanes of the set 1, else 0.
   template <class T>
   [[nodiscard]] T mask() const {

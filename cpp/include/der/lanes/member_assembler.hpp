@@ -1,10 +1,13 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "der/assembly/assembler.hpp"
 #include "der/assembly/planar_chain.hpp"
+#include "der/assembly/spatial_chain.hpp"
+#include "der/lanes/loose_lanes.hpp"
 #include "der/lanes/member_controls.hpp"
 #include "der/lanes/member_model.hpp"
 
@@ -14,22 +17,25 @@ namespace der {
 template <class T>
 using MemberAssemblers = std::array<const Assembler*, to_size(LaneTraits<T>::kCount)>;
 
-/// Assembler for several members: chains in lanes, the other elements one by one. Each member has,
-/// to the last bit, what its Assembler gives.
+/// Assembler for several members: chains in lanes, and the other elements where their kernels are
+/// for lanes, else one by one. Each member has, to the last bit, what its Assembler gives.
 template <class T>
 class MemberAssembler {
  public:
-  /// Elements outside of chains read the `controls`.
+  /// Elements that are evaluated one by one read the `controls`.
   MemberAssembler(const MemberModel<T>& model, const MemberAssemblers<T>& assemblers,
                   const MemberControls<T>& controls);
 
   /// Of an array of values, spare slot included.
   [[nodiscard]] Index num_values() const { return assembler_.num_values(); }
-  /// Sets `gradient` (all degrees of freedom) [N].
-  void gradient(const MemberVector<T>& coordinates, MemberVector<T>& gradient) const;
+  /// Takes the frames of edges from the controls, at the start of a step.
+  void follow_frames();
+  /// Sets `gradient` (all degrees of freedom) [N]; `frames`: the blocks of all edges.
+  void gradient(const MemberVector<T>& coordinates, const MemberVector<T>& frames,
+                MemberVector<T>& gradient) const;
   /// Sets `gradient` likewise, and `values` to `inertia` times the mass matrix and the Hessian.
-  void system(const T& inertia, const MemberVector<T>& coordinates, MemberVector<T>& gradient,
-              MemberVector<T>& values) const;
+  void system(const T& inertia, const MemberVector<T>& coordinates, const MemberVector<T>& frames,
+              MemberVector<T>& gradient, MemberVector<T>& values) const;
   /// Puts into `values` the tensions that `step`, which led to `coordinates`, predicted
   /// (PredictedTension).
   void use_predicted_tension(const MemberVector<T>& coordinates, const MemberVector<T>& step,
@@ -43,12 +49,22 @@ class MemberAssembler {
 
  private:
   void set_masses(const MemberAssemblers<T>& assemblers);
+  template <Derivatives D>
+  void add_chains(const MemberVector<T>& coordinates, const MemberVector<T>& frames, T* gradient,
+                  T* values) const;
+  template <int Dim>
+  void set_edges();
+  template <int Dim>
+  void use_predicted_tension_in(const MemberVector<T>& coordinates, const MemberVector<T>& step,
+                                MemberVector<T>& values) const;
 
   const MemberModel<T>& model_;
   const Assembler& assembler_;  // of the first: they share what is needed of it
   bool has_loose_;
   const MemberControls<T>& controls_;
-  std::vector<PlanarChainConstants<T>> chains_;
+  std::vector<PlanarChainConstants<T>> planar_chains_;
+  std::vector<SpatialChainConstants<T>> spatial_chains_;
+  std::vector<std::unique_ptr<LooseKind<T>>> loose_;
   std::vector<Index> mass_slots_;  // of the entries of the mass matrix
   MemberVector<T> masses_;
   // Of the plain stretch elements.

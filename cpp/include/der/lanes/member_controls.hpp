@@ -10,22 +10,23 @@
 
 namespace der {
 
-/// The states of members, of which times and ramps are read.
+/// The states of members, of which times, ramps and frames are read.
 template <class T>
 using MemberStates = std::array<const State*, to_size(LaneTraits<T>::kCount)>;
 
-/// What several members follow besides their coordinates, at one time of each: the values of their
-/// tables, one member after the other, and forces and places of supports that come from them. A
-/// model without tables pays nothing for it.
+/// What several members follow besides their coordinates, at one time of each: frames of edges, the
+/// values of their tables, one member after the other, and forces and places of supports that come
+/// from them. A model without frames and tables pays nothing for it.
 template <class T>
 class MemberControls {
  public:
   MemberControls(const MemberModel<T>& model, const MemberStates<T>& states);
 
   /// The controls of the members, in their lanes; their coordinates are not used.
-  using Configurations = std::array<Configuration, to_size(LaneTraits<T>::kCount)>;
-  [[nodiscard]] const Configurations& here() const { return here_; }
+  [[nodiscard]] const MemberConfigurations<T>& here() const { return here_; }
 
+  /// Sets the controls to those at the members' states.
+  void evaluate_at_states();
   /// Begins a step from the members' states.
   void begin_step(const T& dt);
   /// Sets the controls to those at a share of the step.
@@ -38,10 +39,13 @@ class MemberControls {
   [[nodiscard]] T driven_gravity_energy(const MemberVector<T>& positions) const;
 
  private:
+  void enter_frames();
+
   const MemberModel<T>& model_;
   MemberStates<T> states_;
+  Index num_frames_;  // entries of the controls that are blocks of frames
   bool has_tables_;
-  Configurations here_;
+  MemberConfigurations<T> here_;
   std::vector<StageControls> stages_;  // one for each lane
 };
 

@@ -45,8 +45,8 @@ struct MemberModel {
   [[nodiscard]] T largest_edge_change(const MemberVector<T>& displacement) const;
 };
 
-/// Whether members with such a model can be stepped in lanes: planar rods, without actuations,
-/// moments, and whatever turns with the rod or counts its turns.
+/// Whether members with such a model can be stepped in lanes: open rods, without actuations,
+/// moments, clamps that turn, and whatever else turns with the rod or counts its turns.
 bool suits_lanes(const Model& model);
 
 }  // namespace der

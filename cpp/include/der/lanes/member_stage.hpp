@@ -16,7 +16,7 @@ template <class T>
 class MemberStage {
  public:
   /// Memory for members with such a model.
-  MemberStage(const Model& structure, Index num_values, MemberBand<T> band);
+  MemberStage(const Model& structure, MemberBand<T> band);
   /// The members whose stages are solved from now on; all of it must outlive that.
   void serve(const Members<T>& members) { members_ = &members; }
 
@@ -24,6 +24,7 @@ class MemberStage {
   T inertia = 0.0;                     ///< [1/s^2]
   T velocity_factor = 0.0;             ///< [1/s]
   const MemberVector<T>* origin;       ///< [m]
+  const MemberVector<T>* frames;       ///< at the start of the step
   MemberVector<T> inertia_target;      ///< [m] from the origin
   MemberVector<T> velocity_reference;  ///< [m] from the origin
   MemberVector<T> force;               ///< [N]
@@ -53,7 +54,6 @@ class MemberStage {
   std::array<int, to_size(LaneTraits<T>::kCount)> iterations_{};
   MemberVector<T> displacement_;
   MemberVector<T> residual_;
-  MemberVector<T> values_;
   MemberVector<T> direction_;  // over the free degrees of freedom
   MemberVector<T> step_;
   MemberVector<T> acceleration_;

@@ -48,6 +48,7 @@ class MemberStepper {
   // Of an explicit first stage.
   MemberVector<T> start_force_;
   MemberVector<T> start_gradient_;
+  MemberVector<T> couple_;  // gyroscopic forces, where sections count
 
   MemberVector<T> past_displacement_;
   MemberVector<T> past_velocities_;

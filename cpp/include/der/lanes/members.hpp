@@ -5,6 +5,7 @@
 
 #include "der/lanes/member_assembler.hpp"
 #include "der/lanes/member_controls.hpp"
+#include "der/lanes/member_frames.hpp"
 #include "der/lanes/member_mass.hpp"
 #include "der/lanes/member_model.hpp"
 #include "der/solvers/newton.hpp"
@@ -20,6 +21,7 @@ struct Members {
   Members(const MemberModels<T>& models, const MemberStates<T>& states,
           const MemberAssemblers<T>& assemblers, const Options& options, bool with_mass)
       : model(models),
+        frames(model),
         controls(model, states),
         assembler(model, assemblers, controls),
         newton(options) {
@@ -27,6 +29,7 @@ struct Members {
   }
 
   MemberModel<T> model;
+  MemberFrames<T> frames;
   MemberControls<T> controls;
   MemberAssembler<T> assembler;
   Options newton;

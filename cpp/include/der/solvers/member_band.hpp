@@ -17,9 +17,12 @@ class MemberBand {
   /// For the values in the layout of TwoEndedLdlt or of BandedLdlt.
   MemberBand(const Pattern& pattern, Elimination order);
 
+  /// The matrices' values, to be set before `factorize`, which overwrites them. They have a spare
+  /// slot behind those of the layout.
+  [[nodiscard]] MemberVector<T>& values() { return band_; }
   /// In each lane 1 if its matrix was positive definite, else 0: its solutions are worth nothing
   /// then.
-  T factorize(const MemberVector<T>& values);
+  T factorize();
   /// Solves for the entries of `b`, in place.
   void solve(MemberVector<T>& b);
 
@@ -36,7 +39,7 @@ class MemberBand {
   template <Index kWidth>
   static Kernels kernels();
 
-  T factorize_from_both_ends(const MemberVector<T>& values);
+  T factorize_from_both_ends();
   void solve_from_both_ends(MemberVector<T>& b);
   [[nodiscard]] LanePair<T>* pairs(MemberVector<T>& numbers) {
     return reinterpret_cast<LanePair<T>*>(numbers.data());

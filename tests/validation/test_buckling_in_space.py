@@ -5,9 +5,8 @@ and the planar model.
 import der
 import numpy as np
 import pytest
+from references.side_buckling import beam_on_a_spring
 from scenes import END, START, arch, tip_force
-from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
 from spatial_scenes import critical, measured, section, straight_rod
 
 SIZES = [10, 20, 40]
@@ -85,40 +84,6 @@ def test_rotated_cantilever_buckles_at_the_same_load():
 
 
 # ---- continuation
-
-
-def beam_on_a_spring(towards_weak, about_tangent):
-    """Least factor of a force at the middle for EI_weak = GJ = L = 1 between a spring against
-    turning and a clamp. In its plane the spring is rigid, and the beam has the moment m, of -P/8 at
-    the ends and P/8 at the middle. A deflection w across it and a turn phi of the sections have the
-    energy
-      1/2 integral of w''^2 + phi'^2 + 2 m phi w''  and  1/2 (k w'^2 + kt phi^2 + m phi w')(0)
-    (Timoshenko and Gere, Theory of Elastic Stability, 6.2, as a potential; the spring as a short
-    beam along which both grow evenly). So w'' + m phi is linear in s, and phi'' = m w''."""
-
-    def determinant(load):
-        def moment(s):
-            return load * (4 * min(s, 1 - s) - 1) / 8
-
-        def rate(s, y):
-            _, slope, phi, twist, start, rise = y
-            bend = start + rise * s - moment(s) * phi
-            return [slope, bend, twist, moment(s) * bend, 0, 0]
-
-        ends = []
-        for borne, phi, rise in np.eye(3):
-            slope = borne / towards_weak
-            twist = about_tangent * phi + moment(0) / 2 * slope
-            y = [0, slope, phi, twist, borne + moment(0) / 2 * phi, rise]
-            for half in [(0, 0.5), (0.5, 1)]:
-                y = solve_ivp(rate, half, y, method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1]
-            ends.append(y[:3])
-        return np.linalg.det(ends)
-
-    low = 1.0
-    while determinant(low) * determinant(low + 2) > 0:
-        low += 2
-    return brentq(determinant, low, low + 2, xtol=1e-10)
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import der
 import numpy as np
 import pytest
 from references.kirchhoff_rod import UPRIGHT, Rod, constant, march, rotation
+from references.side_buckling import beam_on_a_spring
 from scenes import END, START, tip_force
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
@@ -159,40 +160,11 @@ def test_two_spans(fitted_order):
     assert fitted_order([1 / n for n in sizes], errors) > 1.9
 
 
-def clamped_beam_that_spins():
-    """Least factor of a force at the middle for EI_weak = GJ = L = 1 between two clamps, one of
-    which lets the section spin. In its plane the beam has the moment m, of -P/8 at the clamps and
-    P/8 at the middle. A deflection w across it and a turn phi of the sections have the energy
-      1/2 integral of w''^2 + phi'^2 + 2 m phi w''
-    (Timoshenko and Gere, Theory of Elastic Stability, 6.2, as a potential). So w'' + m phi is
-    linear in s, and phi'' = m w''. Both clamps hold w and w'; phi' = 0 at the first, where phi is
-    free, and phi = 0 at the second."""
-
-    def determinant(load):
-        def rate(s, y):
-            _, slope, phi, twist, start, rise = y
-            moment = load * (4 * min(s, 1 - s) - 1) / 8
-            bend = start + rise * s - moment * phi
-            return [slope, bend, twist, moment * bend, 0, 0]
-
-        ends = []
-        for y in np.eye(6)[[2, 4, 5]]:
-            for half in [(0, 0.5), (0.5, 1)]:
-                y = solve_ivp(rate, half, y, method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1]
-            ends.append(y[:3])
-        return np.linalg.det(ends)
-
-    low = 1.0
-    while determinant(low) * determinant(low + 2) > 0:
-        low += 2
-    return brentq(determinant, low, low + 2, xtol=1e-10)
-
-
 @pytest.mark.parametrize("in_space", [False, True])
 @pytest.mark.parametrize("spins", [START, END])
 def test_beam_that_spins_in_a_clamp(fitted_order, spins, in_space):
     """Linear buckling where a clamp of the tangent bears a moment."""
-    exact = clamped_beam_that_spins()
+    exact = beam_on_a_spring(towards_weak=np.inf, about_tangent=0)
     weak, twisting = 0.3, 0.2
     holds = END if spins is START else START
     supports = [{**spins, "clamp": "tangent"}, {**holds, "clamp": True}]

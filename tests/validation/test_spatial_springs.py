@@ -168,7 +168,7 @@ def test_springs_soft_about_some_axes(spatial_reference, fitted_order, name):
 
 
 def test_a_motion_on_soft_springs_keeps_its_energy(fitted_order):
-    """What the implicit midpoint rule loses is of order 2 in the step."""
+    """The implicit midpoint rule loses energy of order 2 in the step."""
     losses = []
     for step in (2e-3, 1e-3, 5e-4):
         time = {"duration": 0.5, "step": step, "integrator": "implicit_midpoint"}

@@ -12,7 +12,7 @@
 namespace der {
 namespace {
 
-/// Of the elements of a kind.
+/// The energies of all elements of a kind [J], of each member.
 template <class Kernel, class T>
 T energy_in_lanes(const Members<T>& members, const MemberVector<T>& positions) {
   const MemberModel<T>& model = members.model;

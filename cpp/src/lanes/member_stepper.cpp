@@ -159,7 +159,7 @@ void MemberStepper<T>::set_rates(Index stage, const T& dt) {
   });
 }
 
-/// What a stage contributes to the motion of the step (stage_displacement).
+/// The contribution of a stage to the motion of the step (stage_displacement).
 template <class T>
 void MemberStepper<T>::set_displacement(Index stage, const MemberState<T>& state, const T& dt) {
   const double share = tableau_.weights[to_size(stage)];

@@ -55,7 +55,7 @@ class PlanarChain {
   [[nodiscard]] ChainRange edges() const { return edges_; }
   [[nodiscard]] ChainRange bends() const { return bends_; }
   [[nodiscard]] bool is_actuated() const { return actuated_; }
-  /// Of the first node; the others follow, x before y.
+  /// The first coordinate of the first node; the others follow, x before y.
   [[nodiscard]] Index first_dof() const { return first_dof_; }
   /// Where the entries of a node's own 2 x 2 block (lower triangle) and of the blocks below it, of
   /// the next node and of the one after, lie; column by column.

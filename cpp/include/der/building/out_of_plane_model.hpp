@@ -33,7 +33,7 @@ struct OutOfPlaneModel {
     /// Angle [rad] from the x axis; `values` begin with the blocks of all edges.
     [[nodiscard]] double direction(const Vector& values) const;
   };
-  /// What a fork holds a section about: the mean of the tangents on its two sides, which are the
+  /// The axis about which a fork holds a section: the mean of the tangents on its two sides, which are the
   /// same but at corners.
   struct ForkAxis {
     Tangent before;

@@ -8,7 +8,8 @@
 
 namespace der {
 
-// What PredictedTension changes in the matrix of an edge: in `double`, or for members in lanes.
+// The change that PredictedTension makes in the matrix of an edge: in `double`, or for members in
+// lanes.
 
 /// A stiffness [N/m] across an edge vector.
 template <class T>

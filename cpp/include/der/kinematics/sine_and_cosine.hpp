@@ -56,21 +56,18 @@ SineAndCosine<T> reduced_sine_and_cosine(const T& x) {
 
 /// Most angles of a rod's sections are small: there the series are several times faster than the
 /// library.
-inline SineAndCosine<double> sine_and_cosine(double x) {
-  if (std::abs(x) < kEighthTurn) return small_sine_and_cosine(x);
-  if (std::abs(x) < kManyTurns) return reduced_sine_and_cosine(x);
-  return {std::sin(x), std::cos(x)};
-}
-template <int N>
-SineAndCosine<Lanes<N>> sine_and_cosine(const Lanes<N>& x) {
-  using T = Lanes<N>;
-  const auto is_below = [&](double limit) {
-    return in_all_lanes<T>([&](int lane) { return std::abs(x.lane(lane)) < limit; });
-  };
-  if (is_below(kEighthTurn)) return small_sine_and_cosine(x);
-  if (is_below(kManyTurns)) return reduced_sine_and_cosine(x);
-  return {in_lanes<T>([&](int lane) { return sine_and_cosine(x.lane(lane)).sine; }),
-          in_lanes<T>([&](int lane) { return sine_and_cosine(x.lane(lane)).cosine; })};
+template <class T>
+SineAndCosine<T> sine_and_cosine(const T& x) {
+  using std::abs;
+  const T size = abs(x);
+  if (all_less<T>(size, kEighthTurn)) return small_sine_and_cosine(x);
+  if (all_less<T>(size, kManyTurns)) return reduced_sine_and_cosine(x);
+  if constexpr (LaneTraits<T>::kCount == 1) {
+    return {std::sin(x), std::cos(x)};
+  } else {
+    return {T::of([&](int lane) { return sine_and_cosine(x.lane(lane)).sine; }),
+            T::of([&](int lane) { return sine_and_cosine(x.lane(lane)).cosine; })};
+  }
 }
 
 }  // namespace der

@@ -26,7 +26,7 @@ class MemberAssembler {
   MemberAssembler(const MemberModel<T>& model, const MemberAssemblers<T>& assemblers,
                   const MemberControls<T>& controls);
 
-  /// Of an array of values, spare slot included.
+  /// The size of an array of values, spare slot included.
   [[nodiscard]] Index num_values() const { return assembler_.num_values(); }
   /// Takes the frames of edges from the controls, at the start of a step.
   void follow_frames();
@@ -67,7 +67,7 @@ class MemberAssembler {
   std::vector<std::unique_ptr<LooseKind<T>>> loose_;
   std::vector<Index> mass_slots_;  // of the entries of the mass matrix
   MemberVector<T> masses_;
-  // Of the plain stretch elements.
+  // Constants of the plain stretch elements.
   MemberVector<T> EA_;
   MemberVector<T> rest_length_;
 };

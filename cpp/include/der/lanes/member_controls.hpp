@@ -14,9 +14,9 @@ namespace der {
 template <class T>
 using MemberStates = std::array<const State*, to_size(LaneTraits<T>::kCount)>;
 
-/// What several members follow besides their coordinates, at one time of each: frames of edges, the
-/// values of their tables, one member after the other, and forces and places of supports that come
-/// from them. A model without frames and tables pays nothing for it.
+/// The controls of several members (Configuration), at one time of each: frames of edges, the
+/// values of tables, and the forces and places of supports that come from them. A model without
+/// frames and tables pays nothing for it.
 template <class T>
 class MemberControls {
  public:

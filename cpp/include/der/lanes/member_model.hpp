@@ -9,7 +9,7 @@
 
 namespace der {
 
-/// What the models of several members say besides their elements. They have one structure and suit
+/// The numbers of several members' models, besides their elements. They have one structure and suit
 /// lanes (`suits_lanes`).
 template <class T>
 struct MemberModel {
@@ -34,7 +34,7 @@ struct MemberModel {
   MemberVector<T> held_places;         ///< of each held degree of freedom, at first [m]
   MemberVector<T> per_squared_length;  ///< of each edge [1/m^2]
 
-  /// What is the same in all.
+  /// The model of the first member, for all that is the same in all.
   [[nodiscard]] const Model& structure() const { return *models[0]; }
   [[nodiscard]] Index num_dofs() const { return structure().num_dofs(); }
   /// DofMap::largest_motion, ::largest_force and ::largest_free_force.

@@ -36,7 +36,7 @@ class MemberStage {
   /// From the origin [m], and the left side of the equations [N], of the stage solved last.
   [[nodiscard]] const MemberVector<T>& displacement() const { return displacement_; }
   [[nodiscard]] const MemberVector<T>& residual() const { return residual_; }
-  /// Of the stage solved last.
+  /// Iterations of the stage solved last.
   [[nodiscard]] int iterations(int lane) const { return iterations_[to_size(lane)]; }
 
  private:

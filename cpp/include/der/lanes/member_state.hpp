@@ -7,7 +7,7 @@
 
 namespace der {
 
-/// What a step reads and changes of the states of several members (State).
+/// The parts of several members' states that a step reads and changes (State).
 template <class T>
 struct MemberState {
   explicit MemberState(const Model& model)

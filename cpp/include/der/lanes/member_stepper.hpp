@@ -24,7 +24,7 @@ class MemberStepper {
   /// Tries a step of `dt` [s] for the members in `lanes`; returns those that have done it. The
   /// states of the others are as before.
   LaneSet step(LaneSet lanes, const T& dt, MemberState<T>& state);
-  /// Of the last step.
+  /// Iterations of Newton's method in the last step.
   [[nodiscard]] int newton_iterations(int lane) const { return iterations_[to_size(lane)]; }
 
  private:
@@ -45,7 +45,7 @@ class MemberStepper {
   Members<T>* members_ = nullptr;
   MemberStage<T> stage_;
   std::array<int, to_size(LaneTraits<T>::kCount)> iterations_{};
-  // Of an explicit first stage.
+  // Memory of an explicit first stage.
   MemberVector<T> start_force_;
   MemberVector<T> start_gradient_;
   MemberVector<T> couple_;  // gyroscopic forces, where sections count

@@ -12,8 +12,8 @@
 
 namespace der {
 
-/// What stays the same of several members while they are stepped. `mass` is there for methods that
-/// begin with an explicit stage.
+/// The parts of several members that stay the same while they are stepped. `mass` is there for
+/// methods that begin with an explicit stage.
 template <class T>
 struct Members {
   using Options = std::array<NewtonOptions, to_size(LaneTraits<T>::kCount)>;

@@ -48,7 +48,11 @@ class Lanes {
   Lanes() = default;
   ~Lanes() = default;
   Lanes(const Lanes& other) : values_(other.values_) {}  // NOLINT(modernize-use-equals-default)
-  Lanes& operator=(const Lanes& other) = default;
+  // Written out: GCC 12 copies a class with registers of 32 bytes in pieces of 16, by way of memory.
+  Lanes& operator=(const Lanes& other) {  // NOLINT(modernize-use-equals-default)
+    values_ = other.values_;
+    return *this;
+  }
   // Not explicit: a constant of a formula is the same in all lanes.
   Lanes(double value)  // NOLINT(google-explicit-constructor)
       : Lanes([&](int /*lane*/) { return value; }, All{}) {}

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "der/core/index.hpp"
 #include "der/core/lanes.hpp"
@@ -48,37 +50,89 @@ class PivotCount {
   Inertia inertia_;
 };
 
+/// Takes off `entries`, those of a column so far, what they lose to the column `distance` before
+/// it, and leaves that one's multiplier in its place. Entries in the band are `step` apart.
+template <class T>
+void take_off(Index distance, Index width, Index step, T* column, T* entries) {
+  T* const other = column - static_cast<std::ptrdiff_t>(distance) * (width + 1) * step;
+  const T entry = other[distance * step];
+  const T multiplier = entry * other[0];
+  other[distance * step] = multiplier;
+  entries[0] -= multiplier * entry;
+  for (Index i = 1; i + distance <= width; ++i) {
+    entries[i] -= multiplier * other[(distance + i) * step];
+  }
+}
+
+/// Finishes a column but for the division: takes off what it loses to those `farthest` to `nearest`
+/// before it, the farthest first. Unrolled, so that its entries stay in registers. Returns the
+/// first.
+template <Index kWidth, Index kStep, class T, Index... kBehind>
+T finish_column(Index farthest, Index nearest, T* column,
+                std::integer_sequence<Index, kBehind...> /*columns*/) {
+  std::array<T, to_size(kWidth) + 1> entries;
+  for (Index i = 0; i <= kWidth; ++i) entries[to_size(i)] = column[i * kStep];
+  const auto take = [&](Index distance) {
+    if (distance > farthest || distance < nearest) return;
+    take_off(distance, kWidth, kStep, column, entries.data());
+  };
+  (take(kWidth - kBehind), ...);
+  for (Index i = 0; i <= kWidth; ++i) column[i * kStep] = entries[to_size(i)];
+  return entries[0];
+}
+
 /// Turns `size` columns into 1/d_j and the multipliers l_{j+1,j} .., and eliminates them from those
-/// behind. `kWidth` is the half-bandwidth, or 0 when it is only known at run time; then `scratch`
-/// has room for one column. `pivots.take(column, pivot)` sees every pivot and says whether to go
-/// on.
-template <Index kWidth, class T, class Pivots>
-void factorize_band(Index size, Index run_time_width, T* band, T* scratch, Pivots& pivots) {
-  const Index width = kWidth > 0 ? kWidth : run_time_width;
-  const Index stride = width + 1;
-  // The current column: a copy, in registers where its length is known, as the compiler would have
-  // to read the column again after every write to those behind it.
-  std::array<T, to_size(kWidth)> registers;
-  T* const entries = kWidth > 0 ? registers.data() : scratch;
+/// behind. Each column is read and written once, when all before it are done: memory takes fewer
+/// writes than numbers. `kMatrices` lie side by side, entry by entry. `pivots.take(column, pivot)`
+/// sees every pivot and says whether to go on.
+template <Index kWidth, Index kMatrices, class T, class Pivots>
+void factorize_band(Index size, T* band, Pivots& pivots) {
+  constexpr std::make_integer_sequence<Index, kWidth> distances;
+  for (Index j = 0; j < size + kWidth; ++j) {
+    for (Index matrix = 0; matrix < kMatrices; ++matrix) {
+      T* const column = band + static_cast<std::ptrdiff_t>(j) * (kWidth + 1) * kMatrices + matrix;
+      if (j >= size) {
+        finish_column<kWidth, kMatrices>(j, j - size + 1, column, distances);
+        continue;
+      }
+      const T pivot = j < kWidth ? finish_column<kWidth, kMatrices>(j, 1, column, distances)
+                                 : finish_column<kWidth, kMatrices>(kWidth, 1, column, distances);
+      if (!pivots.take(j, pivot)) return;
+      column[0] = 1.0 / pivot;
+    }
+  }
+}
+
+/// The same for a width that is only known at run time: each column is eliminated from those behind
+/// as soon as it is done, in loops over neighbouring numbers. `scratch` has room for a column.
+template <class T, class Pivots>
+void factorize_band(Index size, Index width, T* band, T* scratch, Pivots& pivots) {
   for (Index j = 0; j < size; ++j) {
-    T* column = band + static_cast<std::ptrdiff_t>(j) * stride;
+    T* column = band + static_cast<std::ptrdiff_t>(j) * (width + 1);
     const T pivot = column[0];
     if (!pivots.take(j, pivot)) return;
     const T inverse = 1.0 / pivot;
     column[0] = inverse;
-    for (Index k = 0; k < width; ++k) entries[k] = column[k + 1];
+    // A copy, as the compiler would have to read the column again after every write behind it.
+    std::copy_n(column + 1, width, scratch);
     for (Index k = 1; k <= width; ++k) {
-      const T multiplier = entries[k - 1] * inverse;
+      const T multiplier = scratch[k - 1] * inverse;
       column[k] = multiplier;
-      T* target = column + k * stride;
-      for (Index m = k; m <= width; ++m) target[m - k] -= multiplier * entries[m - 1];
+      T* target = column + static_cast<std::ptrdiff_t>(k) * (width + 1);
+      for (Index m = k; m <= width; ++m) target[m - k] -= multiplier * scratch[m - 1];
     }
   }
 }
+
+/// The band kernels of BandedLdlt and TwoEndedLdlt: `kWidth` is the half-bandwidth, or 0.
 template <Index kWidth, class T>
 Inertia factorize_band(Index size, Index run_time_width, T* band, T* scratch) {
   PivotCount<T> pivots;
-  factorize_band<kWidth>(size, run_time_width, band, scratch, pivots);
+  if constexpr (kWidth > 0) {
+    factorize_band<kWidth, 1>(size, band, pivots);
+  } else {
+    factorize_band(size, run_time_width, band, scratch, pivots);
+  }
   return pivots.inertia();
 }
 

@@ -15,21 +15,17 @@ class PositivePivots {
     positive_ *= T::is_positive(pivot);
     return true;
   }
-  bool take(Index column, const LanePair<T>& pivot) {
-    return take(column, pivot.first) && take(column, pivot.second);
-  }
   [[nodiscard]] T positive() const { return positive_; }
 
  private:
   T positive_ = 1.0;
 };
 
-template <class T, Index kWidth, class Number>
-T factorize_members(Index columns, Number* band) {
+template <class T, Index kWidth, Index kMatrices>
+T factorize_members(Index columns, T* band) {
   return run_member_loop<T>([&] {
     PositivePivots<T> pivots;
-    Number* const none = nullptr;
-    factorize_band<kWidth>(columns, kWidth, band, none, pivots);
+    factorize_band<kWidth, kMatrices>(columns, band, pivots);
     return pivots.positive();
   });
 }
@@ -48,8 +44,8 @@ template <class T>
 template <Index kWidth>
 typename MemberBand<T>::Kernels MemberBand<T>::kernels() {
   using Pair = LanePair<T>;
-  return {factorize_members<T, kWidth, T>,    eliminate_members<T, kWidth, T>,
-          substitute_members<T, kWidth, T>,   factorize_members<T, kWidth, Pair>,
+  return {factorize_members<T, kWidth, 1>,    eliminate_members<T, kWidth, T>,
+          substitute_members<T, kWidth, T>,   factorize_members<T, kWidth, 2>,
           eliminate_members<T, kWidth, Pair>, substitute_members<T, kWidth, Pair>};
 }
 
@@ -124,7 +120,7 @@ void MemberBand<T>::solve(MemberVector<T>& b) {
 template <class T>
 T MemberBand<T>::factorize_from_both_ends() {
   if (padding_ > 0) band_[1] = T(1.0);
-  const T halves = kernels_.factorize_pairs(columns_, pairs(band_));
+  const T halves = kernels_.factorize_pairs(columns_, band_.data());
   run_member_loop<T>([&] {
     const Index stride = width_ + 1;
     const LanePair<T>* rest = pairs(band_) + columns_ * stride;

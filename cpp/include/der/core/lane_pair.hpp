@@ -17,7 +17,6 @@ struct LanePair {
   friend LanePair operator*(const LanePair& a, const LanePair& b) {
     return {a.first * b.first, a.second * b.second};
   }
-  friend LanePair operator/(double a, const LanePair& b) { return {a / b.first, a / b.second}; }
 };
 
 }  // namespace der

@@ -31,7 +31,7 @@ class MemberBand {
     T (*factorize)(Index columns, T* band);
     void (*eliminate)(Index columns, const T* band, T* b);
     void (*substitute)(Index columns, const T* band, T* b);
-    T (*factorize_pairs)(Index columns, LanePair<T>* band);
+    T (*factorize_pairs)(Index columns, T* band);
     void (*eliminate_pairs)(Index columns, const LanePair<T>* band, LanePair<T>* b);
     void (*substitute_pairs)(Index columns, const LanePair<T>* band, LanePair<T>* b);
   };

@@ -170,20 +170,28 @@ struct Tangents {
                    (edge.per_length * edge.per_length);
     const Vector3<T>& t = edge.tangent;
     const Vector3<T> with_t = (0.5 * lean) * t - edge.per_length * force(edge, start, end);
-    Block own = (start.bend.curvature * start.by_after) * start.by_after.transpose() +
-                (end.bend.curvature * end.by_before) * end.by_before.transpose() +
-                t * with_t.transpose() + with_t * t.transpose();
+    const Vector3<T> with_start = start.bend.curvature * start.by_after;
+    const Vector3<T> with_end = end.bend.curvature * end.by_before;
+    Block own;
+    for (int column = 0; column < 3; ++column) {
+      for (int row = column; row < 3; ++row) {
+        own(row, column) = with_start[row] * start.by_after[column] +
+                           with_end[row] * end.by_before[column] +
+                           (with_t[row] * t[column] + t[row] * with_t[column]);
+        own(column, row) = own(row, column);
+      }
+    }
     own.diagonal().array() -= lean;
     return own;
   }
   /// With the product of the two tangents' derivatives (TangentTermOf::across) multiplied out.
   static Block coupling(const Edge& edge, const Edge& next, const Response& joint) {
-    const T slope = joint.bend.slope * (edge.per_length * next.per_length);
-    const Vector3<T> across = next.tangent - joint.cosine * edge.tangent;
-    Block result = (joint.bend.curvature * joint.by_after) * joint.by_before.transpose() -
-                   (slope * next.tangent) * across.transpose() -
-                   (slope * edge.tangent) * edge.tangent.transpose();
-    result.diagonal().array() += slope;
+    const T slope = joint.bend.slope * next.per_length;
+    const Vector3<T> with_before = joint.bend.curvature * joint.by_after - slope * next.tangent;
+    const T along = slope * edge.per_length;
+    Block result = with_before * joint.by_before.transpose() -
+                   (along * edge.tangent) * edge.tangent.transpose();
+    result.diagonal().array() += along;
     return result;
   }
 };

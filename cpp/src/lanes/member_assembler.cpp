@@ -1,5 +1,6 @@
 #include "der/lanes/member_assembler.hpp"
 
+#include "der/core/largest_of.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/stiffness_across.hpp"
 #include "der/energies/stretch.hpp"
@@ -193,15 +194,12 @@ T MemberAssembler<T>::largest_elastic_force(const MemberVector<T>& coordinates,
   T sum = 0.0;
   run_member_loop<T>([&] {
     for (const auto& block : model_.blocks) {
-      LargestMagnitude<T> stiffness;
-      LargestMagnitude<T> coordinate;
-      for (const Index dof : block.free) {
-        stiffness.see(values[slots[to_size(dofs.free_index(dof))]]);
-      }
-      for (Index i = block.first; i < block.first + block.count; ++i) {
-        coordinate.see(coordinates[i]);
-      }
-      sum += stiffness.value() * coordinate.value() / block.length;
+      const T stiffness = largest_of<T>(static_cast<Index>(block.free.size()), [&](Index i) {
+        return values[slots[to_size(dofs.free_index(block.free[to_size(i)]))]];
+      });
+      const T coordinate =
+          largest_of<T>(block.count, [&](Index i) { return coordinates[block.first + i]; });
+      sum += stiffness * coordinate / block.length;
     }
   });
   return sum;

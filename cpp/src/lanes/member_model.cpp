@@ -4,6 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "der/core/largest_of.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/registry.hpp"
 #include "der/model/dimension.hpp"
@@ -57,9 +58,7 @@ T largest_over_blocks(const Blocks& blocks, const Value& value) {
 /// The largest magnitude among the numbers of a block.
 template <class Block, class T>
 T largest_in(const Block& block, const MemberVector<T>& numbers) {
-  LargestMagnitude<T> largest;
-  for (Index i = block.first; i < block.first + block.count; ++i) largest.see(numbers[i]);
-  return largest.value();
+  return largest_of<T>(block.count, [&](Index i) { return numbers[block.first + i]; });
 }
 
 }  // namespace
@@ -123,9 +122,9 @@ T MemberModel<T>::largest_force(const MemberVector<T>& force) const {
 template <class T>
 T MemberModel<T>::largest_free_force(const MemberVector<T>& force) const {
   return largest_over_blocks<T>(blocks, [&](const auto& block) -> T {
-    LargestMagnitude<T> largest;
-    for (const Index i : block.free) largest.see(force[i]);
-    return largest.value() / block.length;
+    const T largest = largest_of<T>(static_cast<Index>(block.free.size()),
+                                    [&](Index i) { return force[block.free[to_size(i)]]; });
+    return largest / block.length;
   });
 }
 
@@ -133,18 +132,18 @@ template <class T>
 T MemberModel<T>::largest_edge_change(const MemberVector<T>& displacement) const {
   T result = 0.0;
   run_member_loop<T>([&] {
-    LargestMagnitude<T> largest;  // squared
-    const std::vector<Edge>& edges = structure().edges;
-    with_dimension(structure(), [&](auto dim) {
-      for (std::size_t i = 0; i < edges.size(); ++i) {
-        const T squared = along_edge<dim>(edges[i], displacement).squaredNorm();
-        largest.see(squared * per_squared_length[static_cast<Index>(i)]);
-      }
+    const Model& model = structure();
+    T squared = 0.0;
+    with_dimension(model, [&](auto dim) {
+      squared = largest_of<T>(static_cast<Index>(model.edges.size()), [&](Index i) {
+        const T change = along_edge<dim>(model.edges[to_size(i)], displacement).squaredNorm();
+        return T(change * per_squared_length[i]);
+      });
     });
-    for (const SpatialEdge& edge : structure().framed_edges) {
-      largest.see(displacement[edge.theta] * displacement[edge.theta]);
-    }
-    result = sqrt(largest.value());
+    const T turn = largest_of<T>(static_cast<Index>(model.framed_edges.size()), [&](Index i) {
+      return displacement[model.framed_edges[to_size(i)].theta];
+    });
+    result = sqrt(T::larger_magnitude(squared, turn * turn));
   });
   return result;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "der/core/lanes.hpp"
+#include "der/core/largest_of.hpp"
 #include "der/core/types.hpp"
 
 namespace der {
@@ -11,12 +11,11 @@ namespace der {
 /// Takes the external `force` from `residual`; returns the largest force that was there.
 template <class T>
 T subtract_force(Index size, const T* __restrict force, T* __restrict residual) {
-  LargestMagnitude<T> largest;
-  for (Index i = 0; i < size; ++i) {
-    largest.see(residual[i]);
+  return largest_of<T>(size, [&](Index i) {
+    const T before = residual[i];
     residual[i] -= force[i];
-  }
-  return largest.value();
+    return before;
+  });
 }
 
 /// Adds the lumped inertial forces at `displacement`, those of the stage
@@ -27,15 +26,13 @@ template <class T>
 T add_lumped_inertia(Index size, const T& factor, const T* __restrict lumped,
                      const T* __restrict displacement, const T* __restrict target,
                      T* __restrict acceleration, T* __restrict residual) {
-  LargestMagnitude<T> largest;
-  for (Index i = 0; i < size; ++i) {
+  return largest_of<T>(size, [&](Index i) {
     const T a = factor * (displacement[i] - target[i]);
     const T force = lumped[i] * a;
     acceleration[i] = a;
     residual[i] += force;
-    largest.see(force);
-  }
-  return largest.value();
+    return force;
+  });
 }
 
 }  // namespace der

@@ -1,8 +1,10 @@
 #include "output/stretch_field.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "der/core/index.hpp"
 #include "der/model/moment_place.hpp"
@@ -59,8 +61,8 @@ class EffectiveVectors {
   std::vector<ActuatedRest> actuated_;
 };
 
-/// The tension that edges have in excess because they lean: an edge next to a clamp, and one at a
-/// free end with a natural curvature, has the direction that the curve has not in the edge's middle
+/// The tension that edges have in excess because they lean: an edge next to a clamp, and one at an
+/// end that is bent, by a natural curvature or a moment, has the direction that the curve has not in the edge's middle
 /// but a distance beyond it (supports/clamp.hpp; docs/mechanics.md). The excess is this distance
 /// times k . F, with the curvature k and the force F in the rod across it. The distance is another
 /// one for the curvature that a rod has as it is drawn (output/leaning_edge.hpp).
@@ -125,10 +127,19 @@ class LeaningEdges {
     } else if (!rod_.natural_curvatures.empty()) {
       natural = last ? rod_.natural_curvatures.back() : rod_.natural_curvatures.front();
     }
-    if (natural.isZero(0.0)) return;
+    const bool is_bent = bears_moment(last ? rod_.rest_length() : 0.0);
+    if (natural.isZero(0.0) && !is_bent) return;
     const Index edge = last ? rod_.num_edges() - 1 : 0;
-    const double twelfth = rod_.edge_length[to_size(edge)] / 12.0;
-    add({edge, 0.0, last ? twelfth : -twelfth, natural}, model);
+    const double twelfth = (last ? 1.0 : -1.0) * rod_.edge_length[to_size(edge)] / 12.0;
+    // A moment bends the end as a natural curvature does, and the curvature there has both.
+    add({edge, is_bent ? twelfth : 0.0, is_bent ? 0.0 : twelfth, natural}, model);
+  }
+  /// Whether a moment or a spring against turning acts at a place.
+  [[nodiscard]] bool bears_moment(double s) const {
+    const std::vector<double> places = rod_.moment_arc_lengths();
+    return std::any_of(places.begin(), places.end(), [&](double place) {
+      return std::abs(place - s) <= rod_.same_place();
+    });
   }
 
   void add(const Lean& lean, const Model& model) {

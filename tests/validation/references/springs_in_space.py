@@ -109,7 +109,7 @@ class Section:
 def shoot(
     case: Case, unknowns: Array, share: float, tolerance: float
 ) -> tuple[Array, list[Section]]:
-    """The errors of the conditions, and the sections at the start, at the springs and at the end."""
+    """The errors of the conditions, and the sections at both ends and at the springs."""
     force = share * np.asarray(case.force)
     curvature_1, curvature_2, twist = case.natural
     natural = constant(-curvature_2, curvature_1, twist)

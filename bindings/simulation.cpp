@@ -392,8 +392,8 @@ void bind_actions(PySimulationClass& cls) {
           py::arg("function"), "Remove a force that was added. Raises ValueError if it was not.")
       .def(
           "save_state",
-          [](const PySimulation& simulation) {
-            return saved_state(simulation.engine().model(), simulation.engine().state());
+          [](PySimulation& simulation) {
+            return saved_state(simulation.engine().model(), simulation.engine().save());
           },
           "Return a copy of the state, to go back to with `restore_state`.")
       .def("restore_state", &restore, py::arg("state"),

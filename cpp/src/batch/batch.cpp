@@ -303,7 +303,7 @@ RowMatrix Batch::value(const std::string& name) const {
 State Batch::save(std::size_t member) {
   static_cast<void>(this->member(member));
   take_rows(member);
-  return state(member);
+  return members_[member].simulation->save();
 }
 
 void Batch::reset(std::size_t member, const State* saved) {

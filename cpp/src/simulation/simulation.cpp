@@ -144,6 +144,12 @@ void Simulation::check_finite_state() const {
   if (const std::string found = find_nonfinite(); !found.empty()) throw Error("model_error", found);
 }
 
+State Simulation::save() {
+  State saved = state_;
+  if (scenario_.scene().is_dynamic() && find_nonfinite().empty()) enter_writes(saved);
+  return saved;
+}
+
 void Simulation::restore(const State& saved) {
   check_state(model_, saved);
   // Vectors of the same length keep their memory when assigned.

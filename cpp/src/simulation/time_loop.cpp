@@ -47,10 +47,7 @@ void Simulation::step() {
   Undo undo(state_, before_step_);
   if (const std::string found = find_nonfinite(); !found.empty()) throw DivergedError(found);
   check_rest_shape();
-  if (energy_watch_.was_written(state_)) {
-    der::follow(model_, state_);
-    energy_watch_.enter_written(state_);
-  }
+  enter_writes(state_);
   const bool was_finished = finished();
   if (adaptive_) {
     advance_adaptively();
@@ -80,6 +77,12 @@ bool Simulation::enter_step(double end, int newton_iterations) {
   ++counters_.steps;
   counters_.newton_iterations += newton_iterations;
   return is_audit_due(was_finished);
+}
+
+void Simulation::enter_writes(State& state) {
+  if (!energy_watch_.was_written(state)) return;
+  der::follow(model_, state);
+  energy_watch_.enter_written(state);
 }
 
 bool Simulation::was_written() const {

@@ -41,6 +41,38 @@ def test_columns_buckle_about_both_axes(fitted_order):
     assert along[:2].max() < 1e-6
 
 
+#: Supports with which nothing resists the spin of a rod, and its factor over pi^2 EI.
+PINS = [{**START, "fix": ["x", "y", "z"]}, {**END, "fix": ["y", "z"]}]
+SPIN = {"pins": (PINS, 1.0), "held tangent": ([{**START, "clamp": "tangent"}], 0.25)}
+
+
+@pytest.mark.parametrize("name", SPIN)
+def test_a_column_that_may_spin_buckles_as_one_that_may_not(fitted_order, name):
+    """pi^2 EI or pi^2 EI/4 about both axes, EI = 1 and 0.4."""
+    supports, times = SPIN[name]
+    exact = times * np.pi**2 * np.array([0.4, 1.0])
+    errors = []
+    for n in SIZES:
+        bar = section([0, 0, 1], EA=SLENDER, EI1=0.4, EI2=1.0, GJ=0.3)
+        scene = straight_rod(n, bar, supports=supports, loads=tip_force(-1, 0, 0), model="spatial")
+        errors.append(buckling(scene, 2).load_factors / exact - 1)
+    for column in np.transpose(errors):
+        assert fitted_order(STEPS, column) > 1.9
+
+
+def test_spins_that_loads_act_on_are_named():
+    bar = section([0, 0, 1], EA=SLENDER, EI1=0.4, EI2=1.0, GJ=0.3)
+    across = [{"point_force": {"rod": "rod", "at": "middle", "force": [0, -1, 0]}}]
+    with pytest.raises(der.NotConvergedError, match="rod 'rod'.*linear theory does not decide"):
+        buckling(straight_rod(10, bar, supports=PINS, loads=across, model="spatial"), 1)
+    ends = [
+        {"point_force": {**START, "force": [1, 0, 0]}},
+        {"point_force": {**END, "force": [-1, 0, 0]}},
+    ]
+    with pytest.raises(der.NotConvergedError, match="rod 'rod'.*the smallest loads make it unsta"):
+        buckling(straight_rod(10, bar, supports=[], loads=ends, model="spatial"), 1)
+
+
 def test_column_without_sections(fitted_order):
     """pi^2 EI, twice, of the model without twist, pinned along any direction."""
     along = np.array([1.0, 2.0, 2.0]) / 3

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -6,6 +8,7 @@
 #include "der/statics/equilibrium_failure.hpp"
 #include "der/statics/initial_stress.hpp"
 #include "der/statics/modes.hpp"
+#include "der/statics/neutral_motions.hpp"
 #include "der/statics/potential.hpp"
 #include "der/statics/stiffness.hpp"
 
@@ -69,6 +72,27 @@ Vector scaled(const Model& model, const Vector& shape) {
   constexpr double kNone = 1e-9;
   const double all = largest(shape);
   return shape / (std::abs(displacement) > kNone * std::abs(all) ? displacement : all);
+}
+
+NotConvergedError unstable_without_loads() {
+  return NotConvergedError(
+      "the structure without its loads is not stable: it has no buckling loads",
+      status_of(EquilibriumFailure::NotHeld));
+}
+
+/// Throws unless the stresses have no part in motions that nothing resists.
+void check_left_alone(const NeutralMotions& motions) {
+  using Stresses = NeutralMotions::Stresses;
+  if (motions.stresses == Stresses::LeaveThem) return;
+  const bool upset = motions.stresses == Stresses::UpsetThem;
+  throw NotConvergedError(
+      fmt::format("nothing resists a motion of rod '{}' while there are no loads, as its spin "
+                  "between two pins, and {}: hold it, a section by 'clamp: true'{}",
+                  motions.rod,
+                  upset ? "the smallest loads make it unstable, so that there is no other buckling"
+                        : "linear theory does not decide what the loads make of it",
+                  upset ? "" : ", or follow the path ('analysis: continuation')"),
+      status_of(EquilibriumFailure::NotHeld));
 }
 
 NotConvergedError hidden_buckling() {
@@ -141,13 +165,15 @@ LinearBuckling linear_buckling(const Model& model, const Assembler& assembler, L
   const Vector loaded = evaluate(1.0);
   const Vector unloaded = evaluate(0.0);
   const Stability stability = stiffness.stability();
-  if (stability.unstable_directions + stability.neutral_directions > 0) {
-    throw NotConvergedError(
-        "the structure without its loads is not stable: it has no buckling loads",
-        status_of(EquilibriumFailure::NotHeld));
-  }
+  if (stability.unstable_directions > 0) throw unstable_without_loads();
   if (stability.unknown_directions > 0) throw hidden_buckling();
   Vector step = loaded - unloaded;
+  Eigen::MatrixXd neutral;
+  if (stability.neutral_directions > 0) {
+    neutral = stiffness.softest_directions(stability.neutral_directions);
+    if (does_work(model, step, neutral)) throw unstable_without_loads();
+    stiffness.hold(neutral);
+  }
   stiffness.factorize();
   stiffness.solve(step);
 
@@ -158,6 +184,7 @@ LinearBuckling linear_buckling(const Model& model, const Assembler& assembler, L
   result.strain = stress.strain();
   const double noise = stiffness.rounding() * model.dofs.largest_motion(result.response);
   if (stress.largest() <= noise) return result;
+  if (neutral.cols() > 0) check_left_alone(judge_neutral_motions(model, neutral, stress));
 
   const auto modes_of = [&](int most) {
     return buckling_modes(model, stiffness, solver, here, stress, most);

@@ -2,11 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-
-#include "der/core/index.hpp"
 #include "der/statics/modes.hpp"
+#include "der/statics/neutral_motions.hpp"
 
 namespace der {
 
@@ -65,44 +62,22 @@ OutOfPlaneBuckling OutOfPlaneTest::buckling(const Configuration& unloaded, const
   if (stress.largest() <= noise) return {};
   if (stability.neutral_directions > 0) {
     const Eigen::MatrixXd neutral = stiffness_.softest_directions(stability.neutral_directions);
-    const OutOfPlaneBuckling answer = of_neutral(neutral, stress);
-    if (answer.load_factor || !answer.not_tested.empty()) return answer;
+    using Stresses = NeutralMotions::Stresses;
+    const NeutralMotions motions = judge_neutral_motions(twin_.model, neutral, stress);
+    if (motions.stresses == Stresses::UpsetThem) return {"", 0.0};
+    if (motions.stresses == Stresses::ActOtherwise) {
+      return {fmt::format("nothing resists a motion of rod '{}' out of the plane while there are "
+                          "no loads (a clamp of its tangent lets it spin), and what the loads make "
+                          "of it is not decided by linear theory: hold its section ('clamp: "
+                          "true'), or follow the path ('analysis: continuation')",
+                          motions.rod),
+              {}};
+    }
     stiffness_.hold(neutral);
   }
   const auto modes = buckling_modes(twin_.model, stiffness_, *solver_.solver, here, stress, 1);
   if (modes.empty()) return {};
   return {"", modes.front().load_factor};
-}
-
-OutOfPlaneBuckling OutOfPlaneTest::of_neutral(const Eigen::MatrixXd& neutral,
-                                              const InitialStress& stress) const {
-  constexpr double kNone = 1e-6;  // of the largest stress over the size of the model
-  const Model& model = twin_.model;
-  const Vector lengths = model.dofs.unit_masses()(model.dofs.free()).cwiseSqrt();
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(lengths.asDiagonal() * neutral);
-  const Eigen::MatrixXd motions =
-      qr.householderQ() * Eigen::MatrixXd::Identity(neutral.rows(), neutral.cols());
-  Eigen::MatrixXd forces(motions.rows(), motions.cols());
-  for (Eigen::Index i = 0; i < motions.cols(); ++i) {
-    const Vector motion = motions.col(i).cwiseQuotient(lengths);
-    const Vector force = stress.product(over_all_dofs(model, motion))(model.dofs.free());
-    forces.col(i) = force.cwiseQuotient(lengths);
-  }
-  const double least = kNone * stress.largest() / model.size();
-  if (forces.norm() <= least) return {};
-  using Eigenvectors = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
-  if (Eigenvectors(motions.transpose() * forces).eigenvalues()[0] < -least) return {"", 0.0};
-  const Vector acted_on =
-      motions * Eigenvectors(forces.transpose() * forces).eigenvectors().rightCols(1);
-  Eigen::Index largest = 0;
-  acted_on.cwiseAbs().maxCoeff(&largest);
-  const Index node = model.dofs.node_of(model.dofs.free()[static_cast<std::size_t>(largest)]);
-  return {fmt::format("nothing resists a motion of rod '{}' out of the plane while there are no "
-                      "loads (a clamp of its tangent lets it spin), and what the loads make of it "
-                      "is not decided by linear theory: hold its section ('clamp: true'), or "
-                      "follow the path ('analysis: continuation')",
-                      place_of(model, node).rod),
-          {}};
 }
 
 }  // namespace der

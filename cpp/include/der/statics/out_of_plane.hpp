@@ -7,7 +7,6 @@
 #include "der/assembly/pattern.hpp"
 #include "der/building/out_of_plane_model.hpp"
 #include "der/solvers/linear_solver.hpp"
-#include "der/statics/initial_stress.hpp"
 #include "der/statics/stiffness.hpp"
 
 namespace der {
@@ -53,13 +52,6 @@ class OutOfPlaneTest {
   OutOfPlaneBuckling buckling(const Configuration& unloaded, const Vector& response);
 
  private:
-  /// The answer that motions which nothing resists, one a column of `neutral`, give by themselves:
-  /// the factor 0 where the stresses make them unstable. With the force that K1 makes of a motion,
-  /// the curvature changes by the square of the load, too, of which K1 does not have all. Nothing
-  /// where the stresses make no force of them: they then leave the factors alone.
-  [[nodiscard]] OutOfPlaneBuckling of_neutral(const Eigen::MatrixXd& neutral,
-                                              const InitialStress& stress) const;
-
   const Model& planar_;
   const OutOfPlaneModel twin_;
   const Pattern pattern_;

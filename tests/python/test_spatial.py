@@ -179,6 +179,19 @@ def test_a_state_is_saved_and_restored_bit_for_bit(helix, pickled):
     assert np.array_equal(simulation.directors, there[2])
 
 
+@pytest.mark.parametrize("view", ["positions", "velocities", "theta"])
+def test_a_state_saved_after_a_write_reads_the_same(helix, view):
+    simulation, other = section_scene(helix), section_scene(helix)
+    simulation.step(7)
+    getattr(simulation, view)[2:] += 1e-3
+    other.restore_state(simulation.save_state())
+    for _ in range(2):
+        assert np.array_equal(other.directors, simulation.directors)
+        assert other.energies.bend == simulation.energies.bend
+        for each in (simulation, other):
+            each.step()
+
+
 def test_a_state_of_another_model_is_refused(arm):
     planar = section_scene(arm).save_state()
     simulation = section_scene(arm | {"model": "spatial"})

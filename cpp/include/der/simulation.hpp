@@ -187,8 +187,8 @@ class Simulation {
   /// Its vectors keep their memory for the life of the simulation, so views of them stay valid.
   [[nodiscard]] State& state() { return state_; }
   [[nodiscard]] const State& state() const { return state_; }
-  /// A copy of the state to go back to, in which the next step finds what it would find here:
-  /// frames and energies know what a program has written.
+  /// A copy of the state to go back to. What a program has written is entered first, as by the next
+  /// step, so that a simulation with the copy goes on as this one.
   [[nodiscard]] State save();
   /// Goes back (or forward) to a state copied earlier, without moving the vectors' memory. Throws
   /// Error if it is not one of such a model.
@@ -246,8 +246,8 @@ class Simulation {
   /// written it, in words; empty if there is none.
   [[nodiscard]] std::string find_nonfinite() const;
   void check_finite_state() const;
-  /// Enters what a program has written into a state since the last step in its frames and audit.
-  void enter_writes(State& state);
+  /// Enters what a program has written since the last step in the frames and the audit.
+  void enter_writes();
   /// The forces at the present state.
   struct Forces {
     Configuration here;

@@ -145,9 +145,11 @@ void Simulation::check_finite_state() const {
 }
 
 State Simulation::save() {
-  State saved = state_;
-  if (scenario_.scene().is_dynamic() && find_nonfinite().empty()) enter_writes(saved);
-  return saved;
+  if (scenario_.scene().is_dynamic() && find_nonfinite().empty()) {
+    enter_writes();
+    energy_watch_.begin(state_);
+  }
+  return state_;
 }
 
 void Simulation::restore(const State& saved) {

@@ -47,7 +47,7 @@ void Simulation::step() {
   Undo undo(state_, before_step_);
   if (const std::string found = find_nonfinite(); !found.empty()) throw DivergedError(found);
   check_rest_shape();
-  enter_writes(state_);
+  enter_writes();
   const bool was_finished = finished();
   if (adaptive_) {
     advance_adaptively();
@@ -79,10 +79,10 @@ bool Simulation::enter_step(double end, int newton_iterations) {
   return is_audit_due(was_finished);
 }
 
-void Simulation::enter_writes(State& state) {
-  if (!energy_watch_.was_written(state)) return;
-  der::follow(model_, state);
-  energy_watch_.enter_written(state);
+void Simulation::enter_writes() {
+  if (!energy_watch_.was_written(state_)) return;
+  der::follow(model_, state_);
+  energy_watch_.enter_written(state_);
 }
 
 bool Simulation::was_written() const {

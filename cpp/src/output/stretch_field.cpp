@@ -62,10 +62,11 @@ class EffectiveVectors {
 };
 
 /// The tension that edges have in excess because they lean: an edge next to a clamp, and one at an
-/// end that is bent, by a natural curvature or a moment, has the direction that the curve has not in the edge's middle
-/// but a distance beyond it (supports/clamp.hpp; docs/mechanics.md). The excess is this distance
-/// times k . F, with the curvature k and the force F in the rod across it. The distance is another
-/// one for the curvature that a rod has as it is drawn (output/leaning_edge.hpp).
+/// end that is bent, by a natural curvature or a moment, has the direction that the curve has not
+/// in the edge's middle but a distance beyond it (supports/clamp.hpp; docs/mechanics.md). The
+/// excess is this distance times k . F, with the curvature k and the force F in the rod across it.
+/// The distance is another one for the curvature that a rod has as it is drawn
+/// (output/leaning_edge.hpp).
 class LeaningEdges {
  public:
   LeaningEdges(const RodLayout& rod, const Model& model) : rod_(rod), actuated_(rod) {
@@ -137,9 +138,8 @@ class LeaningEdges {
   /// Whether a moment or a spring against turning acts at a place.
   [[nodiscard]] bool bears_moment(double s) const {
     const std::vector<double> places = rod_.moment_arc_lengths();
-    return std::any_of(places.begin(), places.end(), [&](double place) {
-      return std::abs(place - s) <= rod_.same_place();
-    });
+    return std::any_of(places.begin(), places.end(),
+                       [&](double place) { return std::abs(place - s) <= rod_.same_place(); });
   }
 
   void add(const Lean& lean, const Model& model) {

@@ -33,8 +33,8 @@ struct OutOfPlaneModel {
     /// Angle [rad] from the x axis; `values` begin with the blocks of all edges.
     [[nodiscard]] double direction(const Vector& values) const;
   };
-  /// The axis about which a fork holds a section: the mean of the tangents on its two sides, which are the
-  /// same but at corners.
+  /// The axis about which a fork holds a section: the mean of the tangents on its two sides, which
+  /// are the same but at corners.
   struct ForkAxis {
     Tangent before;
     Tangent after;

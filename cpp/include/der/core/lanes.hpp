@@ -48,7 +48,8 @@ class Lanes {
   Lanes() = default;
   ~Lanes() = default;
   Lanes(const Lanes& other) : values_(other.values_) {}  // NOLINT(modernize-use-equals-default)
-  // Written out: GCC 12 copies a class with registers of 32 bytes in pieces of 16, by way of memory.
+  // Written out: GCC 12 copies a class with registers of 32 bytes in pieces of 16, by way of
+  // memory.
   Lanes& operator=(const Lanes& other) {  // NOLINT(modernize-use-equals-default)
     values_ = other.values_;
     return *this;

@@ -5,6 +5,8 @@ import der
 import numpy as np
 import pytest
 from references.bent_wire import Leg, Wire
+from references.kirchhoff_rod import rotation
+from scipy.integrate import solve_ivp
 from spatial_scenes import QUANTITIES, rod_through, section
 
 SIZES = [16, 32, 64]  # edges a leg
@@ -142,6 +144,153 @@ def test_what_a_jump_of_the_drawn_curvature_leaves_in_the_plane(fitted_order):
     wire = Wire(legs, along_x([0.0, 1.0, 0.0]), (1.0, 1.0, 1.0, STRETCHING), tip=(0.6, -0.9, 0.0))
     quantities = ("x", "y", "curvature_1", "moment_1", "tension", "tx", "ty")
     compare(fitted_order, wire, quantities, planar=True)
+
+
+class PolynomialLeg:
+    """A leg drawn through p(t) = sum of t^k p_k, t in [0, 1], with p_0 = 0."""
+
+    def __init__(self, *coefficients):
+        self.coefficients = np.array([np.zeros(3), *coefficients], dtype=float)
+
+    def __call__(self, t, derivative=0):
+        coefficients = np.polynomial.polynomial.polyder(self.coefficients, derivative)
+        return np.polynomial.polynomial.polyval(t, coefficients)
+
+    def tangent(self, t):
+        slope = self(t, 1)
+        return slope / np.linalg.norm(slope, axis=0)
+
+    def transported(self, director, times):
+        """Along the leg without twist: the director turns towards the tangent alone."""
+
+        def rate(t, director):
+            tangent, slope = self.tangent(t), self(t, 1)
+            bent = self(t, 2) - (self(t, 2) @ tangent) * tangent
+            return -(director @ bent) / np.linalg.norm(slope) * tangent
+
+        return solve_ivp(
+            rate, (0.0, 1.0), director, t_eval=times, method="DOP853", rtol=1e-11, atol=1e-13
+        ).y.T
+
+
+#: Curved in a plane, straight, curved in space, curved in another plane, straight.
+CURVED = (
+    PolynomialLeg((0.5, 0.1, 0.0), (0.1, 0.4, 0.0)),
+    PolynomialLeg((0.2, -0.1, 0.7)),
+    PolynomialLeg((-0.4, 0.3, 0.1), (0.0, 0.4, 0.2), (0.2, 0.0, -0.2)),
+    PolynomialLeg((0.1, -0.2, -0.5), (0.0, -0.3, 0.1)),
+    PolynomialLeg((0.6, 0.3, 0.0)),
+)
+
+
+def smallest_rotation(a, b):
+    axis = np.cross(a, b)
+    return rotation(axis / np.linalg.norm(axis), np.arctan2(np.linalg.norm(axis), a @ b))
+
+
+def test_directors_behind_corners_out_of_the_plane_of_a_curved_leg(fitted_order):
+    """From the tangent of one leg to that of the next by the smallest rotation. Edges of different
+    lengths, sections that turn as they are drawn."""
+    sizes, spin = (20, 40, 80, 160), 0.8
+    errors = []
+    for n in sizes:
+        share = np.linspace(0.0, 1.0, n + 1)
+        times = share + 0.4 * share * (1.0 - share)
+        points, exact = [np.zeros((1, 3))], []
+        director = np.array([0.3, -0.4, 0.8])
+        before = CURVED[0].tangent(0.0)
+        director -= (director @ before) * before
+        director /= np.linalg.norm(director)
+        for leg in CURVED:
+            director = smallest_rotation(before, leg.tangent(0.0)) @ director if exact else director
+            points.append(points[-1][-1] + leg(times[1:]).T)
+            exact.append(leg.transported(director, [*(0.5 * (times[1:] + times[:-1])), 1.0]))
+            director, before = exact[-1][-1], leg.tangent(1.0)
+        points = np.vstack(points)
+        strip = section([0.3, -0.4, 0.8], EA=1e3, EI1=STRONG, EI2=WEAK, GJ=TWISTING)
+        scene = rod_through(points, strip, rod={"initial_twist": spin})
+        edges = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        middles = np.cumsum(edges) - 0.5 * edges
+        found = der.Simulation(der.Scenario.from_dict(scene)).directors
+        off = []
+        for i, (leg, directors) in enumerate(zip(CURVED, exact, strict=True)):
+            at = n // 2
+            tangent = leg.tangent(0.5 * (times[at] + times[at + 1]))
+            turned = rotation(tangent, spin * middles[i * n + at]) @ directors[at]
+            off.append(found[i * n + at] - turned)
+        errors.append(np.linalg.norm(off, axis=1))
+    errors = np.array(errors)
+    assert (errors[-1] < 1e-3).all()
+    for leg in range(len(CURVED)):
+        assert fitted_order([1 / n for n in sizes], errors[:, leg]) > 1.9, errors[:, leg]
+
+
+def out_of_plane_wire():
+    """An arc, a straight leg, an arc, an arc: at each of its corners it leaves the plane of the leg
+    before, and an arc begins out of the plane of the corner."""
+    frame = along_x([0.0, 0.6, 0.8])
+    legs, here = [], frame
+    for length, (turn, about), (curvature, towards) in (
+        (0.4, (0.0, 0.0), (2.5, 0.3)),
+        (0.5, (1.3, 2.0), (0.0, 0.0)),
+        (0.6, (1.2, 4.0), (2.2, 1.0)),
+        (0.35, (1.1, 0.5), (3.0, 3.5)),
+    ):
+        axis = np.cos(about) * here[:, 0] + np.sin(about) * here[:, 1]
+        here = rotation(axis, turn) @ here
+        bent = curvature * (np.cos(towards) * here[:, 0] + np.sin(towards) * here[:, 1])
+        legs.append(Leg(length, (tuple(axis), turn), tuple(bent)))
+        here = legs[-1].turned(length) @ here
+    return Wire(legs, frame, (STRONG, WEAK, TWISTING, STRETCHING), tip=(1.0, 0.7, -1.4))
+
+
+def test_a_strip_bent_out_of_the_plane_of_its_arcs(fitted_order):
+    """Its sides behind a corner, the axes of its stiffnesses, are turned with it. Arcs of circles
+    have the exact directors on any mesh."""
+    wire, sizes = out_of_plane_wire(), (20, 40, 80, 160)
+    places = {**SIDES, "end": (3, 1.0)}
+    exact = wire.solve(list(places.values()))[:, : len(QUANTITIES)]
+    errors = np.array([found(wire, n, places.values(), QUANTITIES) - exact for n in sizes])
+    check_orders(fitted_order, sizes, errors, np.abs(exact).max(axis=0), places, QUANTITIES)
+    for n in sizes[:2]:
+        strip = section(wire.frame[:, 0], EA=1e3, EI1=STRONG, EI2=WEAK, GJ=TWISTING)
+        scene = rod_through(wire.points(n), strip, supports=[])
+        drawn = [
+            (leg.turned(leg.length * (k + 0.5) / n) @ frame)[:, 0]
+            for leg, frame in zip(wire.legs, wire.frames(), strict=True)
+            for k in range(n)
+        ]
+        directors = der.Simulation(der.Scenario.from_dict(scene)).directors
+        assert directors == pytest.approx(np.array(drawn), abs=1e-12)
+
+
+@pytest.mark.parametrize("natural", [{}, {"natural_twist": 0.7}], ids=["as drawn", "given"])
+@pytest.mark.parametrize("inside", [[], [20, 47, 60]], ids=["free", "clamped at corners"])
+def test_a_strip_bent_out_of_the_plane_of_its_arcs_has_the_twist_drawn(natural, inside):
+    """Free of stress, as its natural twist is that of the drawn sections."""
+    wire, n = out_of_plane_wire(), 20
+    points = wire.points(n)
+    strip = section(wire.frame[:, 0], EA=1e3, EI1=STRONG, EI2=WEAK, GJ=TWISTING)
+    places = ["start", *({"node": node} for node in inside)]
+    supports = [{"rod": "rod", "at": place, "clamp": True} for place in places]
+    probes = {
+        f"{quantity}-{node}-{side}": {
+            "rod": "rod",
+            "at": {"node": node},
+            "side": side,
+            "quantity": quantity,
+        }
+        for quantity in ("twist", "natural_twist", "torque")
+        for node in (10, 20, 40, 60)
+        for side in ("before", "after")
+    }
+    rod = {"initial_twist": 0.7, **natural}
+    scene = rod_through(points, strip, supports, rod=rod, output={"probes": probes})
+    result = der.run(der.Scenario.from_dict(scene))
+    assert result.positions[-1] == pytest.approx(points, abs=1e-9)
+    for name, values in result.probes.items():
+        exact = 0.0 if name.startswith("torque") else 0.7
+        assert values[-1] == pytest.approx(exact, abs=1e-6), name
 
 
 @pytest.mark.parametrize("dimension", [2, 3])

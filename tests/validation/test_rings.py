@@ -1,8 +1,11 @@
 """Closed rods: Michell's ring, vibrations, a pressed ring, link and writhe, agreement of models."""
 
+from itertools import pairwise
+
 import der
 import numpy as np
 import pytest
+from references.bent_wire import Leg
 from references.kirchhoff_rod import Held, Rod, natural_shape, rotation, solve
 from references.writhe import figure_eight, torus_knot
 from scipy.integrate import solve_bvp
@@ -317,6 +320,65 @@ def across(vector, tangent):
     tangent = tangent / np.linalg.norm(tangent)
     rest = vector - tangent * (vector @ tangent)
     return rest / np.linalg.norm(rest)
+
+
+#: Corners of a ring, with the arcs that lead from each to the next: an axis, not yet across the
+#: chord, about which the arc turns, and by how much.
+ARCS = (
+    ((0.0, 0.0, 0.0), (0.0, 0.3, 1.0), 1.4),
+    ((1.0, 0.0, 0.2), (0.0, 0.0, 1.0), 0.0),
+    ((0.9, 0.8, -0.3), (1.0, 0.0, 0.6), 1.9),
+    ((0.0, 0.7, 0.5), (0.5, -1.0, 0.0), 1.1),
+)
+
+
+def ring_of_arcs(n):
+    """Its nodes, n edges in each arc, and the angle by which a director comes back turned that goes
+    along the arcs, and from tangent to tangent by the smallest rotation, without twist."""
+    points, tangents, turns = [], [], []
+    for (start, about, angle), (end, _, _) in pairwise((*ARCS, ARCS[0])):
+        chord = np.array(end) - start
+        distance = np.linalg.norm(chord)
+        axis = across(np.array(about), chord)
+        length = distance if angle == 0.0 else 0.5 * angle * distance / np.sin(0.5 * angle)
+        leg = Leg(length, ((0.0, 0.0, 1.0), 0.0), tuple(angle / length * axis))
+        tangent = rotation(axis, -0.5 * angle) @ chord / distance
+        points += [start + leg.chord(length * k / n, tangent) for k in range(n)]
+        tangents += [tangent, leg.turned(length) @ tangent]
+        turns += [leg.turned(length)]
+    first = director = across(np.eye(3)[2], tangents[0])
+    tangents.append(tangents[0])
+    for i, turn in enumerate(turns):
+        before, after = tangents[2 * i + 1 : 2 * i + 3]
+        corner = np.cross(before, after)
+        sine = np.linalg.norm(corner)
+        smallest = rotation(corner / sine, np.arctan2(sine, before @ after))
+        director = smallest @ turn @ director
+    return np.array(points), np.arctan2(np.cross(first, director) @ tangents[0], first @ director)
+
+
+@pytest.mark.parametrize("n", [10, 40])
+def test_link_of_a_ring_with_corners_out_of_the_planes_of_its_arcs(n):
+    """A whole number where the directors come back, and the same wherever the ring starts. Arcs of
+    circles have the exact directors on any mesh."""
+
+    def drawn(points, spin):
+        probes = {"link": {"rod": "rod", "quantity": "link"}}
+        rod = {"initial_twist": spin}
+        scene = der.Scenario.from_dict(
+            ring_through(points, strip(), rod, output={"probes": probes})
+        )
+        return der.run(scene).probes["link"][-1], der.Simulation(scene).directors
+
+    points, holonomy = ring_of_arcs(n)
+    spin = (2 * np.pi - holonomy) / length_of(points)
+    # The last one in the middle of the straight leg.
+    for start in (0, 1, n, 2 * n, 3 * n - 1, n + n // 2):
+        link, directors = drawn(np.roll(points, -start, axis=0), spin)
+        assert link == pytest.approx(round(link), abs=1e-10)
+    side = points[n + 1] - points[n]
+    turned = rotation(side / np.linalg.norm(side), spin * np.linalg.norm(side))
+    assert directors[0] == pytest.approx(turned @ directors[-1], abs=1e-10)
 
 
 @pytest.mark.parametrize("edges", [1, 2, 8])

@@ -22,6 +22,7 @@
 #include "der/scenario/scenario.hpp"
 #include "der/supports/spatial_clamp.hpp"
 #include "der/supports/supports.hpp"
+#include "model/corner_twist.hpp"
 
 namespace der {
 namespace {
@@ -84,15 +85,20 @@ Vec3 first_director(const scenario::Rod& rod, const Vec3& tangent) {
 }
 
 /// The director stands across the tangent at the rod's start, not across its first edge, which
-/// leans against it on a curve. It is transported along the drawn edges without twist, then turned
-/// by the initial twist.
+/// leans against it on a curve. It is transported along the drawn rod without twist, then turned by
+/// the initial twist.
 void draw_sections(const scenario::Rod& rod, RodLayout& layout, const Model& model) {
   layout.initial_twist = rod.initial_twist;
   Vec3 tangent = first_tangent(layout, model);
   Vec3 director = made_perpendicular(first_director(rod, tangent), tangent);
+  // With a natural curvature, which the layout does not have yet, it has none.
+  const bool has_corners = std::holds_alternative<scenario::AsDrawn>(rod.natural_curvature);
   for (Index edge = 0; edge < layout.num_edges(); ++edge) {
     const Vec3 next = along_edge<3>(layout.edge(edge, model), model.initial_positions).normalized();
     director = made_perpendicular(transport(director, tangent, next), next);
+    if (has_corners && edge > 0) {
+      director = SectionFrame::of(next, director).turned(corner_twist(layout, edge, model)).first;
+    }
     tangent = next;
     layout.drawn_frames.push_back(
         SectionFrame::of(tangent, director).turned(rod.initial_twist * layout.edge_middle(edge)));

@@ -20,6 +20,8 @@
 #include "der/supports/section_spring.hpp"
 #include "der/supports/spatial_clamp.hpp"
 #include "model/corner.hpp"
+#include "model/corner_twist.hpp"
+#include "model/natural_twist.hpp"
 
 namespace der {
 namespace {
@@ -136,17 +138,6 @@ Vec2 free_end_turn(const RodLayout& rod, const RodJoint& joint) {
   return turn;
 }
 
-/// Natural twist at the middle of the length over which a joint twists, its mean there, where the
-/// scene gives it [rad/m].
-double natural_twist_at(const RodLayout& rod, const RodJoint& joint) {
-  const Index place = joint.place();
-  const Index edge = joint.twist_place < rod.arc_length_at(place) ? place - 1 : place;
-  const double share =
-      (joint.twist_place - rod.arc_length_at(edge)) / rod.edge_length[to_size(rod.position(edge))];
-  return (1.0 - share) * rod.natural_twist[to_size(rod.position(edge))] +
-         share * rod.natural_twist[to_size(rod.position(edge + 1))];
-}
-
 /// Natural curvature, in the section before a joint, of the cell about it [1/m]: half of the cell
 /// lies beyond the joint, where the sections of a ring may be glued turned.
 Vec2 mean_natural_curvature(const RodLayout& rod, const RodJoint& joint) {
@@ -168,7 +159,7 @@ void set_rest(const RodLayout& rod, const JointStrain& drawn, RodJoint& joint) {
     joint.rest.kappa_2 = turn[1];
   }
   if (!rod.natural_twist.empty()) {
-    joint.rest.twist = natural_twist_at(rod, joint) * joint.twist_length;
+    joint.rest.twist += (natural_twist_at(rod, joint) - rod.initial_twist) * joint.twist_length;
   }
 }
 
@@ -272,9 +263,9 @@ class SectionElements {
     const SectionFrame a = frame(joint.before);
     SectionFrame b = frame(joint.after);
     double turned = theta(joint.after) - theta(joint.before);
-    double drawn_twist = turned;
+    const double drawn_twist =
+        joint.twist_length * rod_.initial_twist + corner_twist(rod_, joint.place(), model_);
     if (closes_ring(joint)) {
-      drawn_twist = joint.twist_length * rod_.initial_twist;
       joint.glued = glued_angle(a, b, drawn_twist);
       b = b.turned(-joint.glued);
       turned -= joint.glued;
@@ -320,7 +311,9 @@ class SectionElements {
     const SectionFrame frame_of_edge = frame(beside);
     HeldFrame held_frame = clamp.held;
     SectionFrame& held = held_frame.drawn;
-    const double beyond = joint.twist_length * rod_.initial_twist;
+    double beyond = joint.twist_length * rod_.initial_twist;
+    // A clamp at a corner holds the section of the edge after it.
+    if (!leaves) beyond += corner_twist(rod_, joint.place(), model_);
     if (closes_ring(joint)) {
       joint.glued = glued_angle(frame_of_edge, held, beyond);
       held = held.turned(-joint.glued);

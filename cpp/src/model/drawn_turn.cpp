@@ -18,6 +18,11 @@ Vec3 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
 
 }  // namespace
 
+std::pair<Vec3, Vec3> drawn_edges(const RodLayout& rod, Index place, const Model& model) {
+  return {drawn_edge(rod, rod.edge_before(place), model).normalized(),
+          drawn_edge(rod, rod.edge_after(place), model).normalized()};
+}
+
 DrawnTurn drawn_turn(const RodLayout& rod, Index place, const Model& model) {
   if (!rod.closed && (place <= 0 || place >= rod.num_edges())) return {};
   const Vec3 before = drawn_edge(rod, rod.edge_before(place), model);

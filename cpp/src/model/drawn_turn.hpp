@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 
@@ -10,6 +12,9 @@ struct DrawnTurn {
   double angle = 0.0;        ///< [rad]
   Vec3 axis = Vec3::Zero();  ///< unit vector
 };
+
+/// Unit vectors along the two edges that meet at a place, as drawn.
+std::pair<Vec3, Vec3> drawn_edges(const RodLayout& rod, Index place, const Model& model);
 
 /// The turn at a place; none where no two edges meet.
 DrawnTurn drawn_turn(const RodLayout& rod, Index place, const Model& model);

@@ -12,6 +12,7 @@
 #include "der/model/location.hpp"
 #include "der/output/joint_strain.hpp"
 #include "der/supports/spatial_clamp.hpp"
+#include "model/natural_twist.hpp"
 #include "output/actuated_shape.hpp"
 #include "output/edgewise_field.hpp"
 #include "output/leaning_edge.hpp"
@@ -178,14 +179,13 @@ class SectionField : public EdgewiseField<Vec3> {
     return recovery.has_moments(edge) || recovery.is_corner(edge) || recovery.is_corner(edge + 1);
   }
 
-  static Vec3 natural_of(const RodJoint& joint) {
-    return {joint.natural_curvature[0], joint.natural_curvature[1],
-            joint.rest.twist / joint.twist_length};
+  static Vec3 natural_of(const RodLayout& rod, const RodJoint& joint) {
+    return {joint.natural_curvature[0], joint.natural_curvature[1], natural_twist_at(rod, joint)};
   }
 
   /// Those of the whole cell about a joint, in the joint's frame.
-  static Vec3 mean_natural(const RodJoint& joint) {
-    Vec3 mean = natural_of(joint);
+  [[nodiscard]] Vec3 mean_natural(const RodJoint& joint) const {
+    Vec3 mean = natural_of(rod_, joint);
     if (is_glued_turned(joint)) {
       mean.head<2>() = Vec2(joint.rest.kappa_1, joint.rest.kappa_2) / joint.bend_length;
     }
@@ -214,7 +214,7 @@ class SectionField : public EdgewiseField<Vec3> {
       for (const RodJoint& joint : rod.joints) {
         if (rod.position(joint.place()) != rod.position(place)) continue;
         const double ahead = rod.arc_length_at(place) - rod.arc_length_at(joint.place());
-        found.push_back({joint.bend_place + ahead, natural_of(joint)});
+        found.push_back({joint.bend_place + ahead, natural_of(rod, joint)});
       }
       if (last) std::reverse(found.begin() + first_here, found.end());
     }
@@ -262,7 +262,7 @@ class SectionField : public EdgewiseField<Vec3> {
       result.natural = natural_at_end(rod, last, recovery);
       return result;
     }
-    result.natural = natural_of(*joint);
+    result.natural = natural_of(rod, *joint);
     // A clamp that holds the tangent alone lets the section turn.
     const bool lets_turn = joint->clamp >= 0 && !rod.clamps[to_size(joint->clamp)].holds_section;
     if (by_twist && lets_turn) {

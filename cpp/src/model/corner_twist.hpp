@@ -1,0 +1,13 @@
+#pragma once
+
+#include "der/model/model.hpp"
+
+namespace der {
+
+/// Angle [rad] by which the section after a corner is turned against the one before, transported
+/// from edge to edge, where the rod is drawn without twist; zero at other places. The edges of a
+/// curved leg lean against its tangent at the corner. Sections go along the legs to these tangents,
+/// and from one to the other by the smallest rotation; the edges' own smallest rotation is another.
+double corner_twist(const RodLayout& rod, Index place, const Model& model);
+
+}  // namespace der

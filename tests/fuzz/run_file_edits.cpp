@@ -177,6 +177,8 @@ void replace_attribute(hid_t object, const Edit& edit) {
   const Open type(type_from(edit.kind), H5Tclose);
   const Open space(space_from(static_cast<unsigned>(edit.value & 0xff) % 5, edit.value >> 8),
                    H5Sclose);
+  // HDF5 makes the whole message in memory before it says that an attribute is too large for it.
+  if (H5Sget_simple_extent_npoints(space) > 0 && num_values(space, H5Tget_size(type)) == 0) return;
   const Open attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
                        H5Aclose);
 }

@@ -124,7 +124,8 @@ def embedded_moment(moment):
     return np.concatenate([np.zeros(3), embedded(moment)])
 
 
-@pytest.mark.parametrize("place", [0.04, 0.13, 0.62, 0.9])
+# Beside springs, at the places of springs beside the clamp and inside, and at the corner.
+@pytest.mark.parametrize("place", [0.04, 0.13, 0.62, 0.9, 0.03, 0.55, np.hypot(0.5, 0.05)])
 @pytest.mark.parametrize("clamp", [True, "tangent"])
 def test_loads_and_reactions_balance_in_space(place, clamp):
     corners = np.array([[0, 0, 0], [0.5, 0.05, 0], [0.5, 0.45, 0.1]])

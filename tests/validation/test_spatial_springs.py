@@ -35,8 +35,8 @@ def force(*components, at="end"):
     return {"point_force": {"rod": "rod", "at": at, "force": list(components)}}
 
 
-def moment(*components, at="end"):
-    return {"moment": {"rod": "rod", "at": at, "moment": list(components)}}
+def moment(*components, at="end", follower=False):
+    return {"moment": {"rod": "rod", "at": at, "moment": list(components), "follower": follower}}
 
 
 def turning_spring(*stiffness, at="start", **more):
@@ -126,13 +126,18 @@ def sprung(case, n, turn, **more):
         GJ=TORSIONAL,
     )
     natural = {"natural_curvature": list(case.natural[:2]), "natural_twist": case.natural[2]}
+    moments = [
+        moment(*(turn @ spring.moment), at=spring.place, follower=spring.follows)
+        for spring in case.springs
+        if any(spring.moment)
+    ]
     return straight_rod(
         n,
         rod,
         to=turn @ [1, 0, 0],
         rod=natural if any(case.natural) else {},
         supports=[*supports, *springs],
-        loads=[force(*(turn @ case.force))],
+        loads=[force(*(turn @ case.force)), *moments],
         **more,
     )
 
@@ -140,7 +145,8 @@ def sprung(case, n, turn, **more):
 @pytest.mark.parametrize("name", CASES)
 def test_springs_soft_about_some_axes(spatial_reference, fitted_order, name):
     """They turn far about these and bear moments about the others. The rod between a spring and
-    the next edges bends about axes that have turned with it."""
+    the next edges bends about axes that have turned with it. Moments of loads at the very places of
+    springs turn the same sections."""
     case = CASES[name]
     turn = rotation(np.array([2, 1, -2]) / 3, 0.7)
 
@@ -151,8 +157,11 @@ def test_springs_soft_about_some_axes(spatial_reference, fitted_order, name):
     ends = [
         place for place, s in (("start", 0.0), ("end", 1.0)) if s in {k.place for k in case.springs}
     ]
+    has_potential = not any(any(spring.moment) for spring in case.springs)
+    # Under moments of 2 EI the next term of the error still counts on 20 edges.
+    sizes = (20, 40, 80) if has_potential else (40, 80, 160)
     errors = []
-    for n in (20, 40, 80):
+    for n in sizes:
         values, result = measured(sprung(case, n, turn), ["end", *ends], [*XYZ, *moments])
         errors.append(
             [
@@ -163,20 +172,23 @@ def test_springs_soft_about_some_axes(spatial_reference, fitted_order, name):
                 ),
             ]
         )
-        assert result.summary["stability"] == "stable"
-    check_order(errors, fitted_order, 1e-4, (20, 40, 80))
+        assert result.summary["stability"] == ("stable" if has_potential else "not_judged")
+    check_order(errors, fitted_order, 1e-4, sizes)
 
 
-def test_a_motion_on_soft_springs_keeps_its_energy(fitted_order):
-    """The implicit midpoint rule loses energy of order 2 in the step."""
+@pytest.mark.parametrize("case", ["soft", "moment", "moment that follows"])
+def test_a_motion_on_soft_springs_keeps_its_energy(fitted_order, case):
+    """The implicit midpoint rule loses energy of order 2 in the step, beside the work of the
+    moments."""
     losses = []
     for step in (2e-3, 1e-3, 5e-4):
         time = {"duration": 0.5, "step": step, "integrator": "implicit_midpoint"}
-        scene = sprung(CASES["soft"], 8, np.eye(3), time=time)
+        scene = sprung(CASES[case], 8, np.eye(3), time=time)
         scene["rods"][0]["cross_section"]["stiffness"]["rotary_inertia"] = 1e-2
-        losses.append(abs(measured(scene, ["end"], XYZ)[1].work["numerical"][-1]))
+        work = measured(scene, ["end"], XYZ)[1].work
+        losses.append(abs(work["numerical"][-1] / work["loads"][-1]))
     assert fitted_order([2e-3, 1e-3, 5e-4], losses) > 1.9
-    assert losses[-1] < 2e-6
+    assert losses[-1] < 3e-5
 
 
 @pytest.mark.parametrize("share", [0.05, 0.3, 0.49])
@@ -247,6 +259,36 @@ def test_along_z_as_in_the_plane(time):
             assert result.summary["stability"] == "stable"
 
 
+@pytest.mark.parametrize("time", [None, {"duration": 0.2, "step": 0.01}], ids=["static", "motion"])
+@pytest.mark.parametrize("place", ["start", 0.437, "end"])
+def test_a_moment_at_the_place_of_a_spring_as_in_the_plane(place, time):
+    """The two are in series with the rod between them and the edges: forces, energies and works."""
+
+    springs = [
+        {"rod": "rod", "at": at, "spring": {"rotational_stiffness": k}}
+        for at, k in (("start", 7.0), (place, 30.0))
+    ]
+
+    def answer(model):
+        scene = straight_rod(
+            12,
+            section(EA=1e4, EI=1.0, GJ=0.7, rotary_inertia=1e-3),
+            supports=[
+                {**START, "fix": list(XYZ)},
+                *springs,
+            ],
+            loads=[moment(0, 0, 2.0, at=place), force(0, 1.5, 0)],
+            **({} if time is None else {"time": time}),
+        )
+        quantities = ("x", "y", "tension")
+        values, result = measured({**scene, "model": model}, ["start", 0.3, "end"], quantities)
+        energies = [result.energies[k][-1] for k in ("stretch", "bend", "spring")]
+        return values, energies, 0.0 if time is None else result.work["loads"][-1]
+
+    for spatial, planar in zip(answer("spatial"), answer("planar"), strict=True):
+        assert spatial == pytest.approx(planar, abs=1e-9)
+
+
 def test_a_turned_scene_gives_the_turned_answer():
     turn = rotation(np.array([1, 2, -2]) / 3, 1.1)
 
@@ -289,11 +331,12 @@ def bent_at_the_corner(edges):
     return np.vstack([first, first[-1] + share[1:] * LEGS[1] * CORNER[1]])
 
 
-def tip_by_beam_theory(k, place, load):
-    """How far the end moves under a small force there, the springs `k` at the arc length `place`.
+def tip_by_beam_theory(k, place, load, torque=(0, 0, 0)):
+    """How far the end moves under a small force there, and a moment at the arc length `place`,
+    where the springs `k` are.
 
-    The rotation r' = C m, with the compliance C of each leg. At the place it is m/k, with the
-    moment m of the springs towards the two directors and about the tangent.
+    The rotation r' = C m, with the compliance C of each leg. At the place the springs exert -k r
+    towards the two directors and about the tangent.
     """
     nodes, weights = np.polynomial.legendre.leggauss(4)
     corner = LEGS[0] * CORNER[0]
@@ -327,15 +370,20 @@ def tip_by_beam_theory(k, place, load):
     flexible = np.column_stack([unit[0] for unit in units])
     held = axes(place)
     stiffness = held @ np.diag(k) @ held.T
-    moment = -np.linalg.solve(np.eye(3) + stiffness @ flexible, stiffness @ turn)
+    moment = np.linalg.solve(np.eye(3) + stiffness @ flexible, torque - stiffness @ turn)
     return moved + np.column_stack([unit[1] for unit in units]) @ moment
 
 
 @pytest.mark.parametrize("share", [0.0, -0.3, 0.4], ids=["at", "before", "beyond"])
-@pytest.mark.parametrize("k", [(10.0, 10.0, 10.0), (20.0, 1.0, 5.0)], ids=["one", "three"])
-def test_a_spring_at_a_corner(fitted_order, k, share):
-    """It holds the section of the leg beyond the corner, or of the leg on which it is."""
+@pytest.mark.parametrize("torque", [(0, 0, 0), (0.7, 1.1, -0.4)], ids=["", "moment"])
+@pytest.mark.parametrize(
+    "k", [(10.0, 10.0, 10.0), (20.0, 1.0, 5.0), (0.0, 0.0, 0.0)], ids=["one", "three", "none"]
+)
+def test_a_spring_and_a_moment_at_a_corner(fitted_order, k, torque, share):
+    """They hold and turn the section of the leg beyond the corner, or of the leg on which they are.
+    Beside the corner the rod bends about other axes than beyond it."""
     load = SMALL * np.array([1.0, -0.5, 2.0])
+    torque = SMALL * np.array(torque)
     strip = section([0, 0, 1], EA=1e6, EI1=STRONG, EI2=WEAK, GJ=TWISTING)
     errors = []
     for edges in (5, 10, 20):
@@ -343,12 +391,12 @@ def test_a_spring_at_a_corner(fitted_order, k, share):
         scene = rod_through(
             bent_at_the_corner(edges),
             strip,
-            supports=[*CLAMPED, turning_spring(*k, at=place)],
-            loads=[force(*load.tolist())],
+            supports=[*CLAMPED, *([turning_spring(*k, at=place)] if any(k) else [])],
+            loads=[force(*load), *([moment(*torque, at=place)] if any(torque) else [])],
         )
         values, result = measured(scene, ["end"], XYZ)
         moved = values[0] - result.model.initial_positions[-1]
-        exact = tip_by_beam_theory(k, place, load)
+        exact = tip_by_beam_theory(k, place, load, torque)
         errors.append(np.linalg.norm(moved - exact) / np.linalg.norm(exact))
     # At another place in its edge on each mesh, a bound tells the order.
     assert errors[-1] < 2e-3

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <type_traits>
 
 #include "der/core/index.hpp"
 #include "der/energies/spatial_bend.hpp"
@@ -103,6 +104,29 @@ Vec3 taken_by(const SpatialMoment::TurnedEdge& edge, const Vec3& moment, double 
   return edge.across * moment + (edge.along - edge.across) * torque * t;
 }
 
+template <class Kind>
+constexpr bool kIsForce =
+    std::is_same_v<Kind, PlanarFollowerForce> || std::is_same_v<Kind, FollowerForce>;
+
+template <class Kinds>
+bool is_moment(const Kinds& kind) {
+  return std::visit([](const auto& load) { return !kIsForce<std::decay_t<decltype(load)>>; }, kind);
+}
+
+/// What `f` makes of a moment; a default for a force.
+template <class Result, class Kinds, class F>
+Result of_moment(const Kinds& kind, const F& f) {
+  return std::visit(
+      [&](const auto& load) {
+        if constexpr (kIsForce<std::decay_t<decltype(load)>>) {
+          return Result{};
+        } else {
+          return Result(f(load));
+        }
+      },
+      kind);
+}
+
 }  // namespace
 
 std::array<double, 2> weights_in_bending(const std::array<double, 2>& weights) {
@@ -139,21 +163,6 @@ void PlanarFollowerForce::evaluate(const Configuration& here, const Vec3& amount
   }
 }
 
-EdgeFrame FramedEdge::frame(const Configuration& here) const {
-  return {edge.vector(here.coordinates, here.controls), here.coordinates[edge.theta],
-          block.tangent(here.controls), block.director(here.controls)};
-}
-
-Vec3 FramedEdge::turned(const Vec3& vector, const SectionFrame& now) const {
-  return drawn.tangent.dot(vector) * now.tangent + drawn.first.dot(vector) * now.first +
-         drawn.second.dot(vector) * now.second;
-}
-
-Vec3 FramedEdge::turned_back(const Vec3& vector, const SectionFrame& now) const {
-  return now.tangent.dot(vector) * drawn.tangent + now.first.dot(vector) * drawn.first +
-         now.second.dot(vector) * drawn.second;
-}
-
 void FollowerForce::evaluate(const Configuration& here, const Vec3& amount,
                              CirculatoryTerm& out) const {
   out.reset(size());
@@ -174,10 +183,10 @@ EdgeMoments SpatialMoment::moments(const Configuration& here, const Vec3& amount
   return result;
 }
 
-double SpatialMoment::stored(const Configuration& here, const Vec3& amount) const {
+StoredBeside SpatialMoment::stored(const Configuration& here, const Vec3& amount) const {
   const TurnedEdge& edge = edges.front();
   const Vec3 moment = follower ? amount : edge.turned_back(amount, edge.frame(here).frame);
-  return 0.5 * moment.dot(compliance * moment);
+  return {0.5 * moment.dot(compliance * moment), 0.0};
 }
 
 void SpatialMoment::evaluate(const Configuration& here, const Vec3& amount,
@@ -219,7 +228,7 @@ void CirculatoryLoad::evaluate(const Configuration& here, CirculatoryTerm& out) 
 
 Vec3 CirculatoryLoad::force(const Configuration& here) const {
   Vec3 total = Vec3::Zero();
-  if (std::holds_alternative<SpatialMoment>(kind)) return total;
+  if (is_moment(kind)) return total;
   CirculatoryTerm term;
   evaluate(here, term);
   if (std::holds_alternative<PlanarFollowerForce>(kind)) {
@@ -231,13 +240,36 @@ Vec3 CirculatoryLoad::force(const Configuration& here) const {
 }
 
 EdgeMoments CirculatoryLoad::moments(const Configuration& here) const {
-  const auto* moment = std::get_if<SpatialMoment>(&kind);
-  return moment == nullptr ? EdgeMoments{} : moment->moments(here, amount_of(*this, here.controls));
+  return of_moment<EdgeMoments>(kind, [&](const auto& moment) {
+    return moment.moments(here, amount_of(*this, here.controls));
+  });
 }
 
-double CirculatoryLoad::stored(const Configuration& here) const {
-  const auto* moment = std::get_if<SpatialMoment>(&kind);
-  return moment == nullptr ? 0.0 : moment->stored(here, amount_of(*this, here.controls));
+Vec3 CirculatoryLoad::taken_by_springs(const Configuration& here) const {
+  const auto taken = [&](const auto& moment) {
+    return moment.taken_by_springs(here, amount_of(*this, here.controls));
+  };
+  if (const auto* on_one = std::get_if<HeldMoment<1>>(&kind)) return taken(*on_one);
+  if (const auto* on_two = std::get_if<HeldMoment<2>>(&kind)) return taken(*on_two);
+  return Vec3::Zero();
+}
+
+std::array<const FramedEdge*, 2> CirculatoryLoad::turned_edges() const {
+  using Edges = std::array<const FramedEdge*, 2>;
+  return of_moment<Edges>(kind, [](const auto& moment) {
+    return Edges{&moment.edges.front(), moment.edges.size() > 1 ? &moment.edges[1] : nullptr};
+  });
+}
+
+const FramedEdge& CirculatoryLoad::nearer_edge() const {
+  return *of_moment<const FramedEdge*>(
+      kind, [](const auto& moment) { return &moment.edges[moment.nearer()]; });
+}
+
+StoredBeside CirculatoryLoad::stored(const Configuration& here) const {
+  return of_moment<StoredBeside>(kind, [&](const auto& moment) {
+    return moment.stored(here, amount_of(*this, here.controls));
+  });
 }
 
 void add_circulatory_forces(const std::vector<CirculatoryLoad>& loads, const Configuration& here,

@@ -12,8 +12,12 @@ constexpr int kMostSteps = 100;
 /// Steps [rad] below which Newton's method is tried, at first and after steps with care.
 constexpr double kLongStep = 1.0;
 constexpr double kShortStep = 0.1;
+/// Most parts in which a moment on the section is raised.
+constexpr int kMostParts = 64;
 /// After a step [rad] this short the next one is below rounding.
 constexpr double kLastStep = 1e-8;
+
+bool holds(const SpringInSeries& spring) { return !spring.stiffness.isZero(0.0); }
 
 }  // namespace
 
@@ -31,24 +35,29 @@ Mat3 HeldSection::Rotation::curving(const Vec3& load) const {
 }
 
 HeldSection::HeldSection(const SpringInSeries& spring, const CarriedSections& carried,
-                         std::size_t count)
+                         std::size_t count, const SectionLoad& load)
     : spring_(spring),
       carried_(carried),
       count_(count),
-      place_(place_at(carried[0].frame, carried[0].twist)) {
+      reference_(holds(spring) ? spring.drawn : carried[0].frame),
+      reference_twist_(holds(spring) ? 0.0 : carried[0].twist),
+      place_(place_at(carried[0].frame, carried[0].twist - reference_twist_)) {
   settle();
+  load_ = load;
+  if (settled_ && !load.is_zero()) raise_load();
 }
 
-/// `near`: the twist from the drawn section [rad], known up to less than half a turn.
+/// `near`: the twist from the reference [rad], known up to less than half a turn.
 HeldSection::Place HeldSection::place_at(const SectionFrame& section, double near) const {
-  const double twist = nearest_turn(twist_between(spring_.drawn, section), near);
+  const double twist = nearest_turn(twist_between(reference_, section), near);
   const auto rotation_to = [&](std::size_t i) {
     const CarriedSection& known = carried_[i];
-    const double between = nearest_turn(twist_between(section, known.frame), known.twist - twist);
+    const double between =
+        nearest_turn(twist_between(section, known.frame), known.twist - reference_twist_ - twist);
     return Rotation(JointKinematics<AngleCurvature>::read_before(section, known.frame, between));
   };
   Place place{section,
-              Rotation({spring_.drawn, section, twist}),
+              Rotation({reference_, section, twist}),
               {rotation_to(0), rotation_to(count_ - 1)},
               Mat3::Zero(),
               Mat3::Zero(),
@@ -102,11 +111,24 @@ Vec3 HeldSection::carried_moment(std::size_t i, const Vec3& moment) const {
   return place_.to_carried[i].slopes * (carried_[i].weights.transpose() * moment);
 }
 
-/// The derivative of K z - G p and psi - C p by z and p, with G the slopes of the place. Symmetric,
-/// and regular for all stiffnesses of springs and of the rod, the least and the largest.
+/// What the moment m does along z: m . omega for the rotation omega of the section.
+Vec3 HeldSection::load_along_z() const { return place_.per_rotation.transpose() * load(); }
+
+/// The derivative of -load_along_z() by z. Turning the section by omega changes the moment Z q of a
+/// constant load q on z by (S - 1/2 [Z q]x) omega, and m itself by omega x m if it turns.
+Mat3 HeldSection::load_curving() const {
+  const double side = load_.turns ? 0.5 : -0.5;
+  const Mat3 own = place_.from_drawn.curving(load_along_z()) + side * cross_matrix(load());
+  return place_.per_rotation.transpose() * own * place_.per_rotation;
+}
+
+/// The derivative of K z - G p - load_along_z() and psi - C p by z and p, with G the slopes of the
+/// place. Symmetric but for the load, and regular for all stiffnesses of springs and of the rod,
+/// the least and the largest.
 HeldSection::Mat6 HeldSection::equations(bool with_curving) const {
   Mat3 own = Mat3::Zero();
   if (with_curving) own = curving(moment_);
+  if (with_curving && !load_.is_zero()) own += load_curving();
   own.diagonal() += spring_.stiffness;
   Mat6 matrix;
   matrix << own, -place_.slopes, -place_.slopes.transpose(), -spring_.compliance;
@@ -115,7 +137,8 @@ HeldSection::Mat6 HeldSection::equations(bool with_curving) const {
 
 HeldSection::Vec6 HeldSection::newton_step(bool with_curving) const {
   Vec6 missing;
-  missing << place_.slopes * moment_ - spring_.stiffness.cwiseProduct(place_.from_drawn.strain),
+  missing << place_.slopes * moment_ + load_along_z() -
+                 spring_.stiffness.cwiseProduct(place_.from_drawn.strain),
       spring_.compliance * moment_ - place_.way;
   return equations(with_curving).partialPivLu().solve(missing);
 }
@@ -181,10 +204,28 @@ void HeldSection::settle() {
   for (int i = 0; i < kMostSteps && !settled_ && descend(); ++i) settled_ = converge(kShortStep);
 }
 
+/// From the place without a moment m on the section, in as few parts as Newton's method needs.
+void HeldSection::raise_load() {
+  const Place start = place_;
+  const Vec3 moment = moment_;
+  const Vec3 whole = load_.components;
+  settled_ = false;
+  for (int parts = 1; parts <= kMostParts && !settled_; parts *= 2) {
+    place_ = start;
+    moment_ = moment;
+    settled_ = true;
+    for (int part = 1; part <= parts && settled_; ++part) {
+      load_.components = (double(part) / parts) * whole;
+      settled_ = converge(kLongStep);
+    }
+  }
+  load_.components = whole;
+}
+
 double HeldSection::energy_in_springs() const {
   const Vec3& z = place_.from_drawn.strain;
-  // The moment of stiff springs is G p in equilibrium, while K z has lost its digits.
-  if (settled_) return 0.5 * z.dot(place_.slopes * moment_);
+  // The moment of stiff springs is known in equilibrium, while K z has lost its digits.
+  if (settled_) return 0.5 * z.dot(place_.slopes * moment_ + load_along_z());
   return 0.5 * z.dot(spring_.stiffness.cwiseProduct(z));
 }
 

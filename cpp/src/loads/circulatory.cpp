@@ -1,6 +1,7 @@
 #include "der/loads/circulatory.hpp"
 
 #include <utility>
+#include <variant>
 
 #include "der/core/index.hpp"
 #include "der/energies/circulatory_load.hpp"
@@ -8,6 +9,7 @@
 #include "der/model/location.hpp"
 #include "der/model/section_place.hpp"
 #include "der/supports/clamp.hpp"
+#include "der/supports/section_spring.hpp"
 #include "model/actuated_turn.hpp"
 #include "model/corner.hpp"
 
@@ -97,6 +99,31 @@ ActuatedSection actuated_section(double s, const SectionPlace& place, const RodL
   return section;
 }
 
+/// A moment that acts on the edges.
+SpatialMoment moment_on_edges(bool follower, double s, const SectionPlace& place,
+                              const RodLayout& rod, const Model& model, CirculatoryLoad& load) {
+  auto moment = with_edges<SpatialMoment>(
+      place, rod, model, load, [&](const FramedEdge& framed, std::size_t i) {
+        return SpatialMoment::TurnedEdge{framed, place.direction[i], place.across[i],
+                                         place.along[i]};
+      });
+  moment.follower = follower;
+  moment.compliance = compliance_of(place, moment, rod);
+  moment.turns_further = !place_beside_clamp(rod, s) && beyond_outer_middle(rod, s) == 0.0;
+  return moment;
+}
+
+template <int Edges>
+HeldMoment<Edges> held_moment(const typename SectionSpring<Edges>::Constants& section,
+                              bool follower, const SectionPlace& place, const RodLayout& rod,
+                              const Model& model, CirculatoryLoad& load) {
+  auto moment = with_edges<HeldMoment<Edges>>(
+      place, rod, model, load, [](const FramedEdge& framed, std::size_t) { return framed; });
+  moment.section = section;
+  moment.follower = follower;
+  return moment;
+}
+
 Index add(CirculatoryLoad&& load, Model& model) {
   auto& loads = circulatory_loads(*model.elements);
   loads.push_back(std::move(load));
@@ -128,16 +155,15 @@ void add_spatial_moment(const scenario::VectorSeries& moment, bool follower, dou
   CirculatoryLoad load;
   set_amount(moment, load, model);
   const SectionPlace place = section_place(s, rod);
-  auto kind = with_edges<SpatialMoment>(
-      place, rod, model, load, [&](const FramedEdge& framed, std::size_t i) {
-        return SpatialMoment::TurnedEdge{framed, place.direction[i], place.across[i],
-                                         place.along[i]};
-      });
-  kind.follower = follower;
   if (follower) load.actuated = actuated_section(s, place, rod, model);
-  kind.compliance = compliance_of(place, kind, rod);
-  kind.turns_further = !place_beside_clamp(rod, s) && beyond_outer_middle(rod, s) == 0.0;
-  load.kind = std::move(kind);
+  const HeldSectionAt held = held_section_at(s, rod, model);
+  if (const auto* on_one = std::get_if<SectionSpring<1>::Constants>(&held)) {
+    load.kind = held_moment<1>(*on_one, follower, place, rod, model, load);
+  } else if (const auto* on_two = std::get_if<SectionSpring<2>::Constants>(&held)) {
+    load.kind = held_moment<2>(*on_two, follower, place, rod, model, load);
+  } else {
+    load.kind = moment_on_edges(follower, s, place, rod, model, load);
+  }
   rod.spatial_moments.push_back({s, add(std::move(load), model), {}});
 }
 

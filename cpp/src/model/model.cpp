@@ -69,6 +69,13 @@ const MomentPlace* RodLayout::moment_place_at(double s) const {
   return nullptr;
 }
 
+const SectionSpringPlace* RodLayout::section_spring_at(double s) const {
+  for (const SectionSpringPlace& place : section_springs) {
+    if (std::abs(place.arc_length - s) <= same_place()) return &place;
+  }
+  return nullptr;
+}
+
 const RodLayout& Model::rod(const std::string& rod_name) const {
   for (const RodLayout& layout : rods) {
     if (layout.name == rod_name) return layout;

@@ -10,12 +10,15 @@
 namespace der {
 namespace {
 
-double stored_by_moments(const RodLayout& rod, const Model& model, const Configuration& here) {
-  double energy = 0.0;
+StoredBeside stored_by_moments(const RodLayout& rod, const Model& model,
+                               const Configuration& here) {
+  StoredBeside total;
   for (const SpatialMomentPlace& place : rod.spatial_moments) {
-    energy += circulatory_loads(*model.elements)[to_size(place.load)].stored(here);
+    const auto stored = circulatory_loads(*model.elements)[to_size(place.load)].stored(here);
+    total.in_rod += stored.in_rod;
+    total.in_springs += stored.in_springs;
   }
-  return energy;
+  return total;
 }
 
 template <int Edges>
@@ -42,14 +45,18 @@ Energies section_cell_energies(const RodLayout& rod, const Model& model,
                                const Configuration& here) {
   Energies energies;
   const double beside_springs = stored_beside_springs(rod, model, here);
-  energies[EnergyTerm::Bend] = stored_by_moments(rod, model, here) + beside_springs;
-  energies[EnergyTerm::Spring] = -beside_springs;
+  const StoredBeside by_moments = stored_by_moments(rod, model, here);
+  energies[EnergyTerm::Bend] = by_moments.in_rod + beside_springs;
+  energies[EnergyTerm::Spring] = by_moments.in_springs - beside_springs;
   return energies;
 }
 
 double stored_by_section_moments(const Model& model, const Configuration& here) {
   double energy = 0.0;
-  for (const RodLayout& rod : model.rods) energy += stored_by_moments(rod, model, here);
+  for (const RodLayout& rod : model.rods) {
+    const StoredBeside stored = stored_by_moments(rod, model, here);
+    energy += stored.in_rod + stored.in_springs;
+  }
   return energy;
 }
 

@@ -365,9 +365,9 @@ void Reactions::Reader::add_spatial_moments(std::size_t rod_number, const Model&
   for (const SpatialMomentPlace& place : rod.spatial_moments) {
     const CirculatoryLoad& load = model.elements->circulatory[to_size(place.load)];
     load.evaluate(here_, term_);
-    const auto& edges = std::get<SpatialMoment>(load.kind).edges;
-    for (std::size_t k = 0; k < edges.size(); ++k) {
-      const SpatialEdge& edge = edges[k].edge;
+    const auto edges = load.turned_edges();
+    for (std::size_t k = 0; k < edges.size() && edges[k] != nullptr; ++k) {
+      const SpatialEdge& edge = edges[k]->edge;
       const Vec3 at_end = term_.force.segment<3>(4 * static_cast<Index>(k));
       add_at_pivot(edge.first, edge.start, at_end);
       add_at_pivot(edge.last, edge.end, Vec3(-at_end));
@@ -396,7 +396,11 @@ Vec3 Reactions::Reader::turning_moment(const Place& place, const Model& model,
         Vec3(0.0, 0.0, carried_moment(there, rod, model, state, applied) - applied));
   }
   const std::size_t spring = rod.spatial_moments.size() + number;
-  const Vec3 whole = spread_[place.rod].value(spring, model, state).whole;
+  Vec3 whole = spread_[place.rod].value(spring, model, state).whole;
+  for (const SpatialMomentPlace& load : rod.spatial_moments) {
+    if (rod.section_spring_at(load.arc_length) != &rod.section_springs[number]) continue;
+    whole += model.elements->circulatory[to_size(load.load)].taken_by_springs(here_);
+  }
   const Index edge = rod.position(spread_[place.rod][spring].first_edge);
   const SectionFrame frame = section_frame(model, rod.first_edge + edge, state);
   // Turning towards a director is turning about the other one.

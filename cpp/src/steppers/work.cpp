@@ -53,8 +53,7 @@ double spatial_work_on_actuated_turns(const RodLayout& rod, const Model& model,
     if (place.actuated.is_zero()) continue;
     const Vec3 turn = turned(place.actuated, start, end);
     const CirculatoryLoad& load = circulatory_loads(*model.elements)[to_size(place.load)];
-    const auto& edges = std::get<SpatialMoment>(load.kind).edges;
-    const FramedEdge& nearer = edges.front().across < 0.5 ? edges.back() : edges.front();
+    const FramedEdge& nearer = load.nearer_edge();
     for (const Configuration* there : {&start, &end}) {
       const Mat3 axes = turning_axes(nearer.frame(*there).frame);
       work += 0.5 * load.moments(*there).whole.dot(axes * turn);

@@ -176,31 +176,29 @@ bool sections_differ(Index first_edge, const RodLayout& rod, const Model& model)
   return closes && rod.joints.back().glued != 0.0;
 }
 
-SectionHold hold_at(const SectionSpringPlace& spring, const SectionPlace& place,
-                    const RodLayout& rod, const Model& model) {
+bool is_around_corner(const SectionPlace& place, const RodLayout& rod, const Model& model) {
   const bool resists = rod.EI_1 > 0.0 && rod.EI_2 > 0.0 && rod.GJ > 0.0;
-  if (resists && place.across.size() == 2 && sections_differ(place.first_edge, rod, model)) {
-    return corner_hold(spring.arc_length, place.first_edge, rod, model);
-  }
-  return smooth_hold(spring, place, rod, model);
+  return resists && place.across.size() == 2 && sections_differ(place.first_edge, rod, model);
 }
 
-/// Returns the number of the element in its list.
+SectionHold hold_at(const SectionSpringPlace& spring, const SectionPlace& place,
+                    const RodLayout& rod, const Model& model) {
+  return is_around_corner(place, rod, model)
+             ? corner_hold(spring.arc_length, place.first_edge, rod, model)
+             : smooth_hold(spring, place, rod, model);
+}
+
 template <int Edges>
-Index add_element(const SectionHold& hold, const SectionSpringPlace& spring, Index first_edge,
-                  const RodLayout& rod, Model& model) {
+typename SectionSpring<Edges>::Constants constants_of(const SectionHold& hold,
+                                                      const SectionSpringPlace& spring,
+                                                      Index first_edge, const RodLayout& rod,
+                                                      Model& model) {
   using Kernel = SectionSpring<Edges>;
-  std::array<Index, Kernel::kDofs> dofs{};
   typename Kernel::Constants constants;
   constants.spring = {spring.stiffness, hold.on_the_way, hold.section};
   for (Index i = 0; i < Edges; ++i) {
     const Index number = number_of(rod, first_edge + i);
     const SpatialEdge& edge = model.framed_edges[to_size(number)];
-    for (Index c = 0; c < 3; ++c) {
-      dofs[to_size(3 * i + c)] = edge.start + c;
-      dofs[to_size(3 * i + 3 + c)] = edge.end + c;
-    }
-    dofs[to_size(3 * Kernel::kNodes + i)] = edge.theta;
     typename Kernel::HeldEdge& held = constants.edges[to_size(i)];
     held.block = FrameBlock::of(number);
     held.first = edge.first;
@@ -214,20 +212,49 @@ Index add_element(const SectionHold& hold, const SectionSpringPlace& spring, Ind
     const HeldFrame& held = rod.clamps[to_size(beside->clamp)].held;
     constants.clamp = {held, axes_of(held.drawn).transpose() * axes_of(hold.of_natural)};
   }
+  return constants;
+}
+
+/// Returns the number of the element in its list.
+template <int Edges>
+Index add_element(const SectionHold& hold, const SectionSpringPlace& spring, Index first_edge,
+                  const RodLayout& rod, Model& model) {
+  using Kernel = SectionSpring<Edges>;
+  std::array<Index, Kernel::kDofs> dofs{};
+  for (Index i = 0; i < Edges; ++i) {
+    const SpatialEdge& edge = model.framed_edges[to_size(number_of(rod, first_edge + i))];
+    for (Index c = 0; c < 3; ++c) {
+      dofs[to_size(3 * i + c)] = edge.start + c;
+      dofs[to_size(3 * i + 3 + c)] = edge.end + c;
+    }
+    dofs[to_size(3 * Kernel::kNodes + i)] = edge.theta;
+  }
   auto& springs = elements_of<Kernel>(*model.elements);
-  springs.add(dofs, constants);
+  springs.add(dofs, constants_of<Edges>(hold, spring, first_edge, rod, model));
   return static_cast<Index>(springs.size()) - 1;
 }
 
 }  // namespace
 
 void add_to_section_spring(double s, const Vec3& stiffness, RodLayout& rod) {
-  for (SectionSpringPlace& known : rod.section_springs) {
-    if (std::abs(known.arc_length - s) > rod.same_place()) continue;
-    known.stiffness += stiffness;
-    return;
+  if (const SectionSpringPlace* known = rod.section_spring_at(s)) {
+    rod.section_springs[to_size(known - rod.section_springs.data())].stiffness += stiffness;
+  } else {
+    rod.section_springs.push_back({s, stiffness});
   }
-  rod.section_springs.push_back({s, stiffness});
+}
+
+HeldSectionAt held_section_at(double s, const RodLayout& rod, Model& model) {
+  if (const SectionSpringPlace* spring = rod.section_spring_at(s)) {
+    const std::size_t element = to_size(spring->element);
+    if (spring->on_one_edge)
+      return elements_of<SectionSpring<1>>(*model.elements).constants[element];
+    return elements_of<SectionSpring<2>>(*model.elements).constants[element];
+  }
+  const SectionPlace place = section_place(s, rod);
+  if (!is_around_corner(place, rod, model)) return std::monostate{};
+  return constants_of<2>(corner_hold(s, place.first_edge, rod, model), {s}, place.first_edge, rod,
+                         model);
 }
 
 void add_section_springs(RodLayout& rod, Model& model) {

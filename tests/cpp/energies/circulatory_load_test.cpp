@@ -90,6 +90,33 @@ LoadedEdges<3> sample_moment(bool follower, Shape shape, Random& random) {
   return sample;
 }
 
+/// On a section that springs hold, that of an element of springs, or that nothing holds.
+template <int Edges>
+LoadedEdges<3> sample_held_moment(bool follower, Shape shape, Random& random) {
+  using Kernel = SectionSpring<Edges>;
+  LoadedEdges<3> sample = sample_edges(shape, random);
+  HeldMoment<Edges> moment;
+  moment.follower = follower;
+  moment.section = sample_constants(Kernel{}, random);
+  Eigen::Matrix<double, Kernel::kDofs, 1> x;
+  x << sample.here.coordinates.head<3 * Kernel::kNodes>(),
+      sample.here.coordinates.segment<Edges>(3 * kNodes);
+  sample_frames(Kernel{}, moment.section, x, random, sample.here);
+  if (Edges == 2 && uniform(random, 0.0, 1.0) < 0.3) moment.section.spring.stiffness.setZero();
+  for (Index edge = 0; edge < Edges; ++edge) {
+    const auto& held = moment.section.edges[static_cast<std::size_t>(edge)];
+    FramedEdge& framed = moment.edges.emplace_back(sample_edge(edge, random));
+    framed.edge.first = held.first;
+    framed.edge.last = held.last;
+    add_edge(edge, sample);
+  }
+  for (Index c = 0; c < 3; ++c) {
+    sample.here.controls[kNumControls + c] = uniform(random, -0.5, 0.5);
+  }
+  sample.load.kind = moment;
+  return sample;
+}
+
 LoadedEdges<2> sample_planar(Shape shape, Random& random) {
   LoadedEdges<2> sample;
   sample.here = sample_configuration(random);
@@ -155,6 +182,10 @@ TEST_CASE("circulatory loads: tangents are the derivatives of the forces") {
       check_tangent(sample_force(shape, random), h);
       check_tangent(sample_moment(false, shape, random), h);
       check_tangent(sample_moment(true, shape, random), h);
+      for (const bool follower : {false, true}) {
+        check_tangent(sample_held_moment<1>(follower, shape, random), h);
+        check_tangent(sample_held_moment<2>(follower, shape, random), h);
+      }
     }
   }
 }

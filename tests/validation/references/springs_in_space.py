@@ -5,7 +5,7 @@ its end. Its start is at rest, clamped or on a spring; more springs are along it
 the rotation z of a section from the drawn one by the angle between the two tangents, towards the
 directors of half the twist, and by the twist itself (docs/space.md), and has the energy
 1/2 z . K z. On the section it exerts the opposite of M = dE/d(rotation), by which the moment of
-the rod jumps.
+the rod jumps. A moment of a load may act on the same section, fixed in space or turning with it.
 
 Multiple shooting with rotation matrices: the unknowns are K z of all springs, which stays of the
 size of the loads for springs of any stiffness, and the moment at a clamped start; the conditions
@@ -30,10 +30,18 @@ STEPS = 4
 
 @dataclass(frozen=True)
 class Spring:
-    """Stiffnesses towards d1, towards d2 and about the tangent, at an arc length."""
+    """Stiffnesses towards d1, towards d2 and about the tangent, at an arc length; a moment there,
+    in the axes of the drawn shape."""
 
     place: float
     stiffness: tuple[float, float, float]
+    moment: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    follows: bool = False
+
+    def load(self, section: Array, share: float) -> Array:
+        """The moment [N m] on the section."""
+        drawn = share * np.asarray(self.moment)
+        return section @ UPRIGHT.T @ drawn if self.follows else drawn
 
 
 @dataclass(frozen=True)
@@ -54,6 +62,17 @@ CASES = {
         (Spring(0.0, (RIGID, 0.4, 3.0)), Spring(1.0, (5.0, RIGID, 0.6))), (0.1, -0.6, 0.5)
     ),
     "inside": Case((Spring(0.5, (0.4, 30.0, RIGID)),), (0.0, 2.0, -1.5), clamped=True),
+    "moment": Case((Spring(0.0, (6.0, 24.0, 4.0), (1.5, -2.0, 2.5)),), (0.2, -0.4, -0.5)),
+    "moment that follows": Case(
+        (
+            Spring(0.0, (12.0, 5.0, 4.0), (-2.0, 1.5, 2.5), follows=True),
+            Spring(1.0, (5.0, RIGID, 3.0), (0.6, 0.4, -0.8), follows=True),
+        ),
+        (0.1, -0.6, 0.5),
+    ),
+    "moment inside": Case(
+        (Spring(0.5, (4.0, 30.0, 6.0), (1.0, -0.8, 1.2)),), (0.0, 0.6, -0.5), clamped=True
+    ),
 }
 
 
@@ -117,23 +136,24 @@ def shoot(
     position, frame, moment = np.zeros(3), UPRIGHT, unknowns[0]
     springs, loads = list(case.springs), list(unknowns[1:])
     if not case.clamped:
-        frame = turned(UPRIGHT, unknowns[0] / np.array(springs.pop(0).stiffness))
-        moment = moment_of(UPRIGHT, frame, unknowns[0])
+        first = springs.pop(0)
+        frame = turned(UPRIGHT, unknowns[0] / np.array(first.stiffness))
+        moment = moment_of(UPRIGHT, frame, unknowns[0]) - first.load(frame, share)
     sections = [Section(position, frame, moment)]
     place = 0.0
     for to in [*(spring.place for spring in springs), 1.0]:
         if to > place:
             part = Rod(to - place, (TOWARDS_SECOND, TOWARDS_FIRST), TWISTING, STRETCHING, natural)
-            first = np.concatenate([position, frame.ravel(), force @ frame, moment @ frame])
-            last = march(part, np.zeros(3), first, tolerance)
+            start = np.concatenate([position, frame.ravel(), force @ frame, moment @ frame])
+            last = march(part, np.zeros(3), start, tolerance)
             position, frame = last[:3], last[3:12].reshape(3, 3)
             moment = frame @ last[15:18]
             place = to
         sections.append(Section(position, frame, moment))
         if springs:
-            stiffness, load = np.array(springs.pop(0).stiffness), loads.pop(0)
-            missing.append(rotation_between(UPRIGHT, frame) - load / stiffness)
-            moment = moment + moment_of(UPRIGHT, frame, load)
+            spring, load = springs.pop(0), loads.pop(0)
+            missing.append(rotation_between(UPRIGHT, frame) - load / np.array(spring.stiffness))
+            moment = moment + moment_of(UPRIGHT, frame, load) - spring.load(frame, share)
     return np.concatenate([*missing, moment]), sections
 
 

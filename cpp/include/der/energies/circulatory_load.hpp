@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "der/core/types.hpp"
+#include "der/energies/circulatory_term.hpp"
 #include "der/energies/edge_moments.hpp"
 #include "der/energies/effective_edge.hpp"
+#include "der/energies/framed_edge.hpp"
+#include "der/energies/held_moment.hpp"
 #include "der/kinematics/actuated_turn.hpp"
 #include "der/kinematics/configuration.hpp"
-#include "der/kinematics/edge_frame.hpp"
-#include "der/kinematics/frame_block.hpp"
-#include "der/kinematics/spatial_edge.hpp"
 
 namespace der {
 
@@ -27,21 +27,6 @@ struct ElementLists;  // energies/registry.hpp
 // constant B: the point on which it acts, the vectors of one or two edges and their angles. It does
 // the work Q(q) . dq. Forces on u are therefore B Q, and their tangent B (dQ/dq) B' has a low rank
 // (solvers/low_rank.hpp).
-
-/// The forces of a circulatory load on its local coordinates.
-struct CirculatoryTerm {
-  /// Coordinates of a point, and the vectors and angles of two edges.
-  static constexpr int kMost = 3 + 2 * 4;
-
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMost, 1> force;  ///< Q [N, or N m for angles]
-  /// -dQ/dq, as a part of the derivative of the left side of the equations of motion.
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost> tangent;
-
-  void reset(Index size) {
-    force.setZero(size);
-    tangent.setZero(size, size);
-  }
-};
 
 /// The weights of one or two edges in the bending of a vector that turns with `weights` of them:
 /// beyond the middle of an outermost edge, whose weight is above 1, its turn against the next one
@@ -62,19 +47,6 @@ struct PlanarFollowerForce {
   [[nodiscard]] Index size() const { return 2 + 2 * static_cast<Index>(edges.size()); }
   /// `amount` is F0 [N].
   void evaluate(const Configuration& here, const Vec3& amount, CirculatoryTerm& out) const;
-};
-
-/// An edge with a section frame that a load follows, or turns.
-struct FramedEdge {
-  SpatialEdge edge;
-  FrameBlock block;
-  SectionFrame drawn;  ///< its frame in the initial shape
-
-  [[nodiscard]] EdgeFrame frame(const Configuration& here) const;
-  /// A vector turned as the frame is from the initial shape.
-  [[nodiscard]] Vec3 turned(const Vec3& vector, const SectionFrame& now) const;
-  /// The vector that is `vector` once it is turned.
-  [[nodiscard]] Vec3 turned_back(const Vec3& vector, const SectionFrame& now) const;
 };
 
 /// A force that turns with a rod in space: PlanarFollowerForce with the rotations of section
@@ -113,11 +85,13 @@ struct SpatialMoment {
   Mat3 compliance = Mat3::Zero();  ///< c [rad/(N m)]
 
   [[nodiscard]] Index size() const { return 4 * static_cast<Index>(edges.size()); }
+  /// The number in `edges` of that which is nearer.
+  [[nodiscard]] std::size_t nearer() const { return edges.front().across < 0.5 ? 1 : 0; }
   /// `amount` is M, or M0 [N m], here and below.
   [[nodiscard]] EdgeMoments moments(const Configuration& here, const Vec3& amount) const;
   void evaluate(const Configuration& here, const Vec3& amount, CirculatoryTerm& out) const;
-  /// Elastic energy [J] of the rod between the place and what the edges tell, 1/2 M . c M.
-  [[nodiscard]] double stored(const Configuration& here, const Vec3& amount) const;
+  /// 1/2 M . c M.
+  [[nodiscard]] StoredBeside stored(const Configuration& here, const Vec3& amount) const;
 };
 
 /// How actuations turn the section that a load follows beyond its edges. F0 and M0 are turned by it
@@ -137,7 +111,8 @@ struct CirculatoryLoad {
     double weight = 1.0;
   };
 
-  std::variant<PlanarFollowerForce, FollowerForce, SpatialMoment> kind;
+  std::variant<PlanarFollowerForce, FollowerForce, SpatialMoment, HeldMoment<1>, HeldMoment<2>>
+      kind;
   std::array<Index, 3> amount{-1, -1, -1};     ///< controls of its components [N or N m]; -1: 0
   ActuatedSection actuated;                    ///< of loads that follow the rod
   std::vector<std::vector<Term>> coordinates;  ///< the rows of B'
@@ -147,8 +122,15 @@ struct CirculatoryLoad {
   [[nodiscard]] Vec3 force(const Configuration& here) const;
   /// The whole moment [N m], and the parts of its edges; zero for a force.
   [[nodiscard]] EdgeMoments moments(const Configuration& here) const;
-  /// Elastic energy [J] that a moment stores beside its place; zero for a force.
-  [[nodiscard]] double stored(const Configuration& here) const;
+  /// Of a moment at a place with springs against turning, the change [N m] of what they exert.
+  [[nodiscard]] Vec3 taken_by_springs(const Configuration& here) const;
+  /// The edges that a moment turns, whose vectors and angles are its coordinates; null beyond their
+  /// number.
+  [[nodiscard]] std::array<const FramedEdge*, 2> turned_edges() const;
+  /// The one of them that is nearer to its place.
+  [[nodiscard]] const FramedEdge& nearer_edge() const;
+  /// Zero for a force.
+  [[nodiscard]] StoredBeside stored(const Configuration& here) const;
 };
 
 /// Those of a model. Files that use no other elements include this header alone, so that a new

@@ -26,6 +26,20 @@ struct CarriedSection {
   Mat3 weights = Mat3::Identity();  ///< W [-]
 };
 
+/// A moment that acts on the held section itself.
+struct SectionLoad {
+  /// [N m] in space; of one that turns with the section, along its two directors and its tangent.
+  Vec3 components = Vec3::Zero();
+  bool turns = false;
+
+  [[nodiscard]] bool is_zero() const { return components.isZero(0.0); }
+  [[nodiscard]] Vec3 on(const SectionFrame& section) const {
+    if (!turns) return components;
+    return components[0] * section.first + components[1] * section.second +
+           components[2] * section.tangent;
+  }
+};
+
 /// The section of a rod that springs hold, between or beside one or two that are known. It has the
 /// rotation z from the drawn section, and to the known ones it has the rotations k_i, all as joints
 /// measure them (JointKinematics). With the weights W_i of the known ones, which add up to the unit
@@ -33,14 +47,17 @@ struct CarriedSection {
 ///   E = 1/2 z . K z + 1/2 psi . C^-1 psi,   psi = sum_i W_i k_i
 /// is least: the springs' moment bends and twists the rod on the way, about the axes that the
 /// section has then. This holds for springs of any stiffness, and where there is no rod on the way,
-/// C = 0: the equations are those of z and of the moment p, with K z = p and psi = C p.
+/// C = 0: the equations are those of z and of the moment p, with K z = p and psi = C p. A moment m
+/// on the section adds to K z what it does along z. It may have no potential: z and p solve the
+/// equations all the same, and S is then not symmetric.
 class HeldSection {
  public:
   static constexpr std::size_t kMost = 2;
   using CarriedSections = std::array<CarriedSection, kMost>;
 
   /// The first `count` sections are known.
-  HeldSection(const SpringInSeries& spring, const CarriedSections& carried, std::size_t count);
+  HeldSection(const SpringInSeries& spring, const CarriedSections& carried, std::size_t count,
+              const SectionLoad& load = {});
 
   [[nodiscard]] double energy() const { return energy_in_springs() + energy_on_the_way(); }
   [[nodiscard]] double energy_in_springs() const;
@@ -48,6 +65,8 @@ class HeldSection {
 
   /// The moment [N m] M_i with dE = sum_i M_i . omega_i, for rotations of the known sections.
   [[nodiscard]] Vec3 moment(std::size_t i) const;
+  /// The moment m on the section [N m].
+  [[nodiscard]] Vec3 load() const { return load_.on(place_.section); }
 
   /// S_ij [N m]: M_i changes by sum_j S_ij omega_j - 1/2 M_i x omega_i, the held section moving so
   /// that E stays the least.
@@ -90,6 +109,8 @@ class HeldSection {
   [[nodiscard]] Place turned(const Place& place, const Vec3& change) const;
   [[nodiscard]] Place on_the_way(Place place, const Vec3& moment) const;
   [[nodiscard]] Mat3 curving(const Vec3& moment) const;
+  [[nodiscard]] Vec3 load_along_z() const;
+  [[nodiscard]] Mat3 load_curving() const;
   [[nodiscard]] Mat3 carried_curving(std::size_t i, const Vec3& moment) const;
   [[nodiscard]] Vec3 carried_moment(std::size_t i, const Vec3& moment) const;
   [[nodiscard]] Mat6 equations(bool with_curving) const;
@@ -104,10 +125,16 @@ class HeldSection {
   bool descend();
   bool converge(double longest);
   void settle();
+  void raise_load();
 
   const SpringInSeries& spring_;
   const CarriedSections& carried_;
   std::size_t count_;
+  // Where z counts from: the drawn section; without springs a known one, from which the section is
+  // never far.
+  SectionFrame reference_;
+  double reference_twist_;  // from the drawn section [rad]
+  SectionLoad load_;
   Vec3 moment_ = Vec3::Zero();  // p
   Place place_;
   bool settled_ = false;  // in equilibrium

@@ -202,6 +202,8 @@ struct RodLayout {
   [[nodiscard]] std::vector<double> moment_arc_lengths() const;
   /// The place of a planar rod's moments at an arc length [m]; null if none act there.
   [[nodiscard]] const MomentPlace* moment_place_at(double s) const;
+  /// The springs against turning in space at arc length `s` [m]; null: there are none.
+  [[nodiscard]] const SectionSpringPlace* section_spring_at(double s) const;
 };
 
 /// A prescribed degree of freedom: its value is the initial one plus a control.

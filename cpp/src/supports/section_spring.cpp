@@ -238,7 +238,8 @@ Index add_element(const SectionHold& hold, const SectionSpringPlace& spring, Ind
 
 void add_to_section_spring(double s, const Vec3& stiffness, RodLayout& rod) {
   if (const SectionSpringPlace* known = rod.section_spring_at(s)) {
-    rod.section_springs[to_size(known - rod.section_springs.data())].stiffness += stiffness;
+    const auto number = static_cast<std::size_t>(known - rod.section_springs.data());
+    rod.section_springs[number].stiffness += stiffness;
   } else {
     rod.section_springs.push_back({s, stiffness});
   }

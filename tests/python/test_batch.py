@@ -260,6 +260,24 @@ def test_values_are_set_for_each_member():
     assert np.array_equal(batch.value("wall.angle"), [0.1, 0.2, 0.3])
 
 
+def change_after_a_write(runs, row):
+    """Write into a batch's row, or a simulation's arrays, then change what the scene sets."""
+    runs.velocities[(*row, 4, 1)] += 0.003
+    runs.set("weight", [0.0, -2.0])
+    runs.velocities[(*row, 5, 1)] += 0.001
+    runs.prescribe(0, angle=1e-3)
+    runs.step(3)
+
+
+@pytest.mark.parametrize("time", [{"tolerance": 5e-3}, {"step": 0.002}], ids=["adaptive", "equal"])
+def test_what_was_written_counts_before_what_is_set_after_it(time):
+    scene = with_time(PLANAR, **time)
+    batch, alone = der.Batch(scene, 1), der.Simulation(scene)
+    change_after_a_write(batch, (0,))
+    change_after_a_write(alone, ())
+    assert_same(batch, 0, alone)
+
+
 def test_values_that_do_not_fit_set_nothing():
     batch = der.Batch(PLANAR, 3)
     batch.step()

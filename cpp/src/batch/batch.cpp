@@ -244,7 +244,9 @@ void Batch::change_ramps(const Change& change) {
   try {
     for (std::size_t number = 0; number < size(); ++number) {
       before.push_back(state(number).ramps);
-      if (failed_[number] == 0) change(*members_[number].simulation, to_row(number));
+      if (failed_[number] != 0) continue;
+      take_rows(number);  // a simulation sees first what was written before
+      change(*members_[number].simulation, to_row(number));
     }
   } catch (const Error& error) {
     for (std::size_t number = 0; number < before.size(); ++number) {

@@ -1,7 +1,9 @@
 #include "der/energies/held_section.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "der/energies/spatial_bend.hpp"
 
@@ -125,63 +127,68 @@ Mat3 HeldSection::load_curving() const {
 /// The derivative of K z - G p - load_along_z() and psi - C p by z and p, with G the slopes of the
 /// place. Symmetric but for the load, and regular for all stiffnesses of springs and of the rod,
 /// the least and the largest.
-HeldSection::Mat6 HeldSection::equations(bool with_curving) const {
-  Mat3 own = Mat3::Zero();
-  if (with_curving) own = curving(moment_);
-  if (with_curving && !load_.is_zero()) own += load_curving();
+HeldSection::Mat6 HeldSection::equations() const {
+  Mat3 own = curving(moment_);
+  if (!load_.is_zero()) own += load_curving();
   own.diagonal() += spring_.stiffness;
   Mat6 matrix;
   matrix << own, -place_.slopes, -place_.slopes.transpose(), -spring_.compliance;
   return matrix;
 }
 
-HeldSection::Vec6 HeldSection::newton_step(bool with_curving) const {
+HeldSection::Vec6 HeldSection::newton_step() const {
   Vec6 missing;
   missing << place_.slopes * moment_ + load_along_z() -
                  spring_.stiffness.cwiseProduct(place_.from_drawn.strain),
       spring_.compliance * moment_ - place_.way;
-  return equations(with_curving).partialPivLu().solve(missing);
+  return equations().partialPivLu().solve(missing);
 }
 
-/// E on the way, where it is least in equilibrium.
-double HeldSection::potential(const Place& place, const Vec3& moment) const {
-  const Vec3& z = place.from_drawn.strain;
-  return 0.5 * (z.dot(spring_.stiffness.cwiseProduct(z)) + moment.dot(spring_.compliance * moment));
-}
-
-/// A step on the way that lowers E; false if there is none.
-bool HeldSection::descend() {
-  place_ = on_the_way(place_, moment_);
-  const auto slope_along = [&](const Vec6& step) {
-    return place_.from_drawn.strain.cwiseProduct(spring_.stiffness).dot(step.head<3>()) +
-           moment_.dot(spring_.compliance * step.tail<3>());
+/// A step from the place, by which z alone changes and p = C^-1 psi, that lowers E: Newton's, with
+/// a share `shift` of the matrix without second derivatives of rotations that grows until E falls
+/// (Levenberg). False if there is none.
+bool HeldSection::descend(const Mat3& per_compliance, double& shift) {
+  constexpr double kMostShift = 1e6;
+  const auto potential = [&](const Place& place) {
+    const Vec3& z = place.from_drawn.strain;
+    return 0.5 *
+           (z.dot(spring_.stiffness.cwiseProduct(z)) + place.way.dot(per_compliance * place.way));
   };
-  Vec6 step = newton_step(true);
-  if (!(slope_along(step) < 0.0)) step = newton_step(false);
-  const double slope = slope_along(step);
-  const double start = potential(place_, moment_);
-  constexpr double least_share = 1e-6;
-  for (double share = 1.0; share > least_share; share *= 0.5) {
-    const Vec3 moment = moment_ + share * step.tail<3>();
-    const Place place = on_the_way(turned(place_, share * step.head<3>()), moment);
-    const bool arrived = (place.way - spring_.compliance * moment).norm() < kLastStep;
-    if (!arrived || !(potential(place, moment) < start + 1e-4 * share * slope)) continue;
+  const Vec3 slope =
+      spring_.stiffness.cwiseProduct(place_.from_drawn.strain) - place_.slopes * moment_;
+  Mat3 convex = place_.slopes * per_compliance * place_.slopes.transpose();
+  convex.diagonal() += spring_.stiffness;
+  const Mat3 matrix = convex + curving(moment_);
+  const double start = potential(place_);
+  for (; shift < kMostShift; shift *= 10.0) {
+    const Vec3 step = -(matrix + shift * convex).ldlt().solve(slope);
+    const double falls = slope.dot(step);
+    if (!(falls < 0.0) || step.norm() > kLongStep) continue;
+    const Place place = turned(place_, step);
+    if (!(potential(place) < start + 1e-4 * falls)) continue;
     place_ = place;
-    moment_ = moment;
+    moment_ = per_compliance * place.way;
+    shift = std::max(1e-3, 0.1 * shift);
     return true;
   }
   return false;
 }
 
-/// Newton's method from here on, as long as its steps become shorter than `longest` [rad]. The last
-/// step is one beyond that after which z and p are exact: its equations have the curving under the
-/// final moment.
+/// Newton's method from here on, as long as its steps become shorter than `longest` [rad]; else all
+/// is as before. The last step is one beyond that after which z and p are exact: its equations have
+/// the curving under the final moment.
 bool HeldSection::converge(double longest) {
+  const Place place = place_;
+  const Vec3 moment = moment_;
   for (double before = longest;;) {
-    const Vec6 step = newton_step(true);
+    const Vec6 step = newton_step();
     const double length = step.head<3>().norm();
     const bool last = before < kLastStep;
-    if (!last && !(length < before)) return false;
+    if (!last && !(length < before)) {
+      place_ = place;
+      moment_ = moment;
+      return false;
+    }
     place_ = turned(place_, step.head<3>());
     moment_ += step.tail<3>();
     if (last) return true;
@@ -189,8 +196,9 @@ bool HeldSection::converge(double longest) {
   }
 }
 
-/// Solves for z and p, first from where they would be if spring and way had the same axes. Where
-/// the rod on the way is twisted so far that it would buckle, the search may end before.
+/// Solves for z and p, first from where they would be if spring and way had the same axes, then
+/// downhill from where the rod on the way does not bend. Bent or twisted so far that it would
+/// buckle, it may have no place nearby where E is least: the search ends before.
 void HeldSection::settle() {
   const Place start = on_the_way(place_, Vec3::Zero());
   const Mat3 springs = spring_.stiffness.asDiagonal();
@@ -199,9 +207,14 @@ void HeldSection::settle() {
   place_ = turned(start, -(spring_.compliance * moment_));
   settled_ = converge(kLongStep);
   if (settled_) return;
+  const Mat3 per_compliance = spring_.compliance.inverse();
   moment_.setZero();
   place_ = start;
-  for (int i = 0; i < kMostSteps && !settled_ && descend(); ++i) settled_ = converge(kShortStep);
+  if (!per_compliance.allFinite()) return;
+  double shift = 1.0;
+  for (int i = 0; i < kMostSteps && !settled_ && descend(per_compliance, shift); ++i) {
+    settled_ = converge(kShortStep);
+  }
 }
 
 /// From the place without a moment m on the section, in as few parts as Newton's method needs.
@@ -246,7 +259,7 @@ HeldSection::Slopes HeldSection::slopes_of_moments() const {
 }
 
 HeldSection::Following HeldSection::following(const Slopes& slopes) const {
-  const auto matrix = equations(true).partialPivLu();
+  const auto matrix = equations().partialPivLu();
   Following result;
   for (std::size_t i = 0; i < count_; ++i) result[i] = -matrix.solve(slopes[i].transpose());
   return result;

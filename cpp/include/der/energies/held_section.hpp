@@ -113,16 +113,15 @@ class HeldSection {
   [[nodiscard]] Mat3 load_curving() const;
   [[nodiscard]] Mat3 carried_curving(std::size_t i, const Vec3& moment) const;
   [[nodiscard]] Vec3 carried_moment(std::size_t i, const Vec3& moment) const;
-  [[nodiscard]] Mat6 equations(bool with_curving) const;
+  [[nodiscard]] Mat6 equations() const;
   /// Change of z and p by the rotation of each known section.
   using Following = std::array<Eigen::Matrix<double, 6, 3>, kMost>;
   /// Derivatives of M_i by z and p.
   using Slopes = std::array<Eigen::Matrix<double, 3, 6>, kMost>;
   [[nodiscard]] Slopes slopes_of_moments() const;
   [[nodiscard]] Following following(const Slopes& slopes) const;
-  [[nodiscard]] Vec6 newton_step(bool with_curving) const;
-  [[nodiscard]] double potential(const Place& place, const Vec3& moment) const;
-  bool descend();
+  [[nodiscard]] Vec6 newton_step() const;
+  bool descend(const Mat3& per_compliance, double& shift);
   bool converge(double longest);
   void settle();
   void raise_load();

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from references.side_buckling import beam_on_a_spring
 from scenes import END, START, arch, tip_force
+from scipy.optimize import brentq
+from scipy.special import jv
 from spatial_scenes import critical, measured, section, straight_rod
 
 SIZES = [10, 20, 40]
@@ -58,6 +60,63 @@ def test_a_column_that_may_spin_buckles_as_one_that_may_not(fitted_order, name):
         errors.append(buckling(scene, 2).load_factors / exact - 1)
     for column in np.transpose(errors):
         assert fitted_order(STEPS, column) > 1.9
+
+
+def factors_of_an_oblique_force(first, second, EI1, EI2, GJ):
+    """Three factors of a force at the end of a strip of length 1, with components along both
+    directors.
+
+    The bending moment that either component makes acts on the deflection across it as the section
+    turns by phi: with the deflections eliminated, GJ phi'' + (1 - s)^2 (first^2/EI2 + second^2/EI1)
+    phi = 0, whose solutions are Bessel functions of order -1/4 (Timoshenko and Gere, Theory of
+    Elastic Stability, 6.3, for one component)."""
+    guesses = (2.0, 5.12, 8.26)
+    zeros = [brentq(lambda z: jv(-0.25, z), guess - 0.3, guess + 0.3) for guess in guesses]
+    return 2 * np.array(zeros) / np.sqrt((first**2 / EI2 + second**2 / EI1) / GJ)
+
+
+@pytest.mark.parametrize("solver", ["banded", "simplicial_ldlt"])
+def test_no_factor_of_an_oblique_force_is_missing(fitted_order, solver):
+    """On some meshes only the first one was found, and none at all with other solvers."""
+    director = np.array([0, 0.3, 1]) / np.hypot(0.3, 1)
+    force = np.array([0, -1, 0.4])
+    stiffness = {"EI1": 0.3, "EI2": 1.0, "GJ": 0.2}
+    components = force @ director, force @ np.cross([1, 0, 0], director)
+    exact = factors_of_an_oblique_force(*components, **stiffness)
+    sizes = (20, 24, 40, 48, 100)
+    errors = []
+    for n in sizes:
+        strip = section(director, EA=SLENDER, **stiffness)
+        scene = straight_rod(n, strip, loads=tip_force(*force.tolist()))
+        found = buckling({**scene, "solver": {"linear": solver}})
+        errors.append(found.load_factors / exact - 1)
+    for column in np.transpose(errors):
+        assert fitted_order([1 / n for n in sizes], column) > 1.9
+    assert np.abs(errors[-1]).max() < 2e-3
+
+
+LEAVING_THE_PLANE = {
+    "force": {"point_force": {**END, "force": [0, -1, 0.4]}},
+    "weight": {"gravity": [0, -1, 0.3]},
+    "distributed": {"distributed_force": {"rod": "rod", "force": [0, -1, 1e-6]}},
+}
+
+
+@pytest.mark.parametrize("load", LEAVING_THE_PLANE)
+@pytest.mark.parametrize("analysis", ["buckling", "continuation"])
+def test_a_model_chosen_by_its_loads_keeps_its_space_at_the_factor_0(load, analysis):
+    """Without the loads a plane would do: the two models were mixed, and memory overwritten."""
+    strip = section(EI1=0.3, EI2=1.0, GJ=0.2)
+    scene = straight_rod(10, strip, loads=[LEAVING_THE_PLANE[load]])
+    answers = []
+    for model in ("auto", "spatial"):
+        result = der.run({**scene, "model": model, "analysis": {analysis: {}}})
+        assert result.summary["model"] == "spatial"
+        answers.append(
+            result.buckling.load_factors if analysis == "buckling" else result.positions[-1]
+        )
+    np.testing.assert_array_equal(*answers)
+    assert len(answers[0]) > 0
 
 
 def test_spins_that_loads_act_on_are_named():

@@ -6,6 +6,7 @@
 #include "der/building/builder.hpp"
 #include "der/core/index.hpp"
 #include "der/scenario/load.hpp"
+#include "der/scenario/model_choice.hpp"
 #include "der/scenario/scenario.hpp"
 
 namespace der {
@@ -35,8 +36,10 @@ std::optional<Varying> varying(const scenario::Analysis& analysis) {
   return std::nullopt;
 }
 
-/// The scene at the factor 0, as a scene without a load factor.
+/// The scene at the factor 0, as a scene without a load factor. It keeps the model, for which
+/// another one may do without its loads.
 scenario::Scene without(scenario::Scene scene, const Varying& varying) {
+  const scenario::ModelChoice kind = scenario::choose_model(scene).kind;
   const auto chosen = [&](std::size_t i) {
     return !varying.number || to_size(*varying.number) == i;
   };
@@ -54,6 +57,7 @@ scenario::Scene without(scenario::Scene scene, const Varying& varying) {
     }
   }
   scene.analysis = scenario::StaticAnalysis{};
+  scene.model = kind;
   return scene;
 }
 

@@ -24,6 +24,15 @@ class Pencil {
   Index critical_below(double factor) {
     return solver_.factorize(k0_ + factor * k1_).negative_pivots;
   }
+  /// Raises a factor until more than `index` critical ones are below it; false if there are no more.
+  /// It goes no higher than it has to: of a matrix that all but consists of K1, which may have zeros
+  /// along its diagonal, rounding decides the pivots.
+  bool raise(double& factor, Index index) {
+    constexpr double kMost = 1e8;
+    constexpr double kStride = 4.0;
+    while (factor < kMost && critical_below(factor) <= index) factor *= kStride;
+    return factor < kMost;
+  }
   /// Critical factor number `index`, counted from 0, by bisection between `low` and `high`.
   double bisect(Index index, double low, double high) {
     constexpr double kRelative = 1e-13;
@@ -119,15 +128,14 @@ std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& st
   constexpr double kHidden = 0.01;   // share of a factor that the rounding of K0 hides
   const double unit = entries(k0) / entries(k1);
   constexpr double kLeast = 1e-18;
-  constexpr double kMost = 1e8;
   Pencil pencil(solver, k0, unit * k1, model.dofs.unit_masses()(model.dofs.free()));
-  const Index available = std::min<Index>(count, pencil.critical_below(kMost));
   std::vector<BucklingMode> modes;
   std::vector<Vector> same;  // shapes of the current factor
   double low = kLeast;
+  double high = kLeast;
   double before = 0.0;
-  for (Index i = 0; i < available; ++i) {
-    const double factor = pencil.bisect(i, low, kMost);
+  for (Index i = 0; i < count && pencil.raise(high, i); ++i) {
+    const double factor = pencil.bisect(i, low, high);
     if (factor > before * (1.0 + 1e-9)) same.clear();
     same.push_back(pencil.shape(factor, same));
     const Vector shape = over_all_dofs(model, same.back());

@@ -11,6 +11,7 @@ import numpy as np
 from der import _core
 from der._core import EquilibriumReport, State
 from der.errors import DerError, UnreliableResultWarning, warn
+from der.key_paths import check_apart
 from der.simulation import SceneLike, as_scenario
 
 if TYPE_CHECKING:
@@ -77,7 +78,7 @@ class Batch(_core.Batch):
     SceneError, DerError
         Where a member cannot be simulated: the message names the first.
     ValueError
-        Where `vary` has not one value for each member.
+        Where `vary` has not one value for each member, or two paths to the same value.
 
     Warns
     -----
@@ -104,6 +105,7 @@ class Batch(_core.Batch):
             raise ValueError(f"a batch has at least one member, not {members}")
         if threads is not None and threads < 1:
             raise ValueError(f"a batch needs at least one thread, not {threads}")
+        check_apart(scenario.to_dict(), vary or ())
         lists = {path: _one_each(path, given, members) for path, given in (vary or {}).items()}
         super().__init__(scenario, members, threads or 0, lists)
         warn(scenario.warnings)

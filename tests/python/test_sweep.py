@@ -247,6 +247,57 @@ def test_a_wrong_path_is_an_error_before_anything_runs(cantilever, tmp_path, pat
     assert not (tmp_path / "sweep").exists()
 
 
+@pytest.mark.parametrize(
+    ("first", "second", "value", "says"),
+    [
+        (STIFFNESS, STIFFNESS.replace(".arm.", ".0."), 2.0, "are the same value"),
+        (STIFFNESS, STIFFNESS.rpartition(".")[0], {"EA": 1e6, "EI": 2.0}, "overlap"),
+        (FORCE, FORCE.rpartition(".")[0], [0, -2], "overlap"),
+    ],
+)
+def test_two_paths_to_one_value_are_refused(cantilever, first, second, value, says):
+    """The later one won, and rows told values that were not used."""
+    vary = {first: [1.0], second: [value]}
+    with pytest.raises(ValueError, match=says):
+        der.sweep(cantilever, vary)
+    with pytest.raises(ValueError, match=says):
+        der.Batch(cantilever, 1, vary=vary)
+
+
+@pytest.mark.parametrize("name", ["seconds", "status", "stability"])
+def test_a_probe_named_like_a_column_of_each_sweep_is_refused(cantilever, name):
+    """Its name would give the cost, or the status, for the probe's final values."""
+    probes = cantilever["output"]["probes"]
+    probes[name] = probes.pop("tip_y")
+    with pytest.raises(ValueError, match=f"the probe '{name}' has the name of a column"):
+        der.sweep(cantilever, {FORCE: [-1.0]})
+
+
+def test_numbers_that_a_table_holds_otherwise(cantilever, tmp_path):
+    """Of more than 64 bits, nan, and given as a whole one and not."""
+    nodes = "rods.arm.nodes"
+    for _ in range(2):
+        sweep = der.sweep(cantilever, {nodes: [5, 10**20, 7]}, out=tmp_path / "s", resume=True)
+        assert sweep.values["status"] == ["static_converged", "invalid_scene", "static_converged"]
+    with pytest.raises(ValueError, match="nan, which is no number"):
+        der.sweep(cantilever, {nodes: [5, np.nan]})
+    for values in ([5, 7, 7.0], [5, 7.0, 7]):
+        assert der.sweep(cantilever, {nodes: values}).values[nodes] == [5, 7]
+
+
+def test_processes_end_with_a_driver_that_is_killed(scene, tmp_path):
+    """They hold its output, for which another program would wait."""
+    arguments = ("--vary", f"{FORCE}=-5:0:20000", "--out", tmp_path / "s", "--processes")
+    driver = subprocess.Popen(
+        command(scene, *arguments), stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+    )
+    deadline = time.monotonic() + 60
+    while time.monotonic() < deadline and not rows_in(tmp_path / "s"):
+        time.sleep(0.1)
+    driver.kill()
+    driver.communicate(timeout=60)  # until nobody has the pipe any more
+
+
 def test_names_that_sqlite_takes_for_one(cantilever):
     cantilever["output"]["probes"]["TIP_y"] = cantilever["output"]["probes"]["tip_y"]
     with pytest.raises(ValueError, match="'tip_y' and 'TIP_y' differ in the case"):

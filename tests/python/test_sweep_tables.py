@@ -74,6 +74,14 @@ def test_parquet(folder, tmp_path):
     assert table["tip_y.final"].to_pylist() == der.load_sweep(folder).values["tip_y.final"]
 
 
+def test_parquet_of_words_beside_numbers(tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    sweep = der.sweep(cantilever(), {"supports.0.at": ["start", 0]})
+    sweep.export("parquet", tmp_path / "table.parquet")
+    table = parquet.read_table(tmp_path / "table.parquet")
+    assert table["supports.0.at"].to_pylist() == ["start", "0"]
+
+
 def test_packages_that_are_missing(folder, tmp_path, monkeypatch):
     import sys
 

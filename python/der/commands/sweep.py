@@ -120,9 +120,12 @@ def _executor(arguments: argparse.Namespace) -> Iterator[AnyExecutor | None]:
     """Give what runs the members for the time of a ``with`` block; None for threads."""
     if arguments.processes:
         from der.parallel import checked_jobs
+        from der.sweeps.executors import end_with_parent
 
         # Fresh processes: a fork of one with threads may stop at a lock that nobody opens.
-        with ProcessPoolExecutor(checked_jobs(arguments.jobs), get_context("spawn")) as pool:
+        with ProcessPoolExecutor(
+            checked_jobs(arguments.jobs), get_context("spawn"), initializer=end_with_parent
+        ) as pool:
             yield pool
     elif arguments.dask is not None:
         from der.sweeps.executors import connect

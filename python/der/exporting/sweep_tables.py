@@ -6,7 +6,7 @@ import csv
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -74,6 +74,13 @@ def _write_npz(sweep: SweepData, path: Path) -> None:
         np.savez_compressed(file, **arrays)  # type: ignore[arg-type]
 
 
+def _of_one_type(values: list[Any]) -> list[Any]:
+    """Return the values of a column, as texts if some are texts: ``auto`` beside 1e-5."""
+    if not any(isinstance(value, str) for value in values):
+        return values
+    return [value if value is None else str(value) for value in values]
+
+
 def _write_parquet(sweep: SweepData, path: Path) -> None:
     try:
         import pyarrow as pa
@@ -82,7 +89,7 @@ def _write_parquet(sweep: SweepData, path: Path) -> None:
         raise ModuleNotFoundError(
             "Parquet needs the package pyarrow: pip install 'der[tables]'"
         ) from error
-    columns = [pa.array(values) for values in sweep.values.values()]
+    columns = [pa.array(_of_one_type(values)) for values in sweep.values.values()]
     fields = [
         pa.field(column.name, values.type, metadata={"unit": column.unit})
         for column, values in zip(sweep.columns, columns, strict=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, get_args
@@ -74,7 +74,7 @@ class Design:
         return [values for values in self.values if not isinstance(values, Range)]
 
     def _unique_lists(self) -> list[list[Any]]:
-        return [list({stored(value): value for value in own}.values()) for own in self.lists()]
+        return [_unique((stored(value), value) for value in own) for own in self.lists()]
 
     @cached_property
     def _listed(self) -> list[Member]:
@@ -83,7 +83,7 @@ class Design:
             members: Iterable[Member] = zip(*self.lists(), strict=True)
         else:
             members = map(self._sampled, self._shares())
-        return list({tuple(map(stored, member)): member for member in members}.values())
+        return _unique((tuple(map(stored, member)), member) for member in members)
 
     def _shares(self) -> NDArray[np.float64]:
         """Return the points of the sample in the unit cube, shape (samples, parameters)."""
@@ -149,6 +149,19 @@ def make_design(
         counts = ", ".join(f"{path} has {count}" for path, count in lengths.items())
         raise ValueError(f"values side by side are as many for each parameter: {counts}")
     return design
+
+
+def _unique(keyed: Iterable[tuple[Hashable, Any]]) -> list[Any]:
+    """Return the values with different keys, of those with the same key the first.
+
+    Of a number that is given as 20 and as 20.0 the whole one stays, which fits wherever the other
+    one does.
+    """
+    kept: dict[Hashable, Any] = {}
+    for key, value in keyed:
+        if key not in kept or (isinstance(value, int) and isinstance(kept[key], float)):
+            kept[key] = value
+    return list(kept.values())
 
 
 def _values_of(path: str, given: str | Iterable[Any]) -> Values:

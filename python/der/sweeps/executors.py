@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import os
+import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
@@ -83,6 +86,22 @@ def place_for(executor: AnyExecutor | None, jobs: int | None) -> Iterator[Place]
         raise TypeError(
             f"executor must be an executor of concurrent.futures or a Dask client, got {executor!r}"
         )
+
+
+def end_with_parent() -> None:
+    """Let this process end with the one that started it, even if that was killed.
+
+    A worker of a pool waits for work for ever, and holds the output that it has inherited.
+    """
+    parent = multiprocessing.parent_process()
+    if parent is None:
+        return
+
+    def watch() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
 
 
 def lost_its_worker(error: BaseException) -> bool:

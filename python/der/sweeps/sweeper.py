@@ -15,6 +15,7 @@ from typing import Any
 from der._core import Scenario, __version__
 from der.accuracy.default_probes import with_default_probes
 from der.errors import DerError
+from der.key_paths import check_apart
 from der.parallel import as_they_finish
 from der.progress import ProgressFunction
 from der.simulation import SceneLike, as_scenario
@@ -24,7 +25,7 @@ from der.sweeps.executors import AnyExecutor, Place, lost_its_worker, place_for
 from der.sweeps.scene_difference import first_difference
 from der.sweeps.store import FILE, FRAMES, LOCK, Store, is_sweep, locked
 from der.sweeps.sweep_result import Sweep, load_sweep, read_sweep
-from der.sweeps.table import Table
+from der.sweeps.table import RUN_COLUMNS, Table
 from der.sweeps.values import stored
 
 #: What a chunk is to take [s]: a transaction and a journey are little against it.
@@ -97,8 +98,8 @@ def sweep(
     SceneError
         If the scene, or its first member, is not valid: a path that there is not, above all.
     ValueError
-        For values that are not spelled right, a folder that is not empty, and a sweep there that is
-        of another scene, other parameters or other options.
+        For values that are not spelled right, two paths to the same value, a folder that is not
+        empty, and a sweep there that is of another scene, other parameters or other options.
     DerError
         If another sweep is writing there, or a process of the executor died.
 
@@ -138,9 +139,15 @@ def sweep(
 
 def _check_members(scene: Scenario, design: Design) -> None:
     """Find a mistake in a path or a value before anything is run."""
+    check_apart(scene.to_dict(), design.paths)
     first = next(iter(design))
     scene.with_(**dict(zip(design.paths, first, strict=True)))
     probes = (scene.to_dict().get("output") or {}).get("probes") or {}
+    fixed = {column.name for column in RUN_COLUMNS} | {"stability"}
+    for name in sorted(fixed & set(probes)):
+        raise ValueError(
+            f"the probe '{name}' has the name of a column that each sweep has: rename the probe"
+        )
     spelled: dict[str, str] = {}
     for name in (*design.paths, *probes):
         # SQLite does not tell the names of columns apart by the case of letters.

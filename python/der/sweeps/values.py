@@ -61,7 +61,9 @@ def parse_values(text: str) -> Values:
     """
     if ":" in text and not any(mark in text for mark in '["{,'):
         return _parse_range(text)
-    return tuple(_parse_value(part) for part in _split(text))
+    values = tuple(_parse_value(part) for part in _split(text))
+    _check_numbers(values)
+    return values
 
 
 def as_values(given: str | Iterable[Any]) -> Values:
@@ -83,14 +85,23 @@ def as_values(given: str | Iterable[Any]) -> Values:
     values = tuple(_plain(value) for value in given)
     if not values:
         raise ValueError("there is no value")
+    _check_numbers(values)
     return values
 
 
 def stored(value: Any) -> Any:
-    """Return a value as a table holds it: numbers and texts as they are, the rest as JSON."""
-    if isinstance(value, (int, float, str)) and not isinstance(value, bool):
-        return value
-    return json.dumps(value)
+    """Return a value as a table holds it: numbers and texts as they are, the rest as JSON.
+
+    So are whole numbers of more than 64 bits, which SQLite lacks.
+    """
+    if isinstance(value, int) and not isinstance(value, bool):
+        return value if -(2**63) <= value < 2**63 else json.dumps(value)
+    return value if isinstance(value, (float, str)) else json.dumps(value)
+
+
+def _check_numbers(values: Iterable[Any]) -> None:
+    if any(isinstance(value, float) and value != value for value in values):
+        raise ValueError("a value is nan, which is no number")
 
 
 def _plain(value: Any) -> Any:

@@ -468,3 +468,117 @@ def test_a_clamp_beside_a_corner_holds_the_leg():
     scene["output"] = {"probes": {"turn": turn}}
     result = der.run(der.Scenario.from_dict(scene))
     assert result.probes["turn"][-1] == pytest.approx(0.0, abs=1e-12)
+
+
+#: Two legs that meet at a corner of about a radian, from their outer ends to it.
+CORNER_LEGS = ((0.5, 0.0), (0.6, 1.0))
+#: What the leg at a clamp has there.
+HELD = {2: ("moment", "tension", "slope"), 3: ("moment_1", "moment_2", "torque", "tension", "tx")}
+FORCES = ([-0.4, 0.5, 0.7], [0.3, -0.6, 0.5])
+
+
+def leg_points(edges, bent, dimension):
+    """Of the two legs, from the corner at the origin on."""
+    legs = []
+    for number, (length, direction) in enumerate(CORNER_LEGS):
+        s = np.linspace(0.0, length, edges + 1)
+        away = np.pi if number == 0 else direction
+        curvature = bent * (-1.0 if number == 0 else 1.5)
+        chord = s * np.sinc(curvature * s / (2 * np.pi))
+        angle = away + curvature * s / 2
+        flat = np.zeros((edges + 1, dimension - 2))
+        legs.append(np.column_stack([chord * np.cos(angle), chord * np.sin(angle), flat]))
+    return legs
+
+
+def at_corner_clamp(points, node, loads, probes, dimension, turned=0.0, **rod):
+    """Final values of the probes of a rod with a clamp at a node."""
+    stiffness = {"EI": 1.0} if dimension == 2 else {"EI1": 1.0, "EI2": 0.6, "GJ": 0.2}
+    support = {"rod": "rod", "at": {"node": node}, "clamp": True}
+    if turned and dimension == 2:
+        support["prescribe"] = {"angle": turned}
+    elif turned:
+        support["prescribe"] = {"rotation": {"axis": [0, 1, 1], "angle": turned}}
+    director = None if dimension == 2 else [0, 0, 1]
+    scene = rod_through(points, section(director, EA=1e4, **stiffness), [support], rod=rod)
+    scene["model"] = "planar" if dimension == 2 else "spatial"
+    scene["loads"] = [{"point_force": {"rod": "rod", **load}} for load in loads]
+    scene["output"] = {"probes": {name: {"rod": "rod", **probe} for name, probe in probes.items()}}
+    result = der.run(der.Scenario.from_dict(scene))
+    return np.array([values[-1] for values in result.probes.values()]), result
+
+
+@pytest.mark.parametrize("turned", [0.0, 0.4], ids=["as drawn", "turned"])
+@pytest.mark.parametrize("bent", [0.0, 1.0], ids=["straight", "bent"])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_clamp_at_a_corner_holds_each_leg(fitted_order, dimension, bent, turned):
+    """Either leg is the same as alone, with a clamp at its end: its nodes to rounding. Fields of a
+    strip are read from other places beside a corner than at an end."""
+    sizes = (20, 40, 80)
+    errors = []
+    for n in sizes:
+        before, after = leg_points(n, bent, dimension)
+        points = np.vstack([before[::-1], after[1:]])
+        ends = ("start", "end")
+        forces = [force[:dimension] for force in FORCES]
+        loads = [{"at": end, "force": force} for end, force in zip(ends, forces, strict=True)]
+        probes = {
+            f"{quantity}_{side}": {"quantity": quantity, "at": {"node": n}, "side": side}
+            for side in ("before", "after")
+            for quantity in HELD[dimension]
+        }
+        both, result = at_corner_clamp(points, n, loads, probes, dimension, turned)
+        alone = []
+        for leg, node in ((points[: n + 1], n), (points[n:], 0)):
+            own = {q: {"quantity": q, "at": {"node": node}} for q in HELD[dimension]}
+            load = loads[0 if node else 1]
+            values, of_leg = at_corner_clamp(leg, node, [load], own, dimension, turned)
+            part = slice(0, n + 1) if node else slice(n, None)
+            assert result.positions[-1][part] == pytest.approx(of_leg.positions[-1], abs=1e-9)
+            alone.append(values)
+        errors.append(both - np.concatenate(alone))
+    assert np.abs(errors[-1]).max() < 2e-5
+    for error in np.transpose(errors):
+        if np.abs(error).max() > 2e-5:
+            assert fitted_order([1 / n for n in sizes], error) > 1.9
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_ring_clamped_at_the_corner_where_it_starts(dimension):
+    """It is the rod through its nodes that both ends clamp, there and back."""
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.7, 0.8], [0.0, 0.0]])
+    n = 8
+    s = np.arange(3 * n) / n
+    points = np.column_stack([np.interp(s, np.arange(4), corners[:, c]) for c in (0, 1)])
+    points = np.hstack([points, np.zeros((3 * n, dimension - 2))])
+    load = {"at": {"node": n}, "force": [0.3, -0.6, 0.5][:dimension]}
+    probes = {
+        f"{quantity}_{side}": {"quantity": quantity, "at": {"node": 0}, "side": side}
+        for side in ("before", "after")
+        for quantity in HELD[dimension]
+        if quantity != "slope"
+    }
+    ring, closed = at_corner_clamp(points, 0, [load], probes, dimension, closed=True)
+    names = [quantity for quantity in HELD[dimension] if quantity != "slope"]
+    own = {f"{q}_{at}": {"quantity": q, "at": at} for at in ("end", "start") for q in names}
+    stiffness = {"EI": 1.0} if dimension == 2 else {"EI1": 1.0, "EI2": 0.6, "GJ": 0.2}
+    scene = rod_through(
+        np.vstack([points, points[:1]]),
+        section(None if dimension == 2 else [0, 0, 1], EA=1e4, **stiffness),
+        [{"rod": "rod", "at": at, "clamp": True} for at in ("start", "end")],
+        loads=[{"point_force": {"rod": "rod", **load}}],
+        output={"probes": {name: {"rod": "rod", **probe} for name, probe in own.items()}},
+    )
+    scene["model"] = "planar" if dimension == 2 else "spatial"
+    opened = der.run(der.Scenario.from_dict(scene))
+    assert closed.positions[-1] == pytest.approx(opened.positions[-1][:-1], abs=1e-9)
+    exact = np.array([values[-1] for values in opened.probes.values()])
+    assert ring == pytest.approx(exact, abs=1e-2 * np.abs(exact).max())
+
+
+def test_a_clamp_at_a_corner_has_no_one_tangent_to_twist_about():
+    points = np.vstack([p[::-1] if i == 0 else p[1:] for i, p in enumerate(leg_points(4, 0.0, 3))])
+    support = {"rod": "rod", "at": {"node": 4}, "clamp": True, "prescribe": {"twist": 0.1}}
+    scene = rod_through(points, section(EI=1.0, GJ=0.2), [support])
+    with pytest.raises(der.DerError, match="at a corner and holds two"):
+        der.Simulation(der.Scenario.from_dict(scene))

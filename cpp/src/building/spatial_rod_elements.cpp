@@ -22,6 +22,7 @@
 #include "model/corner.hpp"
 #include "model/corner_twist.hpp"
 #include "model/natural_twist.hpp"
+#include "supports/leg_clamp.hpp"
 
 namespace der {
 namespace {
@@ -201,13 +202,15 @@ std::pair<double, Vec2> drawn_curvature(const RodLayout& rod, Index place, Index
 /// Curvature [1/m] of the drawn rod where it bends beside a clamp: on the line through those at the
 /// two nodes beyond it. The turn of the cell itself does not tell it, nor that at the next node:
 /// the effective edge between, a chord from a pivot on the tangent, leans further than the curve.
-Vec2 drawn_curvature_at_clamp(const RodLayout& rod, const RodJoint& joint) {
+/// Corners are no part of the curve.
+Vec2 drawn_curvature_at_clamp(const RodLayout& rod, const RodJoint& joint, const Model& model) {
   const bool leaves = joint.after >= 0;
   const Index edge = leaves ? joint.after : joint.before;
   const Index held = leaves ? edge : edge + 1;
   const Index near = leaves ? edge + 1 : edge;
   const auto has_value = [&](Index place) {
-    return 0 <= place && place <= rod.num_edges() && rod.is_inner(place);
+    return 0 <= place && place <= rod.num_edges() && rod.is_inner(place) &&
+           !is_corner(rod, place, model);
   };
   if (!has_value(near))
     return has_value(held) ? drawn_curvature(rod, held, edge).second : Vec2(Vec2::Zero());
@@ -309,11 +312,9 @@ class SectionElements {
     const SpatialEdge& own = edge(beside);
     const double turned = leaves ? theta(beside) : -theta(beside);
     const SectionFrame frame_of_edge = frame(beside);
-    HeldFrame held_frame = clamp.held;
+    HeldFrame held_frame = clamp_of_leg(clamp, !leaves, rod_, model_).held;
     SectionFrame& held = held_frame.drawn;
-    double beyond = joint.twist_length * rod_.initial_twist;
-    // A clamp at a corner holds the section of the edge after it.
-    if (!leaves) beyond += corner_twist(rod_, joint.place(), model_);
+    const double beyond = joint.twist_length * rod_.initial_twist;
     if (closes_ring(joint)) {
       joint.glued = glued_angle(frame_of_edge, held, beyond);
       held = held.turned(-joint.glued);
@@ -323,7 +324,7 @@ class SectionElements {
     const JointStrain drawn = drawn_joint<Curvature>(a, b, beyond).strain();
     set_rest(rod_, drawn, joint);
     if (rod_.natural_curvatures.empty()) {
-      joint.natural_curvature = drawn_curvature_at_clamp(rod_, joint);
+      joint.natural_curvature = drawn_curvature_at_clamp(rod_, joint, model_);
     }
     elements_of<FromSpatialPivot<SpatialClamp<Curvature>>>(*model_.elements)
         .add(
@@ -356,7 +357,8 @@ void add_isotropic_bending(const RodLayout& rod, Model& model) {
     } else {
       const Index edge = joint.after >= 0 ? joint.after : joint.before;
       const SpatialEdge own = spatial_edge(rod, edge, model);
-      const Clamp& clamp = rod.clamps[to_size(joint.clamp)];
+      const Clamp& whole = rod.clamps[to_size(joint.clamp)];
+      const Clamp clamp = clamp_of_leg(whole, joint.before >= 0, rod, model);
       elements_of<FromSpatialPivot<IsotropicClamp<Curvature>>>(*model.elements)
           .add({own.start, own.start + 1, own.start + 2, own.end, own.end + 1, own.end + 2},
                {{stiffness, clamp.held}, own.first, own.last});

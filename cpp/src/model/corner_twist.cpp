@@ -8,29 +8,24 @@
 #include "model/drawn_turn.hpp"
 
 namespace der {
-namespace {
-
-/// The tangent of a leg at a corner, from the edge there, which has the direction of the tangent at
-/// its middle, and what the leg turns at the edge's other end, `beside`.
-Vec3 tangent_at_corner(const RodLayout& rod, Index corner, Index beside, const Vec3& edge,
-                       const Model& model) {
+Vec3 leg_tangent(const RodLayout& rod, Index corner, bool arrives, const Model& model) {
+  const auto [before, after] = drawn_edges(rod, corner, model);
+  const Vec3& edge = arrives ? before : after;
+  const Index beside = arrives ? corner - 1 : corner + 1;
   const DrawnTurn turn = drawn_turn(rod, beside, model);
   if (turn.angle == 0.0 || is_corner(rod, beside, model)) return edge;
-  const bool arrives = beside < corner;
   const Index number = arrives ? rod.edge_before(corner) : rod.edge_after(corner);
   const double half = 0.5 * rod.edge_length[to_size(number)];
   const double angle = half / rod.voronoi_length(beside) * turn.angle;
   return Eigen::AngleAxisd(arrives ? angle : -angle, turn.axis) * edge;
 }
 
-}  // namespace
-
 double corner_twist(const RodLayout& rod, Index place, const Model& model) {
   constexpr double kFoldedBack = 1e-6;  // opposite tangents have no smallest rotation
   if (!is_corner(rod, place, model)) return 0.0;
   const auto [before, after] = drawn_edges(rod, place, model);
-  const Vec3 arriving = tangent_at_corner(rod, place, place - 1, before, model);
-  const Vec3 leaving = tangent_at_corner(rod, place, place + 1, after, model);
+  const Vec3 arriving = leg_tangent(rod, place, true, model);
+  const Vec3 leaving = leg_tangent(rod, place, false, model);
   if (1.0 + arriving.dot(leaving) < kFoldedBack) return 0.0;
   const Vec3 director = drawn_turn(rod, place, model).axis;
   Vec3 moved = transport(director, before, arriving);

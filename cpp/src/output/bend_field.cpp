@@ -14,6 +14,7 @@
 #include "output/moment_recovery.hpp"
 #include "output/natural_curvature.hpp"
 #include "output/section_field.hpp"
+#include "supports/leg_clamp.hpp"
 
 namespace der {
 namespace {
@@ -166,7 +167,7 @@ class BendField : public EdgewiseField<double> {
       result.cell.emplace();
       if (last) {
         result.cell->before = result.effective;
-        result.cell->end = *clamp;
+        result.cell->end = clamp_of_leg(*clamp, true, rod, model);
       } else {
         result.cell->start = *clamp;
         result.cell->after = result.effective;

@@ -11,6 +11,7 @@
 #include "der/model/frames.hpp"
 #include "der/supports/spatial_clamp.hpp"
 #include "output/actuated_shape.hpp"
+#include "supports/leg_clamp.hpp"
 
 namespace der {
 namespace {
@@ -22,6 +23,11 @@ double rotation_of(const HeldFrame& held, const Model& model, const State& state
 Vec3 offset(const SpatialPivot& pivot, const Model& model, const State& state) {
   if (pivot.distance == 0.0) return Vec3::Zero();
   return pivot.distance * held_frame(pivot.held, model, state).tangent;
+}
+
+/// What the clamp of a joint holds of the joint's leg.
+HeldFrame held_at(const RodJoint& joint, const RodLayout& rod, const Model& model) {
+  return clamp_of_leg(rod.clamps[to_size(joint.clamp)], joint.before >= 0, rod, model).held;
 }
 
 /// The frames on both sides of a joint, with the angle that the side after it is turned by against
@@ -40,7 +46,7 @@ Sides sides_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
                const State& state) {
   Sides sides;
   const auto clamped = [&](SectionFrame& frame, double sign) {
-    const HeldFrame& held = rod.clamps[to_size(joint.clamp)].held;
+    const HeldFrame held = held_at(joint, rod, model);
     const double twist = held.twist < 0 ? 0.0 : control_value(model, state, held.twist);
     frame = held_frame(held, model, state).turned(twist);
     sides.turned += sign * twist;
@@ -133,7 +139,7 @@ std::pair<Vec3, Vec3> directions(const RodJoint& joint, const RodLayout& rod, co
                                  const State& state) {
   const auto side = [&](Index edge) -> Vec3 {
     if (edge >= 0) return effective_vector(spatial_edge(rod, edge, model), model, state);
-    return held_frame(rod.clamps[to_size(joint.clamp)].held, model, state).tangent;
+    return held_frame(held_at(joint, rod, model), model, state).tangent;
   };
   return {side(joint.before), side(joint.after)};
 }

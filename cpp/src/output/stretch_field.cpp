@@ -112,7 +112,7 @@ class LeaningEdges {
       drawn[0] = NaturalCurvature(rod_, model).at(edge, rod_.edge_middle(edge));
     } else {
       for (const RodJoint& joint : rod_.joints) {
-        if (is_corner(rod_, joint.place(), model)) continue;
+        if (joint.clamp < 0 && is_corner(rod_, joint.place(), model)) continue;
         if (joint.after == edge || joint.before == edge) drawn += 0.5 * joint.natural_curvature;
       }
     }

@@ -16,6 +16,7 @@
 #include "output/moment_recovery.hpp"
 #include "output/natural_curvature.hpp"
 #include "output/tangent_line.hpp"
+#include "supports/leg_clamp.hpp"
 
 namespace der {
 namespace {
@@ -64,6 +65,18 @@ void add_drawn_jumps(const RodLayout& rod, const Model& model, std::vector<doubl
   for (const CurvatureJump& jump : curvature_jumps_of(rod, model)) {
     kinks.push_back(rod.arc_length_at(jump.place));
   }
+}
+
+/// What is held at the knots: at those of edges nothing.
+std::vector<Clamp> held_at_knots(const TangentLine& line, const RodLayout& rod,
+                                 const Model& model) {
+  std::vector<Clamp> held;
+  for (const TangentLine::Knot& knot : line.knots()) {
+    held.emplace_back();
+    if (knot.clamp < 0) continue;
+    held.back() = clamp_of_leg(rod.clamps[to_size(knot.clamp)], knot.arrives, rod, model);
+  }
+  return held;
 }
 
 /// The turns towards the two directors [rad], in a plane the first of them.
@@ -153,7 +166,10 @@ class PlanarDirection : public DirectionField<double> {
  private:
   PlanarDirection(std::optional<int> component, const RodLayout& rod, const Model& model,
                   TangentLine line)
-      : DirectionField(std::move(line)), component_(component), rod_(rod) {
+      : DirectionField(std::move(line)),
+        component_(component),
+        rod_(rod),
+        held_(held_at_knots(this->line(), rod, model)) {
     if (rod.EI > 0.0) ends_ = free_ends(rod);
     if (!ends_.empty() && !rod.moment_places.empty()) spread_.emplace(rod, model);
     if (!rod.moment_places.empty() && rod.EI > 0.0) moments_.emplace(rod, model);
@@ -202,11 +218,11 @@ class PlanarDirection : public DirectionField<double> {
     }
   }
 
-  [[nodiscard]] Vec2 direction(const TangentLine::Knot& knot, const Model& model,
-                               const State& state) const {
+  [[nodiscard]] Vec2 direction(std::size_t number, const Model& model, const State& state) const {
+    const TangentLine::Knot& knot = line().knots()[number];
     if (knot.clamp < 0)
       return effective_vector(edges_[to_size(rod_.position(knot.edge))], model, state);
-    const double angle = tangent_angle(rod_.clamps[to_size(knot.clamp)], model, state);
+    const double angle = tangent_angle(held_[number], model, state);
     return {std::cos(angle), std::sin(angle)};
   }
 
@@ -214,7 +230,7 @@ class PlanarDirection : public DirectionField<double> {
   [[nodiscard]] double reference_angle(const Vec2& direction, const Model& model,
                                        const State& state) const {
     const TangentLine::Knot& knot = line().knots()[reference_];
-    if (knot.clamp >= 0) return tangent_angle(rod_.clamps[to_size(knot.clamp)], model, state);
+    if (knot.clamp >= 0) return tangent_angle(held_[reference_], model, state);
     if (followed_ < 0) return std::atan2(direction.y(), direction.x());
     const double before =
         model.followed_edges[to_size(followed_)].direction + state.followed[followed_];
@@ -224,11 +240,11 @@ class PlanarDirection : public DirectionField<double> {
   void read(const Model& model, const State& state, std::vector<double>& knots,
             std::vector<double>& kinks) const override {
     const auto& places = line().knots();
-    Vec2 before = direction(places.front(), model, state);
+    Vec2 before = direction(0, model, state);
     double angle = 0.0;
     double offset = 0.0;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const Vec2 here = direction(places[i], model, state);
+      const Vec2 here = direction(i, model, state);
       angle += angle_between(before, here);
       before = here;
       knots.push_back(angle);
@@ -271,6 +287,7 @@ class PlanarDirection : public DirectionField<double> {
 
   std::optional<int> component_;
   RodLayout rod_;
+  std::vector<Clamp> held_;  // at the knots
   std::vector<EffectiveEdge> edges_;
   std::vector<double> drawn_leans_;  // of each edge [rad]
   std::vector<double> drawn_jumps_;  // of the curvature [1/m]
@@ -303,6 +320,7 @@ class SpatialDirection : public DirectionField<Vec3> {
       : DirectionField(std::move(line)),
         component_(component),
         rod_(rod),
+        held_(held_at_knots(this->line(), rod, model)),
         moments_(std::move(moments)) {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) {
       edges_.push_back(spatial_edge(rod, edge, model));
@@ -339,10 +357,10 @@ class SpatialDirection : public DirectionField<Vec3> {
 
   void read(const Model& model, const State& state, std::vector<Vec3>& knots,
             std::vector<Vec3>& kinks) const override {
-    for (const TangentLine::Knot& knot : line().knots()) {
-      knots.push_back(knot.clamp >= 0
-                          ? held_frame(rod_.clamps[to_size(knot.clamp)].held, model, state).tangent
-                          : tangent_of_edge(rod_.position(knot.edge), model, state));
+    for (std::size_t i = 0; i < held_.size(); ++i) {
+      const TangentLine::Knot& knot = line().knots()[i];
+      knots.push_back(knot.clamp >= 0 ? held_frame(held_[i].held, model, state).tangent
+                                      : tangent_of_edge(rod_.position(knot.edge), model, state));
     }
     for (const FreeEnd& end : ends_) {
       (end.last ? knots.back() : knots.front()) -= lean(end, model, state);
@@ -410,6 +428,7 @@ class SpatialDirection : public DirectionField<Vec3> {
 
   int component_;
   RodLayout rod_;
+  std::vector<Clamp> held_;  // at the knots
   std::vector<SpatialEdge> edges_;
   std::vector<Vec2> drawn_leans_;  // of each edge, towards its two directors
   /// Jumps of the drawn curvature behind edges, towards their two directors [1/m].

@@ -77,17 +77,21 @@ void TangentLine::find_knots(const Model& model) {
   const Index last = rod.num_edges() + (rod.closed ? 1 : 0);
   legs_.push_back({rod.arc_length_at(first), 0.0, 0, 0});
   for (Index place = first; place <= last; ++place) {
-    if (place > first && place < last && rod.clamp_at(place) == nullptr &&
-        is_corner(rod, place, model)) {
+    const Clamp* clamp = rod.clamp_at(place);
+    const auto add_clamp = [&](bool arrives) {
+      if (clamp == nullptr) return;
+      const auto number = static_cast<Index>(clamp - rod.clamps.data());
+      knots_.push_back({rod.arc_length_at(place), -1, number, arrives});
+    };
+    const bool parts = place > first && place < last && is_corner(rod, place, model);
+    if (parts) {
+      add_clamp(true);
       legs_.back().to = rod.arc_length_at(place);
       legs_.back().last = knots_.size();
       legs_.push_back({rod.arc_length_at(place), 0.0, knots_.size(), 0});
     }
-    if (const Clamp* clamp = rod.clamp_at(place)) {
-      knots_.push_back(
-          {rod.arc_length_at(place), -1, static_cast<Index>(clamp - rod.clamps.data())});
-    }
-    if (place < last) knots_.push_back({tangent_place(rod, place), place, -1});
+    add_clamp(place == last);
+    if (place < last) knots_.push_back({tangent_place(rod, place), place, -1, false});
   }
   legs_.back().to = rod.arc_length_at(last);
   legs_.back().last = knots_.size();

@@ -23,6 +23,7 @@ class TangentLine {
     double arc_length = 0.0;  ///< [m]
     Index edge = -1;          ///< number in the rod, those of a ring counted on; -1: a clamp
     Index clamp = -1;         ///< number in the rod; -1: an edge
+    bool arrives = false;     ///< the clamp's leg: the one that arrives there, or leaves
   };
   /// Part of a knot or of a kink in the direction at a sample.
   struct Part {

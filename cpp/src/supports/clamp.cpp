@@ -12,7 +12,9 @@
 #include "der/model/location.hpp"
 #include "der/scenario/support.hpp"
 #include "model/corner.hpp"
+#include "model/corner_twist.hpp"
 #include "model/curvature_jump.hpp"
+#include "supports/leg_clamp.hpp"
 
 namespace der {
 namespace {
@@ -39,11 +41,16 @@ double initial_curvature(const RodLayout& rod, Index place, const Model& model) 
 /// +1 if the edge leaves the clamp, -1 if it arrives there.
 double side_of(const Clamp& clamp, Index edge) { return edge == clamp.place ? 1.0 : -1.0; }
 
-Pivot pivot_at(const RodLayout& rod, Index place, Index edge) {
+/// A clamp as an edge beside it sees it.
+Clamp clamp_of(const Clamp& clamp, Index edge, const RodLayout& rod, const Model& model) {
+  return clamp_of_leg(clamp, side_of(clamp, edge) < 0.0, rod, model);
+}
+
+Pivot pivot_at(const RodLayout& rod, Index place, Index edge, const Model& model) {
   const Clamp* clamp = rod.clamp_at(place);
   if (clamp == nullptr) return {};
-  return {side_of(*clamp, edge) * kPivotShare * rod.edge_length[to_size(edge)], clamp->direction,
-          clamp->rotation};
+  return {side_of(*clamp, edge) * kPivotShare * rod.edge_length[to_size(edge)],
+          clamp_of(*clamp, edge, rod, model).direction, clamp->rotation};
 }
 
 }  // namespace
@@ -58,6 +65,8 @@ Index inner_place_near(const RodLayout& rod, Index place) {
 }
 
 double initial_tangent_angle(const RodLayout& rod, Index place, const Model& model) {
+  if (is_corner(rod, place, model))
+    return direction(leg_tangent(rod, place, false, model).head<2>());
   const double curvature = initial_curvature(rod, place, model);
   const bool leaves = rod.edge_after(place) >= 0;
   const Index edge = leaves ? place : place - 1;
@@ -97,7 +106,8 @@ void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod,
 
 EffectiveEdge effective_edge(const RodLayout& rod, Index edge, const Model& model) {
   const Index own = rod.position(edge);  // behind the last edge of a ring its first one follows
-  return {rod.edge_dofs(own, model), pivot_at(rod, own, own), pivot_at(rod, own + 1, own)};
+  return {rod.edge_dofs(own, model), pivot_at(rod, own, own, model),
+          pivot_at(rod, own + 1, own, model)};
 }
 
 Vec2 effective_end(const EffectiveEdge& effective, bool last, const Model& model,
@@ -131,7 +141,8 @@ double clamp_cell_length(const RodLayout& rod, Index edge) {
 double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, const Model& model) {
   const double side = side_of(clamp, edge);
   if (rod.natural_curvature.empty()) {
-    const Vec2 tangent{std::cos(clamp.direction), std::sin(clamp.direction)};
+    const double held = clamp_of(clamp, edge, rod, model).direction;
+    const Vec2 tangent{std::cos(held), std::sin(held)};
     const Vec2 effective =
         effective_edge(rod, edge, model).vector(model.initial_positions, 0.0, 0.0);
     return side * angle_between(tangent, effective);
@@ -145,6 +156,8 @@ double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, co
 double clamp_pivot_share() { return kPivotShare; }
 
 void add_clamp_cells(const Clamp& clamp, RodLayout& rod, Model& model) {
+  const double corner = clamp.direction - clamp_of_leg(clamp, true, rod, model).direction;
+  rod.rest_turning_angle[to_size(clamp.place)] += corner;
   for (const Index edge : {rod.edge_before(clamp.place), rod.edge_after(clamp.place)}) {
     if (edge < 0) continue;
     const EffectiveEdge effective = effective_edge(rod, edge, model);
@@ -153,11 +166,12 @@ void add_clamp_cells(const Clamp& clamp, RodLayout& rod, Model& model) {
     const auto add = [&](auto measure) {
       using Measure = decltype(measure);
       auto& list = elements_of<FromPivot<PlanarClamp<Measure>>>(*model.elements);
-      list.add(effective.dofs, {{rod.EI / clamp_cell_length(rod, edge), Measure::of(rest).kappa,
-                                 clamp.direction, side_of(clamp, edge), clamp.rotation,
-                                 rod.rest_entries.cell(clamp.place, side_of(clamp, edge) > 0.0)},
-                                effective.first,
-                                effective.last});
+      list.add(effective.dofs,
+               {{rod.EI / clamp_cell_length(rod, edge), Measure::of(rest).kappa,
+                 clamp_of(clamp, edge, rod, model).direction, side_of(clamp, edge), clamp.rotation,
+                 rod.rest_entries.cell(clamp.place, side_of(clamp, edge) > 0.0)},
+                effective.first,
+                effective.last});
     };
     if (rod.curvature == scenario::CurvatureMeasure::Angle) {
       add(AngleCurvature{});

@@ -13,6 +13,7 @@
 #include "der/supports/clamp.hpp"
 #include "der/supports/spring.hpp"
 #include "model/corner.hpp"
+#include "supports/leg_clamp.hpp"
 
 namespace der {
 namespace {
@@ -46,6 +47,12 @@ struct SectionHold {
   bool counts_turns = true;  // whole ones, of the twist
 };
 
+/// What the clamp beside a place holds of the leg on which the place is.
+HeldFrame held_beside(const PlaceBesideClamp& place, const RodLayout& rod, const Model& model) {
+  const Clamp& clamp = rod.clamps[to_size(place.clamp)];
+  return clamp_of_leg(clamp, place.edge != clamp.place, rod, model).held;
+}
+
 Index number_of(const RodLayout& rod, Index edge) { return rod.first_edge + rod.position(edge); }
 
 /// The drawn section at `share` of the way from one to another [-].
@@ -72,7 +79,7 @@ SectionFrame drawn_section_at(double s, const SectionPlace& place, const RodLayo
   const auto beside = place_beside_clamp(rod, s);
   if (!beside) return first.turned(rod.initial_twist * (s - middle));
   const Clamp& clamp = rod.clamps[to_size(beside->clamp)];
-  return between(first, clamp.held.drawn,
+  return between(first, held_beside(*beside, rod, model).drawn,
                  (s - middle) / (rod.arc_length[to_size(clamp.place)] - middle));
 }
 
@@ -209,7 +216,7 @@ typename SectionSpring<Edges>::Constants constants_of(const SectionHold& hold,
     held.carried = axes_of(own).transpose() * axes_of(hold.of_natural);
   }
   if (const auto beside = place_beside_clamp(rod, spring.arc_length)) {
-    const HeldFrame& held = rod.clamps[to_size(beside->clamp)].held;
+    const HeldFrame held = held_beside(*beside, rod, model);
     constants.clamp = {held, axes_of(held.drawn).transpose() * axes_of(hold.of_natural)};
   }
   return constants;

@@ -1,14 +1,19 @@
 #include "der/supports/spatial_clamp.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include "der/core/error.hpp"
 #include "der/core/index.hpp"
 #include "der/scenario/support.hpp"
 #include "der/supports/clamp.hpp"
 #include "model/corner.hpp"
+#include "model/corner_twist.hpp"
 #include "model/curvature_jump.hpp"
+#include "supports/leg_clamp.hpp"
 
 namespace der {
 namespace {
@@ -58,26 +63,33 @@ Vec3 tangent_on_circle(const RodLayout& rod, Index place, Index inner, const Mod
 }
 
 SectionFrame drawn_section(const RodLayout& rod, Index place, const Model& model) {
-  const Vec3 tangent = initial_tangent(rod, place, model);
-  if (rod.drawn_frames.empty()) return SectionFrame::of(tangent, tangent.unitOrthogonal());
   const Index edge = edge_beside(rod, place);
-  const SectionFrame& middle = rod.drawn_frames[to_size(edge)];
-  const Vec3 first = transport(middle.first, middle.tangent, tangent);
-  const double beyond = rod.arc_length[to_size(place)] - rod.edge_middle(edge);
-  return SectionFrame::of(tangent, made_perpendicular(first, tangent))
-      .turned(rod.initial_twist * beyond);
+  return drawn_section_at_end(rod, edge, edge != place, initial_tangent(rod, place, model));
 }
 
-SpatialPivot pivot_at(const RodLayout& rod, Index place, Index edge) {
+/// The legs at a corner have two tangents, and turning about one of them turns the other.
+void check_axis_of_twist(const RodLayout& rod, Index place, const Model& model) {
+  if (!is_corner(rod, place, model)) return;
+  throw Error("model_error",
+              fmt::format("the 'twist' of a clamp turns about its tangent, but the clamp of rod "
+                          "'{}' at arc length {:.6g} m is at a corner and holds two. Write "
+                          "'rotation: {{axis: [x, y, z], angle: ...}}'",
+                          rod.name, rod.arc_length_at(place)));
+}
+
+SpatialPivot pivot_at(const RodLayout& rod, Index place, Index edge, const Model& model) {
   const Clamp* clamp = rod.clamp_at(place);
   if (clamp == nullptr) return {};
-  const double side = edge == clamp->place ? 1.0 : -1.0;
-  return {side * clamp_pivot_share() * rod.edge_length[to_size(edge)], clamp->held};
+  const bool arrives = edge != clamp->place;
+  const double side = arrives ? -1.0 : 1.0;
+  return {side * clamp_pivot_share() * rod.edge_length[to_size(edge)],
+          clamp_of_leg(*clamp, arrives, rod, model).held};
 }
 
 }  // namespace
 
 Vec3 initial_tangent(const RodLayout& rod, Index place, const Model& model) {
+  if (is_corner(rod, place, model)) return leg_tangent(rod, place, false, model);
   const Index inner = rod.num_edges() < 2 ? place : inner_place_near(rod, place);
   return tangent_on_circle(rod, place, inner, model);
 }
@@ -100,15 +112,18 @@ void hold_section(const scenario::Support& support, Index place, RodLayout& rod,
   } else if (support.rotation) {
     clamp.held.rotation = model.tables.add(*support.rotation);
   }
-  if (support.twist) clamp.held.twist = model.tables.add(*support.twist);
+  if (support.twist) {
+    check_axis_of_twist(rod, place, model);
+    clamp.held.twist = model.tables.add(*support.twist);
+  }
   rod.clamps.push_back(clamp);
 }
 
 SpatialEdge spatial_edge(const RodLayout& rod, Index edge, const Model& model) {
   const Index number = rod.first_edge + edge;
   return {model.dof(rod.node(edge), 0), model.dof(rod.node(edge + 1), 0),
-          model.has_sections() ? model.dofs.angle(number) : -1, pivot_at(rod, edge, edge),
-          pivot_at(rod, edge + 1, edge)};
+          model.has_sections() ? model.dofs.angle(number) : -1, pivot_at(rod, edge, edge, model),
+          pivot_at(rod, edge + 1, edge, model)};
 }
 
 }  // namespace der

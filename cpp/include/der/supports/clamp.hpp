@@ -24,7 +24,8 @@ Index edge_beside(const RodLayout& rod, Index place);
 Index inner_place_near(const RodLayout& rod, Index place);
 
 /// Angle [rad] of the tangent at a node of the initial shape: that of the circle through the node's
-/// neighbourhood, so that a clamp on an arc holds the arc's tangent and not the chord's.
+/// neighbourhood, so that a clamp on an arc holds the arc's tangent and not the chord's. At a
+/// corner that of the leg which leaves it.
 double initial_tangent_angle(const RodLayout& rod, Index place, const Model& model);
 
 /// Angle [rad] from the x axis at which a clamp holds the tangent in a state.

@@ -15,7 +15,7 @@ struct Support;
 // over the half of the edge that lies between them.
 
 /// Unit tangent at a node of the initial shape: that of the circle through the node's
-/// neighbourhood.
+/// neighbourhood, at a corner that of the leg which leaves it.
 Vec3 initial_tangent(const RodLayout& rod, Index place, const Model& model);
 /// The same at the start of a rod, as the rod has it behind its first node: where a ring starts at
 /// a corner, or where its drawn curvature jumps, that of the open rod through its nodes.

@@ -5,6 +5,7 @@
 #include "der/core/constants.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/supports/clamp.hpp"
+#include "supports/leg_clamp.hpp"
 
 namespace der::statics {
 namespace {
@@ -38,8 +39,9 @@ std::vector<double> planar_whole_turns(const Model& model, const Configuration& 
   if (model.dimension != 2) return turns;
   for (const RodLayout& rod : model.rods) {
     for (const Clamp& first : rod.clamps) {
-      for (const Clamp& last : rod.clamps) {
-        if (first.place >= last.place) continue;
+      for (const Clamp& other : rod.clamps) {
+        if (first.place >= other.place) continue;
+        const Clamp last = clamp_of_leg(other, true, rod, model);
         const double between = turning_angle(model, rod, first, last, here) -
                                tangent_angle(last, here) + tangent_angle(first, here);
         turns.push_back(std::round(between / (2.0 * kPi)));

@@ -185,10 +185,10 @@ def test_beside_a_clamp(name, edges, fitted_order):
     assert tension[-1].max() < 1e-2
 
 
-def tension_of_elastica(force, moment, stiffness):
-    """Of the inextensible rod of EI = L = 1 in its plane, clamped at the start, at the end of which
-    a force, a moment and a spring against turning act: theta'' = -(Fy cos theta - Fx sin theta),
-    and the tension is the force along the tangent."""
+def tension_of_elastica(force, moment, stiffness, drawn):
+    """Of the inextensible rod of EI = L = 1 in its plane, drawn with a curvature, clamped at the
+    start, at the end of which a force, a moment and a spring against turning act:
+    theta'' = -(Fy cos theta - Fx sin theta), and the tension is the force along the tangent."""
 
     def march(start):
         def rate(_, y):
@@ -198,7 +198,7 @@ def tension_of_elastica(force, moment, stiffness):
 
     def missing(start):
         angle, curvature = march(start).y[:, -1]
-        return curvature - moment + stiffness * angle
+        return curvature - drawn - moment + stiffness * (angle - drawn)
 
     angles = march(brentq(missing, -8, 8)).sol
 
@@ -209,14 +209,25 @@ def tension_of_elastica(force, moment, stiffness):
     return tension
 
 
+def arc(curvature, n):
+    """Nodes on an arc of length 1 from the origin, which it leaves along x."""
+    s = np.linspace(0, 1, n + 1)
+    if curvature == 0:
+        return np.column_stack([s, 0 * s])
+    turned = curvature * s
+    return np.column_stack([np.sin(turned), 1 - np.cos(turned)]) / curvature
+
+
 @pytest.mark.parametrize("in_space", [False, True], ids=["plane", "space"])
+@pytest.mark.parametrize("drawn", [0.0, -1.3], ids=["straight", "arc"])
 @pytest.mark.parametrize("stiffness", [0.0, 0.6])
-def test_tension_at_an_end_that_is_bent(stiffness, in_space, fitted_order):
-    """The edge there leans against the curve; by a moment, and by a spring, too."""
-    force, places = (1.5, -0.8), (0.8, 0.99, 1.0)
+def test_tension_at_an_end_that_is_bent(stiffness, drawn, in_space, fitted_order):
+    """The edge there leans against the curve; by a moment, and by a spring, too. It does not by the
+    curvature of an arc on which its nodes are drawn."""
+    force, places = (1.5, -0.8), (0.8, 0.99, "end")
     moment = 1.2 if stiffness == 0 else 0.0
-    tension = tension_of_elastica(force, moment, stiffness)
-    truth = np.array([tension(s) for s in places])
+    tension = tension_of_elastica(force, moment, stiffness, drawn)
+    truth = np.array([tension(1.0 if s == "end" else s) for s in places])
     bar = {"EA": 1e7, "EI1": 1.7, "EI2": 1.0, "GJ": 0.8, "mass_per_length": 1.0}
     if not in_space:
         bar = {"EA": 1e7, "EI": 1.0, "mass_per_length": 1.0}
@@ -234,7 +245,7 @@ def test_tension_at_an_end_that_is_bent(stiffness, in_space, fitted_order):
     errors = []
     sizes = (20, 40, 80)
     for n in sizes:
-        rod = {"name": "rod", "nodes": n + 1, "from": vector(0, 0), "to": vector(1, 0)}
+        rod = {"name": "rod", "points": [vector(x, y) for x, y in arc(drawn, n).tolist()]}
         scene = {
             "rods": [{**rod, "cross_section": {"stiffness": bar}}],
             "supports": supports,

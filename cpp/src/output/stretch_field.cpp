@@ -111,10 +111,14 @@ class LeaningEdges {
     if (model.dimension == 2) {
       drawn[0] = NaturalCurvature(rod_, model).at(edge, rod_.edge_middle(edge));
     } else {
+      double beside = 0.0;
       for (const RodJoint& joint : rod_.joints) {
         if (joint.clamp < 0 && is_corner(rod_, joint.place(), model)) continue;
-        if (joint.after == edge || joint.before == edge) drawn += 0.5 * joint.natural_curvature;
+        if (joint.after != edge && joint.before != edge) continue;
+        drawn += joint.natural_curvature;
+        beside += 1.0;
       }
+      if (beside > 0.0) drawn /= beside;
     }
     const bool straight = drawn.norm() * rod_.edge_length[to_size(edge)] < kStraight;
     return straight ? Vec2(Vec2::Zero()) : drawn;
@@ -132,8 +136,13 @@ class LeaningEdges {
     if (natural.isZero(0.0) && !is_bent) return;
     const Index edge = last ? rod_.num_edges() - 1 : 0;
     const double twelfth = (last ? 1.0 : -1.0) * rod_.edge_length[to_size(edge)] / 12.0;
-    // A moment bends the end as a natural curvature does, and the curvature there has both.
-    add({edge, is_bent ? twelfth : 0.0, is_bent ? 0.0 : twelfth, natural}, model);
+    if (is_bent) {
+      // A moment bends the end as a natural curvature does, and the curvature there has both; but
+      // that of the drawn shape is no lean, since the nodes of a drawn curve lie on it.
+      add({edge, twelfth, -twelfth, drawn_curvature(edge, model)}, model);
+    } else {
+      add({edge, 0.0, twelfth, natural}, model);
+    }
   }
   /// Whether a moment or a spring against turning acts at a place.
   [[nodiscard]] bool bears_moment(double s) const {

@@ -13,6 +13,7 @@
 #include "der/supports/clamp.hpp"
 #include "der/supports/spring.hpp"
 #include "model/corner.hpp"
+#include "model/curvature_jump.hpp"
 #include "supports/leg_clamp.hpp"
 
 namespace der {
@@ -55,6 +56,14 @@ HeldFrame held_beside(const PlaceBesideClamp& place, const RodLayout& rod, const
 
 Index number_of(const RodLayout& rod, Index edge) { return rod.first_edge + rod.position(edge); }
 
+/// A section turned by a rotation vector [rad].
+SectionFrame turned_by(const Vec3& rotation, const SectionFrame& section) {
+  const double angle = rotation.norm();
+  if (angle == 0.0) return section;
+  const Eigen::AngleAxisd turn(angle, rotation / angle);
+  return SectionFrame::of(turn * section.tangent, turn * section.first);
+}
+
 /// The drawn section at `share` of the way from one to another [-].
 SectionFrame between(const SectionFrame& from, const SectionFrame& to, double share) {
   const Vec3 axis = from.tangent.cross(to.tangent);
@@ -65,17 +74,38 @@ SectionFrame between(const SectionFrame& from, const SectionFrame& to, double sh
       .turned(share * twist_between(from, to));
 }
 
+/// The drawn section at arc length `s` [m] on the line through those of an edge and the next.
+SectionFrame section_on_line(double s, Index first_edge, const RodLayout& rod, const Model& model) {
+  const double middle = rod.edge_middle(first_edge);
+  const double spacing = rod.edge_middle(first_edge + 1) - middle;
+  return between(drawn_frame(model, number_of(rod, first_edge)),
+                 drawn_frame(model, number_of(rod, first_edge + 1)), (s - middle) / spacing);
+}
+
+/// The rotation by which the drawn section at `s` [m], between the middles of an edge and the next,
+/// is turned against the line through theirs: where the curvature jumps at their node, from k_b to
+/// k_a, the line cuts off the kink of the tangent's angle, (k_a - k_b) ab/(a + b) at the node, with
+/// the distances a and b to the middles.
+Vec3 turn_from_line(double s, Index first_edge, const RodLayout& rod, const Model& model) {
+  const Index place = first_edge + 1;
+  const double node = rod.arc_length_at(place);
+  const double before = node - rod.edge_middle(first_edge);
+  const double after = rod.edge_middle(place) - node;
+  const double share = 1.0 - (s < node ? (node - s) / before : (s - node) / after);
+  if (share <= 0.0) return Vec3::Zero();
+  return -share * after * curvature_beyond_mean(rod, place, model);
+}
+
 /// The drawn section at arc length `s` [m], inter- or extrapolated from the edges, or from the one
 /// edge and the clamp beside it.
 SectionFrame drawn_section_at(double s, const SectionPlace& place, const RodLayout& rod,
                               const Model& model) {
+  if (place.across.size() == 2) {
+    return turned_by(turn_from_line(s, place.first_edge, rod, model),
+                     section_on_line(s, place.first_edge, rod, model));
+  }
   const SectionFrame first = drawn_frame(model, number_of(rod, place.first_edge));
   const double middle = rod.edge_middle(place.first_edge);
-  if (place.across.size() == 2) {
-    const SectionFrame second = drawn_frame(model, number_of(rod, place.first_edge + 1));
-    const double spacing = rod.edge_middle(place.first_edge + 1) - middle;
-    return between(first, second, (s - middle) / spacing);
-  }
   const auto beside = place_beside_clamp(rod, s);
   if (!beside) return first.turned(rod.initial_twist * (s - middle));
   const Clamp& clamp = rod.clamps[to_size(beside->clamp)];
@@ -121,10 +151,7 @@ Vec3 natural_rotation(double s, const SectionPlace& place, const SectionFrame& s
 
 /// A section turned by the opposite of a rotation towards its directors and of a twist.
 SectionFrame turned_back(const SectionFrame& section, const Vec3& rotation) {
-  const double angle = rotation.norm();
-  if (angle == 0.0) return section;
-  const Eigen::AngleAxisd turn(-angle, turning_axes(section) * rotation / angle);
-  return SectionFrame::of(turn * section.tangent, turn * section.first);
+  return turned_by(-(turning_axes(section) * rotation), section);
 }
 
 /// On one edge, or between two with nearly the same section.

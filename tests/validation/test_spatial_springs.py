@@ -375,6 +375,8 @@ class TwoLegs:
 
 SHAPES = {
     "straight legs": TwoLegs(corner=(np.arccos(0.28), 0)),
+    "curved legs": TwoLegs(((0.8, -1.1), (-0.7, 1.9)), (np.arccos(0.28), 0)),
+    "twisted legs": TwoLegs(corner=(0.6, -0.5), twist=1.7),
     "jump": TwoLegs(((0, 0), (0.8, -1.1))),
     "jump of a twisted rod": TwoLegs(((0.5, 0), (0.8, -1.1)), twist=0.7),
 }
@@ -427,8 +429,9 @@ def tip_by_beam_theory(shape, k, place, load, torque=(0, 0, 0)):
 )
 def test_a_spring_and_a_moment_between_two_legs(fitted_order, k, torque, share, shape):
     """They hold and turn the section of the leg beyond a corner, or of the leg on which they are.
-    Beside the corner the rod bends about other axes than beyond it. Where the drawn
-    curvature jumps, the section is not the mean of those of the two edges."""
+    Beside the corner the rod bends about other axes than beyond it. On a curved leg, or a twisted
+    one, the section at the corner is not that of the edge there, and where the curvature jumps it
+    is not the mean of those of the two edges."""
     load = SMALL * np.array([1.0, -0.5, 2.0])
     torque = SMALL * np.array(torque)
     strip = section([0, 0, 1], EA=1e8, EI1=STRONG, EI2=WEAK, GJ=TWISTING)

@@ -169,6 +169,27 @@ SectionHold smooth_hold(const SectionSpringPlace& spring, const SectionPlace& pl
   return hold;
 }
 
+/// Whether two edges side by side have sections that lie differently: at a corner, and where a ring
+/// is glued turned.
+bool sections_differ(Index first_edge, const RodLayout& rod, const Model& model) {
+  if (is_corner(rod, first_edge + 1, model)) return true;
+  const bool closes = rod.closed && rod.position(first_edge + 1) == 0 && !rod.joints.empty();
+  return closes && rod.joints.back().glued != 0.0;
+}
+
+/// The drawn section at arc length `s` [m] on the leg that ends with an edge, or begins with one:
+/// on the line through those of this edge and its neighbour on the leg, of which the neighbour has
+/// the one number or the other. A leg of one edge is straight.
+SectionFrame section_on_leg(double s, Index edge, Index neighbour, const RodLayout& rod,
+                            const Model& model) {
+  const Index first = std::min(edge, neighbour);
+  if (!rod.is_inner(first + 1) || sections_differ(first, rod, model)) {
+    return drawn_frame(model, number_of(rod, edge))
+        .turned(rod.initial_twist * (s - rod.edge_middle(edge)));
+  }
+  return section_on_line(s, first, rod, model);
+}
+
 /// Between two edges with different sections, at a corner. Rod before the place and beyond it turns
 /// with the compliances A and B about all axes. The moment of the springs on the rod, m, makes the
 /// one in it jump, and the section turns by B (A + B)^-1 r_a + A (A + B)^-1 r_b + D m, with the
@@ -179,8 +200,9 @@ SectionHold corner_hold(double s, Index first_edge, const RodLayout& rod, const 
   const double start = rod.edge_middle(first_edge);
   const double end = rod.edge_middle(second_edge);
   SectionHold hold;
-  hold.section =
-      drawn_frame(model, number_of(rod, s < corner - rod.same_place() ? first_edge : second_edge));
+  hold.section = s < corner - rod.same_place()
+                     ? section_on_leg(s, first_edge, first_edge - 1, rod, model)
+                     : section_on_leg(s, second_edge, second_edge + 1, rod, model);
   hold.of_natural = hold.section;
   // The angle of an edge tells the turns about its own tangent alone.
   hold.counts_turns = !is_corner(rod, second_edge, model);
@@ -200,14 +222,6 @@ SectionHold corner_hold(double s, Index first_edge, const RodLayout& rod, const 
   const Mat3 cell = before * stiffness_between * beyond;
   hold.on_the_way = 0.5 * (cell + cell.transpose());
   return hold;
-}
-
-/// Whether two edges side by side have sections that lie differently: at a corner, and where a ring
-/// is glued turned.
-bool sections_differ(Index first_edge, const RodLayout& rod, const Model& model) {
-  if (is_corner(rod, first_edge + 1, model)) return true;
-  const bool closes = rod.closed && rod.position(first_edge + 1) == 0 && !rod.joints.empty();
-  return closes && rod.joints.back().glued != 0.0;
 }
 
 bool is_around_corner(const SectionPlace& place, const RodLayout& rod, const Model& model) {

@@ -555,6 +555,30 @@ def loaded_ring(first, clamped):
     return ring, ring_through(ring.points, stiff, rod, supports=supports, loads=loads)
 
 
+@pytest.mark.parametrize("first", [1, 8, 9])
+def test_springs_against_turning_hold_a_drawn_ring_wherever_it_begins(first):
+    """At their node, and right before and after it; stiff about one axis and soft about another."""
+    tilt = rotation([0.6, 0, 0.8], 0.7)
+
+    def answer(first):
+        ring = Drawn(uneven_ring() @ tilt.T, first)
+        at = {"node": ring.node(8)}
+        spring = {"rotational_stiffness": [1.0, 0.1, 0.4]}
+        scene = ring_through(
+            ring.points,
+            strip(director=tilt[:, 2]),
+            supports=[{"rod": "rod", "at": at, "fix": ["x", "y", "z"], "spring": spring}],
+            loads=[
+                {"point_force": {"rod": "rod", "at": ring.at(17, 0.3), "force": [0.02, -0.05, 0.1]}}
+            ],
+        )
+        return np.roll(measured(scene, ["start"], ["x"])[1].positions[-1], first, axis=0)
+
+    here, there = answer(0), answer(first)
+    assert np.abs(here - uneven_ring() @ tilt.T).max() > 0.05
+    assert there == pytest.approx(here, abs=1e-8)
+
+
 @pytest.mark.parametrize("clamped", [False, True])
 @pytest.mark.parametrize("first", [1, 4, 6, 8, 9, 18, 19])
 def test_loads_act_on_a_ring_wherever_it_begins(first, clamped):

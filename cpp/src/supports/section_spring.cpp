@@ -170,11 +170,12 @@ SectionHold smooth_hold(const SectionSpringPlace& spring, const SectionPlace& pl
 }
 
 /// Whether two edges side by side have sections that lie differently: at a corner, and where a ring
-/// is glued turned.
+/// is glued turned, by more than rounding.
 bool sections_differ(Index first_edge, const RodLayout& rod, const Model& model) {
+  constexpr double kRounding = 1e-9;  // [rad]
   if (is_corner(rod, first_edge + 1, model)) return true;
   const bool closes = rod.closed && rod.position(first_edge + 1) == 0 && !rod.joints.empty();
-  return closes && rod.joints.back().glued != 0.0;
+  return closes && std::abs(rod.joints.back().glued) > kRounding;
 }
 
 /// The drawn section at arc length `s` [m] on the leg that ends with an edge, or begins with one:

@@ -24,9 +24,9 @@ class Pencil {
   Index critical_below(double factor) {
     return solver_.factorize(k0_ + factor * k1_).negative_pivots;
   }
-  /// Raises a factor until more than `index` critical ones are below it; false if there are no more.
-  /// It goes no higher than it has to: of a matrix that all but consists of K1, which may have zeros
-  /// along its diagonal, rounding decides the pivots.
+  /// Raises a factor until more than `index` critical ones are below it; false if there are no
+  /// more. It goes no higher than it has to: of a matrix that all but consists of K1, which may
+  /// have zeros along its diagonal, rounding decides the pivots.
   bool raise(double& factor, Index index) {
     constexpr double kMost = 1e8;
     constexpr double kStride = 4.0;

@@ -579,6 +579,33 @@ def test_springs_against_turning_hold_a_drawn_ring_wherever_it_begins(first):
     assert there == pytest.approx(here, abs=1e-8)
 
 
+def test_a_spring_before_a_clamp_of_a_ring_that_begins_there():
+    """It is on the last edge, whose end is the clamp at the start."""
+
+    def answer(first):
+        ring = Drawn(circle(20), first)
+        scene = ring_through(
+            ring.points,
+            strip(director=ring.points[0]),
+            supports=[
+                {"rod": "rod", "at": {"node": ring.node(8)}, "clamp": True},
+                {
+                    "rod": "rod",
+                    "at": ring.at(7, 0.7),
+                    "spring": {"rotational_stiffness": [9.0, 4.0, 6.0]},
+                },
+            ],
+            loads=[
+                {"point_force": {"rod": "rod", "at": ring.at(17, 0.3), "force": [0.2, -0.1, 0.3]}}
+            ],
+        )
+        return np.roll(measured(scene, ["start"], ["x"])[1].positions[-1], first, axis=0)
+
+    here, there = answer(0), answer(8)
+    assert np.abs(here - circle(20)).max() > 0.05
+    assert there == pytest.approx(here, abs=1e-9)
+
+
 @pytest.mark.parametrize("clamped", [False, True])
 @pytest.mark.parametrize("first", [1, 4, 6, 8, 9, 18, 19])
 def test_loads_act_on_a_ring_wherever_it_begins(first, clamped):

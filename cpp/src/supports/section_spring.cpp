@@ -48,7 +48,7 @@ struct SectionHold {
   bool counts_turns = true;  // whole ones, of the twist
 };
 
-/// What the clamp beside a place holds of the leg on which the place is.
+/// The section that the clamp beside a place holds, on the leg of the place.
 HeldFrame held_beside(const PlaceBesideClamp& place, const RodLayout& rod, const Model& model) {
   const Clamp& clamp = rod.clamps[to_size(place.clamp)];
   return clamp_of_leg(clamp, place.edge != clamp.place, rod, model).held;
@@ -105,12 +105,12 @@ SectionFrame drawn_section_at(double s, const SectionPlace& place, const RodLayo
                      section_on_line(s, place.first_edge, rod, model));
   }
   const SectionFrame first = drawn_frame(model, number_of(rod, place.first_edge));
-  const double middle = rod.edge_middle(place.first_edge);
   const auto beside = place_beside_clamp(rod, s);
-  if (!beside) return first.turned(rod.initial_twist * (s - middle));
-  const Clamp& clamp = rod.clamps[to_size(beside->clamp)];
-  return between(first, held_beside(*beside, rod, model).drawn,
-                 (s - middle) / (rod.arc_length[to_size(clamp.place)] - middle));
+  if (!beside) {
+    return first.turned(rod.initial_twist * (s - rod.edge_middle(place.first_edge)));
+  }
+  const double half = 0.5 * rod.edge_length[to_size(beside->edge)];
+  return between(first, held_beside(*beside, rod, model).drawn, 1.0 - beside->distance / half);
 }
 
 Mat3 axes_of(const SectionFrame& section) {

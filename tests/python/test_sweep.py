@@ -274,7 +274,7 @@ def test_a_probe_named_like_a_column_of_each_sweep_is_refused(cantilever, name):
 
 
 def test_numbers_that_a_table_holds_otherwise(cantilever, tmp_path):
-    """Of more than 64 bits, nan, and given as a whole one and not."""
+    """Whole numbers of more than 64 bits, nan, and a number given both as 7 and as 7.0."""
     nodes = "rods.arm.nodes"
     for _ in range(2):
         sweep = der.sweep(cantilever, {nodes: [5, 10**20, 7]}, out=tmp_path / "s", resume=True)

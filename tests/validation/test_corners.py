@@ -478,7 +478,7 @@ FORCES = ([-0.4, 0.5, 0.7], [0.3, -0.6, 0.5])
 
 
 def leg_points(edges, bent, dimension):
-    """Of the two legs, from the corner at the origin on."""
+    """Nodes of the two legs, each from the corner at the origin on."""
     legs = []
     for number, (length, direction) in enumerate(CORNER_LEGS):
         s = np.linspace(0.0, length, edges + 1)

@@ -186,8 +186,8 @@ def test_beside_a_clamp(name, edges, fitted_order):
 
 
 def tension_of_elastica(force, moment, stiffness, drawn):
-    """Of the inextensible rod of EI = L = 1 in its plane, drawn with a curvature, clamped at the
-    start, at the end of which a force, a moment and a spring against turning act:
+    """Tension of the inextensible rod of EI = L = 1 in its plane, drawn with a curvature, clamped
+    at the start, at the end of which a force, a moment and a spring against turning act:
     theta'' = -(Fy cos theta - Fx sin theta), and the tension is the force along the tangent."""
 
     def march(start):

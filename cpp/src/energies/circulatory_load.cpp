@@ -108,12 +108,7 @@ template <class Kind>
 constexpr bool kIsForce =
     std::is_same_v<Kind, PlanarFollowerForce> || std::is_same_v<Kind, FollowerForce>;
 
-template <class Kinds>
-bool is_moment(const Kinds& kind) {
-  return std::visit([](const auto& load) { return !kIsForce<std::decay_t<decltype(load)>>; }, kind);
-}
-
-/// What `f` makes of a moment; a default for a force.
+/// The value that `f` has for a moment; a default for a force.
 template <class Result, class Kinds, class F>
 Result of_moment(const Kinds& kind, const F& f) {
   return std::visit(
@@ -228,7 +223,7 @@ void CirculatoryLoad::evaluate(const Configuration& here, CirculatoryTerm& out) 
 
 Vec3 CirculatoryLoad::force(const Configuration& here) const {
   Vec3 total = Vec3::Zero();
-  if (is_moment(kind)) return total;
+  if (of_moment<bool>(kind, [](const auto&) { return true; })) return total;
   CirculatoryTerm term;
   evaluate(here, term);
   if (std::holds_alternative<PlanarFollowerForce>(kind)) {

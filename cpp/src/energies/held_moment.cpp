@@ -7,7 +7,7 @@ namespace der {
 template <int Edges>
 Vec3 HeldMoment<Edges>::Change::on_rod() const {
   Vec3 whole = Vec3::Zero();
-  for (std::size_t i = 0; i < loaded.count; ++i) whole -= moment(i);
+  for (std::size_t i = 0; i < free.count; ++i) whole -= moment(i);
   return whole;
 }
 
@@ -28,7 +28,7 @@ typename HeldMoment<Edges>::Change HeldMoment<Edges>::change_at(const Configurat
                                               drawn.tangent.dot(amount)},
                                              true}
                                : SectionLoad{amount, false};
-  return {{section, here, x, load}, {section, here, x}};
+  return Change(section, here, x, load);
 }
 
 template <int Edges>
@@ -43,13 +43,13 @@ EdgeMoments HeldMoment<Edges>::moments(const Configuration& here, const Vec3& am
 template <int Edges>
 Vec3 HeldMoment<Edges>::taken_by_springs(const Configuration& here, const Vec3& amount) const {
   const Change change = change_at(here, amount);
-  return change.on_rod() - change.loaded.held.load();
+  return change.on_rod() - change.loaded.load();
 }
 
 template <int Edges>
 StoredBeside HeldMoment<Edges>::stored(const Configuration& here, const Vec3& amount) const {
   const Change change = change_at(here, amount);
-  const HeldSection& loaded = change.loaded.held;
+  const HeldSection& loaded = change.loaded;
   const HeldSection& free = change.free.held;
   return {loaded.energy_on_the_way() - free.energy_on_the_way(),
           loaded.energy_in_springs() - free.energy_in_springs()};
@@ -60,9 +60,9 @@ void HeldMoment<Edges>::evaluate(const Configuration& here, const Vec3& amount,
                                  CirculatoryTerm& out) const {
   out.reset(size());
   const Change change = change_at(here, amount);
-  const HeldSection::Stiffness loaded = change.loaded.held.stiffness();
+  const HeldSection::Stiffness loaded = change.loaded.stiffness();
   const HeldSection::Stiffness free = change.free.held.stiffness();
-  const auto& frames = change.loaded.edges;
+  const auto& frames = change.free.edges;
   for (std::size_t i = 0; i < Edges; ++i) {
     const Index own = 4 * static_cast<Index>(i);
     const Eigen::Matrix<double, 3, 4> turning = frames[i].rotation();

@@ -37,7 +37,7 @@ Mat3 HeldSection::Rotation::curving(const Vec3& load) const {
 }
 
 HeldSection::HeldSection(const SpringInSeries& spring, const CarriedSections& carried,
-                         std::size_t count, const SectionLoad& load)
+                         std::size_t count)
     : spring_(spring),
       carried_(carried),
       count_(count),
@@ -45,8 +45,13 @@ HeldSection::HeldSection(const SpringInSeries& spring, const CarriedSections& ca
       reference_twist_(holds(spring) ? 0.0 : carried[0].twist),
       place_(place_at(carried[0].frame, carried[0].twist - reference_twist_)) {
   settle();
-  load_ = load;
-  if (settled_ && !load.is_zero()) raise_load();
+}
+
+HeldSection HeldSection::under(const SectionLoad& load) const {
+  HeldSection result = *this;
+  result.load_ = load;
+  if (settled_ && !load.is_zero()) result.raise_load();
+  return result;
 }
 
 /// `near`: the twist from the reference [rad], known up to less than half a turn.
@@ -113,7 +118,7 @@ Vec3 HeldSection::carried_moment(std::size_t i, const Vec3& moment) const {
   return place_.to_carried[i].slopes * (carried_[i].weights.transpose() * moment);
 }
 
-/// What the moment m does along z: m . omega for the rotation omega of the section.
+/// The work of the moment m by z: m . omega for the rotation omega of the section.
 Vec3 HeldSection::load_along_z() const { return place_.per_rotation.transpose() * load(); }
 
 /// The derivative of -load_along_z() by z. Turning the section by omega changes the moment Z q of a

@@ -62,18 +62,25 @@ std::vector<double> RodLayout::moment_arc_lengths() const {
   return places;
 }
 
+namespace {
+
+/// The first of some places that is at arc length `s` [m]; null: none is.
+template <class Place>
+const Place* place_at(double s, const std::vector<Place>& places, double same_place) {
+  const auto found = std::find_if(places.begin(), places.end(), [&](const Place& place) {
+    return std::abs(place.arc_length - s) <= same_place;
+  });
+  return found == places.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
 const MomentPlace* RodLayout::moment_place_at(double s) const {
-  for (const MomentPlace& place : moment_places) {
-    if (std::abs(place.arc_length - s) <= same_place()) return &place;
-  }
-  return nullptr;
+  return place_at(s, moment_places, same_place());
 }
 
 const SectionSpringPlace* RodLayout::section_spring_at(double s) const {
-  for (const SectionSpringPlace& place : section_springs) {
-    if (std::abs(place.arc_length - s) <= same_place()) return &place;
-  }
-  return nullptr;
+  return place_at(s, section_springs, same_place());
 }
 
 const RodLayout& Model::rod(const std::string& rod_name) const {

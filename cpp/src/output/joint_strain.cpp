@@ -25,7 +25,7 @@ Vec3 offset(const SpatialPivot& pivot, const Model& model, const State& state) {
   return pivot.distance * held_frame(pivot.held, model, state).tangent;
 }
 
-/// What the clamp of a joint holds of the joint's leg.
+/// The section that the clamp of a joint holds, on the joint's leg.
 HeldFrame held_at(const RodJoint& joint, const RodLayout& rod, const Model& model) {
   return clamp_of_leg(rod.clamps[to_size(joint.clamp)], joint.before >= 0, rod, model).held;
 }

@@ -67,7 +67,7 @@ void add_drawn_jumps(const RodLayout& rod, const Model& model, std::vector<doubl
   }
 }
 
-/// What is held at the knots: at those of edges nothing.
+/// The clamps at the knots, as the knots' legs see them; at those of edges one that is not used.
 std::vector<Clamp> held_at_knots(const TangentLine& line, const RodLayout& rod,
                                  const Model& model) {
   std::vector<Clamp> held;

@@ -152,9 +152,9 @@ def make_design(
 
 
 def _unique(keyed: Iterable[tuple[Hashable, Any]]) -> list[Any]:
-    """Return the values with different keys, of those with the same key the first.
+    """Return the values with different keys; the first stands for all that have its key.
 
-    Of a number that is given as 20 and as 20.0 the whole one stays, which fits wherever the other
+    Where a number is given as 20 and as 20.0 the whole number stays, which fits wherever the other
     one does.
     """
     kept: dict[Hashable, Any] = {}

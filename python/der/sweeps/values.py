@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -100,7 +101,7 @@ def stored(value: Any) -> Any:
 
 
 def _check_numbers(values: Iterable[Any]) -> None:
-    if any(isinstance(value, float) and value != value for value in values):
+    if any(isinstance(value, float) and math.isnan(value) for value in values):
         raise ValueError("a value is nan, which is no number")
 
 

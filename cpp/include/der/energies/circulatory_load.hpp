@@ -122,7 +122,7 @@ struct CirculatoryLoad {
   [[nodiscard]] Vec3 force(const Configuration& here) const;
   /// The whole moment [N m], and the parts of its edges; zero for a force.
   [[nodiscard]] EdgeMoments moments(const Configuration& here) const;
-  /// Of a moment at a place with springs against turning, the change [N m] of what they exert.
+  /// The change [N m] of the moment that springs against turning exert at the place of a moment.
   [[nodiscard]] Vec3 taken_by_springs(const Configuration& here) const;
   /// The edges that a moment turns, whose vectors and angles are its coordinates; null beyond their
   /// number.

@@ -19,10 +19,10 @@ struct CirculatoryTerm {
   }
 };
 
-/// What a moment does to the energy [J] beside its place.
+/// Elastic energy [J] beside the place of a moment that is due to it.
 struct StoredBeside {
   double in_rod = 0.0;      ///< of the rod between the place and what the edges tell
-  double in_springs = 0.0;  ///< what it adds to that of springs at the place
+  double in_springs = 0.0;  ///< of springs at the place, beyond that without the moment
 };
 
 }  // namespace der

@@ -42,13 +42,16 @@ struct HeldMoment {
   [[nodiscard]] StoredBeside stored(const Configuration& here, const Vec3& amount) const;
 
  private:
-  /// The section with the moment and without it.
+  /// The section without the moment and with it.
   struct Change {
-    typename Kernel::Response loaded;
     typename Kernel::Response free;
+    HeldSection loaded;
 
+    Change(const typename Kernel::Constants& section, const Configuration& here,
+           const Eigen::Matrix<double, Kernel::kDofs, 1>& x, const SectionLoad& load)
+        : free(section, here, x), loaded(free.held.under(load)) {}
     [[nodiscard]] Vec3 moment(std::size_t i) const {
-      return loaded.held.moment(i) - free.held.moment(i);
+      return loaded.moment(i) - free.held.moment(i);
     }
     [[nodiscard]] Vec3 on_rod() const;
   };

@@ -56,8 +56,9 @@ class HeldSection {
   using CarriedSections = std::array<CarriedSection, kMost>;
 
   /// The first `count` sections are known.
-  HeldSection(const SpringInSeries& spring, const CarriedSections& carried, std::size_t count,
-              const SectionLoad& load = {});
+  HeldSection(const SpringInSeries& spring, const CarriedSections& carried, std::size_t count);
+  /// The same section under a moment.
+  [[nodiscard]] HeldSection under(const SectionLoad& load) const;
 
   [[nodiscard]] double energy() const { return energy_in_springs() + energy_on_the_way(); }
   [[nodiscard]] double energy_in_springs() const;

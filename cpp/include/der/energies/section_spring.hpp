@@ -66,11 +66,11 @@ struct SectionSpring {
     HeldSection held;
 
     Response(const Constants& c, const Configuration& here,
-             const Eigen::Matrix<double, kDofs, 1>& x, const SectionLoad& load = {})
+             const Eigen::Matrix<double, kDofs, 1>& x)
         : edges(edge_frames(c, here, x)),
           count(c.clamp ? 2 : Edges),
           carried(carried_sections(c, edges, here, x)),
-          held(c.spring, carried, count, load) {}
+          held(c.spring, carried, count) {}
     // `held` refers to `carried`.
     Response(const Response&) = delete;
     Response& operator=(const Response&) = delete;

@@ -1078,3 +1078,76 @@ def test_natural_curvature_where_a_ring_is_glued_turned(fitted_order, finer):
         errors = errors[:, :, [k for k, q in enumerate(quantities) if q not in ("twist", "torque")]]
     for of_place in errors.reshape(len(sizes), -1).T:
         assert fitted_order([1 / n for n in sizes], of_place) > 1.9
+
+
+def moved_by_beam_theory(stiffness, turned, force, place):
+    """How far a point of a circle of radius 1 moves under a small force at its start, where it is
+    glued; the circle is clamped at the opposite point. `turned(angle)`: of its sections from the
+    z axis; `place` is an angle from the start.
+
+    The circle is cut beside the clamp, and the wrench there closes it again.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+
+    def at(angle):
+        return np.array([np.cos(angle), np.sin(angle), 0.0])
+
+    def bent(moment, start, end):
+        """Rotation of the section at the angle `end`, and movement of its centre."""
+        turn, moved = np.zeros(3), np.zeros(3)
+        for low, high in pairwise(
+            sorted({start, end, *(b for b in (0.0, place) if start < b < end)})
+        ):
+            for node, weight in zip(nodes, weights, strict=True):
+                angle = low + (high - low) * (1 + node) / 2
+                tangent = np.array([-np.sin(angle), np.cos(angle), 0.0])
+                c, s = np.cos(turned(angle)), np.sin(turned(angle))
+                first = np.array([0.0, 0.0, c]) + s * np.cross(tangent, [0, 0, 1])
+                axes = np.column_stack([np.cross(tangent, first), -first, tangent])
+                bend = axes @ ((axes.T @ moment(angle)) / stiffness) * weight * (high - low) / 2
+                turn += bend
+                moved += np.cross(bend, at(end) - at(angle))
+        return np.concatenate([turn, moved])
+
+    def wrench(w):
+        return lambda angle: w[:3] + np.cross(at(np.pi) - at(angle), w[3:])
+
+    def loaded(angle):
+        return np.cross(at(0.0) - at(angle), force) * (angle < 0)
+
+    flexible = np.column_stack([bent(wrench(unit), -np.pi, np.pi) for unit in np.eye(6)])
+    closing = wrench(np.linalg.solve(flexible, -bent(loaded, -np.pi, np.pi)))
+    return bent(lambda angle: loaded(angle) + closing(angle), -np.pi, place)[3:]
+
+
+@pytest.mark.parametrize("angle", [0.7, GLUED, 2.9])
+def test_sections_of_unequal_stiffness_glued_turned(fitted_order, angle):
+    """Half of the cell about the glue bends about other directors than the other half."""
+    strong, weak, twisting = 2.0, 0.2, 0.5
+    force = 1e-6 * np.array([0.6, -0.7, 1.0])
+
+    def turned(along):
+        return (along % AROUND if along != AROUND else AROUND) * angle / AROUND
+
+    place = 0.25 * AROUND
+    exact = [
+        moved_by_beam_theory(np.array([strong, weak, twisting]), turned, force, there)
+        for there in (0.0, place)
+    ]
+    sizes = (48, 96, 192)
+    errors = []
+    for count in sizes:
+        along = np.linspace(0, AROUND, count, endpoint=False)
+        points = np.column_stack([np.cos(along), np.sin(along), 0 * along])
+        scene = ring_through(
+            points,
+            section([0, 0, 1], EA=1e8, EI1=strong, EI2=weak, GJ=twisting),
+            {"initial_twist": angle / length_of(points)},
+            supports=[{"rod": "rod", "at": {"node": count // 2}, "clamp": True}],
+            loads=[{"point_force": {"rod": "rod", "at": "start", "force": force.tolist()}}],
+        )
+        moved = der.run(scene).positions[-1] - points
+        there = moved[[0, count // 4]]
+        errors.append(np.linalg.norm(there - exact) / np.linalg.norm(exact))
+    assert errors[0] < 10.0 / sizes[0] ** 2
+    assert fitted_order([1 / n for n in sizes], errors) > 1.9

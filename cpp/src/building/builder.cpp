@@ -14,6 +14,7 @@
 #include "der/core/index.hpp"
 #include "der/core/make_room.hpp"
 #include "der/energies/registry.hpp"
+#include "der/loads/circulatory.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/cross_section.hpp"
 #include "der/model/location.hpp"
@@ -296,6 +297,9 @@ Model build_model(const scenario::Scene& scene) {
   for (const auto& load : scene.loads) {
     std::visit([&](const auto& l) { add_load(l, LoadContext{scene, load.name}, model); },
                load.what);
+  }
+  if (model.has_sections()) {
+    for (const RodLayout& rod : model.rods) act_on_loaded_sections(rod, model);
   }
   set_actuated_turns(model);
   follow_slopes(scene, model);

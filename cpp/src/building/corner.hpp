@@ -7,11 +7,13 @@ namespace der {
 
 // The cell about a node is half on the edge before it and half on the one after. At a corner these
 // point elsewhere: the cell twists on one and bends on the other where a smooth curve does only one
-// of both. `curvature: tangent` does not resolve corners, not even in their plane.
+// of both. Where a ring is glued turned, it bends about other directors. `curvature: tangent` does
+// not resolve this, at corners not even in their plane.
 
-/// The joint whose compliance at rest is the sum of its two halves. `drawn` is the joint as the
-/// drawn frames `before` and `after` see it, `smooth` that of a smooth curve, with stiffnesses
-/// greater than 0, and `share` the part of the cell that lies before the node.
+/// The joint whose compliance at rest is the sum of its two halves. `drawn` is the joint as strains
+/// see it, `before` and `after` are the drawn frames of its two edges, `smooth` is the joint of a
+/// smooth curve, with stiffnesses greater than 0, and `share` the part of the cell that lies before
+/// the node.
 inline CoupledJoint corner_joint(const SectionFrame& before, const SectionFrame& after,
                                  const JointKinematics<AngleCurvature>& drawn, double share,
                                  const Joint& smooth) {

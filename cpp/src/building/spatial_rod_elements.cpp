@@ -282,15 +282,24 @@ class SectionElements {
     }
     Joint stiffness = stiffness_of(rod_, joint, true);
     if constexpr (std::is_same_v<Curvature, AngleCurvature>) {
-      if (is_corner(rod_, joint.place(), model_) && resists_everything(stiffness)) {
+      if (has_two_halves(joint) && resists_everything(stiffness)) {
         const double length = rod_.edge_length[to_size(joint.before)];
         const double share = length / (length + rod_.edge_length[to_size(joint.after)]);
-        add_joint_element<CornerBend>(joint, corner_joint(a, b, drawn, share, stiffness));
+        add_joint_element<CornerBend>(joint,
+                                      corner_joint(a, frame(joint.after), drawn, share, stiffness));
         stiffness = {};  // the edges stay a chain (assembly/spatial_chain.hpp)
       }
     }
     add_joint_element<SpatialBend<Curvature>>(joint, stiffness);
     follow({number(joint.before), number(joint.after), {}}, drawn.strain().twist - turned);
+  }
+
+  /// Whether the cell about a joint bends or twists about other axes before the node than after it:
+  /// at a corner, and where sections of unequal stiffness are glued turned. Half a turn is none.
+  [[nodiscard]] bool has_two_halves(const RodJoint& joint) const {
+    constexpr double kRounding = 1e-9;  // [rad]
+    const bool turns_axes = std::abs(std::sin(joint.glued)) > kRounding && rod_.EI_1 != rod_.EI_2;
+    return turns_axes || is_corner(rod_, joint.place(), model_);
   }
 
   template <class Kernel, class AJoint>

@@ -1,6 +1,5 @@
 #include "der/energies/circulatory_load.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <type_traits>
 
@@ -10,15 +9,6 @@
 
 namespace der {
 namespace {
-
-Vec3 amount_of(const CirculatoryLoad& load, const Vector& controls) {
-  Vec3 amount = Vec3::Zero();
-  for (int c = 0; c < 3; ++c) {
-    const Index control = load.amount[to_size(c)];
-    if (control >= 0) amount[c] = controls[control];
-  }
-  return load.actuated.turned(amount, controls);
-}
 
 /// Beyond the middle of an outermost edge, where its weight is above 1: the edge is bent against
 /// the next one over 13/12 of its length, which brings its free end onto the curve
@@ -104,9 +94,11 @@ Vec3 taken_by(const SpatialMoment::TurnedEdge& edge, const Vec3& moment, double 
   return edge.across * moment + (edge.along - edge.across) * torque * t;
 }
 
+template <class Kind, class... Forces>
+constexpr bool kIsOneOf = (std::is_same_v<Kind, Forces> || ...);
 template <class Kind>
 constexpr bool kIsForce =
-    std::is_same_v<Kind, PlanarFollowerForce> || std::is_same_v<Kind, FollowerForce>;
+    kIsOneOf<Kind, PlanarFollowerForce, FollowerForce, HeldForce<1>, HeldForce<2>>;
 
 /// The value that `f` has for a moment; a default for a force.
 template <class Result, class Kinds, class F>
@@ -131,14 +123,6 @@ std::array<double, 2> weights_in_bending(const std::array<double, 2>& weights) {
   result[outer] = kTrueTurn * weights[outer];
   result[1 - outer] = 1.0 - result[outer];
   return result;
-}
-
-Vec3 ActuatedSection::turned(const Vec3& vector, const Vector& controls) const {
-  if (turn.is_zero()) return vector;
-  const Vec3 rotation = axes * turn.at(controls);
-  const double angle = rotation.norm();
-  if (angle == 0.0) return vector;
-  return Eigen::AngleAxisd(angle, rotation / angle) * vector;
 }
 
 void PlanarFollowerForce::evaluate(const Configuration& here, const Vec3& amount,
@@ -166,7 +150,7 @@ void FollowerForce::evaluate(const Configuration& here, const Vec3& amount,
   out.tangent.topRightCorner(3, force.slope.cols()) = -force.slope;
 }
 
-EdgeMoments SpatialMoment::moments(const Configuration& here, const Vec3& amount) const {
+EdgeMoments SpatialMoment::moments_at(const Configuration& here, const Vec3& amount) const {
   EdgeMoments result;
   result.whole = amount;
   if (follower) result.whole = following(edges, here, drawn_moment(*this, amount)).value;
@@ -217,8 +201,7 @@ void SpatialMoment::evaluate(const Configuration& here, const Vec3& amount,
 }
 
 void CirculatoryLoad::evaluate(const Configuration& here, CirculatoryTerm& out) const {
-  std::visit([&](const auto& load) { load.evaluate(here, amount_of(*this, here.controls), out); },
-             kind);
+  std::visit([&](const auto& load) { load.evaluate(here, amount.at(here.controls), out); }, kind);
 }
 
 Vec3 CirculatoryLoad::force(const Configuration& here) const {
@@ -235,14 +218,13 @@ Vec3 CirculatoryLoad::force(const Configuration& here) const {
 }
 
 EdgeMoments CirculatoryLoad::moments(const Configuration& here) const {
-  return of_moment<EdgeMoments>(kind, [&](const auto& moment) {
-    return moment.moments(here, amount_of(*this, here.controls));
-  });
+  return of_moment<EdgeMoments>(
+      kind, [&](const auto& moment) { return moment.moments_at(here, amount.at(here.controls)); });
 }
 
 Vec3 CirculatoryLoad::taken_by_springs(const Configuration& here) const {
   const auto taken = [&](const auto& moment) {
-    return moment.taken_by_springs(here, amount_of(*this, here.controls));
+    return moment.taken_by_springs(here, amount.at(here.controls));
   };
   if (const auto* on_one = std::get_if<HeldMoment<1>>(&kind)) return taken(*on_one);
   if (const auto* on_two = std::get_if<HeldMoment<2>>(&kind)) return taken(*on_two);
@@ -262,9 +244,8 @@ const FramedEdge& CirculatoryLoad::nearer_edge() const {
 }
 
 StoredBeside CirculatoryLoad::stored(const Configuration& here) const {
-  return of_moment<StoredBeside>(kind, [&](const auto& moment) {
-    return moment.stored(here, amount_of(*this, here.controls));
-  });
+  return of_moment<StoredBeside>(
+      kind, [&](const auto& moment) { return moment.stored(here, amount.at(here.controls)); });
 }
 
 void add_circulatory_forces(const std::vector<CirculatoryLoad>& loads, const Configuration& here,

@@ -122,10 +122,10 @@ Vec3 HeldSection::carried_moment(std::size_t i, const Vec3& moment) const {
 Vec3 HeldSection::load_along_z() const { return place_.per_rotation.transpose() * load(); }
 
 /// The derivative of -load_along_z() by z. Turning the section by omega changes the moment Z q of a
-/// constant load q on z by (S - 1/2 [Z q]x) omega, and m itself by omega x m if it turns.
+/// constant load q on z by (S - 1/2 [Z q]x) omega, and the part of m that turns by omega x m.
 Mat3 HeldSection::load_curving() const {
-  const double side = load_.turns ? 0.5 : -0.5;
-  const Mat3 own = place_.from_drawn.curving(load_along_z()) + side * cross_matrix(load());
+  const Vec3 aside = 0.5 * (load_.turned(place_.section) - load_.fixed);
+  const Mat3 own = place_.from_drawn.curving(load_along_z()) + cross_matrix(aside);
   return place_.per_rotation.transpose() * own * place_.per_rotation;
 }
 
@@ -226,18 +226,18 @@ void HeldSection::settle() {
 void HeldSection::raise_load() {
   const Place start = place_;
   const Vec3 moment = moment_;
-  const Vec3 whole = load_.components;
+  const SectionLoad whole = load_;
   settled_ = false;
   for (int parts = 1; parts <= kMostParts && !settled_; parts *= 2) {
     place_ = start;
     moment_ = moment;
     settled_ = true;
     for (int part = 1; part <= parts && settled_; ++part) {
-      load_.components = (double(part) / parts) * whole;
+      load_ = whole.times(double(part) / parts);
       settled_ = converge(kLongStep);
     }
   }
-  load_.components = whole;
+  load_ = whole;
 }
 
 double HeldSection::energy_in_springs() const {
@@ -267,6 +267,13 @@ HeldSection::Following HeldSection::following(const Slopes& slopes) const {
   const auto matrix = equations().partialPivLu();
   Following result;
   for (std::size_t i = 0; i < count_; ++i) result[i] = -matrix.solve(slopes[i].transpose());
+  return result;
+}
+
+std::array<Mat3, HeldSection::kMost> HeldSection::turning() const {
+  const Following change = following(slopes_of_moments());
+  std::array<Mat3, kMost> result{Mat3::Zero(), Mat3::Zero()};
+  for (std::size_t i = 0; i < count_; ++i) result[i] = place_.per_rotation * change[i].topRows<3>();
   return result;
 }
 

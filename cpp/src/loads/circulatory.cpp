@@ -1,7 +1,10 @@
 #include "der/loads/circulatory.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "der/core/index.hpp"
 #include "der/energies/circulatory_load.hpp"
@@ -18,7 +21,7 @@ namespace {
 
 void set_amount(const scenario::VectorSeries& amount, CirculatoryLoad& load, Model& model) {
   for (std::size_t c = 0; c < to_size(model.dimension); ++c) {
-    load.amount[c] = model.tables.add(component_of(amount, c));
+    load.amount.components[c] = model.tables.add(component_of(amount, c));
   }
 }
 
@@ -113,15 +116,81 @@ SpatialMoment moment_on_edges(bool follower, double s, const SectionPlace& place
   return moment;
 }
 
+/// The moments and the following forces of a rod at one place, by their numbers in
+/// ElementLists::circulatory.
+struct SectionLoads {
+  double arc_length = 0.0;  // [m]
+  std::vector<Index> moments;
+  std::vector<Index> forces;
+};
+
+SectionLoads& loads_at(double s, const RodLayout& rod, std::vector<SectionLoads>& places) {
+  for (SectionLoads& place : places) {
+    if (std::abs(place.arc_length - s) <= rod.same_place()) return place;
+  }
+  return places.emplace_back(SectionLoads{s, {}, {}});
+}
+
+std::vector<SectionLoads> section_loads(const RodLayout& rod) {
+  std::vector<SectionLoads> places;
+  for (const SpatialMomentPlace& moment : rod.spatial_moments) {
+    loads_at(moment.arc_length, rod, places).moments.push_back(moment.load);
+  }
+  for (const ForcePlace& force : rod.force_places) {
+    if (force.follower < 0) continue;
+    loads_at(force.arc_length, rod, places).forces.push_back(force.follower);
+  }
+  return places;
+}
+
+bool follows(const CirculatoryLoad& moment) {
+  return std::get<SpatialMoment>(moment.kind).follower;
+}
+
+/// Whether a clamp that holds its section is beside the place.
+bool beside_held_section(double s, const RodLayout& rod) {
+  const auto beside = place_beside_clamp(rod, s);
+  return beside && rod.clamps[to_size(beside->clamp)].holds_section;
+}
+
+/// Whether the edges tell less than the loads at a place need. Moments of a fixed direction act on
+/// the edges alike, one or many, but what they store is not the sum of what each of them would.
+bool need_section(const SectionLoads& place, const RodLayout& rod, const Model& model) {
+  const double s = place.arc_length;
+  if (is_held_or_at_corner(s, rod, model)) return true;
+  if (!(rod.EI_1 > 0.0 && rod.EI_2 > 0.0 && rod.GJ > 0.0)) return false;
+  if (!place.moments.empty() && place.moments.size() + place.forces.size() > 1) return true;
+  const auto& loads = circulatory_loads(*model.elements);
+  const bool any_follows =
+      !place.forces.empty() ||
+      std::any_of(place.moments.begin(), place.moments.end(),
+                  [&](Index moment) { return follows(loads[to_size(moment)]); });
+  return any_follows && beside_held_section(s, rod);
+}
+
+/// `actuated`: the turn of the section beyond the edges that moments turn.
 template <int Edges>
-HeldMoment<Edges> held_moment(const typename SectionSpring<Edges>::Constants& section,
-                              bool follower, const SectionPlace& place, const RodLayout& rod,
-                              const Model& model, CirculatoryLoad& load) {
-  auto moment = with_edges<HeldMoment<Edges>>(
-      place, rod, model, load, [](const FramedEdge& framed, std::size_t) { return framed; });
-  moment.section = section;
-  moment.follower = follower;
-  return moment;
+void act_on_section(const typename SectionSpring<Edges>::Constants& section,
+                    const ActuatedTurn& actuated, const SectionLoads& place,
+                    std::vector<CirculatoryLoad>& loads) {
+  LoadedSection<Edges> loaded;
+  loaded.section = section;
+  for (const Index number : place.moments) {
+    CirculatoryLoad& load = loads[to_size(number)];
+    const auto& on_edges = std::get<SpatialMoment>(load.kind);
+    const bool follower = on_edges.follower;
+    loaded.edges.assign(on_edges.edges.begin(), on_edges.edges.end());
+    if (follower) load.amount.actuated.turn = actuated;
+    load.kind = HeldMoment<Edges>{loaded, follower};
+    loaded.moments.push_back({load.amount, follower});
+  }
+  for (const Index number : place.forces) {
+    CirculatoryLoad& load = loads[to_size(number)];
+    const auto& on_edges = std::get<FollowerForce>(load.kind);
+    loaded.edges.assign(on_edges.edges.begin(), on_edges.edges.end());
+    load.amount.actuated.turn = actuated;
+    load.kind = HeldForce<Edges>{loaded};
+  }
 }
 
 Index add(CirculatoryLoad&& load, Model& model) {
@@ -138,7 +207,7 @@ Index add_follower_force(const scenario::VectorSeries& force, double s, const Ro
   set_amount(force, load, model);
   add_point(s, rod, model, load);
   const SectionPlace place = section_place(s, rod);
-  load.actuated = actuated_section(s, place, rod, model);
+  load.amount.actuated = actuated_section(s, place, rod, model);
   if (model.dimension == 2) {
     load.kind = planar_follower(place, rod, model, load);
   } else {
@@ -155,16 +224,24 @@ void add_spatial_moment(const scenario::VectorSeries& moment, bool follower, dou
   CirculatoryLoad load;
   set_amount(moment, load, model);
   const SectionPlace place = section_place(s, rod);
-  if (follower) load.actuated = actuated_section(s, place, rod, model);
-  const HeldSectionAt held = held_section_at(s, rod, model);
-  if (const auto* on_one = std::get_if<SectionSpring<1>::Constants>(&held)) {
-    load.kind = held_moment<1>(*on_one, follower, place, rod, model, load);
-  } else if (const auto* on_two = std::get_if<SectionSpring<2>::Constants>(&held)) {
-    load.kind = held_moment<2>(*on_two, follower, place, rod, model, load);
-  } else {
-    load.kind = moment_on_edges(follower, s, place, rod, model, load);
-  }
+  if (follower) load.amount.actuated = actuated_section(s, place, rod, model);
+  load.kind = moment_on_edges(follower, s, place, rod, model, load);
   rod.spatial_moments.push_back({s, add(std::move(load), model), {}});
+}
+
+void act_on_loaded_sections(const RodLayout& rod, Model& model) {
+  auto& loads = circulatory_loads(*model.elements);
+  for (const SectionLoads& place : section_loads(rod)) {
+    if (!need_section(place, rod, model)) continue;
+    const double s = place.arc_length;
+    const ActuatedTurn actuated = actuated_turn(s, section_place(s, rod), rod);
+    const HeldSectionAt section = held_section_at(s, rod, model);
+    if (const auto* on_one = std::get_if<SectionSpring<1>::Constants>(&section)) {
+      act_on_section<1>(*on_one, actuated, place, loads);
+    } else {
+      act_on_section<2>(std::get<SectionSpring<2>::Constants>(section), actuated, place, loads);
+    }
+  }
 }
 
 }  // namespace der

@@ -33,7 +33,7 @@ void add_load(const scenario::Moment& load, const LoadContext& context, Model& m
     if (clamp == nullptr) {
       add_spatial_moment(load.moment_vector, load.follower, s, rod, model);
       if (!context.name.empty()) {
-        const auto& controls = model.elements->circulatory.back().amount;
+        const auto& controls = model.elements->circulatory.back().amount.components;
         model.named.push_back(vector_control(context.name, "N m", controls));
       }
     } else if (!clamp->holds_section) {

@@ -18,7 +18,7 @@ void add_load(const scenario::PointForce& load, const LoadContext& context, Mode
     place.arc_length = arc_length_of(load.at, rod);
     place.follower = add_follower_force(load.force, place.arc_length, rod, model);
     rod.force_places.push_back(place);
-    name_it(model.elements->circulatory[to_size(place.follower)].amount);
+    name_it(model.elements->circulatory[to_size(place.follower)].amount.components);
     return;
   }
   const DeadForce force(load.force, !context.name.empty(), model);

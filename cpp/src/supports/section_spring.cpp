@@ -237,11 +237,12 @@ SectionHold hold_at(const SectionSpringPlace& spring, const SectionPlace& place,
              : smooth_hold(spring, place, rod, model);
 }
 
+/// The section that springs hold, but for how the state counts twist.
 template <int Edges>
 typename SectionSpring<Edges>::Constants constants_of(const SectionHold& hold,
                                                       const SectionSpringPlace& spring,
                                                       Index first_edge, const RodLayout& rod,
-                                                      Model& model) {
+                                                      const Model& model) {
   using Kernel = SectionSpring<Edges>;
   typename Kernel::Constants constants;
   constants.spring = {spring.stiffness, hold.on_the_way, hold.section};
@@ -253,13 +254,35 @@ typename SectionSpring<Edges>::Constants constants_of(const SectionHold& hold,
     held.first = edge.first;
     held.last = edge.last;
     held.weights = hold.weights[to_size(i)];
-    const SectionFrame own = drawn_frame(model, number);
-    if (hold.counts_turns) held.reference_twist = follow_twist(number, own, model);
-    held.carried = axes_of(own).transpose() * axes_of(hold.of_natural);
+    held.carried = axes_of(drawn_frame(model, number)).transpose() * axes_of(hold.of_natural);
   }
   if (const auto beside = place_beside_clamp(rod, spring.arc_length)) {
     const HeldFrame held = held_beside(*beside, rod, model);
     constants.clamp = {held, axes_of(held.drawn).transpose() * axes_of(hold.of_natural)};
+  }
+  return constants;
+}
+
+/// The section that no springs hold, at the place of `none`.
+template <int Edges>
+typename SectionSpring<Edges>::Constants free_section(const SectionHold& hold,
+                                                      const SectionSpringPlace& none,
+                                                      Index first_edge, const RodLayout& rod,
+                                                      const Model& model) {
+  auto constants = constants_of<Edges>(hold, none, first_edge, rod, model);
+  const auto drawn_angle = [&](Index edge) {
+    return model.initial_positions[model.framed_edges[to_size(number_of(rod, edge))].theta];
+  };
+  const auto count_by = [&](Index reference, double side, double angles) {
+    constants.between = {reference, side, angles + side * model.drawn_frames[reference]};
+  };
+  const FrameBlock block = FrameBlock::of(number_of(rod, first_edge + Edges - 1));
+  const double first = drawn_angle(first_edge);
+  if (Edges == 2) {
+    count_by(block.twist_at_start(), 1.0, drawn_angle(first_edge + 1) - first);
+  } else if (const auto beside = place_beside_clamp(rod, none.arc_length)) {
+    const bool leaves = rod.clamps[to_size(beside->clamp)].place == beside->edge;
+    count_by(leaves ? block.twist_at_start() : block.twist_at_end(), leaves ? -1.0 : 1.0, -first);
   }
   return constants;
 }
@@ -278,8 +301,14 @@ Index add_element(const SectionHold& hold, const SectionSpringPlace& spring, Ind
     }
     dofs[to_size(3 * Kernel::kNodes + i)] = edge.theta;
   }
+  auto constants = constants_of<Edges>(hold, spring, first_edge, rod, model);
+  for (Index i = 0; i < Edges && hold.counts_turns; ++i) {
+    const Index number = number_of(rod, first_edge + i);
+    constants.edges[to_size(i)].reference_twist =
+        follow_twist(number, drawn_frame(model, number), model);
+  }
   auto& springs = elements_of<Kernel>(*model.elements);
-  springs.add(dofs, constants_of<Edges>(hold, spring, first_edge, rod, model));
+  springs.add(dofs, constants);
   return static_cast<Index>(springs.size()) - 1;
 }
 
@@ -294,17 +323,22 @@ void add_to_section_spring(double s, const Vec3& stiffness, RodLayout& rod) {
   }
 }
 
-HeldSectionAt held_section_at(double s, const RodLayout& rod, Model& model) {
+bool is_held_or_at_corner(double s, const RodLayout& rod, const Model& model) {
+  return rod.section_spring_at(s) != nullptr || is_around_corner(section_place(s, rod), rod, model);
+}
+
+HeldSectionAt held_section_at(double s, const RodLayout& rod, const Model& model) {
   if (const SectionSpringPlace* spring = rod.section_spring_at(s)) {
     const std::size_t element = to_size(spring->element);
     if (spring->on_one_edge)
       return elements_of<SectionSpring<1>>(*model.elements).constants[element];
     return elements_of<SectionSpring<2>>(*model.elements).constants[element];
   }
+  const SectionSpringPlace none{s};
   const SectionPlace place = section_place(s, rod);
-  if (!is_around_corner(place, rod, model)) return std::monostate{};
-  return constants_of<2>(corner_hold(s, place.first_edge, rod, model), {s}, place.first_edge, rod,
-                         model);
+  const SectionHold hold = hold_at(none, place, rod, model);
+  if (place.across.size() == 1) return free_section<1>(hold, none, place.first_edge, rod, model);
+  return free_section<2>(hold, none, place.first_edge, rod, model);
 }
 
 void add_section_springs(RodLayout& rod, Model& model) {

@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
+#include <utility>
 #include <vector>
 
 #include "energies/sample_elements.hpp"
@@ -44,7 +45,7 @@ LoadedEdges<3> sample_edges(Shape shape, Random& random) {
   sample.here.controls.conservativeResize(kNumControls + 3);
   for (Index c = 0; c < 3; ++c) {
     sample.here.controls[kNumControls + c] = uniform(random, -2.0, 2.0);
-    sample.load.amount[static_cast<std::size_t>(c)] = kNumControls + c;
+    sample.load.amount.components[static_cast<std::size_t>(c)] = kNumControls + c;
   }
   return sample;
 }
@@ -90,30 +91,49 @@ LoadedEdges<3> sample_moment(bool follower, Shape shape, Random& random) {
   return sample;
 }
 
-/// On a section that springs hold, that of an element of springs, or that nothing holds.
+/// A section that springs hold, that of an element of springs, or that nothing holds. `before`:
+/// under two moments, one of which follows.
 template <int Edges>
-LoadedEdges<3> sample_held_moment(bool follower, Shape shape, Random& random) {
+LoadedSection<Edges> sample_loaded_section(bool before, Shape shape, Random& random,
+                                           LoadedEdges<3>& sample) {
   using Kernel = SectionSpring<Edges>;
-  LoadedEdges<3> sample = sample_edges(shape, random);
-  HeldMoment<Edges> moment;
-  moment.follower = follower;
-  moment.section = sample_constants(Kernel{}, random);
+  sample = sample_edges(shape, random);
+  LoadedSection<Edges> loaded;
+  loaded.section = sample_constants(Kernel{}, random);
   Eigen::Matrix<double, Kernel::kDofs, 1> x;
   x << sample.here.coordinates.head<3 * Kernel::kNodes>(),
       sample.here.coordinates.segment<Edges>(3 * kNodes);
-  sample_frames(Kernel{}, moment.section, x, random, sample.here);
-  if (Edges == 2 && uniform(random, 0.0, 1.0) < 0.3) moment.section.spring.stiffness.setZero();
+  sample_frames(Kernel{}, loaded.section, x, random, sample.here);
+  if (Edges == 2 && uniform(random, 0.0, 1.0) < 0.3) loaded.section.spring.stiffness.setZero();
   for (Index edge = 0; edge < Edges; ++edge) {
-    const auto& held = moment.section.edges[static_cast<std::size_t>(edge)];
-    FramedEdge& framed = moment.edges.emplace_back(sample_edge(edge, random));
+    const auto& held = loaded.section.edges[static_cast<std::size_t>(edge)];
+    FramedEdge& framed = loaded.edges.emplace_back(sample_edge(edge, random));
     framed.edge.first = held.first;
     framed.edge.last = held.last;
-    add_edge(edge, sample);
   }
   for (Index c = 0; c < 3; ++c) {
-    sample.here.controls[kNumControls + c] = uniform(random, -0.5, 0.5);
+    sample.here.controls[kNumControls + c] = uniform(random, -0.3, 0.3);
   }
-  sample.load.kind = moment;
+  if (before) loaded.moments = {{sample.load.amount, false}, {sample.load.amount, true}};
+  return loaded;
+}
+
+template <int Edges>
+LoadedEdges<3> sample_held_moment(bool follower, bool before, Shape shape, Random& random) {
+  LoadedEdges<3> sample;
+  sample.load.kind =
+      HeldMoment<Edges>{sample_loaded_section<Edges>(before, shape, random, sample), follower};
+  for (Index edge = 0; edge < Edges; ++edge) add_edge(edge, sample);
+  return sample;
+}
+
+template <int Edges>
+LoadedEdges<3> sample_held_force(bool before, Shape shape, Random& random) {
+  LoadedEdges<3> sample;
+  HeldForce<Edges> force{sample_loaded_section<Edges>(before, shape, random, sample)};
+  sample.add_point();
+  for (Index edge = 0; edge < Edges; ++edge) add_edge(edge, sample);
+  sample.load.kind = std::move(force);
   return sample;
 }
 
@@ -121,7 +141,7 @@ LoadedEdges<2> sample_planar(Shape shape, Random& random) {
   LoadedEdges<2> sample;
   sample.here = sample_configuration(random);
   sample.here.coordinates = sample_planar_positions<6>(shape, random);
-  sample.load.amount = {kMoment, kTurn, -1};
+  sample.load.amount.components = {kMoment, kTurn, -1};
   sample.add_point();
   PlanarFollowerForce force;
   for (Index edge = 0; edge < 2; ++edge) {
@@ -182,9 +202,13 @@ TEST_CASE("circulatory loads: tangents are the derivatives of the forces") {
       check_tangent(sample_force(shape, random), h);
       check_tangent(sample_moment(false, shape, random), h);
       check_tangent(sample_moment(true, shape, random), h);
-      for (const bool follower : {false, true}) {
-        check_tangent(sample_held_moment<1>(follower, shape, random), h);
-        check_tangent(sample_held_moment<2>(follower, shape, random), h);
+      for (const bool before : {false, true}) {
+        for (const bool follower : {false, true}) {
+          check_tangent(sample_held_moment<1>(follower, before, shape, random), h);
+          check_tangent(sample_held_moment<2>(follower, before, shape, random), h);
+        }
+        check_tangent(sample_held_force<1>(before, shape, random), h);
+        check_tangent(sample_held_force<2>(before, shape, random), h);
       }
     }
   }

@@ -10,8 +10,9 @@
 #include "der/energies/edge_moments.hpp"
 #include "der/energies/effective_edge.hpp"
 #include "der/energies/framed_edge.hpp"
+#include "der/energies/held_force.hpp"
 #include "der/energies/held_moment.hpp"
-#include "der/kinematics/actuated_turn.hpp"
+#include "der/energies/load_amount.hpp"
 #include "der/kinematics/configuration.hpp"
 
 namespace der {
@@ -88,19 +89,10 @@ struct SpatialMoment {
   /// The number in `edges` of that which is nearer.
   [[nodiscard]] std::size_t nearer() const { return edges.front().across < 0.5 ? 1 : 0; }
   /// `amount` is M, or M0 [N m], here and below.
-  [[nodiscard]] EdgeMoments moments(const Configuration& here, const Vec3& amount) const;
+  [[nodiscard]] EdgeMoments moments_at(const Configuration& here, const Vec3& amount) const;
   void evaluate(const Configuration& here, const Vec3& amount, CirculatoryTerm& out) const;
   /// 1/2 M . c M.
   [[nodiscard]] StoredBeside stored(const Configuration& here, const Vec3& amount) const;
-};
-
-/// How actuations turn the section that a load follows beyond its edges. F0 and M0 are turned by it
-/// before the edges turn them: the edges tell all that depends on coordinates.
-struct ActuatedSection {
-  ActuatedTurn turn;
-  Mat3 axes = Mat3::Zero();  ///< of the drawn section (turning_axes), in a plane z stands first
-
-  [[nodiscard]] Vec3 turned(const Vec3& vector, const Vector& controls) const;
 };
 
 /// One load: what it is, how large, and on which degrees of freedom it acts.
@@ -111,10 +103,10 @@ struct CirculatoryLoad {
     double weight = 1.0;
   };
 
-  std::variant<PlanarFollowerForce, FollowerForce, SpatialMoment, HeldMoment<1>, HeldMoment<2>>
+  std::variant<PlanarFollowerForce, FollowerForce, HeldForce<1>, HeldForce<2>, SpatialMoment,
+               HeldMoment<1>, HeldMoment<2>>
       kind;
-  std::array<Index, 3> amount{-1, -1, -1};     ///< controls of its components [N or N m]; -1: 0
-  ActuatedSection actuated;                    ///< of loads that follow the rod
+  LoadAmount amount;
   std::vector<std::vector<Term>> coordinates;  ///< the rows of B'
 
   void evaluate(const Configuration& here, CirculatoryTerm& out) const;

@@ -26,18 +26,17 @@ struct CarriedSection {
   Mat3 weights = Mat3::Identity();  ///< W [-]
 };
 
-/// A moment that acts on the held section itself.
+/// The moments that act on the held section itself.
 struct SectionLoad {
-  /// [N m] in space; of one that turns with the section, along its two directors and its tangent.
-  Vec3 components = Vec3::Zero();
-  bool turns = false;
+  Vec3 fixed = Vec3::Zero();    ///< that keeps its direction [N m]
+  Vec3 turning = Vec3::Zero();  ///< along the two directors and the tangent of the section [N m]
 
-  [[nodiscard]] bool is_zero() const { return components.isZero(0.0); }
-  [[nodiscard]] Vec3 on(const SectionFrame& section) const {
-    if (!turns) return components;
-    return components[0] * section.first + components[1] * section.second +
-           components[2] * section.tangent;
+  [[nodiscard]] bool is_zero() const { return fixed.isZero(0.0) && turning.isZero(0.0); }
+  [[nodiscard]] Vec3 turned(const SectionFrame& section) const {
+    return turning[0] * section.first + turning[1] * section.second + turning[2] * section.tangent;
   }
+  [[nodiscard]] Vec3 on(const SectionFrame& section) const { return fixed + turned(section); }
+  [[nodiscard]] SectionLoad times(double share) const { return {share * fixed, share * turning}; }
 };
 
 /// The section of a rod that springs hold, between or beside one or two that are known. It has the
@@ -57,12 +56,16 @@ class HeldSection {
 
   /// The first `count` sections are known.
   HeldSection(const SpringInSeries& spring, const CarriedSections& carried, std::size_t count);
-  /// The same section under a moment.
+  /// The same section under moments.
   [[nodiscard]] HeldSection under(const SectionLoad& load) const;
 
   [[nodiscard]] double energy() const { return energy_in_springs() + energy_on_the_way(); }
   [[nodiscard]] double energy_in_springs() const;
   [[nodiscard]] double energy_on_the_way() const;
+
+  [[nodiscard]] const SectionFrame& section() const { return place_.section; }
+  /// The rotation of the section by that of each known one [-], equilibrium being kept.
+  [[nodiscard]] std::array<Mat3, kMost> turning() const;
 
   /// The moment [N m] M_i with dE = sum_i M_i . omega_i, for rotations of the known sections.
   [[nodiscard]] Vec3 moment(std::size_t i) const;

@@ -38,6 +38,12 @@ struct SectionSpring {
     Index reference_twist = -1;
     Mat3 weights = Mat3::Identity();  ///< W_i [-]
   };
+  /// How the state counts the twist from the first of the two carried sections to the other.
+  struct TwistBetween {
+    Index reference = -1;  ///< control: reference twist of the joint between them [rad]
+    double side = 1.0;     ///< -1 where the joint leads from the second to the first
+    double drawn = 0.0;    ///< what the angles and that control make in the drawn shape [rad]
+  };
   /// The section that a clamp holds. It has the rest of the weights.
   struct HeldBeside {
     HeldFrame held;
@@ -46,7 +52,8 @@ struct SectionSpring {
   struct Constants {
     SpringInSeries spring;
     std::array<HeldEdge, Edges> edges;
-    std::optional<HeldBeside> clamp;  ///< beside the springs on one edge
+    std::optional<HeldBeside> clamp;  ///< beside the place on one edge
+    TwistBetween between;             ///< where there are no springs, of two carried sections
   };
 
   /// The section that turns with an edge, and therefore by the same rotation.
@@ -130,6 +137,17 @@ struct SectionSpring {
   }
 
  private:
+  /// Without springs the twist from a drawn section does not count, but that between the two
+  /// carried sections does.
+  static double twist_from_first(const Constants& c, const Configuration& here,
+                                 const Eigen::Matrix<double, kDofs, 1>& x,
+                                 const HeldSection::CarriedSections& carried) {
+    const double second = c.clamp ? c.clamp->held.twist_angle(here.controls) : x[kDofs - 1];
+    const double near = second - x[3 * kNodes] +
+                        c.between.side * here.controls[c.between.reference] - c.between.drawn;
+    return nearest_turn(twist_between(carried[0].frame, carried[1].frame), near);
+  }
+
   static HeldSection::CarriedSections carried_sections(const Constants& c, const EdgeFrames& frames,
                                                        const Configuration& here,
                                                        const Eigen::Matrix<double, kDofs, 1>& x) {
@@ -150,6 +168,9 @@ struct SectionSpring {
                               : x[3 * kNodes + i] - here.controls[edge.reference_twist];
       const double twist = nearest_turn(twist_between(c.spring.drawn, section), near);
       carried[std::size_t(i)] = {section, twist, edge.weights};
+    }
+    if (c.between.reference >= 0) {
+      carried[1].twist = carried[0].twist + twist_from_first(c, here, x, carried);
     }
     return carried;
   }

@@ -20,4 +20,8 @@ Index add_follower_force(const scenario::VectorSeries& force, double s, const Ro
 void add_spatial_moment(const scenario::VectorSeries& moment, bool follower, double s,
                         RodLayout& rod, Model& model);
 
+/// Makes the loads of a rod act on sections that their edges do not tell, and see each other there
+/// (energies/loaded_section.hpp), once all of them have been added.
+void act_on_loaded_sections(const RodLayout& rod, Model& model);
+
 }  // namespace der

@@ -18,11 +18,13 @@ void add_to_section_spring(double s, const Vec3& stiffness, RodLayout& rod);
 /// Adds the elements of these springs, after those of the rod.
 void add_section_springs(RodLayout& rod, Model& model);
 
-/// The section at arc length `s` [m] on which a moment acts there (energies/held_moment.hpp): that
-/// of the springs, or at a corner without them one that nothing holds. Nothing elsewhere: the
-/// section is then known by its edges alone.
-using HeldSectionAt =
-    std::variant<std::monostate, SectionSpring<1>::Constants, SectionSpring<2>::Constants>;
-HeldSectionAt held_section_at(double s, const RodLayout& rod, Model& model);
+/// The section at arc length `s` [m] (energies/loaded_section.hpp): that of the springs there, or
+/// one that no springs hold.
+using HeldSectionAt = std::variant<SectionSpring<1>::Constants, SectionSpring<2>::Constants>;
+HeldSectionAt held_section_at(double s, const RodLayout& rod, const Model& model);
+
+/// Whether springs or a corner keep the edges from telling how the section at `s` [m] lies under
+/// any moment there.
+bool is_held_or_at_corner(double s, const RodLayout& rod, const Model& model);
 
 }  // namespace der

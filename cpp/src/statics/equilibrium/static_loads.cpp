@@ -14,7 +14,7 @@ StaticLoads scaled(const Model& model, const StaticLoads& loads, double share) {
     result.controls[moment.moment] = share * loads.controls[moment.moment];
   }
   for (const CirculatoryLoad& load : circulatory_loads(*model.elements)) {
-    for (const Index control : load.amount) {
+    for (const Index control : load.amount.components) {
       if (control >= 0) result.controls[control] = share * loads.controls[control];
     }
   }

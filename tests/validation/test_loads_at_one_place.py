@@ -1,0 +1,150 @@
+"""Loads that follow, at places where the edges beside them do not tell how the section lies: other
+moments act there, springs against turning hold it, the rod has a corner, or a clamp is near.
+
+The reference is `references/section_loads.py`. It is given what acts in the axes of each section,
+in which `Case` has all its vectors. What springs exert there is a part of the moment of a fixed
+direction, whose rest is the load of the scene.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from references.kirchhoff_rod import Rod
+from references.section_loads import Wrench, held_at_start
+from scipy.spatial.transform import Rotation
+from spatial_scenes import CLAMPED, measured, rod_through, section
+
+STRONG, WEAK, TWISTING, STRETCHING = 1.0, 0.3, 0.25, 2e3
+STRIP = section([0, 1, 0], EA=STRETCHING, EI1=WEAK, EI2=STRONG, GJ=TWISTING)
+ROD = Rod(1.0, (STRONG, WEAK), TWISTING, STRETCHING)  # the rates of turning about d1 and d2
+DRAWN = np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]], dtype=float)  # d1 = y, d2 = z, d3 = x
+CORNER = Rotation.from_rotvec([0.4, 1.2, 0.0]).as_matrix()
+NONE = (0.0, 0.0, 0.0)
+FORCE, MOMENT, OTHER = (1.0, 2.0, 0.3), (0.6, 1.0, 0.3), (0.5, -1.0, 0.8)
+SIZES = (40, 80, 160)
+
+
+@dataclass
+class Case:
+    """What acts at a share of the length that may depend on the number of edges, and at the end."""
+
+    force: tuple[float, float, float] = NONE  # follows
+    moment: tuple[float, float, float] = NONE  # follows
+    fixed: tuple[float, float, float] = NONE
+    spring: float = 0.0
+    corner: bool = False
+    share: float = 0.5
+    edges_on: float = 0.0
+    tip: tuple[float, float, float] = NONE  # a force of a fixed direction
+
+    def place(self, edges):
+        return self.share + self.edges_on / edges
+
+
+CASES = {
+    "force and fixed moment": Case(FORCE, fixed=OTHER),
+    "moment and fixed moment": Case(moment=MOMENT, fixed=OTHER),
+    "between two nodes": Case(FORCE, MOMENT, OTHER, edges_on=0.3),
+    "force on a spring": Case(FORCE, spring=3.0, fixed=OTHER),
+    "moments on a spring": Case(moment=MOMENT, fixed=OTHER, spring=3.0),
+    "at the end": Case((0.3, 0.6, 0.1), (0.2, 0.3, 0.1), (0.2, -0.4, 0.3), share=1.0),
+    "force at a corner": Case(FORCE, corner=True),
+    "all at a corner": Case(FORCE, MOMENT, OTHER, corner=True),
+    "beside the clamp": Case(
+        FORCE, (1.5, 2.0, 1.0), OTHER, share=0.0, edges_on=0.3, tip=(0.3, -0.5, 0.2)
+    ),
+    "moment alone beside the clamp": Case(
+        moment=(1.5, 2.0, 1.0), share=0.0, edges_on=0.3, tip=(0.3, -0.5, 0.2)
+    ),
+}
+
+
+def spring_moment(k, frame):
+    """Of 1/2 k (swing^2 + twist^2), exerted on a section with this frame (docs/space.md)."""
+    before, now = DRAWN[:, 2], frame[:, 2]
+    axis = np.cross(before, now)
+    cosine = before @ now
+    swing = np.arctan2(np.linalg.norm(axis), cosine) * axis / np.linalg.norm(axis)
+    moved = Rotation.from_rotvec(swing).apply(DRAWN[:, 0])
+    twist = np.arctan2(np.cross(moved, frame[:, 0]) @ now, moved @ frame[:, 0])
+    return -k * (swing + twist * (before + now) / (1.0 + cosine))
+
+
+def scene_and_tip(case, edges):
+    place = case.place(edges)
+    total = np.add(case.moment, case.fixed)
+    corner = CORNER if case.corner else np.eye(3)
+    wrenches = [Wrench(place, case.force, tuple(total), corner)]
+    if place < ROD.length:
+        wrenches.append(Wrench(ROD.length, case.tip))
+    tip, _, frames = held_at_start(ROD, wrenches, DRAWN)
+    fixed = frames[0] @ case.fixed - spring_moment(case.spring, frames[0]) * bool(case.spring)
+
+    nodes = np.linspace(0, 1, edges + 1)[:, None] * DRAWN[:, 2]
+    if case.corner:
+        beyond = np.maximum(nodes[:, 0] - place, 0)[:, None]
+        nodes = np.minimum(nodes, place) + beyond * (DRAWN @ CORNER)[:, 2]
+    at = {"rod": "rod", "at": place}
+    loads = [
+        {"point_force": {**at, "force": (DRAWN @ case.force).tolist(), "follower": True}},
+        {"moment": {**at, "moment": (DRAWN @ case.moment).tolist(), "follower": True}},
+        {"moment": {**at, "moment": fixed.tolist()}},
+        {"point_force": {"rod": "rod", "at": "end", "force": (frames[-1] @ case.tip).tolist()}},
+    ]
+    acting = [load for load in loads if any(v for kind in load.values() for v in amount(kind))]
+    springs = [{**at, "spring": {"rotational_stiffness": case.spring}}] if case.spring else []
+    return rod_through(nodes, STRIP, supports=[*CLAMPED, *springs], loads=acting), tip
+
+
+def amount(load):
+    return load.get("force") or load.get("moment")
+
+
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+def test_the_end_of_the_rod(case, fitted_order):
+    errors = []
+    for edges in SIZES:
+        scene, tip = scene_and_tip(case, edges)
+        values, _ = measured(scene, ["end"], ("x", "y", "z"))
+        errors.append(np.linalg.norm(values[0] - tip))
+    # The rod turns by some 2 rad, of which order 1 would leave a share of 1/edges.
+    assert errors[0] < 2.0 / SIZES[0] ** 2
+    assert fitted_order([1 / n for n in SIZES], errors) > 1.9
+
+
+@pytest.mark.parametrize("place", ["end", 0.5, 0.4813])
+def test_two_parts_of_a_moment_store_what_the_whole_does(place):
+    """The rod beside the place bends under both, by more than each of them stores."""
+    whole = np.array([0.8, 0.5, -1.0])
+    gaps = []
+    for edges in SIZES:
+        bend = []
+        for parts in [(1.0,), (0.3, 0.7)]:
+            loads = [
+                {"moment": {"rod": "rod", "at": place, "moment": (part * whole).tolist()}}
+                for part in parts
+            ]
+            nodes = np.linspace([0, 0, 0], [1, 0, 0], edges + 1)
+            _, result = measured(rod_through(nodes, STRIP, loads=loads), ["end"], ("x",))
+            bend.append(result.energies["bend"][-1])
+        gaps.append(abs(bend[1] / bend[0] - 1))
+    # Where its share of an edge changes, a bound tells the order: what both store besides their
+    # own is a share of 0.2/edges.
+    assert np.all(np.array(gaps) < 0.15 / np.array(SIZES) ** 2)
+
+
+def test_a_rod_that_spins_past_half_a_turn_at_a_corner():
+    """A section at a corner has no drawn one from which turns would count: a rod turned by its
+    clamp through 1.5 turns has the shape of one that was not, turned."""
+    scene, _ = scene_and_tip(CASES["all at a corner"], 20)
+    follower = [load for load in scene["loads"] if next(iter(load.values())).get("follower")]
+    shapes = []
+    for turns in (0.0, 1.5):
+        support = {**CLAMPED[0], "prescribe": {"twist": 2 * np.pi * turns}} if turns else CLAMPED[0]
+        values, _ = measured(
+            {**scene, "supports": [support], "loads": follower}, ["end"], ("x", "y", "z")
+        )
+        shapes.append(values[0])
+    turn = Rotation.from_rotvec([np.pi, 0.0, 0.0]).as_matrix()
+    assert np.allclose(turn @ shapes[0], shapes[1], atol=1e-9)

@@ -313,6 +313,16 @@ HeldSection::Stress HeldSection::stress(const std::array<Vec3, kMost>& rotations
     }
     result.stiffness[i][i] += carried_curving(i, moment);
   }
+  const Mat6 inverse = equations().inverse();
+  const auto unbalanced = [&](std::size_t i) -> Mat3 {
+    return own * change[i].topRows<3>() + to_section[i].transpose();
+  };
+  for (std::size_t i = 0; i < count_; ++i) {
+    for (std::size_t j = 0; j < count_; ++j) {
+      result.by_following[i][j] =
+          -unbalanced(i).transpose() * inverse.topLeftCorner<3, 3>() * unbalanced(j);
+    }
+  }
   return result;
 }
 

@@ -70,6 +70,14 @@ class Pencil {
   Vector units_;
 };
 
+/// The factor a at which K0 + a K1 + a^2 K2 is critical for a shape that is critical without K2,
+/// from the quadratic forms of the shape. K2 is small; on meshes so coarse that it is not, it is
+/// left out.
+double critical_factor(double k0, double k1, double k2) {
+  const double inside = k1 * k1 - 4.0 * k0 * k2;
+  return inside > 0.0 ? -2.0 * k0 / (k1 + std::copysign(std::sqrt(inside), k1)) : -k0 / k1;
+}
+
 /// The shape with its largest displacement 1; the largest angle of a shape that only twists.
 Vector scaled(const Model& model, const Vector& shape) {
   const auto largest = [](const auto& values) {
@@ -140,13 +148,16 @@ std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& st
     same.push_back(pencil.shape(factor, same));
     const Vector shape = over_all_dofs(model, same.back());
     // Taken element by element, the quotient keeps the digits of slender rods.
-    const double exact = -second_variation(model, here, shape) / stress.variation(shape);
+    const double k0_form = second_variation(model, here, shape);
+    const double exact = -k0_form / stress.variation(shape);
     if (!(std::abs(exact / (unit * factor) - 1.0) < kTrusted)) {
       // Where K1 is much larger than K0, its rounding errors cause spurious critical factors.
       if (stiffness.rounding() < kHidden * unit * factor * std::abs(stress.variation(shape))) break;
       throw hidden_buckling();
     }
-    modes.push_back({exact, scaled(model, shape)});
+    modes.push_back(
+        {critical_factor(k0_form, stress.variation(shape), stress.second_variation(shape)),
+         scaled(model, shape)});
     before = factor;
     low = factor * (1.0 - 1e-12);
   }

@@ -145,20 +145,30 @@ struct StressedSpring {
       : at(c, here, x), stress(at.held.stress(rotations(at, d))) {}
 
   /// By vector and angle of each edge.
-  [[nodiscard]] Eigen::Matrix<double, 4 * Edges, 4 * Edges> stiffness() const {
-    Eigen::Matrix<double, 4 * Edges, 4 * Edges> matrix;
+  using Matrix = Eigen::Matrix<double, 4 * Edges, 4 * Edges>;
+  [[nodiscard]] Matrix stiffness() const {
+    Matrix matrix = of_rotations(stress.stiffness);
+    for (std::size_t i = 0; i < Edges; ++i) {
+      matrix.template block<4, 4>(4 * Index(i), 4 * Index(i)) +=
+          own_stiffness(at.edges[i], stress.moments[i]);
+    }
+    return matrix;
+  }
+  /// The same of HeldSection::Stress::by_following.
+  [[nodiscard]] Matrix by_following() const { return of_rotations(stress.by_following); }
+
+ private:
+  [[nodiscard]] Matrix of_rotations(const HeldSection::Stiffness& stiffness) const {
+    Matrix matrix;
     for (std::size_t i = 0; i < Edges; ++i) {
       for (std::size_t j = 0; j < Edges; ++j) {
-        Eigen::Matrix4d block =
-            at.edges[i].rotation().transpose() * stress.stiffness[i][j] * at.edges[j].rotation();
-        if (i == j) block += own_stiffness(at.edges[i], stress.moments[i]);
-        matrix.template block<4, 4>(4 * Index(i), 4 * Index(j)) = block;
+        matrix.template block<4, 4>(4 * Index(i), 4 * Index(j)) =
+            at.edges[i].rotation().transpose() * stiffness[i][j] * at.edges[j].rotation();
       }
     }
     return matrix;
   }
 
- private:
   /// A clamp beside the springs does not turn.
   static std::array<Vec3, HeldSection::kMost> rotations(
       const typename Kernel::Response& at, const Eigen::Matrix<double, Kernel::kDofs, 1>& d) {
@@ -304,6 +314,8 @@ void InitialStress::add_springs(const Model& model, const Configuration& here,
     for (std::size_t i = 0; i < Edges; ++i) {
       set_edge(dofs, i, 3 * (Edges + 1) + i, 4 * i, term);
     }
+    following_.push_back(term);
+    following_.back().matrix = spring.by_following();
   }
 }
 
@@ -337,13 +349,21 @@ Vector InitialStress::stiffness(const Model& model, const MatrixLayout& layout) 
   return values;
 }
 
-double InitialStress::variation(const Vector& direction) const {
+double InitialStress::variation_of(const std::vector<Term>& terms, const Vector& direction) {
   double total = 0.0;
-  for (const Term& term : terms_) {
+  for (const Term& term : terms) {
     const Values d = term.of(direction);
     total += d.dot(term.matrix * d);
   }
   return total;
+}
+
+double InitialStress::variation(const Vector& direction) const {
+  return variation_of(terms_, direction);
+}
+
+double InitialStress::second_variation(const Vector& direction) const {
+  return variation_of(following_, direction);
 }
 
 Vector InitialStress::product(const Vector& direction) const {

@@ -79,10 +79,12 @@ class HeldSection {
 
   /// The moments M_i [N m] that small rotations [rad] of the known sections cause, and what they
   /// add to S_ij by turning with the rod, whose material stiffness and directions stay those of
-  /// here.
+  /// here. Under the stress the section follows the known ones otherwise: times the square of the
+  /// load factor, that makes the stiffness `by_following`, which is never positive.
   struct Stress {
     std::array<Vec3, kMost> moments;
     Stiffness stiffness;
+    Stiffness by_following;
   };
   [[nodiscard]] Stress stress(const std::array<Vec3, kMost>& rotations) const;
 

@@ -21,7 +21,8 @@ namespace der {
 /// turning of an edge with its angle (EdgeFrame::geometric_stiffness). A clamp that lets the
 /// section turn reads M in directors that spin with the edge, and the second derivatives of its
 /// strains are not small: they add a part that couples spin and bending. So do springs against
-/// turning, whose section follows the edges beside it as it does without stress. The part that
+/// turning, whose section follows the edges beside it as it does without stress; what the stress
+/// changes of that is of second order in it, K2, and an edge's length smaller. The part that
 /// couples the turning of an edge with its stretching is left out: it would make a straight beam
 /// buckle under a load across it of about sqrt(EA EI), where terms of second order in the
 /// displacement, left out too, cancel it. In a plane nothing remains of moments, nor where sections
@@ -41,6 +42,8 @@ class InitialStress {
   /// d' K1 d [J] of a displacement d (all degrees of freedom) [m], summed over the elements, each
   /// of which sees differences of it alone.
   [[nodiscard]] double variation(const Vector& direction) const;
+  /// d' K2 d [J].
+  [[nodiscard]] double second_variation(const Vector& direction) const;
   /// K1 d (all degrees of freedom) [N].
   [[nodiscard]] Vector product(const Vector& direction) const;
   /// The stresses of the reversed displacement.
@@ -81,7 +84,10 @@ class InitialStress {
   template <class Curvature>
   void add_joints(const Model& model, const Configuration& here, const Vector& displacement);
 
-  std::vector<Term> terms_;
+  static double variation_of(const std::vector<Term>& terms, const Vector& direction);
+
+  std::vector<Term> terms_;      // of K1
+  std::vector<Term> following_;  // of K2
   double rotation_ = 0.0;
   double strain_ = 0.0;
   double largest_ = 0.0;

@@ -13,8 +13,10 @@ import pytest
 from references.curved_twisted_rod import NATURAL
 from references.follower_loads import held_at_start
 from references.kirchhoff_rod import Rod, rotation
+from references.section_loads import Wrench
+from references.section_loads import held_at_start as held_at_places
 from scenes import END, START, arch
-from spatial_scenes import measured, section, straight_rod
+from spatial_scenes import measured, rod_through, section, straight_rod
 
 XYZ = ("x", "y", "z")
 SIZES = [16, 32, 64]
@@ -281,12 +283,27 @@ def test_the_answer_is_on_the_path_from_the_unloaded_rod(factor, tip):
     assert values[0] == pytest.approx(tip, abs=2e-3)
 
 
-def test_a_moment_at_a_tangent_clamp_is_refused():
-    strip = section([0, 1, 0], EA=1e5, EI1=1.0, EI2=1.0, GJ=1.0)
-    scene = straight_rod(8, strip, loads=[moment(1.0, 0.0, 0.0, at="start")])
-    scene["supports"] = [{"rod": "rod", "at": "start", "clamp": "tangent"}]
-    with pytest.raises(der.DerError, match=r"clamp: tangent.*at: 0\.01"):
-        der.run({**scene, "analysis": "static"})
+@pytest.mark.parametrize("end", ["start", "end"])
+@pytest.mark.parametrize("follower", [False, True])
+def test_a_moment_at_a_tangent_clamp_is_a_torque(end, follower):
+    """The clamp takes its part across the tangent, and a spin needs the whole of the other."""
+    torque = 0.3
+    other = "end" if end == "start" else "start"
+    strip = section([0, 1, 0], EA=1e5, EI1=1.0, EI2=0.5, GJ=0.8)
+    scene = straight_rod(8, strip, loads=[moment(torque, 0.2, -0.4, at=end, follower=follower)])
+    scene["supports"] = [
+        {"rod": "rod", "at": end, "clamp": "tangent"},
+        {"rod": "rod", "at": other, "clamp": True},
+    ]
+    values, result = measured(scene, ["start", 0.35, "end"], ("torque", "moment_1", "y"))
+    sign = -1.0 if end == "start" else 1.0
+    assert values == pytest.approx(np.tile([sign * torque, 0, 0], (3, 1)), abs=1e-9)
+    assert result.summary["warnings"] == []
+    # The rod stores T^2 L/(2 GJ), half of which the cell at the clamp has, beyond its edge.
+    assert result.energies["bend"][-1] == pytest.approx(torque**2 / 1.6, rel=1e-9)
+    moments = sum(reaction.moment[-1] for reaction in result.reactions())
+    assert moments[0] == pytest.approx(-torque, abs=1e-9)
+    assert np.hypot(*moments[1:]) == pytest.approx(np.hypot(0.2, 0.4), abs=1e-9)
 
 
 def test_moment_and_torque_up_to_a_turned_end(fitted_order):
@@ -339,3 +356,52 @@ def test_a_force_that_follows_a_hinged_end_across_its_free_axis_is_no_mistake():
     loads = [force(-1.0, 0.2, 0)]
     scene = planar_scene("planar", loads, n=8, supports=supports)
     assert der.run(scene).summary["warnings"] == []
+
+
+@pytest.mark.parametrize(
+    ("model", "load"),
+    [
+        ("planar", {"force": (0.0, -0.9, 0.5)}),
+        ("spatial", {"force": (0.4, -0.9, 0.5)}),
+        ("spatial", {"moment": (0.9, 0.7, 0.4)}),
+    ],
+    ids=["force in the plane", "force", "moment"],
+)
+@pytest.mark.parametrize("free", ["end", "start"])
+def test_what_follows_a_free_end_of_a_rod_drawn_as_an_arc(fitted_order, model, load, free):
+    """With a natural curvature that is given, edges at a free end lean against the curve, but those
+    that are drawn are its chords. The rod is straight by nature."""
+    arc = 1.2  # [rad], of length 1
+    bar = section(EA=1e5, EI=1.0)
+    rod = Rod(1.0, (1.0, 1.0), 0.7, 1e5)
+    natural = 0
+    if model == "spatial":
+        bar = section([0, 0, 1], EA=1e5, EI1=0.6, EI2=1.0, GJ=0.7)
+        rod = Rod(1.0, (1.0, 0.6), 0.7, 1e5)  # about d1 = z and about d2
+        natural = [0, 0]
+    drawn = [
+        np.array([[0, np.sin(a), np.cos(a)], [0, -np.cos(a), np.sin(a)], [1, 0, 0]])
+        for a in (0.0, arc)
+    ]
+    tip, _, _ = held_at_places(rod, [Wrench(1.0, **load)], drawn[0])
+    ((kind, components),) = load.items()
+    dimension = 2 if model == "planar" else 3
+    vector = (drawn[1] @ components)[:dimension].tolist()
+    sizes = (20, 40, 80)
+    errors = []
+    for n in sizes:
+        angle = np.linspace(0, arc, n + 1)
+        points = np.column_stack([np.sin(angle), 1 - np.cos(angle), 0 * angle])[:, :dimension] / arc
+        at = {"rod": "rod", "at": free, kind: vector, "follower": True}
+        scene = rod_through(
+            points if free == "end" else points[::-1],
+            bar,
+            supports=[{"rod": "rod", "at": "start" if free == "end" else "end", "clamp": True}],
+            loads=[{"point_force" if kind == "force" else "moment": at}],
+            model=model,
+            rod={"natural_curvature": natural},
+        )
+        found = der.run(scene).positions[-1][-1 if free == "end" else 0]
+        errors.append(np.linalg.norm(found - tip[:dimension]))
+    assert errors[0] < 1.0 / sizes[0] ** 2
+    assert fitted_order([1 / n for n in sizes], errors) > 1.9

@@ -1,5 +1,6 @@
 #include "der/loads/circulatory.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -8,6 +9,7 @@
 
 #include "der/core/index.hpp"
 #include "der/energies/circulatory_load.hpp"
+#include "der/kinematics/planar_edge.hpp"
 #include "der/model/frames.hpp"
 #include "der/model/location.hpp"
 #include "der/model/section_place.hpp"
@@ -46,12 +48,34 @@ FramedEdge framed_edge(Index number, const Model& model) {
   return {model.framed_edges[to_size(number)], FrameBlock::of(number), drawn_frame(model, number)};
 }
 
+/// Angle [rad] by which an edge at a free end leans further than a chord of the drawn curve, if it
+/// had that curve without stress: edges of a rod with a natural curvature do (supports/spring.hpp).
+double drawn_lean(Index edge, const RodLayout& rod, const Model& model) {
+  if (rod.closed || rod.natural_curvature.empty()) return 0.0;
+  const auto node = [&](Index place) -> Vec2 {
+    return model.initial_positions.segment<2>(model.dof(rod.node(place), 0));
+  };
+  const auto at_end = [&](Index end, Index inner) {
+    const bool bends = rod.is_inner(inner) && rod.clamp_at(inner) == nullptr;
+    if (!bends || rod.clamp_at(end) != nullptr || is_corner(rod, inner, model)) return 0.0;
+    const double turn =
+        angle_between(Vec2(node(inner) - node(inner - 1)), Vec2(node(inner + 1) - node(inner)));
+    return rod.edge_length[to_size(edge)] / 12.0 * turn / rod.voronoi_length(inner);
+  };
+  double lean = 0.0;
+  if (edge == 0) lean -= at_end(0, 1);
+  if (edge == rod.num_edges() - 1) lean += at_end(edge + 1, edge);
+  return lean;
+}
+
 PlanarFollowerForce planar_follower(const SectionPlace& place, const RodLayout& rod,
                                     const Model& model, CirculatoryLoad& load) {
   PlanarFollowerForce follower;
   for (std::size_t i = 0; i < place.direction.size(); ++i) {
-    const EffectiveEdge edge = effective_edge(rod, place.first_edge + static_cast<Index>(i), model);
-    const Vec2 drawn = edge.vector(model.initial_positions, 0.0, 0.0).normalized();
+    const Index number = rod.position(place.first_edge + static_cast<Index>(i));
+    const EffectiveEdge edge = effective_edge(rod, number, model);
+    const Vec2 chord = edge.vector(model.initial_positions, 0.0, 0.0).normalized();
+    const Vec2 drawn = Eigen::Rotation2Dd(drawn_lean(number, rod, model)) * chord;
     follower.edges.push_back({edge, place.direction[i], drawn});
     add_vector(edge.dofs[0], edge.dofs[2], model, load);
   }
@@ -147,10 +171,28 @@ bool follows(const CirculatoryLoad& moment) {
   return std::get<SpatialMoment>(moment.kind).follower;
 }
 
+/// Whether a place is known by an edge at a free end that leans against the natural curve, while
+/// the drawn edge is a chord of the drawn one (supports/spring.hpp).
+bool beside_leaning_end(double s, const RodLayout& rod) {
+  if (rod.closed || rod.natural_curvatures.empty()) return false;
+  const SectionPlace place = section_place(s, rod);
+  const Index last = place.first_edge + static_cast<Index>(place.direction.size());
+  return (place.first_edge == 0 && rod.clamp_at(0) == nullptr) ||
+         (last == rod.num_edges() && rod.clamp_at(rod.num_edges()) == nullptr);
+}
+
 /// Whether a clamp that holds its section is beside the place.
 bool beside_held_section(double s, const RodLayout& rod) {
   const auto beside = place_beside_clamp(rod, s);
   return beside && rod.clamps[to_size(beside->clamp)].holds_section;
+}
+
+/// Whether the place is the node of a clamp that lets the section spin: it takes up a part of a
+/// moment.
+bool at_held_tangent(double s, const RodLayout& rod) {
+  const auto beside = place_beside_clamp(rod, s);
+  return beside && !rod.clamps[to_size(beside->clamp)].holds_section &&
+         beside->distance <= rod.same_place();
 }
 
 /// Whether the edges tell less than the loads at a place need. Moments of a fixed direction act on
@@ -160,12 +202,13 @@ bool need_section(const SectionLoads& place, const RodLayout& rod, const Model& 
   if (is_held_or_at_corner(s, rod, model)) return true;
   if (!(rod.EI_1 > 0.0 && rod.EI_2 > 0.0 && rod.GJ > 0.0)) return false;
   if (!place.moments.empty() && place.moments.size() + place.forces.size() > 1) return true;
+  if (!place.moments.empty() && at_held_tangent(s, rod)) return true;
   const auto& loads = circulatory_loads(*model.elements);
   const bool any_follows =
       !place.forces.empty() ||
       std::any_of(place.moments.begin(), place.moments.end(),
                   [&](Index moment) { return follows(loads[to_size(moment)]); });
-  return any_follows && beside_held_section(s, rod);
+  return any_follows && (beside_held_section(s, rod) || beside_leaning_end(s, rod));
 }
 
 /// `actuated`: the turn of the section beyond the edges that moments turn.

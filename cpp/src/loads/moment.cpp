@@ -1,9 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
-#include "der/core/error.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/planar_moment.hpp"
 #include "der/energies/registry.hpp"
@@ -30,20 +27,12 @@ void add_load(const scenario::Moment& load, const LoadContext& context, Model& m
   const double s = arc_length_of(load.at, rod);
   const Clamp* clamp = clamp_there(rod, s);
   if (model.dimension == 3) {
-    if (clamp == nullptr) {
+    if (clamp == nullptr || !clamp->holds_section) {
       add_spatial_moment(load.moment_vector, load.follower, s, rod, model);
       if (!context.name.empty()) {
         const auto& controls = model.elements->circulatory.back().amount.components;
         model.named.push_back(vector_control(context.name, "N m", controls));
       }
-    } else if (!clamp->holds_section) {
-      throw Error(
-          "model_error",
-          fmt::format("a moment at the node of a 'clamp: tangent' of rod '{}', which takes "
-                      "up a part of it only: this is not available yet. Write a place "
-                      "beside the node, such as 'at: {:.3g}'",
-                      rod.name,
-                      s > 0.5 * rod.rest_length() ? 0.99 * s : s + 0.01 * rod.rest_length()));
     }
     return;
   }

@@ -99,8 +99,9 @@ std::optional<PlaceBesideClamp> place_beside_clamp(const RodLayout& rod, double 
     for (Index turns = -most; turns <= most; ++turns) {
       const Index node = rod.clamps[i].place + turns * rod.num_edges();
       const double from = rod.arc_length_at(node);
-      const Index edge = s < from ? node - 1 : node;
-      if (!rod.closed && (edge < 0 || edge >= rod.num_edges())) continue;
+      const bool before = s < from || (!rod.closed && node == rod.num_edges());
+      const Index edge = before ? node - 1 : node;
+      if (edge < 0 && !rod.closed) continue;
       const PlaceBesideClamp place{static_cast<Index>(i), rod.position(edge), std::abs(s - from),
                                    std::abs(tangent_place(rod, edge) - from)};
       if (place.distance < place.reach) return place;

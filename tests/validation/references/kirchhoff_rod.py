@@ -111,10 +111,12 @@ class Held:
 
 @dataclass(frozen=True)
 class HeldTangent:
-    """An end whose position and tangent (a unit vector) are held, but not its turn about that."""
+    """An end whose position and tangent (a unit vector) are held, but not its turn about that: a
+    torque acts there."""
 
     position: Vector
     tangent: Vector
+    torque: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -210,9 +212,10 @@ def _end(rod: Rod, end: Held | HeldTangent | Loaded, y: Numbers) -> Numbers:
         skew.append(product[1, 0] - product[0, 1])
         return np.concatenate([y[:3] - np.asarray(end.position) / rod.length, np.stack(skew)])
     if isinstance(end, HeldTangent):
-        # The tangent lies across two directions, and no torque passes.
+        # The tangent lies across two directions.
         across = np.linalg.svd(np.asarray(end.tangent, dtype=float)[None])[2][1:]
-        turns = np.concatenate([across @ d[:, 2], (y[10:13] * d[:, 2]).sum()[None]])
+        torque = (y[10:13] * d[:, 2]).sum() - end.torque / rod.units[10]
+        turns = np.concatenate([across @ d[:, 2], torque[None]])
         return np.concatenate([y[:3] - np.asarray(end.position) / rod.length, turns])
     force = np.asarray(end.force) / rod.units[7]
     moment = (np.asarray(end.moment) + 0.0) / rod.units[10]

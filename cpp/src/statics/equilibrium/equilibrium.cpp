@@ -1,6 +1,7 @@
 #include "der/statics/equilibrium.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -69,15 +70,20 @@ class EquilibriumSearch {
         newton_(model, assembler, solver, options.newton,
                 Admissibility(model, loads_.force, state.positions)),
         stiffness_(model, assembler, solver),
-        continuation_(model, newton_) {}
+        continuation_(model, newton_) {
+    if (has_potential_) return;
+    const StaticLoads none = scaled(model, loads_, 0.0);
+    unloaded_.reset(new EquilibriumSearch(model, assembler, solver, options, state, none));
+  }
 
   EquilibriumReport run(State& state) {
     Shape shape{state.positions, state.followed};
+    if (unloaded_) start_without_loads(shape);
     report_.failed = search(shape);
     if (report_.failed) blame_weak_holding(state, *report_.failed);
     if (report_.failed) blame_free_spin(*report_.failed);
-    report_.newton_iterations = newton_.iterations();
-    report_.relaxations = continuation_.steps() + relaxation_steps_;
+    report_.newton_iterations += newton_.iterations();
+    report_.relaxations += continuation_.steps() + relaxation_steps_;
     report_.force_scale = newton_.force_scale();
     if (!report_.failed) {
       state.positions = std::move(shape.positions);
@@ -87,6 +93,28 @@ class EquilibriumSearch {
   }
 
  private:
+  /// The same without loads, which has a potential.
+  EquilibriumSearch(const Model& model, const Assembler& assembler, LinearSolver& solver,
+                    const EquilibriumOptions& options, const State& state, StaticLoads none)
+      : model_(model),
+        leave_saddles_(options.leave_saddles),
+        has_potential_(true),
+        loads_(std::move(none)),
+        newton_(model, assembler, solver, options.newton,
+                Admissibility(model, loads_.force, state.positions)),
+        stiffness_(model, assembler, solver),
+        continuation_(model, newton_) {}
+
+  /// For loads without a potential: moves to the equilibrium without loads, from which they are
+  /// raised. It is the one that a scene without these loads has, if there are several. Without one,
+  /// as of a rod that the loads hold, the search begins at the shape as it is.
+  void start_without_loads(Shape& shape) {
+    Shape found = shape;
+    if (!unloaded_->search(found)) shape = std::move(found);
+    report_.newton_iterations = unloaded_->newton_.iterations();
+    report_.relaxations = unloaded_->continuation_.steps() + unloaded_->relaxation_steps_;
+  }
+
   std::optional<FailedSearch> search(Shape& shape) {
     const Vector forces = acting_forces(model_, loads_, shape);
     if (std::string unheld = find_unheld_part(model_, forces); !unheld.empty()) {
@@ -220,7 +248,8 @@ class EquilibriumSearch {
   StaticNewton newton_;
   Stiffness stiffness_;
   PseudoTransient continuation_;
-  int relaxation_steps_ = 0;  // of the dynamic relaxation
+  int relaxation_steps_ = 0;                     // of the dynamic relaxation
+  std::unique_ptr<EquilibriumSearch> unloaded_;  // the same without loads that have no potential
   EquilibriumReport report_;
 };
 

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "der/output/run_folder.hpp"
+#include "der/output/start.hpp"
 #include "der/output/summary.hpp"
 #include "der/scenario/scenario.hpp"
 #include "heartbeat.hpp"
@@ -32,6 +34,11 @@ class PySimulation::Turn {
  private:
   PySimulation& simulation_;
 };
+
+PySimulation::PySimulation(Scenario scenario) : engine_(std::move(scenario)) {
+  Heartbeat heartbeat;
+  apply_start(engine_, [&] { heartbeat.beat(); });
+}
 
 void PySimulation::step(std::int64_t count, py::handle self) {
   if (count < 0) throw py::value_error("the number of steps must not be negative");
@@ -64,7 +71,15 @@ EquilibriumReport PySimulation::equilibrium(py::handle self, bool leave_saddles)
   const Turn turn(*this);
   forces_.apply(engine_.model(), engine_.state(), self);
   const py::gil_scoped_release unlocked;
-  return engine_.equilibrium(leave_saddles);
+  Heartbeat heartbeat;
+  return engine_.equilibrium(leave_saddles, [&] { heartbeat.beat(); });
+}
+
+std::vector<Mode> PySimulation::modes(std::int64_t count) {
+  Heartbeat heartbeat;
+  // There are no more of them than degrees of freedom.
+  const auto wanted = static_cast<int>(std::min<std::int64_t>(count, engine_.model().num_dofs()));
+  return engine_.modes(wanted, [&] { heartbeat.beat(); });
 }
 
 RunOutcome PySimulation::run(Recorder& recorder, double until, const Callback& callback,
@@ -92,10 +107,11 @@ RunOutcome PySimulation::run(Recorder& recorder, double until, const Callback& c
     if (go_on && !engine_.finished()) apply_forces();
     return go_on;
   };
+  const auto beat = [&] { heartbeat.beat(tick); };
   const py::gil_scoped_release unlocked;
   apply_forces();
-  return out ? run_in_folder(RunFolder(*out), engine_, recorder, after_step)
-             : der::run(engine_, recorder, after_step);
+  return out ? run_in_folder(RunFolder(*out), engine_, recorder, after_step, beat)
+             : der::run(engine_, recorder, after_step, beat);
 }
 
 void PySimulation::restore(const State& saved) {

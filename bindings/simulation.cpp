@@ -347,13 +347,13 @@ void bind_actions(PySimulationClass& cls) {
           "It is found under the loads at the present time, `extra_force` and the functions of\n"
           "`add_force` (evaluated once, at the start) included. Velocities become zero. An "
           "unstable\n"
-          "equilibrium is left for a stable one, unless `leave_saddles` is false. Raises\n"
-          "NotConvergedError.")
+          "equilibrium is left for a stable one, unless `leave_saddles` is false. Ctrl-C interrupts\n"
+          "between two iterations, and the state is then as before. Raises NotConvergedError.")
       .def(
           "vibration_modes",
           [](PySimulation& simulation, int count) {
             if (count < 1) throw py::value_error("the number of modes must be at least 1");
-            const std::vector<Mode> modes = simulation.engine().modes(count);
+            const std::vector<Mode> modes = simulation.modes(count);
             const Model& model = simulation.engine().model();
             Array frequencies(static_cast<py::ssize_t>(modes.size()));
             Array growth_rates(static_cast<py::ssize_t>(modes.size()));

@@ -144,6 +144,11 @@ class Batch(_core.Batch):
         -------
         list of EquilibriumReport or None
             One for each member; None for those that have failed.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            Of Ctrl-C: each member is then in its equilibrium, or where it was.
         """
         return self.settle(leave_saddles)
 

@@ -71,7 +71,7 @@ class Simulation(_core.Simulation):
         """Run from the present state to the end of the scene and record it.
 
         A static scene is brought to its equilibrium. Other Python threads run meanwhile, and Ctrl-C
-        interrupts between two steps.
+        interrupts between two steps, or two iterations of a search.
 
         Parameters
         ----------

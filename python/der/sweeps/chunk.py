@@ -134,7 +134,9 @@ def _run_member(
     message, seconds, verification = "", outcome.cpu_seconds, None
     if chunk.verify and outcome.error is None:
         try:
-            verification = verify(varied, jobs=1)
+            verification = verify(
+                varied, jobs=1, progress=None if tick is None else lambda _: tick()
+            )
             seconds += verification.cpu_seconds
         except DerError as error:
             message = f"not verified: {error}"

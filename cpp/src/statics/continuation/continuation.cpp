@@ -57,8 +57,7 @@ class PathTracer {
         options_(options),
         range_(options.to - options.from),
         largest_clamp_turn_(largest_turn_of_clamps(model, model.load_variation->controls.change)),
-        equations_(model, assembler, solver, options.newton, first_metric(model, range_),
-                   positions),
+        equations_(model, assembler, solver, options, first_metric(model, range_), positions),
         events_(equations_, options.largest_step),
         plane_(equations_, out_of_plane) {}
 

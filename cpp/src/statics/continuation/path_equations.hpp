@@ -8,6 +8,7 @@
 #include "der/solvers/linear_solver.hpp"
 #include "der/solvers/newton.hpp"
 #include "der/solvers/predicted_tension.hpp"
+#include "der/statics/continuation.hpp"
 #include "der/statics/stiffness.hpp"
 #include "statics/continuation/path_metric.hpp"
 
@@ -31,7 +32,7 @@ class PathEquations {
  public:
   /// `positions` give the values of held degrees of freedom that do not vary.
   PathEquations(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                const NewtonOptions& options, PathMetric metric, Vector positions);
+                const ContinuationOptions& options, PathMetric metric, Vector positions);
 
   [[nodiscard]] const PathMetric& metric() const { return metric_; }
 

@@ -67,8 +67,8 @@ class EquilibriumSearch {
         has_potential_(has_potential(*model.elements)),
         loads_(loads_of(model, state)),
         newton_(model, assembler, solver, options.newton,
-                Admissibility(model, loads_.force, state.positions)),
-        stiffness_(model, assembler, solver),
+                Admissibility(model, loads_.force, state.positions), options.beat),
+        stiffness_(model, assembler, solver, options.beat),
         continuation_(model, newton_) {}
 
   EquilibriumReport run(State& state) {

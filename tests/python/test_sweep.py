@@ -140,6 +140,14 @@ def test_designs_that_are_none(vary, options, says):
         make_design(vary, **options)
 
 
+def test_the_cost_of_a_path_is_that_of_all_its_points(cantilever):
+    cantilever["analysis"] = {"continuation": {}}
+    sweep = der.sweep(cantilever, {FORCE: [-1.0]})
+    alone = der.run(cantilever)
+    assert sweep.rows[0]["newton_iterations"] == alone.summary["newton_iterations"]
+    assert alone.summary["newton_iterations"] > len(alone.times)
+
+
 def test_rows_are_those_of_single_runs(cantilever):
     sweep = der.sweep(cantilever, {FORCE: "-2:0:3", STIFFNESS: [1.0, 2.0]}, jobs=2)
     assert sweep.parameters == [FORCE, STIFFNESS]

@@ -150,10 +150,11 @@ std::vector<PathBranch> Simulation::follow(const Beat& beat) {
   options.max_points = analysis->points;
   options.branching = analysis->branches;
   options.beat = beat;
-  auto path =
+  TracedPath path =
       follow_path(model_, *assembler_, *solver_.solver, options, out_of_plane_test(), state_);
+  counters_.newton_iterations += path.newton_iterations;
   undo.keep();
-  return path;
+  return std::move(path.branches);
 }
 
 void Simulation::show(const PathPoint& point, std::int64_t index) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,12 @@ struct PathBranch {
   std::vector<PathPoint> points;
 };
 
+/// All that was traced, and what it cost.
+struct TracedPath {
+  std::vector<PathBranch> branches;
+  std::int64_t newton_iterations = 0;  ///< those of points included that were not kept
+};
+
 struct ContinuationOptions {
   NewtonOptions newton;
   double from = 0.0;           ///< first factor
@@ -73,8 +80,8 @@ struct ContinuationOptions {
 /// points, where it closes on itself or meets another one, where no further point is found, or
 /// where rounding hides the stability. `start` is an equilibrium at the factor `from`, and the
 /// model has a load variation.
-std::vector<PathBranch> follow_path(const Model& model, const Assembler& assembler,
-                                    LinearSolver& solver, const ContinuationOptions& options,
-                                    OutOfPlaneTest* out_of_plane, const State& start);
+TracedPath follow_path(const Model& model, const Assembler& assembler, LinearSolver& solver,
+                       const ContinuationOptions& options, OutOfPlaneTest* out_of_plane,
+                       const State& start);
 
 }  // namespace der

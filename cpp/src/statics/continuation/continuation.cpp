@@ -61,7 +61,7 @@ class PathTracer {
         events_(equations_, options.largest_step),
         plane_(equations_, out_of_plane) {}
 
-  std::vector<PathBranch> run(const State& start) {
+  TracedPath run(const State& start) {
     PathNode first =
         equations_.node_at(start.followed, {start.positions(model_.dofs.free()), options_.from});
     equations_.set_metric(first);
@@ -71,7 +71,7 @@ class PathTracer {
     for (std::size_t i = 0; i < crossings_.size(); ++i) {
       if (crossings_[i].depth < options_.branching) trace_from(i);
     }
-    return std::move(branches_);
+    return {std::move(branches_), equations_.newton_iterations()};
   }
 
  private:
@@ -363,9 +363,9 @@ class PathTracer {
 
 namespace der {
 
-std::vector<PathBranch> follow_path(const Model& model, const Assembler& assembler,
-                                    LinearSolver& solver, const ContinuationOptions& options,
-                                    OutOfPlaneTest* out_of_plane, const State& start) {
+TracedPath follow_path(const Model& model, const Assembler& assembler, LinearSolver& solver,
+                       const ContinuationOptions& options, OutOfPlaneTest* out_of_plane,
+                       const State& start) {
   return statics::PathTracer(model, assembler, solver, options, out_of_plane, start.positions)
       .run(start);
 }

@@ -146,6 +146,7 @@ std::optional<PathPosition> PathEquations::solve_on_plane(const Vector& followed
                                                           PathPosition guess, int& iterations) {
   evaluate(followed, guess);
   for (iterations = 1; iterations <= kMaxIterations; ++iterations) {
+    ++newton_iterations_;
     const Vector derivative = factor_derivative(followed, guess);
     place(followed, guess);
     if (!stiffness_.factorize().factorised) return std::nullopt;

@@ -31,7 +31,7 @@ Eigen::Map<const Vector> as_nodal_force(const Contiguous& force, const py::funct
 
 void ForceFunctions::add(py::function function) { functions_.push_back(std::move(function)); }
 
-void ForceFunctions::remove(const py::function& function) {
+void ForceFunctions::remove(const py::object& function) {
   const auto found = std::find_if(functions_.begin(), functions_.end(),
                                   [&](const py::function& known) { return known.equal(function); });
   if (found == functions_.end()) {

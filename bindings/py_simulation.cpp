@@ -41,7 +41,6 @@ PySimulation::PySimulation(Scenario scenario) : engine_(std::move(scenario)) {
 }
 
 void PySimulation::step(std::int64_t count, py::handle self) {
-  if (count < 0) throw py::value_error("the number of steps must not be negative");
   const Turn turn(*this);
   {
     const py::gil_scoped_release unlocked;

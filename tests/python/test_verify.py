@@ -668,7 +668,7 @@ def test_what_is_no_scene_is_a_clear_error(scene):
 @pytest.mark.parametrize("given", [{"jobs": 1.5}, {"jobs": "2"}, {"levels": 2.0}])
 def test_numbers_of_levels_and_jobs_are_whole(arm, given):
     ((name, value),) = given.items()
-    with pytest.raises(TypeError, match=f"{name} must be a whole number, got {value!r}"):
+    with pytest.raises(TypeError, match=f"{name} must be a whole number.*, got {value!r}"):
         der.verify(arm, **given)
 
 

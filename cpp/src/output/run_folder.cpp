@@ -125,7 +125,8 @@ std::unique_ptr<RunLock> prepare(const RunFolder& folder, const std::string& sce
   std::error_code error;
   fs::create_directories(folder.path(), error);
   if (error) {
-    throw IoError("cannot create '" + folder.path().string() + "': " + error.message());
+    throw IoError("cannot create '" + folder.path().string() + "': " + error.message() +
+                  "; name a folder where you may write");
   }
   auto lock = std::make_unique<RunLock>(folder.path());
   check_room(expected_bytes, folder.results());

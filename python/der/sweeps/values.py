@@ -86,6 +86,13 @@ def as_values(given: str | Iterable[Any]) -> Values:
     values = tuple(_plain(value) for value in given)
     if not values:
         raise ValueError("there is no value")
+    for value in values:
+        try:
+            stored(value)
+        except TypeError:
+            raise ValueError(
+                f"{value!r} is no value of a scene: use numbers, texts, lists and dicts"
+            ) from None
     _check_numbers(values)
     return values
 

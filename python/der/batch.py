@@ -215,7 +215,7 @@ class Batch(_core.Batch):
             then moved.
         """
         pairs = [
-            (component, self._broadcast(component, given, (len(self),)))
+            (component, _broadcast(component, _as_numbers(component, given), (len(self),)))
             for component, given in components.items()
         ]
         self.prescribe_rows(support, pairs)
@@ -290,19 +290,11 @@ class Batch(_core.Batch):
         values = _as_numbers(name, given)
         if components == 1 and values.ndim == 1 and values.shape != (1,):
             values = values[:, None]
-        return self._broadcast(name, values, (len(self), components))
-
-    def _broadcast(
-        self, name: str, given: ArrayLike, shape: tuple[int, ...]
-    ) -> NDArray[np.float64]:
-        values = _as_numbers(name, given)
-        try:
-            return np.ascontiguousarray(np.broadcast_to(values, shape))
-        except ValueError:
-            raise ValueError(
-                f"'{name}' takes values of shape {shape}, a row for each member, or those of one "
-                f"row for all, but here is an array of shape {values.shape}"
-            ) from None
+        shape = (len(self), components)
+        # One number is no value of several components, though it could be spread over them.
+        if components > 1 and values.shape[-1:] != (components,):
+            raise _other_shape(name, values, shape)
+        return _broadcast(name, values, shape)
 
 
 def _as_array(members: Any) -> NDArray[Any]:
@@ -313,9 +305,28 @@ def _as_array(members: Any) -> NDArray[Any]:
 
 def _as_numbers(name: str, given: ArrayLike) -> NDArray[np.float64]:
     try:
-        return np.asarray(given, dtype=float)
-    except (TypeError, ValueError):
-        raise TypeError(f"'{name}' takes numbers, or arrays of them, got {given!r}") from None
+        values = np.asarray(given)
+        if values.dtype.kind in "biuf":
+            return values.astype(float, copy=False)
+    except ValueError:  # rows of different lengths
+        pass
+    raise TypeError(f"'{name}' takes numbers, or arrays of them, got {given!r}")
+
+
+def _broadcast(
+    name: str, values: NDArray[np.float64], shape: tuple[int, ...]
+) -> NDArray[np.float64]:
+    try:
+        return np.ascontiguousarray(np.broadcast_to(values, shape))
+    except ValueError:
+        raise _other_shape(name, values, shape) from None
+
+
+def _other_shape(name: str, values: NDArray[np.float64], shape: tuple[int, ...]) -> ValueError:
+    return ValueError(
+        f"'{name}' takes values of shape {shape}, a row for each member, or those of one "
+        f"row for all, but here is an array of shape {values.shape}"
+    )
 
 
 def _one_each(path: str, given: ArrayLike | Sequence[Any], members: int) -> list[Any]:

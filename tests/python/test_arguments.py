@@ -108,6 +108,13 @@ def test_what_simulations_and_scenes_do_not_take(simulation, call, message):
         call(simulation)
 
 
+def test_a_name_is_one_name_and_no_list_of_letters(result):
+    with pytest.raises(ValueError, match="the scene has no probe 'tip'"):
+        result.plot("probes", probes="tip")
+    with pytest.raises(ValueError, match="the sweep has no column 'tip'"):
+        der.sweep(SCENE, {"rods.arm.nodes": [5, 7]}).plot("tip")
+
+
 def test_what_results_do_not_take(result):
     for given in (1.5, "a", None):
         with pytest.raises(TypeError, match="number of the frame must be a whole number"):
@@ -170,6 +177,30 @@ def test_members_by_lists_and_masks(batch):
         batch.step()
         batch.reset(mask)
         assert batch.step_count.tolist() == [0, 1, 0]
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "message"),
+    [
+        (5, ValueError, r"takes values of shape \(3, 2\), .* array of shape \(\)"),
+        (np.zeros((3, 1)), ValueError, r"array of shape \(3, 1\)"),
+        (None, TypeError, "takes numbers, or arrays of them, got None"),
+        (["1", "2"], TypeError, "takes numbers, or arrays of them"),
+        (np.array([1j, 2]), TypeError, "takes numbers, or arrays of them"),
+        ([[1, 2], [3]], TypeError, "takes numbers, or arrays of them"),
+    ],
+)
+def test_what_is_no_force_of_all_members(batch, value, error, message):
+    with pytest.raises(error, match=f"'push' .*{message}"):
+        batch.set("push", value)
+    batch.step()
+    assert batch.value("push").tolist() == [[0, -1]] * 3
+
+
+def test_what_a_force_function_does_not_return(simulation):
+    simulation.add_force(lambda *_: "x")
+    with pytest.raises(ValueError, match=r"the force function .* returned no array .* but 'x'"):
+        simulation.step()
 
 
 def test_what_is_no_state_of_a_member(batch):

@@ -554,6 +554,9 @@ def test_two_levels(arm):
     assert "The order of all 1 values was not measured (" in str(verification)
     assert "converge at" not in str(verification)
     assert verification.to_dict()["converged"] is False
+    for name in ("top", ("tip", "mean"), 5):
+        with pytest.raises(KeyError, match=r"there is no value .*; there are: \('tip', 'final'\)"):
+            verification[name]
     with pytest.raises(ValueError, match="levels"):
         der.verify(arm, levels=4)
     with pytest.raises(ValueError, match="jobs"):

@@ -152,9 +152,9 @@ def test_the_cost_of_a_path_is_that_of_all_its_points(cantilever):
 @pytest.mark.parametrize(
     ("values", "says"),
     [
-        ("11:12:4", r"its values are 11, 11\.3333, 11\.6667, 12: take a range with a whole dis"),
-        ([11.0, 21.5], r"its values are 11, 21\.5: take"),
-        (np.linspace(11, 61, 6), r"its values are 11, 21, 31, 41, \.\.\.: take"),
+        ("11:12:4", r"its values are 11\.0, 11\.3333, 11\.6667, 12\.0: take a range with a whole"),
+        ([11.0, 21.5], r"its values are 11\.0, 21\.5: take"),
+        (np.linspace(11, 61, 6), r"its values are 11\.0, 21\.0, 31\.0, 41\.0, \.\.\.: take"),
     ],
 )
 def test_values_that_are_no_whole_numbers(cantilever, values, says):
@@ -168,6 +168,12 @@ def test_values_that_are_no_whole_numbers(cantilever, values, says):
         ({"vary": 5}, TypeError, "vary must be a dict of key paths and their values"),
         ({"vary": [("a", 1)]}, TypeError, "vary must be a dict of key paths and their values"),
         ({"vary": {FORCE: [1j]}}, ValueError, "1j is no value of a scene: use numbers"),
+        (
+            {"vary": {FORCE: "0:1:100000000000"}},
+            ValueError,
+            "at least 2 values and at most 10000000",
+        ),
+        ({"sample": "lhs:100000000000"}, ValueError, "a sample has at most 10000000 points"),
         ({"seed": -1}, ValueError, "seed must be a whole number of at least 0, got -1"),
         ({"seed": 1.5}, TypeError, "seed must be a whole number of at least 0, got 1.5"),
         ({"sample": 5}, ValueError, "'5' is no sample: write sobol:256 or lhs:100"),
@@ -612,6 +618,12 @@ def test_more_probes_than_a_table_has_columns(cantilever):
         der.sweep(with_probes(398), {FORCE: [-1.0]})
     with pytest.raises(ValueError, match=r"8 columns each, .* has room for 248 of them"):
         der.sweep(with_probes(249), {FORCE: [-1.0]}, verify=True)
+
+
+def test_a_file_that_is_no_sweep(cantilever, tmp_path):
+    (tmp_path / FILE).write_text("garbage")
+    with pytest.raises(OSError, match=r"is damaged, or no file of a sweep .*: name another folder"):
+        der.sweep(cantilever, {FORCE: [-1.0]}, out=tmp_path, resume=True)
 
 
 def test_findings_that_have_no_columns_left(cantilever):

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der.key_paths import check_varied
-from der.sweeps.values import Range, Values, as_values, stored
+from der.sweeps.values import MOST_VALUES, Range, Values, as_values, stored
 from der.whole_numbers import whole_number
 
 #: The values of a member's parameters, in the order of the paths.
@@ -180,6 +180,8 @@ def _values_of(path: str, given: str | Iterable[Any]) -> Values:
 def _parse_sample(text: str) -> tuple[Sampling, int]:
     name, _, count = str(text).partition(":")
     for sampling in get_args(Sampling):
-        if name == sampling and count.isdecimal() and int(count) > 0:
-            return sampling, int(count)
+        if name == sampling and count.isdecimal() and 0 < (samples := int(count)):
+            if samples > MOST_VALUES:
+                raise ValueError(f"'{text}': a sample has at most {MOST_VALUES} points")
+            return sampling, samples
     raise ValueError(f"'{text}' is no sample: write sobol:256 or lhs:100")

@@ -243,6 +243,10 @@ class Store:
                     f"{MOST_COLUMNS} columns of a table can hold: ask for fewer probes, modes or "
                     "bifurcations"
                 ) from error
+            if "not a database" in str(error) or "malformed" in str(error):
+                raise OSError(
+                    f"{self._path} is damaged, or no file of a sweep ({error}): name another folder"
+                ) from error
             raise OSError(f"{self._path or 'the table of the sweep'}: {error}") from error
 
 

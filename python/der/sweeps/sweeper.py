@@ -192,14 +192,21 @@ def _check_whole_numbers(scene: Scenario, design: Design, first: dict[str, Any])
         except SceneError:
             continue
         if isinstance(own, Range):
-            what, remedy = f"a sample of {own.low:g}:{own.high:g} has others", "list its values"
+            what, remedy = f"a sample of {own.low:g}:{own.high:g} has others", "list whole ones"
         else:
-            shown = ", ".join(f"{v:.6g}" if isinstance(v, float) else str(v) for v in own[:4])
+            shown = ", ".join(map(_spelled, own[:4]))
             what = f"its values are {shown}" + (", ..." if len(own) > 4 else "")
-            remedy = "take a range with a whole distance between two values, or list them"
+            remedy = "take a range with a whole distance between two values, or list whole ones"
         raise ValueError(
             f"{path}: a whole number belongs there, and {what}: {remedy}, as 11:41:4 or 11,21,31,41"
         )
+
+
+def _spelled(value: Any) -> str:
+    """Return a value as short as it is told from a whole number."""
+    if not isinstance(value, float):
+        return str(value)
+    return f"{value:.1f}" if value.is_integer() and abs(value) < 1e6 else f"{value:.6g}"
 
 
 @contextmanager

@@ -180,7 +180,7 @@ def _values_of(path: str, given: str | Iterable[Any]) -> Values:
 def _parse_sample(text: str) -> tuple[Sampling, int]:
     name, _, count = str(text).partition(":")
     for sampling in get_args(Sampling):
-        if name == sampling and count.isdecimal() and 0 < (samples := int(count)):
+        if name == sampling and count.isdecimal() and (samples := int(count)) > 0:
             if samples > MOST_VALUES:
                 raise ValueError(f"'{text}': a sample has at most {MOST_VALUES} points")
             return sampling, samples

@@ -32,7 +32,7 @@ class PySimulation {
   /// `self` is the Python object of this simulation.
   void step(std::int64_t count, py::handle self);
   EquilibriumReport equilibrium(py::handle self, bool leave_saddles);
-  /// With the lock, so that a callback of a run may ask for them.
+  /// Callbacks and force functions may ask for them, too; Ctrl-C is then answered after them.
   std::vector<Mode> modes(std::int64_t count);
   /// Runs to the end of the scene, to time `until` [s], or until the callback says stop; with
   /// `out`, the run is also written to that folder.
@@ -47,11 +47,13 @@ class PySimulation {
 
  private:
   class Turn;
+  class CallOut;
   /// Warns where the integrator has created energy, if that has not been said before.
   void warn_once();
   Simulation engine_;
   ForceFunctions forces_;
   bool busy_ = false;
+  bool calls_out_ = false;  // to Python, while the engine waits
   bool warned_ = false;
 };
 

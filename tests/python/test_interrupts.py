@@ -92,6 +92,49 @@ def test_ctrl_c_ends_the_search_for_modes():
     np.testing.assert_array_equal(simulation.positions, before)
 
 
+def test_a_signal_handler_finds_the_simulation_busy():
+    simulation = der.Simulation(rod(2001, -1))
+    simulation.equilibrium()
+    expected = simulation.modes(40).frequencies
+    refusals = []
+
+    def handle(*_):
+        try:
+            simulation.equilibrium()
+        except RuntimeError as refusal:
+            refusals.append(str(refusal))
+
+    before = signal.signal(signal.SIGALRM, handle)
+    signal.setitimer(signal.ITIMER_REAL, 0.02, 0.02)
+    try:
+        found = simulation.modes(40).frequencies
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert any("busy" in refusal for refusal in refusals)
+    np.testing.assert_array_equal(found, expected)
+
+
+def test_callbacks_and_forces_may_ask_for_modes():
+    scene = rod(11, -1) | {"time": {"duration": 0.02, "step": 0.01}}
+    del scene["analysis"]
+    scene["loads"] = []
+    simulation = der.Simulation(scene)
+    expected = simulation.modes(2).frequencies
+    found = []
+
+    @simulation.add_force
+    def force(time, positions, velocities):
+        found.append(simulation.modes(2).frequencies)
+        return np.zeros_like(positions)
+
+    simulation.run(lambda now: found.append(now.modes(2).frequencies))
+    simulation.step()
+    assert len(found) == 5
+    for frequencies in found:
+        np.testing.assert_allclose(frequencies, expected, rtol=1e-6)
+
+
 @pytest.mark.parametrize("threads", [1, 2])
 def test_ctrl_c_ends_the_search_of_a_batch(threads):
     batch = der.Batch(SEARCH, 4, threads)

@@ -36,6 +36,7 @@ ARM = {
     "start_from": "equilibrium",
     "time": {"duration": 0.1, "step": 0.005, "integrator": "implicit_euler"},
 }
+STATIC = {key: ARM[key] for key in ("title", "rods", "supports")} | {"analysis": "static"}
 
 
 def act(batch, actions):
@@ -271,6 +272,10 @@ def test_gymnasium_makes_them_by_name():
         ({"observation_space": Box(-1, 1, (3,))}, r"has the shape \(7,\), but .* \(3,\)"),
         ({"scene": ARM | {"time": {"duration": 1, "tolerance": 1e-3}}}, "equal steps"),
         ({"scene": ARM | {"time": {"duration": 0.005, "step": 0.005}}}, "longer duration"),
+        (
+            {"scene": STATIC, "max_steps": 3},
+            "an episode is a run over time, and the scene is static",
+        ),
         ({"max_steps": 0}, "max_steps must be a whole number of at least 1, got 0"),
         ({"steps_per_action": -1}, "steps_per_action must be a whole number of at least 1, got -1"),
     ],

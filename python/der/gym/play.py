@@ -62,6 +62,11 @@ class Play:
             raise TypeError(f"an environment plays a der.gym.Task, got {task!r}")
         self._task = task
         scenario = as_scenario(task.scene)
+        if scenario.is_static:
+            raise ValueError(
+                "an episode is a run over time, and the scene is static: give it a time with a "
+                "duration and a step in place of its analysis"
+            )
         self.limit = task.max_steps or _actions_in(scenario, task.steps_per_action)
         any_generator = np.random.default_rng(0)
         self._drawn_shape = () if task.draw is None else np.shape(task.draw(any_generator))

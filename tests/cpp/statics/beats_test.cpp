@@ -69,7 +69,12 @@ TEST_CASE("a stop of the equilibria of a batch leaves each member found or as it
   found.equilibrium();
   for (const int threads : {1, 3}) {
     Batch batch(scene, 40, {}, threads, {});
-    CHECK_THROWS_AS(batch.equilibrium(true, stop_at(1)), Stop);
+    bool stopped = false;
+    try {
+      batch.equilibrium(true, stop_at(1));
+    } catch (const Stop&) {
+      stopped = true;
+    }
     int as_before = 0;
     for (std::size_t member = 0; member < batch.size(); ++member) {
       const State& state = batch.member(member).state();
@@ -79,8 +84,12 @@ TEST_CASE("a stop of the equilibria of a batch leaves each member found or as it
         CHECK(first_difference(state, found.state()) == "");
       }
     }
-    CHECK(as_before > 0);
+    // Other threads may be done with all members before the caller's begins.
+    if (threads == 1) CHECK(stopped);
+    if (threads == 1) CHECK(as_before == 40);
+    if (!stopped) CHECK(as_before == 0);
     CHECK(batch.failures().empty());
+    for (std::size_t member = 0; member < batch.size(); ++member) batch.reset(member, nullptr);
     batch.equilibrium(true, {});
     CHECK(first_difference(batch.member(39).state(), found.state()) == "");
   }

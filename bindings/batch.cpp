@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "arguments.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "der/core/error.hpp"
@@ -27,6 +28,10 @@ namespace {
 void look_for_signals() {
   const py::gil_scoped_acquire lock;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+std::size_t member_number(const WholeNumber& given) {
+  return static_cast<std::size_t>(given.at_least(0, "the number of the member"));
 }
 
 std::vector<Variation> to_variations(const py::dict& vary) {
@@ -63,8 +68,8 @@ class PyBatch {
   }
 
   /// Returns a warning where the integrator has created energy, if that has not been said before.
-  std::optional<std::string> step(std::int64_t count) {
-    if (count < 0) throw py::value_error("the number of steps must not be negative");
+  std::optional<std::string> step(const WholeNumber& given_count) {
+    const std::int64_t count = given_count.at_least(0, "the number of steps");
     unlocked([&](Batch& engine) { engine.step(count, look_for_signals); });
     return new_warning();
   }
@@ -163,7 +168,8 @@ py::dict probes(const py::object& self) {
   return by_name;
 }
 
-py::list equilibrium(PyBatch& batch, bool leave_saddles) {
+py::list equilibrium(PyBatch& batch, const Truth& given_leave_saddles) {
+  const bool leave_saddles = given_leave_saddles.value("leave_saddles");
   const auto reports = batch.unlocked(
       [&](Batch& engine) { return engine.equilibrium(leave_saddles, look_for_signals); });
   py::list all;
@@ -179,7 +185,8 @@ RowMatrix to_rows(const Array& values) {
 }
 
 void set(PyBatch& batch, const std::vector<std::pair<std::string, Array>>& values,
-         std::optional<double> over) {
+         const std::optional<Number>& given_over) {
+  const std::optional<double> over = to_optional(given_over, "over");
   std::vector<Batch::Setting> settings;
   settings.reserve(values.size());
   for (const auto& [name, rows] : values) settings.push_back({name, to_rows(rows)});
@@ -187,8 +194,10 @@ void set(PyBatch& batch, const std::vector<std::pair<std::string, Array>>& value
   py::module_::import("der.errors").attr("warn")(py::cast(batch.engine().take_warnings()));
 }
 
-void prescribe(PyBatch& batch, std::size_t support,
+void prescribe(PyBatch& batch, const WholeNumber& given_support,
                const std::vector<std::pair<std::string, Array>>& values) {
+  const auto support =
+      static_cast<std::size_t>(given_support.at_least(0, "the number of the support"));
   std::vector<Batch::Prescription> prescriptions;
   prescriptions.reserve(values.size());
   for (const auto& [component, array] : values) {
@@ -197,7 +206,8 @@ void prescribe(PyBatch& batch, std::size_t support,
   batch.alone([&](Batch& engine) { engine.prescribe(support, prescriptions); });
 }
 
-Array value(PyBatch& batch, const std::string& name) {
+Array value(PyBatch& batch, const Text& given_name) {
+  const std::string name(given_name.value("the name"));
   const RowMatrix rows = batch.alone([&](Batch& engine) { return engine.value(name); });
   return Array({static_cast<py::ssize_t>(rows.rows()), static_cast<py::ssize_t>(rows.cols())},
                rows.data());
@@ -304,7 +314,9 @@ void bind_facts(BatchClass& cls) {
           "What `set` can set: by name, the unit of each component.")
       .def(
           "scenario",
-          [](PyBatch& b, std::size_t member) { return b.engine().member(member).scenario(); },
+          [](PyBatch& b, const WholeNumber& member) {
+            return b.engine().member(member_number(member)).scenario();
+          },
           py::arg("member"), "Return the scenario of a member, with its own numbers.")
       .def("failure_rows", &failure_rows,
            "Number, status, time [s] and message of each member that has failed; `failures` makes "
@@ -327,10 +339,11 @@ void bind_actions(BatchClass& cls) {
            "Present values of a name, shape (members, components); `value` shapes them.")
       .def(
           "save_state",
-          [](PyBatch& batch, std::size_t member) {
+          [](PyBatch& batch, const WholeNumber& member) {
             const Model& model = batch.engine().model();
+            const std::size_t number = member_number(member);
             return saved_state(model,
-                               batch.alone([&](Batch& engine) { return engine.save(member); }));
+                               batch.alone([&](Batch& engine) { return engine.save(number); }));
           },
           py::arg("member"),
           "Return a copy of the state of a member, to go back to with `reset`. Simulations of the "

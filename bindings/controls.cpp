@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "arguments.hpp"
 #include "arrays.hpp"
 #include "settable_names.hpp"
 
@@ -27,14 +28,6 @@ double to_number(py::handle value, std::string_view name, const char* expected) 
     refuse(std::string(name), value, expected);
   }
   return number;
-}
-
-/// The text of a str without a copy; it lives as long as that.
-std::string_view text_of(const py::str& name) {
-  Py_ssize_t length = 0;
-  const char* text = PyUnicode_AsUTF8AndSize(name.ptr(), &length);
-  if (text == nullptr) throw py::error_already_set();
-  return {text, static_cast<std::size_t>(length)};
 }
 
 void set_components(Simulation& engine, const std::string& name, const py::dict& values,
@@ -71,10 +64,11 @@ std::vector<double> to_numbers(py::handle values, std::string_view name) {
   return numbers;
 }
 
-void set(PySimulation& simulation, const py::str& name, const py::object& value,
-         std::optional<double> over) {
+void set(PySimulation& simulation, const Text& name, const py::object& value,
+         const std::optional<Number>& given_over) {
   Simulation& engine = simulation.engine();
-  const std::string_view text = text_of(name);
+  const std::string_view text = name.value("the name");
+  const std::optional<double> over = to_optional(given_over, "over");
   const bool is_number = PyFloat_Check(value.ptr()) || PyLong_Check(value.ptr());
   if (is_number) {
     engine.set(text, {to_number(value, text, "a number")}, over);
@@ -88,10 +82,11 @@ void set(PySimulation& simulation, const py::str& name, const py::object& value,
   }
 }
 
-py::object value(const PySimulation& simulation, const py::str& name) {
+py::object value(const PySimulation& simulation, const Text& given_name) {
   const Simulation& engine = simulation.engine();
-  const Simulation::Settable& found = engine.settable(text_of(name));
-  const std::vector<double> values = engine.value(text_of(name));
+  const std::string_view name = given_name.value("the name");
+  const Simulation::Settable& found = engine.settable(name);
+  const std::vector<double> values = engine.value(name);
   if (found.size() == 1) return py::float_(values.front());
   if (found.whole->is_vector) return Array(static_cast<py::ssize_t>(values.size()), values.data());
   py::dict by_component;
@@ -101,24 +96,34 @@ py::object value(const PySimulation& simulation, const py::str& name) {
   return by_component;
 }
 
-void prescribe(PySimulation& simulation, std::size_t support, std::optional<double> x,
-               std::optional<double> y, std::optional<double> z, std::optional<double> angle,
-               std::optional<double> twist) {
+std::size_t support_number(const WholeNumber& given) {
+  return static_cast<std::size_t>(given.at_least(0, "the number of the support"));
+}
+
+void prescribe(PySimulation& simulation, const WholeNumber& given_support,
+               const std::optional<Number>& x, const std::optional<Number>& y,
+               const std::optional<Number>& z, const std::optional<Number>& angle,
+               const std::optional<Number>& twist) {
+  const std::size_t support = support_number(given_support);
   Simulation& engine = simulation.engine();
   const std::vector<Ramp> before = engine.state().ramps;
+  const auto prescribe_one = [&](const char* component, const std::optional<Number>& given) {
+    if (given) engine.prescribe(support, component, given->value(component));
+  };
   try {
-    if (x) engine.prescribe(support, "x", *x);
-    if (y) engine.prescribe(support, "y", *y);
-    if (z) engine.prescribe(support, "z", *z);
-    if (angle) engine.prescribe(support, "angle", *angle);
-    if (twist) engine.prescribe(support, "twist", *twist);
+    prescribe_one("x", x);
+    prescribe_one("y", y);
+    prescribe_one("z", z);
+    prescribe_one("angle", angle);
+    prescribe_one("twist", twist);
   } catch (...) {  // all of them or none
     engine.state().ramps = before;
     throw;
   }
 }
 
-py::dict prescribed(const PySimulation& simulation, std::size_t support) {
+py::dict prescribed(const PySimulation& simulation, const WholeNumber& given_support) {
+  const std::size_t support = support_number(given_support);
   const Simulation& engine = simulation.engine();
   py::dict values;
   for (const PrescribedControl& moved : engine.model().prescribed) {

@@ -31,7 +31,7 @@ Eigen::Map<const Vector> as_nodal_force(const Contiguous& force, const py::funct
 
 void ForceFunctions::add(py::function function) { functions_.push_back(std::move(function)); }
 
-void ForceFunctions::remove(const py::function& function) {
+void ForceFunctions::remove(const py::object& function) {
   const auto found = std::find_if(functions_.begin(), functions_.end(),
                                   [&](const py::function& known) { return known.equal(function); });
   if (found == functions_.end()) {
@@ -49,7 +49,14 @@ void ForceFunctions::apply(const Model& model, State& state, py::handle owner) {
   // A copy, because a function may add or remove functions.
   const std::vector<py::function> functions = functions_;
   for (const py::function& function : functions) {
-    const Contiguous force(function(state.time, positions, velocities));
+    const py::object returned = function(state.time, positions, velocities);
+    const auto force = Contiguous::ensure(returned);
+    if (!force) {
+      PyErr_Clear();
+      throw py::value_error("the force function " + py::repr(function).cast<std::string>() +
+                            " returned no array of numbers but " +
+                            py::repr(returned).cast<std::string>());
+    }
     sum_.head(model.dofs.num_positions()) += as_nodal_force(force, function, model);
   }
   if (!sum_.allFinite()) {

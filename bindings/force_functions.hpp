@@ -18,7 +18,7 @@ class ForceFunctions {
  public:
   void add(py::function function);
   /// Throws ValueError if it was never added.
-  void remove(const py::function& function);
+  void remove(const py::object& function);
   [[nodiscard]] bool empty() const { return functions_.empty(); }
 
   /// Evaluates the functions and adds their sum to `extra_force`. Needs the interpreter's lock; an

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "der/output/run_folder.hpp"
+#include "der/output/start.hpp"
 #include "der/output/summary.hpp"
 #include "der/scenario/scenario.hpp"
 #include "heartbeat.hpp"
@@ -33,8 +35,27 @@ class PySimulation::Turn {
   PySimulation& simulation_;
 };
 
+/// The time of a call of a function written in Python, with the lock held: the engine is at rest,
+/// and what changes nothing may use it.
+class PySimulation::CallOut {
+ public:
+  explicit CallOut(PySimulation& simulation) : simulation_(simulation) {
+    simulation.calls_out_ = true;
+  }
+  ~CallOut() { simulation_.calls_out_ = false; }
+  CallOut(const CallOut&) = delete;
+  CallOut& operator=(const CallOut&) = delete;
+
+ private:
+  PySimulation& simulation_;
+};
+
+PySimulation::PySimulation(Scenario scenario) : engine_(std::move(scenario)) {
+  Heartbeat heartbeat;
+  apply_start(engine_, [&] { heartbeat.beat(); });
+}
+
 void PySimulation::step(std::int64_t count, py::handle self) {
-  if (count < 0) throw py::value_error("the number of steps must not be negative");
   const Turn turn(*this);
   {
     const py::gil_scoped_release unlocked;
@@ -42,6 +63,7 @@ void PySimulation::step(std::int64_t count, py::handle self) {
     for (std::int64_t i = 0; i < count; ++i) {
       if (!forces_.empty()) {
         const py::gil_scoped_acquire lock;
+        const CallOut call(*this);
         forces_.apply(engine_.model(), engine_.state(), self);
       }
       engine_.step();
@@ -62,9 +84,23 @@ void PySimulation::warn_once() {
 
 EquilibriumReport PySimulation::equilibrium(py::handle self, bool leave_saddles) {
   const Turn turn(*this);
-  forces_.apply(engine_.model(), engine_.state(), self);
+  {
+    const CallOut call(*this);
+    forces_.apply(engine_.model(), engine_.state(), self);
+  }
   const py::gil_scoped_release unlocked;
-  return engine_.equilibrium(leave_saddles);
+  Heartbeat heartbeat;
+  return engine_.equilibrium(leave_saddles, [&] { heartbeat.beat(); });
+}
+
+std::vector<Mode> PySimulation::modes(std::int64_t count) {
+  // There are no more of them than degrees of freedom.
+  const auto wanted = static_cast<int>(std::min<std::int64_t>(count, engine_.model().num_dofs()));
+  if (calls_out_) return engine_.modes(wanted);
+  const Turn turn(*this);
+  const py::gil_scoped_release unlocked;
+  Heartbeat heartbeat;
+  return engine_.modes(wanted, [&] { heartbeat.beat(); });
 }
 
 RunOutcome PySimulation::run(Recorder& recorder, double until, const Callback& callback,
@@ -75,6 +111,7 @@ RunOutcome PySimulation::run(Recorder& recorder, double until, const Callback& c
   const auto apply_forces = [&] {
     if (forces_.empty()) return;
     const py::gil_scoped_acquire lock;
+    const CallOut call(*this);
     forces_.apply(engine_.model(), state, self);
   };
   // Half a step of slack: the times of a run are sums of steps, with their rounding.
@@ -87,15 +124,17 @@ RunOutcome PySimulation::run(Recorder& recorder, double until, const Callback& c
     bool go_on = state.time < stop_at;
     if (callback) {
       const py::gil_scoped_acquire lock;
+      const CallOut call(*this);
       go_on = callback() && go_on;
     }
     if (go_on && !engine_.finished()) apply_forces();
     return go_on;
   };
+  const auto beat = [&] { heartbeat.beat(tick); };
   const py::gil_scoped_release unlocked;
   apply_forces();
-  return out ? run_in_folder(RunFolder(*out), engine_, recorder, after_step)
-             : der::run(engine_, recorder, after_step);
+  return out ? run_in_folder(RunFolder(*out), engine_, recorder, after_step, beat)
+             : der::run(engine_, recorder, after_step, beat);
 }
 
 void PySimulation::restore(const State& saved) {

@@ -6,11 +6,10 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
-#include <utility>
+#include <vector>
 
 #include "der/output/recorder.hpp"
 #include "der/output/run.hpp"
-#include "der/output/start.hpp"
 #include "der/simulation.hpp"
 #include "force_functions.hpp"
 
@@ -22,7 +21,8 @@ namespace py = pybind11;
 /// against two callers at once, which the lock does not prevent since stepping lets go of it.
 class PySimulation {
  public:
-  explicit PySimulation(Scenario scenario) : engine_(std::move(scenario)) { apply_start(engine_); }
+  /// Without the lock.
+  explicit PySimulation(Scenario scenario);
 
   /// Called after every step of a run, with the lock held; returns false to stop.
   using Callback = std::function<bool()>;
@@ -32,6 +32,8 @@ class PySimulation {
   /// `self` is the Python object of this simulation.
   void step(std::int64_t count, py::handle self);
   EquilibriumReport equilibrium(py::handle self, bool leave_saddles);
+  /// Callbacks and force functions may ask for them, too; Ctrl-C is then answered after them.
+  std::vector<Mode> modes(std::int64_t count);
   /// Runs to the end of the scene, to time `until` [s], or until the callback says stop; with
   /// `out`, the run is also written to that folder.
   RunOutcome run(Recorder& recorder, double until, const Callback& callback, const Tick& tick,
@@ -45,11 +47,13 @@ class PySimulation {
 
  private:
   class Turn;
+  class CallOut;
   /// Warns where the integrator has created energy, if that has not been said before.
   void warn_once();
   Simulation engine_;
   ForceFunctions forces_;
   bool busy_ = false;
+  bool calls_out_ = false;  // to Python, while the engine waits
   bool warned_ = false;
 };
 

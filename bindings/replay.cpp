@@ -1,5 +1,6 @@
 #include "der/output/replay.hpp"
 
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include <array>
@@ -10,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "arguments.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "der/core/index.hpp"
@@ -76,7 +78,13 @@ std::vector<HeldNode> held_nodes(Replay& replay, std::size_t frame) {
 }
 
 /// The arc lengths [m] of a load: its places, or the two ends of its part; none without a place.
-std::vector<double> load_arc_lengths(const Replay& replay, std::size_t number) {
+std::vector<double> load_arc_lengths(const Replay& replay, const WholeNumber& given) {
+  const std::int64_t number = given.at_least(0, "the number of the load");
+  const std::vector<scenario::Load>& loads = replay.scenario().scene().loads;
+  if (number >= static_cast<std::int64_t>(loads.size())) {
+    throw py::index_error(
+        fmt::format("there is no load {}: the scene has {}, counted from 0", number, loads.size()));
+  }
   const auto arc_lengths = [&](const auto& load) -> std::vector<double> {
     using Kind = std::decay_t<decltype(load)>;
     if constexpr (std::is_base_of_v<scenario::AtPlace, Kind>) {
@@ -87,7 +95,7 @@ std::vector<double> load_arc_lengths(const Replay& replay, std::size_t number) {
       return {};
     }
   };
-  return std::visit(arc_lengths, replay.scenario().scene().loads.at(number).what);
+  return std::visit(arc_lengths, loads[static_cast<std::size_t>(number)].what);
 }
 
 std::vector<HeldNode> held_nodes_at(const Scenario& scenario, double time) {
@@ -125,11 +133,12 @@ SavedFrames to_frames(const Replay& replay, const Frames& positions, const Frame
                    py::make_tuple(frames, edges, FrameBlock::kSize))};
 }
 
-py::tuple along(Replay& replay, const std::string& rod, const std::string& quantity,
-                const Frames& positions, const Frames& velocities, const Frames& theta,
-                const Frames& section_frames) {
+py::tuple along(Replay& replay, const Text& rod, const Text& quantity, const Frames& positions,
+                const Frames& velocities, const Frames& theta, const Frames& section_frames) {
   const RodSeries series =
-      replay.along(rod, quantity, to_frames(replay, positions, velocities, theta, section_frames));
+      replay.along(std::string(rod.value("the name of the rod")),
+                   std::string(quantity.value("the name of the quantity")),
+                   to_frames(replay, positions, velocities, theta, section_frames));
   return py::make_tuple(
       Array(static_cast<py::ssize_t>(series.arc_length.size()), series.arc_length.data()),
       Array({series.values.rows(), series.values.cols()}, series.values.data()));
@@ -230,9 +239,15 @@ void bind_replay(py::module_& module) {
            "Return actuations (name, rod, length [m], number of values), and the moments [N m] or "
            "forces\n[N] that they exert on the rods, shape (frames, actuations, 2); the arrays as "
            "for `along`.")
-      .def("held_nodes", &held_nodes, py::arg("frame"),
-           "Return every node that a support of the scene holds, with the angle of clamps at a "
-           "frame.\n\nRaises DerError if there is no such frame.")
+      .def(
+          "held_nodes",
+          [](Replay& replay, const WholeNumber& frame) {
+            return held_nodes(
+                replay, static_cast<std::size_t>(frame.at_least(0, "the number of the frame")));
+          },
+          py::arg("frame"),
+          "Return every node that a support of the scene holds, with the angle of clamps at a "
+          "frame.\n\nRaises DerError if there is no such frame.")
       .def(
           "load_arc_lengths", &load_arc_lengths, py::arg("number"),
           "Return the arc lengths [m] of a load of the scene, counted from 0: those of its places, "

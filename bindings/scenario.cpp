@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "arguments.hpp"
 #include "bindings.hpp"
 #include "der/scenario/document.hpp"
 #include "der/scenario/reader.hpp"
@@ -33,7 +35,38 @@ std::vector<Override> to_overrides(const py::kwargs& values) {
   return overrides;
 }
 
-Scenario from_dict(const py::dict& scene) {
+Scenario load(const py::object& path, const py::kwargs& overrides) {
+  py::object as_text;
+  try {
+    as_text = py::module_::import("os").attr("fspath")(path);
+  } catch (const py::error_already_set& error) {
+    if (!error.matches(PyExc_TypeError)) throw;
+    throw py::type_error("a scene is loaded from the path of its file, got " +
+                         py::repr(path).cast<std::string>() +
+                         "; Scenario.from_dict takes a dict, Scenario.parse a text");
+  }
+  return Scenario::load(as_text.cast<std::filesystem::path>(), to_overrides(overrides));
+}
+
+Scenario parse(const Text& text, const Text& source, const py::kwargs& overrides) {
+  text.check("the text of a scene");
+  return Scenario::parse(text_of(text.given), std::string(source.value("the name of the source")),
+                         to_overrides(overrides));
+}
+
+Scenario with(const Scenario& scenario, const py::args& others, const py::kwargs& overrides) {
+  if (!others.empty()) {
+    throw py::type_error(
+        "with_ takes values by their key paths: write with_(**{\"rods.beam.nodes\": 101})");
+  }
+  return scenario.with(to_overrides(overrides));
+}
+
+Scenario from_dict(const py::object& scene) {
+  if (!PyDict_Check(scene.ptr())) {
+    throw py::type_error("a scene is a dict with the keys of a scene file, got " +
+                         py::repr(scene).cast<std::string>());
+  }
   return Scenario::from_document(
       std::make_shared<const scenario::Document>(to_document_value(scene, "")));
 }
@@ -47,35 +80,21 @@ py::str repr(const Scenario& scenario) {
 using ScenarioClass = py::class_<Scenario>;
 
 void bind_readers(ScenarioClass& cls) {
-  cls.def_static(
-         "load",
-         [](const std::filesystem::path& path, const py::kwargs& overrides) {
-           return Scenario::load(path, to_overrides(overrides));
-         },
-         py::arg("path"), py::pos_only(),
-         "Read and validate a scene file.\n\n"
-         "Keyword arguments replace values, as in `with_`. Raises SceneError with every "
-         "diagnostic.")
-      .def_static(
-          "parse",
-          [](const py::str& text, const std::string& source, const py::kwargs& overrides) {
-            return Scenario::parse(text_of(text), source, to_overrides(overrides));
-          },
-          py::arg("text"), py::arg("source") = "scene", py::pos_only(),
-          "Read and validate a scene given as YAML text; `source` names it in messages.\n\n"
-          "Keyword arguments replace values, as in `with_`. Raises SceneError.")
+  cls.def_static("load", &load, py::arg("path"), py::pos_only(),
+                 "Read and validate a scene file.\n\n"
+                 "Keyword arguments replace values, as in `with_`. Raises SceneError with every "
+                 "diagnostic.")
+      .def_static("parse", &parse, py::arg("text"), py::arg("source") = "scene", py::pos_only(),
+                  "Read and validate a scene given as YAML text; `source` names it in messages.\n\n"
+                  "Keyword arguments replace values, as in `with_`. Raises SceneError.")
       .def_static("from_dict", &from_dict, py::arg("scene"),
                   "Validate a scene given as a dict, with the keys of a scene file.\n\n"
                   "Values may be None, bool, int, float, str, lists, tuples, dicts, NumPy scalars\n"
                   "and arrays. Raises SceneError, whose messages name the key path.")
-      .def(
-          "with_",
-          [](const Scenario& scenario, const py::kwargs& overrides) {
-            return scenario.with(to_overrides(overrides));
-          },
-          "Return the same scene with some values replaced or added, validated again.\n\n"
-          "A key path names mappings by key and list items by `name` or number:\n"
-          "`scenario.with_(**{\"rods.beam.nodes\": 101, \"loads.0.gravity\": [0, -1.6]})`.");
+      .def("with_", &with,
+           "Return the same scene with some values replaced or added, validated again.\n\n"
+           "A key path names mappings by key and list items by `name` or number:\n"
+           "`scenario.with_(**{\"rods.beam.nodes\": 101, \"loads.0.gravity\": [0, -1.6]})`.");
 }
 
 /// First and last factor of a continuation.
@@ -85,7 +104,8 @@ std::optional<std::pair<double, double>> factor_range(const Scenario& scenario) 
   return std::pair{path->from, path->to};
 }
 
-bool varies_load(const Scenario& scenario, int number) {
+bool varies_load(const Scenario& scenario, const WholeNumber& load) {
+  const std::int64_t number = load.at_least(0, "the number of the load");
   const auto* path = std::get_if<scenario::ContinuationAnalysis>(&scenario.scene().analysis);
   return path != nullptr && path->vary == scenario::Varied::Loads &&
          path->number.value_or(number) == number;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "arguments.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "controls.hpp"
@@ -106,7 +107,12 @@ py::dict probe_values(const PySimulation& simulation) {
   return values;
 }
 
-void restore(PySimulation& simulation, const SavedState& saved) {
+void restore(PySimulation& simulation, const py::object& given) {
+  if (!py::isinstance<SavedState>(given)) {
+    throw py::type_error("a state that save_state has returned is needed, got " +
+                         py::repr(given).cast<std::string>());
+  }
+  const auto& saved = given.cast<const SavedState&>();
   try {
     check_control_names(simulation.engine().model(), saved.controls);
     simulation.restore(saved.state);
@@ -332,28 +338,32 @@ void bind_facts(PySimulationClass& cls) {
 void bind_actions(PySimulationClass& cls) {
   cls.def(
          "step",
-         [](const py::object& self, std::int64_t n) { self.cast<PySimulation&>().step(n, self); },
+         [](const py::object& self, const WholeNumber& n) {
+           self.cast<PySimulation&>().step(n.at_least(0, "the number of steps"), self);
+         },
          py::arg("n") = 1,
          "Advance by `n` time steps of the scene.\n\n"
          "Other Python threads run meanwhile, and Ctrl-C interrupts between two steps. Raises\n"
          "NotConvergedError or DivergedError; the state is then that of the last good step.")
       .def(
           "equilibrium",
-          [](const py::object& self, bool leave_saddles) {
-            return self.cast<PySimulation&>().equilibrium(self, leave_saddles);
+          [](const py::object& self, const Truth& leave_saddles) {
+            return self.cast<PySimulation&>().equilibrium(self,
+                                                          leave_saddles.value("leave_saddles"));
           },
           py::arg("leave_saddles") = true,
           "Move to the static equilibrium near the present state.\n\n"
           "It is found under the loads at the present time, `extra_force` and the functions of\n"
           "`add_force` (evaluated once, at the start) included. Velocities become zero. An "
           "unstable\n"
-          "equilibrium is left for a stable one, unless `leave_saddles` is false. Raises\n"
-          "NotConvergedError.")
+          "equilibrium is left for a stable one, unless `leave_saddles` is false. Ctrl-C "
+          "interrupts\n"
+          "between two iterations, and the state is then as before. Raises NotConvergedError.")
       .def(
           "vibration_modes",
-          [](PySimulation& simulation, int count) {
-            if (count < 1) throw py::value_error("the number of modes must be at least 1");
-            const std::vector<Mode> modes = simulation.engine().modes(count);
+          [](PySimulation& simulation, const WholeNumber& count) {
+            const std::vector<Mode> modes =
+                simulation.modes(count.at_least(1, "the number of modes"));
             const Model& model = simulation.engine().model();
             Array frequencies(static_cast<py::ssize_t>(modes.size()));
             Array growth_rates(static_cast<py::ssize_t>(modes.size()));
@@ -373,7 +383,11 @@ void bind_actions(PySimulationClass& cls) {
           "equilibrium; `modes` makes an object of them.")
       .def(
           "add_force",
-          [](PySimulation& simulation, py::function function) {
+          [](PySimulation& simulation, py::object function) {
+            if (PyCallable_Check(function.ptr()) == 0) {
+              throw py::type_error("a force is a function(time, positions, velocities), got " +
+                                   py::repr(function).cast<std::string>());
+            }
             simulation.forces().add(function);
             return function;
           },
@@ -386,7 +400,7 @@ void bind_actions(PySimulationClass& cls) {
           "function, so that it works as a decorator.")
       .def(
           "remove_force",
-          [](PySimulation& simulation, const py::function& function) {
+          [](PySimulation& simulation, const py::object& function) {
             simulation.forces().remove(function);
           },
           py::arg("function"), "Remove a force that was added. Raises ValueError if it was not.")

@@ -11,8 +11,9 @@ import numpy as np
 from der import _core
 from der._core import EquilibriumReport, State
 from der.errors import DerError, UnreliableResultWarning, warn
-from der.key_paths import check_apart
+from der.key_paths import check_apart, check_varied
 from der.simulation import SceneLike, as_scenario
+from der.whole_numbers import MOST, whole_number
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -101,10 +102,10 @@ class Batch(_core.Batch):
         vary: Mapping[str, ArrayLike | Sequence[Any]] | None = None,
     ) -> None:
         scenario = as_scenario(scene)
-        if members < 1:
-            raise ValueError(f"a batch has at least one member, not {members}")
-        if threads is not None and threads < 1:
-            raise ValueError(f"a batch needs at least one thread, not {threads}")
+        members = whole_number("members", members, 1, MOST)
+        if threads is not None:
+            threads = whole_number("threads", threads, 1, MOST)
+        check_varied(vary or {})
         check_apart(scenario.to_dict(), vary or ())
         lists = {path: _one_each(path, given, members) for path, given in (vary or {}).items()}
         super().__init__(scenario, members, threads or 0, lists)
@@ -144,6 +145,11 @@ class Batch(_core.Batch):
         -------
         list of EquilibriumReport or None
             One for each member; None for those that have failed.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            Of Ctrl-C: each member is then in its equilibrium, or where it was.
         """
         return self.settle(leave_saddles)
 
@@ -209,7 +215,7 @@ class Batch(_core.Batch):
             then moved.
         """
         pairs = [
-            (component, self._broadcast(component, given, (len(self),)))
+            (component, _broadcast(component, _as_numbers(component, given), (len(self),)))
             for component, given in components.items()
         ]
         self.prescribe_rows(support, pairs)
@@ -232,12 +238,20 @@ class Batch(_core.Batch):
         ------
         IndexError
             If there is no such member.
+        TypeError
+            If the members are no whole numbers and no mask, or a state is none.
         ValueError
-            If a state does not fit.
+            If a mask has another shape, or a state does not fit.
         """
         numbers = self._numbers(members)
-        states = [] if state is None else [state] if isinstance(state, State) else list(state)
-        if state is not None and not isinstance(state, State) and len(states) != len(numbers):
+        if state is None or isinstance(state, State):
+            self.reset_members(numbers, [] if state is None else [state])
+            return
+        states = list(state) if isinstance(state, Iterable) else [state]
+        for given in states:
+            if not isinstance(given, State):
+                raise TypeError(f"a state that save_state has returned is needed, got {given!r}")
+        if len(states) != len(numbers):
             raise ValueError(f"{len(states)} states for {len(numbers)} members: give one for each")
         self.reset_members(numbers, states)
 
@@ -247,33 +261,72 @@ class Batch(_core.Batch):
         return [MemberFailure(*row) for row in self.failure_rows()]
 
     def _numbers(self, members: Members) -> list[int]:
-        every = np.arange(len(self))
         if members is None:
-            chosen = every
-        elif isinstance(members, (int, np.integer, np.ndarray)):
-            chosen = np.atleast_1d(every[members])
-        else:
-            chosen = every[np.array(list(members), dtype=int)]
-        return [int(number) for number in chosen]
+            return list(range(len(self)))
+        given = np.atleast_1d(_as_array(members))
+        if given.dtype == np.bool_:
+            if given.shape != (len(self),):
+                raise ValueError(
+                    f"a mask of members is an array of {len(self)} truth values, one for each "
+                    f"member, not one of the shape {given.shape}"
+                )
+            return [int(number) for number in np.flatnonzero(given)]
+        if given.size == 0:
+            return []
+        if given.ndim != 1 or not np.issubdtype(given.dtype, np.integer):
+            raise TypeError(
+                f"members are whole numbers, such as [0, 2], or a mask of {len(self)} truth "
+                f"values, got {members!r}"
+            )
+        for number in given.tolist():
+            if not 0 <= number < len(self):
+                raise IndexError(
+                    f"there is no member {number}: they are counted from 0 to {len(self) - 1}"
+                )
+        return [int(number) for number in given]
 
     def _rows(self, name: str, given: ArrayLike) -> NDArray[np.float64]:
         components = self.value_rows(name).shape[1]
-        values = np.asarray(given, dtype=float)
+        values = _as_numbers(name, given)
         if components == 1 and values.ndim == 1 and values.shape != (1,):
             values = values[:, None]
-        return self._broadcast(name, values, (len(self), components))
+        shape = (len(self), components)
+        # One number is no value of several components, though it could be spread over them.
+        if components > 1 and values.shape[-1:] != (components,):
+            raise _other_shape(name, values, shape)
+        return _broadcast(name, values, shape)
 
-    def _broadcast(
-        self, name: str, given: ArrayLike, shape: tuple[int, ...]
-    ) -> NDArray[np.float64]:
-        values = np.asarray(given, dtype=float)
-        try:
-            return np.ascontiguousarray(np.broadcast_to(values, shape))
-        except ValueError:
-            raise ValueError(
-                f"'{name}' takes values of shape {shape}, a row for each member, or those of one "
-                f"row for all, but here is an array of shape {values.shape}"
-            ) from None
+
+def _as_array(members: Any) -> NDArray[Any]:
+    """Return an array of what is one, of one number, or of anything that lists numbers."""
+    is_list = isinstance(members, Iterable) and not isinstance(members, np.ndarray)
+    return np.asarray(list(members) if is_list else members)
+
+
+def _as_numbers(name: str, given: ArrayLike) -> NDArray[np.float64]:
+    try:
+        values = np.asarray(given)
+        if values.dtype.kind in "biuf":
+            return values.astype(float, copy=False)
+    except ValueError:  # rows of different lengths
+        pass
+    raise TypeError(f"'{name}' takes numbers, or arrays of them, got {given!r}")
+
+
+def _broadcast(
+    name: str, values: NDArray[np.float64], shape: tuple[int, ...]
+) -> NDArray[np.float64]:
+    try:
+        return np.ascontiguousarray(np.broadcast_to(values, shape))
+    except ValueError:
+        raise _other_shape(name, values, shape) from None
+
+
+def _other_shape(name: str, values: NDArray[np.float64], shape: tuple[int, ...]) -> ValueError:
+    return ValueError(
+        f"'{name}' takes values of shape {shape}, a row for each member, or those of one "
+        f"row for all, but here is an array of shape {values.shape}"
+    )
 
 
 def _one_each(path: str, given: ArrayLike | Sequence[Any], members: int) -> list[Any]:

@@ -19,8 +19,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a subcommand and return its exit code, as der_run has them.
 
     0, or with a message on stderr 3 if a run failed and 1 for anything else; a command may have
-    others of its own. Without a message 141 if nobody reads what it prints any more, as the shell
-    calls the end of a program by SIGPIPE, and 130 after Ctrl-C.
+    others of its own. 2 for a command line that cannot be read, 130 after Ctrl-C. Without a message
+    141 if nobody reads what it prints any more, as the shell calls the end of a program by SIGPIPE.
 
     Parameters
     ----------
@@ -44,7 +44,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (DerError, OSError, ValueError, ModuleNotFoundError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
+    except MemoryError as error:
+        print(f"error: the memory does not suffice: {error}", file=sys.stderr)
+        return 1
     except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
         return 130
 
 

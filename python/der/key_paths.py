@@ -3,8 +3,24 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
+
+
+def check_varied(vary: object) -> None:
+    """See that what is to be varied is a dict of key paths and their values.
+
+    Raises
+    ------
+    TypeError
+        If it is anything else.
+    """
+    if isinstance(vary, Mapping) and all(isinstance(path, str) for path in vary):
+        return
+    raise TypeError(
+        "vary must be a dict of key paths and their values, such as "
+        f'{{"rods.arm.nodes": [11, 21]}}, got {vary!r}'
+    )
 
 
 def check_apart(scene: dict[str, Any], paths: Iterable[str]) -> None:

@@ -9,6 +9,8 @@ from pathlib import Path
 #: Endings of the pictures that can be written.
 PICTURE_ENDINGS = (".png", ".svg", ".pdf")
 
+_ELSEWHERE = "name a folder where you may write, or change its permissions"
+
 
 def output_file(text: str) -> Path:
     """Return the path of a file to write: the `type` of an argument of `argparse`.
@@ -39,16 +41,36 @@ def output_picture(text: str) -> Path:
     return path
 
 
+def make_folder(folder: Path) -> None:
+    """Make a folder for results, unless it is there.
+
+    Raises
+    ------
+    OSError
+        If that cannot be done, or nothing can be written there; it says what to do.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OSError(f"cannot make the folder {folder}: {error.strerror}; {_ELSEWHERE}") from error
+    if not os.access(folder, os.W_OK):
+        raise PermissionError(f"cannot write to {folder}: {_ELSEWHERE}")
+
+
 def check_output_folder(out: Path) -> None:
-    """Check that the folder that `--out` names is there or can be made.
+    """Check that the folder that `--out` names is there or can be made, and written to.
 
     Raises
     ------
     ValueError
         If a file is in the way.
+    PermissionError
+        If it cannot be written to.
     """
     for path in (out, *out.parents):
         if path.is_dir():
+            if not os.access(path, os.W_OK):
+                raise PermissionError(f"--out: cannot write to '{path}': {_ELSEWHERE}")
             return
         if path.exists():
             raise ValueError(

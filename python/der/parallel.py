@@ -25,6 +25,7 @@ from der.errors import DerError
 from der.progress import ProgressFunction
 from der.result import Result
 from der.simulation import Simulation, recorded_result
+from der.whole_numbers import MOST, whole_number
 
 #: Status of a run that was cancelled.
 TOO_LONG = "too_long"
@@ -101,7 +102,7 @@ class Threads(ThreadPoolExecutor):
 
     Raises
     ------
-    ValueError
+    ValueError, TypeError
         If `jobs` is not a whole number of at least 1.
     """
 
@@ -132,11 +133,11 @@ def checked_jobs(jobs: int | None) -> int:
     Raises
     ------
     ValueError
-        If `jobs` is not a whole number of at least 1.
+        If `jobs` is less than 1.
+    TypeError
+        If it is no whole number.
     """
-    if jobs is not None and (not isinstance(jobs, int) or isinstance(jobs, bool) or jobs < 1):
-        raise ValueError(f"jobs must be a whole number of at least 1, got {jobs!r}")
-    return jobs or os.cpu_count() or 1
+    return (os.cpu_count() or 1) if jobs is None else whole_number("jobs", jobs, 1, MOST)
 
 
 def as_they_finish(
@@ -193,7 +194,7 @@ class Workers:
 
     Raises
     ------
-    ValueError
+    ValueError, TypeError
         If `jobs` is not a whole number of at least 1.
     """
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Mapping
+from numbers import Real
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -71,7 +72,7 @@ class Simulation(_core.Simulation):
         """Run from the present state to the end of the scene and record it.
 
         A static scene is brought to its equilibrium. Other Python threads run meanwhile, and Ctrl-C
-        interrupts between two steps.
+        interrupts between two steps, or two iterations of a search.
 
         Parameters
         ----------
@@ -102,6 +103,8 @@ class Simulation(_core.Simulation):
             If the run fails; their ``result`` holds everything up to the last good step.
         ValueError
             If `until` lies before the present time or beyond the scene's end.
+        TypeError
+            If `until` is no number, or `callback` or `progress` no function.
 
         Warns
         -----
@@ -112,6 +115,10 @@ class Simulation(_core.Simulation):
             If the integrator has created energy, but not enough for the run to fail.
         """
         end = self._end_time(until)
+        if not (callback is None or callable(callback)):
+            raise TypeError(f"callback must be a function, got {callback!r}")
+        if not (isinstance(progress, bool) or callable(progress)):
+            raise TypeError(f"progress must be True, False or a function, got {progress!r}")
         line = ProgressLine() if progress is True else None
         report = progress if callable(progress) else line
         try:
@@ -119,7 +126,7 @@ class Simulation(_core.Simulation):
                 callback=None if callback is None else lambda: _goes_on(callback(self)),
                 until=end,
                 tick=None if report is None else lambda: report(self.share_done(end)),
-                out=out,
+                out=None if out is None else os.fspath(out),
             )
         finally:
             if line is not None:
@@ -204,6 +211,8 @@ class Simulation(_core.Simulation):
             return math.inf
         if self.scenario.is_static:
             raise ValueError("a static scene has no time to run until")
+        if not isinstance(until, Real):
+            raise TypeError(f"until must be a time in s, got {until!r}")
         if not self.time <= until <= self.scenario.duration * (1.0 + 1e-12):
             raise ValueError(
                 f"until = {until:g} s must lie between the present time, {self.time:g} s, and the "
@@ -394,7 +403,7 @@ def as_scenario(scenario: SceneLike) -> Scenario:
     if isinstance(scenario, Scenario):
         return scenario
     if isinstance(scenario, Mapping):
-        return Scenario.from_dict(scenario)
+        return Scenario.from_dict(dict(scenario))
     if isinstance(scenario, (str, os.PathLike)):
         return Scenario.load(scenario)
     raise TypeError(

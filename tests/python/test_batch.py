@@ -362,14 +362,14 @@ def test_what_cannot_vary_is_refused(vary, error, message):
 
 
 def test_numbers_that_are_no_batch():
-    with pytest.raises(ValueError, match="at least one member"):
+    with pytest.raises(ValueError, match="members must be a whole number of at least 1"):
         der.Batch(PLANAR, 0)
-    with pytest.raises(ValueError, match="at least one thread"):
+    with pytest.raises(ValueError, match="threads must be a whole number of at least 1"):
         der.Batch(PLANAR, 2, threads=0)
     batch = der.Batch(PLANAR, 2, threads=7)
     assert (len(batch), batch.threads) == (2, 7)
     assert der.Batch(PLANAR, 1).threads >= 1
-    with pytest.raises(ValueError, match="must not be negative"):
+    with pytest.raises(ValueError, match="number of steps must be a whole number of at least 0"):
         batch.step(-1)
     with pytest.raises(der.DerError, match="members 0 to 1, but no member 2"):
         batch.scenario(2)

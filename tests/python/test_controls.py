@@ -100,7 +100,7 @@ def test_a_value_is_reached_evenly(simulation):
         ("push", "up", TypeError, "takes a number, a list of numbers or a dict"),
         ("push", [1, "up"], TypeError, "not 'up'"),
         ("push", None, TypeError, "not None"),
-        (3, 1, TypeError, "incompatible function arguments"),
+        (3, 1, TypeError, "the name must be a text, got 3"),
     ],
 )
 def test_a_wrong_call_says_what_is_right_and_changes_nothing(

@@ -36,6 +36,7 @@ ARM = {
     "start_from": "equilibrium",
     "time": {"duration": 0.1, "step": 0.005, "integrator": "implicit_euler"},
 }
+STATIC = {key: ARM[key] for key in ("title", "rods", "supports")} | {"analysis": "static"}
 
 
 def act(batch, actions):
@@ -271,13 +272,89 @@ def test_gymnasium_makes_them_by_name():
         ({"observation_space": Box(-1, 1, (3,))}, r"has the shape \(7,\), but .* \(3,\)"),
         ({"scene": ARM | {"time": {"duration": 1, "tolerance": 1e-3}}}, "equal steps"),
         ({"scene": ARM | {"time": {"duration": 0.005, "step": 0.005}}}, "longer duration"),
-        ({"max_steps": 0}, "max_steps must be at least 1, not 0"),
-        ({"steps_per_action": -1}, "steps_per_action must be at least 1, not -1"),
+        (
+            {"scene": STATIC, "max_steps": 3},
+            "an episode is a run over time, and the scene is static",
+        ),
+        ({"max_steps": 0}, "max_steps must be a whole number of at least 1, got 0"),
+        ({"steps_per_action": -1}, "steps_per_action must be a whole number of at least 1, got -1"),
     ],
 )
 def test_tasks_that_cannot_be_played(changes, message):
     with pytest.raises(ValueError, match=message):
         RodVectorEnv(reaching(**changes), 2)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"steps_per_action": 2.5}, "steps_per_action must be a whole number of at least 1"),
+        ({"max_steps": "3"}, "max_steps must be a whole number of at least 1, got '3'"),
+        ({"act": 5}, "act must be a function, got 5"),
+        ({"observe": None}, "observe must be a function, got None"),
+        ({"draw": 5}, "draw must be a function, got 5"),
+        ({"action_space": 5}, "action_space must be a space of gymnasium"),
+        ({"observation_space": 5}, "observation_space must be a Box of gymnasium, got 5"),
+    ],
+)
+def test_what_makes_no_task(changes, message):
+    with pytest.raises(TypeError, match=message):
+        reaching(**changes)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"reward": lambda *_: ["a"]}, r"reward returned \['a'\], which is no array of numbers"),
+        ({"draw": lambda _: "a"}, "draw returned 'a', which is no array of numbers"),
+        ({"draw": lambda _: None}, "draw returned None: it returns numbers of one shape"),
+        ({"draw": lambda generator: np.zeros(generator.integers(1, 9))}, r"as the \(\d,\) of its"),
+    ],
+)
+def test_what_the_functions_of_a_task_do_not_return(changes, message):
+    def play():
+        base = {"observe": tips, "reward": lambda batch, _: np.zeros(len(batch)), "noise": None}
+        env = RodEnv(reaching(**base | changes))
+        for seed in range(9):
+            env.reset(seed=seed)
+        env.step(np.zeros(2))
+
+    with pytest.raises(ValueError, match=message):
+        play()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        ({"num_envs": 2.5}, TypeError, "num_envs must be a whole number of at least 1, got 2.5"),
+        ({"num_envs": 0}, ValueError, "num_envs must be a whole number of at least 1, got 0"),
+        ({"autoreset_mode": "x"}, ValueError, "must be one of 'NextStep', 'SameStep', 'Disabled'"),
+        ({"vary": 5}, TypeError, "vary must be a dict of key paths"),
+        ({"task": 5}, TypeError, "an environment plays a der.gym.Task, got 5"),
+    ],
+)
+def test_what_makes_no_environment(arguments, error, message):
+    with pytest.raises(error, match=message):
+        RodVectorEnv(**{"task": reaching(), "num_envs": 2} | arguments)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        ({"seed": 1.5}, TypeError, "seed must be a whole number or a list of them, got 1.5"),
+        ({"seed": -1}, ValueError, "seed must be a whole number of at least 0, got -1"),
+        ({"seed": [1, 2.5]}, TypeError, "a seed must be a whole number of at least 0, got 2.5"),
+        ({"options": 5}, TypeError, r'options must be a dict such as \{"reset_mask"'),
+    ],
+)
+def test_what_resets_nothing(arguments, error, message):
+    with pytest.raises(error, match=message):
+        RodVectorEnv(reaching(), 2).reset(**arguments)
+
+
+def test_seeds_of_numpy():
+    envs = RodVectorEnv(reaching(), 2)
+    assert_same(envs.reset(seed=np.array([3, 4]))[0], envs.reset(seed=3)[0])
 
 
 def test_rewards_of_another_shape_are_refused():

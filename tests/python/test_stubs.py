@@ -70,6 +70,8 @@ def docstring_signature(function):
             kind = "/"
         elif name == "*":
             listed = [("*", *after[1:]) for after in listed]
+        elif name == "*args":
+            pass  # taken for the sake of a message that says what to write
         elif name.startswith("**"):
             # pybind11 calls them kwargs, the stub by what they are.
             listed.insert(0, ("**", "overrides", False))

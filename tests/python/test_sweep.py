@@ -19,7 +19,8 @@ from der.parallel import Threads, as_they_finish
 from der.progress import ProgressLine
 from der.sweeps.chunk import BROKEN, Chunk, run_chunk
 from der.sweeps.design import make_design
-from der.sweeps.store import FILE, locked
+from der.sweeps.store import FILE, Store, locked
+from der.sweeps.table import Column, Table
 from der.sweeps.values import Range, parse_values
 from sweep_scenes import FORCE, STIFFNESS, bits, cantilever
 
@@ -138,6 +139,50 @@ def test_samples_are_those_of_scipy():
 def test_designs_that_are_none(vary, options, says):
     with pytest.raises(ValueError, match=says):
         make_design(vary, **options)
+
+
+def test_the_cost_of_a_path_is_that_of_all_its_points(cantilever):
+    cantilever["analysis"] = {"continuation": {}}
+    sweep = der.sweep(cantilever, {FORCE: [-1.0]})
+    alone = der.run(cantilever)
+    assert sweep.rows[0]["newton_iterations"] == alone.summary["newton_iterations"]
+    assert alone.summary["newton_iterations"] > len(alone.times)
+
+
+@pytest.mark.parametrize(
+    ("values", "says"),
+    [
+        ("11:12:4", r"its values are 11\.0, 11\.3333, 11\.6667, 12\.0: take a range with a whole"),
+        ([11.0, 21.5], r"its values are 11\.0, 21\.5: take"),
+        (np.linspace(11, 61, 6), r"its values are 11\.0, 21\.0, 31\.0, 41\.0, \.\.\.: take"),
+    ],
+)
+def test_values_that_are_no_whole_numbers(cantilever, values, says):
+    with pytest.raises(ValueError, match=rf"rods\.arm\.nodes: a whole number belongs.*{says}"):
+        der.sweep(cantilever, {"rods.arm.nodes": values})
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "says"),
+    [
+        ({"vary": 5}, TypeError, "vary must be a dict of key paths and their values"),
+        ({"vary": [("a", 1)]}, TypeError, "vary must be a dict of key paths and their values"),
+        ({"vary": {FORCE: [1j]}}, ValueError, "1j is no value of a scene: use numbers"),
+        (
+            {"vary": {FORCE: "0:1:100000000000"}},
+            ValueError,
+            "at least 2 values and at most 10000000",
+        ),
+        ({"sample": "lhs:100000000000"}, ValueError, "a sample has at most 10000000 points"),
+        ({"seed": -1}, ValueError, "seed must be a whole number of at least 0, got -1"),
+        ({"seed": 1.5}, TypeError, "seed must be a whole number of at least 0, got 1.5"),
+        ({"sample": 5}, ValueError, "'5' is no sample: write sobol:256 or lhs:100"),
+        ({"jobs": 1.5}, TypeError, "jobs must be a whole number of at least 1, got 1.5"),
+    ],
+)
+def test_arguments_that_are_none(cantilever, arguments, error, says):
+    with pytest.raises(error, match=says):
+        der.sweep(cantilever, **{"vary": {FORCE: [-1.0]}} | arguments)
 
 
 def test_rows_are_those_of_single_runs(cantilever):
@@ -519,9 +564,75 @@ def test_the_command(scene, tmp_path, capsys):
     twice = ["sweep", str(scene), "--vary", f"{FORCE}=1", "--vary", f"{FORCE}=2", "--out", str(out)]
     assert main(twice) == 1
     assert "given twice" in capsys.readouterr().err
-    with pytest.raises(SystemExit):
-        main(["sweep", str(scene), "--vary", "nothing", "--out", str(out)])
+    assert main(["sweep", str(scene), "--vary", "nothing", "--out", str(out)]) == 1
     assert "write PATH=1,2,5" in capsys.readouterr().err
+    with pytest.raises(SystemExit) as caught:
+        main(["sweep", str(scene), "--vary", f"{FORCE}=1", "--out", str(out), "--seed", "x"])
+    assert caught.value.code == 2
+
+
+def test_ctrl_c_of_the_command_says_what_is_kept(scene, tmp_path, capsys, monkeypatch):
+    write = Store.write
+
+    def write_and_interrupt(*arguments):
+        write(*arguments)
+        raise KeyboardInterrupt
+
+    line = ["sweep", str(scene), "--vary", f"{FORCE}=-2:0:30", "--out", str(tmp_path / "s")]
+    monkeypatch.setattr(Store, "write", write_and_interrupt)
+    assert main([*line, "--jobs", "1"]) == 130
+    assert "interrupted: 1 member is kept in" in capsys.readouterr().err
+    assert main([*line, "--resume", "--jobs", "1"]) == 130
+    assert "interrupted: 2 members are kept in" in (said := capsys.readouterr().err)
+    assert "with --resume goes on from there" in said
+    monkeypatch.undo()
+    assert main([*line, "--resume"]) == 0
+
+
+def test_ctrl_c_before_the_first_member(scene, tmp_path, capsys, monkeypatch):
+    def interrupt(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("der.sweeps.sweep", interrupt)
+    line = ["sweep", str(scene), "--vary", f"{FORCE}=-2:0:30", "--out", str(tmp_path / "s")]
+    assert main(line) == 130
+    assert "interrupted: no member is kept in" in capsys.readouterr().err
+
+
+def test_a_folder_where_nobody_may_write(cantilever, tmp_path, monkeypatch):
+    with pytest.raises(OSError, match=r"cannot make the folder /proc/no/s: .*; name a folder"):
+        der.sweep(cantilever, {FORCE: [-1.0]}, out="/proc/no/s")
+    monkeypatch.setattr("os.access", lambda *_: False)
+    with pytest.raises(PermissionError, match=r"cannot write to .*s: name a folder"):
+        der.sweep(cantilever, {FORCE: [-1.0]}, out=tmp_path / "s")
+
+
+def test_more_probes_than_a_table_has_columns(cantilever):
+    def with_probes(count):
+        probe = cantilever["output"]["probes"]["tip_y"]
+        return cantilever | {"output": {"probes": {f"p{i}": probe for i in range(count)}}}
+
+    sweep = der.sweep(with_probes(397), {FORCE: [-1.0]})
+    assert sweep.failed.sum() == 0
+    with pytest.raises(ValueError, match=r"398 probes of 5 columns .* has room for 397 of them"):
+        der.sweep(with_probes(398), {FORCE: [-1.0]})
+    with pytest.raises(ValueError, match=r"8 columns each, .* has room for 248 of them"):
+        der.sweep(with_probes(249), {FORCE: [-1.0]}, verify=True)
+
+
+def test_a_file_that_is_no_sweep(cantilever, tmp_path):
+    (tmp_path / FILE).write_text("garbage")
+    with pytest.raises(OSError, match=r"is damaged, or no file of a sweep .*: name another folder"):
+        der.sweep(cantilever, {FORCE: [-1.0]}, out=tmp_path, resume=True)
+
+
+def test_findings_that_have_no_columns_left(cantilever):
+    store = Store()
+    store.create({}, [FORCE])
+    table = Table({f"x{i}": Column(f"x{i}", "found") for i in range(2000)})
+    with pytest.raises(OSError, match=r"more than the 2000 columns .* ask for fewer probes"):
+        store.write(table, [FORCE], {})
+    store.close()
 
 
 def test_exit_code_if_every_member_fails(cantilever, tmp_path, capsys):

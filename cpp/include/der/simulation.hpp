@@ -15,6 +15,7 @@
 
 #include "der/assembly/assembler.hpp"
 #include "der/assembly/pattern.hpp"
+#include "der/core/beat.hpp"
 #include "der/model/elongation_limits.hpp"
 #include "der/model/fields.hpp"
 #include "der/model/model.hpp"
@@ -113,10 +114,12 @@ class Simulation {
   /// Replaces the state by the static equilibrium near it under the loads at the present time,
   /// velocities zero. One that is unstable is left for a stable one, unless `leave_saddles` is
   /// false. Throws NotConvergedError; Error if a position or an extra force is not finite.
-  /// One of a planar model is tested against motion out of its plane.
-  EquilibriumReport equilibrium(bool leave_saddles = true);
+  /// One of a planar model is tested against motion out of its plane. `beat` is called at least
+  /// once an iteration of the search, here and below; what it throws ends the search, and the state
+  /// is then as before.
+  EquilibriumReport equilibrium(bool leave_saddles = true, const Beat& beat = {});
   /// The same without that test, as the start of something else.
-  EquilibriumReport settle(bool leave_saddles = true);
+  EquilibriumReport settle(bool leave_saddles = true, const Beat& beat = {});
 
   /// Sets what has a name in the scene, in place of its table: each component comes to its value
   /// evenly and stays there until it is set again. `name` is that of a load or support, or of one
@@ -150,13 +153,13 @@ class Simulation {
 
   /// The `count` modes of lowest frequency about the present state, which has to be an equilibrium
   /// (Error if not).
-  [[nodiscard]] std::vector<Mode> modes(int count);
+  [[nodiscard]] std::vector<Mode> modes(int count, const Beat& beat = {});
   /// Growth rate [1/s] of the fastest motion of the present equilibrium out of the plane of a
   /// planar model; 0 if there is none, or if that is not tested.
-  [[nodiscard]] double growth_rate_out_of_plane();
+  [[nodiscard]] double growth_rate_out_of_plane(const Beat& beat = {});
   /// Linear buckling of the structure of a planar model out of its plane; nothing in space.
   /// `in_plane` is what `buckling` returned last.
-  OutOfPlaneBuckling buckling_out_of_plane(const LinearBuckling& in_plane);
+  OutOfPlaneBuckling buckling_out_of_plane(const LinearBuckling& in_plane, const Beat& beat = {});
   /// Why equilibria of the scene are not tested against motion out of their plane, as a clause;
   /// empty if they are, and where the model is one in space.
   [[nodiscard]] const std::string& not_tested_out_of_plane() const {
@@ -165,11 +168,11 @@ class Simulation {
   /// Replaces the state by the equilibrium without loads, and returns its linear buckling modes
   /// under the scene's loads. Throws NotConvergedError, and Error where that is not the scene's
   /// analysis.
-  LinearBuckling buckling(int count);
+  LinearBuckling buckling(int count, const Beat& beat = {});
   /// Follows the equilibria of the scene along its load factor, from the equilibrium at the first
   /// value. Leaves the state there. Throws NotConvergedError, and Error where the scene's analysis
   /// is no continuation.
-  std::vector<PathBranch> follow();
+  std::vector<PathBranch> follow(const Beat& beat = {});
   /// Shows a point of a path that `follow` has found, number `index` of all: the state is that of
   /// the point, at its load factor.
   void show(const PathPoint& point, std::int64_t index);

@@ -12,6 +12,9 @@
 namespace der {
 namespace {
 
+/// Thrown by work that is given up because something else was thrown before, which the team keeps.
+struct GivenUp {};
+
 Index to_row(std::size_t member) { return static_cast<Index>(member); }
 
 Scenario scenario_of(std::size_t member, const Scenario& scenario,
@@ -63,7 +66,7 @@ Batch::Batch(const Scenario& scenario, std::size_t members,
   groups_ = MemberGroups::make(simulations, team_.size());
   make_arrays();
   if (variations.empty()) {
-    start_alike();
+    start_alike(beat);
   } else {
     start_each(beat);
   }
@@ -78,7 +81,7 @@ void Batch::build(const Scenario& scenario, const std::vector<Variation>& variat
   });
   refusals.raise();
   all(
-      [&](std::size_t number) {
+      [&](std::size_t number, const auto& /*look*/) {
         if (number == 0) return;
         refusals.attempt(number, [&] {
           members_[number].simulation = std::make_unique<Simulation>(
@@ -91,9 +94,9 @@ void Batch::build(const Scenario& scenario, const std::vector<Variation>& variat
 }
 
 /// Members of one scene have one start.
-void Batch::start_alike() {
+void Batch::start_alike(const Beat& beat) {
   Member& first = members_.front();
-  start(0);
+  start(0, [&] { beat_if_due(beat); });
   for (std::size_t number = 1; number < size(); ++number) {
     Member& member = members_[number];
     member.start = first.start;
@@ -109,7 +112,9 @@ void Batch::start_alike() {
 
 void Batch::start_each(const Beat& beat) {
   Refusals refusals;
-  all([&](std::size_t number) { refusals.attempt(number, [&] { start(number); }); }, beat);
+  all([&](std::size_t number,
+          const auto& look) { refusals.attempt(number, [&] { start(number, look); }); },
+      beat);
   refusals.raise();
 }
 
@@ -124,10 +129,10 @@ void Batch::make_arrays() {
   unreliable_.assign(size(), 0);
 }
 
-void Batch::start(std::size_t number) {
+void Batch::start(std::size_t number, const Beat& look) {
   Member& member = members_[number];
   try {
-    apply_start(*member.simulation);
+    apply_start(*member.simulation, look);
     member.start = std::make_shared<const State>(member.simulation->state());
   } catch (const NotConvergedError& error) {
     fail(number, error);
@@ -145,12 +150,17 @@ void Batch::beat_if_due(const Beat& beat) {
   if (beat && pacer_.due()) beat();
 }
 
+void Batch::look(bool on_caller, const ThreadTeam::Call& call, const Beat& beat) {
+  if (on_caller) beat_if_due(beat);
+  if (call.is_given_up()) throw GivenUp{};
+}
+
 template <class Work>
 void Batch::all(const Work& work, const Beat& beat) {
   team_.for_each(
       size(),
-      [&](std::size_t number, bool on_caller, const ThreadTeam::Call& /*call*/) {
-        work(number);
+      [&](std::size_t number, bool on_caller, const ThreadTeam::Call& call) {
+        work(number, [&] { look(on_caller, call, beat); });
         if (on_caller) beat_if_due(beat);
       },
       beat);
@@ -163,12 +173,8 @@ void Batch::all_that_go_on(const Work& work, const Beat& beat) {
       [&](std::size_t number, bool on_caller, const ThreadTeam::Call& call) {
         if (failed_[number] != 0) return;
         take_rows(number);
-        const auto goes_on = [&] {
-          if (on_caller) beat_if_due(beat);
-          return !call.is_given_up();
-        };
         try {
-          work(number, goes_on);
+          work(number, [&] { look(on_caller, call, beat); });
         } catch (const Error& error) {
           fail(number, error);
         } catch (...) {
@@ -186,9 +192,12 @@ void Batch::step(std::int64_t count, const Beat& beat) {
   }
   if (groups_) return step_in_lanes(count, beat);
   all_that_go_on(
-      [&](std::size_t number, const auto& goes_on) {
+      [&](std::size_t number, const auto& look) {
         Simulation& simulation = *members_[number].simulation;
-        for (std::int64_t i = 0; i < count && goes_on(); ++i) simulation.step();
+        for (std::int64_t i = 0; i < count; ++i) {
+          look();
+          simulation.step();
+        }
       },
       beat);
 }
@@ -230,8 +239,8 @@ std::vector<std::optional<EquilibriumReport>> Batch::equilibrium(bool leave_sadd
                                                                  const Beat& beat) {
   std::vector<std::optional<EquilibriumReport>> reports(size());
   all_that_go_on(
-      [&](std::size_t number, const auto& goes_on) {
-        if (goes_on()) reports[number] = members_[number].simulation->equilibrium(leave_saddles);
+      [&](std::size_t number, const auto& look) {
+        reports[number] = members_[number].simulation->equilibrium(leave_saddles, look);
       },
       beat);
   return reports;
@@ -360,7 +369,7 @@ RowMatrix& Batch::probes(const Beat& beat) {
   const std::size_t count = members_.front().simulation->scenario().scene().output.probes.size();
   if (probes_.size() == 0) probes_.setZero(static_cast<Index>(count), to_row(size()));
   all(
-      [&](std::size_t number) {
+      [&](std::size_t number, const auto& /*look*/) {
         Member& member = members_[number];
         if (member.probes.empty()) {
           member.probes =

@@ -26,34 +26,35 @@ struct Analyse {
   Simulation& simulation;
   Recorder& recorder;
   const StepCallback& after_step;
+  const Beat& beat;
   RunOutcome& outcome;
 
   std::string operator()(const scenario::DynamicAnalysis& /*analysis*/) const {
     return advance(simulation, recorder, after_step);
   }
   std::string operator()(const scenario::StaticAnalysis& analysis) const {
-    outcome.equilibrium = simulation.equilibrium(analysis.leave_saddles);
+    outcome.equilibrium = simulation.equilibrium(analysis.leave_saddles, beat);
     recorder.observe(simulation);
     return run_status::kStaticConverged;
   }
   std::string operator()(const scenario::ModesAnalysis& analysis) const {
-    outcome.equilibrium = simulation.equilibrium();
+    outcome.equilibrium = simulation.equilibrium(true, beat);
     recorder.observe(simulation);
-    outcome.modes = simulation.modes(analysis.count);
+    outcome.modes = simulation.modes(analysis.count, beat);
     const auto& plane = outcome.equilibrium->out_of_plane;
     if (plane && plane->stability.unstable_directions > 0) {
-      outcome.out_of_plane.growth_rate = simulation.growth_rate_out_of_plane();
+      outcome.out_of_plane.growth_rate = simulation.growth_rate_out_of_plane(beat);
     }
     return run_status::kCompleted;
   }
   std::string operator()(const scenario::BucklingAnalysis& analysis) const {
-    outcome.buckling = simulation.buckling(analysis.count);
-    outcome.out_of_plane.buckling = simulation.buckling_out_of_plane(outcome.buckling);
+    outcome.buckling = simulation.buckling(analysis.count, beat);
+    outcome.out_of_plane.buckling = simulation.buckling_out_of_plane(outcome.buckling, beat);
     recorder.observe(simulation);
     return run_status::kCompleted;
   }
   std::string operator()(const scenario::ContinuationAnalysis& /*analysis*/) const {
-    outcome.path = simulation.follow();
+    outcome.path = simulation.follow(beat);
     std::int64_t index = 0;
     for (const PathBranch& branch : outcome.path) {
       for (const PathPoint& point : branch.points) {
@@ -69,7 +70,8 @@ struct Analyse {
 
 }  // namespace
 
-RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& after_step) {
+RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& after_step,
+               const Beat& beat) {
   RunOutcome outcome;
   const auto fail = [&](const Error& error) {
     outcome.status = error.status();
@@ -77,7 +79,7 @@ RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& a
     outcome.error = std::current_exception();
   };
   try {
-    outcome.status = std::visit(Analyse{simulation, recorder, after_step, outcome},
+    outcome.status = std::visit(Analyse{simulation, recorder, after_step, beat, outcome},
                                 simulation.scenario().scene().analysis);
   } catch (const NotConvergedError& error) {
     fail(error);

@@ -37,9 +37,9 @@ std::string first_difference(const std::string& was, const std::string& is) {
 }
 
 RunOutcome run_into_file(RunFile& file, const RunFolder& folder, Simulation& simulation,
-                         Recorder& recorder, const StepCallback& after_step) {
+                         Recorder& recorder, const StepCallback& after_step, const Beat& beat) {
   recorder.add(file);
-  const RunOutcome outcome = run(simulation, recorder, after_step);
+  const RunOutcome outcome = run(simulation, recorder, after_step, beat);
   file.add(datasets(simulation, outcome));
   if (!outcome.path.empty()) write_whole(folder.path_table(), path_csv(simulation, outcome));
   file.finish(outcome.status, simulation, recorder);
@@ -125,7 +125,8 @@ std::unique_ptr<RunLock> prepare(const RunFolder& folder, const std::string& sce
   std::error_code error;
   fs::create_directories(folder.path(), error);
   if (error) {
-    throw IoError("cannot create '" + folder.path().string() + "': " + error.message());
+    throw IoError("cannot create '" + folder.path().string() + "': " + error.message() +
+                  "; name a folder where you may write");
   }
   auto lock = std::make_unique<RunLock>(folder.path());
   check_room(expected_bytes, folder.results());
@@ -175,13 +176,13 @@ RunFileHead check_resumable(const RunFolder& folder, const Scenario& scenario) {
 }
 
 RunOutcome run_in_folder(const RunFolder& folder, Simulation& simulation, Recorder& recorder,
-                         const StepCallback& after_step) {
+                         const StepCallback& after_step, const Beat& beat) {
   const std::string scene = simulation.scenario().to_yaml();
   const auto lock = prepare(folder, scene, expected_bytes(simulation));
   // The result file first: it marks the folder as one of a run, should the process end right here.
   const auto file = RunFile::create(folder.results(), simulation, recorder);
   write_whole(folder.scene(), scene);
-  return run_into_file(*file, folder, simulation, recorder, after_step);
+  return run_into_file(*file, folder, simulation, recorder, after_step, beat);
 }
 
 RunOutcome resume_in_folder(const RunFolder& folder, Simulation& simulation, Recorder& recorder,
@@ -193,7 +194,7 @@ RunOutcome resume_in_folder(const RunFolder& folder, Simulation& simulation, Rec
   }
   const auto file = RunFile::resume(folder.results(), simulation, recorder);
   remove_file(folder.summary());
-  return run_into_file(*file, folder, simulation, recorder, after_step);
+  return run_into_file(*file, folder, simulation, recorder, after_step, {});
 }
 
 void save_in_folder(const RunFolder& folder, const Scenario& scenario, const Model& model,

@@ -113,11 +113,11 @@ LastFrame read_start(const std::string& from) {
 
 }  // namespace
 
-void apply_start(Simulation& simulation) {
+void apply_start(Simulation& simulation, const Beat& beat) {
   const std::string& from = simulation.scenario().scene().start_from;
   if (from.empty()) return;
   if (from == "equilibrium") {
-    simulation.settle();
+    simulation.settle(true, beat);
     simulation.check_first_step();
     return;
   }

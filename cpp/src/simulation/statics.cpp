@@ -15,8 +15,8 @@
 
 namespace der {
 
-EquilibriumReport Simulation::equilibrium(bool leave_saddles) {
-  EquilibriumReport report = settle(leave_saddles);
+EquilibriumReport Simulation::equilibrium(bool leave_saddles, const Beat& beat) {
+  EquilibriumReport report = settle(leave_saddles, beat);
   if (model_.dimension != 2) return report;
   report.out_of_plane.emplace();
   if (OutOfPlaneTest* test = out_of_plane_test()) {
@@ -34,20 +34,21 @@ OutOfPlaneTest* Simulation::out_of_plane_test() {
   return out_of_plane_.get();
 }
 
-double Simulation::growth_rate_out_of_plane() {
+double Simulation::growth_rate_out_of_plane(const Beat& beat) {
   OutOfPlaneTest* test = out_of_plane_test();
-  return test == nullptr ? 0.0 : test->growth_rate(configuration_of(model_, state_));
+  return test == nullptr ? 0.0 : test->growth_rate(configuration_of(model_, state_), beat);
 }
 
-OutOfPlaneBuckling Simulation::buckling_out_of_plane(const LinearBuckling& in_plane) {
+OutOfPlaneBuckling Simulation::buckling_out_of_plane(const LinearBuckling& in_plane,
+                                                     const Beat& beat) {
   OutOfPlaneTest* test = out_of_plane_test();
   if (test == nullptr) return {constants_->not_tested, {}};
   State unloaded = state_;
   unloaded.load_factor = 0.0;
-  return test->buckling(configuration_of(model_, unloaded), in_plane.response);
+  return test->buckling(configuration_of(model_, unloaded), in_plane.response, beat);
 }
 
-EquilibriumReport Simulation::settle(bool leave_saddles) {
+EquilibriumReport Simulation::settle(bool leave_saddles, const Beat& beat) {
   check_finite_state();
   State found = state_;
   for (Ramp& ramp : found.ramps) ramp.from = ramp.to;
@@ -56,6 +57,7 @@ EquilibriumReport Simulation::settle(bool leave_saddles) {
   // Solved once, not at every step: one more iteration takes the last digits too.
   options.newton.step_tolerance *= 0.01;
   options.leave_saddles = leave_saddles;
+  options.beat = beat;
   EquilibriumReport report = find_equilibrium(model_, *assembler_, *solver_.solver, options, found);
   counters_.newton_iterations += report.newton_iterations;
   if (report.failed) {
@@ -71,7 +73,7 @@ EquilibriumReport Simulation::settle(bool leave_saddles) {
   return report;
 }
 
-std::vector<Mode> Simulation::modes(int count) {
+std::vector<Mode> Simulation::modes(int count, const Beat& beat) {
   check_finite_state();
   if (!has_potential(*model_.elements)) {
     throw Error("model_error",
@@ -92,24 +94,25 @@ std::vector<Mode> Simulation::modes(int count) {
                             "balance here: call equilibrium() first",
                             unbalanced));
   }
-  return vibration_modes(model_, *assembler_, *solver_.solver, now.here, count);
+  return vibration_modes(model_, *assembler_, *solver_.solver, now.here, count, beat);
 }
 
-LinearBuckling Simulation::buckling(int count) {
+LinearBuckling Simulation::buckling(int count, const Beat& beat) {
   if (!std::holds_alternative<scenario::BucklingAnalysis>(scenario_.scene().analysis)) {
     throw Error("model_error", "the scene asks for no buckling loads: write 'analysis: buckling'");
   }
   State before;
   Undo undo(state_, before);
   state_.load_factor = 0.0;
-  settle();
-  LinearBuckling result = linear_buckling(model_, *assembler_, *solver_.solver, state_, count);
+  settle(true, beat);
+  LinearBuckling result =
+      linear_buckling(model_, *assembler_, *solver_.solver, state_, count, beat);
   state_.load_factor = 1.0;
   undo.keep();
   return result;
 }
 
-std::vector<PathBranch> Simulation::follow() {
+std::vector<PathBranch> Simulation::follow(const Beat& beat) {
   const auto* analysis = std::get_if<scenario::ContinuationAnalysis>(&scenario_.scene().analysis);
   if (analysis == nullptr) {
     throw Error("model_error",
@@ -124,7 +127,7 @@ std::vector<PathBranch> Simulation::follow() {
   State before;
   Undo undo(state_, before);
   state_.load_factor = analysis->from;
-  const EquilibriumReport start = settle();
+  const EquilibriumReport start = settle(true, beat);
   if (model_.dimension == 3 && start.stability.neutral_directions > 0) {
     throw NotConvergedError(
         fmt::format("the path has no stable start: its first equilibrium is free to move in {} "
@@ -146,10 +149,12 @@ std::vector<PathBranch> Simulation::follow() {
   options.largest_step = analysis->step;
   options.max_points = analysis->points;
   options.branching = analysis->branches;
-  auto path =
+  options.beat = beat;
+  TracedPath path =
       follow_path(model_, *assembler_, *solver_.solver, options, out_of_plane_test(), state_);
+  counters_.newton_iterations += path.newton_iterations;
   undo.keep();
-  return path;
+  return std::move(path.branches);
 }
 
 void Simulation::show(const PathPoint& point, std::int64_t index) {

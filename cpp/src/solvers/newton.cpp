@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "der/core/index.hpp"
 #include "der/solvers/newton_step.hpp"
@@ -30,11 +31,12 @@ double largest_on_diagonal(const DofMap& dofs, const MatrixLayout& layout, const
 }  // namespace
 
 Newton::Newton(const DofMap& dofs, LinearSolver& solver, Index num_values,
-               const NewtonOptions& options)
+               const NewtonOptions& options, Beat beat)
     : dofs_(dofs),
       solver_(solver),
       corrected_(solver, dofs.num_free()),
       options_(options),
+      beat_(std::move(beat)),
       residual_(Vector::Zero(dofs.size())),
       values_(Vector::Zero(num_values)),
       direction_(Vector::Zero(dofs.num_free())),
@@ -73,6 +75,7 @@ NewtonReport Newton::iterate(NewtonProblem& problem, Mode mode) {
   problem.system(residual_, values_);
   measure(problem, report);
   while (report.iterations < limit) {
+    if (beat_) beat_();
     const double residual_before = report.residual;
     if (!std::isfinite(residual_before) || !find_direction(problem, mode, report)) {
       report.worst_dof = worst_dof();

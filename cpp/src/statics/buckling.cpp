@@ -19,9 +19,14 @@ namespace {
 /// count times the length of the model: `units` are the unit masses of the free degrees of freedom.
 class Pencil {
  public:
-  Pencil(LinearSolver& solver, Vector k0, Vector k1, Vector units)
-      : solver_(solver), k0_(std::move(k0)), k1_(std::move(k1)), units_(std::move(units)) {}
+  Pencil(LinearSolver& solver, Vector k0, Vector k1, Vector units, const Beat& beat)
+      : solver_(solver),
+        k0_(std::move(k0)),
+        k1_(std::move(k1)),
+        units_(std::move(units)),
+        beat_(beat) {}
   Index critical_below(double factor) {
+    if (beat_) beat_();
     return solver_.factorize(k0_ + factor * k1_).negative_pivots;
   }
   /// Raises a factor until more than `index` critical ones are below it; false if there are no
@@ -68,6 +73,7 @@ class Pencil {
   Vector k0_;
   Vector k1_;
   Vector units_;
+  const Beat& beat_;
 };
 
 /// The factor a at which K0 + a K1 + a^2 K2 is critical for a shape that is critical without K2,
@@ -123,7 +129,7 @@ NotConvergedError hidden_buckling() {
 
 std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& stiffness,
                                          LinearSolver& solver, const Configuration& here,
-                                         const InitialStress& stress, int count) {
+                                         const InitialStress& stress, int count, const Beat& beat) {
   const Vector& k0 = stiffness.values();
   const Vector k1 = stress.stiffness(model, solver.layout());
   // Factors are sought in units in which both matrices are of a size, so that no load is too large
@@ -136,7 +142,7 @@ std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& st
   constexpr double kHidden = 0.01;   // share of a factor that the rounding of K0 hides
   const double unit = entries(k0) / entries(k1);
   constexpr double kLeast = 1e-18;
-  Pencil pencil(solver, k0, unit * k1, model.dofs.unit_masses()(model.dofs.free()));
+  Pencil pencil(solver, k0, unit * k1, model.dofs.unit_masses()(model.dofs.free()), beat);
   std::vector<BucklingMode> modes;
   std::vector<Vector> same;  // shapes of the current factor
   double low = kLeast;
@@ -167,9 +173,9 @@ std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& st
 }
 
 LinearBuckling linear_buckling(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                               const State& state, int count) {
+                               const State& state, int count, const Beat& beat) {
   const Vector no_extra = Vector::Zero(model.num_dofs());
-  Stiffness stiffness(model, assembler, solver);
+  Stiffness stiffness(model, assembler, solver, beat);
   Configuration here{state.positions, {}};
   Vector force;
   // Sets the stiffness at a load factor; returns the unbalanced force.
@@ -206,7 +212,7 @@ LinearBuckling linear_buckling(const Model& model, const Assembler& assembler, L
   if (neutral.cols() > 0) check_left_alone(judge_neutral_motions(model, neutral, stress));
 
   const auto modes_of = [&](int most) {
-    return buckling_modes(model, stiffness, solver, here, stress, most);
+    return buckling_modes(model, stiffness, solver, here, stress, most, beat);
   };
   result.modes = modes_of(count);
   if (result.modes.empty()) {

@@ -300,10 +300,11 @@ class ModeSearch {
 }  // namespace
 
 std::vector<Mode> vibration_modes(const Model& model, const Assembler& assembler,
-                                  LinearSolver& solver, const Configuration& here, int count) {
+                                  LinearSolver& solver, const Configuration& here, int count,
+                                  const Beat& beat) {
   check_masses(model);
   const Index wanted = std::min<Index>(count, model.num_free());
-  Stiffness stiffness(model, assembler, solver);
+  Stiffness stiffness(model, assembler, solver, beat);
   stiffness.evaluate(here);
   const Noise noise = matrix_noise(stiffness, model);
   auto shapes = ModeSearch(model, stiffness, here)

@@ -30,15 +30,17 @@ Stability OutOfPlaneTest::stability_by_pivots(const Configuration& planar) {
   return stiffness_.stability_by_pivots();
 }
 
-double OutOfPlaneTest::growth_rate(const Configuration& planar) {
+double OutOfPlaneTest::growth_rate(const Configuration& planar, const Beat& beat) {
   const Model& model = twin_.model;
   if (model.mass.lumped(model.dofs.free()).minCoeff() <= 0.0) return 0.0;
-  return vibration_modes(twin_.model, assembler_, *solver_.solver, twin_.at(planar_, planar), 1)
+  return vibration_modes(twin_.model, assembler_, *solver_.solver, twin_.at(planar_, planar), 1,
+                         beat)
       .front()
       .growth_rate;
 }
 
-OutOfPlaneBuckling OutOfPlaneTest::buckling(const Configuration& unloaded, const Vector& response) {
+OutOfPlaneBuckling OutOfPlaneTest::buckling(const Configuration& unloaded, const Vector& response,
+                                            const Beat& beat) {
   const Configuration here = twin_.at(planar_, unloaded);
   stiffness_.evaluate(here);
   const Stability stability = stiffness_.stability();
@@ -75,7 +77,8 @@ OutOfPlaneBuckling OutOfPlaneTest::buckling(const Configuration& unloaded, const
     }
     stiffness_.hold(neutral);
   }
-  const auto modes = buckling_modes(twin_.model, stiffness_, *solver_.solver, here, stress, 1);
+  const auto modes =
+      buckling_modes(twin_.model, stiffness_, *solver_.solver, here, stress, 1, beat);
   if (modes.empty()) return {};
   return {"", modes.front().load_factor};
 }

@@ -52,20 +52,24 @@ double tension_rounding(const Model& model, const Configuration& here, const Vec
 
 }  // namespace
 
-Stiffness::Stiffness(const Model& model, const Assembler& assembler, LinearSolver& solver)
+Stiffness::Stiffness(const Model& model, const Assembler& assembler, LinearSolver& solver,
+                     Beat beat)
     : model_(model),
       assembler_(assembler),
       solver_(solver),
+      beat_(std::move(beat)),
       gradient_(Vector::Zero(model.num_dofs())),
       values_(Vector::Zero(assembler.num_values())),
       units_{model.dofs.unit_masses(), {}} {}
 
 void Stiffness::evaluate(const Configuration& here) {
+  beat();
   assembler_.gradient_and_hessian(here, gradient_, values_);
   here_ = here;
 }
 
 Inertia Stiffness::factorize(double shift, const Mass& mass) {
+  beat();
   constexpr int kTrials = 5;
   double nudge = 1e-2 * rounding() / mass.lumped.cwiseQuotient(units_.lumped).maxCoeff();
   Inertia inertia;
@@ -293,7 +297,7 @@ bool Stiffness::solve_by_elements(Vector& b) {
   factorize_positive();
   Vector rest = b;
   Vector answer = rest;
-  solver_.solve(answer);
+  solve(answer);
   Vector direction = answer;
   double energy = rest.dot(answer);
   const double first = energy;
@@ -307,7 +311,7 @@ bool Stiffness::solve_by_elements(Vector& b) {
     b += step * direction;
     rest -= step * stiffness_product(model_, here_, full)(model_.dofs.free());
     answer = rest;
-    solver_.solve(answer);
+    solve(answer);
     const double before = std::exchange(energy, rest.dot(answer));
     direction = answer + energy / before * direction;
   }

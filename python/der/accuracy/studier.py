@@ -95,6 +95,8 @@ def study(
         If the scene itself, or a run that the reference needs, does not run to its end.
     ValueError
         For nodes, steps or steppers that the scene cannot take, and for empty lists.
+    TypeError
+        For jobs that are no whole number.
     """
     check_arguments(nodes, steps, steppers, max_seconds)
     given = as_scenario(scenario)

@@ -55,11 +55,12 @@ class Verification:
 
     def __getitem__(self, name: str | tuple[str, str]) -> VerifiedValue:
         """Return a value by probe, or by probe and `VerifiedValue.what` (if not ``final``)."""
-        probe, what = (name, "final") if isinstance(name, str) else name
+        wanted = (name, "final") if isinstance(name, str) else name
         for value in self.values:
-            if (value.probe, value.what) == (probe, what):
+            if (value.probe, value.what) == wanted:
                 return value
-        raise KeyError(name)
+        known = ", ".join(repr((value.probe, value.what)) for value in self.values)
+        raise KeyError(f"there is no value {wanted!r}; there are: {known}")
 
     def to_dict(self) -> dict[str, Any]:
         """Return everything as JSON knows it."""

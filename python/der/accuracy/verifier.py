@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import replace
-from operator import index
 
 from der._core import Scenario
 from der.accuracy.cross_check import hidden_motion
@@ -22,6 +21,7 @@ from der.parallel import Workers
 from der.progress import ProgressFunction
 from der.result import Result
 from der.simulation import SceneLike, as_scenario
+from der.whole_numbers import whole_number
 
 #: Where the cross-check run contradicts, the error is at most this times the difference to it.
 _CROSS_CHECK_FACTOR = 1.25
@@ -77,8 +77,7 @@ def verify(
     >>> verification = der.verify("configs/cantilever.yaml")
     >>> verification["tip_y"].value, verification["tip_y"].error_bar
     """
-    levels, jobs = _whole_number("levels", levels), _whole_number("jobs", jobs)
-    if levels not in (None, 2, 3):
+    if levels is not None and (levels := whole_number("levels", levels)) not in (2, 3):
         raise ValueError(f"levels must be 2 or 3, got {levels}")
     given = as_scenario(scenario)
     scene = with_default_probes(given)
@@ -97,13 +96,6 @@ def verify(
         notes=(*runs.notes, *_notes_on_angles(runs, scene), *notes),
         cpu_seconds=runs.cpu_seconds,
     )
-
-
-def _whole_number(name: str, value: int | None) -> int | None:
-    try:
-        return None if value is None else index(value)
-    except TypeError:
-        raise TypeError(f"{name} must be a whole number, got {value!r}") from None
 
 
 def _evaluate(runs: VerificationRuns, scene: Scenario) -> tuple[list[VerifiedValue], list[str]]:

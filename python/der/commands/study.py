@@ -4,7 +4,8 @@ Writes study.csv and study.png, and prints the cheapest configuration for each r
 error of a probe is its largest difference from a reference over the frames that the scene saves,
 in the unit of the probe; the reference is extrapolated from finer meshes and smaller steps. The
 cost is CPU time, the smallest of up to five runs. Exit codes: 0, 1 for a mistake in the
-scene or the arguments, 3 if the scene itself fails.
+scene or the values of arguments, 2 for a command line that cannot be read, 3 if the scene itself
+fails.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from der.output_paths import check_output_folder
+from der.output_paths import check_output_folder, make_folder
 from der.progress import progress_on_terminal
 
 
@@ -85,7 +86,7 @@ def execute(arguments: argparse.Namespace) -> int:
             jobs=arguments.jobs,
             progress=progress,
         )
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     found.write_csv(out / "study.csv")
     found.plot().savefig(out / "study.png")
     for note in found.notes:

@@ -3,13 +3,14 @@
 Writes FOLDER/sweep.sqlite, to which members are added while they finish; a member that fails is a
 row as well. VALUES are spelled 1,2,5 or as a range with its number of values, 0:1:11, in equal
 ratios 1e6:1e9:7:log; with --sample, as 0:1 or 1e6:1e9:log. Exit codes: 0, 1 for a mistake in the
-scene or the arguments, 3 if every member failed.
+scene or the values of arguments, 2 for a command line that cannot be read, 3 if every member
+failed, 130 after Ctrl-C: what is finished is kept, and --resume goes on.
 """
 
 from __future__ import annotations
 
 import argparse
-from argparse import ArgumentTypeError
+import sys
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
@@ -22,7 +23,7 @@ from der.progress import progress_on_terminal
 if TYPE_CHECKING:
     from der.sweeps.executors import AnyExecutor
 
-_ALL_FAILED = 3
+_ALL_FAILED, _INTERRUPTED = 3, 130
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,7 +32,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--vary",
         action="append",
-        type=_varied,
         required=True,
         metavar="PATH=VALUES",
         help="a parameter, as `der_run --set` names it, and its values; can be given more than "
@@ -85,24 +85,28 @@ def execute(arguments: argparse.Namespace) -> int:
     from der.sweeps import sweep
     from der.sweeps.store import FILE
 
-    vary = dict(arguments.vary)
+    vary = dict(map(_varied, arguments.vary))
     if len(vary) < len(arguments.vary):
         raise ValueError("--vary: a parameter is given twice; give all its values at once")
-    with _executor(arguments) as executor, progress_on_terminal() as progress:
-        found = sweep(
-            arguments.scene,
-            vary,
-            out=arguments.out,
-            resume=arguments.resume,
-            zipped=arguments.zip,
-            sample=arguments.sample,
-            seed=arguments.seed,
-            frames=arguments.frames,
-            verify=arguments.verify,
-            jobs=arguments.jobs,
-            executor=executor,
-            progress=progress,
-        )
+    try:
+        with _executor(arguments) as executor, progress_on_terminal() as progress:
+            found = sweep(
+                arguments.scene,
+                vary,
+                out=arguments.out,
+                resume=arguments.resume,
+                zipped=arguments.zip,
+                sample=arguments.sample,
+                seed=arguments.seed,
+                frames=arguments.frames,
+                verify=arguments.verify,
+                jobs=arguments.jobs,
+                executor=executor,
+                progress=progress,
+            )
+    except KeyboardInterrupt:
+        print(_interrupted(arguments.out), file=sys.stderr)
+        return _INTERRUPTED
     print(f"{found.scenario.title}: {found.summary()}")
     print(arguments.out / FILE)
     return _ALL_FAILED if found.all_failed else 0
@@ -111,8 +115,20 @@ def execute(arguments: argparse.Namespace) -> int:
 def _varied(text: str) -> tuple[str, str]:
     path, equals, values = text.partition("=")
     if not (path and equals and values):
-        raise ArgumentTypeError(f"'{text}' is no parameter with values: write PATH=1,2,5")
+        raise ValueError(f"--vary: '{text}' is no parameter with values: write PATH=1,2,5")
     return path, values
+
+
+def _interrupted(out: Path) -> str:
+    """Return what a sweep that was interrupted leaves."""
+    from der.sweeps import load_sweep
+
+    try:
+        kept = len(load_sweep(out))
+    except (OSError, ValueError):
+        kept = 0  # it never began
+    what = "no member is" if kept == 0 else "1 member is" if kept == 1 else f"{kept} members are"
+    return f"interrupted: {what} kept in {out}; the same command with --resume goes on from there"
 
 
 @contextmanager

@@ -58,12 +58,20 @@ class Play:
         threads: int | None = None,
         vary: Mapping[str, ArrayLike | Sequence[Any]] | None = None,
     ) -> None:
+        if not isinstance(task, Task):
+            raise TypeError(f"an environment plays a der.gym.Task, got {task!r}")
         self._task = task
         scenario = as_scenario(task.scene)
+        if scenario.is_static:
+            raise ValueError(
+                "an episode is a run over time, and the scene is static: give it a time with a "
+                "duration and a step in place of its analysis"
+            )
         self.limit = task.max_steps or _actions_in(scenario, task.steps_per_action)
         any_generator = np.random.default_rng(0)
-        drawn = () if task.draw is None else task.draw(any_generator)
-        self.batch = Episodes(scenario, members, threads, vary=vary, drawn_shape=np.shape(drawn))
+        self._drawn_shape = () if task.draw is None else np.shape(task.draw(any_generator))
+        drawn_shape = (0,) if task.draw is None else self._drawn_shape
+        self.batch = Episodes(scenario, members, threads, vary=vary, drawn_shape=drawn_shape)
         for failure in self.batch.failures:
             raise failure.error()
         seen = self._rows("observe", task.observe(self.batch), dtype=None)
@@ -83,7 +91,7 @@ class Play:
         self.batch.played[members] = 0
         for member in members:
             if self._task.draw is not None:
-                self.batch.drawn[member] = self._task.draw(generators[member])
+                self.batch.drawn[member] = self._drawn(self._task.draw(generators[member]))
             if self._task.noise is not None:
                 self._task.noise(self.batch, member, generators[member])
 
@@ -111,10 +119,20 @@ class Play:
             },
         )
 
+    def _drawn(self, drawn: ArrayLike) -> NDArray[np.float64]:
+        """Return what was drawn for a member, which always has one shape."""
+        values = _as_array("draw", drawn, np.float64)
+        if drawn is None or values.shape != self._drawn_shape:
+            raise ValueError(
+                f"draw returned {drawn!r}: it returns numbers of one shape, as the "
+                f"{self._drawn_shape} of its first call"
+            )
+        return values
+
     def _rows(
         self, function: str, returned: ArrayLike, dtype: Any, ndim: int | None = None
     ) -> NDArray[Any]:
-        rows = np.array(returned, dtype=dtype)
+        rows = _as_array(function, returned, dtype)
         members = len(self.batch)
         if rows.ndim < 1 or len(rows) != members or (ndim is not None and rows.ndim != ndim):
             raise ValueError(
@@ -122,6 +140,16 @@ class Play:
                 f"axis is that of members{', and there is no other' if ndim == 1 else ''}"
             )
         return rows
+
+
+def _as_array(function: str, returned: ArrayLike, dtype: Any) -> NDArray[Any]:
+    """Return what a function of a task has returned as an array of its own."""
+    try:
+        return np.array(returned, dtype=dtype)
+    except (TypeError, ValueError) as error:
+        raise ValueError(
+            f"{function} returned {returned!r}, which is no array of numbers: {error}"
+        ) from None
 
 
 def _actions_in(scenario: Any, steps_per_action: int) -> int:

@@ -12,9 +12,14 @@ from gymnasium.spaces import Box
 
 from der.gym.episodes import Episodes
 from der.simulation import SceneLike
+from der.whole_numbers import MOST, whole_number
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+
+#: Functions that a task can do without.
+_OPTIONAL = ("draw", "noise", "terminate")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,14 +74,28 @@ class Task:
     max_steps: int | None = None
 
     def __post_init__(self) -> None:
-        """Refuse numbers of steps below one.
+        """Refuse numbers of steps that are none, and what is no space or no function.
 
         Raises
         ------
         ValueError
-            If there is one.
+            If a number of steps is below 1.
+        TypeError
+            If one is no whole number, or anything else is of another kind.
         """
-        for name in ("steps_per_action", "max_steps"):
-            number = getattr(self, name)
-            if number is not None and number < 1:
-                raise ValueError(f"{name} must be at least 1, not {number}")
+        whole_number("steps_per_action", self.steps_per_action, 1, MOST)
+        if self.max_steps is not None:
+            whole_number("max_steps", self.max_steps, 1, MOST)
+        if not isinstance(self.action_space, Space):
+            raise TypeError(
+                "action_space must be a space of gymnasium, such as Box(-1.0, 1.0, (2,)), got "
+                f"{self.action_space!r}"
+            )
+        if self.observation_space is not None and not isinstance(self.observation_space, Box):
+            raise TypeError(
+                f"observation_space must be a Box of gymnasium, got {self.observation_space!r}"
+            )
+        for name in ("act", "observe", "reward", "draw", "noise", "terminate"):
+            function = getattr(self, name)
+            if not callable(function) and not (name in _OPTIONAL and function is None):
+                raise TypeError(f"{name} must be a function, got {function!r}")

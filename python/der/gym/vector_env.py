@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from gymnasium.vector.utils import batch_space
 from der.gym.episodes import Episodes
 from der.gym.play import Outcome, Play
 from der.gym.task import Task
+from der.whole_numbers import MOST, whole_number
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -59,8 +60,9 @@ class RodVectorEnv(VectorEnv["NDArray[Any]", Any, "NDArray[Any]"]):
         vary: Mapping[str, ArrayLike | Sequence[Any]] | None = None,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
     ) -> None:
+        num_envs = whole_number("num_envs", num_envs, 1, MOST)
+        self._mode = _as_mode(autoreset_mode)
         self._play = Play(task, num_envs, threads, vary)
-        self._mode = AutoresetMode(autoreset_mode)
         self.metadata = {"autoreset_mode": self._mode}
         self.num_envs = num_envs
         self.single_action_space = task.action_space
@@ -177,6 +179,10 @@ class RodVectorEnv(VectorEnv["NDArray[Any]", Any, "NDArray[Any]"]):
         return infos
 
     def _chosen(self, options: dict[str, Any] | None) -> NDArray[np.bool_]:
+        if not (options is None or isinstance(options, Mapping)):
+            raise TypeError(
+                f'options must be a dict such as {{"reset_mask": ...}}, got {options!r}'
+            )
         mask = (options or {}).get("reset_mask")
         if mask is None:
             return np.ones(self.num_envs, dtype=np.bool_)
@@ -192,7 +198,19 @@ class RodVectorEnv(VectorEnv["NDArray[Any]", Any, "NDArray[Any]"]):
         if seed is None:
             return [None] * self.num_envs
         if isinstance(seed, (int, np.integer)):
-            return [int(seed) + member for member in range(self.num_envs)]
-        if len(seed) != self.num_envs:
-            raise ValueError(f"{len(seed)} seeds for {self.num_envs} environments: give one each")
-        return list(seed)
+            first = whole_number("seed", seed, 0)
+            return [first + member for member in range(self.num_envs)]
+        if isinstance(seed, str) or not isinstance(seed, Iterable):
+            raise TypeError(f"seed must be a whole number or a list of them, got {seed!r}")
+        seeds = [None if own is None else whole_number("a seed", own, 0) for own in seed]
+        if len(seeds) != self.num_envs:
+            raise ValueError(f"{len(seeds)} seeds for {self.num_envs} environments: give one each")
+        return seeds
+
+
+def _as_mode(given: AutoresetMode | str) -> AutoresetMode:
+    try:
+        return AutoresetMode(given)
+    except ValueError:
+        modes = ", ".join(repr(mode.value) for mode in AutoresetMode)
+        raise ValueError(f"autoreset_mode must be one of {modes}, got {given!r}") from None

@@ -120,6 +120,8 @@ def plot(
 def _probe_names(result: RunData, probes: Sequence[str] | None) -> list[str]:
     if probes is None:
         return list(result.probes)
+    if isinstance(probes, str):
+        probes = [probes]
     unknown = [name for name in probes if name not in result.probes]
     if unknown:
         raise ValueError(

@@ -113,7 +113,8 @@ def _names(sweep: SweepData, columns: Sequence[str] | None) -> list[str]:
         found = [c.name for c in sweep.columns if c.kind == "found" and _is_number(sweep, c.name)]
         return (found + probes)[:_MOST_COLUMNS] or ["seconds"]
     try:
-        names = [sweep.column(name).name for name in columns]
+        listed = [columns] if isinstance(columns, str) else columns
+        names = [sweep.column(name).name for name in listed]
     except KeyError as error:
         raise ValueError(error.args[0]) from None
     for name in names:

@@ -26,6 +26,8 @@ LOST = "worker_lost"
 #: What is told of each probe.
 _TOLD, _WHEN = ("final", "min", "max"), ("t_min", "t_max")
 _told = itemgetter(*_TOLD, *_WHEN)
+#: How many columns a probe has, and how many error bars.
+COLUMNS_OF_PROBE, BARS_OF_PROBE = len(_TOLD) + len(_WHEN), len(_TOLD)
 #: What a row has of the summary of a run: to ask for all of it takes as long as the rest of a row.
 _OF_SUMMARY = ("status", "unreliable_from", "stability", "steps", "newton_iterations", "probes")
 #: Run folders in a folder: file systems are slow with more.
@@ -134,7 +136,9 @@ def _run_member(
     message, seconds, verification = "", outcome.cpu_seconds, None
     if chunk.verify and outcome.error is None:
         try:
-            verification = verify(varied, jobs=1)
+            verification = verify(
+                varied, jobs=1, progress=None if tick is None else lambda _: tick()
+            )
             seconds += verification.cpu_seconds
         except DerError as error:
             message = f"not verified: {error}"

@@ -13,7 +13,9 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from der.sweeps.values import Range, Values, as_values, stored
+from der.key_paths import check_varied
+from der.sweeps.values import MOST_VALUES, Range, Values, as_values, stored
+from der.whole_numbers import whole_number
 
 #: The values of a member's parameters, in the order of the paths.
 Member = tuple[Any, ...]
@@ -127,8 +129,12 @@ def make_design(
     ------
     ValueError
         For no parameter, values that are not spelled right, lists side by side of different
-        lengths, and a range without a sample.
+        lengths, a range without a sample, and a seed below 0.
+    TypeError
+        If `vary` is no dict of paths, or the seed no whole number.
     """
+    check_varied(vary)
+    seed = whole_number("seed", seed, 0)
     if not vary:
         raise ValueError("nothing is varied: name a parameter and its values")
     values = {path: _values_of(path, given) for path, given in vary.items()}
@@ -172,8 +178,10 @@ def _values_of(path: str, given: str | Iterable[Any]) -> Values:
 
 
 def _parse_sample(text: str) -> tuple[Sampling, int]:
-    name, _, count = text.partition(":")
+    name, _, count = str(text).partition(":")
     for sampling in get_args(Sampling):
-        if name == sampling and count.isdecimal() and int(count) > 0:
-            return sampling, int(count)
+        if name == sampling and count.isdecimal() and (samples := int(count)) > 0:
+            if samples > MOST_VALUES:
+                raise ValueError(f"'{text}': a sample has at most {MOST_VALUES} points")
+            return sampling, samples
     raise ValueError(f"'{text}' is no sample: write sobol:256 or lhs:100")

@@ -133,4 +133,10 @@ def connect(address: str) -> Client:
         ) from error
     if Path(address).exists():
         return Client(scheduler_file=address)
-    return Client(address)
+    try:
+        return Client(address)
+    except ValueError as error:
+        raise ValueError(
+            f"'{address}' is no scheduler ({error}): write tcp://HOST:PORT, or the path of a "
+            "scheduler file"
+        ) from error

@@ -28,6 +28,8 @@ FRAMES = "runs"
 _FORMAT = "1"
 #: How long to wait for another program that reads or writes the file [s].
 _PATIENCE = 60.0
+#: How many columns a table of SQLite has at most, as it is built by default.
+MOST_COLUMNS = 2000
 #: Types of columns: parameters are kept as they are given.
 _TYPES: dict[Kind, str] = {"parameter": "", "probe": "REAL", "found": "", "error": "REAL"}
 _RUN_TYPES = {
@@ -235,6 +237,16 @@ class Store:
         try:
             yield
         except sqlite3.Error as error:
+            if "too many columns" in str(error):
+                raise OSError(
+                    f"{self._path or 'the table of the sweep'}: a member has found more than the "
+                    f"{MOST_COLUMNS} columns of a table can hold: ask for fewer probes, modes or "
+                    "bifurcations"
+                ) from error
+            if "not a database" in str(error) or "malformed" in str(error):
+                raise OSError(
+                    f"{self._path} is damaged, or no file of a sweep ({error}): name another folder"
+                ) from error
             raise OSError(f"{self._path or 'the table of the sweep'}: {error}") from error
 
 

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+#: Values of a range and points of a sample, at most: all of them are held in memory.
+MOST_VALUES = 10_000_000
 _LOG = "log"
 _SPELLING = (
     "write values as 1,2,5, a range with its number of values as 0:1:11 (or 1e6:1e9:7:log), or a "
@@ -86,6 +88,13 @@ def as_values(given: str | Iterable[Any]) -> Values:
     values = tuple(_plain(value) for value in given)
     if not values:
         raise ValueError("there is no value")
+    for value in values:
+        try:
+            stored(value)
+        except TypeError:
+            raise ValueError(
+                f"{value!r} is no value of a scene: use numbers, texts, lists and dicts"
+            ) from None
     _check_numbers(values)
     return values
 
@@ -124,8 +133,8 @@ def _parse_range(text: str) -> Values:
         raise ValueError(f"'{text}': both ends of a range in equal ratios are greater than 0")
     if len(numbers) == 2:
         return Range(low, high, log)
-    if count < 2:
-        raise ValueError(f"'{text}': a range has at least 2 values")
+    if not 2 <= count <= MOST_VALUES:
+        raise ValueError(f"'{text}': a range has at least 2 values and at most {MOST_VALUES}")
     spaced = (np.geomspace if log else np.linspace)(low, high, count).tolist()
     whole = all(_is_whole(field) for field in numbers) and all(v.is_integer() for v in spaced)
     # A number of nodes is to be a whole number.

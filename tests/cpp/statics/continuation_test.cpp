@@ -122,7 +122,7 @@ TEST_CASE("paths in two threads on one model are the same bits as alone") {
     start.load_factor = 0.0;
     std::vector<PathPoint> points;
     for (const PathBranch& branch :
-         follow_path(model, assembler, *solver.solver, options, nullptr, start)) {
+         follow_path(model, assembler, *solver.solver, options, nullptr, start).branches) {
       points.insert(points.end(), branch.points.begin(), branch.points.end());
     }
     return points;
@@ -141,6 +141,15 @@ TEST_CASE("paths in two threads on one model are the same bits as alone") {
   };
   same(alone.first, together.first);
   same(alone.second, together.second);
+}
+
+TEST_CASE("a path counts the iterations of all its points") {
+  Simulation simulation(
+      Scenario::parse(straight_rod(21, kPinned + kPush + continuation("to: 12, branches: 1"))));
+  const auto path = simulation.follow();
+  std::size_t points = 0;
+  for (const PathBranch& branch : path) points += branch.points.size();
+  CHECK(simulation.counters().newton_iterations > static_cast<std::int64_t>(points));
 }
 
 TEST_CASE("a continuation that finds no start leaves the loads of the scene") {

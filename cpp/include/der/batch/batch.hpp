@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "der/batch/thread_team.hpp"
+#include "der/core/beat.hpp"
 #include "der/core/error.hpp"
 #include "der/core/types.hpp"
 #include "der/lanes/member_groups.hpp"
@@ -55,10 +55,9 @@ struct MemberFailure {
 /// at a time may call.
 class Batch {
  public:
-  /// Called now and then in the caller's thread, if there is one. What it throws ends a call early,
-  /// each member between two of its steps.
-  using Beat = std::function<void()>;
-
+  /// A beat is called now and then in the caller's thread. What it throws ends a call early, each
+  /// member between two of its steps, or in the state that it had before a search.
+  ///
   /// `threads`: how many at once; 0: as many as the process may run. Throws SceneError or Error
   /// where a member cannot be simulated, and names the first one. A member that does not get to the
   /// start that `start_from` asks for has failed.
@@ -134,15 +133,18 @@ class Batch {
 
   void build(const Scenario& scenario, const std::vector<Variation>& variations, const Beat& beat);
   void make_arrays();
-  void start_alike();
+  void start_alike(const Beat& beat);
   void start_each(const Beat& beat);
-  void start(std::size_t number);
+  void start(std::size_t number, const Beat& look);
   void beat_if_due(const Beat& beat);
-  /// Calls `work(number)` for all members, on all threads.
+  /// For long work on one thread: calls the beat if that is the caller's, and throws once the call
+  /// is given up.
+  void look(bool on_caller, const ThreadTeam::Call& call, const Beat& beat);
+  /// Calls `work(number, look)` for all members, on all threads, with `look()` as above.
   template <class Work>
   void all(const Work& work, const Beat& beat);
-  /// Calls `work(number, goes_on)` for those that have not failed, with their rows in their states;
-  /// one for which it throws Error has failed. It is to end early once `goes_on()` is false.
+  /// Calls `work(number, look)` for those that have not failed, with their rows in their states;
+  /// one for which it throws Error has failed.
   template <class Work>
   void all_that_go_on(const Work& work, const Beat& beat);
   /// Does `change` for all members that have not failed, or for none if it throws.

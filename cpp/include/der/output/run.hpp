@@ -45,7 +45,9 @@ struct RunOutcome {
 /// Runs a simulation from its present state to the end of the scene, or does the scene's analysis,
 /// feeding the recorder: one frame with the equilibrium, or one for each point of a path. Numerical
 /// failures end the run and are reported in the outcome, with everything up to the last good step
-/// recorded; other errors (of a sink, of the callback) propagate.
-RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& after_step = {});
+/// recorded; other errors (of a sink, of the callback) propagate, and what `beat` throws, which is
+/// called in analyses, where there are no steps, at least once an iteration.
+RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& after_step = {},
+               const Beat& beat = {});
 
 }  // namespace der

@@ -9,7 +9,8 @@ namespace der {
 /// hold, and velocities. The time stays 0, and the energy ledger starts there. Does nothing without
 /// that key. Throws NotConvergedError; IoError, which names the key, where the run cannot be read
 /// or is one of rods with other names, nodes or rest lengths; Error
-/// ("unstable_step") where an explicit step is too long for that start.
-void apply_start(Simulation& simulation);
+/// ("unstable_step") where an explicit step is too long for that start. `beat` is called at least
+/// once an iteration of a search.
+void apply_start(Simulation& simulation, const Beat& beat = {});
 
 }  // namespace der

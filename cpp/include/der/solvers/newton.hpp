@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "der/core/beat.hpp"
 #include "der/core/types.hpp"
 #include "der/model/dof_map.hpp"
 #include "der/solvers/linear_solver.hpp"
@@ -36,8 +37,10 @@ struct NewtonReport {
 /// derivative has another, unsymmetric part: full steps then take it as it is.
 class Newton {
  public:
-  /// `num_values`: length of the array of values that the problem fills.
-  Newton(const DofMap& dofs, LinearSolver& solver, Index num_values, const NewtonOptions& options);
+  /// `num_values`: length of the array of values that the problem fills. `beat` is called once an
+  /// iteration.
+  Newton(const DofMap& dofs, LinearSolver& solver, Index num_values, const NewtonOptions& options,
+         Beat beat = {});
 
   /// Solves from the problem's guess, at which its solution is again if not converged.
   NewtonReport solve(NewtonProblem& problem);
@@ -67,6 +70,7 @@ class Newton {
   LinearSolver& solver_;
   LowRankSolver corrected_;  // of the matrix with the problem's low-rank part
   NewtonOptions options_;
+  Beat beat_;
   Vector residual_;      // all degrees of freedom
   Vector values_;        // of the matrix, shifted where need be
   Vector direction_;     // over the free degrees of freedom

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "der/assembly/assembler.hpp"
+#include "der/core/beat.hpp"
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
@@ -39,6 +41,12 @@ struct PathBranch {
   std::vector<PathPoint> points;
 };
 
+/// All that was traced, and what it cost.
+struct TracedPath {
+  std::vector<PathBranch> branches;
+  std::int64_t newton_iterations = 0;  ///< those of points included that were not kept
+};
+
 struct ContinuationOptions {
   NewtonOptions newton;
   double from = 0.0;           ///< first factor
@@ -46,6 +54,7 @@ struct ContinuationOptions {
   double largest_step = 0.05;  ///< of arc length
   int max_points = 500;        ///< of a branch
   int branching = 0;           ///< how many bifurcations deep other branches are followed
+  Beat beat{};                 ///< called at least once an iteration; what it throws ends the path
 };
 
 /// Traces the equilibria of a model while its loads change in proportion to a factor, through limit
@@ -71,8 +80,8 @@ struct ContinuationOptions {
 /// points, where it closes on itself or meets another one, where no further point is found, or
 /// where rounding hides the stability. `start` is an equilibrium at the factor `from`, and the
 /// model has a load variation.
-std::vector<PathBranch> follow_path(const Model& model, const Assembler& assembler,
-                                    LinearSolver& solver, const ContinuationOptions& options,
-                                    OutOfPlaneTest* out_of_plane, const State& start);
+TracedPath follow_path(const Model& model, const Assembler& assembler, LinearSolver& solver,
+                       const ContinuationOptions& options, OutOfPlaneTest* out_of_plane,
+                       const State& start);
 
 }  // namespace der

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "der/assembly/assembler.hpp"
+#include "der/core/beat.hpp"
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
@@ -17,6 +18,7 @@ struct EquilibriumOptions {
   NewtonOptions newton;
   /// Leave a saddle for a stable equilibrium; otherwise a saddle is accepted as the result.
   bool leave_saddles = true;
+  Beat beat{};  ///< called at least once an iteration; what it throws ends the search
 };
 
 /// How a search for an equilibrium ended.
@@ -36,7 +38,7 @@ struct EquilibriumReport {
 };
 
 /// Moves the positions of `state`, with the turns, to a static equilibrium under the loads at its
-/// time. Leaves the state as it is if the search fails.
+/// time. Leaves the state as it is if the search fails, and if the beat ends it.
 ///
 /// Newton's method comes first. Where it fails, pseudo-transient continuation follows the gradient
 /// flow of the potential. Where that fails, too, the search goes on with load steps, then dynamic

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "der/assembly/assembler.hpp"
+#include "der/core/beat.hpp"
 #include "der/core/error.hpp"
 #include "der/core/types.hpp"
 #include "der/kinematics/configuration.hpp"
@@ -28,9 +29,11 @@ struct Mode {
 /// M (Ericsson and Ruhe, Math. Comp. 35, 1980; the library Spectra), repeated until the inertia of
 /// the factorisation says that none is missing. Damping is left out. Throws Error if a degree of
 /// freedom has no mass, NotConvergedError if modes cannot be found, or are
-/// lost in rounding errors.
+/// lost in rounding errors. `beat` is called at each factorisation and solution, as in all that
+/// follows here.
 std::vector<Mode> vibration_modes(const Model& model, const Assembler& assembler,
-                                  LinearSolver& solver, const Configuration& here, int count);
+                                  LinearSolver& solver, const Configuration& here, int count,
+                                  const Beat& beat = {});
 
 /// A load at which the straight or little deformed structure becomes unstable.
 struct BucklingMode {
@@ -59,13 +62,14 @@ struct LinearBuckling {
 /// positive definite K0 at the shape `here`, on the same solver, and `stress` has K1.
 std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& stiffness,
                                          LinearSolver& solver, const Configuration& here,
-                                         const InitialStress& stress, int count);
+                                         const InitialStress& stress, int count,
+                                         const Beat& beat = {});
 
 /// Linear buckling: K0 is the stiffness of the unloaded equilibrium `state`, K1 that of the initial
 /// stresses that all loads cause to first order (InitialStress). No modes if the loads do not make
 /// it buckle. Throws NotConvergedError if the unloaded structure is not stable. The model has a
 /// load variation, of all loads.
 LinearBuckling linear_buckling(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                               const State& state, int count);
+                               const State& state, int count, const Beat& beat = {});
 
 }  // namespace der

@@ -6,6 +6,7 @@
 #include "der/assembly/assembler.hpp"
 #include "der/assembly/pattern.hpp"
 #include "der/building/out_of_plane_model.hpp"
+#include "der/core/beat.hpp"
 #include "der/solvers/linear_solver.hpp"
 #include "der/statics/stiffness.hpp"
 
@@ -43,13 +44,14 @@ class OutOfPlaneTest {
   /// Growth rate [1/s] of the fastest motion out of the plane; 0 if the equilibrium is stable, and
   /// if a section has no inertia against spin.
   /// Throws as `vibration_modes` does.
-  double growth_rate(const Configuration& planar);
+  double growth_rate(const Configuration& planar, const Beat& beat = {});
   /// The lowest factor of the loads at which the structure buckles out of its plane by linear
   /// theory. `unloaded` is its shape without them, stable in its plane, `response` the displacement
   /// (all degrees of freedom of the planar model) that they cause to first order. Motions that
   /// nothing resists, such as the spin of a rod in its clamps, count only where the loads act on
   /// them.
-  OutOfPlaneBuckling buckling(const Configuration& unloaded, const Vector& response);
+  OutOfPlaneBuckling buckling(const Configuration& unloaded, const Vector& response,
+                              const Beat& beat = {});
 
  private:
   const Model& planar_;

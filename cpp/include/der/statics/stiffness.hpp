@@ -1,6 +1,7 @@
 #pragma once
 
 #include "der/assembly/assembler.hpp"
+#include "der/core/beat.hpp"
 #include "der/core/types.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
@@ -39,7 +40,8 @@ struct SoftDirection {
 /// the sparse layout of the linear solver, which it borrows for its factorisations.
 class Stiffness {
  public:
-  Stiffness(const Model& model, const Assembler& assembler, LinearSolver& solver);
+  /// `beat` is called at each evaluation, factorisation and solution.
+  Stiffness(const Model& model, const Assembler& assembler, LinearSolver& solver, Beat beat = {});
 
   void evaluate(const Configuration& here);
   /// Gradient [N] of the elements' energies at the same shape, all degrees of freedom.
@@ -53,7 +55,10 @@ class Stiffness {
   Inertia factorize(double shift = 0.0) { return factorize(shift, units_); }
   Inertia factorize(double shift, const Mass& mass);
   /// Solves with the last factorisation, in place; over the free degrees of freedom.
-  void solve(Vector& right_side) { solver_.solve(right_side); }
+  void solve(Vector& right_side) {
+    beat();
+    solver_.solve(right_side);
+  }
 
   /// Solves K x = b in place where the rounding of the assembled matrix is not small against the
   /// softest eigenvalues: conjugate gradients on K taken element by element, the matrix being the
@@ -100,6 +105,9 @@ class Stiffness {
     Vector errors;               // by which the iteration may have missed the eigenvalues [N/m]
   };
 
+  void beat() const {
+    if (beat_) beat_();
+  }
   double factorize_positive();
   void judge_doubtful(Stability& stability);
   SoftSpace softest_space(Index count);
@@ -110,6 +118,7 @@ class Stiffness {
   const Model& model_;
   const Assembler& assembler_;
   LinearSolver& solver_;
+  Beat beat_;
   Vector gradient_;
   Vector values_;
   Vector shifted_;

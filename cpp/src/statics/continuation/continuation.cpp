@@ -57,12 +57,11 @@ class PathTracer {
         options_(options),
         range_(options.to - options.from),
         largest_clamp_turn_(largest_turn_of_clamps(model, model.load_variation->controls.change)),
-        equations_(model, assembler, solver, options.newton, first_metric(model, range_),
-                   positions),
+        equations_(model, assembler, solver, options, first_metric(model, range_), positions),
         events_(equations_, options.largest_step),
         plane_(equations_, out_of_plane) {}
 
-  std::vector<PathBranch> run(const State& start) {
+  TracedPath run(const State& start) {
     PathNode first =
         equations_.node_at(start.followed, {start.positions(model_.dofs.free()), options_.from});
     equations_.set_metric(first);
@@ -72,7 +71,7 @@ class PathTracer {
     for (std::size_t i = 0; i < crossings_.size(); ++i) {
       if (crossings_[i].depth < options_.branching) trace_from(i);
     }
-    return std::move(branches_);
+    return {std::move(branches_), equations_.newton_iterations()};
   }
 
  private:
@@ -364,9 +363,9 @@ class PathTracer {
 
 namespace der {
 
-std::vector<PathBranch> follow_path(const Model& model, const Assembler& assembler,
-                                    LinearSolver& solver, const ContinuationOptions& options,
-                                    OutOfPlaneTest* out_of_plane, const State& start) {
+TracedPath follow_path(const Model& model, const Assembler& assembler, LinearSolver& solver,
+                       const ContinuationOptions& options, OutOfPlaneTest* out_of_plane,
+                       const State& start) {
   return statics::PathTracer(model, assembler, solver, options, out_of_plane, start.positions)
       .run(start);
 }

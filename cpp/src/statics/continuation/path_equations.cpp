@@ -34,13 +34,14 @@ double director_angle(Index edge, const Vector& from, const Vector& to) {
 }  // namespace
 
 PathEquations::PathEquations(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                             const NewtonOptions& options, PathMetric metric, Vector positions)
+                             const ContinuationOptions& options, PathMetric metric,
+                             Vector positions)
     : model_(model),
       loads_(*model.load_variation),
       assembler_(assembler),
-      options_(options),
+      options_(options.newton),
       metric_(std::move(metric)),
-      stiffness_(model, assembler, solver),
+      stiffness_(model, assembler, solver, options.beat),
       tension_(model, assembler),
       here_{std::move(positions), {}},
       no_extra_(Vector::Zero(model.num_dofs())) {}
@@ -145,6 +146,7 @@ std::optional<PathPosition> PathEquations::solve_on_plane(const Vector& followed
                                                           PathPosition guess, int& iterations) {
   evaluate(followed, guess);
   for (iterations = 1; iterations <= kMaxIterations; ++iterations) {
+    ++newton_iterations_;
     const Vector derivative = factor_derivative(followed, guess);
     place(followed, guess);
     if (!stiffness_.factorize().factorised) return std::nullopt;

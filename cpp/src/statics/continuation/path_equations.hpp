@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "der/assembly/assembler.hpp"
@@ -8,6 +9,7 @@
 #include "der/solvers/linear_solver.hpp"
 #include "der/solvers/newton.hpp"
 #include "der/solvers/predicted_tension.hpp"
+#include "der/statics/continuation.hpp"
 #include "der/statics/stiffness.hpp"
 #include "statics/continuation/path_metric.hpp"
 
@@ -31,9 +33,11 @@ class PathEquations {
  public:
   /// `positions` give the values of held degrees of freedom that do not vary.
   PathEquations(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                const NewtonOptions& options, PathMetric metric, Vector positions);
+                const ContinuationOptions& options, PathMetric metric, Vector positions);
 
   [[nodiscard]] const PathMetric& metric() const { return metric_; }
+  /// Iterations of all solves so far.
+  [[nodiscard]] std::int64_t newton_iterations() const { return newton_iterations_; }
 
   /// A shape in another chart, that of the frames `chart`: its free degrees of freedom, the angles
   /// of sections from those frames. Two points of a path have the same angles from frames that
@@ -89,6 +93,7 @@ class PathEquations {
   Vector force_;
   Vector residual_;
   double force_scale_ = 0.0;
+  std::int64_t newton_iterations_ = 0;
   std::optional<bool> by_pivots_;  // whether these tell the stability; set at the first node
 };
 

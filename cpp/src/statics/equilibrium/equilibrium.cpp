@@ -68,8 +68,8 @@ class EquilibriumSearch {
         has_potential_(has_potential(*model.elements)),
         loads_(loads_of(model, state)),
         newton_(model, assembler, solver, options.newton,
-                Admissibility(model, loads_.force, state.positions)),
-        stiffness_(model, assembler, solver),
+                Admissibility(model, loads_.force, state.positions), options.beat),
+        stiffness_(model, assembler, solver, options.beat),
         continuation_(model, newton_) {
     if (has_potential_) return;
     const StaticLoads none = scaled(model, loads_, 0.0);
@@ -101,8 +101,8 @@ class EquilibriumSearch {
         has_potential_(true),
         loads_(std::move(none)),
         newton_(model, assembler, solver, options.newton,
-                Admissibility(model, loads_.force, state.positions)),
-        stiffness_(model, assembler, solver),
+                Admissibility(model, loads_.force, state.positions), options.beat),
+        stiffness_(model, assembler, solver, options.beat),
         continuation_(model, newton_) {}
 
   /// For loads without a potential: moves to the equilibrium without loads, from which they are

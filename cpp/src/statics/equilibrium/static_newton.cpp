@@ -16,10 +16,10 @@ constexpr double kLargestLastChange = 0.5;
 }  // namespace
 
 StaticNewton::StaticNewton(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                           const NewtonOptions& options, Admissibility admissibility)
+                           const NewtonOptions& options, Admissibility admissibility, Beat beat)
     : model_(model),
       problem_(model, assembler, {model.dofs.unit_masses(), {}}),
-      newton_(model.dofs, solver, assembler.num_values(), options),
+      newton_(model.dofs, solver, assembler.num_values(), options, std::move(beat)),
       admissibility_(std::move(admissibility)) {}
 
 Stage StaticNewton::stage_of(const StaticLoads& loads) const {

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "der/assembly/assembler.hpp"
+#include "der/core/beat.hpp"
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/solvers/linear_solver.hpp"
@@ -19,8 +20,9 @@ namespace der::statics {
 /// admissible shapes.
 class StaticNewton {
  public:
+  /// `beat` is called once an iteration.
   StaticNewton(const Model& model, const Assembler& assembler, LinearSolver& solver,
-               const NewtonOptions& options, Admissibility admissibility);
+               const NewtonOptions& options, Admissibility admissibility, Beat beat);
 
   /// Moves `shape` to the equilibrium to which Newton's method leads from it.
   /// On failure the shape stays as it is.

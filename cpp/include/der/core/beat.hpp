@@ -1,0 +1,11 @@
+#pragma once
+
+#include <functional>
+
+namespace der {
+
+/// Called again and again in the course of long work, such as the search for an equilibrium, and so
+/// often that it must be cheap (Pacer). What it throws ends the work. Empty: nothing is called.
+using Beat = std::function<void()>;
+
+}  // namespace der

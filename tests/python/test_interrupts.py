@@ -1,0 +1,152 @@
+"""Ctrl-C in long calls: it is answered at once, and leaves simulations as they were."""
+
+import signal
+import time
+
+import der
+import numpy as np
+import pytest
+
+#: When Ctrl-C comes [s], and how soon it is to be answered.
+DELAY, PATIENCE = 0.3, 1.0
+
+
+def rod(nodes, force, analysis="static"):
+    return {
+        "title": "Rod",
+        "rods": [
+            {
+                "name": "rod",
+                "nodes": nodes,
+                "from": [0, 0],
+                "to": [1, 0],
+                "cross_section": {"stiffness": {"EA": 1e6, "EI": 1, "mass_per_length": 1}},
+            }
+        ],
+        "supports": [
+            {"rod": "rod", "at": "start", "fix": ["x", "y"]},
+            {"rod": "rod", "at": "end", "fix": ["y"]},
+        ],
+        "loads": [{"point_force": {"rod": "rod", "at": "end", "force": [force, 0]}}],
+        "analysis": analysis,
+    }
+
+
+#: Its equilibrium takes seconds, far above its buckling load.
+SEARCH = rod(8001, -1e5)
+
+
+def assert_answered(call):
+    """Interrupt a call as Ctrl-C does: by a signal that needs no other thread of Python."""
+    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    begun = time.monotonic()
+    signal.setitimer(signal.ITIMER_REAL, DELAY)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            call()
+        assert DELAY <= time.monotonic() - begun < DELAY + PATIENCE
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def test_ctrl_c_ends_the_search_for_an_equilibrium():
+    simulation = der.Simulation(SEARCH)
+    simulation.extra_force[7, 1] = 1e-3
+    before = simulation.positions.copy()
+    for call in (simulation.equilibrium, simulation.run):
+        assert_answered(call)
+        np.testing.assert_array_equal(simulation.positions, before)
+        assert simulation.extra_force[7, 1] == 1e-3
+    simulation.restore_state(simulation.save_state())  # it is not busy any more
+
+
+def test_ctrl_c_ends_the_search_for_a_start():
+    scene = rod(8001, -1e5) | {
+        "start_from": "equilibrium",
+        "time": {"duration": 1, "step": 0.1},
+        "output": {"every": 0.1},
+    }
+    del scene["analysis"]
+    assert_answered(lambda: der.Simulation(scene))
+    assert_answered(lambda: der.Batch(scene, 2, 2))
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        rod(4001, -1, {"modes": {"count": 600}}),
+        rod(1001, -30, {"continuation": {"branches": 1, "step": 0.0002, "points": 9000}}),
+    ],
+    ids=["modes", "continuation"],
+)
+def test_ctrl_c_ends_an_analysis(scene):
+    assert_answered(lambda: der.run(scene))
+
+
+def test_ctrl_c_ends_the_search_for_modes():
+    simulation = der.Simulation(rod(4001, -1))
+    simulation.equilibrium()
+    before = simulation.positions.copy()
+    assert_answered(lambda: simulation.modes(600))
+    np.testing.assert_array_equal(simulation.positions, before)
+
+
+def test_a_signal_handler_finds_the_simulation_busy():
+    simulation = der.Simulation(rod(2001, -1))
+    simulation.equilibrium()
+    expected = simulation.modes(40).frequencies
+    refusals = []
+
+    def handle(*_):
+        try:
+            simulation.equilibrium()
+        except RuntimeError as refusal:
+            refusals.append(str(refusal))
+
+    before = signal.signal(signal.SIGALRM, handle)
+    signal.setitimer(signal.ITIMER_REAL, 0.02, 0.02)
+    try:
+        found = simulation.modes(40).frequencies
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert any("busy" in refusal for refusal in refusals)
+    np.testing.assert_array_equal(found, expected)
+
+
+def test_callbacks_and_forces_may_ask_for_modes():
+    scene = rod(11, -1) | {"time": {"duration": 0.02, "step": 0.01}}
+    del scene["analysis"]
+    scene["loads"] = []
+    simulation = der.Simulation(scene)
+    expected = simulation.modes(2).frequencies
+    found = []
+
+    @simulation.add_force
+    def force(time, positions, velocities):
+        found.append(simulation.modes(2).frequencies)
+        return np.zeros_like(positions)
+
+    simulation.run(lambda now: found.append(now.modes(2).frequencies))
+    simulation.step()
+    assert len(found) == 5
+    for frequencies in found:
+        np.testing.assert_allclose(frequencies, expected, rtol=1e-6)
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_ctrl_c_ends_the_search_of_a_batch(threads):
+    batch = der.Batch(SEARCH, 4, threads)
+    before = batch.positions.copy()
+    assert_answered(batch.equilibrium)
+    assert not batch.failed.any()
+    np.testing.assert_array_equal(batch.positions, before)
+    assert_answered(batch.equilibrium)
+
+
+def test_ctrl_c_ends_a_sweep_of_searches(tmp_path):
+    assert_answered(
+        lambda: der.sweep(SEARCH, {"loads.0.point_force.force.0": [-1e5, -2e5]}, out=tmp_path / "s")
+    )
+    assert len(der.load_sweep(tmp_path / "s").rows) == 0

@@ -1,11 +1,15 @@
 """Ctrl-C in long calls: it is answered at once, and leaves simulations as they were."""
 
+import os
 import signal
+import subprocess
+import sys
 import time
 
 import der
 import numpy as np
 import pytest
+from der.sweeps.store import is_sweep
 
 #: When Ctrl-C comes [s], and how soon it is to be answered.
 DELAY, PATIENCE = 0.3, 1.0
@@ -95,7 +99,7 @@ def test_ctrl_c_ends_the_search_for_modes():
 def test_a_signal_handler_finds_the_simulation_busy():
     simulation = der.Simulation(rod(2001, -1))
     simulation.equilibrium()
-    expected = simulation.modes(40).frequencies
+    expected = simulation.modes(200).frequencies
     refusals = []
 
     def handle(*_):
@@ -107,7 +111,7 @@ def test_a_signal_handler_finds_the_simulation_busy():
     before = signal.signal(signal.SIGALRM, handle)
     signal.setitimer(signal.ITIMER_REAL, 0.02, 0.02)
     try:
-        found = simulation.modes(40).frequencies
+        found = simulation.modes(200).frequencies
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
@@ -143,6 +147,33 @@ def test_ctrl_c_ends_the_search_of_a_batch(threads):
     assert not batch.failed.any()
     np.testing.assert_array_equal(batch.positions, before)
     assert_answered(batch.equilibrium)
+
+
+def test_ctrl_c_ends_a_sweep_of_searches_in_processes(tmp_path):
+    """As from a terminal, which sends it to all processes."""
+    scene = der.Scenario.from_dict(rod(4001, -1, {"modes": {"count": 1}}))
+    (tmp_path / "rod.yaml").write_text(scene.to_yaml())
+    vary = "analysis.modes.count=1,600,601"
+    line = [sys.executable, "-m", "der", "sweep", "rod.yaml", "--vary", vary, "--out", "s"]
+    sweep = subprocess.Popen(
+        [*line, "--processes", "--jobs", "1"],
+        cwd=tmp_path,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    # Its processes have begun when the first member has a row.
+    deadline = time.monotonic() + 60.0
+    while not (is_sweep(tmp_path / "s") and len(der.load_sweep(tmp_path / "s"))):
+        assert time.monotonic() < deadline
+        time.sleep(0.1)
+    begun = time.monotonic()
+    os.killpg(sweep.pid, signal.SIGINT)
+    errors = sweep.communicate(timeout=60)[1]
+    assert time.monotonic() - begun < PATIENCE + 2.0
+    assert sweep.returncode == 130
+    assert errors.startswith("interrupted: ")
+    assert "Traceback" not in errors
 
 
 def test_ctrl_c_ends_a_sweep_of_searches(tmp_path):

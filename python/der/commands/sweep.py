@@ -12,9 +12,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -135,13 +133,9 @@ def _interrupted(out: Path) -> str:
 def _executor(arguments: argparse.Namespace) -> Iterator[AnyExecutor | None]:
     """Give what runs the members for the time of a ``with`` block; None for threads."""
     if arguments.processes:
-        from der.parallel import checked_jobs
-        from der.sweeps.executors import end_with_parent
+        from der.sweeps.executors import Processes
 
-        # Fresh processes: a fork of one with threads may stop at a lock that nobody opens.
-        with ProcessPoolExecutor(
-            checked_jobs(arguments.jobs), get_context("spawn"), initializer=end_with_parent
-        ) as pool:
+        with Processes(arguments.jobs) as pool:
             yield pool
     elif arguments.dask is not None:
         from der.sweeps.executors import connect

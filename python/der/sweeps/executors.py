@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import signal
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor
+from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
+from multiprocessing.synchronize import Event
 from pathlib import Path
+from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from der.parallel import Threads, checked_jobs
@@ -70,6 +73,8 @@ def place_for(executor: AnyExecutor | None, jobs: int | None) -> Iterator[Place]
     if executor is None:
         with Threads(count) as threads:
             yield Place(threads, partial(run_chunk, tick=threads.tick), lambda: count)
+    elif isinstance(executor, Processes):
+        yield Place(executor, _run_chunk_in_process, lambda: executor.count)
     elif isinstance(executor, Executor):
         if jobs is None:
             count = getattr(executor, "_max_workers", count)
@@ -86,6 +91,65 @@ def place_for(executor: AnyExecutor | None, jobs: int | None) -> Iterator[Place]
         raise TypeError(
             f"executor must be an executor of concurrent.futures or a Dask client, got {executor!r}"
         )
+
+
+class Processes(ProcessPoolExecutor):
+    """Processes that stop when the ``with`` block around them fails, by Ctrl-C above all.
+
+    Attributes
+    ----------
+    count
+        How many.
+
+    Parameters
+    ----------
+    jobs
+        How many; as many as the machine has cores, unless given.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If `jobs` is not a whole number of at least 1.
+    """
+
+    def __init__(self, jobs: int | None = None) -> None:
+        self.count = checked_jobs(jobs)
+        # Fresh processes: a fork of one with threads may stop at a lock that nobody opens.
+        context = multiprocessing.get_context("spawn")
+        self._stop = context.Event()
+        super().__init__(self.count, context, initializer=_begin_process, initargs=(self._stop,))
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Wait for the processes, whose members end at their next tick if the block fails."""
+        if kind is not None:
+            self._stop.set()
+        self.shutdown(cancel_futures=kind is not None)
+
+
+#: In a process of `Processes`: whether nobody wants its work any more.
+_stop_here: Event | None = None
+
+
+def _begin_process(stop: Event) -> None:
+    global _stop_here
+    _stop_here = stop
+    # Ctrl-C of a terminal goes to all processes, and is the parent's to answer.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    end_with_parent()
+
+
+def _run_chunk_in_process(chunk: Chunk) -> Table:
+    return run_chunk(chunk, tick=_tick_of_process)
+
+
+def _tick_of_process() -> None:
+    if _stop_here is not None and _stop_here.is_set():
+        raise KeyboardInterrupt
 
 
 def end_with_parent() -> None:

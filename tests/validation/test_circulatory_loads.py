@@ -196,22 +196,39 @@ def test_moments_anywhere_along_a_rod():
             assert error < (0.126 / n**2 if place > 1 / n else 0.6 / n) + 1e-5
 
 
+def ledger_of(loads, supports, step):
+    """Work of the loads, and the energy that the ledger misses."""
+    strip = section([0, 1, 0], EA=100.0, EI1=3.0, EI2=1.0, GJ=0.8, rotary_inertia=0.05)
+    time = {"duration": 0.4, "step": step, "integrator": "implicit_midpoint"}
+    scene = straight_rod(6, strip, loads=loads, supports=supports, time=time)
+    _, result = measured(scene, ["end"], ["x"])
+    return result.work["loads"][-1], result.work["numerical"][-1]
+
+
 def test_the_ledger_closes(fitted_order):
     """Loads that do work along a closed way: the ledger misses the square of the step."""
-    strip = section([0, 1, 0], EA=100.0, EI1=3.0, EI2=1.0, GJ=0.8, rotary_inertia=0.05)
     loads = [
         force(-0.5, 1.0, 0.5),
         moment(0.3, 0.2, 0.1, at=0.61),
         moment(0.2, 0.1, 0.3, follower=True),
     ]
     steps = [0.01, 0.005, 0.0025, 0.00125]
-    missed = []
-    for step in steps:
-        time = {"duration": 0.4, "step": step, "integrator": "implicit_midpoint"}
-        _, result = measured(straight_rod(6, strip, loads=loads, time=time), ["end"], ["x"])
-        assert abs(result.work["loads"][-1]) > 0.1
-        missed.append(result.work["numerical"][-1])
-    assert fitted_order(steps, missed) > 1.9
+    works = [ledger_of(loads, [{**START, "clamp": True}], step) for step in steps]
+    assert min(abs(work) for work, _ in works) > 0.1
+    assert fitted_order(steps, [missed for _, missed in works]) > 1.9
+
+
+def test_the_ledger_of_loads_at_one_place():
+    """On a spring, where each of them turns the section that the others act on."""
+    at = {"at": 0.61}
+    loads = [
+        force(-0.5, 1.0, 0.5, **at),
+        moment(0.3, 0.2, 0.1, **at),
+        moment(0.2, 0.1, 0.3, follower=True, **at),
+    ]
+    spring = {"rod": "rod", **at, "spring": {"rotational_stiffness": [8.0, 0.5, 1.0]}}
+    work, missed = ledger_of(loads, [{**START, "clamp": True}, spring], 0.00125)
+    assert abs(missed) < 1e-6 * abs(work)  # waves that the sudden loads excite hide the order
 
 
 @pytest.mark.parametrize(("load", "grows"), [(19.0, False), (21.2, True)])

@@ -1,5 +1,7 @@
 #include "der/lanes/member_controls.hpp"
 
+#include "der/model/prescribed_motion.hpp"
+
 namespace der {
 
 template <class T>
@@ -75,6 +77,16 @@ void MemberControls<T>::hold(MemberVector<T>& positions) const {
     }
     positions[held[i].dof] = model_.held_places[static_cast<Index>(i)] + displacement;
   }
+}
+
+template <class T>
+T MemberControls<T>::held_velocity(const HeldDof& held, const T& dt, const T& mean) const {
+  if (held.displacement < 0) return mean;
+  return in_lanes<T>([&](int lane) {
+    const State& state = *states_[to_size(lane)];
+    return der::held_velocity(*model_.models[to_size(lane)], state, held,
+                              state.time + dt.lane(lane), mean.lane(lane));
+  });
 }
 
 template <class T>

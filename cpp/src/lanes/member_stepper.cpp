@@ -283,8 +283,9 @@ void MemberStepper<T>::finish(LaneSet done, const T& dt, MemberState<T>& state) 
     for (const HeldDof& held : members_->model.structure().held) {
       const Index i = held.dof;
       const T before = state.velocities[i];
-      const T after = (end_positions_[i] - state.positions[i]) / dt;
-      const T drag = members_->model.damping[i] * after * after * dt;
+      const T mean = (end_positions_[i] - state.positions[i]) / dt;
+      const T after = members_->controls.held_velocity(held, dt, mean);
+      const T drag = members_->model.damping[i] * mean * mean * dt;
       work_.drag += drag;
       work_.supports += drag + 0.5 * members_->model.lumped[i] * (after * after - before * before);
       end_velocities_[i] = after;

@@ -9,4 +9,12 @@ void apply_prescribed_motion(const Model& model, const Vector& controls, Vector&
   }
 }
 
+double held_velocity(const Model& model, const State& state, const HeldDof& held, double time,
+                     double mean) {
+  const Index control = held.displacement;
+  if (control < 0 || model.load_variation || find_ramp(state, control) != nullptr) return mean;
+  const scenario::Series& table = model.tables[control];
+  return table.course.kind == scenario::Course::Kind::Linear ? mean : slope_at(table, time);
+}
+
 }  // namespace der

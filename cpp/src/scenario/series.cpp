@@ -30,6 +30,21 @@ double value_at(const Series& series, double t) {
   return values[i - 1] + share * (values[i] - values[i - 1]);
 }
 
+double slope_at(const Series& series, double t) {
+  const auto& [times, values, course] = series;
+  if (course.kind == Course::Kind::Sine) {
+    const double rate = 2.0 * kPi * course.frequency;
+    return values[1] * rate * std::cos(rate * t + course.phase);
+  }
+  const auto after = std::upper_bound(times.begin(), times.end(), t);
+  if (after == times.begin() || after == times.end()) return 0.0;
+  const auto i = static_cast<std::size_t>(after - times.begin());
+  const double length = times[i] - times[i - 1];
+  const double u = (t - times[i - 1]) / length;
+  const double by_share = 30.0 * u * u * (1.0 - u) * (1.0 - u);  // the slope of smooth_share
+  return by_share * (values[i] - values[i - 1]) / length;
+}
+
 Series component_of(const VectorSeries& series, std::size_t component) {
   Series result{series.times, {}, series.course};
   result.values.reserve(series.values.size());

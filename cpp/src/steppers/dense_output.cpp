@@ -48,9 +48,10 @@ void DenseOutput::evaluate(double time, const State& start, const State& end, St
 
   Work work_start = start.work;
   for (const HeldDof& held : model_.held) {
+    const double mean = end.velocities[held.dof];  // but of tables without kinks
     const double before = start.velocities[held.dof];
-    const double after = end.velocities[held.dof];
-    result.velocities[held.dof] = after;
+    const double after = held_velocity(model_, start, held, start.time, mean);
+    result.velocities[held.dof] = held_velocity(model_, end, held, time, mean);
     work_start.supports += 0.5 * model_.mass.lumped[held.dof] * (after * after - before * before);
   }
   const Work power_start = powers(start, start, end);
@@ -68,7 +69,8 @@ Work DenseOutput::powers(const State& where, const State& start, const State& en
   add_table_powers(where, start, end, power);
   velocities_ = where.velocities;
   for (const HeldDof& held : model_.held) {
-    const double velocity = end.velocities[held.dof];
+    const double velocity =
+        held_velocity(model_, where, held, where.time, end.velocities[held.dof]);
     const double drag = model_.damping[held.dof] * velocity * velocity;
     velocities_[held.dof] = velocity;
     power.drag += drag;

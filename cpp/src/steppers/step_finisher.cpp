@@ -2,6 +2,7 @@
 
 #include "der/model/gravity.hpp"
 #include "der/model/moment_place.hpp"
+#include "der/model/prescribed_motion.hpp"
 #include "der/steppers/work.hpp"
 
 namespace der {
@@ -24,8 +25,9 @@ void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector
                       driven_gravity_energy(model_, start_);
   for (const HeldDof& held : model_.held) {
     const double before = state.velocities[held.dof];
-    const double after = (positions[held.dof] - state.positions[held.dof]) / dt;
-    const double drag = model_.damping[held.dof] * after * after * dt;
+    const double mean = (positions[held.dof] - state.positions[held.dof]) / dt;
+    const double after = held_velocity(model_, state, held, state.time + dt, mean);
+    const double drag = model_.damping[held.dof] * mean * mean * dt;
     state.work.drag += drag;
     state.work.supports +=
         drag + 0.5 * model_.mass.lumped[held.dof] * (after * after - before * before);

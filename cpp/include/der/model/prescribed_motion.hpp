@@ -2,11 +2,18 @@
 
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
+#include "der/model/state.hpp"
 
 namespace der {
 
 /// Moves the held degrees of freedom of `positions` [m] to where the supports have them: at their
 /// initial values, displaced by what `controls` say.
 void apply_prescribed_motion(const Model& model, const Vector& controls, Vector& positions);
+
+/// Velocity [m/s] at the end of a step, at `time` [s], of a degree of freedom that a support holds
+/// and that has moved by `mean` [m/s] over the step: that of a sine or a smooth table. Straight
+/// pieces, and what a program sets, have the mean.
+double held_velocity(const Model& model, const State& state, const HeldDof& held, double time,
+                     double mean);
 
 }  // namespace der

@@ -37,6 +37,8 @@ double smooth_share(double u);
 
 /// Value at time `t` [s].
 double value_at(const Series& series, double t);
+/// Its rate of change at time `t` [s], of a course without kinks.
+double slope_at(const Series& series, double t);
 
 /// As `Series`, with a vector value for each time; without any value it is not given.
 struct VectorSeries {

@@ -200,7 +200,7 @@ bool at_held_tangent(double s, const RodLayout& rod) {
 bool need_section(const SectionLoads& place, const RodLayout& rod, const Model& model) {
   const double s = place.arc_length;
   if (is_held_or_at_corner(s, rod, model)) return true;
-  if (!(rod.EI_1 > 0.0 && rod.EI_2 > 0.0 && rod.GJ > 0.0)) return false;
+  if (rod.EI_1 <= 0.0 || rod.EI_2 <= 0.0 || rod.GJ <= 0.0) return false;
   if (!place.moments.empty() && place.moments.size() + place.forces.size() > 1) return true;
   if (!place.moments.empty() && at_held_tangent(s, rod)) return true;
   const auto& loads = circulatory_loads(*model.elements);

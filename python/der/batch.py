@@ -291,7 +291,7 @@ class Batch(_core.Batch):
         if components == 1 and values.ndim == 1 and values.shape != (1,):
             values = values[:, None]
         shape = (len(self), components)
-        # One number is no value of several components, though it could be spread over them.
+        # A value of several components has all of them: one number is not broadcast to them.
         if components > 1 and values.shape[-1:] != (components,):
             raise _other_shape(name, values, shape)
         return _broadcast(name, values, shape)

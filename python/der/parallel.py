@@ -15,7 +15,7 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExec
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import TracebackType
-from typing import Generic, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,7 +92,34 @@ class Outcome(Generic[Found]):
         return self.result
 
 
-class Threads(ThreadPoolExecutor):
+class _Stop(Protocol):
+    """An event of threads or of processes."""
+
+    def set(self) -> None: ...
+    def is_set(self) -> bool: ...
+
+
+class EndsWithBlock(Executor):
+    """An executor whose work ends early when the ``with`` block around it fails.
+
+    Its workers are to raise `KeyboardInterrupt` at their next tick once `_stop` is set.
+    """
+
+    _stop: _Stop
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Wait for the workers, which end at their next tick if the block fails."""
+        if kind is not None:
+            self._stop.set()
+        self.shutdown(cancel_futures=kind is not None)
+
+
+class Threads(EndsWithBlock, ThreadPoolExecutor):
     """Threads that stop when the ``with`` block around them fails, by Ctrl-C above all.
 
     Parameters
@@ -114,17 +141,6 @@ class Threads(ThreadPoolExecutor):
         """Raise `KeyboardInterrupt` in a thread whose work nobody wants any more."""
         if self._stop.is_set():
             raise KeyboardInterrupt
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        """Wait for the threads, which end at their next tick if the block fails."""
-        if kind is not None:
-            self._stop.set()
-        self.shutdown(cancel_futures=kind is not None)
 
 
 def checked_jobs(jobs: int | None) -> int:

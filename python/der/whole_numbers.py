@@ -15,9 +15,9 @@ def whole_number(name: str, value: Any, least: int | None = None, most: int | No
     Parameters
     ----------
     name
-        Of the argument, for messages.
+        The name of the argument, for messages.
     value
-        What was given.
+        The value given.
     least
         The least that it may be; None: there is none.
     most
@@ -26,7 +26,7 @@ def whole_number(name: str, value: Any, least: int | None = None, most: int | No
     Raises
     ------
     TypeError
-        If it is no whole number; True and False are none.
+        If it is not a whole number; True and False do not count as such.
     ValueError
         If it is less than `least` or more than `most`.
     """

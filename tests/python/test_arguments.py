@@ -1,4 +1,4 @@
-"""What programs give wrongly: a message that says what to write, and no signatures of C++."""
+"""Wrong arguments from Python get a message that says what to write, not signatures of C++."""
 
 import der
 import numpy as np

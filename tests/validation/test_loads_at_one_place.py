@@ -27,7 +27,7 @@ SIZES = (40, 80, 160)
 
 @dataclass
 class Case:
-    """What acts at a share of the length that may depend on the number of edges, and at the end."""
+    """The loads at a share of the length that may depend on the number of edges, and at the end."""
 
     force: tuple[float, float, float] = NONE  # follows
     moment: tuple[float, float, float] = NONE  # follows

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "der/core/constants.hpp"
 
@@ -11,6 +14,22 @@ namespace der::scenario {
 namespace {
 
 constexpr double kStepsPerPeriod = 4.0;
+
+/// A piece of a table between two entries.
+struct Piece {
+  std::size_t end;  // number of the entry at its end
+  double length;    // [s]
+  double done;      // share of its time that is over
+};
+
+/// The piece at time `t` [s]; none before the first entry, and from the last one on.
+std::optional<Piece> piece_at(double t, const std::vector<double>& times) {
+  const auto after = std::upper_bound(times.begin(), times.end(), t);
+  if (after == times.begin() || after == times.end()) return std::nullopt;
+  const double start = *std::prev(after);
+  const double length = *after - start;
+  return Piece{static_cast<std::size_t>(after - times.begin()), length, (t - start) / length};
+}
 
 }  // namespace
 
@@ -21,11 +40,9 @@ double value_at(const Series& series, double t) {
   if (course.kind == Course::Kind::Sine) {
     return values[0] + values[1] * std::sin(2.0 * kPi * course.frequency * t + course.phase);
   }
-  const auto after = std::upper_bound(times.begin(), times.end(), t);
-  if (after == times.begin()) return values.front();
-  if (after == times.end()) return values.back();
-  const auto i = static_cast<std::size_t>(after - times.begin());
-  const double done = (t - times[i - 1]) / (times[i] - times[i - 1]);
+  const auto piece = piece_at(t, times);
+  if (!piece) return t < times.front() ? values.front() : values.back();
+  const auto& [i, length, done] = *piece;
   const double share = course.kind == Course::Kind::Linear ? done : smooth_share(done);
   return values[i - 1] + share * (values[i] - values[i - 1]);
 }
@@ -36,11 +53,9 @@ double slope_at(const Series& series, double t) {
     const double rate = 2.0 * kPi * course.frequency;
     return values[1] * rate * std::cos(rate * t + course.phase);
   }
-  const auto after = std::upper_bound(times.begin(), times.end(), t);
-  if (after == times.begin() || after == times.end()) return 0.0;
-  const auto i = static_cast<std::size_t>(after - times.begin());
-  const double length = times[i] - times[i - 1];
-  const double u = (t - times[i - 1]) / length;
+  const auto piece = piece_at(t, times);
+  if (!piece) return 0.0;
+  const auto& [i, length, u] = *piece;
   const double by_share = 30.0 * u * u * (1.0 - u) * (1.0 - u);  // the slope of smooth_share
   return by_share * (values[i] - values[i - 1]) / length;
 }

@@ -13,10 +13,9 @@ from dataclasses import dataclass
 from functools import partial
 from multiprocessing.synchronize import Event
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from der.parallel import Threads, checked_jobs
+from der.parallel import EndsWithBlock, Threads, checked_jobs
 from der.sweeps.chunk import Chunk, run_chunk
 from der.sweeps.table import Table
 
@@ -93,7 +92,7 @@ def place_for(executor: AnyExecutor | None, jobs: int | None) -> Iterator[Place]
         )
 
 
-class Processes(ProcessPoolExecutor):
+class Processes(EndsWithBlock, ProcessPoolExecutor):
     """Processes that stop when the ``with`` block around them fails, by Ctrl-C above all.
 
     Attributes
@@ -118,17 +117,6 @@ class Processes(ProcessPoolExecutor):
         context = multiprocessing.get_context("spawn")
         self._stop = context.Event()
         super().__init__(self.count, context, initializer=_begin_process, initargs=(self._stop,))
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        """Wait for the processes, whose members end at their next tick if the block fails."""
-        if kind is not None:
-            self._stop.set()
-        self.shutdown(cancel_futures=kind is not None)
 
 
 #: In a process of `Processes`: whether nobody wants its work any more.

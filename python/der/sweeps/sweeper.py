@@ -181,8 +181,8 @@ def _check_columns(scene: Scenario, design: Design, verify: bool) -> None:
 def _check_whole_numbers(scene: Scenario, design: Design, first: dict[str, Any]) -> None:
     """Say where a parameter takes whole numbers and its values are others.
 
-    Of a range with more values than whole numbers in it the first value is whole, and what the
-    scene says of that one helps nobody.
+    A range may have more values than whole numbers in it. Its first value is whole then, and the
+    scene's message about that one does not help.
     """
     for (path, value), own in zip(first.items(), design.values, strict=True):
         if not (isinstance(value, float) and value.is_integer()):

@@ -63,17 +63,11 @@ class EquilibriumSearch {
  public:
   EquilibriumSearch(const Model& model, const Assembler& assembler, LinearSolver& solver,
                     const EquilibriumOptions& options, const State& state)
-      : model_(model),
-        leave_saddles_(options.leave_saddles),
-        has_potential_(has_potential(*model.elements)),
-        loads_(loads_of(model, state)),
-        newton_(model, assembler, solver, options.newton,
-                Admissibility(model, loads_.force, state.positions), options.beat),
-        stiffness_(model, assembler, solver, options.beat),
-        continuation_(model, newton_) {
+      : EquilibriumSearch(model, assembler, solver, options, state, loads_of(model, state),
+                          has_potential(*model.elements)) {
     if (has_potential_) return;
     const StaticLoads none = scaled(model, loads_, 0.0);
-    unloaded_.reset(new EquilibriumSearch(model, assembler, solver, options, state, none));
+    unloaded_.reset(new EquilibriumSearch(model, assembler, solver, options, state, none, true));
   }
 
   EquilibriumReport run(State& state) {
@@ -93,13 +87,13 @@ class EquilibriumSearch {
   }
 
  private:
-  /// The same without loads, which has a potential.
   EquilibriumSearch(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                    const EquilibriumOptions& options, const State& state, StaticLoads none)
+                    const EquilibriumOptions& options, const State& state, StaticLoads loads,
+                    bool have_potential)
       : model_(model),
         leave_saddles_(options.leave_saddles),
-        has_potential_(true),
-        loads_(std::move(none)),
+        has_potential_(have_potential),
+        loads_(std::move(loads)),
         newton_(model, assembler, solver, options.newton,
                 Admissibility(model, loads_.force, state.positions), options.beat),
         stiffness_(model, assembler, solver, options.beat),
@@ -248,8 +242,9 @@ class EquilibriumSearch {
   StaticNewton newton_;
   Stiffness stiffness_;
   PseudoTransient continuation_;
-  int relaxation_steps_ = 0;                     // of the dynamic relaxation
-  std::unique_ptr<EquilibriumSearch> unloaded_;  // the same without loads that have no potential
+  int relaxation_steps_ = 0;  // of the dynamic relaxation
+  std::unique_ptr<EquilibriumSearch>
+      unloaded_;  // the same without loads, if they have no potential
   EquilibriumReport report_;
 };
 

@@ -393,13 +393,14 @@ def spun_aside(step, stepper):
     return np.array([found["y"]["final"], found["across"]["final"]])
 
 
-def test_a_clamp_that_moves_aside_while_it_spins_its_section():
+@pytest.mark.parametrize("stepper", ["tr_bdf2", "newmark"])
+def test_a_clamp_that_moves_aside_while_it_spins_its_section(stepper):
     """The gyroscopic couple beside it has the velocity of the held node, which is that of the
     smooth table. The reference is the limit in the step that all steppers share, of `sdirk5`. A
     solver with spectral elements and Radau IIA steps agrees with the limit in the mesh to 1e-4.
-    With the mean velocity of the last step the error was 5e-3 at this step."""
+    With mean velocities of steps the errors were 7e-3 and 5e-3 at this step."""
     exact = spun_aside(5e-5, "sdirk5")[0]
-    assert spun_aside(1.25e-3, "newmark")[0] == pytest.approx(exact, rel=2e-4)
+    assert spun_aside(1.25e-3, stepper)[0] == pytest.approx(exact, rel=2e-4)
 
 
 @pytest.mark.parametrize("stepper", ["tr_bdf2", "bdf2", "generalized_alpha"])

@@ -80,12 +80,13 @@ void MemberControls<T>::hold(MemberVector<T>& positions) const {
 }
 
 template <class T>
-T MemberControls<T>::held_velocity(const HeldDof& held, const T& dt, const T& mean) const {
+T MemberControls<T>::held_velocity(const HeldDof& held, const T& dt, double share,
+                                   const T& mean) const {
   if (held.displacement < 0) return mean;
   return in_lanes<T>([&](int lane) {
     const State& state = *states_[to_size(lane)];
     return der::held_velocity(*model_.models[to_size(lane)], state, held,
-                              state.time + dt.lane(lane), mean.lane(lane));
+                              state.time + share * dt.lane(lane), mean.lane(lane));
   });
 }
 

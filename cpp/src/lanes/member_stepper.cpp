@@ -135,8 +135,10 @@ void MemberStepper<T>::pose_stage(Index stage, const MemberState<T>& state, cons
   run_member_loop<T>([&] {
     for (const HeldDof& held : members_->model.structure().held) {
       const Index i = held.dof;
-      past_displacement_[i] = stage_.coordinates[i] - state.positions[i] -
-                              tableau_.diagonal * (end_positions_[i] - state.positions[i]);
+      const T mean = (end_positions_[i] - state.positions[i]) / dt;
+      past_displacement_[i] =
+          stage_.coordinates[i] - state.positions[i] -
+          g * members_->controls.held_velocity(held, dt, tableau_.time(stage), mean);
     }
     for (Index i = 0; i < past_displacement_.size(); ++i) {
       stage_.inertia_target[i] = past_displacement_[i] + g * past_velocities_[i];
@@ -284,7 +286,7 @@ void MemberStepper<T>::finish(LaneSet done, const T& dt, MemberState<T>& state) 
       const Index i = held.dof;
       const T before = state.velocities[i];
       const T mean = (end_positions_[i] - state.positions[i]) / dt;
-      const T after = members_->controls.held_velocity(held, dt, mean);
+      const T after = members_->controls.held_velocity(held, dt, 1.0, mean);
       const T drag = members_->model.damping[i] * mean * mean * dt;
       work_.drag += drag;
       work_.supports += drag + 0.5 * members_->model.lumped[i] * (after * after - before * before);

@@ -1,6 +1,7 @@
 #include <optional>
 
 #include "der/core/index.hpp"
+#include "der/model/prescribed_motion.hpp"
 #include "der/steppers/explicit_force.hpp"
 #include "der/steppers/implicit_stage.hpp"
 #include "der/steppers/tableau.hpp"
@@ -100,10 +101,10 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
     }
     stage_.apply_prescribed_motion_at(state, time, stage_.here.coordinates);
     for (const HeldDof& held : model_.held) {
-      // So that the stage's velocity is that of the motion over the step.
-      past_displacement_[held.dof] =
-          stage_.here.coordinates[held.dof] - state.positions[held.dof] -
-          tableau_.diagonal * (end_positions_[held.dof] - state.positions[held.dof]);
+      // So that the stage's velocity is that of the motion.
+      const double mean = (end_positions_[held.dof] - state.positions[held.dof]) / dt;
+      past_displacement_[held.dof] = stage_.here.coordinates[held.dof] - state.positions[held.dof] -
+                                     g * held_velocity(model_, state, held, time, mean);
     }
     stage_.equation.inertia_target = past_displacement_ + g * past_velocities_;
     stage_.equation.velocity_reference = past_displacement_;

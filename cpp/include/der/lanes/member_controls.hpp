@@ -35,8 +35,9 @@ class MemberControls {
   void set_force(const MemberVector<T>& extra_force, MemberVector<T>& force) const;
   /// Puts held degrees of freedom where the tables have them.
   void hold(MemberVector<T>& positions) const;
-  /// held_velocity at the end of a step from the members' states.
-  [[nodiscard]] T held_velocity(const HeldDof& held, const T& dt, const T& mean) const;
+  /// held_velocity at a share of the step.
+  [[nodiscard]] T held_velocity(const HeldDof& held, const T& dt, double share,
+                                const T& mean) const;
   /// Energy [J] of weights that follow a table (driven_gravity_energy).
   [[nodiscard]] T driven_gravity_energy(const MemberVector<T>& positions) const;
 

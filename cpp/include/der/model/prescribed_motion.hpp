@@ -10,9 +10,9 @@ namespace der {
 /// initial values, displaced by what `controls` say.
 void apply_prescribed_motion(const Model& model, const Vector& controls, Vector& positions);
 
-/// Velocity [m/s] at the end of a step, at `time` [s], of a degree of freedom that a support holds
-/// and that has moved by `mean` [m/s] over the step: that of a sine or a smooth table. Straight
-/// pieces, and what a program sets, have the mean.
+/// Velocity [m/s] at `time` [s] in a step of a degree of freedom that a support holds and that
+/// moves by `mean` [m/s] over the step: that of a sine or a smooth table. Straight pieces, and what
+/// a program sets, have the mean.
 double held_velocity(const Model& model, const State& state, const HeldDof& held, double time,
                      double mean);
 

@@ -1,9 +1,7 @@
 #include "der/output/reactions.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <tuple>
 #include <type_traits>
 
 #include "der/core/index.hpp"
@@ -17,6 +15,7 @@
 #include "der/model/spin.hpp"
 #include "der/output/joint_strain.hpp"
 #include "der/scenario/scenario.hpp"
+#include "output/acting_elements.hpp"
 #include "output/held_motion.hpp"
 #include "output/in_space.hpp"
 #include "output/spread_moments.hpp"
@@ -107,7 +106,7 @@ class Reactions::Reader {
   std::vector<SpreadMoments> spread_;      // in space, of each rod
   std::vector<std::size_t> first_clamps_;  // number of each rod's first clamp
   std::vector<Index> clamp_at_;            // of each degree of freedom: the clamp of its node; -1
-  std::array<std::vector<std::size_t>, std::tuple_size_v<ElementLists::Lists>> elements_;
+  ActingElements elements_;
   // At the state.
   Configuration here_;
   Vector force_;
@@ -232,16 +231,7 @@ void Reactions::Reader::choose_elements(const Model& model) {
   for (const Place& place : places_) {
     for (const HeldDof& held : place.held) read[to_size(held.dof)] = true;
   }
-  std::size_t kind = 0;
-  for_each_list(*model.elements, [&](const auto& list) {
-    for (std::size_t e = 0; e < list.size(); ++e) {
-      const auto& dofs = list.dofs[e];
-      if (std::any_of(dofs.begin(), dofs.end(), [&](Index dof) { return read[to_size(dof)]; })) {
-        elements_[kind].push_back(e);
-      }
-    }
-    ++kind;
-  });
+  elements_ = ActingElements(model, [&](Index dof) { return read[to_size(dof)]; });
 }
 
 template <class PivotKind, class Force>
@@ -281,32 +271,24 @@ void Reactions::Reader::add_pivots(const Kernel& /*kernel*/,
 void Reactions::Reader::add_elements(const Model& model) {
   gradient_.setZero(model.num_dofs());
   std::fill(moments_.begin(), moments_.end(), Vec3::Zero());
-  std::size_t kind = 0;
-  for_each_list(*model.elements, [&](const auto& list) {
-    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
-    LocalTerm<Kernel::kDofs> local;
-    for (const std::size_t e : elements_[kind]) {
-      const auto& dofs = list.dofs[e];
-      const auto& constants = list.constants[e];
-      const auto coordinates = gather(dofs, here_.coordinates);
-      evaluate_element<Kernel, Derivatives::Gradient>(constants, here_, coordinates, local);
-      for (std::size_t i = 0; i < dofs.size(); ++i) {
-        gradient_[dofs[i]] += local.gradient[static_cast<Index>(i)];
-      }
-      add_pivots(Kernel{}, constants, dofs, local.gradient);
-      if constexpr (StartsFromPivot<Kernel>::value) {
-        if constexpr (IsPlanarClamp<typename StartsFromPivot<Kernel>::Element>::value) {
-          // The cell turns with the edge as it does against the held tangent.
-          const auto moved = Kernel::from_pivots(constants, here_.controls, coordinates);
-          const Vec3 along = in_space(Vec2(moved.template tail<2>() - moved.template head<2>()));
-          const Index clamp = clamp_at_[to_size(constants.element.side > 0.0 ? dofs[0] : dofs[2])];
-          moments_[to_size(clamp)] -=
-              along.cross(in_space(Vec2(local.gradient.template tail<2>())));
-        }
+  const auto add = [&](auto kernel, const auto& constants, const auto& dofs,
+                       const auto& coordinates, const auto& gradient) {
+    using Kernel = decltype(kernel);
+    for (std::size_t i = 0; i < dofs.size(); ++i) {
+      gradient_[dofs[i]] += gradient[static_cast<Index>(i)];
+    }
+    add_pivots(kernel, constants, dofs, gradient);
+    if constexpr (StartsFromPivot<Kernel>::value) {
+      if constexpr (IsPlanarClamp<typename StartsFromPivot<Kernel>::Element>::value) {
+        // The cell turns with the edge as it does against the held tangent.
+        const auto moved = Kernel::from_pivots(constants, here_.controls, coordinates);
+        const Vec3 along = in_space(Vec2(moved.template tail<2>() - moved.template head<2>()));
+        const Index clamp = clamp_at_[to_size(constants.element.side > 0.0 ? dofs[0] : dofs[2])];
+        moments_[to_size(clamp)] -= along.cross(in_space(Vec2(gradient.template tail<2>())));
       }
     }
-    ++kind;
-  });
+  };
+  elements_.for_each_gradient(model, here_, add);
   add_circulatory_forces(model.elements->circulatory, here_, -1.0, gradient_);
 }
 

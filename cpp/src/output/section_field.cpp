@@ -17,6 +17,7 @@
 #include "output/edgewise_field.hpp"
 #include "output/leaning_edge.hpp"
 #include "output/moment_recovery.hpp"
+#include "output/spin_torque.hpp"
 
 namespace der {
 namespace {
@@ -147,6 +148,7 @@ class SectionField : public EdgewiseField<Vec3> {
                                         : Vec3::Constant(rod.EI_1)),
         actuated_(rod),
         recovery_(std::move(recovery)),
+        spin_(rod, model),
         edges_(std::move(edges)) {}
 
   /// Components towards the two directors of a section that is turned on by an angle [rad].
@@ -307,7 +309,8 @@ class SectionField : public EdgewiseField<Vec3> {
       return (vector ? recovery_.at_end(last, model, state) : natural) - beyond;
     }
     const Vec3 missing =
-        recovery_.smooth(edge, last, point_at(edge, last, model, state), model, state);
+        recovery_.smooth(edge, last, point_at(edge, last, model, state), model, state) +
+        taken_by_spin(edge, last, model, state);
     if (vector) return moment_of(*known.joint, rod_, model, state) + missing;
     const Vec3 excess = excess_of(*known.joint, model, state);
     Vec3 moment = stiffness_.cwiseProduct(excess);
@@ -317,6 +320,20 @@ class SectionField : public EdgewiseField<Vec3> {
     }
     return natural + (is_moment(quantity_) ? moment : Vec3(moment.cwiseQuotient(stiffness_))) +
            in_section(edge, missing, model, state);
+  }
+
+  /// The part of an edge's torque beside a clamp that its inertia takes up, between the clamp and
+  /// where the clamp's cell twists [N m].
+  [[nodiscard]] Vec3 taken_by_spin(Index edge, bool last, const Model& model,
+                                   const State& state) const {
+    const auto& ends = edges_[to_size(edge)];
+    const Known& known = last ? ends.second : ends.first;
+    if (known.joint->clamp < 0) return Vec3::Zero();
+    const double torque = spin_.along(edge, model, state);
+    if (torque == 0.0) return Vec3::Zero();
+    const double from_clamp = known.arc_length - rod_.arc_length_at(last ? edge + 1 : edge);
+    return from_clamp / rod_.edge_length[to_size(edge)] * torque *
+           section_frame(model, rod_.first_edge + edge, state).tangent;
   }
 
   /// The point [m] where the first or the last moment of an edge is known.
@@ -514,6 +531,7 @@ class SectionField : public EdgewiseField<Vec3> {
   Vec3 stiffness_;
   ActuatedShape actuated_;
   MomentRecovery recovery_;
+  SpinTorque spin_;
   std::vector<std::pair<Known, Known>> edges_;  // first and last of each
 };
 

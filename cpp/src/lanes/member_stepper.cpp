@@ -41,7 +41,7 @@ LaneSet MemberStepper<T>::step(LaneSet lanes, const T& dt, MemberState<T>& state
     if (!tableau_.is_implicit(i)) {
       evaluate_start(state, dt);
       set_displacement(i, state, dt);
-      accumulate_start(state);
+      accumulate_start();
       continue;
     }
     pose_stage(i, state, dt);
@@ -84,17 +84,23 @@ void MemberStepper<T>::evaluate_start(const MemberState<T>& state, const T& dt) 
   members_->controls.set_force(state.extra_force, start_force_);
   members_->assembler.gradient(state.positions, state.frames, start_gradient_);
   const bool has_sections = couple_.size() > 0;
+  MemberVector<T>& velocities = velocities_[0];
   run_member_loop<T>([&] {
+    for (Index i = 0; i < velocities.size(); ++i) velocities[i] = state.velocities[i];
+    for (const HeldDof& held : members_->model.structure().held) {
+      const Index i = held.dof;
+      const T mean = (end_positions_[i] - state.positions[i]) / dt;
+      velocities[i] = members_->controls.held_velocity(held, dt, 0.0, mean);
+    }
     if (has_sections) {
       std::fill_n(couple_.data(), couple_.size(), T(0.0));
       members_->frames.take_transport(state.positions, state.frames, start_gradient_);
       members_->frames.add_gyroscopic(
-          state.positions, [&](Index dof) { return state.velocities[dof]; }, couple_);
+          state.positions, [&](Index dof) { return velocities[dof]; }, couple_);
     }
     for (Index i = 0; i < acceleration.size(); ++i) {
       acceleration[i] =
-          start_force_[i] - start_gradient_[i] - members_->model.damping[i] * state.velocities[i];
-      velocities_[0][i] = state.velocities[i];
+          start_force_[i] - start_gradient_[i] - members_->model.damping[i] * velocities[i];
     }
     if (!has_sections) return;
     for (Index i = 0; i < acceleration.size(); ++i) {
@@ -176,17 +182,18 @@ void MemberStepper<T>::set_displacement(Index stage, const MemberState<T>& state
 }
 
 template <class T>
-void MemberStepper<T>::accumulate_start(const MemberState<T>& state) {
+void MemberStepper<T>::accumulate_start() {
+  const MemberVector<T>& velocities = velocities_[0];
   run_member_loop<T>([&] {
     work_.loads += sum_of<T>(displacement_.size(), [&](Index i) {
       return displacement_[i] * (start_force_[i] - members_->model.gravity_force[i]);
     });
     work_.drag += sum_of<T>(displacement_.size(), [&](Index i) {
-      return displacement_[i] * (members_->model.damping[i] * state.velocities[i]);
+      return displacement_[i] * (members_->model.damping[i] * velocities[i]);
     });
     for (const HeldDof& held : members_->model.structure().held) {
       const Index i = held.dof;
-      work_.drag -= displacement_[i] * members_->model.damping[i] * state.velocities[i];
+      work_.drag -= displacement_[i] * members_->model.damping[i] * velocities[i];
       work_.supports += displacement_[i] * (start_gradient_[i] - start_force_[i]);
     }
   });

@@ -17,4 +17,13 @@ double held_velocity(const Model& model, const State& state, const HeldDof& held
   return table.course.kind == scenario::Course::Kind::Linear ? mean : slope_at(table, time);
 }
 
+void velocities_in_step(const Model& model, const State& state, const Vector& end, double dt,
+                        double time, Vector& velocities) {
+  velocities = state.velocities;
+  for (const HeldDof& held : model.held) {
+    const double mean = (end[held.dof] - state.positions[held.dof]) / dt;
+    velocities[held.dof] = held_velocity(model, state, held, time, mean);
+  }
+}
+
 }  // namespace der

@@ -83,6 +83,17 @@ void ExplicitForce::evaluate_works(const State& state, const Vector& positions,
   gradient_ -= couple_;
 }
 
+void ExplicitForce::add_gyroscopic_change(const State& state, const Vector& change,
+                                          Vector& acceleration) {
+  here_.coordinates = state.positions;
+  evaluate_controls(model_, state, state.time, here_.controls);
+  const Index first_angle = model_.dofs.num_positions();
+  set_couple([&](Index dof) { return dof < first_angle ? change[dof] : state.velocities[dof]; },
+             couple_);
+  mass_.solve(0.0, couple_);
+  acceleration += couple_;
+}
+
 void ExplicitForce::evaluate_gradient() {
   assembler_.gradient(here_, gradient_);
   const auto force = [&](const SpatialEdge& edge, Index number, const Vec3& vector) {

@@ -1,3 +1,4 @@
+#include "der/model/prescribed_motion.hpp"
 #include "der/steppers/explicit_force.hpp"
 #include "der/steppers/implicit_stage.hpp"
 #include "steppers/step_guess.hpp"
@@ -38,18 +39,20 @@ class AlphaMethod final : public Stepper {
         guess_(model),
         stage_(model, assembler, solver, options),
         force_(model, assembler),
+        model_(model),
+        start_velocities_(model.num_dofs()),
+        start_accelerations_(model.num_dofs()),
         positions_(model.num_dofs()),
         velocities_(model.num_dofs()),
         accelerations_(model.num_dofs()) {}
 
   StepReport step(State& state, double dt) override {
-    if (state.last_step == 0.0) {
-      force_.acceleration(state, state.positions, state.velocities, state.time, 0.0,
-                          state.accelerations);
-    }
+    Vector& here = stage_.here.coordinates;
+    stage_.apply_prescribed_motion_at(state, state.time + dt, here);
+    start(state, here, dt);
     const Vector& q = state.positions;
-    const Vector& v = state.velocities;
-    const Vector& a = state.accelerations;
+    const Vector& v = start_velocities_;
+    const Vector& a = start_accelerations_;
     const double kept = 1.0 - alpha_f_;
     Stage& equation = stage_.equation;
 
@@ -63,8 +66,9 @@ class AlphaMethod final : public Stepper {
                                   (beta_ / gamma_) * dt * (v + kept * dt * (1.0 - gamma_) * a);
 
     guess_.evaluate(state, dt, positions_);
-    stage_.apply_prescribed_motion_at(state, state.time + dt, positions_);
-    stage_.here.coordinates = kept * positions_ + alpha_f_ * q;
+    for (const HeldDof& held : model_.held) positions_[held.dof] = here[held.dof];
+    here = kept * positions_ + alpha_f_ * q;
+    hold_velocities(state, dt);
     const StepReport report = stage_.solve(state, state.time + kept * dt);
     if (report.outcome != StepOutcome::Done) return report;
 
@@ -79,6 +83,35 @@ class AlphaMethod final : public Stepper {
   }
 
  private:
+  /// Sets velocities and accelerations at the start of a step at whose end held degrees of freedom
+  /// are at `end`.
+  void start(State& state, const Vector& end, double dt) {
+    velocities_in_step(model_, state, end, dt, state.time, start_velocities_);
+    if (state.last_step == 0.0) {
+      force_.acceleration(state, state.positions, start_velocities_, state.time, 0.0,
+                          state.accelerations);
+      start_accelerations_ = state.accelerations;
+      return;
+    }
+    start_accelerations_ = state.accelerations;
+    if (!model_.has_sections()) return;
+    velocities_ = start_velocities_ - state.velocities;
+    if (velocities_.isZero(0.0)) return;
+    force_.add_gyroscopic_change(state, velocities_, start_accelerations_);
+  }
+
+  /// So that the velocities of the stage are those of the motion.
+  void hold_velocities(const State& state, double dt) {
+    for (const HeldDof& held : model_.held) {
+      const Index i = held.dof;
+      const double moved = stage_.here.coordinates[i] - state.positions[i];
+      const double mean = (positions_[i] - state.positions[i]) / dt;
+      const double end = held_velocity(model_, state, held, state.time + dt, mean);
+      const double velocity = (1.0 - alpha_f_) * end + alpha_f_ * start_velocities_[i];
+      stage_.equation.velocity_reference[i] = moved - velocity / stage_.equation.velocity_factor;
+    }
+  }
+
   double alpha_m_;
   double alpha_f_;
   double gamma_;
@@ -86,6 +119,9 @@ class AlphaMethod final : public Stepper {
   StepGuess guess_;
   ImplicitStage stage_;
   ExplicitForce force_;
+  const Model& model_;
+  Vector start_velocities_;  // of held degrees of freedom as in this step
+  Vector start_accelerations_;
   Vector positions_;
   Vector velocities_;
   Vector accelerations_;

@@ -28,7 +28,8 @@ ImplicitStage::ImplicitStage(const Model& model, const Assembler& assembler, Lin
       finisher_(model),
       controls_(model),
       held_controls_(Vector::Zero(model.tables.size())),
-      displacement_(Vector::Zero(model.num_dofs())) {
+      displacement_(Vector::Zero(model.num_dofs())),
+      start_velocities_(Vector::Zero(model.num_dofs())) {
   equation.is_motion = true;
 }
 
@@ -121,8 +122,9 @@ void ImplicitStage::accumulate_and_finish(const Vector& new_positions,
   // The rule with points at 0 and `place` that is exact for a power linear in time.
   const double late = 0.5 / place;
   displacement_ = (1.0 - late) * (new_positions - state.positions);
-  at_start.evaluate_works(state, state.positions, state.velocities, state.time);
-  at_start.accumulate(state.velocities, displacement_, state.work);
+  velocities_in_step(model_, state, new_positions, dt, state.time, start_velocities_);
+  at_start.evaluate_works(state, state.positions, start_velocities_, state.time);
+  at_start.accumulate(start_velocities_, displacement_, state.work);
   displacement_ = late * (new_positions - state.positions);
   accumulate_forces(displacement_, state.work);
   // The solver leaves a residual in stages only, none at the start of the step.

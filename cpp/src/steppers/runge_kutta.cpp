@@ -24,6 +24,7 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
       : tableau_(tableau),
         model_(model),
         stage_(model, assembler, solver, options.newton),
+        start_acceleration_(model.num_dofs()),
         past_displacement_(model.num_dofs()),
         past_velocities_(model.num_dofs()),
         end_positions_(model.num_dofs()),
@@ -68,12 +69,13 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
  private:
   /// The first stage of a method that begins with an explicit one.
   void evaluate_start(const State& state, double dt) {
-    start_force_->acceleration(state, state.positions, state.velocities, state.time, 0.0,
-                               past_velocities_);
-    velocities_.col(0) = state.velocities;
-    accelerations_.col(0) = past_velocities_;
+    velocities_in_step(model_, state, end_positions_, dt, state.time, past_velocities_);
+    velocities_.col(0) = past_velocities_;
+    start_force_->acceleration(state, state.positions, past_velocities_, state.time, 0.0,
+                               start_acceleration_);
+    accelerations_.col(0) = start_acceleration_;
     set_displacement(0, state, dt);
-    start_force_->accumulate(state.velocities, displacement_, work_);
+    start_force_->accumulate(past_velocities_, displacement_, work_);
   }
 
   /// Sets what a stage contributes to the motion of the step; its works count likewise.
@@ -136,6 +138,7 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
   const Model& model_;
   ImplicitStage stage_;
   std::optional<ExplicitForce> start_force_;  // of an explicit first stage
+  Vector start_acceleration_;
   Vector past_displacement_;
   Vector past_velocities_;
   Vector end_positions_;  // of held degrees of freedom, then of all

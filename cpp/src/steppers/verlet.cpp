@@ -1,3 +1,4 @@
+#include "der/model/prescribed_motion.hpp"
 #include "der/steppers/explicit_force.hpp"
 #include "der/steppers/step_finisher.hpp"
 #include "steppers/steppers.hpp"
@@ -24,8 +25,13 @@ class Verlet final : public Stepper {
   StepReport step(State& state, double dt) override {
     const double half = 0.5 * dt;
     positions_ = state.positions + half * state.velocities;
+    velocities_ = state.velocities;
+    if (model_.has_sections()) {  // gyroscopic forces see how held nodes move
+      force_.apply_prescribed_motion_at(state, state.time + dt, positions_);
+      velocities_in_step(model_, state, positions_, dt, state.time + half, velocities_);
+    }
     force_.apply_prescribed_motion_at(state, state.time + half, positions_);
-    if (!force_.acceleration(state, positions_, state.velocities, state.time + half, half,
+    if (!force_.acceleration(state, positions_, velocities_, state.time + half, half,
                              acceleration_)) {
       return {StepOutcome::Diverged, 0, model_.dofs.most_moved(acceleration_),
               "the sections spin too fast for the mass of the nodes"};

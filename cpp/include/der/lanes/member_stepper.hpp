@@ -35,7 +35,7 @@ class MemberStepper {
   void pose_stage(Index stage, const MemberState<T>& state, const T& dt);
   void set_rates(Index stage, const T& dt);
   void set_displacement(Index stage, const MemberState<T>& state, const T& dt);
-  void accumulate_start(const MemberState<T>& state);
+  void accumulate_start();
   void accumulate_stage();
   void set_end(const MemberState<T>& state, const T& dt);
   [[nodiscard]] LaneSet folded() const;

@@ -16,4 +16,10 @@ void apply_prescribed_motion(const Model& model, const Vector& controls, Vector&
 double held_velocity(const Model& model, const State& state, const HeldDof& held, double time,
                      double mean);
 
+/// Sets `velocities` to those of `state`, from which a step of `dt` [s] starts, but for held
+/// degrees of freedom: these have theirs at `time` [s] of the step, at whose end they are at `end`.
+/// A kink of a table, or a program, sets it apart from that of the step before.
+void velocities_in_step(const Model& model, const State& state, const Vector& end, double dt,
+                        double time, Vector& velocities);
+
 }  // namespace der

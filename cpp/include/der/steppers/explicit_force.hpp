@@ -24,6 +24,9 @@ class ExplicitForce {
   /// converge; they do where t is zero.
   bool acceleration(const State& state, const Vector& positions, const Vector& velocities,
                     double time, double damping_time, Vector& acceleration);
+  /// Adds to an acceleration [m/s^2] at `state` what the gyroscopic forces make of a change of the
+  /// velocities of nodes [m/s].
+  void add_gyroscopic_change(const State& state, const Vector& change, Vector& acceleration);
   /// Evaluates at `time` what `accumulate` needs, which is less than the acceleration does.
   void evaluate_works(const State& state, const Vector& positions, const Vector& velocities,
                       double time);

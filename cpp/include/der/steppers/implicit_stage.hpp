@@ -66,6 +66,7 @@ class ImplicitStage {
   StageControls controls_;
   Vector held_controls_;  // those of `here` are the solved stage's until it is accumulated
   Vector displacement_;
+  Vector start_velocities_;
 };
 
 }  // namespace der

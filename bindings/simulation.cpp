@@ -23,17 +23,26 @@
 namespace der::python {
 namespace {
 
+/// Whether an object has its simulation. The collector may come before pybind11 has laid the object
+/// out: of the first one of a type, it allocates a weak reference in between.
+bool is_constructed(PyObject* self) {
+  const auto* instance = reinterpret_cast<const py::detail::instance*>(self);
+  const bool is_laid_out =
+      instance->simple_layout || instance->nonsimple.values_and_holders != nullptr;
+  return is_laid_out && py::detail::is_holder_constructed(self);
+}
+
 /// Lets Python's collector see the force functions, which often refer back to the simulation.
 void support_cycle_collection(PyHeapTypeObject* heap_type) {
   PyTypeObject& type = heap_type->ht_type;
   type.tp_flags |= Py_TPFLAGS_HAVE_GC;
   type.tp_traverse = [](PyObject* self, visitproc visit, void* arg) -> int {
     Py_VISIT(Py_TYPE(self));
-    if (!py::detail::is_holder_constructed(self)) return 0;
+    if (!is_constructed(self)) return 0;
     return py::cast<PySimulation&>(py::handle(self)).forces().traverse(visit, arg);
   };
   type.tp_clear = [](PyObject* self) -> int {
-    if (py::detail::is_holder_constructed(self)) {
+    if (is_constructed(self)) {
       py::cast<PySimulation&>(py::handle(self)).forces().clear();
     }
     return 0;

@@ -2,6 +2,8 @@
 
 import gc
 import pickle
+import subprocess
+import sys
 import warnings
 import weakref
 from itertools import pairwise
@@ -97,6 +99,19 @@ def test_views_do_not_move_and_outlive_the_name_of_the_simulation(simulation, sw
     assert np.array_equal(positions, expected)
     assert model.num_nodes == 11
     assert rods[0].name == "arm"
+
+
+def test_the_collector_may_come_while_the_first_simulation_is_made(swing):
+    """It met an object that pybind11 had not laid out yet, and the process died."""
+    code = f"""
+import gc, der
+class Own(der.Simulation): pass
+scenario = der.Scenario.from_dict({swing})
+gc.set_threshold(1)
+Own(scenario)
+der.Simulation(scenario)
+"""
+    subprocess.run([sys.executable, "-c", code], check=True)
 
 
 def test_simulation_goes_away_with_its_last_view(swing):

@@ -17,11 +17,16 @@ MemberControls<T>::MemberControls(const MemberModel<T>& model, const MemberState
 }
 
 template <class T>
-void MemberControls<T>::begin_step(const T& dt) {
+void MemberControls<T>::begin_step(const T& dt, const Tableau& tableau) {
   if (!has_tables_) return enter_frames();
   for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
-    stages_[to_size(lane)].end_step_at(states_[to_size(lane)]->time + dt.lane(lane));
+    stages_[to_size(lane)].begin_step(*states_[to_size(lane)], dt.lane(lane), tableau);
   }
+}
+
+template <class T>
+void MemberControls<T>::enter_stage(Index stage) {
+  for (StageControls& controls : stages_) controls.enter_stage(stage);
 }
 
 template <class T>
@@ -77,6 +82,13 @@ void MemberControls<T>::hold(MemberVector<T>& positions) const {
     }
     positions[held[i].dof] = model_.held_places[static_cast<Index>(i)] + displacement;
   }
+}
+
+template <class T>
+T MemberControls<T>::stage_velocity(const HeldDof& held, const T& mean) const {
+  if (held.displacement < 0) return mean;
+  return in_lanes<T>(
+      [&](int lane) { return stages_[to_size(lane)].velocity(held, mean.lane(lane)); });
 }
 
 template <class T>

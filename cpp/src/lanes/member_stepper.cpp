@@ -66,7 +66,7 @@ void MemberStepper<T>::begin(const MemberState<T>& state, const T& dt) {
   work_ = state.work;
   stage_.origin = &state.positions;
   stage_.frames = &state.frames;
-  members_->controls.begin_step(dt);
+  members_->controls.begin_step(dt, tableau_);
   members_->controls.evaluate(dt, 0.0);
   if (!members_->frames.empty()) members_->assembler.follow_frames();
   driven_gravity_ = members_->controls.driven_gravity_energy(state.positions);
@@ -118,6 +118,7 @@ void MemberStepper<T>::pose_stage(Index stage, const MemberState<T>& state, cons
   stage_.velocity_factor = 1.0 / g;
   const MemberVector<T>& guess =
       stage == 0 ? state.accelerations : accelerations_[to_size(stage - 1)];
+  members_->controls.enter_stage(stage);
   members_->controls.evaluate(dt, tableau_.time(stage));
   members_->controls.set_force(state.extra_force, stage_.force);
   std::array<T, to_size(Tableau::kMaxStages)> weights;
@@ -142,9 +143,8 @@ void MemberStepper<T>::pose_stage(Index stage, const MemberState<T>& state, cons
     for (const HeldDof& held : members_->model.structure().held) {
       const Index i = held.dof;
       const T mean = (end_positions_[i] - state.positions[i]) / dt;
-      past_displacement_[i] =
-          stage_.coordinates[i] - state.positions[i] -
-          g * members_->controls.held_velocity(held, dt, tableau_.time(stage), mean);
+      past_displacement_[i] = stage_.coordinates[i] - state.positions[i] -
+                              g * members_->controls.stage_velocity(held, mean);
     }
     for (Index i = 0; i < past_displacement_.size(); ++i) {
       stage_.inertia_target[i] = past_displacement_[i] + g * past_velocities_[i];
@@ -285,6 +285,7 @@ void MemberStepper<T>::finish(LaneSet done, const T& dt, MemberState<T>& state) 
   const T is_done = done.mask<T>();
   const auto take = [&](T& here, const T& there) { here = T::select(is_done, there, here); };
   const MemberVector<T>& last = accelerations_[to_size(tableau_.stages - 1)];
+  members_->controls.enter_stage(-1);
   members_->controls.evaluate(dt, 1.0);
   const T driven_gravity = members_->controls.driven_gravity_energy(end_positions_);
   run_member_loop<T>([&] {

@@ -9,12 +9,17 @@ void apply_prescribed_motion(const Model& model, const Vector& controls, Vector&
   }
 }
 
-double held_velocity(const Model& model, const State& state, const HeldDof& held, double time,
-                     double mean) {
-  const Index control = held.displacement;
-  if (control < 0 || model.load_variation || find_ramp(state, control) != nullptr) return mean;
+double control_rate(const Model& model, const State& state, Index control, double time,
+                    double mean) {
+  if (model.load_variation || find_ramp(state, control) != nullptr) return mean;
   const scenario::Series& table = model.tables[control];
   return table.course.kind == scenario::Course::Kind::Linear ? mean : slope_at(table, time);
+}
+
+double held_velocity(const Model& model, const State& state, const HeldDof& held, double time,
+                     double mean) {
+  if (held.displacement < 0) return mean;
+  return control_rate(model, state, held.displacement, time, mean);
 }
 
 void velocities_in_step(const Model& model, const State& state, const Vector& end, double dt,

@@ -13,18 +13,22 @@ namespace {
 
 /// The clamped place nearest to an edge on one side, if there is one.
 std::optional<Index> clamp_before(const RodLayout& rod, Index edge) {
-  const Index first = rod.closed ? edge - rod.num_edges() + 1 : 0;
-  for (Index place = edge; place >= first; --place) {
-    if (rod.clamp_at(place) != nullptr) return place;
+  std::optional<Index> nearest;
+  for (const Clamp& clamp : rod.clamps) {
+    Index place = clamp.place;
+    if (rod.closed && place > edge) place -= rod.num_edges();
+    if (place <= edge && (!nearest || place > *nearest)) nearest = place;
   }
-  return std::nullopt;
+  return nearest;
 }
 std::optional<Index> clamp_beyond(const RodLayout& rod, Index edge) {
-  const Index last = rod.closed ? edge + rod.num_edges() : rod.num_edges();
-  for (Index place = edge + 1; place <= last; ++place) {
-    if (rod.clamp_at(place) != nullptr) return place;
+  std::optional<Index> nearest;
+  for (const Clamp& clamp : rod.clamps) {
+    Index place = clamp.place;
+    if (rod.closed && place <= edge) place += rod.num_edges();
+    if (place > edge && (!nearest || place < *nearest)) nearest = place;
   }
-  return std::nullopt;
+  return nearest;
 }
 
 }  // namespace

@@ -33,6 +33,8 @@ class EnergyMomentum final : public Stepper {
     configuration_of(model_, state, gradient_.start);
     evaluate_controls(model_, state, state.time + dt, gradient_.end.controls);
 
+    stage_.controls().begin_step(state, dt);
+    stage_.controls().enter_stage(0);
     guess_.evaluate(state, dt, positions_);
     stage_.apply_prescribed_motion_at(state, state.time + dt, positions_);
     stage_.here.coordinates = 0.5 * (state.positions + positions_);

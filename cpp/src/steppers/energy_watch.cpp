@@ -181,7 +181,8 @@ std::string describe(const Model& model, const EnergyAudit& audit) {
         "turn",
         place.place, place.rod, audit.folded_from);
   }
-  if (!is_doubtful(audit)) return text;
+  // Without a fold it is the energy, though the run may have exchanged more since.
+  if (!is_doubtful(audit) && !text.empty()) return text;
   return text + (text.empty() ? "" : ", and ") +
          created_text(audit, times_text(audit.created / audit.exchanged));
 }

@@ -47,6 +47,8 @@ class AlphaMethod final : public Stepper {
         accelerations_(model.num_dofs()) {}
 
   StepReport step(State& state, double dt) override {
+    stage_.controls().begin_step(state, dt);
+    stage_.controls().enter_stage(0);
     Vector& here = stage_.here.coordinates;
     stage_.apply_prescribed_motion_at(state, state.time + dt, here);
     start(state, here, dt);

@@ -38,7 +38,7 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
     const double g = tableau_.diagonal * dt;
     stage_.equation.inertia = 1.0 / (g * g);
     stage_.equation.velocity_factor = 1.0 / g;
-    stage_.end_step_at(state.time + dt);
+    stage_.controls().begin_step(state, dt, tableau_);
     end_positions_ = state.positions;
     stage_.apply_prescribed_motion_at(state, state.time + dt, end_positions_);
     work_ = state.work;
@@ -101,12 +101,13 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
     } else {
       stage_.here.coordinates += g * g * accelerations_.col(i - 1);
     }
+    stage_.controls().enter_stage(i);
     stage_.apply_prescribed_motion_at(state, time, stage_.here.coordinates);
     for (const HeldDof& held : model_.held) {
       // So that the stage's velocity is that of the motion.
       const double mean = (end_positions_[held.dof] - state.positions[held.dof]) / dt;
       past_displacement_[held.dof] = stage_.here.coordinates[held.dof] - state.positions[held.dof] -
-                                     g * held_velocity(model_, state, held, time, mean);
+                                     g * stage_.controls().velocity(held, mean);
     }
     stage_.equation.inertia_target = past_displacement_ + g * past_velocities_;
     stage_.equation.velocity_reference = past_displacement_;

@@ -28,13 +28,17 @@ class MemberControls {
   /// Sets the controls to those at the members' states.
   void evaluate_at_states();
   /// Begins a step from the members' states.
-  void begin_step(const T& dt);
+  void begin_step(const T& dt, const Tableau& tableau);
+  /// StageControls::enter_stage.
+  void enter_stage(Index stage);
   /// Sets the controls to those at a share of the step.
   void evaluate(const T& dt, double share);
   /// Sets `force` to the external forces [N] with the extra ones.
   void set_force(const MemberVector<T>& extra_force, MemberVector<T>& force) const;
   /// Puts held degrees of freedom where the tables have them.
   void hold(MemberVector<T>& positions) const;
+  /// StageControls::velocity.
+  [[nodiscard]] T stage_velocity(const HeldDof& held, const T& mean) const;
   /// held_velocity at a share of the step.
   [[nodiscard]] T held_velocity(const HeldDof& held, const T& dt, double share,
                                 const T& mean) const;

@@ -10,9 +10,13 @@ namespace der {
 /// initial values, displaced by what `controls` say.
 void apply_prescribed_motion(const Model& model, const Vector& controls, Vector& positions);
 
+/// Rate at `time` [s] in a step of a control that changes by `mean` over the step: that of a sine
+/// or a smooth table. Straight pieces, and what a program sets, have the mean.
+double control_rate(const Model& model, const State& state, Index control, double time,
+                    double mean);
+
 /// Velocity [m/s] at `time` [s] in a step of a degree of freedom that a support holds and that
-/// moves by `mean` [m/s] over the step: that of a sine or a smooth table. Straight pieces, and what
-/// a program sets, have the mean.
+/// moves by `mean` [m/s] over the step (control_rate).
 double held_velocity(const Model& model, const State& state, const HeldDof& held, double time,
                      double mean);
 

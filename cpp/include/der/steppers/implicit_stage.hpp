@@ -28,7 +28,7 @@ class ImplicitStage {
 
   /// Sets the end of the current step [s]. Stages beyond it extrapolate tables that have a kink
   /// there.
-  void end_step_at(double time) { controls_.end_step_at(time); }
+  [[nodiscard]] StageControls& controls() { return controls_; }
   /// Puts the held degrees of freedom of `where` to where the tables have them at `time`.
   void apply_prescribed_motion_at(const State& state, double time, Vector& where);
   /// Solves with tables and external forces at `time`.

@@ -537,7 +537,7 @@ def test_reaction_of_a_clamp_that_moves_on_a_fine_mesh(stepper, component, way, 
     del scene["analysis"]
     stiffness = {"EA": 200.0, "EI": 0.04, "mass_per_length": 0.1}
     scene["rods"][0]["cross_section"] = {"stiffness": stiffness}
-    # The steps of 2 ms have errors of 0.5 % and less, of 2.2 % with `bdf2`; those fall with order 2.
+    # The steps of 2 ms have errors of 0.5 % and less, of 2.2 % with `bdf2`.
     bound = 0.03 if stepper == "bdf2" else 0.01
     found = der.run(scene).summary["probes"]["force"]["final"]
     assert found == pytest.approx(force, rel=bound)

@@ -195,6 +195,8 @@ class SupportReader : public ProbeReader {
     }
     return read_(sum);
   }
+  /// By EI/l^3.
+  [[nodiscard]] bool amplifies_noise() const override { return true; }
 
  private:
   ReactionReading read_;

@@ -21,6 +21,7 @@ Recorder::Recorder(const Simulation& simulation)
     : probes_(make_probes(simulation.scenario().scene(), simulation.model())),
       summaries_(probes_.size()),
       values_(static_cast<Index>(probes_.size())),
+      in_step_(probes_),
       start_(std::chrono::steady_clock::now()) {}
 
 void Recorder::observe(Simulation& simulation) {
@@ -35,9 +36,10 @@ void Recorder::observe(Simulation& simulation) {
 void Recorder::record_frames_between(Simulation& simulation) {
   const StepPlan& plan = simulation.plan();
   const auto [first, last] = plan.frames_between(*seen_time_, simulation.state().time);
+  if (first <= last) in_step_.read(probes_, *seen_time_, simulation, between_);
   for (std::int64_t frame = first; frame <= last; ++frame) {
     simulation.interpolate(static_cast<double>(frame) * plan.every, between_);
-    record(simulation, between_, true);
+    record(simulation, between_, true, &in_step_);
   }
 }
 
@@ -45,15 +47,17 @@ void Recorder::finish(const Simulation& simulation) {
   if (simulation.state().time != saved_time_) try_record(simulation, simulation.state(), true);
 }
 
-void Recorder::record(const Simulation& simulation, const State& state, bool save) {
-  const std::string problem = try_record(simulation, state, save);
+void Recorder::record(const Simulation& simulation, const State& state, bool save,
+                      const StepValues* within) {
+  const std::string problem = try_record(simulation, state, save, within);
   if (problem.empty()) return;
   throw DivergedError("the motion diverged: at t = " + std::to_string(state.time) + " s " +
                       problem + " is not a finite number. A smaller time.step may help.");
 }
 
-std::string Recorder::try_record(const Simulation& simulation, const State& state, bool save) {
-  std::string problem = read_probes(simulation, state);
+std::string Recorder::try_record(const Simulation& simulation, const State& state, bool save,
+                                 const StepValues* within) {
+  std::string problem = read_probes(simulation, state, within);
   if (!problem.empty()) return problem;
   if (save) {
     const Energies energy = der::energies(simulation.model(), state);
@@ -67,11 +71,15 @@ std::string Recorder::try_record(const Simulation& simulation, const State& stat
   return {};
 }
 
-std::string Recorder::read_probes(const Simulation& simulation, const State& state) {
+std::string Recorder::read_probes(const Simulation& simulation, const State& state,
+                                  const StepValues* within) {
+  if (within != nullptr) within->enter(state.time, values_);
   for (std::size_t i = 0; i < probes_.size(); ++i) {
-    const double value = probes_[i].value(simulation.model(), state);
+    double& value = values_[static_cast<Index>(i)];
+    if (within == nullptr || !probes_[i].amplifies_noise()) {
+      value = probes_[i].value(simulation.model(), state);
+    }
     if (!std::isfinite(value)) return "probe '" + probes_[i].name() + "'";
-    values_[static_cast<Index>(i)] = value;
   }
   return {};
 }

@@ -23,6 +23,9 @@ class ProbeReader {
   ProbeReader& operator=(const ProbeReader&) = delete;
   virtual ~ProbeReader() = default;
   [[nodiscard]] virtual double value(const Model& model, const State& state) = 0;
+  /// Whether the value within an adaptive step is to be interpolated, and not read off interpolated
+  /// positions, whose error it would amplify.
+  [[nodiscard]] virtual bool amplifies_noise() const { return false; }
 };
 
 /// A scalar read off a state, as the scene's `output.probes` name it, with order 2 in the element
@@ -49,6 +52,7 @@ class Probe {
   [[nodiscard]] double value(const Model& model, const State& state) const {
     return reader_->value(model, state);
   }
+  [[nodiscard]] bool amplifies_noise() const { return reader_->amplifies_noise(); }
 
  private:
   std::string name_;

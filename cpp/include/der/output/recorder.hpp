@@ -11,13 +11,15 @@
 #include "der/output/checkpoint.hpp"
 #include "der/output/frame.hpp"
 #include "der/output/probe.hpp"
+#include "der/output/step_values.hpp"
 #include "der/simulation.hpp"
 
 namespace der {
 
 /// Reads the probes after every step, keeps their extremes, and hands every saved instant to the
 /// sinks: the start, every `output.every` seconds, and the last instant of the run. Adaptive steps
-/// do not end at those times; then the frames are interpolated.
+/// do not end at those times; then the frames are interpolated (output/step_values.hpp for what
+/// supports bear).
 class Recorder {
  public:
   /// The clock of `wall_seconds()` starts here.
@@ -49,19 +51,24 @@ class Recorder {
   [[nodiscard]] double wall_seconds() const;
 
  private:
-  /// Records and, if asked for, saves the instant `state`. Throws as `observe` does.
-  void record(const Simulation& simulation, const State& state, bool save);
+  /// Records and, if asked for, saves the instant `state`; `within` has values of the
+  /// step that holds it. Throws as `observe` does.
+  void record(const Simulation& simulation, const State& state, bool save,
+              const StepValues* within = nullptr);
   void record_frames_between(Simulation& simulation);
   /// As `record`, but returns what is not a finite number, in words; empty if all is well.
-  std::string try_record(const Simulation& simulation, const State& state, bool save);
-  [[nodiscard]] std::string read_probes(const Simulation& simulation, const State& state);
+  std::string try_record(const Simulation& simulation, const State& state, bool save,
+                         const StepValues* within = nullptr);
+  [[nodiscard]] std::string read_probes(const Simulation& simulation, const State& state,
+                                        const StepValues* within);
   void update_extremes(double time);
   void hand_out(const Model& model, const State& state);
 
   std::vector<Probe> probes_;
   std::vector<ProbeSummary> summaries_;
   std::vector<FrameSink*> sinks_;
-  Vector values_;  // of the probes, now
+  Vector values_;       // of the probes, now
+  StepValues in_step_;  // of the probes, in the last adaptive step
   std::optional<Energies> energies_;
   State between_;                     // within an adaptive step
   std::optional<double> seen_time_;   // [s] of the last instant recorded

@@ -41,6 +41,19 @@ def output_picture(text: str) -> Path:
     return path
 
 
+def output_folder(text: str) -> Path:
+    """Return the path of a folder to write to: the `type` of an argument of `argparse`.
+
+    Raises
+    ------
+    argparse.ArgumentTypeError
+        If the name is empty, which as a path would be the folder that one is in.
+    """
+    if not text.strip():
+        raise ArgumentTypeError("the name of the folder is empty; the folder you are in is .")
+    return Path(text)
+
+
 def make_folder(folder: Path) -> None:
     """Make a folder for results, unless it is there.
 

@@ -339,6 +339,10 @@ def test_start_from_equilibrium():
         assert_same(b, member, alone)
 
 
+PUSH = PLANAR["loads"][1]
+WIND = {"name": "push", "distributed_force": {"rod": "rod", "force": [0, 0]}}
+
+
 @pytest.mark.parametrize(
     ("vary", "error", "message"),
     [
@@ -354,6 +358,21 @@ def test_start_from_equilibrium():
         ({EI: 1.0}, ValueError, "one value for each of the 3 members, not 1.0"),
         ({EI: [1.0, "x", 2.0]}, der.SceneError, r"member 1"),
         ({EI: [1.0, object(), 2.0]}, der.SceneError, "cannot stand in a scene"),
+        (
+            {"loads.push.name": ["push", "pull", "push"]},
+            der.DerError,
+            r"member 1: it has other named loads and supports than member 0: .*pull\.x \(N\)",
+        ),
+        (
+            {"loads.push": [PUSH, PUSH, WIND]},
+            der.DerError,
+            r"member 2: .*push\.x \(N/m\), .* in place of .*push\.x \(N\)",
+        ),
+        (
+            {"output.probes.tip.quantity": ["y", "y", "vy"]},
+            der.DerError,
+            r"member 2: it has other probes than member 0: tip \(vy\) in place of tip \(y\)",
+        ),
     ],
 )
 def test_what_cannot_vary_is_refused(vary, error, message):

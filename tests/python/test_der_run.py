@@ -368,6 +368,7 @@ def test_every_mistake_of_a_scene_is_reported_with_its_place(tmp_path: Path) -> 
         ["scene.yaml", "--set", "=1"],
         ["scene.yaml", "--check", "--resume"],
         ["a.yaml", "b.yaml"],
+        ["scene.yaml", "--out", ""],
     ],
 )
 def test_usage_errors(arguments: list[str], tmp_path: Path) -> None:

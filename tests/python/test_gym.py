@@ -249,6 +249,14 @@ def test_actions_may_be_numbers():
     assert envs.step(np.array([2, 0]))[1].tolist() == [2.0, 0.0]
 
 
+@pytest.mark.parametrize("action", [0.5, [0.5], [0.5, 0.5, 0.5], [[0.5, 0.5]]])
+def test_actions_of_another_shape_are_refused(action):
+    env = RodEnv(reaching())
+    env.reset(seed=1)
+    with pytest.raises(ValueError, match=r"an action has the shape \(2,\), got"):
+        env.step(action)
+
+
 def test_gymnasium_makes_them_by_name():
     task = reaching()
     gymnasium.register(

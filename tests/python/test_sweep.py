@@ -162,6 +162,79 @@ def test_values_that_are_no_whole_numbers(cantilever, values, says):
         der.sweep(cantilever, {"rods.arm.nodes": values})
 
 
+@pytest.mark.parametrize("sample", ["lhs:5", "sobol:8"])
+def test_samples_of_whole_numbers(cantilever, sample):
+    says = r"rods\.arm\.nodes: a whole number belongs.*a sample of 11:41 has others"
+    with pytest.raises(ValueError, match=says):
+        der.sweep(cantilever, {"rods.arm.nodes": "11:41"}, sample=sample)
+
+
+@pytest.mark.parametrize(
+    ("path", "values", "says"),
+    [
+        ("quantity", ["y", "slope"], "in m in some members and in rad in others"),
+        (
+            "",
+            [
+                {"quantity": "x", "rod": "arm", "at": "end"},
+                {"quantity": "tx", "rod": "arm", "at": "end"},
+            ],
+            "in m in some members and in 1 in others",
+        ),
+    ],
+)
+def test_a_probe_has_one_unit(cantilever, path, values, says):
+    """The table said that of the member that finished first."""
+    vary = {f"output.probes.tip_y.{path}".rstrip("."): values, FORCE: [-1.0, -2.0]}
+    with pytest.raises(ValueError, match=f"the probe 'tip_y' has values {says}"):
+        der.sweep(cantilever, vary)
+    # Two quantities of one unit are one column.
+    sweep = der.sweep(cantilever, {"output.probes.tip_y.quantity": ["x", "y"]})
+    assert sweep.column("tip_y").unit == "m"
+
+
+def test_times_of_extremes_are_no_points_of_a_path(cantilever):
+    with pytest.raises(
+        ValueError, match=r"tip_y\.t_min' has values in s in some members and in poi"
+    ):
+        der.sweep(cantilever, {"analysis": ["static", {"continuation": {}}]})
+
+
+def test_an_executor_that_gives_up(cantilever, tmp_path):
+    class GivesUp(Here):
+        def submit(self, function, *arguments):
+            if arguments[0].members[0][0] < 1:
+                return super().submit(function, *arguments)
+            future = Future()
+            future.cancel()
+            future.set_running_or_notify_cancel()
+            return future
+
+    with pytest.raises(DerError, match=r"the executor gave work up.*go on with --resume"):
+        der.sweep(cantilever, {FORCE: "-5:0:6"}, executor=GivesUp(), out=tmp_path)
+    assert len(der.load_sweep(tmp_path)) == 1
+    assert len(der.sweep(cantilever, {FORCE: "-5:0:6"}, out=tmp_path, resume=True)) == 6
+
+
+def test_a_full_disk_says_how_to_go_on(cantilever, tmp_path, monkeypatch):
+    connect = sqlite3.connect
+
+    def small(*arguments, **options):
+        base = connect(*arguments, **options)
+        base.execute("PRAGMA max_page_count = 40")  # SQLite then says what it says of a full disk
+        return base
+
+    vary = {FORCE: np.linspace(-1.0, 0.0, 3000)}
+    with monkeypatch.context() as patched:
+        patched.setattr(sqlite3, "connect", small)
+        with pytest.raises(
+            OSError, match=r"disk is full.*are kept: make room, then go on with --r"
+        ):
+            der.sweep(cantilever, vary, out=tmp_path)
+    assert 0 < len(der.load_sweep(tmp_path)) < 3000
+    assert len(der.sweep(cantilever, vary, out=tmp_path, resume=True)) == 3000
+
+
 @pytest.mark.parametrize(
     ("arguments", "error", "says"),
     [

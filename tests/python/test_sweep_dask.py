@@ -59,3 +59,10 @@ def test_nobody_at_the_address():
     impatient = dask.config.set({"distributed.comm.timeouts.connect": "0.2s"})
     with impatient, pytest.raises(OSError, match="Timed out"):
         connect("tcp://127.0.0.1:9")
+
+
+def test_a_closed_client(cluster):
+    client = connect(cluster.scheduler_address)
+    client.close()
+    with pytest.raises(ValueError, match="the Dask client is closed: connect a new one"):
+        der.sweep(SCENE, {FORCE: [-1.0]}, executor=client)

@@ -42,6 +42,11 @@ std::filesystem::path default_folder(const std::filesystem::path& scene) {
   return std::filesystem::path("runs") / scene.stem();
 }
 
+/// An empty path would be taken for none.
+std::string not_empty(const std::string& path) {
+  return path.empty() ? "the name of the folder is empty; the folder you are in is ." : "";
+}
+
 }  // namespace
 
 std::variant<Options, ExitCode> parse_options(int argc, const char* const* argv) {
@@ -53,7 +58,8 @@ std::variant<Options, ExitCode> parse_options(int argc, const char* const* argv)
                        "Print the version and exit");
   app.add_option("scene", options.scene, "Scene file (YAML)")->option_text("SCENE");
   app.add_option("--out", options.out, "Folder for the results; runs/<name of SCENE> if not given")
-      ->option_text("DIR");
+      ->option_text("DIR")
+      ->check(not_empty);
   app.add_option("--set", settings, "Replace a value of the scene; can be given more than once")
       ->option_text("PATH=VALUE")
       ->allow_extra_args(false);

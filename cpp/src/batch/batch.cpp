@@ -1,6 +1,6 @@
 #include "der/batch/batch.hpp"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>
@@ -38,18 +38,43 @@ void check(std::size_t members, const std::vector<Variation>& variations) {
   }
 }
 
-std::vector<std::string> names_of(const std::vector<scenario::Probe>& probes) {
-  std::vector<std::string> names;
-  names.reserve(probes.size());
-  for (const scenario::Probe& probe : probes) names.push_back(probe.name);
+using Names = std::vector<std::string>;
+
+/// Probes with their quantities.
+Names probes_of(const Simulation& member) {
+  Names names;
+  for (const scenario::Probe& probe : member.scenario().scene().output.probes) {
+    names.push_back(fmt::format("{} ({})", probe.name, probe.quantity));
+  }
   return names;
 }
 
-/// The sizes that the arrays of a batch need besides the structure of the models.
-void check_probes(const Simulation& member, const Simulation& first) {
-  const auto& here = member.scenario().scene().output.probes;
-  if (names_of(here) == names_of(first.scenario().scene().output.probes)) return;
-  throw Error("model_error", "it has other probes than member 0");
+/// What programs can set, with its units.
+Names controls_of(const Simulation& member) {
+  Names names;
+  for (const NamedControl& control : member.model().named) {
+    for (const ControlComponent& component : control.components) {
+      names.push_back(fmt::format("{}.{} ({})", control.name, component.name, component.unit));
+    }
+  }
+  return names;
+}
+
+/// One name stands for one thing in all members.
+void check_names(const char* what, const Names& here, const Names& first) {
+  if (here == first) return;
+  const auto list = [](const Names& names) {
+    return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+  };
+  throw Error("model_error",
+              fmt::format("it has other {} than member 0: {} in place of {}; the members of a "
+                          "batch have the same names and units",
+                          what, list(here), list(first)));
+}
+
+void check_names(const Simulation& member, const Simulation& first) {
+  check_names("probes", probes_of(member), probes_of(first));
+  check_names("named loads and supports", controls_of(member), controls_of(first));
 }
 
 }  // namespace
@@ -86,7 +111,7 @@ void Batch::build(const Scenario& scenario, const std::vector<Variation>& variat
         refusals.attempt(number, [&] {
           members_[number].simulation = std::make_unique<Simulation>(
               scenario_of(number, scenario, variations), *first.simulation);
-          check_probes(*members_[number].simulation, *first.simulation);
+          check_names(*members_[number].simulation, *first.simulation);
         });
       },
       beat);
@@ -383,7 +408,11 @@ RowMatrix& Batch::probes(const Beat& beat) {
 }
 
 std::vector<std::string> Batch::probe_names() const {
-  return names_of(members_.front().simulation->scenario().scene().output.probes);
+  Names names;
+  for (const auto& probe : members_.front().simulation->scenario().scene().output.probes) {
+    names.push_back(probe.name);
+  }
+  return names;
 }
 
 }  // namespace der

@@ -11,6 +11,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from der.output_paths import output_folder
 from der.progress import progress_on_terminal
 
 
@@ -18,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument(
         "--out",
-        type=Path,
+        type=output_folder,
         default=Path("reproduction"),
         metavar="FOLDER",
         help="folder to write to; an earlier reproduction there is replaced, anything else is left "

@@ -13,7 +13,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from der.output_paths import check_output_folder, make_folder
+from der.output_paths import check_output_folder, make_folder, output_folder
 from der.progress import progress_on_terminal
 
 
@@ -60,7 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="runs at once for the reference (default: as many as there are cores)",
     )
     parser.add_argument(
-        "--out", type=Path, metavar="DIR", help="folder to write to (default: SCENE_study)"
+        "--out", type=output_folder, metavar="DIR", help="folder to write to (default: SCENE_study)"
     )
 
 

@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from der.output_paths import output_folder
 from der.progress import progress_on_terminal
 
 if TYPE_CHECKING:
@@ -47,7 +48,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--seed", type=int, default=0, metavar="N", help="where the sample starts (default: 0)"
     )
     parser.add_argument(
-        "--out", type=Path, required=True, metavar="FOLDER", help="folder for sweep.sqlite"
+        "--out",
+        type=output_folder,
+        required=True,
+        metavar="FOLDER",
+        help="folder for sweep.sqlite",
     )
     parser.add_argument(
         "--resume",

@@ -81,9 +81,14 @@ class RodEnv(gymnasium.Env["NDArray[Any]", Any]):
         ------
         gymnasium.error.ResetNeeded
             Before the first `reset`, and after the end of an episode.
+        ValueError
+            For an action of another shape than the action space has.
         """
         if not self._running:
             raise ResetNeeded("an episode begins with reset()")
+        space = self.action_space.shape
+        if space is not None and np.shape(action) != space:
+            raise ValueError(f"an action has the shape {space}, got {np.shape(action)}")
         outcome = self._play.step(np.asarray(action)[np.newaxis])
         terminated, truncated = bool(outcome.terminated[0]), bool(outcome.truncated[0])
         self._running = not (terminated or truncated)

@@ -67,6 +67,8 @@ def place_for(executor: AnyExecutor | None, jobs: int | None) -> Iterator[Place]
     ------
     TypeError
         For anything else.
+    ValueError
+        For a Dask client that is closed.
     """
     count = checked_jobs(jobs)
     if executor is None:
@@ -81,6 +83,8 @@ def place_for(executor: AnyExecutor | None, jobs: int | None) -> Iterator[Place]
     elif hasattr(executor, "get_executor"):
         # Not pure: nobody asks for the same chunk again, so that no result is to be kept.
         client: Any = executor
+        if client.status != "running":
+            raise ValueError(f"the Dask client is {client.status}: connect a new one")
         yield Place(
             client.get_executor(pure=False),
             run_chunk,

@@ -247,6 +247,11 @@ class Store:
                 raise OSError(
                     f"{self._path} is damaged, or no file of a sweep ({error}): name another folder"
                 ) from error
+            if "disk is full" in str(error):
+                raise OSError(
+                    f"{self._path}: {error}; the members written before are kept: make room, then "
+                    "go on with --resume (resume=True)"
+                ) from error
             raise OSError(f"{self._path or 'the table of the sweep'}: {error}") from error
 
 

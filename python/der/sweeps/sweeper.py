@@ -14,20 +14,20 @@ from typing import Any
 
 from der._core import Scenario, __version__
 from der.accuracy.default_probes import with_default_probes
-from der.errors import DerError, SceneError
-from der.key_paths import check_apart
+from der.errors import DerError
 from der.output_paths import make_folder
 from der.parallel import as_they_finish
 from der.progress import ProgressFunction
 from der.simulation import SceneLike, as_scenario
-from der.sweeps.chunk import BARS_OF_PROBE, COLUMNS_OF_PROBE, LOST, Chunk, failed_row
+from der.sweeps.chunk import LOST, Chunk, failed_row
 from der.sweeps.design import Design, Member, make_design
+from der.sweeps.design_checks import check_design
 from der.sweeps.executors import AnyExecutor, Place, lost_its_worker, place_for
 from der.sweeps.scene_difference import first_difference
-from der.sweeps.store import FILE, FRAMES, LOCK, MOST_COLUMNS, Store, is_sweep, locked
+from der.sweeps.store import FILE, FRAMES, LOCK, Store, is_sweep, locked
 from der.sweeps.sweep_result import Sweep, load_sweep, read_sweep
-from der.sweeps.table import RUN_COLUMNS, Table
-from der.sweeps.values import Range, stored
+from der.sweeps.table import Table
+from der.sweeps.values import stored
 
 #: What a chunk is to take [s]: a transaction and a journey are little against it.
 _CHUNK_SECONDS = 0.5
@@ -111,8 +111,7 @@ def sweep(
     """
     scene = with_default_probes(as_scenario(scenario))
     design = make_design(vary, zipped=zipped, sample=sample, seed=seed)
-    _check_members(scene, design)
-    _check_columns(scene, design, verify)
+    check_design(scene, design, verify)
     if frames and out is None:
         raise ValueError("run folders need a folder to be in: give out as well")
     description = {
@@ -137,76 +136,6 @@ def sweep(
         if out is None:
             return read_sweep(store)
     return load_sweep(out)
-
-
-def _check_members(scene: Scenario, design: Design) -> None:
-    """Find a mistake in a path or a value before anything is run."""
-    check_apart(scene.to_dict(), design.paths)
-    first = dict(zip(design.paths, next(iter(design)), strict=True))
-    try:
-        scene.with_(**first)
-    except SceneError:
-        _check_whole_numbers(scene, design, first)
-        raise
-    probes = (scene.to_dict().get("output") or {}).get("probes") or {}
-    fixed = {column.name for column in RUN_COLUMNS} | {"stability"}
-    for name in sorted(fixed & set(probes)):
-        raise ValueError(
-            f"the probe '{name}' has the name of a column that each sweep has: rename the probe"
-        )
-    spelled: dict[str, str] = {}
-    for name in (*design.paths, *probes):
-        # SQLite does not tell the names of columns apart by the case of letters.
-        other = spelled.setdefault(name.lower(), name)
-        if other != name:
-            raise ValueError(
-                f"'{other}' and '{name}' differ in the case of letters alone, and are columns of "
-                "one table: rename one of them"
-            )
-
-
-def _check_columns(scene: Scenario, design: Design, verify: bool) -> None:
-    """See that the table has room for all probes."""
-    probes = (scene.to_dict().get("output") or {}).get("probes") or {}
-    each = COLUMNS_OF_PROBE + (BARS_OF_PROBE if verify else 0)
-    # One more tells the stability, and one how many values are flagged.
-    room = MOST_COLUMNS - len(RUN_COLUMNS) - len(design.paths) - 2
-    if len(probes) * each > room:
-        raise ValueError(
-            f"the scene has {len(probes)} probes of {each} columns each, and the table of a sweep "
-            f"(SQLite) has room for {max(0, room // each)} of them: name fewer under output.probes"
-        )
-
-
-def _check_whole_numbers(scene: Scenario, design: Design, first: dict[str, Any]) -> None:
-    """Say where a parameter takes whole numbers and its values are others.
-
-    A range may have more values than whole numbers in it. Its first value is whole then, and the
-    scene's message about that one does not help.
-    """
-    for (path, value), own in zip(first.items(), design.values, strict=True):
-        if not (isinstance(value, float) and value.is_integer()):
-            continue
-        try:
-            scene.with_(**first | {path: int(value)})
-        except SceneError:
-            continue
-        if isinstance(own, Range):
-            what, remedy = f"a sample of {own.low:g}:{own.high:g} has others", "list whole ones"
-        else:
-            shown = ", ".join(map(_spelled, own[:4]))
-            what = f"its values are {shown}" + (", ..." if len(own) > 4 else "")
-            remedy = "take a range with a whole distance between two values, or list whole ones"
-        raise ValueError(
-            f"{path}: a whole number belongs there, and {what}: {remedy}, as 11:41:4 or 11,21,31,41"
-        )
-
-
-def _spelled(value: Any) -> str:
-    """Return a value as short as it is told from a whole number."""
-    if not isinstance(value, float):
-        return str(value)
-    return f"{value:.1f}" if value.is_integer() and abs(value) < 1e6 else f"{value:.6g}"
 
 
 @contextmanager
@@ -347,6 +276,11 @@ class _Sweeper:
 
     def _table_of(self, chunk: Chunk, future: Future[Table]) -> Table | None:
         """Return the rows of a chunk; None if its parts are to be tried apart."""
+        if future.cancelled():
+            raise DerError(
+                "the executor gave work up, as one does that is shut down or closed; what was "
+                "finished is kept: go on with --resume (resume=True)"
+            )
         error = future.exception()
         if error is None:
             return future.result()

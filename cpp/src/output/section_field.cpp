@@ -50,9 +50,9 @@ bool is_moment(SectionQuantity quantity) {
 /// bends, in fixed axes.
 ///
 /// Beside moments inside the rod the section turns at rates that differ on their two sides, and
-/// components along it have a kink; at corners the section itself jumps. Along the edges there the
-/// field is the vector of the moment in fixed axes, and the section at each place takes its
-/// components.
+/// components along it have a kink; at corners, and where a ring is glued turned, the section
+/// itself jumps. Along the edges there the field is the vector of the moment in fixed axes, and the
+/// section at each place takes its components.
 class SectionField : public EdgewiseField<Vec3> {
  public:
   static std::unique_ptr<RodField> make(SectionQuantity quantity, const RodLayout& rod,
@@ -68,7 +68,7 @@ class SectionField : public EdgewiseField<Vec3> {
         samples.push_back({rod.num_edges() - 1, {rod.rest_length(), true}, false});
       }
       for (Index edge = 0; edge < rod.num_edges(); ++edge) {
-        const bool by_twist = is_of_twist(quantity) && !has_kinks(edge, recovery);
+        const bool by_twist = is_of_twist(quantity) && !has_kinks(edge, rod, recovery);
         edges.emplace_back(known(by_twist, rod, edge, false, recovery),
                            known(by_twist, rod, edge, true, recovery));
         lines.emplace_back(edges.back().first.arc_length, edges.back().second.arc_length);
@@ -108,6 +108,8 @@ class SectionField : public EdgewiseField<Vec3> {
   }
 
  private:
+  static constexpr double kGlueRounding = 1e-9;  // [rad]
+
   /// Which of the two bendings and the twist the quantity is; none: a magnitude.
   [[nodiscard]] std::optional<Index> component() const {
     switch (quantity_) {
@@ -172,13 +174,26 @@ class SectionField : public EdgewiseField<Vec3> {
     return rod.closed && (is_component || whole_jumps) && is_glued_turned(rod.joints.back());
   }
   static bool is_glued_turned(const RodJoint& joint) {
-    constexpr double rounding = 1e-9;  // [rad]
-    return joint.clamp < 0 && std::abs(joint.glued) > rounding;
+    return joint.clamp < 0 && std::abs(joint.glued) > kGlueRounding;
   }
 
   /// Whether components along an edge, or on from it, have a kink or jump.
-  static bool has_kinks(Index edge, const MomentRecovery& recovery) {
-    return recovery.has_moments(edge) || recovery.is_corner(edge) || recovery.is_corner(edge + 1);
+  static bool has_kinks(Index edge, const RodLayout& rod, const MomentRecovery& recovery) {
+    return recovery.has_moments(edge) || recovery.is_corner(edge) || recovery.is_corner(edge + 1) ||
+           is_beside_glue(edge, rod);
+  }
+  /// Whether an edge is beside the place where a ring is glued turned and the joint is not that of
+  /// either side: it bends about the directors of both, to the natural curvatures of both.
+  static bool is_beside_glue(Index edge, const RodLayout& rod) {
+    if (!rod.closed || (edge != 0 && edge != rod.num_edges() - 1)) return false;
+    const RodJoint& joint = rod.joints.back();
+    if (!is_glued_turned(joint)) return false;
+    // Half a turn leaves the axes of the stiffnesses as they are.
+    const bool turns_axes = std::abs(std::sin(joint.glued)) > kGlueRounding;
+    const auto& natural = rod.natural_curvatures;
+    return (rod.EI_1 != rod.EI_2 && turns_axes) ||
+           std::any_of(natural.begin(), natural.end(),
+                       [](const Vec2& at) { return !at.isZero(0.0); });
   }
 
   static Vec3 natural_of(const RodLayout& rod, const RodJoint& joint) {
@@ -295,7 +310,7 @@ class SectionField : public EdgewiseField<Vec3> {
 
   /// Whether the field is a vector in fixed axes along an edge.
   [[nodiscard]] bool is_vector(Index edge, const Model& model) const {
-    return model.has_sections() && has_kinks(edge, recovery_);
+    return model.has_sections() && has_kinks(edge, rod_, recovery_);
   }
 
   [[nodiscard]] Vec3 line(Index edge, bool last, const Model& model,

@@ -231,6 +231,15 @@ Vec3 CirculatoryLoad::taken_by_springs(const Configuration& here) const {
   return Vec3::Zero();
 }
 
+std::optional<Mat3> CirculatoryLoad::axes_of_springs(const Configuration& here) const {
+  const auto axes = [&](const auto& moment) {
+    return moment.axes_of_springs(here, amount.at(here.controls));
+  };
+  if (const auto* on_one = std::get_if<HeldMoment<1>>(&kind)) return axes(*on_one);
+  if (const auto* on_two = std::get_if<HeldMoment<2>>(&kind)) return axes(*on_two);
+  return std::nullopt;
+}
+
 std::array<const FramedEdge*, 2> CirculatoryLoad::turned_edges() const {
   using Edges = std::array<const FramedEdge*, 2>;
   return of_moment<Edges>(kind, [](const auto& moment) {

@@ -39,6 +39,11 @@ Vec3 HeldMoment<Edges>::taken_by_springs(const Configuration& here, const Vec3& 
 }
 
 template <int Edges>
+Mat3 HeldMoment<Edges>::axes_of_springs(const Configuration& here, const Vec3& amount) const {
+  return Change(*this, here, amount).after.axes_of_springs();
+}
+
+template <int Edges>
 StoredBeside HeldMoment<Edges>::stored(const Configuration& here, const Vec3& amount) const {
   const Change change(*this, here, amount);
   return {change.after.energy_on_the_way() - change.before.energy_on_the_way(),

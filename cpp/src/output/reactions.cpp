@@ -1,5 +1,6 @@
 #include "der/output/reactions.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
@@ -99,6 +100,7 @@ class Reactions::Reader {
   void add_gyroscopic_forces(const Model& model, const State& state);
   [[nodiscard]] Vec3 turning_moment(const Place& place, const Model& model,
                                     const State& state) const;
+  [[nodiscard]] Mat3 axes_of_springs(const SectionSpringPlace& place, const Model& model) const;
 
   HeldMotion motion_;
   std::vector<Place> places_;
@@ -377,18 +379,28 @@ Vec3 Reactions::Reader::turning_moment(const Place& place, const Model& model,
     return share.cwiseProduct(
         Vec3(0.0, 0.0, carried_moment(there, rod, model, state, applied) - applied));
   }
+  const SectionSpringPlace& springs = rod.section_springs[number];
   const std::size_t spring = rod.spatial_moments.size() + number;
   Vec3 whole = spread_[place.rod].value(spring, model, state).whole;
+  Mat3 axes = axes_of_springs(springs, model);
   for (const SpatialMomentPlace& load : rod.spatial_moments) {
-    if (rod.section_spring_at(load.arc_length) != &rod.section_springs[number]) continue;
-    whole += model.elements->circulatory[to_size(load.load)].taken_by_springs(here_);
+    if (rod.section_spring_at(load.arc_length) != &springs) continue;
+    const CirculatoryLoad& moment = model.elements->circulatory[to_size(load.load)];
+    whole += moment.taken_by_springs(here_);
+    axes = moment.axes_of_springs(here_).value_or(axes);  // those of the last have all moments
   }
-  const Index edge = rod.position(spread_[place.rod][spring].first_edge);
-  const SectionFrame frame = section_frame(model, rod.first_edge + edge, state);
-  // Turning towards a director is turning about the other one.
-  return share[0] * whole.dot(frame.second) * frame.second +
-         share[1] * whole.dot(frame.first) * frame.first +
-         share[2] * whole.dot(frame.tangent) * frame.tangent;
+  return axes * share.cwiseProduct(axes.partialPivLu().solve(whole));
+}
+
+Mat3 Reactions::Reader::axes_of_springs(const SectionSpringPlace& place, const Model& model) const {
+  const auto of_list = [&](auto kernel) -> Mat3 {
+    using Kernel = decltype(kernel);
+    const auto& list = elements_of<Kernel>(*model.elements);
+    const std::size_t element = to_size(place.element);
+    return Kernel::axes_of_springs(list.constants[element], here_,
+                                   gather(list.dofs[element], here_.coordinates));
+  };
+  return place.on_one_edge ? of_list(SectionSpring<1>{}) : of_list(SectionSpring<2>{});
 }
 
 const std::vector<Reaction>& Reactions::Reader::evaluate(const Model& model, const State& state) {

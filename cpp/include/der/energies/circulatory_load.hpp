@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -116,6 +117,8 @@ struct CirculatoryLoad {
   [[nodiscard]] EdgeMoments moments(const Configuration& here) const;
   /// The change [N m] of the moment that springs against turning exert at the place of a moment.
   [[nodiscard]] Vec3 taken_by_springs(const Configuration& here) const;
+  /// HeldMoment::axes_of_springs; none where no springs are at the place.
+  [[nodiscard]] std::optional<Mat3> axes_of_springs(const Configuration& here) const;
   /// The edges that a moment turns, whose vectors and angles are its coordinates; null beyond their
   /// number.
   [[nodiscard]] std::array<const FramedEdge*, 2> turned_edges() const;

@@ -31,6 +31,8 @@ struct HeldMoment : LoadedSection<Edges> {
   [[nodiscard]] EdgeMoments moments_at(const Configuration& here, const Vec3& amount) const;
   /// The change [N m] of the moment that the springs exert.
   [[nodiscard]] Vec3 taken_by_springs(const Configuration& here, const Vec3& amount) const;
+  /// HeldSection::axes_of_springs, under this moment and those before it.
+  [[nodiscard]] Mat3 axes_of_springs(const Configuration& here, const Vec3& amount) const;
   void evaluate(const Configuration& here, const Vec3& amount, CirculatoryTerm& out) const;
   [[nodiscard]] StoredBeside stored(const Configuration& here, const Vec3& amount) const;
 

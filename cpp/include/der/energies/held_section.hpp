@@ -64,6 +64,9 @@ class HeldSection {
   [[nodiscard]] double energy_on_the_way() const;
 
   [[nodiscard]] const SectionFrame& section() const { return place_.section; }
+  /// The derivatives of z by the rotation of the section, one a column: along them act the moments
+  /// of the springs, k_i z_i each.
+  [[nodiscard]] const Mat3& axes_of_springs() const { return place_.from_drawn.slopes; }
   /// The rotation of the section by that of each known one [-], equilibrium being kept.
   [[nodiscard]] std::array<Mat3, kMost> turning() const;
 

@@ -106,6 +106,12 @@ struct SectionSpring {
     return result;
   }
 
+  /// HeldSection::axes_of_springs, without moments on the section.
+  static Mat3 axes_of_springs(const Constants& c, const Configuration& here,
+                              const Eigen::Matrix<double, kDofs, 1>& x) {
+    return Response(c, here, x).held.axes_of_springs();
+  }
+
   template <Derivatives D>
   static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {

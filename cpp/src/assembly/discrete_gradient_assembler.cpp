@@ -1,11 +1,33 @@
 #include "der/assembly/discrete_gradient_assembler.hpp"
 
+#include <type_traits>
+
 #include "der/energies/discrete_gradient.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/registry.hpp"
 
 namespace der {
+namespace {
+
+template <class Kernel>
+struct IsFromPivot : std::false_type {};
+template <class Kernel>
+struct IsFromPivot<FromPivot<Kernel>> : std::true_type {};
+
+/// Between what the tables have at `start` and at `end`: the mean of both.
+template <class Kernel, class Constants>
+Local<Kernel::kDofs> mean_of_tables(const Constants& constants, const Configuration& start,
+                                    const Configuration& end, const Local<Kernel::kDofs>& before,
+                                    const Local<Kernel::kDofs>& after) {
+  Local<Kernel::kDofs> at_start;
+  Local<Kernel::kDofs> at_end;
+  discrete_gradient(KernelTag<Kernel>{}, constants, start, before, after, at_start);
+  discrete_gradient(KernelTag<Kernel>{}, constants, end, before, after, at_end);
+  return 0.5 * (at_start + at_end);
+}
+
+}  // namespace
 
 DiscreteGradientAssembler::DiscreteGradientAssembler(const Model& model, const Assembler& assembler)
     : start{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
@@ -21,11 +43,36 @@ void DiscreteGradientAssembler::evaluate(const ElementList<Kernel>& list, std::s
   const auto& constants = list.constants[element];
   const auto before = gather(list.dofs[element], start.coordinates);
   const auto after = gather(list.dofs[element], end.coordinates);
-  discrete_gradient(KernelTag<Kernel>{}, constants, start, before, after, gradient);
-  if (!tables_change_) return;
-  Eigen::Matrix<double, Kernel::kDofs, 1> at_end;
-  discrete_gradient(KernelTag<Kernel>{}, constants, end, before, after, at_end);
-  gradient = 0.5 * (gradient + at_end);
+  if (!tables_change_) {
+    discrete_gradient(KernelTag<Kernel>{}, constants, start, before, after, gradient);
+  } else if constexpr (IsFromPivot<Kernel>::value) {
+    using Element = typename Kernel::Element;
+    gradient = mean_of_tables<Element>(constants.element, start, end,
+                                       Kernel::from_pivots(constants, start.controls, before),
+                                       Kernel::from_pivots(constants, end.controls, after));
+  } else {
+    gradient = mean_of_tables<Kernel>(constants, start, end, before, after);
+  }
+}
+
+double DiscreteGradientAssembler::work_at_pivots(const Configuration& middle) {
+  reach_end(middle);
+  double work = 0.0;
+  if (!tables_change_) return work;
+  for_each_list(*model_.elements, [&](const auto& list) {
+    using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+    if constexpr (IsFromPivot<Kernel>::value) {
+      Local<Kernel::kDofs> moving;
+      for (std::size_t e = 0; e < list.size(); ++e) {
+        const auto before = gather(list.dofs[e], start.coordinates);
+        const auto after = gather(list.dofs[e], end.coordinates);
+        evaluate(list, e, moving);
+        const auto at_rest = mean_of_tables<Kernel>(list.constants[e], start, end, before, after);
+        work += (at_rest - moving).dot(after - before);
+      }
+    }
+  });
+  return work;
 }
 
 void DiscreteGradientAssembler::reach_end(const Configuration& middle) {

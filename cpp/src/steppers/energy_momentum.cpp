@@ -45,6 +45,7 @@ class EnergyMomentum final : public Stepper {
     velocities_ = (2.0 / half) * stage_.displacement() - state.velocities;
     stage_.apply_prescribed_motion_at(state, state.time + dt, positions_);
     state.accelerations = (velocities_ - state.velocities) / dt;
+    state.work.supports += gradient_.work_at_pivots(stage_.here);
     stage_.accumulate_and_finish(positions_, velocities_, dt, state);
     return report;
   }

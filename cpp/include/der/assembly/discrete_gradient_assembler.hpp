@@ -14,7 +14,9 @@ namespace der {
 /// and sets the matrix that Newton's method takes with them. Tables change evenly during the step:
 /// an element takes the mean of its discrete gradients under their values at both ends, so that
 /// along the step it gives the change of its energy but for the work of turning its clamp
-/// (steppers/work.hpp). Evaluations allocate nothing.
+/// (steppers/work.hpp). Pivots of clamps are at each end where the tables have them there: in both
+/// places at rest, a short edge beside the clamp would resist their way, d dphi, by
+/// EI (d dphi/l^2)^2. Evaluations allocate nothing.
 class DiscreteGradientAssembler {
  public:
   DiscreteGradientAssembler(const Model& model, const Assembler& assembler);
@@ -33,6 +35,9 @@ class DiscreteGradientAssembler {
   void add_hessian(const Configuration& middle, Vector& gradient, Vector& values);
   /// Work [J] of the moments along `displacement` [m], in the step whose middle is `middle`.
   double moment_work(const Configuration& middle, const Vector& displacement);
+  /// Work [J] in the step whose middle is `middle` of what moves the pivots of clamps, beyond that
+  /// of `control_work`, which has them at rest at either of their places.
+  double work_at_pivots(const Configuration& middle);
 
  private:
   template <class Kernel>

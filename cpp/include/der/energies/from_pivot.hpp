@@ -25,6 +25,7 @@ struct FromPivotValues {
 /// many nodes it has; their coordinates come first, angles of edges behind them.
 template <class Kernel, class PivotKind = Pivot>
 struct FromPivot {
+  using Element = Kernel;
   static constexpr int kDofs = Kernel::kDofs;
   static constexpr int kNodes = Kernel::kNodes;
   static constexpr EnergyTerm kTerm = Kernel::kTerm;

@@ -112,6 +112,7 @@ void hold_section(const scenario::Support& support, Index place, RodLayout& rod,
   } else if (support.rotation) {
     clamp.held.rotation = model.tables.add(*support.rotation);
   }
+  if (clamp.held.rotation >= 0) clamp.held.inset = model.tables.add({});
   if (support.twist) {
     check_axis_of_twist(rod, place, model);
     clamp.held.twist = model.tables.add(*support.twist);

@@ -604,7 +604,7 @@ def test_force_of_a_clamp_that_turns_fast_with_energy_momentum(step):
     scene["output"]["probes"]["along"] = {"quantity": "reaction_x", "support": 0}
     result = der.run(scene)
     found = [result.summary["probes"][name]["final"] for name in ("along", "force")]
-    # Of order 2 in the step: 0.02 N at the longer one.
+    # The error is of order 2 in the step: 0.02 N at the longer one.
     assert found == pytest.approx([-0.216, 0.288], abs=0.025 * (step / 0.01) ** 2)
     assert abs(result.summary["work"]["numerical"]) < 1e-12
 
@@ -659,6 +659,6 @@ def test_reaction_of_a_clamp_that_turns_about_an_oblique_axis(stepper, nodes):
     }
     probes = der.run(scene).summary["probes"]
     found = [probes[axis]["final"] for axis in "xyz"]
-    # Of order 2 in the step: 5e-3 N with the midpoint rule and generalized-alpha, 2e-3 N with
-    # `bdf2`, 1e-3 N and less with the others.
+    # The error is of order 2 in the step: 5e-3 N with the midpoint rule and generalized-alpha,
+    # 2e-3 N with `bdf2`, 1e-3 N and less with the others.
     assert found == pytest.approx([-0.1777, 0.0798, -0.2670], abs=7e-3)

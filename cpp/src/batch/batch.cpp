@@ -49,7 +49,7 @@ Names probes_of(const Simulation& member) {
   return names;
 }
 
-/// What programs can set, with its units.
+/// The components of loads and supports that programs can set, with their units.
 Names controls_of(const Simulation& member) {
   Names names;
   for (const NamedControl& control : member.model().named) {

@@ -30,6 +30,10 @@ def check_design(scene: Scenario, design: Design, verify: bool) -> None:
     _check_units(scene, design)
 
 
+def _probes_of(scene: Scenario) -> dict[str, dict[str, Any]]:
+    return (scene.to_dict().get("output") or {}).get("probes") or {}
+
+
 def _check_members(scene: Scenario, design: Design) -> None:
     """Find a mistake in a path or a value before anything is run."""
     check_apart(scene.to_dict(), design.paths)
@@ -39,7 +43,7 @@ def _check_members(scene: Scenario, design: Design) -> None:
     except SceneError:
         _check_whole_numbers(scene, design, first)
         raise
-    probes = (scene.to_dict().get("output") or {}).get("probes") or {}
+    probes = _probes_of(scene)
     fixed = {column.name for column in RUN_COLUMNS} | {"stability"}
     for name in sorted(fixed & set(probes)):
         raise ValueError(
@@ -58,7 +62,7 @@ def _check_members(scene: Scenario, design: Design) -> None:
 
 def _check_columns(scene: Scenario, design: Design, verify: bool) -> None:
     """See that the table has room for all probes."""
-    probes = (scene.to_dict().get("output") or {}).get("probes") or {}
+    probes = _probes_of(scene)
     each = COLUMNS_OF_PROBE + (BARS_OF_PROBE if verify else 0)
     # One more tells the stability, and one how many values are flagged.
     room = MOST_COLUMNS - len(RUN_COLUMNS) - len(design.paths) - 2
@@ -103,7 +107,7 @@ def _check_units(scene: Scenario, design: Design) -> None:
 def _units(scene: Scenario) -> dict[str, str]:
     """Return the unit of each probe, and of the times of its extremes."""
     unit_of = {quantity.name: quantity.unit or "1" for quantity in quantities()}
-    probes = (scene.to_dict().get("output") or {}).get("probes") or {}
+    probes = _probes_of(scene)
     units = {name: unit_of[probe["quantity"]] for name, probe in probes.items()}
     when = "points of a path" if scene.factor_range is not None else "s"
     return units | {f"{name}.t_min": when for name in probes}

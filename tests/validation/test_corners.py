@@ -582,3 +582,40 @@ def test_a_clamp_at_a_corner_has_no_one_tangent_to_twist_about():
     scene = rod_through(points, section(EI=1.0, GJ=0.2), [support])
     with pytest.raises(der.DerError, match="at a corner and holds two"):
         der.Simulation(der.Scenario.from_dict(scene))
+
+
+@pytest.mark.parametrize("longer", [1.0, 1.6], ids=["equal edges", "longer edges on the arc"])
+@pytest.mark.parametrize("holds", ["clamp", "spring"])
+def test_natural_curvatures_that_jump_where_the_drawn_ones_do(dimension, holds, longer):
+    """Free of stress: a clamp or a spring at the node of the jump bears nothing. The chain's cells
+    turn by `l kappa (1 - (l kappa)^2/24)` between chords, which is all that is left."""
+    bears, sizes = [], (10, 20, 40)
+    radius, angle = 0.4, 0.9
+    for n in sizes:
+        turn = angle / n
+        edge = 2.0 * radius * np.sin(0.5 * turn)
+        arc = np.arange(1, n + 1)[:, None] * turn
+        leg = np.arange(-n, 1)[:, None] * edge / longer * [1.0, 0.0]
+        arc = radius * np.hstack([np.sin(arc), 1.0 - np.cos(arc)])
+        points = np.vstack([leg, arc])
+        points = np.hstack([points, np.zeros((len(points), dimension - 2))])
+        share = longer / (1.0 + longer)
+        curvatures = [*[0.0] * n, share / radius, *[1.0 / radius] * n]
+        if dimension == 3:
+            curvatures = [[curvature, 0.0] for curvature in curvatures]
+        here = {"rod": "rod", "at": {"node": n}}
+        held = {"clamp": True} if holds == "clamp" else {"spring": {"rotational_stiffness": 30.0}}
+        stiffness = {"EI": 1.0} if dimension == 2 else {"EI1": 1.0, "EI2": 2.0, "GJ": 0.7}
+        scene = rod_through(
+            points,
+            section([0.0, 1.0, 0.0] if dimension == 3 else None, EA=1e5, **stiffness),
+            [{"rod": "rod", "at": "start", "clamp": True}, {**here, **held}],
+            rod={"natural_curvature": curvatures},
+        )
+        scene["model"] = "planar" if dimension == 2 else "spatial"
+        quantity = "reaction_moment" if dimension == 2 else "reaction_moment_z"
+        probes = {"moment": {"quantity": quantity, "support": 1}}
+        result = der.run(der.Scenario.from_dict({**scene, "output": {"probes": probes}}))
+        bears.append(abs(result.probes["moment"][-1]))
+    # Of the curvature 1/radius an error of order 1 would leave a share of a quarter of an edge.
+    assert np.all(np.array(bears) < 0.1 * angle**2 / np.array(sizes) ** 2 / radius)

@@ -6,7 +6,7 @@ in which `Case` has all its vectors. What springs exert there is a part of the m
 direction, whose rest is the load of the scene.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -37,11 +37,15 @@ class Case:
     share: float = 0.5
     edges_on: float = 0.0
     tip: tuple[float, float, float] = NONE  # a force of a fixed direction
+    natural: tuple[float, float] = (0.0, 0.0)  # curvatures towards d1 and d2 beyond the place
+    longer: float = 1.0  # edges beyond the place, against those before it
 
     def place(self, edges):
         return self.share + self.edges_on / edges
 
 
+#: Of a rod that is drawn straight: its natural curvature jumps at the node of the place.
+JUMP = {"natural": (2.0, -1.5)}
 CASES = {
     "force and fixed moment": Case(FORCE, fixed=OTHER),
     "moment and fixed moment": Case(moment=MOMENT, fixed=OTHER),
@@ -57,6 +61,12 @@ CASES = {
     "moment alone beside the clamp": Case(
         moment=(1.5, 2.0, 1.0), share=0.0, edges_on=0.3, tip=(0.3, -0.5, 0.2)
     ),
+    "force at a natural jump": Case(FORCE, **JUMP),
+    "moment at a natural jump": Case(moment=MOMENT, **JUMP, tip=(0.3, -0.5, 0.2)),
+    "spring at a natural jump": Case(fixed=OTHER, spring=3.0, **JUMP),
+    "all at a natural jump of longer edges": Case(
+        FORCE, MOMENT, OTHER, spring=3.0, share=0.4, longer=1.5, **JUMP
+    ),
 }
 
 
@@ -71,6 +81,19 @@ def spring_moment(k, frame):
     return -k * (swing + twist * (before + now) / (1.0 + cosine))
 
 
+def naturally_bent(case, edges):
+    """Nodes of a straight rod whose edges beyond the place are longer, and the natural curvatures
+    there: at the node of the jump the mean of its cell, towards which longer edges count more."""
+    before = round(edges * case.share * case.longer / (1 + case.share * (case.longer - 1)))
+    x = np.concatenate(
+        [np.linspace(0, case.share, before + 1), np.linspace(case.share, 1, edges - before + 1)[1:]]
+    )
+    shares = np.repeat([0.0, 1.0], [before, edges - before + 1])
+    after, mean = x[before + 1] - x[before], 0.5 * (x[before + 1] - x[before - 1])
+    shares[before] = 0.5 * after / mean
+    return x[:, None] * DRAWN[:, 2], (shares[:, None] * case.natural).tolist()
+
+
 def scene_and_tip(case, edges):
     place = case.place(edges)
     total = np.add(case.moment, case.fixed)
@@ -78,10 +101,19 @@ def scene_and_tip(case, edges):
     wrenches = [Wrench(place, case.force, tuple(total), corner)]
     if place < ROD.length:
         wrenches.append(Wrench(ROD.length, case.tip))
-    tip, _, frames = held_at_start(ROD, wrenches, DRAWN)
+    towards_1, towards_2 = case.natural
+
+    def natural(s):
+        return np.array([[-towards_2], [towards_1], [0.0]]) * (np.asarray(s) >= place)
+
+    tip, _, frames = held_at_start(replace(ROD, natural=natural), wrenches, DRAWN)
     fixed = frames[0] @ case.fixed - spring_moment(case.spring, frames[0]) * bool(case.spring)
 
     nodes = np.linspace(0, 1, edges + 1)[:, None] * DRAWN[:, 2]
+    rod = {}
+    if case.natural != (0.0, 0.0):
+        nodes, curvatures = naturally_bent(case, edges)
+        rod = {"rod": {"natural_curvature": curvatures}}
     if case.corner:
         beyond = np.maximum(nodes[:, 0] - place, 0)[:, None]
         nodes = np.minimum(nodes, place) + beyond * (DRAWN @ CORNER)[:, 2]
@@ -94,7 +126,7 @@ def scene_and_tip(case, edges):
     ]
     acting = [load for load in loads if any(v for kind in load.values() for v in amount(kind))]
     springs = [{**at, "spring": {"rotational_stiffness": case.spring}}] if case.spring else []
-    return rod_through(nodes, STRIP, supports=[*CLAMPED, *springs], loads=acting), tip
+    return rod_through(nodes, STRIP, supports=[*CLAMPED, *springs], loads=acting, **rod), tip
 
 
 def amount(load):

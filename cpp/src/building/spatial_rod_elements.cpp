@@ -21,6 +21,8 @@
 #include "der/supports/spatial_clamp.hpp"
 #include "model/corner.hpp"
 #include "model/corner_twist.hpp"
+#include "model/curvature_jump.hpp"
+#include "model/glue.hpp"
 #include "model/natural_twist.hpp"
 #include "supports/leg_clamp.hpp"
 
@@ -117,11 +119,16 @@ std::vector<RodJoint> joints_of(const RodLayout& rod) {
 }
 
 /// Natural curvature at a joint, where the scene gives it [1/m].
-Vec2 natural_curvature_at(const RodLayout& rod, const RodJoint& joint) {
+Vec2 natural_curvature_at(const RodLayout& rod, const RodJoint& joint, const Model& model) {
   if (joint.clamp < 0) return rod.natural_curvatures[to_size(joint.after)];
+  const bool leaves = joint.leaves_clamp();
   const Index clamped = rod.clamps[to_size(joint.clamp)].place;
-  const Index next = joint.after >= 0 ? rod.position(joint.after + 1) : joint.before;
-  return (1.0 - clamp_pivot_share()) * rod.natural_curvatures[to_size(clamped)] +
+  const Index next = leaves ? rod.position(joint.after + 1) : joint.before;
+  const SectionFrame& section = rod.drawn_frames[to_size(leaves ? joint.after : joint.before)];
+  const Vec3 bent = curvature_beyond_mean(rod, clamped, leaves, natural_jumps_of(rod, model))
+                        .cross(section.tangent);
+  const Vec2 beside(bent.dot(section.first), bent.dot(section.second));
+  return (1.0 - clamp_pivot_share()) * (rod.natural_curvatures[to_size(clamped)] + beside) +
          clamp_pivot_share() * rod.natural_curvatures[to_size(next)];
 }
 
@@ -149,11 +156,11 @@ Vec2 mean_natural_curvature(const RodLayout& rod, const RodJoint& joint) {
   return (before * joint.natural_curvature + after * beyond) / (before + after);
 }
 
-void set_rest(const RodLayout& rod, const JointStrain& drawn, RodJoint& joint) {
+void set_rest(const RodLayout& rod, const JointStrain& drawn, const Model& model, RodJoint& joint) {
   joint.rest = drawn;
   joint.natural_curvature = Vec2(drawn.kappa_1, drawn.kappa_2) / joint.bend_length;
   if (!rod.natural_curvatures.empty()) {
-    joint.natural_curvature = natural_curvature_at(rod, joint);
+    joint.natural_curvature = natural_curvature_at(rod, joint, model);
     const Vec2 turn =
         joint.bend_length * mean_natural_curvature(rod, joint) + free_end_turn(rod, joint);
     joint.rest.kappa_1 = turn[0];
@@ -274,7 +281,7 @@ class SectionElements {
       turned -= joint.glued;
     }
     const auto drawn = drawn_joint<Curvature>(a, b, drawn_twist);
-    set_rest(rod_, drawn.strain(), joint);
+    set_rest(rod_, drawn.strain(), model_, joint);
     const bool beside_clamp =
         rod_.clamp_at(joint.place() - 1) != nullptr || rod_.clamp_at(joint.place() + 1) != nullptr;
     if (rod_.natural_curvatures.empty() && beside_clamp) {
@@ -297,9 +304,7 @@ class SectionElements {
   /// Whether the cell about a joint bends or twists about other axes before the node than after it:
   /// at a corner, and where sections of unequal stiffness are glued turned. Half a turn is none.
   [[nodiscard]] bool has_two_halves(const RodJoint& joint) const {
-    constexpr double kRounding = 1e-9;  // [rad]
-    const bool turns_axes = std::abs(std::sin(joint.glued)) > kRounding && rod_.EI_1 != rod_.EI_2;
-    return turns_axes || is_corner(rod_, joint.place(), model_);
+    return turns_axes(joint, rod_) || is_corner(rod_, joint.place(), model_);
   }
 
   template <class Kernel, class AJoint>
@@ -331,7 +336,7 @@ class SectionElements {
     const SectionFrame& a = leaves ? held : frame_of_edge;
     const SectionFrame& b = leaves ? frame_of_edge : held;
     const JointStrain drawn = drawn_joint<Curvature>(a, b, beyond).strain();
-    set_rest(rod_, drawn, joint);
+    set_rest(rod_, drawn, model_, joint);
     if (rod_.natural_curvatures.empty()) {
       joint.natural_curvature = drawn_curvature_at_clamp(rod_, joint, model_);
     }

@@ -17,6 +17,7 @@
 #include "der/supports/section_spring.hpp"
 #include "model/actuated_turn.hpp"
 #include "model/corner.hpp"
+#include "model/curvature_jump.hpp"
 
 namespace der {
 namespace {
@@ -68,14 +69,22 @@ double drawn_lean(Index edge, const RodLayout& rod, const Model& model) {
   return lean;
 }
 
-PlanarFollowerForce planar_follower(const SectionPlace& place, const RodLayout& rod,
+/// By how much the tangent at arc length `s` [m] turns further than the edges on its two sides,
+/// from the drawn shape to a natural one [rad]; of one edge, not at all.
+Vec3 natural_turn(double s, const SectionPlace& place, const RodLayout& rod, const Model& model) {
+  if (place.direction.size() != 2) return Vec3::Zero();
+  return natural_turn_from_line(s, place.first_edge, rod, model);
+}
+
+PlanarFollowerForce planar_follower(double s, const SectionPlace& place, const RodLayout& rod,
                                     const Model& model, CirculatoryLoad& load) {
   PlanarFollowerForce follower;
+  const double kink = natural_turn(s, place, rod, model).z();
   for (std::size_t i = 0; i < place.direction.size(); ++i) {
     const Index number = rod.position(place.first_edge + static_cast<Index>(i));
     const EffectiveEdge edge = effective_edge(rod, number, model);
     const Vec2 chord = edge.vector(model.initial_positions, 0.0, 0.0).normalized();
-    const Vec2 drawn = Eigen::Rotation2Dd(drawn_lean(number, rod, model)) * chord;
+    const Vec2 drawn = Eigen::Rotation2Dd(drawn_lean(number, rod, model) - kink) * chord;
     follower.edges.push_back({edge, place.direction[i], drawn});
     add_vector(edge.dofs[0], edge.dofs[2], model, load);
   }
@@ -208,7 +217,8 @@ bool need_section(const SectionLoads& place, const RodLayout& rod, const Model& 
       !place.forces.empty() ||
       std::any_of(place.moments.begin(), place.moments.end(),
                   [&](Index moment) { return follows(loads[to_size(moment)]); });
-  return any_follows && (beside_held_section(s, rod) || beside_leaning_end(s, rod));
+  return any_follows && (beside_held_section(s, rod) || beside_leaning_end(s, rod) ||
+                         !natural_turn(s, section_place(s, rod), rod, model).isZero(0.0));
 }
 
 /// `actuated`: the turn of the section beyond the edges that moments turn.
@@ -252,7 +262,7 @@ Index add_follower_force(const scenario::VectorSeries& force, double s, const Ro
   const SectionPlace place = section_place(s, rod);
   load.amount.actuated = actuated_section(s, place, rod, model);
   if (model.dimension == 2) {
-    load.kind = planar_follower(place, rod, model, load);
+    load.kind = planar_follower(s, place, rod, model, load);
   } else {
     load.kind = with_edges<FollowerForce>(
         place, rod, model, load, [&](const FramedEdge& framed, std::size_t i) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "der/core/index.hpp"
 #include "model/corner.hpp"
@@ -10,16 +11,31 @@
 namespace der {
 namespace {
 
-/// The curvature of the drawn rod at its nodes, as the vector about which it turns [1/m].
-class DrawnCurvature {
+/// How many cells on either side of a node tell whether the curvature jumps there.
+constexpr Index kBeside = 2;
+
+/// The curvature of the cells about the nodes of a rod, as a vector [1/m].
+class CellCurvature {
  public:
-  DrawnCurvature(const RodLayout& rod, const Model& model) : rod_(rod) {
-    for (Index place = 0; place < static_cast<Index>(rod.nodes.size()); ++place) {
-      const DrawnTurn turn = drawn_turn(rod, place, model);
-      at_nodes_.emplace_back(turn.angle / rod.voronoi_length(place) * turn.axis);
-    }
+  CellCurvature(const RodLayout& rod, std::vector<Vec3> at_nodes)
+      : rod_(rod), at_nodes_(std::move(at_nodes)) {}
+
+  /// After an inner node with two more on either side less before it, if it jumps there: else zero.
+  [[nodiscard]] Vec3 jump_at(Index place) const {
+    constexpr double kRounding = 1e-6;  // [rad]
+    constexpr double kClear = 2.0;
+    const auto [before, change_before] = beside(place, -1);
+    const auto [after, change_after] = beside(place, 1);
+    const Vec3 jump = after - before;
+    const double length = rod_.voronoi_length(place);
+    if (jump.norm() * length <= kRounding) return Vec3::Zero();
+    const double share = 0.5 * rod_.edge_length[to_size(rod_.edge_before(place))] / length;
+    const Vec3 between = share * before + (1.0 - share) * after;
+    const double uncertain = change_before + change_after + (at(place) - between).norm();
+    return jump.norm() > kClear * uncertain ? jump : Vec3(Vec3::Zero());
   }
 
+ private:
   /// The mean of the cell about a node.
   [[nodiscard]] const Vec3& at(Index place) const {
     return at_nodes_[to_size(rod_.position(place))];
@@ -37,7 +53,6 @@ class DrawnCurvature {
     return {at(place + step) + change, change.norm()};
   }
 
- private:
   /// Where the rod has the curvature of the cell about a node [m].
   [[nodiscard]] double place_of(Index place) const {
     const double before = rod_.edge_length[to_size(rod_.edge_before(place))];
@@ -49,34 +64,32 @@ class DrawnCurvature {
   std::vector<Vec3> at_nodes_;
 };
 
-/// The jump at a place with two nodes on either side, if it is one: else zero.
-Vec3 jump_at(const RodLayout& rod, Index place, const DrawnCurvature& curvature) {
-  constexpr double kRounding = 1e-6;  // [rad]
-  constexpr double kClear = 2.0;
-  const auto [before, change_before] = curvature.beside(place, -1);
-  const auto [after, change_after] = curvature.beside(place, 1);
-  const Vec3 jump = after - before;
-  const double length = rod.voronoi_length(place);
-  if (jump.norm() * length <= kRounding) return Vec3::Zero();
-  const double share = 0.5 * rod.edge_length[to_size(rod.edge_before(place))] / length;
-  const Vec3 between = share * before + (1.0 - share) * after;
-  const double uncertain = change_before + change_after + (curvature.at(place) - between).norm();
-  return jump.norm() > kClear * uncertain ? jump : Vec3(Vec3::Zero());
+/// The vectors about which the drawn rod turns in its cells [1/m].
+std::vector<Vec3> drawn_curvature(const RodLayout& rod, const Model& model) {
+  std::vector<Vec3> at_nodes;
+  for (Index place = 0; place < static_cast<Index>(rod.nodes.size()); ++place) {
+    const DrawnTurn turn = drawn_turn(rod, place, model);
+    at_nodes.emplace_back(turn.angle / rod.voronoi_length(place) * turn.axis);
+  }
+  return at_nodes;
 }
 
-}  // namespace
+/// The values of the scene [1/m]: about the third axis of a plane, in space towards the directors.
+std::vector<Vec3> given_curvature(const RodLayout& rod) {
+  std::vector<Vec3> at_nodes;
+  for (const double value : rod.natural_curvature) at_nodes.emplace_back(0.0, 0.0, value);
+  for (const Vec2& pair : rod.natural_curvatures) at_nodes.emplace_back(pair[0], pair[1], 0.0);
+  return at_nodes;
+}
 
-std::vector<CurvatureJump> curvature_jumps_of(const RodLayout& rod, const Model& model) {
-  constexpr Index kBeside = 2;
+std::vector<CurvatureJump> jumps_of(const CellCurvature& curvature, const RodLayout& rod,
+                                    const Model& model) {
   std::vector<CurvatureJump> jumps;
-  if (!bends_as_drawn(rod, model) || (model.dimension == 3 && !model.has_sections())) return jumps;
   const auto count = static_cast<Index>(rod.nodes.size());
   const Index first = rod.closed ? 0 : kBeside + 1;
   const Index last = rod.closed ? count - 1 : count - 2 - kBeside;
-  if (count <= 2 * kBeside) return jumps;
-  const DrawnCurvature curvature(rod, model);
   for (Index place = first; place <= last; ++place) {
-    const Vec3 jump = jump_at(rod, place, curvature);
+    const Vec3 jump = curvature.jump_at(place);
     if (jump.isZero(0.0)) continue;
     const auto is_corner_beside = [&](Index step) { return is_corner(rod, place + step, model); };
     const std::array<Index, 5> cells{-2, -1, 0, 1, 2};
@@ -85,14 +98,61 @@ std::vector<CurvatureJump> curvature_jumps_of(const RodLayout& rod, const Model&
   return jumps;
 }
 
-Vec3 curvature_beyond_mean(const RodLayout& rod, Index place, const Model& model) {
-  const std::vector<CurvatureJump> jumps = curvature_jumps_of(rod, model);
+bool has_cells_beside(const RodLayout& rod) {
+  return static_cast<Index>(rod.nodes.size()) > 2 * kBeside;
+}
+
+/// Those of the values that the scene gives.
+std::vector<CurvatureJump> given_jumps_of(const RodLayout& rod, const Model& model) {
+  std::vector<CurvatureJump> jumps = jumps_of({rod, given_curvature(rod)}, rod, model);
+  if (model.dimension == 2) return jumps;
+  for (auto& [place, turn] : jumps) {
+    const SectionFrame& section = rod.drawn_frames[to_size(rod.edge_before(place))];
+    turn = section.tangent.cross(turn[0] * section.first + turn[1] * section.second);
+  }
+  return jumps;
+}
+
+}  // namespace
+
+std::vector<CurvatureJump> drawn_jumps_of(const RodLayout& rod, const Model& model) {
+  if (!has_cells_beside(rod)) return {};
+  return jumps_of({rod, drawn_curvature(rod, model)}, rod, model);
+}
+
+std::vector<CurvatureJump> natural_jumps_of(const RodLayout& rod, const Model& model) {
+  const bool bends = model.dimension == 2 ? rod.EI > 0.0 : rod.EI_1 > 0.0 && rod.EI_2 > 0.0;
+  const bool has_curvature = model.dimension == 2 || model.has_sections();
+  if (!bends || !has_curvature || !has_cells_beside(rod)) return {};
+  return bends_as_drawn(rod, model) ? drawn_jumps_of(rod, model) : given_jumps_of(rod, model);
+}
+
+Vec3 curvature_beyond_mean(const RodLayout& rod, Index place, bool after,
+                           const std::vector<CurvatureJump>& jumps) {
   const auto here = std::find_if(jumps.begin(), jumps.end(), [&](const CurvatureJump& jump) {
     return jump.place == rod.position(place);
   });
   if (here == jumps.end()) return Vec3::Zero();
-  return 0.5 * rod.edge_length[to_size(rod.edge_before(place))] / rod.voronoi_length(place) *
-         here->turn;
+  const Index other = after ? rod.edge_before(place) : rod.edge_after(place);
+  const double share = 0.5 * rod.edge_length[to_size(other)] / rod.voronoi_length(place);
+  return (after ? share : -share) * here->turn;
+}
+
+Vec3 turn_from_line(double s, Index first_edge, const RodLayout& rod,
+                    const std::vector<CurvatureJump>& jumps) {
+  const Index place = first_edge + 1;
+  const double node = rod.arc_length_at(place);
+  const double before = node - rod.edge_middle(first_edge);
+  const double after = rod.edge_middle(place) - node;
+  const double share = 1.0 - (s < node ? (node - s) / before : (s - node) / after);
+  if (share <= 0.0) return Vec3::Zero();
+  return -share * after * curvature_beyond_mean(rod, place, true, jumps);
+}
+
+Vec3 natural_turn_from_line(double s, Index first_edge, const RodLayout& rod, const Model& model) {
+  if (bends_as_drawn(rod, model)) return Vec3::Zero();
+  return turn_from_line(s, first_edge, rod, natural_jumps_of(rod, model)) -
+         turn_from_line(s, first_edge, rod, drawn_jumps_of(rod, model));
 }
 
 }  // namespace der

@@ -4,6 +4,7 @@
 
 #include "der/core/index.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "model/curvature_jump.hpp"
 #include "output/legs.hpp"
 
 namespace der {
@@ -19,16 +20,36 @@ NaturalCurvature::NaturalCurvature(const RodLayout& rod, const Model& model) {
   const std::vector<Index> bounds = leg_bounds(rod, model);
   for (const Index bound : bounds) legs_.push_back({bound, {}, {}});
   legs_.push_back({rod.num_edges(), {}, {}});
-  if (!rod.natural_curvature.empty()) {
-    Leg& whole = legs_.front();
-    whole.arc_length = rod.arc_length;
-    whole.values = rod.natural_curvature;
-    if (rod.closed) {
-      whole.arc_length.push_back(rod.rest_length());
-      whole.values.push_back(whole.values.front());
-    }
-    return;
+  if (rod.natural_curvature.empty()) {
+    read_drawn(bounds, rod, model);
+  } else {
+    read_given(bounds, rod, model);
   }
+}
+
+void NaturalCurvature::read_given(const std::vector<Index>& bounds, const RodLayout& rod,
+                                  const Model& model) {
+  const std::vector<CurvatureJump> jumps = natural_jumps_of(rod, model);
+  auto leg = legs_.begin();
+  for (Index i = 0; i <= rod.num_edges(); ++i) {
+    const auto add = [&](bool after) {
+      leg->arc_length.push_back(rod.arc_length_at(i));
+      leg->values.push_back(rod.natural_curvature[to_size(rod.position(i))] +
+                            curvature_beyond_mean(rod, i, after, jumps).z());
+    };
+    if (!std::binary_search(bounds.begin(), bounds.end(), rod.position(i))) {
+      add(true);
+      continue;
+    }
+    if (i > 0) add(false);
+    if (i == rod.num_edges()) continue;
+    ++leg;
+    add(true);
+  }
+}
+
+void NaturalCurvature::read_drawn(const std::vector<Index>& bounds, const RodLayout& rod,
+                                  const Model& model) {
   auto leg = legs_.begin();
   for (Index i = 0; i <= rod.num_edges(); ++i) {
     if (std::binary_search(bounds.begin(), bounds.end(), rod.position(i))) {

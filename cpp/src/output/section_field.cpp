@@ -12,6 +12,7 @@
 #include "der/model/location.hpp"
 #include "der/output/joint_strain.hpp"
 #include "der/supports/spatial_clamp.hpp"
+#include "model/glue.hpp"
 #include "model/natural_twist.hpp"
 #include "output/actuated_shape.hpp"
 #include "output/edgewise_field.hpp"
@@ -108,8 +109,6 @@ class SectionField : public EdgewiseField<Vec3> {
   }
 
  private:
-  static constexpr double kGlueRounding = 1e-9;  // [rad]
-
   /// Which of the two bendings and the twist the quantity is; none: a magnitude.
   [[nodiscard]] std::optional<Index> component() const {
     switch (quantity_) {
@@ -171,10 +170,7 @@ class SectionField : public EdgewiseField<Vec3> {
         quantity == SectionQuantity::NaturalCurvature2;
     const bool whole_jumps = quantity == SectionQuantity::Curvature &&
                              (!rod.natural_curvatures.empty() || rod.EI_1 != rod.EI_2);
-    return rod.closed && (is_component || whole_jumps) && is_glued_turned(rod.joints.back());
-  }
-  static bool is_glued_turned(const RodJoint& joint) {
-    return joint.clamp < 0 && std::abs(joint.glued) > kGlueRounding;
+    return rod.closed && (is_component || whole_jumps) && meets_turned(rod.joints.back());
   }
 
   /// Whether components along an edge, or on from it, have a kink or jump.
@@ -186,14 +182,7 @@ class SectionField : public EdgewiseField<Vec3> {
   /// either side: it bends about the directors of both, to the natural curvatures of both.
   static bool is_beside_glue(Index edge, const RodLayout& rod) {
     if (!rod.closed || (edge != 0 && edge != rod.num_edges() - 1)) return false;
-    const RodJoint& joint = rod.joints.back();
-    if (!is_glued_turned(joint)) return false;
-    // Half a turn leaves the axes of the stiffnesses as they are.
-    const bool turns_axes = std::abs(std::sin(joint.glued)) > kGlueRounding;
-    const auto& natural = rod.natural_curvatures;
-    return (rod.EI_1 != rod.EI_2 && turns_axes) ||
-           std::any_of(natural.begin(), natural.end(),
-                       [](const Vec2& at) { return !at.isZero(0.0); });
+    return parts_bending(rod.joints.back(), rod);
   }
 
   static Vec3 natural_of(const RodLayout& rod, const RodJoint& joint) {
@@ -203,7 +192,7 @@ class SectionField : public EdgewiseField<Vec3> {
   /// Those of the whole cell about a joint, in the joint's frame.
   [[nodiscard]] Vec3 mean_natural(const RodJoint& joint) const {
     Vec3 mean = natural_of(rod_, joint);
-    if (is_glued_turned(joint)) {
+    if (meets_turned(joint)) {
       mean.head<2>() = Vec2(joint.rest.kappa_1, joint.rest.kappa_2) / joint.bend_length;
     }
     return mean;

@@ -13,6 +13,7 @@
 #include "der/supports/clamp.hpp"
 #include "der/supports/spatial_clamp.hpp"
 #include "model/curvature_jump.hpp"
+#include "output/glue_kink.hpp"
 #include "output/moment_recovery.hpp"
 #include "output/natural_curvature.hpp"
 #include "output/tangent_line.hpp"
@@ -60,9 +61,9 @@ bool leans_as_drawn(const RodLayout& rod, Index edge) {
          (rod.clamp_at(edge) != nullptr || rod.clamp_at(edge + 1) != nullptr);
 }
 
-/// Adds the arc lengths [m] at which the drawn curvature jumps.
-void add_drawn_jumps(const RodLayout& rod, const Model& model, std::vector<double>& kinks) {
-  for (const CurvatureJump& jump : curvature_jumps_of(rod, model)) {
+/// Adds the arc lengths [m] at which the natural curvature jumps.
+void add_natural_jumps(const RodLayout& rod, const Model& model, std::vector<double>& kinks) {
+  for (const CurvatureJump& jump : natural_jumps_of(rod, model)) {
     kinks.push_back(rod.arc_length_at(jump.place));
   }
 }
@@ -158,7 +159,7 @@ class PlanarDirection : public DirectionField<double> {
     if (rod.EI > 0.0) {
       for (const MomentPlace& place : rod.moment_places) kinks.push_back(place.arc_length);
     }
-    add_drawn_jumps(rod, model, kinks);
+    add_natural_jumps(rod, model, kinks);
     return std::unique_ptr<RodField>(
         new PlanarDirection(component, rod, model, TangentLine(rod, std::move(kinks), model)));
   }
@@ -177,8 +178,8 @@ class PlanarDirection : public DirectionField<double> {
       edges_.push_back(effective_edge(rod, edge, model));
     }
     find_drawn_leans(model);
-    for (const CurvatureJump& jump : curvature_jumps_of(rod, model)) {
-      drawn_jumps_.push_back(jump.turn.z());
+    for (const CurvatureJump& jump : natural_jumps_of(rod, model)) {
+      natural_jumps_.push_back(jump.turn.z());
     }
     find_reference(model);
   }
@@ -260,7 +261,7 @@ class PlanarDirection : public DirectionField<double> {
     for (std::size_t i = 0; moments_ && i < moments_->size(); ++i) {
       kinks.emplace_back(-moments_->value(i, model, state).whole.z() / rod_.EI);
     }
-    kinks.insert(kinks.end(), drawn_jumps_.begin(), drawn_jumps_.end());
+    kinks.insert(kinks.end(), natural_jumps_.begin(), natural_jumps_.end());
   }
 
   /// How far the outermost edge is turned beyond the curve [rad].
@@ -289,8 +290,8 @@ class PlanarDirection : public DirectionField<double> {
   RodLayout rod_;
   std::vector<Clamp> held_;  // at the knots
   std::vector<EffectiveEdge> edges_;
-  std::vector<double> drawn_leans_;  // of each edge [rad]
-  std::vector<double> drawn_jumps_;  // of the curvature [1/m]
+  std::vector<double> drawn_leans_;    // of each edge [rad]
+  std::vector<double> natural_jumps_;  // of the curvature [1/m]
   std::vector<FreeEnd> ends_;
   std::optional<MomentRecovery> spread_;  // where moments at free ends may matter
   std::optional<SpreadMoments> moments_;
@@ -308,27 +309,30 @@ class SpatialDirection : public DirectionField<Vec3> {
       for (std::size_t i = 0; i < moments->size(); ++i) kinks.push_back((*moments)[i].arc_length);
       if (kinks.empty()) moments.reset();
     }
-    add_drawn_jumps(rod, model, kinks);
+    add_natural_jumps(rod, model, kinks);
+    auto glue = GlueKink::make(rod, model);
+    if (glue) kinks.push_back(0.0);
     TangentLine line(rod, std::move(kinks), model);
-    return std::unique_ptr<RodField>(
-        new SpatialDirection(component, rod, model, std::move(line), std::move(moments)));
+    return std::unique_ptr<RodField>(new SpatialDirection(component, rod, model, std::move(line),
+                                                          std::move(moments), std::move(glue)));
   }
 
  private:
   SpatialDirection(int component, const RodLayout& rod, const Model& model, TangentLine line,
-                   std::optional<SpreadMoments> moments)
+                   std::optional<SpreadMoments> moments, std::optional<GlueKink> glue)
       : DirectionField(std::move(line)),
         component_(component),
         rod_(rod),
         held_(held_at_knots(this->line(), rod, model)),
-        moments_(std::move(moments)) {
+        moments_(std::move(moments)),
+        glue_(std::move(glue)) {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) {
       edges_.push_back(spatial_edge(rod, edge, model));
     }
     drawn_leans_.assign(edges_.size(), Vec2::Zero());
     if (!model.has_sections() || rod.joints.empty()) return;
     find_drawn_leans(model);
-    find_drawn_jumps(model);
+    find_natural_jumps(model);
     ends_ = free_ends(rod);
     if (moments_ && !ends_.empty()) spread_.emplace(rod, model);
   }
@@ -346,12 +350,12 @@ class SpatialDirection : public DirectionField<Vec3> {
     }
   }
 
-  void find_drawn_jumps(const Model& model) {
-    for (const auto& [place, turn] : curvature_jumps_of(rod_, model)) {
+  void find_natural_jumps(const Model& model) {
+    for (const auto& [place, turn] : natural_jumps_of(rod_, model)) {
       const Index edge = rod_.edge_before(place);
       const SectionFrame section = drawn_frame(model, rod_.first_edge + edge);
       const Vec3 bent = turn.cross(section.tangent);
-      drawn_jumps_.emplace_back(edge, Vec2(bent.dot(section.first), bent.dot(section.second)));
+      natural_jumps_.emplace_back(edge, Vec2(bent.dot(section.first), bent.dot(section.second)));
     }
   }
 
@@ -366,14 +370,24 @@ class SpatialDirection : public DirectionField<Vec3> {
       (end.last ? knots.back() : knots.front()) -= lean(end, model, state);
     }
     for (std::size_t i = 0; moments_ && i < moments_->size(); ++i) {
-      const Index edge = rod_.position((*moments_)[i].first_edge);
-      kinks.emplace_back(
-          -change_by(moments_->value(i, model, state).whole, 1.0, frame(edge, model, state)));
+      const SpreadMoments::Moment& moment = (*moments_)[i];
+      if (glue_ && is_at_start(moment.arc_length)) {
+        kinks.emplace_back(Vec3::Zero());
+        continue;
+      }
+      const SectionFrame section = frame(rod_.position(moment.first_edge), model, state);
+      kinks.emplace_back(-change_by(moments_->value(i, model, state).whole, 1.0, section));
     }
-    for (const auto& [edge, jump] : drawn_jumps_) {
+    for (const auto& [edge, jump] : natural_jumps_) {
       const SectionFrame section = frame(edge, model, state);
       kinks.emplace_back(jump[0] * section.first + jump[1] * section.second);
     }
+    if (glue_) kinks.push_back(glue_->jump(model, state));
+  }
+
+  /// Of a ring.
+  [[nodiscard]] bool is_at_start(double s) const {
+    return std::min(s, rod_.rest_length() - s) <= rod_.same_place();
   }
 
   /// At its knot.
@@ -432,10 +446,11 @@ class SpatialDirection : public DirectionField<Vec3> {
   std::vector<SpatialEdge> edges_;
   std::vector<Vec2> drawn_leans_;  // of each edge, towards its two directors
   /// Jumps of the drawn curvature behind edges, towards their two directors [1/m].
-  std::vector<std::pair<Index, Vec2>> drawn_jumps_;
+  std::vector<std::pair<Index, Vec2>> natural_jumps_;
   std::vector<FreeEnd> ends_;
   std::optional<MomentRecovery> spread_;  // where moments at free ends may matter
   std::optional<SpreadMoments> moments_;
+  std::optional<GlueKink> glue_;
 };
 
 }  // namespace

@@ -35,7 +35,8 @@ double initial_curvature(const RodLayout& rod, Index place, const Model& model) 
   const double mean =
       angle_between(drawn_edge(rod, inner - 1, model), drawn_edge(rod, inner, model)) /
       rod.voronoi_length(inner);
-  return inner == place ? mean + curvature_beyond_mean(rod, place, model).z() : mean;
+  if (inner != place) return mean;
+  return mean + curvature_beyond_mean(rod, place, true, drawn_jumps_of(rod, model)).z();
 }
 
 /// +1 if the edge leaves the clamp, -1 if it arrives there.
@@ -148,8 +149,11 @@ double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, co
     return side * angle_between(tangent, effective);
   }
   const Index next = rod.position(clamp.place + (side > 0.0 ? 1 : -1));
-  const double at_pivot = (1.0 - kPivotShare) * rod.natural_curvature[to_size(clamp.place)] +
-                          kPivotShare * rod.natural_curvature[to_size(next)];
+  const double at_clamp =
+      rod.natural_curvature[to_size(clamp.place)] +
+      curvature_beyond_mean(rod, clamp.place, side > 0.0, natural_jumps_of(rod, model)).z();
+  const double at_pivot =
+      (1.0 - kPivotShare) * at_clamp + kPivotShare * rod.natural_curvature[to_size(next)];
   return at_pivot * clamp_cell_length(rod, edge);
 }
 

@@ -14,6 +14,7 @@
 #include "der/supports/spring.hpp"
 #include "model/corner.hpp"
 #include "model/curvature_jump.hpp"
+#include "model/glue.hpp"
 #include "supports/leg_clamp.hpp"
 
 namespace der {
@@ -82,26 +83,12 @@ SectionFrame section_on_line(double s, Index first_edge, const RodLayout& rod, c
                  drawn_frame(model, number_of(rod, first_edge + 1)), (s - middle) / spacing);
 }
 
-/// The rotation by which the drawn section at `s` [m], between the middles of an edge and the next,
-/// is turned against the line through theirs: where the curvature jumps at their node, from k_b to
-/// k_a, the line cuts off the kink of the tangent's angle, (k_a - k_b) ab/(a + b) at the node, with
-/// the distances a and b to the middles.
-Vec3 turn_from_line(double s, Index first_edge, const RodLayout& rod, const Model& model) {
-  const Index place = first_edge + 1;
-  const double node = rod.arc_length_at(place);
-  const double before = node - rod.edge_middle(first_edge);
-  const double after = rod.edge_middle(place) - node;
-  const double share = 1.0 - (s < node ? (node - s) / before : (s - node) / after);
-  if (share <= 0.0) return Vec3::Zero();
-  return -share * after * curvature_beyond_mean(rod, place, model);
-}
-
 /// The drawn section at arc length `s` [m], inter- or extrapolated from the edges, or from the one
 /// edge and the clamp beside it.
 SectionFrame drawn_section_at(double s, const SectionPlace& place, const RodLayout& rod,
                               const Model& model) {
   if (place.across.size() == 2) {
-    return turned_by(turn_from_line(s, place.first_edge, rod, model),
+    return turned_by(turn_from_line(s, place.first_edge, rod, drawn_jumps_of(rod, model)),
                      section_on_line(s, place.first_edge, rod, model));
   }
   const SectionFrame first = drawn_frame(model, number_of(rod, place.first_edge));
@@ -119,6 +106,12 @@ Mat3 axes_of(const SectionFrame& section) {
   return axes;
 }
 
+/// The rotation that takes one direction to another the shortest way [rad].
+Vec3 turn_between(const Vec3& from, const Vec3& to) {
+  const Eigen::AngleAxisd turn(Eigen::Quaterniond::FromTwoVectors(from, to));
+  return turn.angle() * turn.axis();
+}
+
 /// The weighted rotations at which no moment acts: none, where the drawn shape is free of stress.
 /// A natural shape that is given is that of a chain whose nodes do not lie on the drawn curve
 /// (spring.hpp).
@@ -134,9 +127,9 @@ Vec3 natural_rotation(double s, const SectionPlace& place, const SectionFrame& s
       const double spacing = rod.edge_middle(place.first_edge + 1) - middle;
       const Vec3 first = drawn_frame(model, number_of(rod, place.first_edge)).tangent;
       const Vec3 second = drawn_frame(model, number_of(rod, place.first_edge + 1)).tangent;
-      const Eigen::AngleAxisd bend(Eigen::Quaterniond::FromTwoVectors(first, second));
-      rotation += ((s - middle) / spacing - place.across[1]) * turning_axes(section).transpose() *
-                  (bend.angle() * bend.axis());
+      const Vec3 between = ((s - middle) / spacing - place.across[1]) * turn_between(first, second);
+      rotation += turning_axes(section).transpose() *
+                  (between - natural_turn_from_line(s, place.first_edge, rod, model));
     }
   }
   if (const double beyond = beyond_outer_middle(rod, s);
@@ -172,10 +165,9 @@ SectionHold smooth_hold(const SectionSpringPlace& spring, const SectionPlace& pl
 /// Whether two edges side by side have sections that lie differently: at a corner, and where a ring
 /// is glued turned, by more than rounding.
 bool sections_differ(Index first_edge, const RodLayout& rod, const Model& model) {
-  constexpr double kRounding = 1e-9;  // [rad]
   if (is_corner(rod, first_edge + 1, model)) return true;
   const bool closes = rod.closed && rod.position(first_edge + 1) == 0 && !rod.joints.empty();
-  return closes && std::abs(rod.joints.back().glued) > kRounding;
+  return closes && is_glued_turned(rod.joints.back());
 }
 
 /// The drawn section at arc length `s` [m] on the leg that ends with an edge, or begins with one:
@@ -191,6 +183,26 @@ SectionFrame section_on_leg(double s, Index edge, Index neighbour, const RodLayo
   return section_on_line(s, first, rod, model);
 }
 
+/// Where a ring is glued turned: by how much it turns further along the edges `first_edge` and the
+/// next, from `from` to `to` [m], if it has the natural shape that the scene gives, than from one
+/// drawn tangent to the other; towards the directors of the section and about its tangent [rad].
+Vec3 natural_turn_at_glue(double from, double to, const std::array<Vec3, 2>& tangents,
+                          Index first_edge, const SectionFrame& section, const RodLayout& rod,
+                          const Model& model) {
+  Vec3 natural(0.0, 0.0,
+               rod.natural_twist.empty() ? 0.0 : rod.natural_twist.front() - rod.initial_twist);
+  natural.head<2>() = rod.natural_curvatures.front();
+  const double glue = rod.arc_length_at(first_edge + 1);
+  Vec3 turn = -turn_between(tangents[0], tangents[1]);
+  const auto add = [&](Index edge, double length) {
+    const SectionFrame own = drawn_frame(model, number_of(rod, edge));
+    turn += std::max(0.0, length) * (turning_axes(own) * natural);
+  };
+  add(first_edge, std::min(to, glue) - from);
+  add(first_edge + 1, to - std::max(from, glue));
+  return turning_axes(section).transpose() * turn;
+}
+
 /// Between two edges with different sections, at a corner. Rod before the place and beyond it turns
 /// with the compliances A and B about all axes. The moment of the springs on the rod, m, makes the
 /// one in it jump, and the section turns by B (A + B)^-1 r_a + A (A + B)^-1 r_b + D m, with the
@@ -204,7 +216,6 @@ SectionHold corner_hold(double s, Index first_edge, const RodLayout& rod, const 
   hold.section = s < corner - rod.same_place()
                      ? section_on_leg(s, first_edge, first_edge - 1, rod, model)
                      : section_on_leg(s, second_edge, second_edge + 1, rod, model);
-  hold.of_natural = hold.section;
   // The angle of an edge tells the turns about its own tangent alone.
   hold.counts_turns = !is_corner(rod, second_edge, model);
 
@@ -222,6 +233,20 @@ SectionHold corner_hold(double s, Index first_edge, const RodLayout& rod, const 
   hold.weights = {beyond * stiffness_between, before * stiffness_between};
   const Mat3 cell = before * stiffness_between * beyond;
   hold.on_the_way = 0.5 * (cell + cell.transpose());
+  hold.of_natural = hold.section;
+  if (!rod.natural_curvatures.empty()) {
+    const auto tangent = [&](Index edge) {
+      return drawn_frame(model, number_of(rod, edge)).tangent;
+    };
+    const auto turn = [&](double from, double to, const Vec3& at_start, const Vec3& at_end) {
+      return natural_turn_at_glue(from, to, {at_start, at_end}, first_edge, hold.section, rod,
+                                  model);
+    };
+    const Vec3 to_place = turn(start, s, tangent(first_edge), hold.section.tangent);
+    const Vec3 from_place = turn(s, end, hold.section.tangent, tangent(second_edge));
+    hold.of_natural =
+        turned_back(hold.section, hold.weights[1] * from_place - hold.weights[0] * to_place);
+  }
   return hold;
 }
 

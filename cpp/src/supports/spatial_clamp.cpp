@@ -55,7 +55,9 @@ Vec3 tangent_on_circle(const RodLayout& rod, Index place, Index inner, const Mod
   const Vec3 chord = drawn_edge(rod, edge, model).normalized();
   if (!rod.is_inner(inner) || (inner != place && is_corner(rod, inner, model))) return chord;
   Vec3 curvature = initial_curvature(rod, inner, model);
-  if (inner == place) curvature += curvature_beyond_mean(rod, place, model);
+  if (inner == place) {
+    curvature += curvature_beyond_mean(rod, place, true, drawn_jumps_of(rod, model));
+  }
   const double half = (edge == place ? -0.5 : 0.5) * rod.edge_length[to_size(edge)];
   const double angle = curvature.norm() * half;
   if (angle == 0.0) return chord;

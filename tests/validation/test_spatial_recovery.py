@@ -254,3 +254,40 @@ def test_a_loaded_bow_in_the_plane(fitted_order):
     assert errors[-1].max() < 1e-3
     for of_quantity in errors.T:
         assert fitted_order([1 / n for n in sizes], of_quantity) > 1.9
+
+
+def clothoid(s):
+    """Points of the curve in the x-y plane with the curvature 1 + 2 s, shape (n, 3)."""
+    nodes, weights = np.polynomial.legendre.leggauss(40)
+    along = 0.5 * s[:, None] * (1 + nodes)
+    angle = along + along**2
+    x, y = (0.5 * s * (part(angle) @ weights) for part in (np.cos, np.sin))
+    return np.column_stack([x, y, 0 * s])
+
+
+MESHES = {
+    "longer edges from the middle on": lambda n: np.repeat([1.0, 1.5], n),
+    "longer edges before the middle": lambda n: np.repeat([1.5, 1.0], n),
+    "every other edge longer": lambda n: np.tile([1.5, 1.0], n),
+}
+
+
+@pytest.mark.parametrize("mesh", MESHES.values(), ids=MESHES)
+def test_drawn_curvature_of_a_twisted_rod_with_uneven_edges(fitted_order, mesh):
+    """At a node between edges of other lengths the mean of their sections is that of a place beside
+    the node, and so is the turn from one to the next."""
+    twist, sizes = 2.0, (10, 20, 40, 80)
+    errors = []
+    for n in sizes:
+        edges = mesh(n)
+        s = np.concatenate([[0.0], np.cumsum(edges)]) / edges.sum()
+        # The width starts along z, towards which the drawn rod does not bend.
+        strip = section([0, 0, 1], EA=STRETCHING, EI1=STRONG, EI2=WEAK, GJ=TWISTING)
+        scene = rod_through(clothoid(s), strip, rod={"initial_twist": twist})
+        turned, curvature = twist * s[n], 1.0 + 2.0 * s[n]
+        exact = -curvature * np.array([np.sin(turned), np.cos(turned)])
+        values, _ = measured(scene, [{"node": n}], ("curvature_1", "curvature_2"))
+        errors.append(values[0] - exact)
+    assert np.abs(errors[-1]).max() < 2e-3
+    for error in np.transpose(errors):
+        assert fitted_order([1 / n for n in sizes], error) > 1.9

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "building/corner.hpp"
 #include "building/spatial_rod_elements.hpp"
@@ -23,6 +25,7 @@
 #include "model/corner_twist.hpp"
 #include "model/curvature_jump.hpp"
 #include "model/glue.hpp"
+#include "model/legs.hpp"
 #include "model/natural_twist.hpp"
 #include "supports/leg_clamp.hpp"
 
@@ -184,8 +187,10 @@ JointKinematics<Curvature> drawn_joint(const SectionFrame& before, const Section
   return {before, after, nearest_turn(twist_between(before, after), twist)};
 }
 
-/// Curvature [1/m] of the drawn rod about a place at which edges meet, in the section of `edge`,
-/// one of the two; and where it has this value, a third of their difference beside the place.
+/// Curvature [1/m] of the drawn rod about a place at which edges meet, on the side of `edge`, one
+/// of the two, where sections are glued turned; and where it has this value, in the section there:
+/// a third of the edges' difference beside the place. The mean of the edges' sections is that a
+/// quarter of it beside.
 std::pair<double, Vec2> drawn_curvature(const RodLayout& rod, Index place, Index edge) {
   const Index before = rod.edge_before(place);
   const Index after = rod.edge_after(place);
@@ -201,9 +206,30 @@ std::pair<double, Vec2> drawn_curvature(const RodLayout& rod, Index place, Index
     }
   }
   const JointStrain drawn = drawn_joint<AngleCurvature>(a, b, twist).strain();
-  const double beside = (rod.edge_length[to_size(after)] - rod.edge_length[to_size(before)]) / 3.0;
-  return {rod.arc_length_at(place) + beside,
-          Vec2(drawn.kappa_1, drawn.kappa_2) / rod.voronoi_length(place)};
+  const double longer = rod.edge_length[to_size(after)] - rod.edge_length[to_size(before)];
+  const Eigen::Rotation2Dd in_section(-(1.0 / 3.0 - 0.25) * longer * rod.initial_twist);
+  return {rod.arc_length_at(place) + longer / 3.0,
+          in_section * Vec2(drawn.kappa_1, drawn.kappa_2) / rod.voronoi_length(place)};
+}
+
+/// Curvature [1/m] of the drawn rod at a node, in the section there, on the side before it where
+/// sections are glued turned: on the line through its value and that of a neighbour on its leg.
+Vec2 drawn_curvature_at_node(const RodLayout& rod, Index place, const std::vector<Index>& bounds) {
+  const auto [own_place, own] = drawn_curvature(rod, place, rod.edge_before(place));
+  const double missing = rod.arc_length_at(place) - own_place;
+  const auto is_bound = [&](Index other) {
+    return std::binary_search(bounds.begin(), bounds.end(), rod.position(other));
+  };
+  if (std::abs(missing) <= rod.same_place() || is_bound(place)) return own;
+  for (const Index other : {place - 1, place + 1}) {
+    const bool is_beyond_glue = other > place && rod.position(place) == 0;
+    if (is_beyond_glue || !rod.is_inner(other) || is_bound(other)) continue;
+    if (rod.clamp_at(other) != nullptr) continue;  // the shape may have a kink there
+    const Index edge = other < place ? rod.edge_after(other) : rod.edge_before(other);
+    const auto [other_place, value] = drawn_curvature(rod, other, edge);
+    return own + missing / (other_place - own_place) * (value - own);
+  }
+  return own;
 }
 
 /// Curvature [1/m] of the drawn rod where it bends beside a clamp: on the line through those at the
@@ -235,7 +261,8 @@ Vec2 drawn_curvature_at_clamp(const RodLayout& rod, const RodJoint& joint, const
 template <class Curvature>
 class SectionElements {
  public:
-  SectionElements(RodLayout& rod, Model& model) : rod_(rod), model_(model) {}
+  SectionElements(RodLayout& rod, Model& model)
+      : rod_(rod), model_(model), bounds_(leg_bounds(rod, model)) {}
 
   void add() {
     for (RodJoint& joint : rod_.joints) {
@@ -282,10 +309,8 @@ class SectionElements {
     }
     const auto drawn = drawn_joint<Curvature>(a, b, drawn_twist);
     set_rest(rod_, drawn.strain(), model_, joint);
-    const bool beside_clamp =
-        rod_.clamp_at(joint.place() - 1) != nullptr || rod_.clamp_at(joint.place() + 1) != nullptr;
-    if (rod_.natural_curvatures.empty() && beside_clamp) {
-      joint.natural_curvature = drawn_curvature(rod_, joint.place(), joint.before).second;
+    if (rod_.natural_curvatures.empty()) {
+      joint.natural_curvature = drawn_curvature_at_node(rod_, joint.place(), bounds_);
     }
     Joint stiffness = stiffness_of(rod_, joint, true);
     if constexpr (std::is_same_v<Curvature, AngleCurvature>) {
@@ -354,6 +379,7 @@ class SectionElements {
 
   RodLayout& rod_;
   Model& model_;
+  std::vector<Index> bounds_;  // of legs
 };
 
 /// Bending of a rod whose sections do not count.

@@ -29,9 +29,13 @@ class CellCurvature {
     const Vec3 jump = after - before;
     const double length = rod_.voronoi_length(place);
     if (jump.norm() * length <= kRounding) return Vec3::Zero();
-    const double share = 0.5 * rod_.edge_length[to_size(rod_.edge_before(place))] / length;
+    const double length_before = rod_.edge_length[to_size(rod_.edge_before(place))];
+    const double length_after = rod_.edge_length[to_size(rod_.edge_after(place))];
+    const double share = 0.5 * length_before / length;
     const Vec3 between = share * before + (1.0 - share) * after;
-    const double uncertain = change_before + change_after + (at(place) - between).norm();
+    const double uncertain = change_before + change_after + (at(place) - between).norm() +
+                             beyond_chords(before, length_before) +
+                             beyond_chords(after, length_after);
     return jump.norm() > kClear * uncertain ? jump : Vec3(Vec3::Zero());
   }
 
@@ -51,6 +55,12 @@ class CellCurvature {
     const double reach = (rod_.arc_length_at(place) - near) / (near - place_of(place + 2 * step));
     const Vec3 change = reach * (at(place + step) - at(place + 2 * step));
     return {at(place + step) + change, change.norm()};
+  }
+
+  /// By how much a circle's turn over a chord is more than its curvature [1/m].
+  static double beyond_chords(const Vec3& curvature, double length) {
+    const double turn = curvature.norm() * length;
+    return turn * turn / 24.0 * curvature.norm();
   }
 
   /// Where the rod has the curvature of the cell about a node [m].

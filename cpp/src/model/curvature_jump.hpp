@@ -19,8 +19,9 @@ struct CurvatureJump {
 ///
 /// On either side the curvature is that of the two nodes next to the place, extrapolated. It jumps
 /// if the two values differ by more than twice all that is uncertain: what the extrapolations
-/// change, and what the turn at the node itself differs from that of the two sides. On a smooth
-/// curve these are the larger by an order or two of the edge length.
+/// change, what the turn at the node itself differs from that of the two sides, and what chords
+/// turn more than the curve. On a smooth curve these are the larger by an order or two of the edge
+/// length.
 std::vector<CurvatureJump> drawn_jumps_of(const RodLayout& rod, const Model& model);
 
 /// Those of the natural curvature, and so of the curvature in any equilibrium: those of the drawn

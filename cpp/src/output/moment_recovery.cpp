@@ -6,7 +6,7 @@
 #include "der/core/index.hpp"
 #include "der/model/moment_place.hpp"
 #include "model/corner.hpp"
-#include "output/legs.hpp"
+#include "model/legs.hpp"
 
 namespace der {
 namespace {

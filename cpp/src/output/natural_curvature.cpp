@@ -5,7 +5,7 @@
 #include "der/core/index.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "model/curvature_jump.hpp"
-#include "output/legs.hpp"
+#include "model/legs.hpp"
 
 namespace der {
 namespace {

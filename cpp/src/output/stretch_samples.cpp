@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "der/core/index.hpp"
-#include "output/legs.hpp"
+#include "model/legs.hpp"
 
 namespace der {
 namespace {

@@ -1,4 +1,4 @@
-#include "output/legs.hpp"
+#include "model/legs.hpp"
 
 #include <algorithm>
 

@@ -1,12 +1,13 @@
 """Closed rods: Michell's ring, vibrations, a pressed ring, link and writhe, agreement of models."""
 
+from functools import cache
 from itertools import pairwise
 
 import der
 import numpy as np
 import pytest
 from references.bent_wire import Leg
-from references.kirchhoff_rod import Held, Rod, natural_shape, rotation, solve
+from references.kirchhoff_rod import Held, Rod, directors, natural_shape, rotation, solve
 from references.writhe import figure_eight, torus_knot
 from scipy.integrate import solve_bvp
 from spatial_scenes import critical, measured, rod_through, section
@@ -1012,16 +1013,19 @@ NATURAL = np.array([0.5, 0.3])  # its curvatures without stress; it has no twist
 AROUND = 2 * np.pi
 
 
-def glued_reference():
-    """The ring as an open rod from its clamp, opposite of the glue, around to it again."""
-    rate = GLUED / AROUND  # at which the drawn sections turn
+def drawn_section(s):
+    """Of the ring below at a distance from its clamp; the sections go on across the glue."""
+    along, turned = np.pi + s, GLUED / AROUND * (np.pi + s)
+    tangent = np.array([-np.sin(along), np.cos(along), 0.0])
+    first = np.cos(turned) * np.eye(3)[2] + np.sin(turned) * np.cross(tangent, np.eye(3)[2])
+    return np.column_stack([first, np.cross(tangent, first), tangent])
 
-    def frame(s):
-        """The drawn section at a distance from the clamp; the sections go on across the glue."""
-        along, turned = np.pi + s, rate * (np.pi + s)
-        tangent = np.array([-np.sin(along), np.cos(along), 0.0])
-        first = np.cos(turned) * np.eye(3)[2] + np.sin(turned) * np.cross(tangent, np.eye(3)[2])
-        return np.column_stack([first, np.cross(tangent, first), tangent])
+
+@cache
+def glued_reference(force=(0, 0, 0), moment=(0, 0, 0)):
+    """The ring as an open rod from its clamp, opposite of the glue, around to it again, with loads
+    at the glue that turn with the section from their drawn directions."""
+    rate = GLUED / AROUND  # at which the drawn sections turn
 
     def natural(share, s):
         turned = rate * (np.pi + s)
@@ -1031,16 +1035,39 @@ def glued_reference():
         bend_2 = NATURAL[1] * np.cos(back) + NATURAL[0] * np.sin(back)
         return (1 - share) * drawn + share * np.stack([-bend_2, bend_1, 0 * s])
 
-    start, end = (Held((-1.0, 0.0, 0.0), frame(s)) for s in (0.0, AROUND))
+    start, end = (Held((-1.0, 0.0, 0.0), drawn_section(s)) for s in (0.0, AROUND))
+    drawn = drawn_section(np.pi)
 
     def rod(share):
         return Rod(AROUND, (1.0, 1.0), 0.8, 1e4, lambda s: natural(share, s))
 
+    def wrench(section, share):
+        return share * np.concatenate([section @ drawn.T @ load for load in (force, moment)])
+
     found = natural_shape(rod(0.0), start, np.linspace(0, 1, 5), 16)
     for share in (0.25, 0.5, 0.75, 1.0):
-        there = solve(rod(share), start, end, found)
+        there = solve(rod(share), start, end, found, inside=[(1, wrench)], share=share)
         found = there.solution
     return there
+
+
+def ring_glued_turned(count, finer, loads=(), supports=()):
+    """The scene of the reference; edges are finer on one side of the glue."""
+    after = np.linspace(0, np.pi, finer * count // 2, endpoint=False)
+    before = np.linspace(np.pi, AROUND, count // 2, endpoint=False)
+    angle = np.concatenate([after, before])
+    points = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+    return ring_through(
+        points,
+        section([0, 0, 1], EA=1e4, EI=1.0, GJ=0.8),
+        {
+            "initial_twist": GLUED / length_of(points),
+            "natural_twist": 0,
+            "natural_curvature": NATURAL.tolist(),
+        },
+        supports=[{"rod": "rod", "at": {"node": len(after)}, "clamp": True}, *supports],
+        loads=list(loads),
+    )
 
 
 #: Places beside the glue, as shares of the length, and distances from the clamp in the reference.
@@ -1075,27 +1102,15 @@ def test_natural_curvature_where_a_ring_is_glued_turned(fitted_order, finer):
     sizes = (96, 192, 384)
     errors = []
     for count in sizes:
-        after = np.linspace(0, np.pi, finer * count // 2, endpoint=False)
-        before = np.linspace(np.pi, AROUND, count // 2, endpoint=False)
-        angle = np.concatenate([after, before])
-        points = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
-        length = length_of(points)
+        scene = ring_glued_turned(count, finer)
+        points = np.array(scene["rods"][0]["points"])
+        angle = np.append(np.arctan2(points[:, 1], points[:, 0]) % AROUND, AROUND)
         edges = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
         arcs = np.concatenate([[0.0], np.cumsum(edges)])
-        scene = ring_through(
-            points,
-            section([0, 0, 1], EA=1e4, EI=1.0, GJ=0.8),
-            {
-                "initial_twist": GLUED / length,
-                "natural_twist": 0,
-                "natural_curvature": NATURAL.tolist(),
-            },
-            supports=[{"rod": "rod", "at": {"node": len(after)}, "clamp": True}],
-        )
         probes = {
             f"{quantity}-{name}": {
                 **{"rod": "rod", "quantity": quantity, "side": side},
-                "at": float(np.interp(share * AROUND, [*angle, AROUND], arcs)),
+                "at": float(np.interp(share * AROUND, angle, arcs)),
             }
             for quantity in quantities
             for name, (share, side, _, _) in BESIDE_GLUE.items()
@@ -1109,6 +1124,51 @@ def test_natural_curvature_where_a_ring_is_glued_turned(fitted_order, finer):
         errors = errors[:, :, [k for k, q in enumerate(quantities) if q not in ("twist", "torque")]]
     for of_place in errors.reshape(len(sizes), -1).T:
         assert fitted_order([1 / n for n in sizes], of_place) > 1.9
+
+
+def spring_moment(k, drawn, section):
+    """Of 1/2 k (swing^2 + twist^2), exerted on a section (docs/space.md)."""
+    before, now = drawn[:, 2], section[:, 2]
+    axis = np.cross(before, now)
+    sine, cosine = np.linalg.norm(axis), before @ now
+    swing = np.arctan2(sine, cosine)
+    moved = rotation(axis / sine, swing) @ drawn[:, 0]
+    twist = np.arctan2(np.cross(moved, section[:, 0]) @ now, moved @ section[:, 0])
+    return -k * (swing * axis / sine + twist * (before + now) / (1.0 + cosine))
+
+
+@pytest.mark.parametrize("finer", [1, 2], ids=["even", "finer on one side"])
+@pytest.mark.parametrize(
+    ("spring", "size"), [(0.0, 1.0), (3.0, 4.0)], ids=["follow", "on a spring"]
+)
+def test_loads_and_springs_where_a_ring_is_glued_turned(fitted_order, finer, spring, size):
+    """A force that follows, with a moment that follows, or with a spring against turning and the
+    moment of a fixed direction that has the same sum. The ring has several equilibria: the loads
+    are such that the search from the drawn shape ends in that of the reference."""
+    force, moment = size * np.array([0.1, 0.08, -0.12]), size * np.array([0.08, -0.1, 0.06])
+    there = glued_reference(tuple(force), tuple(moment))
+    state = there.at(np.array([np.pi]))[:, 0]
+    frame, drawn = directors(state[3:7]), drawn_section(np.pi)
+    exact = np.concatenate([state[:3], frame[:, 2]])
+    here = {"rod": "rod", "at": "start"}
+    loads = [{"point_force": {**here, "force": force.tolist(), "follower": True}}]
+    supports = []
+    if spring:
+        fixed = frame @ drawn.T @ moment - spring_moment(spring, drawn, frame)
+        loads.append({"moment": {**here, "moment": fixed.tolist()}})
+        supports.append({**here, "spring": {"rotational_stiffness": spring}})
+    else:
+        loads.append({"moment": {**here, "moment": moment.tolist(), "follower": True}})
+    sizes = (48, 96, 192)
+    errors = []
+    for count in sizes:
+        scene = ring_glued_turned(count, finer, loads, supports)
+        quantities = ("x", "y", "z", "tx", "ty", "tz")
+        values, _ = measured(scene, ["start"], quantities)
+        errors.append(np.abs(values[0] - exact).reshape(2, 3).max(axis=1))
+    assert np.max(errors[0]) < 20.0 / sizes[0] ** 2
+    for error in np.transpose(errors):
+        assert fitted_order([1 / n for n in sizes], error) > 1.9
 
 
 def moved_by_beam_theory(stiffness, turned, force, place):

@@ -81,6 +81,41 @@ def test_corners_in_their_plane(curvature):
     assert answers[1] == pytest.approx(answers[0], abs=1e-9)
 
 
+@pytest.mark.parametrize("drawn", ["straight", "bent"])
+@pytest.mark.parametrize("loaded", ["follower", "moment", "spring", "clamp"])
+def test_natural_curvatures_that_jump_in_their_plane(drawn, loaded):
+    """What acts or holds at the node of the jump.
+
+    The follower force in space turns with the section. That of the plane is the mean of two forces
+    that turn with the edges, which turn by 0.05 rad from one to the next: it is smaller by a share
+    of 0.05^2/8, which moves the rod by some tenths of that.
+    """
+    angle = np.cumsum([0.0] * 7 + [0.07] * 7) if drawn == "bent" else np.zeros(14)
+    steps = 0.07 * np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+    here = {"rod": "rod", "at": {"node": 7}}
+    loads = tip_force(0.3, 0.5, 0)
+    supports = [{**START, "clamp": True}]
+    if loaded == "follower":
+        loads.append({"point_force": {**here, "force": [0.2, 1.0, 0], "follower": True}})
+    elif loaded == "moment":
+        loads.append({"moment": {**here, "moment": [0, 0, -0.8]}})
+    else:
+        held = {"spring": {"rotational_stiffness": 3.0}} if loaded == "spring" else {"clamp": True}
+        supports.append({**here, **held})
+    answers = []
+    for model in ("planar", "spatial"):
+        rod = rod_through(
+            np.vstack([np.zeros(3), np.cumsum(steps, axis=0)]),
+            section([0, 1, 0], EI=1.0, GJ=0.7),
+            supports,
+            loads=loads,
+            rod={"natural_curvature": [[1.3 * (i > 7) + 0.65 * (i == 7), 0] for i in range(15)]},
+        )
+        answers.append(measured({**rod, "model": model}, PLACES, PLANAR)[0])
+    bound = 1e-4 if loaded == "follower" else 1e-9
+    assert answers[1] == pytest.approx(answers[0], abs=bound)
+
+
 def test_modes_of_the_plane_are_among_those_in_space():
     def squares(model, count):
         scene = planar_scene(model, curved=True, analysis={"modes": {"count": count}})

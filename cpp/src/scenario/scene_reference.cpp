@@ -66,7 +66,8 @@ a planar rod bends toward its height. From edge to edge the directors go along t
 `natural_curvature` is a number, or a list of one for each node, in a scene of two components; in a
 scene of three it is a pair `[k1, k2]`, or a list with a pair for each node. A number still means a
 curvature about z there, of a rod drawn without twist at one z; 0 is a rod that is straight without
-stress. `natural_twist` is a number, or a list of one for each node.
+stress. At the node of a jump a list has the mean of the cell there: of edges of one length, half of
+the sum of both sides. `natural_twist` is a number, or a list of one for each node.
 )";
 
 std::string anchor(const TableInfo& table) {

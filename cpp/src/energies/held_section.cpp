@@ -203,9 +203,15 @@ bool HeldSection::converge(double longest) {
 
 /// Solves for z and p, first from where they would be if spring and way had the same axes, then
 /// downhill from where the rod on the way does not bend. Bent or twisted so far that it would
-/// buckle, it may have no place nearby where E is least: the search ends before.
+/// buckle, it may have no place nearby where E is least: the search ends before. Without springs
+/// the rod on the way does not bend.
 void HeldSection::settle() {
   const Place start = on_the_way(place_, Vec3::Zero());
+  if (!holds(spring_)) {
+    place_ = start;
+    settled_ = start.way.norm() < kLastStep;
+    return;
+  }
   const Mat3 springs = spring_.stiffness.asDiagonal();
   const Mat3 in_series = (Mat3::Identity() + springs * spring_.compliance).inverse() * springs;
   moment_ = in_series * start.from_drawn.strain;

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 
 from der import __version__, commands
 from der.errors import DerError, DivergedError, NotConvergedError
+from der.interrupts import end_with_interrupts, take_one_interrupt
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -28,6 +29,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         In place of those of the process.
     """
     warnings.showwarning = _print_warning
+    takes_one_interrupt = take_one_interrupt()
+    try:
+        return _execute(arguments)
+    finally:
+        if takes_one_interrupt:
+            end_with_interrupts()
+
+
+def _execute(arguments: Sequence[str] | None) -> int:
     try:
         try:
             chosen = _make_parser().parse_args(arguments)
@@ -42,7 +52,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"error: {error}", file=sys.stderr)
         return 3
     except (DerError, OSError, ValueError, ModuleNotFoundError) as error:
-        print(f"error: {error}", file=sys.stderr)
+        print(f"error: {_told(error)}", file=sys.stderr)
         return 1
     except MemoryError as error:
         print(f"error: the memory does not suffice: {error}", file=sys.stderr)
@@ -50,6 +60,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return 130
+
+
+def _told(error: Exception) -> str:
+    """Return the message of an error; the system's own begin with a number."""
+    if isinstance(error, OSError) and error.filename is not None:
+        return f"{error.filename}: {error.strerror}"
+    return str(error)
 
 
 def _print_warning(message: Warning | str, *_: object, **__: object) -> None:

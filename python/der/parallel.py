@@ -20,8 +20,10 @@ from typing import Generic, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from der import _core
 from der._core import RunRecording, Scenario
 from der.errors import DerError
+from der.interrupts import take_all_interrupts, take_one_interrupt
 from der.progress import ProgressFunction
 from der.result import Result
 from der.simulation import Simulation, recorded_result
@@ -34,6 +36,7 @@ Key = TypeVar("Key", bound=Hashable)
 Work = TypeVar("Work")
 Done = TypeVar("Done")
 Found = TypeVar("Found")
+_Block = TypeVar("_Block", bound="EndsWithBlock")
 
 
 @dataclass(frozen=True)
@@ -106,6 +109,15 @@ class EndsWithBlock(Executor):
     """
 
     _stop: _Stop
+    _takes_one_interrupt = False
+
+    def __enter__(self: _Block) -> _Block:
+        """Take Ctrl-C once, which ends the block, until the workers have ended.
+
+        A second one would leave threads of the engine behind, which end the process by a signal.
+        """
+        self._takes_one_interrupt = take_one_interrupt()
+        return super().__enter__()
 
     def __exit__(
         self,
@@ -116,7 +128,11 @@ class EndsWithBlock(Executor):
         """Wait for the workers, which end at their next tick if the block fails."""
         if kind is not None:
             self._stop.set()
-        self.shutdown(cancel_futures=kind is not None)
+        try:
+            self.shutdown(cancel_futures=kind is not None)
+        finally:
+            if self._takes_one_interrupt:
+                take_all_interrupts()
 
 
 class Threads(EndsWithBlock, ThreadPoolExecutor):
@@ -333,7 +349,7 @@ def attempt(
             progress(simulation.share_done())
 
     try:
-        simulation = Simulation(scenario)
+        simulation = _SilentSimulation(scenario)
         if start is not None:
             simulation.positions[:] = start
         recording = simulation.record(tick=beat, out=out)
@@ -341,6 +357,13 @@ def attempt(
         return Outcome(None, error, time.thread_time() - begun)
     found = read(scenario, recording)
     return Outcome(found, recording.error, time.thread_time() - begun)
+
+
+class _SilentSimulation(Simulation):
+    """One that does not issue its scene's warnings: the result has them, maybe thousands alike."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        _core.Simulation.__init__(self, scenario)
 
 
 class _Share:

@@ -181,3 +181,32 @@ def test_ctrl_c_ends_a_sweep_of_searches(tmp_path):
         lambda: der.sweep(SEARCH, {"loads.0.point_force.force.0": [-1e5, -2e5]}, out=tmp_path / "s")
     )
     assert len(der.load_sweep(tmp_path / "s").rows) == 0
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.01, 0.03])
+def test_a_second_ctrl_c_changes_nothing(tmp_path, gap):
+    """It came while threads of the engine were to end, which the process did not outlive."""
+    scene = tmp_path / "search.yaml"
+    scene.write_text(der.Scenario.from_dict(SEARCH).to_yaml())
+    values = ",".join(str(-1e5 * k) for k in range(1, 9))
+    out = tmp_path / "s"
+    sweep = subprocess.Popen(
+        [
+            *(sys.executable, "-m", "der", "sweep", str(scene), "--jobs", "2"),
+            *("--vary", f"loads.0.point_force.force.0={values}", "--out", str(out)),
+        ],
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    deadline = time.monotonic() + 60.0
+    while not is_sweep(out):
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    time.sleep(0.5)
+    for _ in range(2):
+        sweep.send_signal(signal.SIGINT)
+        time.sleep(gap)
+    errors = sweep.communicate(timeout=60)[1]
+    assert sweep.returncode == 130
+    assert errors.startswith("interrupted: ")
+    assert "Traceback" not in errors

@@ -699,13 +699,130 @@ def test_a_file_that_is_no_sweep(cantilever, tmp_path):
         der.sweep(cantilever, {FORCE: [-1.0]}, out=tmp_path, resume=True)
 
 
-def test_findings_that_have_no_columns_left(cantilever):
+def test_findings_that_have_no_columns_left():
+    """The member that has them is a failure, and the others are kept."""
+
+    def finds(member, count):
+        found = {f"x{i}": float(i) for i in range(count)}
+        return {"member": member, "status": "completed", "seconds": 0.5, "version": "0", **found}
+
     store = Store()
     store.create({}, [FORCE])
-    table = Table({f"x{i}": Column(f"x{i}", "found") for i in range(2000)})
-    with pytest.raises(OSError, match=r"more than the 2000 columns .* ask for fewer probes"):
-        store.write(table, [FORCE], {})
+    columns = {f"x{i}": Column(f"x{i}", "found") for i in range(2000)}
+    rows = [finds(0, 3), finds(1, 2000), finds(2, 4)]
+    store.write(Table(columns, rows), [FORCE], dict.fromkeys(range(3), (-1.0,)))
+    found = store.read([Column("status", "run"), Column("x2", "found")], store.last())
+    assert found == [("completed", 2.0), ("too_many_columns", None), ("completed", 2.0)]
+    (message,) = store.read([Column("message", "run")], store.last())[1]
+    assert message == (
+        "it finds 1997 columns more, and a table has 2000 at most: ask for fewer probes, modes or "
+        "bifurcations"
+    )
+    assert "x4" not in {column.name for column in store.columns}
     store.close()
+
+
+#: A strip loaded in its stiff plane, out of which it buckles sideways; at -1 it does not.
+STRIP = {
+    "rods": [
+        {
+            "name": "strip",
+            "nodes": 11,
+            "from": [0, 0],
+            "to": [1, 0],
+            "cross_section": {
+                "stiffness": {"EA": 1e6, "EI1": 1, "EI2": 100, "GJ": 1, "mass_per_length": 1}
+            },
+        }
+    ],
+    "supports": [{"rod": "strip", "at": "start", "clamp": True}],
+    "loads": [{"point_force": {"rod": "strip", "at": "end", "force": [0, -20]}}],
+    "output": {"probes": {"tip_y": {"rod": "strip", "at": "end", "quantity": "y"}}},
+}
+
+
+@pytest.mark.parametrize(
+    ("analysis", "column", "of_run"),
+    [
+        ("static", "stability out of plane", lambda run: run.summary["out_of_plane"]["stability"]),
+        (
+            {"modes": {"count": 2}},
+            "growth rate out of plane",
+            lambda run: run.summary["out_of_plane"]["growth_rate"],
+        ),
+        (
+            {"buckling": {"count": 1}},
+            "load factor out of plane",
+            lambda run: run.summary["out_of_plane"]["load_factor"],
+        ),
+        (
+            {"continuation": {"to": 1.0}},
+            "factor, out_of_plane 1",
+            lambda run: run.path.factor[run.path.rows("out_of_plane")[0]],
+        ),
+    ],
+    ids=["static", "modes", "buckling", "continuation"],
+)
+def test_rows_tell_what_a_run_warns_of(analysis, column, of_run):
+    scene = der.Scenario.from_dict({**STRIP, "analysis": analysis})
+    run = der.run(scene)
+    assert run.summary["warnings"]
+    sweep = der.sweep(scene, {FORCE: [-20.0]})
+    (row,) = sweep.rows
+    assert row[column] == of_run(run)
+    assert row["warnings"].splitlines() == run.summary["warnings"]
+    assert "1 member, none failed, 1 with warnings (column warnings)" in sweep.summary()
+
+
+def test_members_without_warnings(cantilever):
+    sweep = der.sweep({**STRIP, "analysis": "static"}, {FORCE: [-0.1, -20.0]})
+    assert [row["stability out of plane"] for row in sweep.rows] == ["stable", "unstable"]
+    assert sweep.rows[0]["warnings"] is None
+    assert sweep.warned == 1
+    assert "warnings" not in der.sweep(cantilever, {FORCE: [-1.0]}).values
+
+
+def test_warnings_of_a_scene_are_issued_once(cantilever):
+    """The rows have them, too."""
+    cantilever["loads"].append({"point_force": {"rod": "arm", "at": "start", "force": [0, -1]}})
+    with pytest.warns(der.DerWarning, match="the support takes it up") as issued:
+        sweep = der.sweep(cantilever, {FORCE: [-1.0, -2.0, -3.0]})
+    assert len(issued) == 1
+    assert sweep.warned == 3
+
+
+def test_failures_of_the_surroundings_are_tried_again(cantilever, tmp_path):
+    """As a disk that was full, or a folder that was not there; others are not."""
+    cantilever["start_from"] = str(tmp_path / "straight")
+    vary = {"rods.0.cross_section.stiffness.EI": [1.0, -1.0]}
+    first = der.sweep(cantilever, vary, out=tmp_path / "s")
+    assert [row["status"] for row in first.rows] == ["io_error", "invalid_scene"]
+    start = {key: value for key, value in cantilever.items() if key != "start_from"}
+    der.run(start, out=tmp_path / "straight")
+    again = der.sweep(cantilever, vary, out=tmp_path / "s", resume=True)
+    assert [row["status"] for row in again.rows] == ["static_converged", "invalid_scene"]
+    assert [row["member"] for row in again.rows] == [0, 1]
+
+
+def test_a_sweep_that_another_version_began_says_so(cantilever, tmp_path):
+    der.sweep(cantilever, {FORCE: [-1.0]}, out=tmp_path)
+    base = sqlite3.connect(tmp_path / FILE)
+    with base:
+        base.execute("UPDATE sweep SET value = '0.0.9' WHERE key = 'version'")
+    base.close()
+    with pytest.warns(der.DerWarning, match=r"was begun by der 0\.0\.9, and this is der"):
+        der.sweep(cantilever, {FORCE: [-1.0, -2.0]}, out=tmp_path, resume=True)
+
+
+def test_a_wrong_number_of_jobs_begins_nothing(cantilever, tmp_path):
+    with pytest.raises(ValueError, match="jobs must be"):
+        der.sweep(cantilever, {FORCE: [-1.0]}, out=tmp_path / "s", jobs=0)
+    assert not (tmp_path / "s").exists()
+
+
+def test_a_seed_needs_a_sample(cantilever):
+    with pytest.raises(ValueError, match="a seed is where a sample starts"):
+        der.sweep(cantilever, {FORCE: [-1.0]}, seed=3)
 
 
 def test_exit_code_if_every_member_fails(cantilever, tmp_path, capsys):

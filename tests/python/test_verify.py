@@ -844,7 +844,7 @@ def test_an_event_that_only_finer_meshes_find_is_flagged(column):
     assert math.isnan(event.value)
     assert event.flagged
     assert event.to_dict()["value"] is None
-    found = Verification(fine, (event,), (), (), (), 0.0)
+    found = Verification(fine, (event,), (), (), (), (), 0.0)
     assert str(found).splitlines()[3].split()[:4] == ["factor,", "bifurcation", "1", "-"]
     assert len(verifier.notes()) == 1
 
@@ -879,3 +879,19 @@ def test_buckling_loads_have_bars(column):
         assert error <= value.error_bar <= 3 * error
         assert value.extrapolated == pytest.approx((k * np.pi) ** 2, rel=1e-3)
     assert not found.flagged
+
+
+def test_warnings_of_the_run_are_told(column):
+    """A column that buckles out of its plane first; and the bars of where it does."""
+    stiffness = column["rods"][0]["cross_section"]["stiffness"]
+    EI = stiffness.pop("EI")
+    stiffness.update({"EI1": EI / 4, "EI2": EI, "GJ": EI})
+    column["analysis"] = {"continuation": {"to": 5.0}}
+    found = der.verify(column)
+    (warning,) = found.warnings
+    assert "the path leaves its plane" in warning
+    assert f"Warning: {warning.rstrip('.')}." in str(found)
+    assert found.to_dict()["warnings"] == [warning]
+    factor = found["factor", "out_of_plane 1"]
+    # Pinned in the plane, held upright by a fork out of it: pi^2 EI1 / L^2 of a pinned column.
+    assert abs(factor.value - np.pi**2 * EI / 4) < factor.error_bar + 1e-3

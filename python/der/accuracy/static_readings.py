@@ -18,6 +18,8 @@ from der.analyses import Path
 from der.result import Result
 
 _UNITS = array_units()
+#: What modes and linear buckling of a plane tell of motion out of it, with its unit.
+_OUT_OF_PLANE = {"growth_rate": _UNITS["modes/growth_rates"], "load_factor": ""}
 #: The factor is where the scene wants it, to this share of its range.
 _SAME_FACTOR = 1e-9
 
@@ -30,9 +32,11 @@ class Reading:
     ----------
     probe
         Name of a probe, or of what an analysis itself finds: ``factor`` on a path, ``frequency 1``
-        and ``growth rate 1`` of modes, ``load factor 1`` of buckling.
+        and ``growth rate 1`` of modes, ``load factor 1`` of buckling; ``growth rate out of plane``
+        and ``load factor out of plane`` of planar models.
     what
-        ``final``; on a path the place: ``fold 1``, ``bifurcation 1``, counted along it, ``end``
+        ``final``; on a path the place: ``fold 1``, ``bifurcation 1``, ``out_of_plane 1``, where
+        directions out of the plane lose or regain their stability, counted along it, ``end``
         where the factor reaches its last value, ``opposite limit`` where it reaches twice the
         first value less the last.
     unit
@@ -84,6 +88,11 @@ def _finals(result: Result) -> Iterator[Reading]:
     if result.buckling is not None:
         for number, factor in enumerate(result.buckling.load_factors, 1):
             yield _final(f"load factor {number}", "", factor)
+    if result.scenario.analysis in ("modes", "buckling"):
+        out_of_plane = result.summary.get("out_of_plane", {})
+        for key, unit in _OUT_OF_PLANE.items():
+            if key in out_of_plane:
+                yield _final(f"{key.replace('_', ' ')} out of plane", unit, out_of_plane[key])
 
 
 def _final(name: str, unit: str, value: float) -> Reading:
@@ -104,7 +113,7 @@ def _places(result: Result, path: Path) -> list[tuple[str, int]]:
     """Return the places of the first branch with their rows, in the order of the path."""
     places = [
         (f"{event} {number}", int(row))
-        for event in ("fold", "bifurcation")
+        for event in ("fold", "bifurcation", "out_of_plane")
         for number, row in enumerate(path.rows(event), 1)
     ]
     last = int(np.flatnonzero(path.branch == 0)[-1])

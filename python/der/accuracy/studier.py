@@ -34,6 +34,7 @@ from der.accuracy.study_reference import REFERENCE_STEPPER, reference_tasks
 from der.accuracy.study_result import Study
 from der.accuracy.study_runs import DynamicRuns, StaticRuns
 from der.accuracy.study_trial import Trial
+from der.errors import warn
 from der.parallel import Task, Workers, total_weight
 from der.progress import ProgressFunction
 from der.result import Result
@@ -100,6 +101,7 @@ def study(
     """
     check_arguments(nodes, steps, steppers, max_seconds)
     given = as_scenario(scenario)
+    warn(given.warnings)
     scene = with_default_probes(given)
     notes = [] if scene is given else [DEFAULT_PROBES]
     if scene.is_static and (steps is not None or steppers is not None):

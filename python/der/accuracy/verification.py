@@ -25,6 +25,8 @@ class Verification:
         The meshes that were run, coarsest first, such as ``51 nodes``; one entry if not refined.
     steps
         The steps that were run, such as ``0.01 s``; empty for a static scene.
+    warnings
+        Those of the run of the scene as it is written, in ``summary.json``.
     notes
         Notes for the reader, such as what could not be refined and which run failed.
     cpu_seconds
@@ -35,6 +37,7 @@ class Verification:
     values: tuple[VerifiedValue, ...]
     meshes: tuple[str, ...]
     steps: tuple[str, ...]
+    warnings: tuple[str, ...]
     notes: tuple[str, ...]
     cpu_seconds: float
 
@@ -73,6 +76,7 @@ class Verification:
             "meshes": list(self.meshes),
             "steps": list(self.steps),
             "values": [value.to_dict() for value in self.values],
+            "warnings": list(self.warnings),
             "notes": list(self.notes),
             "cpu_seconds": self.cpu_seconds,
         }
@@ -87,6 +91,9 @@ class Verification:
             lines.append(f"Space: {', '.join(self.meshes)}.")
         if len(self.steps) > 1:
             lines.append(f"Time: {', '.join(self.steps)}.")
+        # The scene's own are Python's warnings as soon as it is read.
+        of_run = [text for text in self.warnings if text not in self.scenario.warnings]
+        lines += [f"Warning: {warning.rstrip('.')}." for warning in of_run]
         lines += [f"Note: {note.rstrip('.')}." for note in self.notes]
         lines.append(summary_line(shown, self.order_not_measured, hidden, self.cpu_seconds))
         return "\n".join(lines)

@@ -17,6 +17,7 @@ from der.accuracy.time_levels import TimeLevels
 from der.accuracy.verification import Verification
 from der.accuracy.verification_runs import VerificationRuns, run_levels
 from der.accuracy.verified_value import SOLVER_FACTOR, VerifiedValue
+from der.errors import warn
 from der.parallel import Workers
 from der.progress import ProgressFunction
 from der.result import Result
@@ -80,6 +81,7 @@ def verify(
     if levels is not None and (levels := whole_number("levels", levels)) not in (2, 3):
         raise ValueError(f"levels must be 2 or 3, got {levels}")
     given = as_scenario(scenario)
+    warn(given.warnings)
     scene = with_default_probes(given)
     runner = run_levels(scene, levels, Workers(jobs, progress))
     runs = runner.runs
@@ -93,6 +95,7 @@ def verify(
         values=tuple(values),
         meshes=tuple(runs.meshes),
         steps=tuple(runs.steps),
+        warnings=tuple(runs.base.summary["warnings"]),
         notes=(*runs.notes, *_notes_on_angles(runs, scene), *notes),
         cpu_seconds=runs.cpu_seconds,
     )

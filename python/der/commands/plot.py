@@ -42,7 +42,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--probes",
         nargs="+",
         metavar="NAME",
-        help="probes to draw (default: all); of a sweep any columns, such as tip_y.max",
+        help="probes to draw (default: all); of a sweep any columns, such as tip_y.max (default: "
+        "what the analysis finds and the probes, six of them)",
     )
 
 

@@ -14,6 +14,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from der.errors import warn
 from der.plotting.style import (
     FIGURE_TITLE,
     PALETTE,
@@ -111,7 +112,17 @@ def _names(sweep: SweepData, columns: Sequence[str] | None) -> list[str]:
     if columns is None:
         probes = [c.name for c in sweep.columns if c.kind == "probe" and c.name.endswith(".final")]
         found = [c.name for c in sweep.columns if c.kind == "found" and _is_number(sweep, c.name)]
-        return (found + probes)[:_MOST_COLUMNS] or ["seconds"]
+        names = found + probes
+        if len(names) > _MOST_COLUMNS:
+            warn(
+                [
+                    f"the first {_MOST_COLUMNS} of {len(names)} columns are drawn, such as "
+                    f"'{names[0]}': name others, as with --probes (columns=)"
+                ]
+            )
+        return names[:_MOST_COLUMNS] or ["seconds"]
+    if len(columns) == 0:
+        raise ValueError("no column to draw is named: name one, or leave the names out")
     try:
         listed = [columns] if isinstance(columns, str) else columns
         names = [sweep.column(name).name for name in listed]

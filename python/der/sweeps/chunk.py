@@ -17,19 +17,21 @@ from der.errors import DerError
 from der.parallel import attempt
 from der.simulation import recorded_result
 from der.sweeps.design import Member
-from der.sweeps.table import Column, Table
+from der.sweeps.table import BROKEN, WARNINGS, Column, Table, failed_row
 
-#: Status of a member whose run met an error that is none of der's, such as a lack of memory.
-BROKEN = "error"
-#: Status of a member that brought down every process that tried it.
-LOST = "worker_lost"
 #: What is told of each probe.
 _TOLD, _WHEN = ("final", "min", "max"), ("t_min", "t_max")
 _told = itemgetter(*_TOLD, *_WHEN)
 #: How many columns a probe has, and how many error bars.
 COLUMNS_OF_PROBE, BARS_OF_PROBE = len(_TOLD) + len(_WHEN), len(_TOLD)
 #: What a row has of the summary of a run: to ask for all of it takes as long as the rest of a row.
-_OF_SUMMARY = ("status", "unreliable_from", "stability", "steps", "newton_iterations", "probes")
+_OF_SUMMARY = (
+    *("status", "unreliable_from", "stability", "out_of_plane", "warnings"),
+    *("steps", "newton_iterations", "probes"),
+)
+#: Analyses that find more than probes. To make a result of a run takes a tenth of the time of an
+#: equilibrium, which needs none.
+_THAT_FIND = ("modes", "buckling", "continuation")
 #: Run folders in a folder: file systems are slow with more.
 _FOLDERS = 1000
 
@@ -96,17 +98,6 @@ def run_chunk(chunk: Chunk, tick: Callable[[], None] | None = None) -> Table:
     return table
 
 
-def failed_row(number: int, status: str, message: str, seconds: float = 0.0) -> dict[str, object]:
-    """Return the row of a member that has no result."""
-    return {
-        "member": number,
-        "status": status,
-        "message": message,
-        "seconds": seconds,
-        "version": __version__,
-    }
-
-
 def run_folder(frames: str | Path, number: int) -> Path:
     """Return the run folder of a member."""
     return Path(frames) / f"{number // _FOLDERS:04d}" / f"{number:07d}"
@@ -146,9 +137,11 @@ def _run_member(
         table.rows.append(failed_row(number, outcome.error.status, str(outcome.error), seconds))
     else:
         _add_row(table, number, outcome.value(), message, seconds)
-    if outcome.result is not None:  # a failed run has cost something
+    if outcome.result is not None:  # a failed run has cost something, and may have warned
         for name in ("steps", "newton_iterations"):
             table.rows[-1][name] = outcome.result.summary[name]
+        if warnings := outcome.result.summary["warnings"]:
+            table.put(WARNINGS, "found", "", "\n".join(warnings))
     if verification is not None:
         _add_error_bars(table, verification, outcome.value())
 
@@ -174,10 +167,9 @@ class _Reading:
 
 
 def _read(scenario: Scenario, recording: RunRecording) -> _Reading:
-    # To make a result of it takes a tenth of the time of an equilibrium, and few need one.
     summary = {key: recording.summary_value(key) for key in _OF_SUMMARY}
     found: tuple[Reading, ...] = ()
-    if recording.data and recording.error is None:
+    if scenario.analysis in _THAT_FIND and recording.error is None:
         readings = static_readings(recorded_result(scenario, recording))
         found = tuple(
             reading for label, reading in readings.items() if label not in summary["probes"]
@@ -203,8 +195,11 @@ def _add_row(table: Table, number: int, reading: _Reading, message: str, seconds
             for own, unit in zip(names, units, strict=True):
                 table.add(Column(own, "probe", unit))
         row.update(zip(names, _told(probe), strict=True))
-    if not reading.found and summary["stability"] is not None:
+    if summary["stability"] is not None:
         table.put("stability", "found", "", summary["stability"])
+    out_of_plane = (summary["out_of_plane"] or {}).get("stability", "not_tested")
+    if out_of_plane != "not_tested":
+        table.put("stability out of plane", "found", "", out_of_plane)
     for found in reading.found:
         table.put(found.label, "found", found.unit, found.value)
 

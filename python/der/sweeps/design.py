@@ -143,6 +143,8 @@ def make_design(
             raise ValueError("a sample takes no values side by side: leave out zip or sample")
         sampling, samples = _parse_sample(sample)
         return Design(tuple(values), tuple(values.values()), False, sampling, samples, seed)
+    if seed != 0:
+        raise ValueError("a seed is where a sample starts: add one, as sobol:256, or leave it out")
     for path, own in values.items():
         if isinstance(own, Range):
             raise ValueError(

@@ -15,6 +15,7 @@ from multiprocessing.synchronize import Event
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from der.errors import warn
 from der.parallel import EndsWithBlock, Threads, checked_jobs
 from der.sweeps.chunk import Chunk, run_chunk
 from der.sweeps.table import Table
@@ -85,6 +86,8 @@ def place_for(executor: AnyExecutor | None, jobs: int | None) -> Iterator[Place]
         client: Any = executor
         if client.status != "running":
             raise ValueError(f"the Dask client is {client.status}: connect a new one")
+        if not client.nthreads():
+            warn(["the Dask cluster has no workers yet: the sweep waits for them"])
         yield Place(
             client.get_executor(pure=False),
             run_chunk,

@@ -17,7 +17,16 @@ from typing import Any
 
 from der.errors import DerError
 from der.sweeps.design import Design, Member
-from der.sweeps.table import RUN_COLUMNS, Column, Kind, Table
+from der.sweeps.table import (
+    OF_SURROUNDINGS,
+    RUN_COLUMNS,
+    TOO_WIDE,
+    WARNINGS,
+    Column,
+    Kind,
+    Table,
+    failed_row,
+)
 from der.sweeps.values import stored
 
 #: The file in the folder of a sweep, and the one that is locked while a sweep goes on there.
@@ -153,6 +162,12 @@ class Store:
         rows = self._ask("SELECT design FROM requests ORDER BY rowid")
         return [json.loads(design) for (design,) in rows]
 
+    def forget_failures_of_surroundings(self) -> None:
+        """Take away the rows of members that are to be tried again."""
+        places = ", ".join("?" * len(OF_SURROUNDINGS))
+        with self._transaction():
+            self._base.execute(f"DELETE FROM runs WHERE status IN ({places})", OF_SURROUNDINGS)
+
     def finished(self, paths: Iterable[str]) -> set[tuple[Any, ...]]:
         """Return the values of the parameters of all members that have a row."""
         names = ", ".join(map(_quoted, paths))
@@ -168,6 +183,7 @@ class Store:
         paths, values
             The parameters, and by number those of each member.
         """
+        table = self._that_fits(table)
         run, found = [column.name for column in RUN_COLUMNS], list(table.columns)
         names = [*run, *paths, *found]
         places = ", ".join("?" * len(names))
@@ -181,6 +197,26 @@ class Store:
             self._base.executemany(
                 f"INSERT INTO runs ({', '.join(map(_quoted, names))}) VALUES ({places})", rows
             )
+
+    def _that_fits(self, table: Table) -> Table:
+        """Return the rows with the columns that there is room for; the others are failures."""
+        known = set(self._columns)
+        if len(known.union(table.columns)) <= MOST_COLUMNS:
+            return table
+        rows = []
+        for row in table.rows:
+            wider = known.union(name for name in row if name in table.columns)
+            if len(wider) <= MOST_COLUMNS:
+                known = wider
+            else:
+                message = (
+                    f"it finds {len(wider) - len(known)} columns more, and a table has "
+                    f"{MOST_COLUMNS} at most: ask for fewer probes, modes or bifurcations"
+                )
+                row = failed_row(row["member"], TOO_WIDE, message, row["seconds"])
+            rows.append(row)
+        columns = {name: column for name, column in table.columns.items() if name in known}
+        return Table(columns, rows)
 
     def last(self) -> int:
         """Return how many members there are: none is ever changed, and new ones are added."""
@@ -204,6 +240,12 @@ class Store:
     def seconds(self, last: int) -> float:
         """Return the CPU time of the first `last` members [s]."""
         return float(self._ask("SELECT TOTAL(seconds) FROM runs WHERE rowid <= ?", last)[0][0])
+
+    def warned(self, last: int) -> int:
+        """Return how many of the first `last` members have warnings."""
+        if WARNINGS not in self._columns:
+            return 0
+        return int(self._ask(f"SELECT COUNT({WARNINGS}) FROM runs WHERE rowid <= ?", last)[0][0])
 
     def _ask(self, question: str, *values: Any) -> list[Any]:
         with self._named_errors():
@@ -237,12 +279,6 @@ class Store:
         try:
             yield
         except sqlite3.Error as error:
-            if "too many columns" in str(error):
-                raise OSError(
-                    f"{self._path or 'the table of the sweep'}: a member has found more than the "
-                    f"{MOST_COLUMNS} columns of a table can hold: ask for fewer probes, modes or "
-                    "bifurcations"
-                ) from error
             if "not a database" in str(error) or "malformed" in str(error):
                 raise OSError(
                     f"{self._path} is damaged, or no file of a sweep ({error}): name another folder"

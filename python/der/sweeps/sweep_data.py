@@ -35,6 +35,8 @@ class SweepData:
         By status, how many members have it.
     cpu_seconds
         CPU time of all members [s].
+    warned
+        How many members have warnings, which the column ``warnings`` tells.
     """
 
     scenario: Scenario
@@ -42,6 +44,7 @@ class SweepData:
     requests: tuple[dict[str, Any], ...]
     statuses: dict[str, int]
     cpu_seconds: float
+    warned: int
     _read: Callable[[], Rows] = field(repr=False)
 
     @cached_property

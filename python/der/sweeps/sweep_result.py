@@ -16,7 +16,7 @@ from der._core import Scenario, ended_as_asked
 from der.exporting.sweep_tables import SweepFormat, export_sweep
 from der.sweeps.store import FILE, Store, is_sweep
 from der.sweeps.sweep_data import Rows, SweepData
-from der.sweeps.table import Column
+from der.sweeps.table import WARNINGS, Column
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -80,16 +80,18 @@ class Sweep(SweepData):
         return plot_sweep(self, columns)
 
     def summary(self) -> str:
-        """Return in words how many members there are, and how many failed, by status."""
+        """Return in words how many members there are, failed, by status, and have warnings."""
         failed = {
             status: count for status, count in self.statuses.items() if not ended_as_asked(status)
         }
-        members = f"{len(self)} member{'' if len(self) == 1 else 's'}"
-        seconds = f"{self.cpu_seconds:.3g} s of CPU time"
-        if not failed:
-            return f"{members}, none failed; {seconds}"
         counts = ", ".join(f"{status} {count}" for status, count in failed.items())
-        return f"{members}, {sum(failed.values())} failed ({counts}); {seconds}"
+        parts = [
+            f"{len(self)} member{'' if len(self) == 1 else 's'}",
+            f"{sum(failed.values())} failed ({counts})" if failed else "none failed",
+        ]
+        if self.warned:
+            parts.append(f"{self.warned} with warnings (column {WARNINGS})")
+        return f"{', '.join(parts)}; {self.cpu_seconds:.3g} s of CPU time"
 
     def __repr__(self) -> str:
         """Return title, parameters and size in one line."""
@@ -146,6 +148,7 @@ def read_sweep(
         requests=tuple(store.requests()),
         statuses=store.statuses(last),
         cpu_seconds=store.seconds(last),
+        warned=store.warned(last),
         _read=(lambda: read) if rows is None else partial(rows, columns, last),
     )
 

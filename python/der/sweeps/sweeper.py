@@ -14,19 +14,19 @@ from typing import Any
 
 from der._core import Scenario, __version__
 from der.accuracy.default_probes import with_default_probes
-from der.errors import DerError
+from der.errors import DerError, warn
 from der.output_paths import make_folder
-from der.parallel import as_they_finish
+from der.parallel import as_they_finish, checked_jobs
 from der.progress import ProgressFunction
 from der.simulation import SceneLike, as_scenario
-from der.sweeps.chunk import LOST, Chunk, failed_row
+from der.sweeps.chunk import Chunk
 from der.sweeps.design import Design, Member, make_design
 from der.sweeps.design_checks import check_design
 from der.sweeps.executors import AnyExecutor, Place, lost_its_worker, place_for
 from der.sweeps.scene_difference import first_difference
 from der.sweeps.store import FILE, FRAMES, LOCK, Store, is_sweep, locked
 from der.sweeps.sweep_result import Sweep, load_sweep, read_sweep
-from der.sweeps.table import Table
+from der.sweeps.table import LOST, Table, failed_row
 from der.sweeps.values import stored
 
 #: What a chunk is to take [s]: a transaction and a journey are little against it.
@@ -109,9 +109,12 @@ def sweep(
     >>> tips = der.sweep("cantilever.yaml", {"loads.0.point_force.force.1": "-5:0:51"})
     >>> tips["tip_y"]
     """
-    scene = with_default_probes(as_scenario(scenario))
+    given = as_scenario(scenario)
+    warn(given.warnings)
+    scene = with_default_probes(given)
     design = make_design(vary, zipped=zipped, sample=sample, seed=seed)
     check_design(scene, design, verify)
+    checked_jobs(jobs)
     if frames and out is None:
         raise ValueError("run folders need a folder to be in: give out as well")
     description = {
@@ -198,6 +201,14 @@ def _begin(
                 f"{out} holds a sweep {with_or_not} --{option}: go on as it began, or name another "
                 "folder"
             )
+    if kept["version"] != description["version"]:
+        warn(
+            [
+                f"{out} was begun by der {kept['version']}, and this is der "
+                f"{description['version']}: the column 'version' tells which members are whose"
+            ]
+        )
+    store.forget_failures_of_surroundings()
 
 
 class _Sweeper:

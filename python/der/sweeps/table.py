@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from der._core import __version__
+
 Kind = Literal["run", "parameter", "probe", "found", "error"]
 
 
@@ -39,6 +41,29 @@ RUN_COLUMNS = (
     Column("unreliable_from", "run", "s"),
     Column("version", "run"),
 )
+
+
+#: Status of a member whose run met an error that is none of der's, such as a lack of memory.
+BROKEN = "error"
+#: Status of a member that brought down every process that tried it.
+LOST = "worker_lost"
+#: Status of a member that finds more columns than a table can have.
+TOO_WIDE = "too_many_columns"
+#: Failures that are the surroundings' and not the member's: a full disk, a lack of memory.
+OF_SURROUNDINGS = ("io_error", BROKEN, LOST)
+#: The column of the warnings of a run, a line each; there is none where no member has any.
+WARNINGS = "warnings"
+
+
+def failed_row(number: int, status: str, message: str, seconds: float = 0.0) -> dict[str, object]:
+    """Return the row of a member that has no result."""
+    return {
+        "member": number,
+        "status": status,
+        "message": message,
+        "seconds": seconds,
+        "version": __version__,
+    }
 
 
 @dataclass

@@ -37,15 +37,15 @@ class Case:
     share: float = 0.5
     edges_on: float = 0.0
     tip: tuple[float, float, float] = NONE  # a force of a fixed direction
-    natural: tuple[float, float] = (0.0, 0.0)  # curvatures towards d1 and d2 beyond the place
+    natural: tuple[float, float, float] = NONE  # curvatures towards d1, d2 and twist beyond it
     longer: float = 1.0  # edges beyond the place, against those before it
 
     def place(self, edges):
         return self.share + self.edges_on / edges
 
 
-#: Of a rod that is drawn straight: its natural curvature jumps at the node of the place.
-JUMP = {"natural": (2.0, -1.5)}
+#: Of a rod that is drawn straight: its natural shape jumps at the node of the place.
+JUMP = {"natural": (2.0, -1.5, 1.2)}
 CASES = {
     "force and fixed moment": Case(FORCE, fixed=OTHER),
     "moment and fixed moment": Case(moment=MOMENT, fixed=OTHER),
@@ -82,8 +82,8 @@ def spring_moment(k, frame):
 
 
 def naturally_bent(case, edges):
-    """Nodes of a straight rod whose edges beyond the place are longer, and the natural curvatures
-    there: at the node of the jump the mean of its cell, towards which longer edges count more."""
+    """Nodes of a straight rod whose edges beyond the place are longer, and the natural shape there:
+    at the node of the jump the mean of its cell, towards which longer edges count more."""
     before = round(edges * case.share * case.longer / (1 + case.share * (case.longer - 1)))
     x = np.concatenate(
         [np.linspace(0, case.share, before + 1), np.linspace(case.share, 1, edges - before + 1)[1:]]
@@ -91,7 +91,7 @@ def naturally_bent(case, edges):
     shares = np.repeat([0.0, 1.0], [before, edges - before + 1])
     after, mean = x[before + 1] - x[before], 0.5 * (x[before + 1] - x[before - 1])
     shares[before] = 0.5 * after / mean
-    return x[:, None] * DRAWN[:, 2], (shares[:, None] * case.natural).tolist()
+    return x[:, None] * DRAWN[:, 2], shares[:, None] * case.natural
 
 
 def scene_and_tip(case, edges):
@@ -101,19 +101,20 @@ def scene_and_tip(case, edges):
     wrenches = [Wrench(place, case.force, tuple(total), corner)]
     if place < ROD.length:
         wrenches.append(Wrench(ROD.length, case.tip))
-    towards_1, towards_2 = case.natural
+    towards_1, towards_2, twist = case.natural
 
     def natural(s):
-        return np.array([[-towards_2], [towards_1], [0.0]]) * (np.asarray(s) >= place)
+        return np.array([[-towards_2], [towards_1], [twist]]) * (np.asarray(s) >= place)
 
     tip, _, frames = held_at_start(replace(ROD, natural=natural), wrenches, DRAWN)
     fixed = frames[0] @ case.fixed - spring_moment(case.spring, frames[0]) * bool(case.spring)
 
     nodes = np.linspace(0, 1, edges + 1)[:, None] * DRAWN[:, 2]
     rod = {}
-    if case.natural != (0.0, 0.0):
-        nodes, curvatures = naturally_bent(case, edges)
-        rod = {"rod": {"natural_curvature": curvatures}}
+    if case.natural != NONE:
+        nodes, shape = naturally_bent(case, edges)
+        curvatures, twist = shape[:, :2].tolist(), shape[:, 2].tolist()
+        rod = {"rod": {"natural_curvature": curvatures, "natural_twist": twist}}
     if case.corner:
         beyond = np.maximum(nodes[:, 0] - place, 0)[:, None]
         nodes = np.minimum(nodes, place) + beyond * (DRAWN @ CORNER)[:, 2]

@@ -291,3 +291,38 @@ def test_drawn_curvature_of_a_twisted_rod_with_uneven_edges(fitted_order, mesh):
     assert np.abs(errors[-1]).max() < 2e-3
     for error in np.transpose(errors):
         assert fitted_order([1 / n for n in sizes], error) > 1.9
+
+
+@pytest.mark.parametrize("holds", [{"spring": {"rotational_stiffness": 2.0}}, {"clamp": True}])
+@pytest.mark.parametrize("longer", [1, 2], ids=["equal edges", "longer edges beyond"])
+def test_where_the_natural_twist_jumps(holds, longer):
+    """Between two clamps the twist without stress is 0 before the middle and c beyond it. With the
+    rotation f of the section there, 2 GJ f is the torque before it, GJ (-2 f - c) that beyond, and
+    the spring takes up k f: f = -GJ c/(4 GJ + k). Exact on any mesh: all is linear."""
+    n, c, GJ = 8, 4.0, 0.8
+    k = holds["spring"]["rotational_stiffness"] if "spring" in holds else np.inf
+    turned = -GJ * c / (4.0 * GJ + k)
+    x = np.concatenate([np.linspace(0, 0.5, n + 1), np.linspace(0.5, 1, n // longer + 1)[1:]])
+    middle = {"rod": "rod", "at": {"node": n}}
+    supports = [*({"rod": "rod", "at": at, "clamp": True} for at in ("start", "end"))]
+    scene = rod_through(
+        np.column_stack([x, 0 * x, 0 * x]),
+        section(EI=1.0, GJ=GJ),
+        [*supports, {**middle, **holds}],
+        rod={"natural_twist": [*[0.0] * n, c * longer / (1 + longer), *[c] * (n // longer)]},
+    )
+    probes = {
+        f"{quantity}-{side}": {**middle, "quantity": quantity, "side": side}
+        for quantity in ("twist", "torque", "natural_twist")
+        for side in ("before", "after")
+    }
+    probes["reaction"] = {"quantity": "reaction_moment_x", "support": 2}
+    found = der.run({**scene, "output": {"probes": probes}}).probes
+    torques = 2.0 * GJ * turned, GJ * (-2.0 * turned - c)
+    exact = {
+        **{"twist-before": 2.0 * turned, "twist-after": -2.0 * turned},
+        **{"torque-before": torques[0], "torque-after": torques[1]},
+        **{"natural_twist-before": 0.0, "natural_twist-after": c},
+        "reaction": torques[0] - torques[1],
+    }
+    assert {name: values[-1] for name, values in found.items()} == pytest.approx(exact, abs=1e-9)

@@ -24,6 +24,7 @@
 #include "der/supports/spatial_clamp.hpp"
 #include "der/supports/supports.hpp"
 #include "model/corner_twist.hpp"
+#include "model/curvature_jump.hpp"
 
 namespace der {
 namespace {
@@ -232,6 +233,7 @@ void lay_out_rods(const scenario::Scene& scene, Model& model) {
     lump_masses(rod, layout, model);
     first_node += static_cast<Index>(rod.points.size());
     size = std::max(size, layout.rest_length());
+    layout.natural_jumps = natural_jumps_of(layout, model);
     model.rods.push_back(std::move(layout));
   }
   model.dofs.set_length(size);

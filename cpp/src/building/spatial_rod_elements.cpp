@@ -128,8 +128,8 @@ Vec2 natural_curvature_at(const RodLayout& rod, const RodJoint& joint, const Mod
   const Index clamped = rod.clamps[to_size(joint.clamp)].place;
   const Index next = leaves ? rod.position(joint.after + 1) : joint.before;
   const SectionFrame& section = rod.drawn_frames[to_size(leaves ? joint.after : joint.before)];
-  const Vec3 bent = curvature_beyond_mean(rod, clamped, leaves, natural_jumps_of(rod, model))
-                        .cross(section.tangent);
+  const Vec3 bent =
+      curvature_beyond_mean(rod, clamped, leaves, rod.natural_jumps).cross(section.tangent);
   const Vec2 beside(bent.dot(section.first), bent.dot(section.second));
   return (1.0 - clamp_pivot_share()) * (rod.natural_curvatures[to_size(clamped)] + beside) +
          clamp_pivot_share() * rod.natural_curvatures[to_size(next)];

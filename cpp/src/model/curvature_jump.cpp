@@ -92,6 +92,13 @@ std::vector<Vec3> given_curvature(const RodLayout& rod) {
   return at_nodes;
 }
 
+/// The twist that the scene gives, along the third axis [rad/m].
+std::vector<Vec3> given_twist(const RodLayout& rod) {
+  std::vector<Vec3> at_nodes;
+  for (const double value : rod.natural_twist) at_nodes.emplace_back(0.0, 0.0, value);
+  return at_nodes;
+}
+
 std::vector<CurvatureJump> jumps_of(const CellCurvature& curvature, const RodLayout& rod,
                                     const Model& model) {
   std::vector<CurvatureJump> jumps;
@@ -112,15 +119,32 @@ bool has_cells_beside(const RodLayout& rod) {
   return static_cast<Index>(rod.nodes.size()) > 2 * kBeside;
 }
 
-/// Those of the values that the scene gives.
+/// The section of the drawn rod before a node.
+const SectionFrame& drawn_section(const RodLayout& rod, Index place) {
+  return rod.drawn_frames[to_size(rod.edge_before(place))];
+}
+
+/// Those of the curvatures that the scene gives.
 std::vector<CurvatureJump> given_jumps_of(const RodLayout& rod, const Model& model) {
   std::vector<CurvatureJump> jumps = jumps_of({rod, given_curvature(rod)}, rod, model);
   if (model.dimension == 2) return jumps;
   for (auto& [place, turn] : jumps) {
-    const SectionFrame& section = rod.drawn_frames[to_size(rod.edge_before(place))];
+    const SectionFrame& section = drawn_section(rod, place);
     turn = section.tangent.cross(turn[0] * section.first + turn[1] * section.second);
   }
   return jumps;
+}
+
+/// Adds those of the twist that the scene gives.
+void add_twist_jumps(const RodLayout& rod, const Model& model, std::vector<CurvatureJump>& jumps) {
+  for (const auto& [place, twist] : jumps_of({rod, given_twist(rod)}, rod, model)) {
+    const Index here = place;
+    const auto next = std::find_if(jumps.begin(), jumps.end(),
+                                   [&](const auto& jump) { return jump.place >= here; });
+    const bool is_there = next != jumps.end() && next->place == here;
+    const auto own = is_there ? next : jumps.insert(next, {here, Vec3::Zero()});
+    own->turn += twist.z() * drawn_section(rod, here).tangent;
+  }
 }
 
 }  // namespace
@@ -134,7 +158,16 @@ std::vector<CurvatureJump> natural_jumps_of(const RodLayout& rod, const Model& m
   const bool bends = model.dimension == 2 ? rod.EI > 0.0 : rod.EI_1 > 0.0 && rod.EI_2 > 0.0;
   const bool has_curvature = model.dimension == 2 || model.has_sections();
   if (!bends || !has_curvature || !has_cells_beside(rod)) return {};
-  return bends_as_drawn(rod, model) ? drawn_jumps_of(rod, model) : given_jumps_of(rod, model);
+  std::vector<CurvatureJump> jumps =
+      bends_as_drawn(rod, model) ? drawn_jumps_of(rod, model) : given_jumps_of(rod, model);
+  if (!rod.natural_twist.empty()) add_twist_jumps(rod, model, jumps);
+  return jumps;
+}
+
+double twist_beyond_mean(const RodLayout& rod, Index place, bool after) {
+  if (rod.natural_twist.empty()) return 0.0;
+  const Vec3 turn = curvature_beyond_mean(rod, place, after, rod.natural_jumps);
+  return turn.dot(drawn_section(rod, place).tangent);
 }
 
 Vec3 curvature_beyond_mean(const RodLayout& rod, Index place, bool after,
@@ -160,8 +193,8 @@ Vec3 turn_from_line(double s, Index first_edge, const RodLayout& rod,
 }
 
 Vec3 natural_turn_from_line(double s, Index first_edge, const RodLayout& rod, const Model& model) {
-  if (bends_as_drawn(rod, model)) return Vec3::Zero();
-  return turn_from_line(s, first_edge, rod, natural_jumps_of(rod, model)) -
+  if (bends_as_drawn(rod, model) && rod.natural_twist.empty()) return Vec3::Zero();
+  return turn_from_line(s, first_edge, rod, rod.natural_jumps) -
          turn_from_line(s, first_edge, rod, drawn_jumps_of(rod, model));
 }
 

@@ -7,14 +7,6 @@
 
 namespace der {
 
-/// A node at which a curvature jumps without a corner: where a straight leg runs into an arc, or
-/// one arc into another.
-struct CurvatureJump {
-  Index place = 0;  ///< position in RodLayout::nodes
-  /// The vector about which the rod turns, after the node less before it [1/m], on the drawn rod.
-  Vec3 turn = Vec3::Zero();
-};
-
 /// All jumps of the curvature of the shape that the rod is drawn with, ascending.
 ///
 /// On either side the curvature is that of the two nodes next to the place, extrapolated. It jumps
@@ -24,13 +16,18 @@ struct CurvatureJump {
 /// length.
 std::vector<CurvatureJump> drawn_jumps_of(const RodLayout& rod, const Model& model);
 
-/// Those of the natural curvature, and so of the curvature in any equilibrium: those of the drawn
-/// shape where it is free of stress, and else those of the values that the scene gives at the
-/// nodes. The value at the node of a jump is the mean of its cell.
+/// Those of the natural shape, for RodLayout::natural_jumps: of the drawn curvature where it is
+/// free of stress, and else of the values that the scene gives at the nodes, likewise of the twist.
+/// The value at the node of a jump is the mean of its cell.
 std::vector<CurvatureJump> natural_jumps_of(const RodLayout& rod, const Model& model);
 
-/// By how much the vector about which the rod turns differs along the edge after a place, or along
-/// the one before it, from the mean of the cell there [1/m]; zero where no jump is at the place.
+/// By how much the natural twist along the edge after a place, or along the one before it, differs
+/// from the mean of the cell there [rad/m]; zero where no jump is at the place.
+double twist_beyond_mean(const RodLayout& rod, Index place, bool after);
+
+/// By how much the curvature, as the vector about which the rod turns, differs along the edge after
+/// a place, or along the one before it, from the mean of the cell there [1/m]; zero where no jump
+/// is at the place.
 Vec3 curvature_beyond_mean(const RodLayout& rod, Index place, bool after,
                            const std::vector<CurvatureJump>& jumps);
 

@@ -9,7 +9,7 @@ namespace der {
 
 std::vector<Index> leg_bounds(const RodLayout& rod, const Model& model) {
   std::vector<Index> bounds = corners_of(rod, model);
-  for (const CurvatureJump& jump : natural_jumps_of(rod, model)) bounds.push_back(jump.place);
+  for (const CurvatureJump& jump : rod.natural_jumps) bounds.push_back(jump.place);
   std::sort(bounds.begin(), bounds.end());
   return bounds;
 }

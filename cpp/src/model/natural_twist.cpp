@@ -1,17 +1,24 @@
 #include "model/natural_twist.hpp"
 
 #include "der/core/index.hpp"
+#include "model/curvature_jump.hpp"
 
 namespace der {
 
 double natural_twist_at(const RodLayout& rod, const RodJoint& joint) {
   if (rod.natural_twist.empty()) return rod.initial_twist;
   const Index place = joint.place();
-  const Index edge = joint.twist_place < rod.arc_length_at(place) ? place - 1 : place;
+  const bool before = joint.twist_place < rod.arc_length_at(place);
+  if (joint.clamp < 0 && twist_beyond_mean(rod, place, !before) != 0.0) {
+    return rod.natural_twist[to_size(rod.position(place))];
+  }
+  const Index edge = before ? place - 1 : place;
+  const auto at_node = [&](Index node, bool after) {
+    return rod.natural_twist[to_size(rod.position(node))] + twist_beyond_mean(rod, node, after);
+  };
   const double share =
       (joint.twist_place - rod.arc_length_at(edge)) / rod.edge_length[to_size(rod.position(edge))];
-  return (1.0 - share) * rod.natural_twist[to_size(rod.position(edge))] +
-         share * rod.natural_twist[to_size(rod.position(edge + 1))];
+  return (1.0 - share) * at_node(edge, true) + share * at_node(edge + 1, false);
 }
 
 }  // namespace der

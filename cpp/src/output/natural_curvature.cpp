@@ -29,7 +29,7 @@ NaturalCurvature::NaturalCurvature(const RodLayout& rod, const Model& model) {
 
 void NaturalCurvature::read_given(const std::vector<Index>& bounds, const RodLayout& rod,
                                   const Model& model) {
-  const std::vector<CurvatureJump> jumps = natural_jumps_of(rod, model);
+  const std::vector<CurvatureJump> jumps = rod.natural_jumps;
   auto leg = legs_.begin();
   for (Index i = 0; i <= rod.num_edges(); ++i) {
     const auto add = [&](bool after) {

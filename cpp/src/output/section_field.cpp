@@ -198,9 +198,10 @@ class SectionField : public EdgewiseField<Vec3> {
     return mean;
   }
 
-  /// Natural curvatures and twist of a joint, and the arc length [m] at which it bends.
+  /// Natural curvatures and twist of a joint, and the arc lengths [m] at which it bends and twists.
   struct NaturalAt {
     double arc_length = 0.0;
+    double twist_place = 0.0;
     Vec3 natural;
   };
 
@@ -220,7 +221,8 @@ class SectionField : public EdgewiseField<Vec3> {
       for (const RodJoint& joint : rod.joints) {
         if (rod.position(joint.place()) != rod.position(place)) continue;
         const double ahead = rod.arc_length_at(place) - rod.arc_length_at(joint.place());
-        found.push_back({joint.bend_place + ahead, natural_of(rod, joint)});
+        found.push_back(
+            {joint.bend_place + ahead, joint.twist_place + ahead, natural_of(rod, joint)});
       }
       if (last) std::reverse(found.begin() + first_here, found.end());
     }
@@ -236,9 +238,11 @@ class SectionField : public EdgewiseField<Vec3> {
     const NaturalAt& near = joints[0];
     if (joints.size() == 1) return near.natural;
     const NaturalAt& far = joints[1];
-    const double beyond = rod.arc_length_at(last ? edge + 1 : edge) - near.arc_length;
-    return near.natural +
-           beyond / (near.arc_length - far.arc_length) * (near.natural - far.natural);
+    const double end = rod.arc_length_at(last ? edge + 1 : edge);
+    const Vec3 change = near.natural - far.natural;
+    const double bends = (end - near.arc_length) / (near.arc_length - far.arc_length);
+    const double twists = (end - near.twist_place) / (near.twist_place - far.twist_place);
+    return near.natural + Vec3(bends, bends, twists).cwiseProduct(change);
   }
 
   /// Natural curvatures and twist at an end of the rod: as given, or those of the drawn rod.
@@ -285,10 +289,8 @@ class SectionField : public EdgewiseField<Vec3> {
         result.natural.head<2>() = rod.natural_curvatures.front();
     }
     const bool ends_leg = recovery.bounds_legs(joint->place()) && joint->clamp < 0;
-    if (ends_leg) {
-      result.natural.head<2>() = natural_at_end_of_leg(rod, edge, last, recovery).head<2>();
-    }
-    result.twist_place = joint->twist_place - result.joint_ahead;
+    if (ends_leg) result.natural = natural_at_end_of_leg(rod, edge, last, recovery);
+    result.twist_place = (ends_leg ? joint->bend_place : joint->twist_place) - result.joint_ahead;
     result.joint = &*joint;
     // Beside the node between two legs the torque has another slope.
     const bool where_it_twists = by_twist && !ends_leg;
@@ -389,36 +391,41 @@ class SectionField : public EdgewiseField<Vec3> {
                            const Vec3& actuated) const {
     const RodJoint& joint = *known.joint;
     const double place = known.arc_length + known.joint_ahead;
-    const Vec3 natural = mean_natural(joint);
-    const double turned = place - joint.twist_place;
-    const Vec2 bent = (place - tangent_place(joint, der::tangent_place)) * excess.head<2>() +
-                      natural_turn(known, last, place) +
-                      (place - tangent_place(joint, mean_tangent_place)) * actuated.head<2>();
+    const double from_bend = place - tangent_place(joint, der::tangent_place);
+    const double from_mean = place - tangent_place(joint, mean_tangent_place);
+    const double from_twist = place - joint.twist_place;
+    const Vec3 turned = natural_turn(known, last, place) +
+                        Vec3(from_bend, from_bend, from_twist).cwiseProduct(excess) +
+                        Vec3(from_mean, from_mean, from_twist).cwiseProduct(actuated);
     // Bending towards a director turns about the other one.
     const auto about = [](const Vec3& parts) { return Vec3(-parts[1], parts[0], parts[2]); };
-    const Vec3 turn = about({bent[0], bent[1], turned * (natural + actuated + excess)[2]});
-    const Vec3 change = about(moment).cross(turn);
+    const Vec3 change = about(moment).cross(about(turned));
     return moment + Vec3(change[1], -change[0], change[2]);
   }
 
-  /// How far the tangent at a place is turned, without stress, against the mean of those beside a
-  /// joint [rad]. Where the natural curvature jumps, `known` has that of one side, and the cell the
-  /// mean of both.
-  [[nodiscard]] Vec2 natural_turn(const Known& known, bool last, double place) const {
+  /// How far the section at a place is turned, without stress, against the mean of those beside a
+  /// joint: towards the directors and about the tangent [rad]. Where the natural shape jumps,
+  /// `known` has that of one side, and the cell the mean of both.
+  [[nodiscard]] Vec3 natural_turn(const Known& known, bool last, double place) const {
     const RodJoint& joint = *known.joint;
-    const Vec2 mean = mean_natural(joint).head<2>();
-    if (joint.clamp >= 0) return (place - tangent_place(joint, natural_tangent_place)) * mean;
-    const Vec2 own = turned(known.natural, -known.glued).head<2>();
+    const Vec3 mean = mean_natural(joint);
+    if (joint.clamp >= 0) {
+      const double from_bend = place - tangent_place(joint, natural_tangent_place);
+      return Vec3(from_bend, from_bend, place - joint.twist_place).cwiseProduct(mean);
+    }
+    const Vec3 own = turned(known.natural, -known.glued);
     const double node = rod_.arc_length_at(joint.place());
     const double length_before = rod_.edge_length[to_size(joint.before)];
     const double length_after = rod_.edge_length[to_size(joint.after)];
     const double other_share = last ? length_before / length_after : length_after / length_before;
-    const Vec2 other = mean + other_share * (mean - own);
-    const Vec2& before = last ? own : other;
-    const Vec2& after = last ? other : own;
-    const double to_before = node - natural_tangent_place(rod_, joint.place() - 1);
-    const double to_after = natural_tangent_place(rod_, joint.place()) - node;
-    return 0.5 * (to_before * before - to_after * after) +
+    const Vec3 other = mean + other_share * (mean - own);
+    const Vec3& before = last ? own : other;
+    const Vec3& after = last ? other : own;
+    const double bends_before = node - natural_tangent_place(rod_, joint.place() - 1);
+    const double bends_after = natural_tangent_place(rod_, joint.place()) - node;
+    const Vec3 to_before(bends_before, bends_before, 0.5 * length_before);
+    const Vec3 to_after(bends_after, bends_after, 0.5 * length_after);
+    return 0.5 * (to_before.cwiseProduct(before) - to_after.cwiseProduct(after)) +
            (place - node) * (place < node ? before : after);
   }
 

@@ -62,8 +62,8 @@ bool leans_as_drawn(const RodLayout& rod, Index edge) {
 }
 
 /// Adds the arc lengths [m] at which the natural curvature jumps.
-void add_natural_jumps(const RodLayout& rod, const Model& model, std::vector<double>& kinks) {
-  for (const CurvatureJump& jump : natural_jumps_of(rod, model)) {
+void add_natural_jumps(const RodLayout& rod, std::vector<double>& kinks) {
+  for (const CurvatureJump& jump : rod.natural_jumps) {
     kinks.push_back(rod.arc_length_at(jump.place));
   }
 }
@@ -159,7 +159,7 @@ class PlanarDirection : public DirectionField<double> {
     if (rod.EI > 0.0) {
       for (const MomentPlace& place : rod.moment_places) kinks.push_back(place.arc_length);
     }
-    add_natural_jumps(rod, model, kinks);
+    add_natural_jumps(rod, kinks);
     return std::unique_ptr<RodField>(
         new PlanarDirection(component, rod, model, TangentLine(rod, std::move(kinks), model)));
   }
@@ -178,7 +178,7 @@ class PlanarDirection : public DirectionField<double> {
       edges_.push_back(effective_edge(rod, edge, model));
     }
     find_drawn_leans(model);
-    for (const CurvatureJump& jump : natural_jumps_of(rod, model)) {
+    for (const CurvatureJump& jump : rod.natural_jumps) {
       natural_jumps_.push_back(jump.turn.z());
     }
     find_reference(model);
@@ -309,7 +309,7 @@ class SpatialDirection : public DirectionField<Vec3> {
       for (std::size_t i = 0; i < moments->size(); ++i) kinks.push_back((*moments)[i].arc_length);
       if (kinks.empty()) moments.reset();
     }
-    add_natural_jumps(rod, model, kinks);
+    add_natural_jumps(rod, kinks);
     auto glue = GlueKink::make(rod, model);
     if (glue) kinks.push_back(0.0);
     TangentLine line(rod, std::move(kinks), model);
@@ -351,7 +351,7 @@ class SpatialDirection : public DirectionField<Vec3> {
   }
 
   void find_natural_jumps(const Model& model) {
-    for (const auto& [place, turn] : natural_jumps_of(rod_, model)) {
+    for (const auto& [place, turn] : rod_.natural_jumps) {
       const Index edge = rod_.edge_before(place);
       const SectionFrame section = drawn_frame(model, rod_.first_edge + edge);
       const Vec3 bent = turn.cross(section.tangent);

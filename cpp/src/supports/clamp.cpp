@@ -151,7 +151,7 @@ double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, co
   const Index next = rod.position(clamp.place + (side > 0.0 ? 1 : -1));
   const double at_clamp =
       rod.natural_curvature[to_size(clamp.place)] +
-      curvature_beyond_mean(rod, clamp.place, side > 0.0, natural_jumps_of(rod, model)).z();
+      curvature_beyond_mean(rod, clamp.place, side > 0.0, rod.natural_jumps).z();
   const double at_pivot =
       (1.0 - kPivotShare) * at_clamp + kPivotShare * rod.natural_curvature[to_size(next)];
   return at_pivot * clamp_cell_length(rod, edge);

@@ -128,9 +128,12 @@ Vec3 natural_rotation(double s, const SectionPlace& place, const SectionFrame& s
       const Vec3 first = drawn_frame(model, number_of(rod, place.first_edge)).tangent;
       const Vec3 second = drawn_frame(model, number_of(rod, place.first_edge + 1)).tangent;
       const Vec3 between = ((s - middle) / spacing - place.across[1]) * turn_between(first, second);
-      rotation += turning_axes(section).transpose() *
-                  (between - natural_turn_from_line(s, place.first_edge, rod, model));
+      rotation += turning_axes(section).transpose() * between;
     }
+  }
+  if (place.across.size() == 2) {
+    rotation -= turning_axes(section).transpose() *
+                natural_turn_from_line(s, place.first_edge, rod, model);
   }
   if (const double beyond = beyond_outer_middle(rod, s);
       beyond > 0.0 && !rod.natural_twist.empty()) {

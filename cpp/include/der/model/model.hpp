@@ -116,6 +116,14 @@ struct FoundationPlace {
   Vec3 stiffness = Vec3::Zero();  ///< [N/m^2] along the axes; planar: z is 0
 };
 
+/// A node at which a curvature or the twist jumps without a corner: where a straight leg runs into
+/// an arc, or one arc into another (model/curvature_jump.hpp).
+struct CurvatureJump {
+  Index place = 0;  ///< position in RodLayout::nodes
+  /// The vector about which the rod turns, after the node less before it [1/m], on the drawn rod.
+  Vec3 turn = Vec3::Zero();
+};
+
 /// Where the nodes and edges of one rod are in the model, and what is known of it for probes and
 /// drawings. Only the builder assumes that a rod is a chain; everybody else reads these lists.
 ///
@@ -148,6 +156,8 @@ struct RodLayout {
   std::vector<RodJoint> joints;
   /// Natural curvature of a planar rod at each node [1/m]; empty: the initial shape is stress-free.
   std::vector<double> natural_curvature;
+  /// Jumps of the natural curvature and twist, and so of those of any equilibrium, ascending.
+  std::vector<CurvatureJump> natural_jumps;
   /// Natural turning angle at each node that bends [rad], at clamped ones of the clamp's cells; 0
   /// at free ends.
   std::vector<double> rest_turning_angle;

@@ -1,6 +1,7 @@
 // Values that a program sets in place of the tables of a scene.
 #include "controls.hpp"
 
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include <cmath>
@@ -101,12 +102,22 @@ std::size_t support_number(const WholeNumber& given) {
 }
 
 void prescribe(PySimulation& simulation, const WholeNumber& given_support,
-               const std::optional<Number>& x, const std::optional<Number>& y,
-               const std::optional<Number>& z, const std::optional<Number>& angle,
-               const std::optional<Number>& twist) {
+               const py::args& without_names, const std::optional<Number>& x,
+               const std::optional<Number>& y, const std::optional<Number>& z,
+               const std::optional<Number>& angle, const std::optional<Number>& twist,
+               const py::kwargs& others) {
   const std::size_t support = support_number(given_support);
   Simulation& engine = simulation.engine();
   const std::vector<Ramp> before = engine.state().ramps;
+  // These and others are taken for the sake of messages that say what to write.
+  if (!without_names.empty()) {
+    throw py::type_error(fmt::format(
+        "prescribe takes values by the names of components: write prescribe({}, angle=0.1)",
+        support));
+  }
+  for (const auto& other : others) {
+    static_cast<void>(engine.prescribed(support, other.first.cast<std::string>()));
+  }
   const auto prescribe_one = [&](const char* component, const std::optional<Number>& given) {
     if (given) engine.prescribe(support, component, given->value(component));
   };
@@ -126,9 +137,8 @@ py::dict prescribed(const PySimulation& simulation, const WholeNumber& given_sup
   const std::size_t support = support_number(given_support);
   const Simulation& engine = simulation.engine();
   py::dict values;
-  for (const PrescribedControl& moved : engine.model().prescribed) {
-    if (moved.support != support) continue;
-    values[py::str(moved.component)] = engine.prescribed(support, moved.component);
+  for (const std::string& component : engine.prescribed_components(support)) {
+    values[py::str(component)] = engine.prescribed(support, component);
   }
   return values;
 }
@@ -154,7 +164,7 @@ void bind_controls(py::class_<PySimulation>& cls) {
           "What `set` can set: by name, the unit of each component, as "
           "``{\"push\": {\"x\": \"N\", \"y\": \"N\"}}``.")
       .def(
-          "prescribe", &prescribe, py::arg("support"), py::kw_only(), py::arg("x") = py::none(),
+          "prescribe", &prescribe, py::arg("support"), py::arg("x") = py::none(),
           py::arg("y") = py::none(), py::arg("z") = py::none(), py::arg("angle") = py::none(),
           py::arg("twist") = py::none(),
           "Move a support, by its number in the scene, in place of the table that it has there.\n\n"
@@ -165,7 +175,8 @@ void bind_controls(py::class_<PySimulation>& cls) {
           "not.")
       .def("prescribed", &prescribed, py::arg("support"),
            "Present values of what a support prescribes, by name: ``x``, ``y``, ``z`` [m], "
-           "``angle``,\n``twist`` [rad].");
+           "``angle``,\n``twist`` [rad]; an empty dict if it prescribes nothing. DerError if the "
+           "scene has no such support.");
 }
 
 }  // namespace der::python

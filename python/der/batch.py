@@ -211,8 +211,8 @@ class Batch(_core.Batch):
         Raises
         ------
         DerError
-            Where the scene does not prescribe the component, or a value does not fit: nothing is
-            then moved.
+            Where the scene has no such support or does not prescribe the component, or a value
+            does not fit: nothing is then moved.
         """
         pairs = [
             (component, _broadcast(component, _as_numbers(component, given), (len(self),)))

@@ -70,6 +70,28 @@ def test_what_is_no_support(simulation, batch, given):
         simulation.prescribed(given)
 
 
+def test_a_support_that_the_scene_has_not(simulation, batch):
+    message = "there is no support 7: the scene has 1, counted from 0"
+    for call in (simulation.prescribe, batch.prescribe):
+        with pytest.raises(der.DerError, match=message):
+            call(7, angle=0.1)
+    with pytest.raises(der.DerError, match=message):
+        simulation.prescribed(7)
+    free = der.Simulation({**SCENE, "supports": []})
+    with pytest.raises(der.DerError, match="there is no support 0: the scene has none"):
+        free.prescribed(0)
+
+
+def test_a_component_that_no_support_has(simulation, batch):
+    message = "no component 'turn' to move: there are 'x', 'y', 'z', 'angle' and 'twist'"
+    for one in (simulation, batch):
+        with pytest.raises(der.DerError, match=message):
+            one.prescribe(0, angle=0.1, turn=0.1)
+        one.step()
+    assert simulation.prescribed(0) == {"angle": 0.0}
+    assert not batch.value("wall.angle").any()
+
+
 @pytest.mark.parametrize("given", ["a", [1, 2], object()])
 def test_what_is_no_value(simulation, batch, given):
     with pytest.raises(TypeError, match="angle must be a number, got"):
@@ -89,6 +111,7 @@ def test_what_is_no_value(simulation, batch, given):
         (lambda s: s.equilibrium("no"), "leave_saddles must be True or False, got 'no'"),
         (lambda s: s.modes(2.5), "number of modes must be a whole number of at least 1, got 2.5"),
         (lambda s: s.restore_state("x"), "a state that save_state has returned is needed, got 'x'"),
+        (lambda s: s.prescribe(0, 0.1), r"names of components: write prescribe\(0, angle=0\.1\)"),
         (lambda s: s.add_force(5), r"a force is a function\(time, positions, velocities\), got 5"),
         (lambda s: s.value(3), "the name must be a text, got 3"),
         (lambda s: s.run(5), "callback must be a function, got 5"),

@@ -148,6 +148,9 @@ class Simulation {
   /// Sets what support number `support` prescribes, named or not: `component` is "x", "y", "z" [m]
   /// from the initial place, "angle" or "twist" [rad]. Otherwise as `set`.
   void prescribe(std::size_t support, const std::string& component, double value);
+  /// The components that a support prescribes, one for each of its places. Throws Error if there is
+  /// no such support.
+  [[nodiscard]] std::vector<std::string> prescribed_components(std::size_t support) const;
   /// Present value of a component that a support prescribes. Throws Error if it does not.
   [[nodiscard]] double prescribed(std::size_t support, const std::string& component) const;
 

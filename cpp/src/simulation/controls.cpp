@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -19,6 +20,9 @@ namespace {
 using scenario::listed;
 
 constexpr double kEndless = std::numeric_limits<double>::infinity();
+
+/// The components of supports that programs move.
+constexpr std::array kMoved{"x", "y", "z", "angle", "twist"};
 
 std::vector<std::string> names_of(const std::vector<ControlComponent>& components) {
   std::vector<std::string> names;
@@ -101,9 +105,24 @@ std::string not_settable(std::string_view given, const Model& model, const scena
                      how_to_name(scene, whole, model.named));
 }
 
+/// Throws Error if the scene has no support of that number.
+void check_support(std::size_t support, const scenario::Scene& scene) {
+  const std::size_t count = scene.supports.size();
+  if (support < count) return;
+  throw Error("model_error",
+              fmt::format("there is no support {}: the scene has {}", support,
+                          count == 0 ? "none" : fmt::format("{}, counted from 0", count)));
+}
+
 /// The first control that moves this component; Error if the scene prescribes none.
-const PrescribedControl& check_prescribed(const Model& model, std::size_t support,
-                                          const std::string& component) {
+const PrescribedControl& check_prescribed(const Model& model, const scenario::Scene& scene,
+                                          std::size_t support, const std::string& component) {
+  check_support(support, scene);
+  if (std::find(kMoved.begin(), kMoved.end(), component) == kMoved.end()) {
+    throw Error("model_error",
+                fmt::format("a support has no component '{}' to move: there are {}",
+                            printable(component), listed({kMoved.begin(), kMoved.end()})));
+  }
   std::string known;
   for (const PrescribedControl& candidate : model.prescribed) {
     if (candidate.support == support && candidate.component == component) return candidate;
@@ -285,7 +304,7 @@ void Simulation::drive(Index control, double value, double end) {
 }
 
 void Simulation::prescribe(std::size_t support, const std::string& component, double value) {
-  check_prescribed(model_, support, component);
+  check_prescribed(model_, scenario_.scene(), support, component);
   const double end = end_of_ramp(std::nullopt);
   for (const PrescribedControl& moved : model_.prescribed) {
     if (moved.support != support || moved.component != component) continue;
@@ -296,8 +315,17 @@ void Simulation::prescribe(std::size_t support, const std::string& component, do
   }
 }
 
+std::vector<std::string> Simulation::prescribed_components(std::size_t support) const {
+  check_support(support, scenario_.scene());
+  std::vector<std::string> components;
+  for (const PrescribedControl& moved : model_.prescribed) {
+    if (moved.support == support) components.push_back(moved.component);
+  }
+  return components;
+}
+
 double Simulation::prescribed(std::size_t support, const std::string& component) const {
-  const PrescribedControl& found = check_prescribed(model_, support, component);
+  const PrescribedControl& found = check_prescribed(model_, scenario_.scene(), support, component);
   return control_value(model_, state_, found.control);
 }
 

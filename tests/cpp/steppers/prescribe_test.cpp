@@ -106,7 +106,15 @@ TEST_CASE("what a scene does not prescribe cannot be moved") {
   Simulation arm(make_arm());
   CHECK_THROWS_WITH_AS(arm.prescribe(0, "x", 0.1),
                        doctest::Contains("it prescribes y of support 0, x of support 1"), Error);
-  CHECK_THROWS_WITH_AS(arm.prescribe(7, "x", 0.1), doctest::Contains("x of support 7"), Error);
+  CHECK_THROWS_WITH_AS(arm.prescribe(7, "x", 0.1),
+                       "there is no support 7: the scene has 2, counted from 0", Error);
+  CHECK_THROWS_WITH_AS(arm.prescribed_components(2),
+                       "there is no support 2: the scene has 2, counted from 0", Error);
+  CHECK_THROWS_WITH_AS(
+      arm.prescribe(0, "turn", 0.1),
+      "a support has no component 'turn' to move: there are 'x', 'y', 'z', 'angle' "
+      "and 'twist'",
+      Error);
   CHECK_THROWS_WITH_AS(arm.prescribe(0, "y", std::nan("")),
                        doctest::Contains("y must be finite, got nan"), Error);
 }

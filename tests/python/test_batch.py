@@ -380,6 +380,39 @@ def test_what_cannot_vary_is_refused(vary, error, message):
         der.Batch(PLANAR, 3, vary=vary)
 
 
+SPRING = {"rod": "rod", "at": 0.5, "spring": {"stiffness": [0, 9]}}
+
+
+@pytest.mark.parametrize(
+    ("change", "vary", "message"),
+    [
+        (
+            {"loads": [{"foundation": {"rod": "rod", "stiffness": 2.0, "from": 0.2}}]},
+            {"rods.rod.to": [[1, 0], [1.8, 0]]},
+            "its foundations hold other edges, first at node 0 of rod 'rod': .* vary its 'from'",
+        ),
+        (
+            {"supports": [*PLANAR["supports"], SPRING]},
+            {"supports.1.at": [0.5, 0.75]},
+            "its springs hold other nodes or edges, first at node 6 of rod 'rod'",
+        ),
+        (
+            {"loads": [{"moment": {"rod": "rod", "at": 0.5, "moment": 0.1}}]},
+            {"loads.0.moment.at": [0.5, 0.75]},
+            "its moments act on other edges, first at node 5 of rod 'rod'",
+        ),
+        (
+            {},
+            {EI: [1e-2, 0]},
+            "its rods stretch or bend by other elements, first at node 0 of rod 'rod'",
+        ),
+    ],
+)
+def test_elements_that_differ_are_named(change, vary, message):
+    with pytest.raises(der.DerError, match=f"member 1: .*{message}"):
+        der.Batch({**PLANAR, **change}, 2, vary=vary)
+
+
 def test_numbers_that_are_no_batch():
     with pytest.raises(ValueError, match="members must be a whole number of at least 1"):
         der.Batch(PLANAR, 0)

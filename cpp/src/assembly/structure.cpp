@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <tuple>
-#include <utility>
+#include <type_traits>
 
 #include "der/energies/registry.hpp"
 
@@ -40,15 +40,52 @@ std::string difference_of_rods(const Model& here, const Model& other) {
   return {};
 }
 
-template <std::size_t... I>
-bool same_dofs(const ElementLists::Lists& here, const ElementLists::Lists& other,
-               std::index_sequence<I...> /*kinds*/) {
-  return ((std::get<I>(here).dofs == std::get<I>(other).dofs) && ...);
+/// What the elements of a kind are in the scene, and why they may be others.
+struct Difference {
+  const char* what;
+  const char* why;
+};
+
+template <class Kernel>
+constexpr Difference kDifference =
+    Kernel::kTerm == EnergyTerm::Spring
+        ? Difference{"its springs hold other nodes or edges",
+                     "a spring acts there in one of the two scenes alone"}
+    : Kernel::kTerm == EnergyTerm::Load
+        ? Difference{"its moments act on other edges",
+                     "a moment acts there in one of the two scenes alone"}
+        : Difference{"its rods stretch or bend by other elements",
+                     "there, in one of the two scenes alone, a stiffness is zero, a support holds "
+                     "or turns the rod, a moment or a spring acts, or a corner is drawn, or the "
+                     "'curvature' of the rod is another one"};
+template <int Dim>
+constexpr Difference kDifference<Foundation<Dim>>{
+    "its foundations hold other edges",
+    "a foundation has to begin and end in the same edges, so vary its 'from' and 'to' along with "
+    "the length of the rod"};
+
+/// Describes the first element that one of two lists has and the other one has not; empty if there
+/// is none.
+template <class Kernel>
+std::string difference(const ElementList<Kernel>& here, const ElementList<Kernel>& other,
+                       const Model& model) {
+  const auto [mine, its] =
+      std::mismatch(here.dofs.begin(), here.dofs.end(), other.dofs.begin(), other.dofs.end());
+  if (mine == here.dofs.end() && its == other.dofs.end()) return {};
+  const Index dof = (mine != here.dofs.end() ? *mine : *its).front();
+  const NodePlace place = place_of(model, model.dofs.node_of(dof));
+  return fmt::format("{}, first at node {} of rod '{}': {}", kDifference<Kernel>.what, place.place,
+                     place.rod, kDifference<Kernel>.why);
 }
 
-bool same_elements(const Model& here, const Model& other) {
-  constexpr auto kKinds = std::make_index_sequence<std::tuple_size_v<ElementLists::Lists>>{};
-  return same_dofs(here.elements->lists, other.elements->lists, kKinds);
+std::string difference_of_elements(const Model& here, const Model& other) {
+  std::string found;
+  const auto compare = [&](const auto& list) {
+    using List = std::decay_t<decltype(list)>;
+    if (found.empty()) found = difference(list, std::get<List>(other.elements->lists), here);
+  };
+  for_each_list(*here.elements, compare);
+  return found;
 }
 
 bool same_couplings(const Mass& here, const Mass& other) {
@@ -73,10 +110,8 @@ std::string structural_difference(const Model& here, const Model& other) {
   if (!found.empty()) return found;
   if (here.dofs.free() != other.dofs.free()) return "its supports hold other components";
   if (!same_actuation(here, other)) return "its actuations act on other parts of the rods";
-  if (!same_elements(here, other)) {
-    return "its rods have other elements: a stiffness is zero, or a clamp, a spring or a moment "
-           "acts, in one of the two scenes alone";
-  }
+  found = difference_of_elements(here, other);
+  if (!found.empty()) return found;
   if (!same_couplings(here.mass, other.mass)) return "the mass of a rod is zero in one of the two";
   return {};
 }

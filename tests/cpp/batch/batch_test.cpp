@@ -205,9 +205,11 @@ TEST_CASE("structures differ by what a matrix shows") {
   CHECK(difference_by({{"rods.rod.cross_section.stiffness.EI", "2"}}) == "");
   CHECK(difference_by({{"supports.wall.clamp", "false"},
                        {"supports.wall.fix", "[y]"},
-                       {"supports.wall.prescribe", "{x: 0}"}}) ==
-        "its rods have other elements: a stiffness is zero, or a clamp, a spring or a moment "
-        "acts, in one of the two scenes alone");
+                       {"supports.wall.prescribe", "{x: 0}"}})
+            .find("its rods stretch or bend by other elements, first at node 0 of rod 'rod'") == 0);
+  CHECK(difference_by({{"loads.0", "{foundation: {rod: rod, stiffness: 1, from: 0.3}}"}}) ==
+        "its foundations hold other edges, first at node 2 of rod 'rod': a foundation has to begin "
+        "and end in the same edges, so vary its 'from' and 'to' along with the length of the rod");
   CHECK(difference_by({{"supports.wall.at", "middle"}}) == "its supports hold other components");
   CHECK(difference_by({{"rods.rod.closed", "false"}, {"model", "spatial_bend"}}).substr(0, 9) ==
         "its model");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <fmt/format.h>
 #include <pybind11/numpy.h>
 
 #include <vector>
@@ -17,6 +18,19 @@ using Array = py::array_t<double>;
 /// A live, writable (rows x columns) array over the head of a vector that `owner` keeps alive.
 inline Array live_view(Vector& data, Index rows, Index columns, py::handle owner) {
   return Array({py::ssize_t{rows}, py::ssize_t{columns}}, data.data(), owner);
+}
+
+/// Defines a property that is a live, writable view. Nothing can take its place: a setter says to
+/// write into it.
+template <class Class, class Getter>
+void def_writable_view(Class& cls, const char* name, Getter getter, const char* doc) {
+  const auto refuse = [name](const py::object& /*self*/, const py::object& /*value*/) {
+    throw py::attribute_error(fmt::format(
+        "{0} is an array in the engine's memory, in place of which there can be no other: write "
+        "into it, as in {0}[...] = values",
+        name));
+  };
+  cls.def_property(name, getter, refuse, doc);
 }
 
 /// A read-only (rows x columns) array over the head of a vector that `owner` keeps alive.

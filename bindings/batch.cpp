@@ -243,32 +243,32 @@ py::list failure_rows(PyBatch& batch) {
 using BatchClass = py::class_<PyBatch>;
 
 void bind_arrays(BatchClass& cls) {
+  def_writable_view(
+      cls, "positions", &node_rows<&Batch::positions>,
+      "Node positions [m], shape (members, nodes, dim): a live, writable view.\n\n"
+      "It follows every call, and stays valid as long as it is referenced. What is written is "
+      "taken into the\nmember's state by the next call. Copy it to keep values.");
+  def_writable_view(cls, "velocities", &node_rows<&Batch::velocities>,
+                    "Node velocities [m/s], shape (members, nodes, dim): a live, writable "
+                    "view, as `positions`.");
+  def_writable_view(
+      cls, "extra_force", &node_rows<&Batch::extra_force>,
+      "Forces on the nodes [N], shape (members, nodes, dim): a live, writable view, zero at "
+      "the start.\n\n"
+      "A force written here acts, constant within a step, in every step until something else "
+      "is written.");
+  def_writable_view(cls, "theta", &section_rows<&Batch::positions>,
+                    "Angles of the sections [rad], shape (members, edges): a live, "
+                    "writable view. Empty but in the model\n``spatial``.");
+  def_writable_view(cls, "spin", &section_rows<&Batch::velocities>,
+                    "Spins of the sections [rad/s], shape (members, edges): a live, "
+                    "writable view, the rates of `theta`.");
   cls.def_property_readonly(
-         "positions", &node_rows<&Batch::positions>,
-         "Node positions [m], shape (members, nodes, dim): a live, writable view.\n\n"
-         "It follows every call, and stays valid as long as it is referenced. What is written is "
-         "taken into the\nmember's state by the next call. Copy it to keep values.")
-      .def_property_readonly("velocities", &node_rows<&Batch::velocities>,
-                             "Node velocities [m/s], shape (members, nodes, dim): a live, writable "
-                             "view, as `positions`.")
-      .def_property_readonly(
-          "extra_force", &node_rows<&Batch::extra_force>,
-          "Forces on the nodes [N], shape (members, nodes, dim): a live, writable view, zero at "
-          "the start.\n\n"
-          "A force written here acts, constant within a step, in every step until something else "
-          "is written.")
-      .def_property_readonly("theta", &section_rows<&Batch::positions>,
-                             "Angles of the sections [rad], shape (members, edges): a live, "
-                             "writable view. Empty but in the model\n``spatial``.")
-      .def_property_readonly("spin", &section_rows<&Batch::velocities>,
-                             "Spins of the sections [rad/s], shape (members, edges): a live, "
-                             "writable view, the rates of `theta`.")
-      .def_property_readonly(
-          "time",
-          [](const py::object& self) {
-            return member_view<double>(self.cast<PyBatch&>().engine().time(), self);
-          },
-          "Simulated time of each member [s], shape (members,): a live view, read-only.")
+         "time",
+         [](const py::object& self) {
+           return member_view<double>(self.cast<PyBatch&>().engine().time(), self);
+         },
+         "Simulated time of each member [s], shape (members,): a live view, read-only.")
       .def_property_readonly(
           "step_count",
           [](const py::object& self) {

@@ -215,35 +215,34 @@ py::tuple to_columns(const SymmetricMatrix& matrix) {
 }
 
 void bind_arrays(PySimulationClass& cls) {
+  def_writable_view(
+      cls, "positions", &state_view<&State::positions>,
+      "Node positions [m], shape (nodes, dim): a live, writable view of the engine's memory.\n\n"
+      "It follows every step, and stays valid as long as it is referenced. Held components are "
+      "put back\nby the next step. Copy it to keep values.");
+  def_writable_view(
+      cls, "velocities", &state_view<&State::velocities>,
+      "Node velocities [m/s], shape (nodes, dim): a live, writable view, as `positions`.");
+  def_writable_view(
+      cls, "theta", &section_view<&State::positions>,
+      "Angles of the sections [rad], shape (edges,), in the order of the rods and their edges: "
+      "a live,\nwritable view, as `positions`. Each counts about the tangent from the edge's "
+      "reference director,\nwhich is transported in time. Empty but in the model "
+      "``spatial``.");
+  def_writable_view(
+      cls, "spin", &section_view<&State::velocities>,
+      "Spins of the sections about their tangents [rad/s], shape (edges,): a live, writable "
+      "view, the\nrates of `theta`.");
+  def_writable_view(
+      cls, "extra_force", &state_view<&State::extra_force>,
+      "Forces on the nodes [N], shape (nodes, dim): a live, writable view, zero at the "
+      "start.\n\n"
+      "A force written here acts, constant within a step, in every step until something else is "
+      "written.\nForces of `add_force` come on top of it.");
   cls.def_property_readonly(
-         "positions", &state_view<&State::positions>,
-         "Node positions [m], shape (nodes, dim): a live, writable view of the engine's memory.\n\n"
-         "It follows every step, and stays valid as long as it is referenced. Held components are "
-         "put back\nby the next step. Copy it to keep values.")
-      .def_property_readonly(
-          "velocities", &state_view<&State::velocities>,
-          "Node velocities [m/s], shape (nodes, dim): a live, writable view, as `positions`.")
-      .def_property_readonly(
-          "theta", &section_view<&State::positions>,
-          "Angles of the sections [rad], shape (edges,), in the order of the rods and their edges: "
-          "a live,\nwritable view, as `positions`. Each counts about the tangent from the edge's "
-          "reference director,\nwhich is transported in time. Empty but in the model "
-          "``spatial``.")
-      .def_property_readonly(
-          "spin", &section_view<&State::velocities>,
-          "Spins of the sections about their tangents [rad/s], shape (edges,): a live, writable "
-          "view, the\nrates of `theta`.")
-      .def_property_readonly(
-          "directors", &present_directors,
-          "Director 1 of the section of each edge, a unit vector along its width, shape (edges, "
-          "3): a\nread-only copy. Shape (0, 3) but in the model ``spatial``.")
-      .def_property_readonly(
-          "extra_force", &state_view<&State::extra_force>,
-          "Forces on the nodes [N], shape (nodes, dim): a live, writable view, zero at the "
-          "start.\n\n"
-          "A force written here acts, constant within a step, in every step until something else "
-          "is "
-          "written.\nForces of `add_force` come on top of it.")
+         "directors", &present_directors,
+         "Director 1 of the section of each edge, a unit vector along its width, shape (edges, "
+         "3): a\nread-only copy. Shape (0, 3) but in the model ``spatial``.")
       .def_property_readonly(
           "node_masses",
           [](const py::object& self) {

@@ -92,6 +92,17 @@ def test_a_component_that_no_support_has(simulation, batch):
     assert not batch.value("wall.angle").any()
 
 
+@pytest.mark.parametrize("name", ["positions", "velocities", "extra_force", "theta", "spin"])
+def test_nothing_takes_the_place_of_an_array(simulation, batch, name):
+    for one in (simulation, batch):
+        before = getattr(one, name).copy()
+        with pytest.raises(
+            AttributeError, match=rf"write into it, as in {name}\[\.\.\.\] = values"
+        ):
+            setattr(one, name, before + 1.0)
+        assert np.array_equal(getattr(one, name), before)
+
+
 @pytest.mark.parametrize("given", ["a", [1, 2], object()])
 def test_what_is_no_value(simulation, batch, given):
     with pytest.raises(TypeError, match="angle must be a number, got"):

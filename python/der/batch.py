@@ -45,7 +45,7 @@ class MemberFailure:
     _error: DerError = field(repr=False)
 
     def error(self) -> DerError:
-        """Return the error that `Simulation` would have raised."""
+        """Return the error that `Simulation` would have raised, with advice for a member."""
         return self._error
 
 

@@ -165,7 +165,10 @@ def test_member_that_fails_is_masked_and_named():
     assert np.array_equal(failed, [False, False, True, False])
     (failure,) = batch.failures
     assert (failure.member, failure.status, failure.time) == (2, "diverged", 0.006)
-    assert "velocity of node 5 of rod 'rod' (x) is nan" in failure.message
+    assert failure.message == (
+        "the velocity of node 5 of rod 'rod' (x) is nan, not a finite number: bring the member "
+        "back to a good state with 'reset'"
+    )
     assert isinstance(failure.error(), der.DivergedError)
     assert same_bits(batch.positions[2], last_good)
     assert np.array_equal(batch.step_count, [7, 7, 3, 7])
@@ -174,6 +177,7 @@ def test_member_that_fails_is_masked_and_named():
     with pytest.raises(der.DivergedError) as raised:
         alone.step()
     assert failure.message.split(":")[0] == str(raised.value).split(":")[0]
+    assert "begin again with a new simulation" in str(raised.value)
 
     batch.reset(2, saved)
     assert batch.failures == []

@@ -76,6 +76,9 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
+  /// Sets what messages advise where a program has written a number that is not finite.
+  void set_way_out(const char* advice) { way_out_ = advice; }
+
   /// Advances by one time step: of the scene's length, or, with a tolerance, of the length that the
   /// error allows. A step that fails is retried in smaller pieces, and one in which supports move
   /// far is done in such. Throws NotConvergedError or DivergedError; the state is then as before.
@@ -289,6 +292,7 @@ class Simulation {
   std::optional<AdaptiveStepper> adaptive_;
   SupportMotion support_motion_;
   double horizon_ = 0.0;
+  const char* way_out_ = "write one there, or begin again with a new simulation";
   State state_;
   State before_step_;  // to go back to from a step that fails
   Counters counters_;

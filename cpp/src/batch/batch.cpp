@@ -15,6 +15,9 @@ namespace {
 /// Thrown by work that is given up because something else was thrown before, which the team keeps.
 struct GivenUp {};
 
+/// A member that has failed takes no part, whatever is written into its rows.
+constexpr const char* kWayOut = "bring the member back to a good state with 'reset'";
+
 Index to_row(std::size_t member) { return static_cast<Index>(member); }
 
 Scenario scenario_of(std::size_t member, const Scenario& scenario,
@@ -116,6 +119,7 @@ void Batch::build(const Scenario& scenario, const std::vector<Variation>& variat
       },
       beat);
   refusals.raise();
+  for (const Member& member : members_) member.simulation->set_way_out(kWayOut);
 }
 
 /// Members of one scene have one start.

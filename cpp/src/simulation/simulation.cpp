@@ -18,16 +18,15 @@
 namespace der {
 namespace {
 
-/// The first value that is not a finite number, in words; empty if there is none.
-std::string find_nonfinite(const Model& model, const Vector& values, const std::string& what) {
+/// The first value that is not a finite number, in words with the way out; empty if there is none.
+std::string find_nonfinite(const Model& model, const Vector& values, const char* what,
+                           const char* way_out) {
   // Zero times infinity is not a number. Faster than looking at each.
   if ((0.0 * values).sum() == 0.0) return {};
   Index dof = 0;
   while (std::isfinite(values[dof])) ++dof;
-  return fmt::format(
-      "{} of {} is {}, not a finite number: write one there, or begin again with a "
-      "new simulation",
-      what, describe_dof(model, dof), values[dof]);
+  return fmt::format("{} of {} is {}, not a finite number: {}", what, describe_dof(model, dof),
+                     values[dof], way_out);
 }
 
 /// Every name with what it stands for: that of each control, and those of its components.
@@ -134,9 +133,12 @@ void Simulation::start_anew() {
 }
 
 std::string Simulation::find_nonfinite() const {
-  std::string found = der::find_nonfinite(model_, state_.positions, "the position");
-  if (found.empty()) found = der::find_nonfinite(model_, state_.extra_force, "the extra force");
-  if (found.empty()) found = der::find_nonfinite(model_, state_.velocities, "the velocity");
+  const auto find_in = [this](const Vector& values, const char* what) {
+    return der::find_nonfinite(model_, values, what, way_out_);
+  };
+  std::string found = find_in(state_.positions, "the position");
+  if (found.empty()) found = find_in(state_.extra_force, "the extra force");
+  if (found.empty()) found = find_in(state_.velocities, "the velocity");
   return found;
 }
 

@@ -12,6 +12,7 @@ from der import _core
 from der._core import EquilibriumReport, State
 from der.errors import DerError, UnreliableResultWarning, warn
 from der.key_paths import check_apart, check_varied
+from der.named_probes import NamedProbes
 from der.simulation import SceneLike, as_scenario
 from der.whole_numbers import MOST, whole_number
 
@@ -254,6 +255,15 @@ class Batch(_core.Batch):
         if len(states) != len(numbers):
             raise ValueError(f"{len(states)} states for {len(numbers)} members: give one for each")
         self.reset_members(numbers, states)
+
+    @property
+    def probes(self) -> dict[str, NDArray[np.float64]]:
+        """Values of the scene's probes, by name, each of shape (members,).
+
+        They are live views, read-only. From the first time that they are asked for, every call
+        evaluates them at its end.
+        """
+        return NamedProbes(super().probes)
 
     @property
     def failures(self) -> list[MemberFailure]:

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from der.named_probes import NamedProbes
+
 
 class ProbeSeries(np.ndarray[Any, np.dtype[np.float64]]):
     """A probe at the saved times: an array, shape (frames,), with its unit.
@@ -57,4 +59,6 @@ def make_probes(
 ) -> dict[str, ProbeSeries]:
     """Join values, units and the ``probes`` part of a run's summary, by name."""
     parts = summary.get("probes", {})
-    return {name: ProbeSeries(values[name], units[name], parts.get(name, {})) for name in values}
+    return NamedProbes(
+        {name: ProbeSeries(values[name], units[name], parts.get(name, {})) for name in values}
+    )

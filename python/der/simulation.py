@@ -15,6 +15,7 @@ from der._core import RunRecording, Scenario
 from der.actuation_forces import ActuationForce, make_actuation_forces
 from der.analyses import Modes
 from der.errors import UnreliableResultWarning, warn
+from der.named_probes import NamedProbes
 from der.progress import ProgressFunction, ProgressLine
 from der.reactions import Reaction, make_reactions
 from der.result import Result, to_result
@@ -200,6 +201,11 @@ class Simulation(_core.Simulation):
         >>> finger.name, finger.force
         """
         return make_actuation_forces(*self.actuation_values())
+
+    @property
+    def probes(self) -> dict[str, float]:
+        """Present value of each probe of the scene, by name, in its SI unit."""
+        return NamedProbes(super().probes)
 
     def share_done(self, end: float = math.inf) -> float:
         """Return how much of a run to its end, or to the time `end` [s], is done, from 0 to 1."""

@@ -103,6 +103,17 @@ def test_nothing_takes_the_place_of_an_array(simulation, batch, name):
         assert np.array_equal(getattr(one, name), before)
 
 
+def test_a_probe_that_the_scene_has_not():
+    probes = {"tip": {"rod": "arm", "at": "end", "quantity": "y"}}
+    scene = {**SCENE, "output": {"every": 0.01, "probes": probes}}
+    for one in (der.Simulation(scene), der.Batch(scene, 2), der.run(scene)):
+        assert list(one.probes) == ["tip"]
+        with pytest.raises(KeyError, match="the scene has no probe 'top'; it has 'tip'"):
+            one.probes["top"]
+    with pytest.raises(KeyError, match=r"no probe 'top'; it has none, and takes them in output"):
+        der.Simulation(SCENE).probes["top"]
+
+
 @pytest.mark.parametrize("given", ["a", [1, 2], object()])
 def test_what_is_no_value(simulation, batch, given):
     with pytest.raises(TypeError, match="angle must be a number, got"):

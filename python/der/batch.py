@@ -23,6 +23,10 @@ if TYPE_CHECKING:
 Members: TypeAlias = "Iterable[int] | NDArray[np.bool_] | int | None"
 
 
+#: More threads than any machine runs at once are a slip.
+MOST_THREADS = 4096
+
+
 @dataclass(frozen=True)
 class MemberFailure:
     """Why a member of a batch goes on no more.
@@ -68,8 +72,8 @@ class Batch(_core.Batch):
     members
         How many.
     threads
-        How many threads step them; as many as this process may use, unless given. They live as
-        long as the batch.
+        How many threads step them; as many as this process may use, unless given, but no more than
+        there are members: ``threads`` tells. They live as long as the batch.
     vary
         Values that differ from member to member: by the key path that `Scenario.with_` takes, one
         for each member, such as ``{"rods.arm.cross_section.stiffness.EI": array}``. Numbers and
@@ -105,7 +109,7 @@ class Batch(_core.Batch):
         scenario = as_scenario(scene)
         members = whole_number("members", members, 1, MOST)
         if threads is not None:
-            threads = whole_number("threads", threads, 1, MOST)
+            threads = whole_number("threads", threads, 1, MOST_THREADS)
         check_varied(vary or {})
         check_apart(scenario.to_dict(), vary or ())
         lists = {path: _one_each(path, given, members) for path, given in (vary or {}).items()}

@@ -422,8 +422,10 @@ def test_numbers_that_are_no_batch():
         der.Batch(PLANAR, 0)
     with pytest.raises(ValueError, match="threads must be a whole number of at least 1"):
         der.Batch(PLANAR, 2, threads=0)
+    with pytest.raises(ValueError, match=r"threads must be a whole number .* at most 4096"):
+        der.Batch(PLANAR, 2, threads=100000)
     batch = der.Batch(PLANAR, 2, threads=7)
-    assert (len(batch), batch.threads) == (2, 7)
+    assert (len(batch), batch.threads) == (2, 2)
     assert der.Batch(PLANAR, 1).threads >= 1
     with pytest.raises(ValueError, match="number of steps must be a whole number of at least 0"):
         batch.step(-1)

@@ -84,7 +84,7 @@ void check_names(const Simulation& member, const Simulation& first) {
 
 Batch::Batch(const Scenario& scenario, std::size_t members,
              const std::vector<Variation>& variations, int threads, const Beat& beat)
-    : team_(threads) {
+    : team_(threads, members) {
   check(members, variations);
   members_.resize(members);
   build(scenario, variations, beat);

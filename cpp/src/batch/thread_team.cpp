@@ -19,6 +19,12 @@ constexpr std::size_t kPortions = 16;
 
 constexpr std::chrono::milliseconds kBeat{50};
 
+int team_size(int wanted, std::size_t most) {
+  const auto size = wanted > 0 ? static_cast<std::size_t>(wanted)
+                               : static_cast<std::size_t>(std::thread::hardware_concurrency());
+  return static_cast<int>(std::max<std::size_t>(1, std::min(size, most)));
+}
+
 }  // namespace
 
 struct ThreadTeam::Crew {
@@ -76,8 +82,7 @@ struct ThreadTeam::Crew {
   }
 };
 
-ThreadTeam::ThreadTeam(int size)
-    : size_(size > 0 ? size : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))) {}
+ThreadTeam::ThreadTeam(int size, std::size_t most) : size_(team_size(size, most)) {}
 
 ThreadTeam::~ThreadTeam() {
   abandon_crew_of_another_process();

@@ -215,6 +215,13 @@ TEST_CASE("structures differ by what a matrix shows") {
         "its model");
 }
 
+TEST_CASE("there are no more threads than members") {
+  const Scenario scene = Scenario::parse(kPlanar);
+  CHECK(Batch(scene, 3, {}, 100000, no_beat).threads() == 3);
+  CHECK(Batch(scene, 3, {}, 2, no_beat).threads() == 2);
+  CHECK(Batch(scene, 1, {}, 0, no_beat).threads() == 1);
+}
+
 TEST_CASE("what the beat throws ends a call between two steps") {
   Batch batch(Scenario::parse(kPlanar), 4, {}, 2, no_beat);
   int beats = 0;

@@ -58,9 +58,9 @@ class Batch {
   /// A beat is called now and then in the caller's thread. What it throws ends a call early, each
   /// member between two of its steps, or in the state that it had before a search.
   ///
-  /// `threads`: how many at once; 0: as many as the process may run. Throws SceneError or Error
-  /// where a member cannot be simulated, and names the first one. A member that does not get to the
-  /// start that `start_from` asks for has failed.
+  /// `threads`: how many at once, of which there are no more than members; 0: as many as the
+  /// process may run. Throws SceneError or Error where a member cannot be simulated, and names the
+  /// first one. A member that does not get to the start that `start_from` asks for has failed.
   Batch(const Scenario& scenario, std::size_t members, const std::vector<Variation>& variations,
         int threads, const Beat& beat);
   Batch(const Batch&) = delete;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <mutex>
 
@@ -36,8 +37,8 @@ class ThreadTeam {
   /// `on_caller` tells work that is done in the caller's thread.
   using Work = std::function<void(std::size_t item, bool on_caller, const Call& call)>;
 
-  /// `size` threads; 0: as many as the process may run at once.
-  explicit ThreadTeam(int size = 0);
+  /// `size` threads, but no more than `most`; 0: as many as the process may run at once.
+  explicit ThreadTeam(int size = 0, std::size_t most = std::numeric_limits<std::size_t>::max());
   ~ThreadTeam();
   ThreadTeam(const ThreadTeam&) = delete;
   ThreadTeam& operator=(const ThreadTeam&) = delete;

@@ -154,6 +154,15 @@ py::array member_view(Values& values, const py::object& self) {
   return view;
 }
 
+py::array total_steps(PyBatch& batch) {
+  const Batch& engine = batch.engine();
+  py::array_t<std::int64_t> steps(static_cast<py::ssize_t>(engine.size()));
+  for (std::size_t number = 0; number < engine.size(); ++number) {
+    steps.mutable_at(static_cast<py::ssize_t>(number)) = engine.member(number).plan().total_steps;
+  }
+  return steps;
+}
+
 py::dict probes(const py::object& self) {
   auto& batch = self.cast<PyBatch&>();
   RowMatrix& values =
@@ -275,6 +284,9 @@ void bind_arrays(BatchClass& cls) {
             return member_view<std::int64_t>(self.cast<PyBatch&>().engine().step_count(), self);
           },
           "Time steps of each member from time 0 to now, shape (members,): a live view, read-only.")
+      .def_property_readonly("total_steps", &total_steps,
+                             "Time steps of each member from time 0 to its scene's duration, "
+                             "shape (members,); 0 with a tolerance:\nnot known.")
       .def_property_readonly(
           "failed",
           [](const py::object& self) {

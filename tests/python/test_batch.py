@@ -155,6 +155,13 @@ def test_vectors_vary_too():
     assert_same(batch, 2, alone)
 
 
+def test_members_tell_how_many_steps_their_scenes_have():
+    vary = {"time.duration": [1.0, 0.5, 0.5], "time.step": [0.002, 0.002, 0.001]}
+    batch = der.Batch(PLANAR, 3, vary=vary)
+    assert batch.total_steps.tolist() == [500, 250, 500]
+    assert der.Batch(with_time(PLANAR, tolerance=1e-3), 2).total_steps.tolist() == [0, 0]
+
+
 def test_member_that_fails_is_masked_and_named():
     batch = der.Batch(PLANAR, 4, 2)
     failed = batch.step(3)

@@ -212,6 +212,27 @@ def test_an_episode_is_truncated_at_the_duration_of_its_scene():
             env.step(np.zeros(2))
 
 
+@pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP])
+def test_durations_and_steps_of_the_scene_differ(mode):
+    """Each environment is truncated where a `RodEnv` of its own scene is."""
+    own = {"time.duration": [0.02, 0.06, 0.04, 0.04], "time.step": [0.005, 0.005, 0.01, 0.0025]}
+    actions = np.random.default_rng(1).uniform(-1, 1, (16, 4, 2))
+    scenes = [
+        der.Scenario.from_dict(ARM).with_(**dict(zip(own, values, strict=True)))
+        for values in zip(*own.values(), strict=True)
+    ]
+    tasks = [reaching(scene=scene) for scene in scenes]
+    loop = SyncVectorEnv([lambda task=task: RodEnv(task) for task in tasks], autoreset_mode=mode)
+    envs = RodVectorEnv(reaching(), 4, vary=own, autoreset_mode=mode)
+    said = played(envs, actions)
+    for one, other in zip(said, played(loop, actions), strict=True):
+        assert_same(one, other)
+    first = [
+        next(i for i, step in enumerate(said[1:], 1) if step[3][member]) for member in range(4)
+    ]
+    assert first == [2, 6, 2, 8]
+
+
 def test_a_task_may_end_an_episode():
     def nothing(batch, actions):
         return np.zeros(len(batch))
@@ -279,7 +300,10 @@ def test_gymnasium_makes_them_by_name():
         ({"observe": lambda batch: batch.positions[0]}, r"observe returned the shape \(7, 2\)"),
         ({"observation_space": Box(-1, 1, (3,))}, r"has the shape \(7,\), but .* \(3,\)"),
         ({"scene": ARM | {"time": {"duration": 1, "tolerance": 1e-3}}}, "equal steps"),
-        ({"scene": ARM | {"time": {"duration": 0.005, "step": 0.005}}}, "longer duration"),
+        (
+            {"scene": ARM | {"time": {"duration": 0.005, "step": 0.005}}},
+            "environment 0 ends after 1 of the 2 time steps of an action: give it a longer",
+        ),
         (
             {"scene": STATIC, "max_steps": 3},
             "an episode is a run over time, and the scene is static",

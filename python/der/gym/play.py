@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -10,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from gymnasium.spaces import Box
 
-from der.errors import DerWarning
 from der.gym.episodes import Episodes
 from der.gym.task import Task
-from der.simulation import Simulation, as_scenario
+from der.simulation import as_scenario
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -47,8 +45,9 @@ class Play:
         The episodes.
     space
         Of the observations of one member.
-    limit
-        The number of actions after which an episode is truncated.
+    limits
+        The numbers of actions after which the episodes of each member are truncated, shape
+        (members,).
     """
 
     def __init__(
@@ -67,13 +66,13 @@ class Play:
                 "an episode is a run over time, and the scene is static: give it a time with a "
                 "duration and a step in place of its analysis"
             )
-        self.limit = task.max_steps or _actions_in(scenario, task.steps_per_action)
         any_generator = np.random.default_rng(0)
         self._drawn_shape = () if task.draw is None else np.shape(task.draw(any_generator))
         drawn_shape = (0,) if task.draw is None else self._drawn_shape
         self.batch = Episodes(scenario, members, threads, vary=vary, drawn_shape=drawn_shape)
         for failure in self.batch.failures:
             raise failure.error()
+        self.limits = _limits(task, self.batch)
         seen = self._rows("observe", task.observe(self.batch), dtype=None)
         self.space = task.observation_space or Box(-np.inf, np.inf, seen.shape[1:], np.float64)
         if seen.shape[1:] != self.space.shape:
@@ -112,7 +111,7 @@ class Play:
             self.observations(),
             self._rows("reward", task.reward(batch, actions), np.float64, ndim=1),
             ended,
-            batch.played >= self.limit,
+            batch.played >= self.limits,
             {
                 failure.member: {"failure": failure.status, "failure_message": failure.message}
                 for failure in batch.failures
@@ -152,14 +151,17 @@ def _as_array(function: str, returned: ArrayLike, dtype: Any) -> NDArray[Any]:
         ) from None
 
 
-def _actions_in(scenario: Any, steps_per_action: int) -> int:
-    """Return how many actions fit into the duration of a scene."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DerWarning)  # the batch gives them
-        steps = Simulation(scenario).total_steps
-    if steps < steps_per_action:
+def _limits(task: Task, batch: Episodes) -> NDArray[np.int64]:
+    """Return how many actions an episode of each member may have."""
+    steps = batch.total_steps
+    if task.max_steps is not None:
+        return np.full_like(steps, task.max_steps)
+    limits: NDArray[np.int64] = steps // task.steps_per_action
+    if (limits == 0).any():
+        member = int(np.argmin(limits))
         raise ValueError(
-            f"the scene has {steps} equal time steps, and an action takes {steps_per_action}: give "
-            "it a longer duration, equal steps (time.step), or the task max_steps"
+            f"the scene of environment {member} ends after {steps[member]} of the "
+            f"{task.steps_per_action} time steps of an action: give it a longer duration or "
+            "shorter steps, or the task fewer steps_per_action or max_steps"
         )
-    return steps // steps_per_action
+    return limits

@@ -38,6 +38,8 @@ ARM = {
 }
 STATIC = {key: ARM[key] for key in ("title", "rods", "supports")} | {"analysis": "static"}
 
+ADAPTIVE = ARM | {"time": {"duration": 1, "tolerance": 1e-3}}
+
 
 def act(batch, actions):
     """Motor, muscle, a named load and a force: everything that can be set."""
@@ -233,6 +235,12 @@ def test_durations_and_steps_of_the_scene_differ(mode):
     assert first == [2, 6, 2, 8]
 
 
+def test_no_environment_has_a_tolerance():
+    times = [ARM["time"], ADAPTIVE["time"]]
+    with pytest.raises(ValueError, match="the scene of environment 1 has steps of other lengths"):
+        RodVectorEnv(reaching(max_steps=3), 2, vary={"time": times})
+
+
 def test_a_task_may_end_an_episode():
     def nothing(batch, actions):
         return np.zeros(len(batch))
@@ -299,7 +307,8 @@ def test_gymnasium_makes_them_by_name():
     [
         ({"observe": lambda batch: batch.positions[0]}, r"observe returned the shape \(7, 2\)"),
         ({"observation_space": Box(-1, 1, (3,))}, r"has the shape \(7,\), but .* \(3,\)"),
-        ({"scene": ARM | {"time": {"duration": 1, "tolerance": 1e-3}}}, "equal steps"),
+        ({"scene": ADAPTIVE}, "equal time steps, .* give it 'step' in place of 'tolerance'"),
+        ({"scene": ADAPTIVE, "max_steps": 3}, "an action lasts a number of equal time steps"),
         (
             {"scene": ARM | {"time": {"duration": 0.005, "step": 0.005}}},
             "environment 0 ends after 1 of the 2 time steps of an action: give it a longer",

@@ -154,6 +154,7 @@ def _as_array(function: str, returned: ArrayLike, dtype: Any) -> NDArray[Any]:
 def _limits(task: Task, batch: Episodes) -> NDArray[np.int64]:
     """Return how many actions an episode of each member may have."""
     steps = batch.total_steps
+    _check_equal_steps(steps)
     if task.max_steps is not None:
         return np.full_like(steps, task.max_steps)
     limits: NDArray[np.int64] = steps // task.steps_per_action
@@ -165,3 +166,14 @@ def _limits(task: Task, batch: Episodes) -> NDArray[np.int64]:
             "shorter steps, or the task fewer steps_per_action or max_steps"
         )
     return limits
+
+
+def _check_equal_steps(steps: NDArray[np.int64]) -> None:
+    """Refuse scenes with a tolerance: an action of a number of their steps has no fixed length."""
+    adaptive = np.flatnonzero(steps == 0)
+    if adaptive.size:
+        raise ValueError(
+            "an action lasts a number of equal time steps, and the scene of environment "
+            f"{adaptive[0]} has steps of other lengths: give it 'step' in place of 'tolerance' in "
+            "its 'time'"
+        )

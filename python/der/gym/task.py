@@ -33,7 +33,7 @@ class Task:
     Attributes
     ----------
     scene
-        A scene over time with equal steps: its duration ends an episode.
+        A scene over time with equal steps, without a ``tolerance``: its duration ends an episode.
     action_space
         Of one member; its samples are arrays or numbers.
     act

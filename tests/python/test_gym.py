@@ -286,6 +286,15 @@ def test_actions_of_another_shape_are_refused(action):
         env.step(action)
 
 
+@pytest.mark.parametrize("shape", [(), (2,), (3,), (1, 2), (2, 2), (3, 1), (3, 4)])
+def test_actions_of_another_shape_are_refused_of_many(shape):
+    envs = RodVectorEnv(reaching(), 3)
+    envs.reset(seed=1)
+    with pytest.raises(ValueError, match=r"actions have the shape \(3, 2\), one of each .* got"):
+        envs.step(np.zeros(shape))
+    assert not envs.batch.played.any()
+
+
 def test_gymnasium_makes_them_by_name():
     task = reaching()
     gymnasium.register(

@@ -124,6 +124,8 @@ class RodVectorEnv(VectorEnv["NDArray[Any]", Any, "NDArray[Any]"]):
         ------
         gymnasium.error.ResetNeeded
             Before the first `reset`; without automatic resets also where an episode has ended.
+        ValueError
+            For actions of another shape than the action space has.
         """
         if not self._generators:
             raise ResetNeeded("episodes begin with reset()")
@@ -131,6 +133,11 @@ class RodVectorEnv(VectorEnv["NDArray[Any]", Any, "NDArray[Any]"]):
             raise ResetNeeded(
                 f"the episodes of {np.flatnonzero(self._ended).tolist()} have ended: "
                 'reset(options={"reset_mask": ...}) begins the next ones'
+            )
+        space = self.action_space.shape
+        if space is not None and np.shape(actions) != space:
+            raise ValueError(
+                f"actions have the shape {space}, one of each environment, got {np.shape(actions)}"
             )
         outcome = self._play.step(np.asarray(actions))
         infos: dict[str, Any] = {}

@@ -315,7 +315,7 @@ def test_gymnasium_makes_them_by_name():
     ("changes", "message"),
     [
         ({"observe": lambda batch: batch.positions[0]}, r"observe returned the shape \(7, 2\)"),
-        ({"observation_space": Box(-1, 1, (3,))}, r"has the shape \(7,\), but .* \(3,\)"),
+        ({"observation_space": Box(-1, 1, (3,))}, r"has the shape \(7,\), but .* space is \(3,\)"),
         ({"scene": ADAPTIVE}, "equal time steps, .* give it 'step' in place of 'tolerance'"),
         ({"scene": ADAPTIVE, "max_steps": 3}, "an action lasts a number of equal time steps"),
         (
@@ -405,6 +405,19 @@ def test_what_resets_nothing(arguments, error, message):
 def test_seeds_of_numpy():
     envs = RodVectorEnv(reaching(), 2)
     assert_same(envs.reset(seed=np.array([3, 4]))[0], envs.reset(seed=3)[0])
+
+
+def test_observations_of_a_shape_that_changes_are_refused():
+    def growing(batch):
+        return np.zeros((len(batch), 1 + batch.played[0]))
+
+    task = reaching(observe=growing)
+    env, envs = RodEnv(task), RodVectorEnv(task, 3)
+    env.reset(seed=0)
+    envs.reset(seed=0)
+    for one, action in ((env, np.zeros(2)), (envs, np.zeros((3, 2)))):
+        with pytest.raises(ValueError, match=r"has the shape \(2,\), but .* first call is \(1,\)"):
+            one.step(action)
 
 
 def test_rewards_of_another_shape_are_refused():

@@ -75,11 +75,7 @@ class Play:
         self.limits = _limits(task, self.batch)
         seen = self._rows("observe", task.observe(self.batch), dtype=None)
         self.space = task.observation_space or Box(-np.inf, np.inf, seen.shape[1:], np.float64)
-        if seen.shape[1:] != self.space.shape:
-            raise ValueError(
-                f"observe: a member's observation has the shape {seen.shape[1:]}, but the "
-                f"observation space has {self.space.shape}"
-            )
+        self._check_observed(seen)
 
     def begin(self, members: Iterable[int], generators: Sequence[np.random.Generator]) -> None:
         """Let members begin episodes; `generators` has one for every member of the batch."""
@@ -96,7 +92,9 @@ class Play:
 
     def observations(self) -> NDArray[Any]:
         """Return what the members observe now, a copy."""
-        return self._rows("observe", self._task.observe(self.batch), self.space.dtype)
+        seen = self._rows("observe", self._task.observe(self.batch), self.space.dtype)
+        self._check_observed(seen)
+        return seen
 
     def step(self, actions: Any) -> Outcome:
         """Let every member take its action."""
@@ -116,6 +114,15 @@ class Play:
                 failure.member: {"failure": failure.status, "failure_message": failure.message}
                 for failure in batch.failures
             },
+        )
+
+    def _check_observed(self, seen: NDArray[Any]) -> None:
+        if seen.shape[1:] == self.space.shape:
+            return
+        whence = "first call" if self._task.observation_space is None else "observation space"
+        raise ValueError(
+            f"observe: a member's observation has the shape {seen.shape[1:]}, but that of the "
+            f"{whence} is {self.space.shape}"
         )
 
     def _drawn(self, drawn: ArrayLike) -> NDArray[np.float64]:

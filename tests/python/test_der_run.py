@@ -563,6 +563,38 @@ def test_an_interrupted_and_resumed_run_is_the_uninterrupted_one(
     assert "nothing to resume" in done.stdout
 
 
+def test_a_run_that_was_killed_before_its_summary_gets_one(scene: Path, tmp_path: Path) -> None:
+    """All its data were there, and `--resume` said that it was finished."""
+    out, reference = tmp_path / "out", tmp_path / "reference"
+    for folder in (out, reference):
+        assert der_run(scene, "--quiet", "--out", folder).returncode == 0
+    (out / "summary.json").unlink()
+    assert der_run(scene, "--out", out, "--resume").returncode == 0
+    assert_same_results(out, reference)
+    for key in ("status", "steps", "newton_iterations", "time", "probes", "energies"):
+        assert summary_of(out)[key] == summary_of(reference)[key], key
+
+
+def test_hints_of_a_resumed_run_are_those_of_all_of_it(tmp_path: Path) -> None:
+    """They count the steps of all parts, and the longest of them."""
+    path = tmp_path / "swing.yaml"
+    path.write_text(
+        CANTILEVER.replace(
+            "analysis: static", "time: {duration: 2, tolerance: 1e-6, integrator: tr_bdf2}"
+        )
+    )
+    reference, out = tmp_path / "reference", tmp_path / "interrupted"
+    assert der_run(path, "--quiet", "--out", reference).returncode == 0
+    (hint,) = summary_of(reference)["hints"]
+    run = start(path, "--out", out)
+    wait_for_frames(out / "results.h5", 50)
+    run.send_signal(signal.SIGTERM)
+    run.communicate(timeout=60)
+    assert summary_of(out)["status"] == "stopped"
+    assert der_run(path, "--quiet", "--out", out, "--resume").returncode == 0
+    assert summary_of(out)["hints"] == [hint]
+
+
 def test_resuming_with_another_scene_or_without_a_run_is_refused(
     scene: Path, tmp_path: Path
 ) -> None:

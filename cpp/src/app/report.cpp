@@ -306,7 +306,8 @@ std::string run_report(const Simulation& simulation, const Recorder& recorder,
   text += model_lines(simulation, style);
   text += cost_line(simulation, outcome, style);
   text += warning_lines(warnings(simulation, outcome), style);
-  for (const std::string& hint : hints(simulation)) text += line("hint", hint, style);
+  for (const std::string& hint : hints(simulation, outcome.counters))
+    text += line("hint", hint, style);
   text += line("results", printable((folder.path() / "").string()), style);
   if (!outcome.path.empty()) return text + "\n" + path_tables(recorder, outcome, style);
   if (!recorder.probes().empty() && recorder.has_data()) {

@@ -16,8 +16,8 @@ constexpr double kGrownRough = 10.0;
 
 }  // namespace
 
-std::vector<std::string> hints(const Simulation& simulation) {
-  const std::int64_t steps = simulation.counters().steps;
+std::vector<std::string> hints(const Simulation& simulation, const Counters& counters) {
+  const std::int64_t steps = counters.steps;
   if (!simulation.adaptive() || steps < kManySteps) return {};
   const scenario::Time& time = simulation.scenario().scene().time;
   const double mean = simulation.state().time / static_cast<double>(steps);

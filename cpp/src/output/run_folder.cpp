@@ -147,7 +147,10 @@ RunFileHead resumable_head(const RunFolder& folder, const Scenario& scenario) {
                       ". Resume it with its own " + folder.scene().string() +
                       ", or run the new scene without --resume");
   }
-  if (run_status::is_finished(head.status)) return head;
+  if (run_status::is_finished(head.status)) {
+    if (is_there(folder.summary())) return head;
+    head.status = run_status::kRunning;  // it was killed before it wrote its summary
+  }
   if (head.der_version != version) {
     throw ResumeError("the run was started by der " + head.der_version + " and this is " + version +
                       ", which need not give the same numbers; run it again without --resume");

@@ -262,7 +262,7 @@ Json summary(const Simulation& simulation, const Recorder& recorder, const RunOu
     summary["unreliable_from"] = simulation.state().audit.unreliable_from;
   }
   summary["warnings"] = warnings(simulation, outcome);
-  summary["hints"] = hints(simulation);
+  summary["hints"] = hints(simulation, outcome.counters);
   summary["probes"] = probes_json(recorder);
   summary["scene"] = simulation.scenario().source();
   summary["der_version"] = version;

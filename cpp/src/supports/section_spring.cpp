@@ -132,8 +132,8 @@ Vec3 natural_rotation(double s, const SectionPlace& place, const SectionFrame& s
     }
   }
   if (place.across.size() == 2) {
-    rotation -= turning_axes(section).transpose() *
-                natural_turn_from_line(s, place.first_edge, rod, model);
+    rotation -=
+        turning_axes(section).transpose() * natural_turn_from_line(s, place.first_edge, rod, model);
   }
   if (const double beyond = beyond_outer_middle(rod, s);
       beyond > 0.0 && !rod.natural_twist.empty()) {

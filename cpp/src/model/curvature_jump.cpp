@@ -167,6 +167,7 @@ std::vector<CurvatureJump> natural_jumps_of(const RodLayout& rod, const Model& m
 double twist_beyond_mean(const RodLayout& rod, Index place, bool after) {
   if (rod.natural_twist.empty()) return 0.0;
   const Vec3 turn = curvature_beyond_mean(rod, place, after, rod.natural_jumps);
+  if (turn.isZero(0.0)) return 0.0;  // as at an end, before which there is no section
   return turn.dot(drawn_section(rod, place).tangent);
 }
 

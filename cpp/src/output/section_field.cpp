@@ -290,12 +290,12 @@ class SectionField : public EdgewiseField<Vec3> {
     }
     const bool ends_leg = recovery.bounds_legs(joint->place()) && joint->clamp < 0;
     if (ends_leg) result.natural = natural_at_end_of_leg(rod, edge, last, recovery);
-    result.twist_place = (ends_leg ? joint->bend_place : joint->twist_place) - result.joint_ahead;
     result.joint = &*joint;
-    // Beside the node between two legs the torque has another slope.
-    const bool where_it_twists = by_twist && !ends_leg;
-    result.arc_length =
-        (where_it_twists ? joint->twist_place : joint->bend_place) - result.joint_ahead;
+    // Where a node parts two legs, or sections that are glued turned, the torque has a kink there.
+    const bool has_kink = ends_leg || parts_bending(*joint, rod);
+    result.arc_length = joint->bend_place - result.joint_ahead;
+    result.twist_place = has_kink ? result.arc_length : joint->twist_place - result.joint_ahead;
+    if (by_twist) result.arc_length = result.twist_place;
     return result;
   }
 

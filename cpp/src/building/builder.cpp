@@ -233,6 +233,7 @@ void lay_out_rods(const scenario::Scene& scene, Model& model) {
     lump_masses(rod, layout, model);
     first_node += static_cast<Index>(rod.points.size());
     size = std::max(size, layout.rest_length());
+    layout.drawn_jumps = drawn_jumps_of(layout, model);
     layout.natural_jumps = natural_jumps_of(layout, model);
     model.rods.push_back(std::move(layout));
   }

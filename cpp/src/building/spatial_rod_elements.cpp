@@ -121,18 +121,26 @@ std::vector<RodJoint> joints_of(const RodLayout& rod) {
   return joints;
 }
 
+/// Natural curvature, where the scene gives it, at a node as the edge after it has it, or the one
+/// before it [1/m].
+Vec2 natural_curvature_beside(const RodLayout& rod, Index place, bool after) {
+  const Index edge = after ? rod.edge_after(place) : rod.edge_before(place);
+  const SectionFrame& section = rod.drawn_frames[to_size(edge)];
+  const Vec3 bent =
+      curvature_beyond_mean(rod, place, after, rod.natural_jumps).cross(section.tangent);
+  return rod.natural_curvatures[to_size(rod.position(place))] +
+         Vec2(bent.dot(section.first), bent.dot(section.second));
+}
+
 /// Natural curvature at a joint, where the scene gives it [1/m].
-Vec2 natural_curvature_at(const RodLayout& rod, const RodJoint& joint, const Model& model) {
+Vec2 natural_curvature_at(const RodLayout& rod, const RodJoint& joint) {
   if (joint.clamp < 0) return rod.natural_curvatures[to_size(joint.after)];
   const bool leaves = joint.leaves_clamp();
-  const Index clamped = rod.clamps[to_size(joint.clamp)].place;
-  const Index next = leaves ? rod.position(joint.after + 1) : joint.before;
-  const SectionFrame& section = rod.drawn_frames[to_size(leaves ? joint.after : joint.before)];
-  const Vec3 bent =
-      curvature_beyond_mean(rod, clamped, leaves, rod.natural_jumps).cross(section.tangent);
-  const Vec2 beside(bent.dot(section.first), bent.dot(section.second));
-  return (1.0 - clamp_pivot_share()) * (rod.natural_curvatures[to_size(clamped)] + beside) +
-         clamp_pivot_share() * rod.natural_curvatures[to_size(next)];
+  const Index edge = leaves ? joint.after : joint.before;
+  const Vec2 first = natural_curvature_beside(rod, edge, true);
+  const Vec2 last = natural_curvature_beside(rod, edge + 1, false);
+  const double share = leaves ? clamp_pivot_share() : 1.0 - clamp_pivot_share();
+  return (1.0 - share) * first + share * last;
 }
 
 /// A free end lies on the curve, the node next to it l^2 kappa/12 beside it (supports/clamp.hpp):
@@ -159,11 +167,11 @@ Vec2 mean_natural_curvature(const RodLayout& rod, const RodJoint& joint) {
   return (before * joint.natural_curvature + after * beyond) / (before + after);
 }
 
-void set_rest(const RodLayout& rod, const JointStrain& drawn, const Model& model, RodJoint& joint) {
+void set_rest(const RodLayout& rod, const JointStrain& drawn, RodJoint& joint) {
   joint.rest = drawn;
   joint.natural_curvature = Vec2(drawn.kappa_1, drawn.kappa_2) / joint.bend_length;
   if (!rod.natural_curvatures.empty()) {
-    joint.natural_curvature = natural_curvature_at(rod, joint, model);
+    joint.natural_curvature = natural_curvature_at(rod, joint);
     const Vec2 turn =
         joint.bend_length * mean_natural_curvature(rod, joint) + free_end_turn(rod, joint);
     joint.rest.kappa_1 = turn[0];
@@ -308,7 +316,7 @@ class SectionElements {
       turned -= joint.glued;
     }
     const auto drawn = drawn_joint<Curvature>(a, b, drawn_twist);
-    set_rest(rod_, drawn.strain(), model_, joint);
+    set_rest(rod_, drawn.strain(), joint);
     if (rod_.natural_curvatures.empty()) {
       joint.natural_curvature = drawn_curvature_at_node(rod_, joint.place(), bounds_);
     }
@@ -361,7 +369,7 @@ class SectionElements {
     const SectionFrame& a = leaves ? held : frame_of_edge;
     const SectionFrame& b = leaves ? frame_of_edge : held;
     const JointStrain drawn = drawn_joint<Curvature>(a, b, beyond).strain();
-    set_rest(rod_, drawn, model_, joint);
+    set_rest(rod_, drawn, joint);
     if (rod_.natural_curvatures.empty()) {
       joint.natural_curvature = drawn_curvature_at_clamp(rod_, joint, model_);
     }

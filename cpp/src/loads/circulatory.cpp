@@ -71,15 +71,15 @@ double drawn_lean(Index edge, const RodLayout& rod, const Model& model) {
 
 /// By how much the tangent at arc length `s` [m] turns further than the edges on its two sides,
 /// from the drawn shape to a natural one [rad]; of one edge, not at all.
-Vec3 natural_turn(double s, const SectionPlace& place, const RodLayout& rod, const Model& model) {
+Vec3 natural_turn(double s, const SectionPlace& place, const RodLayout& rod) {
   if (place.direction.size() != 2) return Vec3::Zero();
-  return natural_turn_from_line(s, place.first_edge, rod, model);
+  return natural_turn_from_line(s, place.first_edge, rod);
 }
 
 PlanarFollowerForce planar_follower(double s, const SectionPlace& place, const RodLayout& rod,
                                     const Model& model, CirculatoryLoad& load) {
   PlanarFollowerForce follower;
-  const double kink = natural_turn(s, place, rod, model).z();
+  const double kink = natural_turn(s, place, rod).z();
   for (std::size_t i = 0; i < place.direction.size(); ++i) {
     const Index number = rod.position(place.first_edge + static_cast<Index>(i));
     const EffectiveEdge edge = effective_edge(rod, number, model);
@@ -218,7 +218,7 @@ bool need_section(const SectionLoads& place, const RodLayout& rod, const Model& 
       std::any_of(place.moments.begin(), place.moments.end(),
                   [&](Index moment) { return follows(loads[to_size(moment)]); });
   return any_follows && (beside_held_section(s, rod) || beside_leaning_end(s, rod) ||
-                         !natural_turn(s, section_place(s, rod), rod, model).isZero(0.0));
+                         !natural_turn(s, section_place(s, rod), rod).isZero(0.0));
 }
 
 /// `actuated`: the turn of the section beyond the edges that moments turn.

@@ -159,7 +159,7 @@ std::vector<CurvatureJump> natural_jumps_of(const RodLayout& rod, const Model& m
   const bool has_curvature = model.dimension == 2 || model.has_sections();
   if (!bends || !has_curvature || !has_cells_beside(rod)) return {};
   std::vector<CurvatureJump> jumps =
-      bends_as_drawn(rod, model) ? drawn_jumps_of(rod, model) : given_jumps_of(rod, model);
+      bends_as_drawn(rod, model) ? rod.drawn_jumps : given_jumps_of(rod, model);
   if (!rod.natural_twist.empty()) add_twist_jumps(rod, model, jumps);
   return jumps;
 }
@@ -193,10 +193,9 @@ Vec3 turn_from_line(double s, Index first_edge, const RodLayout& rod,
   return -share * after * curvature_beyond_mean(rod, place, true, jumps);
 }
 
-Vec3 natural_turn_from_line(double s, Index first_edge, const RodLayout& rod, const Model& model) {
-  if (bends_as_drawn(rod, model) && rod.natural_twist.empty()) return Vec3::Zero();
+Vec3 natural_turn_from_line(double s, Index first_edge, const RodLayout& rod) {
   return turn_from_line(s, first_edge, rod, rod.natural_jumps) -
-         turn_from_line(s, first_edge, rod, drawn_jumps_of(rod, model));
+         turn_from_line(s, first_edge, rod, rod.drawn_jumps);
 }
 
 }  // namespace der

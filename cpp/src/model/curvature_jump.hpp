@@ -7,7 +7,7 @@
 
 namespace der {
 
-/// All jumps of the curvature of the shape that the rod is drawn with, ascending.
+/// For RodLayout::drawn_jumps: all jumps of the curvature of the shape that the rod is drawn with.
 ///
 /// On either side the curvature is that of the two nodes next to the place, extrapolated. It jumps
 /// if the two values differ by more than twice all that is uncertain: what the extrapolations
@@ -16,9 +16,9 @@ namespace der {
 /// length.
 std::vector<CurvatureJump> drawn_jumps_of(const RodLayout& rod, const Model& model);
 
-/// Those of the natural shape, for RodLayout::natural_jumps: of the drawn curvature where it is
-/// free of stress, and else of the values that the scene gives at the nodes, likewise of the twist.
-/// The value at the node of a jump is the mean of its cell.
+/// For RodLayout::natural_jumps: the drawn ones where the drawn shape is free of stress, and else
+/// those of the curvatures that the scene gives at the nodes; those of the twist that it gives. The
+/// value at the node of a jump is the mean of its cell.
 std::vector<CurvatureJump> natural_jumps_of(const RodLayout& rod, const Model& model);
 
 /// By how much the natural twist along the edge after a place, or along the one before it, differs
@@ -40,6 +40,6 @@ Vec3 turn_from_line(double s, Index first_edge, const RodLayout& rod,
 
 /// `turn_from_line` of a rod on which no moment acts, less that of the drawn one: none where the
 /// drawn shape is free of stress.
-Vec3 natural_turn_from_line(double s, Index first_edge, const RodLayout& rod, const Model& model);
+Vec3 natural_turn_from_line(double s, Index first_edge, const RodLayout& rod);
 
 }  // namespace der

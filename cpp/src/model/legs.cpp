@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "model/corner.hpp"
-#include "model/curvature_jump.hpp"
 
 namespace der {
 

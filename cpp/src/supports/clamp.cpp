@@ -36,7 +36,7 @@ double initial_curvature(const RodLayout& rod, Index place, const Model& model) 
       angle_between(drawn_edge(rod, inner - 1, model), drawn_edge(rod, inner, model)) /
       rod.voronoi_length(inner);
   if (inner != place) return mean;
-  return mean + curvature_beyond_mean(rod, place, true, drawn_jumps_of(rod, model)).z();
+  return mean + curvature_beyond_mean(rod, place, true, rod.drawn_jumps).z();
 }
 
 /// +1 if the edge leaves the clamp, -1 if it arrives there.
@@ -148,12 +148,14 @@ double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, co
         effective_edge(rod, edge, model).vector(model.initial_positions, 0.0, 0.0);
     return side * angle_between(tangent, effective);
   }
-  const Index next = rod.position(clamp.place + (side > 0.0 ? 1 : -1));
-  const double at_clamp =
-      rod.natural_curvature[to_size(clamp.place)] +
-      curvature_beyond_mean(rod, clamp.place, side > 0.0, rod.natural_jumps).z();
+  const auto natural = [&](Index place, bool after) {
+    return rod.natural_curvature[to_size(rod.position(place))] +
+           curvature_beyond_mean(rod, place, after, rod.natural_jumps).z();
+  };
+  const bool leaves = side > 0.0;
+  const Index next = clamp.place + (leaves ? 1 : -1);
   const double at_pivot =
-      (1.0 - kPivotShare) * at_clamp + kPivotShare * rod.natural_curvature[to_size(next)];
+      (1.0 - kPivotShare) * natural(clamp.place, leaves) + kPivotShare * natural(next, !leaves);
   return at_pivot * clamp_cell_length(rod, edge);
 }
 

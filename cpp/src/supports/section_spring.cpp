@@ -88,7 +88,7 @@ SectionFrame section_on_line(double s, Index first_edge, const RodLayout& rod, c
 SectionFrame drawn_section_at(double s, const SectionPlace& place, const RodLayout& rod,
                               const Model& model) {
   if (place.across.size() == 2) {
-    return turned_by(turn_from_line(s, place.first_edge, rod, drawn_jumps_of(rod, model)),
+    return turned_by(turn_from_line(s, place.first_edge, rod, rod.drawn_jumps),
                      section_on_line(s, place.first_edge, rod, model));
   }
   const SectionFrame first = drawn_frame(model, number_of(rod, place.first_edge));
@@ -133,7 +133,7 @@ Vec3 natural_rotation(double s, const SectionPlace& place, const SectionFrame& s
   }
   if (place.across.size() == 2) {
     rotation -=
-        turning_axes(section).transpose() * natural_turn_from_line(s, place.first_edge, rod, model);
+        turning_axes(section).transpose() * natural_turn_from_line(s, place.first_edge, rod);
   }
   if (const double beyond = beyond_outer_middle(rod, s);
       beyond > 0.0 && !rod.natural_twist.empty()) {

@@ -56,7 +56,7 @@ Vec3 tangent_on_circle(const RodLayout& rod, Index place, Index inner, const Mod
   if (!rod.is_inner(inner) || (inner != place && is_corner(rod, inner, model))) return chord;
   Vec3 curvature = initial_curvature(rod, inner, model);
   if (inner == place) {
-    curvature += curvature_beyond_mean(rod, place, true, drawn_jumps_of(rod, model));
+    curvature += curvature_beyond_mean(rod, place, true, rod.drawn_jumps);
   }
   const double half = (edge == place ? -0.5 : 0.5) * rod.edge_length[to_size(edge)];
   const double angle = curvature.norm() * half;

@@ -83,7 +83,7 @@ double rest_turn(const RodLayout& rod, const MomentPlace& place, const Model& mo
   const double first_middle = rod.edge_middle(place.first_edge);
   const double spacing = single ? 1.0 : rod.edge_middle(place.first_edge + 1) - first_middle;
   const auto [at_start, at_end] = natural_turn_lengths(rod, s, place.first_edge, place.weights);
-  const double kink = single ? 0.0 : natural_turn_from_line(s, place.first_edge, rod, model).z();
+  const double kink = single ? 0.0 : natural_turn_from_line(s, place.first_edge, rod).z();
   return (s - first_middle) / spacing * bend - kink + at_start * rod.natural_curvature.front() +
          at_end * rod.natural_curvature[to_size(rod.num_edges())];
 }

@@ -156,6 +156,7 @@ struct RodLayout {
   std::vector<RodJoint> joints;
   /// Natural curvature of a planar rod at each node [1/m]; empty: the initial shape is stress-free.
   std::vector<double> natural_curvature;
+  std::vector<CurvatureJump> drawn_jumps;  ///< of the curvature of the drawn shape, ascending
   /// Jumps of the natural curvature and twist, and so of those of any equilibrium, ascending.
   std::vector<CurvatureJump> natural_jumps;
   /// Natural turning angle at each node that bends [rad], at clamped ones of the clamp's cells; 0

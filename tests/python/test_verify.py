@@ -895,3 +895,46 @@ def test_warnings_of_the_run_are_told(column):
     factor = found["factor", "out_of_plane 1"]
     # Pinned in the plane, held upright by a fork out of it: pi^2 EI1 / L^2 of a pinned column.
     assert abs(factor.value - np.pi**2 * EI / 4) < factor.error_bar + 1e-3
+
+
+@pytest.mark.parametrize("dim", [1, 2])
+def test_lists_that_jump_keep_both_sides_on_finer_meshes(dim):
+    """Linear on either side; the node has their mean, weighted by its two edges."""
+    nodes, jump = np.arange(13.0), 6
+    lines = [1.0 + 0.1 * nodes, 5.0 - 0.2 * nodes]
+    values = np.where(nodes < jump, *lines)
+    values[jump] = 0.4 * lines[0][jump] + 0.6 * lines[1][jump]
+    given = values if dim == 1 else np.column_stack([values, 0.5 * values])
+    finer = resample_list(given, 24)
+    places = np.linspace(0.0, 12.0, 25)
+    exact = np.where(places < jump, 1.0 + 0.1 * places, 5.0 - 0.2 * places)
+    exact[2 * jump] = values[jump]
+    found = finer if dim == 1 else finer[:, 0]
+    assert found == pytest.approx(exact, abs=1e-12)
+    # The value of one side at the node is a jump beside it, which nobody can place better.
+    values[jump] = lines[1][jump]
+    one_sided = resample_list(values, 24)
+    assert lines[0][jump - 1] < one_sided[2 * jump - 1] < values[jump]
+
+
+def test_bars_of_a_rod_whose_natural_curvature_jumps():
+    """The end of a straight leg and of an arc of radius 1/2, each half of the rod."""
+    nodes, jump = 21, 10
+    curvature = [*[0.0] * jump, 1.0, *[2.0] * (nodes - 1 - jump)]
+    rod = {**ARM["rods"][0], "nodes": nodes, "natural_curvature": curvature}
+    end = {"rod": "arm", "at": "end"}
+    output = {"probes": {name: {**end, "quantity": name} for name in ("x", "y", "slope")}}
+    found = der.verify(
+        {
+            "rods": [rod],
+            "supports": [{"rod": "arm", "at": "start", "clamp": True}],
+            "analysis": "static",
+            "output": output,
+        }
+    )
+    length = ARM["rods"][0]["to"][0]
+    arc = 0.5 * length
+    exact = {"x": arc + np.sin(2 * arc) / 2, "y": (1 - np.cos(2 * arc)) / 2, "slope": 2 * arc}
+    for name, value in exact.items():
+        assert abs(found[name].value - value) <= found[name].error_bar + 1e-12, name
+        assert abs(found[name].extrapolated - value) <= 0.2 * found[name].error_bar + 1e-9, name

@@ -183,3 +183,27 @@ def test_a_rod_that_spins_past_half_a_turn_at_a_corner(turns):
         shapes.append(moved[0])
     turned = Rotation.from_rotvec([2 * np.pi * turns, 0.0, 0.0]).apply(shapes[0])
     assert np.allclose(turned, shapes[1], atol=1e-9)
+
+
+@pytest.mark.parametrize("spring", [0.0, 3.0], ids=["moment", "moment and spring"])
+def test_a_force_that_follows_a_planar_rod_turns_with_its_tangent(fitted_order, spring):
+    """The tangent turns further than the edges beside it under a moment, and less on a spring."""
+    force, moment = 2.0, 1.0  # across the rod, and all that turns it at the place
+    rod = Rod(1.0, (1.0, 1.0), 1.0, 1e6)
+    wrenches = [Wrench(0.5, (force, 0.0, 0.0), (0.0, moment, 0.0)), Wrench(1.0)]
+    tip, _, frames = held_at_start(rod, wrenches, DRAWN)
+    turned = np.arctan2(frames[0][1, 2], frames[0][0, 2])
+    here = {"rod": "rod", "at": 0.5}
+    loads = [
+        {"point_force": {**here, "force": [0.0, force], "follower": True}},
+        {"moment": {**here, "moment": moment + spring * turned}},
+    ]
+    springs = [{**here, "spring": {"rotational_stiffness": spring}}] if spring else []
+    errors = []
+    for edges in SIZES:
+        nodes = np.column_stack([np.linspace(0, 1, edges + 1), np.zeros(edges + 1)])
+        scene = rod_through(nodes, section(EI=1.0), [*CLAMPED, *springs], loads=loads)
+        values, _ = measured({**scene, "model": "planar"}, ["end"], ("x", "y"))
+        errors.append(np.linalg.norm(values[0] - tip[:2]))
+    assert errors[0] < 2.0 / SIZES[0] ** 2
+    assert fitted_order([1 / n for n in SIZES], errors) > 1.9

@@ -326,3 +326,25 @@ def test_where_the_natural_twist_jumps(holds, longer):
         "reaction": torques[0] - torques[1],
     }
     assert {name: values[-1] for name, values in found.items()} == pytest.approx(exact, abs=1e-9)
+
+
+def test_natural_twist_beside_a_jump_of_a_list_on_alternating_edges():
+    """Linear on both sides of the node: its two values there are exact, as the list has them at
+    its nodes and not beside them."""
+    edges = np.tile([1.3, 0.7], 10) / 20
+    s = np.concatenate([[0.0], np.cumsum(edges)])
+    node = 10
+    before, after = 2.0 * s, 5.0 - 2.0 * s
+    twist = np.where(np.arange(21) < node, before, after)
+    shares = edges[[node - 1, node]] / edges[[node - 1, node]].sum()
+    twist[node] = shares @ [before[node], after[node]]
+    scene = rod_through(
+        np.column_stack([s, 0 * s, 0 * s]),
+        section(EI=1.0, GJ=0.8),
+        rod={"natural_curvature": [0, 0], "natural_twist": twist.tolist()},
+    )
+    here = {"rod": "rod", "at": {"node": node}, "quantity": "twist"}
+    probes = {side: {**here, "side": side} for side in ("before", "after")}
+    found = der.run({**scene, "output": {"probes": probes}}).probes
+    values = [found[side][-1] for side in ("before", "after")]
+    assert values == pytest.approx([before[node], after[node]], abs=1e-9)

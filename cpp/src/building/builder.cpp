@@ -301,8 +301,9 @@ Model build_model(const scenario::Scene& scene) {
     std::visit([&](const auto& l) { add_load(l, LoadContext{scene, load.name}, model); },
                load.what);
   }
-  if (model.has_sections()) {
-    for (const RodLayout& rod : model.rods) act_on_loaded_sections(rod, model);
+  for (const RodLayout& rod : model.rods) {
+    if (model.dimension == 2) turn_followers_under_moments(rod, model);
+    if (model.has_sections()) act_on_loaded_sections(rod, model);
   }
   set_actuated_turns(model);
   follow_slopes(scene, model);

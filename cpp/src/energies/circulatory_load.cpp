@@ -1,6 +1,8 @@
 #include "der/energies/circulatory_load.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 
 #include "der/core/index.hpp"
@@ -140,6 +142,21 @@ void PlanarFollowerForce::evaluate(const Configuration& here, const Vec3& amount
     out.tangent.block<2, 2>(0, 2 + 2 * static_cast<Index>(i)) =
         -perpendicular(force) * direction_gradient(e, 1.0 / e.squaredNorm()).transpose();
   }
+  if (share < 1.0 && !drawn_force.isZero(0.0)) hold_back(drawn_force, out);
+}
+
+void PlanarFollowerForce::hold_back(const Vec2& drawn_force, CirculatoryTerm& out) const {
+  const Vec2 whole = out.force.head<2>();
+  const double turn = std::atan2(cross(drawn_force, whole), drawn_force.dot(whole));
+  const Eigen::Rotation2Dd back((share - 1.0) * turn);
+  const Vec2 held = back * whole;
+  using Slopes = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, CirculatoryTerm::kMost>;
+  const Slopes slopes = out.tangent.topRightCorner(2, out.tangent.cols() - 2);
+  // The turn changes by perpendicular(F) . dF / F^2.
+  const Vec2 by_turn = (share - 1.0) / whole.squaredNorm() * perpendicular(held);
+  const Mat2 change = back.toRotationMatrix() + by_turn * perpendicular(whole).transpose();
+  out.tangent.topRightCorner(2, slopes.cols()) = change * slopes;
+  out.force.head<2>() = held;
 }
 
 void FollowerForce::evaluate(const Configuration& here, const Vec3& amount,

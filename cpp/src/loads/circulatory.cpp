@@ -297,4 +297,23 @@ void act_on_loaded_sections(const RodLayout& rod, Model& model) {
   }
 }
 
+void turn_followers_under_moments(const RodLayout& rod, Model& model) {
+  for (const ForcePlace& force : rod.force_places) {
+    const double s = force.arc_length;
+    // Beyond the outermost middles the directions of the edges are continued to the place.
+    const bool between = !place_beside_clamp(rod, s) && beyond_outer_middle(rod, s) == 0.0;
+    if (force.follower < 0 || !between) continue;
+    const auto place = std::find_if(rod.moment_places.begin(), rod.moment_places.end(),
+                                    [&](const MomentPlace& moments) {
+                                      return std::abs(moments.arc_length - s) <= rod.same_place();
+                                    });
+    if (place == rod.moment_places.end() || rod.EI == 0.0) continue;
+    CirculatoryLoad& load = circulatory_loads(*model.elements)[to_size(force.follower)];
+    std::get<PlanarFollowerForce>(load.kind).share = place->series_share(rod.EI);
+    for (const Index moment : place->moments) {
+      load.amount.actuated.turn.terms.push_back({0, moment, place->cell_length / rod.EI});
+    }
+  }
+}
+
 }  // namespace der

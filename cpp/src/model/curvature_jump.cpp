@@ -14,11 +14,15 @@ namespace {
 /// How many cells on either side of a node tell whether the curvature jumps there.
 constexpr Index kBeside = 2;
 
+/// Where the rod has the curvature that stands for a node: at the node, or, if it is the turn from
+/// one edge to the next, a third of their difference beside it.
+enum class Known { AtNodes, BetweenEdges };
+
 /// The curvature of the cells about the nodes of a rod, as a vector [1/m].
 class CellCurvature {
  public:
-  CellCurvature(const RodLayout& rod, std::vector<Vec3> at_nodes)
-      : rod_(rod), at_nodes_(std::move(at_nodes)) {}
+  CellCurvature(const RodLayout& rod, std::vector<Vec3> at_nodes, Known known)
+      : rod_(rod), at_nodes_(std::move(at_nodes)), known_(known) {}
 
   /// After an inner node with two more on either side less before it, if it jumps there: else zero.
   [[nodiscard]] Vec3 jump_at(Index place) const {
@@ -65,6 +69,7 @@ class CellCurvature {
 
   /// Where the rod has the curvature of the cell about a node [m].
   [[nodiscard]] double place_of(Index place) const {
+    if (known_ == Known::AtNodes) return rod_.arc_length_at(place);
     const double before = rod_.edge_length[to_size(rod_.edge_before(place))];
     const double after = rod_.edge_length[to_size(rod_.edge_after(place))];
     return rod_.arc_length_at(place) + (after - before) / 3.0;
@@ -72,6 +77,7 @@ class CellCurvature {
 
   const RodLayout& rod_;
   std::vector<Vec3> at_nodes_;
+  Known known_;
 };
 
 /// The vectors about which the drawn rod turns in its cells [1/m].
@@ -126,7 +132,8 @@ const SectionFrame& drawn_section(const RodLayout& rod, Index place) {
 
 /// Those of the curvatures that the scene gives.
 std::vector<CurvatureJump> given_jumps_of(const RodLayout& rod, const Model& model) {
-  std::vector<CurvatureJump> jumps = jumps_of({rod, given_curvature(rod)}, rod, model);
+  std::vector<CurvatureJump> jumps =
+      jumps_of({rod, given_curvature(rod), Known::AtNodes}, rod, model);
   if (model.dimension == 2) return jumps;
   for (auto& [place, turn] : jumps) {
     const SectionFrame& section = drawn_section(rod, place);
@@ -137,7 +144,7 @@ std::vector<CurvatureJump> given_jumps_of(const RodLayout& rod, const Model& mod
 
 /// Adds those of the twist that the scene gives.
 void add_twist_jumps(const RodLayout& rod, const Model& model, std::vector<CurvatureJump>& jumps) {
-  for (const auto& [place, twist] : jumps_of({rod, given_twist(rod)}, rod, model)) {
+  for (const auto& [place, twist] : jumps_of({rod, given_twist(rod), Known::AtNodes}, rod, model)) {
     const Index here = place;
     const auto next = std::find_if(jumps.begin(), jumps.end(),
                                    [&](const auto& jump) { return jump.place >= here; });
@@ -151,7 +158,7 @@ void add_twist_jumps(const RodLayout& rod, const Model& model, std::vector<Curva
 
 std::vector<CurvatureJump> drawn_jumps_of(const RodLayout& rod, const Model& model) {
   if (!has_cells_beside(rod)) return {};
-  return jumps_of({rod, drawn_curvature(rod, model)}, rod, model);
+  return jumps_of({rod, drawn_curvature(rod, model), Known::BetweenEdges}, rod, model);
 }
 
 std::vector<CurvatureJump> natural_jumps_of(const RodLayout& rod, const Model& model) {

@@ -19,6 +19,8 @@ _ISOLATED_TURN = 3.0
 _NO_TURN = 1e-6
 #: A jump of the curvature is this many times all that is uncertain about it.
 _CLEAR_JUMP = 2.0
+#: Share of either side in the value of a list at a jump, at least.
+_LEAST_SHARE = 0.15
 #: Nodes on either side of a jump, of the same leg, from which it is known.
 _BESIDE_JUMP = 2
 
@@ -240,7 +242,9 @@ def _common_slopes(before: Any, after: Any) -> tuple[tuple[int, Array], tuple[in
 def resample_list(values: Array, elements: int, *, closed: bool = False) -> Array:
     """Return the values at the nodes of another mesh of evenly divided elements.
 
-    Piecewise cubic and monotone between the old nodes (PCHIP), so a jump does not overshoot.
+    Piecewise cubic and monotone between the old nodes (PCHIP), so that nothing overshoots. Where an
+    open list jumps at a node, as a natural curvature does, each side has its own curve, up to the
+    value of the node, which is the mean of both.
 
     Parameters
     ----------
@@ -260,9 +264,49 @@ def resample_list(values: Array, elements: int, *, closed: bool = False) -> Arra
         places = np.arange(len(around), dtype=float) - beside
         ring: Array = PchipInterpolator(places, around)(np.arange(elements) * (count / elements))
         return ring
-    old = np.arange(len(values), dtype=float)
-    resampled: Array = PchipInterpolator(old, values)(np.linspace(0.0, old[-1], elements + 1))
+    last = len(values) - 1
+    new = np.linspace(0.0, last, elements + 1)
+    jumps = _list_jumps(values)
+    resampled = np.empty((elements + 1, *values.shape[1:]))
+    for start, end in itertools.pairwise([0, *jumps, last]):
+        side = values[start : end + 1].copy()
+        if start in jumps:
+            side[0] = _continued(values[start + 1], values[start + 2])
+        if end in jumps:
+            side[-1] = _continued(values[end - 1], values[end - 2])
+        here = (start <= new) & (new <= end)
+        resampled[here] = PchipInterpolator(np.arange(start, end + 1.0), side)(new[here])
+    for node in jumps:
+        resampled[np.abs(new - node) < 1e-9 * last] = values[node]
     return resampled
+
+
+def _continued(near: Array, far: Array) -> Array:
+    """Return the next value after two."""
+    line: Array = near + (near - far)
+    return line
+
+
+def _list_jumps(values: Array) -> list[int]:
+    """Return the inner nodes at which a list jumps, by the rule of `find_curvature_jumps`.
+
+    Edges may differ in length: the value of such a node is any mean of those of its two sides.
+    """
+    flat = values.reshape(len(values), -1)
+    found = []
+    for node in range(_BESIDE_JUMP + 1, len(flat) - _BESIDE_JUMP - 1):
+        near, far, after, beyond = flat[[node - 1, node - 2, node + 1, node + 2]]
+        low, high = _continued(near, far), _continued(after, beyond)
+        jump = high - low
+        size = float(np.linalg.norm(jump))
+        if size == 0.0:
+            continue
+        share = float((flat[node] - low) @ jump) / size**2
+        beside = np.linalg.norm(flat[node] - low - share * jump)
+        uncertain = np.linalg.norm(near - far) + np.linalg.norm(after - beyond) + beside
+        if _LEAST_SHARE < share < 1.0 - _LEAST_SHARE and size > _CLEAR_JUMP * uncertain:
+            found.append(node)
+    return found
 
 
 def arc_lengths(points: Array, *, closed: bool = False) -> Array:

@@ -45,10 +45,15 @@ struct PlanarFollowerForce {
     Vec2 drawn = Vec2::Zero();  ///< unit vector along the edge as it is drawn
   };
   std::vector<FollowedEdge> edges;
+  double share = 1.0;  ///< of the turn of the edges, which springs at the place leave the tangent
 
   [[nodiscard]] Index size() const { return 2 + 2 * static_cast<Index>(edges.size()); }
   /// `amount` is F0 [N].
   void evaluate(const Configuration& here, const Vec3& amount, CirculatoryTerm& out) const;
+
+ private:
+  /// Turns the force back, by less than half a turn, to `share` of its turn from F0.
+  void hold_back(const Vec2& drawn_force, CirculatoryTerm& out) const;
 };
 
 /// A force that turns with a rod in space: PlanarFollowerForce with the rotations of section

@@ -7,9 +7,9 @@
 
 namespace der {
 
-/// How actuations turn the section that a load follows beyond its edges. The vectors of a load in
-/// the initial shape, F0 and M0, are turned by it before the edges turn them: the edges tell all
-/// that depends on coordinates.
+/// How actuations, and in a plane moments, turn the section that a load follows beyond its edges.
+/// The vectors of a load in the initial shape, F0 and M0, are turned by it before the edges turn
+/// them: the edges tell all that depends on coordinates.
 struct ActuatedSection {
   ActuatedTurn turn;
   Mat3 axes = Mat3::Zero();  ///< of the drawn section (turning_axes), in a plane z stands first

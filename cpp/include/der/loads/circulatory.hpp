@@ -24,4 +24,9 @@ void add_spatial_moment(const scenario::VectorSeries& moment, bool follower, dou
 /// (energies/loaded_section.hpp), once all of them have been added.
 void act_on_loaded_sections(const RodLayout& rod, Model& model);
 
+/// Lets the forces that follow a rod in its plane turn with the tangent where moments of loads or
+/// springs against turning act at the same place, between two edges: where these turn by w it turns
+/// by (w + c M/EI)/(1 + k c/EI) (MomentPlace).
+void turn_followers_under_moments(const RodLayout& rod, Model& model);
+
 }  // namespace der

@@ -23,13 +23,12 @@ NaturalCurvature::NaturalCurvature(const RodLayout& rod, const Model& model) {
   if (rod.natural_curvature.empty()) {
     read_drawn(bounds, rod, model);
   } else {
-    read_given(bounds, rod, model);
+    read_given(bounds, rod);
   }
 }
 
-void NaturalCurvature::read_given(const std::vector<Index>& bounds, const RodLayout& rod,
-                                  const Model& model) {
-  const std::vector<CurvatureJump> jumps = rod.natural_jumps;
+void NaturalCurvature::read_given(const std::vector<Index>& bounds, const RodLayout& rod) {
+  const std::vector<CurvatureJump>& jumps = rod.natural_jumps;
   auto leg = legs_.begin();
   for (Index i = 0; i <= rod.num_edges(); ++i) {
     const auto add = [&](bool after) {

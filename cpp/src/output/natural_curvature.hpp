@@ -24,7 +24,7 @@ class NaturalCurvature {
     std::vector<double> values;      // [1/m]
   };
 
-  void read_given(const std::vector<Index>& bounds, const RodLayout& rod, const Model& model);
+  void read_given(const std::vector<Index>& bounds, const RodLayout& rod);
   void read_drawn(const std::vector<Index>& bounds, const RodLayout& rod, const Model& model);
 
   std::vector<Leg> legs_;

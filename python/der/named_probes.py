@@ -1,4 +1,4 @@
-"""What belongs to the probes of a scene, by their names."""
+"""Dicts with a value for each probe of a scene, by its name."""
 
 from __future__ import annotations
 

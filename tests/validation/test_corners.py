@@ -617,5 +617,5 @@ def test_natural_curvatures_that_jump_where_the_drawn_ones_do(dimension, holds, 
         probes = {"moment": {"quantity": quantity, "support": 1}}
         result = der.run(der.Scenario.from_dict({**scene, "output": {"probes": probes}}))
         bears.append(abs(result.probes["moment"][-1]))
-    # Of the curvature 1/radius an error of order 1 would leave a share of a quarter of an edge.
+    # An error of order 1 would leave a quarter of an edge times the curvature 1/radius.
     assert np.all(np.array(bears) < 0.1 * angle**2 / np.array(sizes) ** 2 / radius)

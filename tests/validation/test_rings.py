@@ -1014,7 +1014,7 @@ AROUND = 2 * np.pi
 
 
 def drawn_section(s):
-    """Of the ring below at a distance from its clamp; the sections go on across the glue."""
+    """The section of the drawn ring at a distance from its clamp, continued across the glue."""
     along, turned = np.pi + s, GLUED / AROUND * (np.pi + s)
     tangent = np.array([-np.sin(along), np.cos(along), 0.0])
     first = np.cos(turned) * np.eye(3)[2] + np.sin(turned) * np.cross(tangent, np.eye(3)[2])

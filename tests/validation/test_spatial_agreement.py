@@ -84,7 +84,7 @@ def test_corners_in_their_plane(curvature):
 @pytest.mark.parametrize("drawn", ["straight", "bent"])
 @pytest.mark.parametrize("loaded", ["follower", "moment", "spring", "clamp"])
 def test_natural_curvatures_that_jump_in_their_plane(drawn, loaded):
-    """What acts or holds at the node of the jump.
+    """Loads and supports at the node of the jump have the same effect in both models.
 
     The follower force in space turns with the section. That of the plane is the mean of two forces
     that turn with the edges, which turn by 0.05 rad from one to the next: it is smaller by a share

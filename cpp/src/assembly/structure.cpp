@@ -40,7 +40,7 @@ std::string difference_of_rods(const Model& here, const Model& other) {
   return {};
 }
 
-/// What the elements of a kind are in the scene, and why they may be others.
+/// How a message calls the elements of a kind, and why two scenes may have different ones.
 struct Difference {
   const char* what;
   const char* why;

@@ -189,6 +189,11 @@ Vec3 curvature_beyond_mean(const RodLayout& rod, Index place, bool after,
   return (after ? share : -share) * here->turn;
 }
 
+double planar_curvature_beside(const RodLayout& rod, Index place, bool after) {
+  return rod.natural_curvature[to_size(rod.position(place))] +
+         curvature_beyond_mean(rod, place, after, rod.natural_jumps).z();
+}
+
 Vec3 turn_from_line(double s, Index first_edge, const RodLayout& rod,
                     const std::vector<CurvatureJump>& jumps) {
   const Index place = first_edge + 1;

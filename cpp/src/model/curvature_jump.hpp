@@ -31,6 +31,10 @@ double twist_beyond_mean(const RodLayout& rod, Index place, bool after);
 Vec3 curvature_beyond_mean(const RodLayout& rod, Index place, bool after,
                            const std::vector<CurvatureJump>& jumps);
 
+/// Natural curvature of a planar rod, where the scene gives it, at a place as the edge after it has
+/// it, or the one before it [1/m].
+double planar_curvature_beside(const RodLayout& rod, Index place, bool after);
+
 /// The rotation [rad] by which the tangent at `s` [m], between the middles of an edge and the next,
 /// is turned against the line through theirs: where the curvature jumps at their node, from k_b to
 /// k_a, the line cuts off the kink of the tangent's angle, (k_a - k_b) ab/(a + b) at the node, with

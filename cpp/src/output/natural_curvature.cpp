@@ -28,13 +28,11 @@ NaturalCurvature::NaturalCurvature(const RodLayout& rod, const Model& model) {
 }
 
 void NaturalCurvature::read_given(const std::vector<Index>& bounds, const RodLayout& rod) {
-  const std::vector<CurvatureJump>& jumps = rod.natural_jumps;
   auto leg = legs_.begin();
   for (Index i = 0; i <= rod.num_edges(); ++i) {
     const auto add = [&](bool after) {
       leg->arc_length.push_back(rod.arc_length_at(i));
-      leg->values.push_back(rod.natural_curvature[to_size(rod.position(i))] +
-                            curvature_beyond_mean(rod, i, after, jumps).z());
+      leg->values.push_back(planar_curvature_beside(rod, i, after));
     };
     if (!std::binary_search(bounds.begin(), bounds.end(), rod.position(i))) {
       add(true);

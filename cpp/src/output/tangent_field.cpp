@@ -385,7 +385,7 @@ class SpatialDirection : public DirectionField<Vec3> {
     if (glue_) kinks.push_back(glue_->jump(model, state));
   }
 
-  /// Of a ring.
+  /// Whether an arc length [m] is that of the start of a ring, which is its end, too.
   [[nodiscard]] bool is_at_start(double s) const {
     return std::min(s, rod_.rest_length() - s) <= rod_.same_place();
   }

@@ -148,14 +148,10 @@ double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, co
         effective_edge(rod, edge, model).vector(model.initial_positions, 0.0, 0.0);
     return side * angle_between(tangent, effective);
   }
-  const auto natural = [&](Index place, bool after) {
-    return rod.natural_curvature[to_size(rod.position(place))] +
-           curvature_beyond_mean(rod, place, after, rod.natural_jumps).z();
-  };
   const bool leaves = side > 0.0;
   const Index next = clamp.place + (leaves ? 1 : -1);
-  const double at_pivot =
-      (1.0 - kPivotShare) * natural(clamp.place, leaves) + kPivotShare * natural(next, !leaves);
+  const double at_pivot = (1.0 - kPivotShare) * planar_curvature_beside(rod, clamp.place, leaves) +
+                          kPivotShare * planar_curvature_beside(rod, next, !leaves);
   return at_pivot * clamp_cell_length(rod, edge);
 }
 

@@ -18,7 +18,7 @@ from der.analyses import Path
 from der.result import Result
 
 _UNITS = array_units()
-#: What modes and linear buckling of a plane tell of motion out of it, with its unit.
+#: Results of modes and linear buckling of a plane for motion out of it, with their units.
 _OUT_OF_PLANE = {"growth_rate": _UNITS["modes/growth_rates"], "load_factor": ""}
 #: The factor is where the scene wants it, to this share of its range.
 _SAME_FACTOR = 1e-9

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -10,7 +8,6 @@
 
 #include "building/corner.hpp"
 #include "building/spatial_rod_elements.hpp"
-#include "der/core/error.hpp"
 #include "der/core/index.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/from_pivot.hpp"
@@ -86,20 +83,6 @@ RodJoint joint_at_clamp(const RodLayout& rod, Index clamp, Index place, bool lea
   joint.twist_place = rod.arc_length_at(place) + 0.25 * ahead;
   joint.twist_length = 0.5 * length;
   return joint;
-}
-
-/// Sections on the two sides of a clamp that does not hold them would have to spin together.
-void check_that_sections_meet(const RodLayout& rod) {
-  for (const Clamp& clamp : rod.clamps) {
-    if (clamp.holds_section || !rod.is_inner(clamp.place)) continue;
-    throw Error(
-        "model_error",
-        fmt::format("a 'clamp: tangent' inside rod '{}', at arc length {:.6g} m, would part "
-                    "the sections on its two sides, and pass on no torque: this is not "
-                    "available yet. Write 'clamp: true' or 'fix', or put it at an end of "
-                    "the rod",
-                    rod.name, rod.arc_length_at(clamp.place)));
-  }
 }
 
 /// All joints of a rod, from its start to its end.
@@ -449,10 +432,7 @@ void add_bending(RodLayout& rod, Model& model) {
 }  // namespace
 
 void add_spatial_rod_elements(RodLayout& rod, Model& model) {
-  if (model.has_sections()) {
-    check_that_sections_meet(rod);
-    draw_frames(rod, model);
-  }
+  if (model.has_sections()) draw_frames(rod, model);
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     add_stretch(rod, spatial_edge(rod, edge, model), edge, model);
   }

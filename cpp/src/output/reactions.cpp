@@ -16,6 +16,7 @@
 #include "der/model/spin.hpp"
 #include "der/output/joint_strain.hpp"
 #include "der/scenario/scenario.hpp"
+#include "der/supports/bearing.hpp"
 #include "output/acting_elements.hpp"
 #include "output/held_motion.hpp"
 #include "output/in_space.hpp"
@@ -78,6 +79,7 @@ class Reactions::Reader {
   void add_place(const scenario::Scene& scene, std::size_t number, double s, const Model& model);
   void add_spring(const scenario::Scene& scene, std::size_t number, double s, const Model& model,
                   Place& place) const;
+  static void add_bearing(double s, const RodLayout& rod, Place& place);
   [[nodiscard]] static std::vector<HeldDof> held_by(const scenario::Support& support, Index node,
                                                     const Model& model);
   /// Where the moment of a clamp is summed: its number among all of the model.
@@ -151,6 +153,7 @@ void Reactions::Reader::add_place(const scenario::Scene& scene, std::size_t numb
     if (const Clamp* clamp = rod.clamp_at(node); support.clamps() && clamp != nullptr) {
       place.clamp = static_cast<Index>(clamp - rod.clamps.data());
     }
+    if (is_bearing(support, node, rod, model)) add_bearing(s, rod, place);
   }
   if (support.spring) add_spring(scene, number, s, model, place);
   places_.push_back(std::move(place));
@@ -220,6 +223,14 @@ void Reactions::Reader::add_spring(const scenario::Scene& scene, std::size_t num
     }
   }
   place.turning = turning;
+}
+
+/// Its springs are so much stiffer than others there that they have all of the moment across.
+void Reactions::Reader::add_bearing(double s, const RodLayout& rod, Place& place) {
+  const SectionSpringPlace* found = rod.section_spring_at(s);
+  if (found == nullptr) return;
+  place.turning =
+      Turning{static_cast<std::size_t>(found - rod.section_springs.data()), Vec3(1.0, 1.0, 0.0)};
 }
 
 std::size_t Reactions::Reader::clamp_number(std::size_t rod, const Clamp& clamp,

@@ -11,8 +11,10 @@
 #include "der/building/out_of_plane_model.hpp"
 #include "der/core/error.hpp"
 #include "der/core/loops.hpp"
+#include "der/model/location.hpp"
 #include "der/scenario/out_of_plane.hpp"
 #include "der/scenario/scenario.hpp"
+#include "der/supports/bearing.hpp"
 #include "simulation/stepper_options.hpp"
 
 namespace der {
@@ -43,9 +45,26 @@ std::map<std::string, Simulation::Settable, std::less<>> settable_in(const Model
   return all;
 }
 
+/// A support in which a planar rod would spin if it left its plane, in words; empty if there is
+/// none.
+std::string find_spin_inside(const scenario::Scene& scene, const Model& model) {
+  for (std::size_t i = 0; i < scene.supports.size(); ++i) {
+    const scenario::Support& support = scene.supports[i];
+    const RodLayout& rod = model.rod(support.rod);
+    if (support.clamp != scenario::Clamp::Tangent || rod.EI == 0.0) continue;
+    for (const Index place : nodes_at(support.at, rod)) {
+      if (!lets_spin_inside(support, place, rod)) continue;
+      return fmt::format("supports.{} lets rod '{}' spin within it ('clamp: tangent')", i,
+                         rod.name);
+    }
+  }
+  return {};
+}
+
 std::string why_not_tested_out_of_plane(const scenario::Scene& scene, const Model& model) {
   if (model.dimension != 2) return {};
   std::string why_not = scenario::why_not_tested_out_of_plane(scene);
+  if (why_not.empty()) why_not = find_spin_inside(scene, model);
   if (why_not.empty() && is_held_out_of_plane(scene, model)) {
     why_not = "supports hold every node there, and no section can twist";
   }

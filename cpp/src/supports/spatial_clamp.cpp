@@ -9,6 +9,7 @@
 #include "der/core/error.hpp"
 #include "der/core/index.hpp"
 #include "der/scenario/support.hpp"
+#include "der/supports/bearing.hpp"
 #include "der/supports/clamp.hpp"
 #include "model/corner.hpp"
 #include "model/corner_twist.hpp"
@@ -103,6 +104,7 @@ Vec3 first_tangent(const RodLayout& rod, const Model& model) {
 
 void hold_section(const scenario::Support& support, Index place, RodLayout& rod, Model& model) {
   if ((rod.EI_1 == 0.0 && rod.EI_2 == 0.0) || rod.clamp_at(place) != nullptr) return;
+  if (is_bearing(support, place, rod, model)) return hold_in_bearing(support, place, rod, model);
   Clamp clamp;
   clamp.place = place;
   clamp.holds_section = support.clamp == scenario::Clamp::Section;

@@ -43,6 +43,7 @@ SPATIAL = (
     "spatial_frequencies",
     "curved_twisted_rod",
     "springs_in_space",
+    "bearing",
     "writhe",
     "deployable_ring",
     "spatial_motion",

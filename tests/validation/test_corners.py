@@ -7,7 +7,7 @@ import pytest
 from references.bent_wire import Leg, Wire
 from references.kirchhoff_rod import rotation
 from scipy.integrate import solve_ivp
-from spatial_scenes import QUANTITIES, rod_through, section
+from spatial_scenes import CLAMPED, QUANTITIES, rod_through, section
 
 SIZES = [16, 32, 64]  # edges a leg
 STRONG, WEAK, TWISTING, STRETCHING = 2.0, 1.0, 0.7, 1e3
@@ -54,7 +54,7 @@ def at(points, edges, leg, share):
     return {"at": float(np.interp((leg + share) * edges, np.arange(len(arc)), arc))}
 
 
-def found(wire, edges, places, quantities, planar=False):
+def found(wire, edges, places, quantities, planar=False, **more):
     """Values at the places, shape (places, quantities)."""
     points = wire.points(edges)
     EI1, EI2, GJ, EA = wire.stiffness
@@ -78,7 +78,12 @@ def found(wire, edges, places, quantities, planar=False):
         cross_section = section(EA=EA, EI=EI1)
     else:
         cross_section = section(wire.frame[:, 0], EA=EA, EI1=EI1, EI2=EI2, GJ=GJ)
-    scene = rod_through(points[:, :dimension], cross_section, loads=loads)
+    springs = [
+        {"rod": "rod", "at": {"node": leg * edges}, "spring": {"rotational_stiffness": list(k)}}
+        for leg, k in wire.springs.items()
+    ]
+    more["supports"] = [*CLAMPED, *springs]
+    scene = rod_through(points[:, :dimension], cross_section, loads=loads, **more)
     scene["model"] = "planar" if planar else "spatial"
     result = der.run(der.Scenario.from_dict({**scene, "output": {"probes": probes}}))
     values = [[result.probes[f"{q}-{i}"][-1] for q in quantities] for i in range(len(places))]
@@ -96,7 +101,7 @@ def check_orders(fitted_order, sizes, errors, scale, names, quantities):
             assert order > 1.9, (name, quantity, order)
 
 
-def compare(fitted_order, wire, quantities, planar=False):
+def compare(fitted_order, wire, quantities, planar=False, sizes=SIZES, **more):
     """Orders on both sides of the corners, and errors on the edges beside these: there they depend
     on where in its edge a place lies."""
     columns = [COLUMNS.index(quantity) for quantity in quantities]
@@ -104,10 +109,12 @@ def compare(fitted_order, wire, quantities, planar=False):
     exact = wire.solve([*SIDES.values(), *NEAR.values()])[:, columns]
     scale = np.abs(exact).max(axis=0)
     sides = exact[: len(SIDES)]
-    errors = np.array([found(wire, n, SIDES.values(), names, planar) - sides for n in SIZES])
-    check_orders(fitted_order, SIZES, errors, scale, SIDES, quantities)
-    for n in SIZES:
-        near = found(wire, n, NEAR.values(), names, planar) - exact[len(SIDES) :]
+    errors = np.array(
+        [found(wire, n, SIDES.values(), names, planar, **more) - sides for n in sizes]
+    )
+    check_orders(fitted_order, sizes, errors, scale, SIDES, quantities)
+    for n in sizes:
+        near = found(wire, n, NEAR.values(), names, planar, **more) - exact[len(SIDES) :]
         assert (np.abs(near) < 2.0 / n**2 * scale).all()
 
 
@@ -121,6 +128,44 @@ def test_what_jumps_at_a_corner(fitted_order):
     frame = along_x([0.0, 0.6, 0.8])
     wire = Wire(LEGS, frame, (STRONG, WEAK, TWISTING, STRETCHING), tip=(1.0, 0.7, -1.4))
     compare(fitted_order, wire, QUANTITIES)
+
+
+NATURAL = {
+    "twist given": ((0.0, 0.0, 0.9), {"rod": {"natural_twist": 0.9}}),
+    "twist actuated": (
+        (0.0, 0.0, 0.9),
+        {"actuation": [{"name": "turn", "rod": "rod", "natural_twist": 0.9}]},
+    ),
+    "bent and twisted": (
+        (0.5, -0.8, 0.6),
+        {
+            "actuation": [
+                {"name": "turn", "rod": "rod", "natural_twist": 0.6},
+                {"name": "bend", "rod": "rod", "natural_curvature": [0.5, -0.8]},
+            ]
+        },
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    ("case", "spring"),
+    [*((case, {}) for case in NATURAL), ("twist given", {2: (0.8, 3.0, 0.5)})],
+    ids=[*NATURAL, "twist given, on a spring"],
+)
+def test_a_natural_shape_beyond_the_drawn_one_goes_through_corners(fitted_order, case, spring):
+    """Half of the cell at a corner has it about the axes of each leg. Springs know no actuations
+    there (docs/actuation.md)."""
+    natural, more = NATURAL[case]
+    wire = Wire(
+        LEGS,
+        along_x([0.0, 0.6, 0.8]),
+        (STRONG, WEAK, TWISTING, STRETCHING),
+        tip=(0.5, 0.3, -0.7),
+        natural=natural,
+        springs=spring,
+    )
+    compare(fitted_order, wire, QUANTITIES, sizes=[3 * n for n in SIZES], **more)
 
 
 def test_what_jumps_at_a_corner_in_the_plane(fitted_order):

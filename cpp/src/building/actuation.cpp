@@ -58,8 +58,8 @@ class Weights {
   void add_twist() {
     for (Index edge = 0; edge < rod_.num_edges(); ++edge) {
       const double middle = rod_.edge_middle(edge);
-      add_strain(2, cell_at_start(edge), stretch_.integral(start(edge), middle), 0);
-      add_strain(2, cell_at_end(edge), stretch_.integral(middle, end(edge)), 0);
+      add_at_start(2, edge, stretch_.integral(start(edge), middle), 0);
+      add_at_end(2, edge, stretch_.integral(middle, end(edge)), 0);
     }
   }
 
@@ -67,8 +67,8 @@ class Weights {
   void add_curvature(std::size_t strain) {
     for (Index edge = 0; edge < rod_.num_edges(); ++edge) {
       const auto [at_start, at_end] = edge_turns(stretch_, rod_, edge);
-      add_strain(static_cast<Index>(strain), cell_at_start(edge), at_start, strain);
-      add_strain(static_cast<Index>(strain), cell_at_end(edge), at_end, strain);
+      add_at_start(static_cast<Index>(strain), edge, at_start, strain);
+      add_at_end(static_cast<Index>(strain), edge, at_end, strain);
     }
   }
 
@@ -76,21 +76,28 @@ class Weights {
   [[nodiscard]] double start(Index edge) const { return rod_.arc_length_at(edge); }
   [[nodiscard]] double end(Index edge) const { return rod_.arc_length_at(edge + 1); }
 
-  /// The cell between an edge and what is before it; none at a free end.
-  [[nodiscard]] RestShift cell_at_start(Index edge) const {
+  /// Adds to a strain of the cell between an edge and what is before it; none is at a free end.
+  void add_at_start(Index strain, Index edge, double weight, std::size_t table) {
     const bool leaves = rod_.clamp_at(edge) != nullptr;
-    if (!leaves && !rod_.is_inner(edge)) return {};
-    return rod_.rest_entries.cell(rod_.position(edge), leaves);
+    if (!leaves && !rod_.is_inner(edge)) return;
+    const Mat3 half = leaves ? Mat3::Identity() : rod_.cell_halves_at(edge).after;
+    add_strains(half.col(strain), rod_.rest_entries.cell(rod_.position(edge), leaves), weight,
+                table);
   }
-  /// The cell between an edge and what is after it.
-  [[nodiscard]] RestShift cell_at_end(Index edge) const {
-    if (rod_.clamp_at(edge + 1) == nullptr && !rod_.is_inner(edge + 1)) return {};
-    return rod_.rest_entries.cell(rod_.position(edge + 1), false);
+  /// The same of the cell between an edge and what is after it.
+  void add_at_end(Index strain, Index edge, double weight, std::size_t table) {
+    const bool arrives = rod_.clamp_at(edge + 1) != nullptr;
+    if (!arrives && !rod_.is_inner(edge + 1)) return;
+    const Mat3 half = arrives ? Mat3::Identity() : rod_.cell_halves_at(edge + 1).before;
+    add_strains(half.col(strain), rod_.rest_entries.cell(rod_.position(edge + 1), false), weight,
+                table);
   }
 
-  void add_strain(Index strain, const RestShift& cell, double weight, std::size_t table) {
+  void add_strains(const Vec3& strains, const RestShift& cell, double weight, std::size_t table) {
     if (cell.entry < 0) return;
-    add({cell.entry + strain}, weight, stretch_.controls[table]);
+    for (Index i = 0; i < rod_.rest_entries.strains; ++i) {
+      add({cell.entry + i}, weight * strains[i], stretch_.controls[table]);
+    }
   }
   void add(const RestShift& shift, double weight, Index control) {
     if (weight != 0.0) terms_.push_back({shift.entry, control, weight});

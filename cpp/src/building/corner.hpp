@@ -2,6 +2,7 @@
 
 #include "der/energies/joint_response.hpp"
 #include "der/kinematics/section_frame.hpp"
+#include "der/model/model.hpp"
 
 namespace der {
 
@@ -30,6 +31,17 @@ inline CoupledJoint corner_joint(const SectionFrame& before, const SectionFrame&
   // Strains are s = G' w of a rotation w = C m under a moment m = G q.
   const Mat3 sum = share * half(before) + (1.0 - share) * half(after);
   return {(gradients.transpose() * sum * gradients).inverse(), smooth.rest};
+}
+
+/// How the strains of the two halves add up to those of the joint `drawn` of its place.
+template <class Curvature>
+CellHalves cell_halves(Index place, const SectionFrame& before, const SectionFrame& after,
+                       const JointKinematics<Curvature>& drawn) {
+  const auto by_rotation = drawn.gradients();
+  Mat3 gradients;
+  gradients << by_rotation.kappa_1, by_rotation.kappa_2, by_rotation.twist;
+  return {place, gradients.transpose() * turning_axes(before),
+          gradients.transpose() * turning_axes(after)};
 }
 
 }  // namespace der

@@ -150,6 +150,22 @@ Vec2 mean_natural_curvature(const RodLayout& rod, const RodJoint& joint) {
   return (before * joint.natural_curvature + after * beyond) / (before + after);
 }
 
+/// Adds a twist [rad/m] to the rest shape of a joint: each half of its cell turns about its own
+/// tangent.
+void add_twist(const RodLayout& rod, double twist, RodJoint& joint) {
+  if (joint.clamp >= 0) {
+    joint.rest.twist += twist * joint.twist_length;
+    return;
+  }
+  const CellHalves halves = rod.cell_halves_at(joint.place());
+  const Vec3 strain = 0.5 * twist *
+                      (rod.edge_length[to_size(joint.before)] * halves.before.col(2) +
+                       rod.edge_length[to_size(joint.after)] * halves.after.col(2));
+  joint.rest.kappa_1 += strain[0];
+  joint.rest.kappa_2 += strain[1];
+  joint.rest.twist += strain[2];
+}
+
 void set_rest(const RodLayout& rod, const JointStrain& drawn, RodJoint& joint) {
   joint.rest = drawn;
   joint.natural_curvature = Vec2(drawn.kappa_1, drawn.kappa_2) / joint.bend_length;
@@ -161,7 +177,7 @@ void set_rest(const RodLayout& rod, const JointStrain& drawn, RodJoint& joint) {
     joint.rest.kappa_2 = turn[1];
   }
   if (!rod.natural_twist.empty()) {
-    joint.rest.twist += (natural_twist_at(rod, joint) - rod.initial_twist) * joint.twist_length;
+    add_twist(rod, natural_twist_at(rod, joint) - rod.initial_twist, joint);
   }
 }
 
@@ -299,6 +315,10 @@ class SectionElements {
       turned -= joint.glued;
     }
     const auto drawn = drawn_joint<Curvature>(a, b, drawn_twist);
+    if (is_glued_turned(joint) || is_corner(rod_, joint.place(), model_)) {
+      rod_.cell_halves.push_back(
+          cell_halves(rod_.position(joint.place()), a, frame(joint.after), drawn));
+    }
     set_rest(rod_, drawn.strain(), joint);
     if (rod_.natural_curvatures.empty()) {
       joint.natural_curvature = drawn_curvature_at_node(rod_, joint.place(), bounds_);

@@ -54,6 +54,14 @@ const Clamp* RodLayout::clamp_at(Index place) const {
   return nullptr;
 }
 
+CellHalves RodLayout::cell_halves_at(Index place) const {
+  const Index here = position(place);
+  for (const CellHalves& halves : cell_halves) {
+    if (halves.place == here) return halves;
+  }
+  return {here};
+}
+
 std::vector<double> RodLayout::moment_arc_lengths() const {
   std::vector<double> places;
   for (const MomentPlace& place : moment_places) places.push_back(place.arc_length);

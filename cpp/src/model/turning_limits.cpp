@@ -45,6 +45,7 @@ void TurningLimits::add_rod(const Model& model, std::size_t number) {
       for (std::size_t d = 0; d < directions; ++d) {
         for (const RestShape::Term& term :
              model.rest_shape.terms_of(entry + static_cast<Index>(d))) {
+          if (!bends(term.control)) continue;  // a twist: at a corner it turns the other leg
           cell.parts.push_back({find(term.control), d, term.weight});
         }
       }

@@ -186,23 +186,29 @@ SectionFrame section_on_leg(double s, Index edge, Index neighbour, const RodLayo
   return section_on_line(s, first, rod, model);
 }
 
-/// Where a ring is glued turned: by how much it turns further along the edges `first_edge` and the
-/// next, from `from` to `to` [m], if it has the natural shape that the scene gives, than from one
-/// drawn tangent to the other; towards the directors of the section and about its tangent [rad].
-Vec3 natural_turn_at_glue(double from, double to, const std::array<Vec3, 2>& tangents,
-                          Index first_edge, const SectionFrame& section, const RodLayout& rod,
-                          const Model& model) {
+/// At a corner, and where a ring is glued turned: by how much the rod turns further along the edges
+/// `first_edge` and the next, from `from` to `to` [m], if it has the natural shape that the scene
+/// gives, than from one drawn tangent to the other; towards the directors of the section and about
+/// its tangent [rad].
+Vec3 natural_turn_between_sections(double from, double to, const std::array<Vec3, 2>& tangents,
+                                   Index first_edge, const SectionFrame& section,
+                                   const RodLayout& rod, const Model& model) {
   Vec3 natural(0.0, 0.0,
-               rod.natural_twist.empty() ? 0.0 : rod.natural_twist.front() - rod.initial_twist);
-  natural.head<2>() = rod.natural_curvatures.front();
-  const double glue = rod.arc_length_at(first_edge + 1);
-  Vec3 turn = -turn_between(tangents[0], tangents[1]);
+               rod.natural_twist.empty()
+                   ? 0.0
+                   : rod.natural_twist[to_size(rod.position(first_edge + 1))] - rod.initial_twist);
+  Vec3 turn = Vec3::Zero();
+  if (!rod.natural_curvatures.empty()) {
+    natural.head<2>() = rod.natural_curvatures.front();
+    turn = -turn_between(tangents[0], tangents[1]);
+  }
+  const double node = rod.arc_length_at(first_edge + 1);
   const auto add = [&](Index edge, double length) {
     const SectionFrame own = drawn_frame(model, number_of(rod, edge));
     turn += std::max(0.0, length) * (turning_axes(own) * natural);
   };
-  add(first_edge, std::min(to, glue) - from);
-  add(first_edge + 1, to - std::max(from, glue));
+  add(first_edge, std::min(to, node) - from);
+  add(first_edge + 1, to - std::max(from, node));
   return turning_axes(section).transpose() * turn;
 }
 
@@ -237,13 +243,13 @@ SectionHold corner_hold(double s, Index first_edge, const RodLayout& rod, const 
   const Mat3 cell = before * stiffness_between * beyond;
   hold.on_the_way = 0.5 * (cell + cell.transpose());
   hold.of_natural = hold.section;
-  if (!rod.natural_curvatures.empty()) {
+  if (!rod.natural_curvatures.empty() || !rod.natural_twist.empty()) {
     const auto tangent = [&](Index edge) {
       return drawn_frame(model, number_of(rod, edge)).tangent;
     };
     const auto turn = [&](double from, double to, const Vec3& at_start, const Vec3& at_end) {
-      return natural_turn_at_glue(from, to, {at_start, at_end}, first_edge, hold.section, rod,
-                                  model);
+      return natural_turn_between_sections(from, to, {at_start, at_end}, first_edge, hold.section,
+                                           rod, model);
     };
     const Vec3 to_place = turn(start, s, tangent(first_edge), hold.section.tangent);
     const Vec3 from_place = turn(s, end, hold.section.tangent, tangent(second_edge));

@@ -18,6 +18,7 @@ from scipy.optimize import root
 
 from .kirchhoff_rod import rotation
 from .record import Array
+from .springs_in_space import moment_of, rotation_between
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,11 @@ class Wire:
     tip: tuple[float, float, float]
     inside: dict[int, tuple[float, tuple[float, float, float]]] = field(default_factory=dict)
     """Forces within legs, one each at most: where, as a share of the leg, and what."""
+    natural: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Curvatures towards d1 and d2 and twist without stress, beyond those that are drawn."""
+    springs: dict[int, tuple[float, float, float]] = field(default_factory=dict)
+    """Stiffnesses of springs against turning of the section that a leg starts with, as in
+    `springs_in_space.py`."""
 
     def frames(self) -> list[Array]:
         """Drawn frame at the start of each leg."""
@@ -95,7 +101,11 @@ class Wire:
         values = {}
         for i, leg in enumerate(self.legs):
             frame = frame @ before.T @ drawn[i]
-            natural = drawn[i].T @ np.array(leg.bent)
+            towards_1, towards_2, twist = self.natural
+            natural = drawn[i].T @ np.array(leg.bent) + [-towards_2, towards_1, twist]
+            if i in self.springs:
+                z = rotation_between(drawn[i], frame)
+                moment = moment + moment_of(drawn[i], frame, np.array(self.springs[i]) * z)
             cuts = [0.0, 1.0]
             if i in self.inside:
                 cuts.insert(1, self.inside[i][0])

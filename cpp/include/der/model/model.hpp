@@ -58,6 +58,15 @@ struct RodJoint {
   Vec2 natural_curvature = Vec2::Zero();  ///< towards the two directors [1/m]
 };
 
+/// What the two halves of the cell about a node, on the edge before it and on the one after, add to
+/// the strains of its joint where their sections point elsewhere: at a corner, and where a ring is
+/// glued turned. Each matrix takes the strains of a half to those of the joint.
+struct CellHalves {
+  Index place = 0;  ///< of the node
+  Mat3 before = Mat3::Identity();
+  Mat3 after = Mat3::Identity();
+};
+
 /// A place at which moments act on a rod's tangent: those of loads, those of springs against
 /// turning, or both (model/moment_place.hpp).
 struct MomentPlace {
@@ -154,6 +163,7 @@ struct RodLayout {
   /// The joints of a rod in space that bends, from its start to its end; the one between the last
   /// edge of a ring and its first one stands last.
   std::vector<RodJoint> joints;
+  std::vector<CellHalves> cell_halves;  ///< of the joints whose halves differ
   /// Natural curvature of a planar rod at each node [1/m]; empty: the initial shape is stress-free.
   std::vector<double> natural_curvature;
   std::vector<CurvatureJump> drawn_jumps;  ///< of the curvature of the drawn shape, ascending
@@ -204,6 +214,8 @@ struct RodLayout {
   [[nodiscard]] double edge_middle(Index edge) const;
   /// Voronoi length [m]: the rod's part that is nearer to this node than to another.
   [[nodiscard]] double voronoi_length(Index node) const;
+  /// The halves of the cell about a place; each is the identity where they do not differ.
+  [[nodiscard]] CellHalves cell_halves_at(Index place) const;
   [[nodiscard]] Edge edge(Index number, const Model& model) const;
   /// Degrees of freedom (x, y of both ends) of an edge of a planar model.
   [[nodiscard]] std::array<Index, 4> edge_dofs(Index edge, const Model& model) const;

@@ -279,6 +279,21 @@ def test_a_failed_run_raises_with_what_it_recorded(unstable):
     assert np.array_equal(unchecked.positions, result.positions)
 
 
+@pytest.mark.parametrize("stiffness", ["EI", "EA"])
+def test_a_stiffness_beyond_the_numbers_ends_the_search(stiffness):
+    """Per edge 1e308 is infinite: no search for a start of another one goes on without end."""
+    rod = {"name": "rod", "nodes": 9, "from": [0, 0], "to": [1, 0]}
+    stiffnesses = {"EA": 3000, "EI": 0.08, "mass_per_length": 0.3, stiffness: 1e308}
+    scene = {
+        "rods": [{**rod, "cross_section": {"stiffness": stiffnesses}}],
+        "supports": [{"rod": "rod", "at": "start", "clamp": True}],
+        "loads": [{"gravity": [0, -1]}],
+        "analysis": "static",
+    }
+    with pytest.raises(der.NotConvergedError, match="no stable equilibrium found"):
+        der.run(scene)
+
+
 def test_no_equilibrium_raises(swing):
     swing["supports"] = []
     with pytest.raises(der.NotConvergedError) as caught:

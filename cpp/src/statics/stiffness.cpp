@@ -173,7 +173,8 @@ double Stiffness::factorize_positive() {
   };
   double high = rounding();
   double low = 0.0;
-  while (!positive(high) && std::isfinite(high)) {
+  // Without a number in the stiffness there is no rounding error to begin with.
+  while (high > 0.0 && std::isfinite(high) && !positive(high)) {
     low = high;
     high *= 16.0;
   }

@@ -96,4 +96,25 @@ ActuatedTurn actuated_turn_of_follower(double s, const SectionPlace& place,
   return turn.turn();
 }
 
+ActuatedTurn actuated_turn_from_edge(Index edge, double s, const RodLayout& rod) {
+  ActuatedTurnTo turn(s, rod);
+  turn.from_edge(edge, 1.0, 1.0);
+  return turn.turn();
+}
+
+ActuatedTurn actuated_turn_from(const RodJoint& joint, double s, const RodLayout& rod) {
+  ActuatedTurnTo turn(s, rod);
+  const Index place = joint.place();
+  const auto add_side = [&](Index own, Index edge) {
+    if (own < 0) {
+      turn.from(rod.arc_length_at(place), 0.5, 0.5);  // of the clamp
+    } else {
+      turn.from_edge(edge, 0.5, 0.5);
+    }
+  };
+  add_side(joint.before, place - 1);
+  add_side(joint.after, place);
+  return turn.turn();
+}
+
 }  // namespace der

@@ -47,4 +47,9 @@ ActuatedTurn actuated_turn_of_follower(double s, const SectionPlace& place,
                                        const std::array<double, 2>& in_bending,
                                        const RodLayout& rod);
 
+/// To arc length `s` [m] from an edge, whose direction is the mean along it.
+ActuatedTurn actuated_turn_from_edge(Index edge, double s, const RodLayout& rod);
+/// The same from the mean of the directions and sections on the two sides of a joint.
+ActuatedTurn actuated_turn_from(const RodJoint& joint, double s, const RodLayout& rod);
+
 }  // namespace der

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "der/core/index.hpp"
-#include "output/leaning_edge.hpp"
 
 namespace der {
 
@@ -53,8 +52,26 @@ bool ActuatedShape::is_strained() const {
                      [](const ActuatedStretch& stretch) { return stretch.strains(); });
 }
 
-double actuated_lean(const RodLayout& rod, Index edge) {
-  return mean_tangent_place(rod, edge) - tangent_place(rod, edge);
+std::vector<double> actuated_jumps(const RodLayout& rod, bool twists) {
+  std::vector<double> places;
+  const auto add = [&](double s) {
+    const bool within = s > rod.same_place() && s < rod.rest_length() - rod.same_place();
+    if (within) places.push_back(s);
+  };
+  for (const ActuatedStretch& stretch : rod.actuated_stretches) {
+    if (!stretch.strains() || (!twists && stretch.what == scenario::Actuated::Twist)) continue;
+    if (stretch.jumps(false)) add(stretch.from);
+    if (stretch.jumps(true)) add(stretch.to);
+  }
+  return places;
+}
+
+bool actuation_jumps_in(Index edge, const RodLayout& rod, bool twists) {
+  const std::vector<double> jumps = actuated_jumps(rod, twists);
+  return std::any_of(jumps.begin(), jumps.end(), [&](double s) {
+    return s > rod.arc_length_at(edge) + rod.same_place() &&
+           s < rod.arc_length_at(edge + 1) - rod.same_place();
+  });
 }
 
 }  // namespace der

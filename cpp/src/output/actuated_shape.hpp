@@ -38,8 +38,11 @@ class ActuatedShape {
   std::vector<ActuatedStretch> stretches_;
 };
 
-/// How much further along the rod [m] an edge beside a clamp has the direction of the curve by its
-/// actuated curvature than by the rest of it (building/actuation.hpp); 0 elsewhere.
-double actuated_lean(const RodLayout& rod, Index edge);
+/// Arc lengths [m] at which an actuation lets the curvature of a rod jump, within it; with `twists`
+/// also those at which its twist jumps.
+std::vector<double> actuated_jumps(const RodLayout& rod, bool twists);
+
+/// Whether one of these is inside an edge.
+bool actuation_jumps_in(Index edge, const RodLayout& rod, bool twists);
 
 }  // namespace der

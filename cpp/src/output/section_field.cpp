@@ -12,6 +12,7 @@
 #include "der/model/location.hpp"
 #include "der/output/joint_strain.hpp"
 #include "der/supports/spatial_clamp.hpp"
+#include "model/actuated_turn.hpp"
 #include "model/glue.hpp"
 #include "model/natural_twist.hpp"
 #include "output/actuated_shape.hpp"
@@ -50,10 +51,10 @@ bool is_moment(SectionQuantity quantity) {
 /// the two moments and the torque. For a rod without sections it is the vector about which the rod
 /// bends, in fixed axes.
 ///
-/// Beside moments inside the rod the section turns at rates that differ on their two sides, and
-/// components along it have a kink; at corners, and where a ring is glued turned, the section
-/// itself jumps. Along the edges there the field is the vector of the moment in fixed axes, and the
-/// section at each place takes its components.
+/// Beside moments inside the rod, and where an actuation begins or ends within an edge, the section
+/// turns at rates that differ on the two sides, and components along it have a kink; at corners,
+/// and where a ring is glued turned, the section itself jumps. Along the edges there the field is
+/// the vector of the moment in fixed axes, and the section at each place takes its components.
 class SectionField : public EdgewiseField<Vec3> {
  public:
   static std::unique_ptr<RodField> make(SectionQuantity quantity, const RodLayout& rod,
@@ -137,6 +138,7 @@ class SectionField : public EdgewiseField<Vec3> {
     Vec3 natural = Vec3::Zero();      // curvatures and twist
     double joint_ahead = 0.0;         // [m] by which the joint counts its places further on
     double glued = 0.0;               // [rad] by which the section is turned against the joint's
+    ActuatedTurn actuated;            // of the section here against the mean beside the joint
   };
 
   SectionField(SectionQuantity quantity, const RodLayout& rod, const Model& model,
@@ -176,7 +178,7 @@ class SectionField : public EdgewiseField<Vec3> {
   /// Whether components along an edge, or on from it, have a kink or jump.
   static bool has_kinks(Index edge, const RodLayout& rod, const MomentRecovery& recovery) {
     return recovery.has_moments(edge) || recovery.is_corner(edge) || recovery.is_corner(edge + 1) ||
-           is_beside_glue(edge, rod);
+           is_beside_glue(edge, rod) || actuation_jumps_in(edge, rod, true);
   }
   /// Whether an edge is beside the place where a ring is glued turned and the joint is not that of
   /// either side: it bends about the directors of both, to the natural curvatures of both.
@@ -296,6 +298,7 @@ class SectionField : public EdgewiseField<Vec3> {
     result.arc_length = joint->bend_place - result.joint_ahead;
     result.twist_place = has_kink ? result.arc_length : joint->twist_place - result.joint_ahead;
     if (by_twist) result.arc_length = result.twist_place;
+    result.actuated = actuated_turn_from(*joint, result.arc_length + result.joint_ahead, rod);
     return result;
   }
 
@@ -321,7 +324,7 @@ class SectionField : public EdgewiseField<Vec3> {
     const Vec3 excess = excess_of(*known.joint, model, state);
     Vec3 moment = stiffness_.cwiseProduct(excess);
     if (model.has_sections()) {
-      const Vec3 actuated = actuated_mean(*known.joint, model, state);
+      const Vec3 actuated = value_of(known.actuated, model, state);
       moment = turned(moved(moment, known, last, excess, actuated), known.glued);
     }
     return natural + (is_moment(quantity_) ? moment : Vec3(moment.cwiseQuotient(stiffness_))) +
@@ -373,30 +376,22 @@ class SectionField : public EdgewiseField<Vec3> {
             (strain.twist - rest.twist) / joint.twist_length};
   }
 
-  /// The natural curvatures and twist that actuations give a joint [1/m].
-  [[nodiscard]] Vec3 actuated_mean(const RodJoint& joint, const Model& model,
-                                   const State& state) const {
-    if (!actuated_.is_strained()) return Vec3::Zero();
-    const JointStrain rest = rest_strain(joint, rod_, model, state);
-    return {(rest.kappa_1 - joint.rest.kappa_1) / joint.bend_length,
-            (rest.kappa_2 - joint.rest.kappa_2) / joint.bend_length,
-            (rest.twist - joint.rest.twist) / joint.twist_length};
+  static Vec3 value_of(const ActuatedTurn& turn, const Model& model, const State& state) {
+    return turn.value([&](Index control) { return control_value(model, state, control); });
   }
 
   /// The moments of a joint and its torque [N m], which it has in its own frame, in the section's
   /// frame at the known place. The joint's tangent is the mean of those beside it, and its
   /// directors are those in the middle of the length over which it twists. At inner nodes of an
-  /// even mesh all these places are one.
+  /// even mesh all these places are one. `actuated`: the turn from there that actuations make.
   [[nodiscard]] Vec3 moved(const Vec3& moment, const Known& known, bool last, const Vec3& excess,
                            const Vec3& actuated) const {
     const RodJoint& joint = *known.joint;
     const double place = known.arc_length + known.joint_ahead;
     const double from_bend = place - tangent_place(joint, der::tangent_place);
-    const double from_mean = place - tangent_place(joint, mean_tangent_place);
     const double from_twist = place - joint.twist_place;
-    const Vec3 turned = natural_turn(known, last, place) +
-                        Vec3(from_bend, from_bend, from_twist).cwiseProduct(excess) +
-                        Vec3(from_mean, from_mean, from_twist).cwiseProduct(actuated);
+    const Vec3 turned = natural_turn(known, last, place) + actuated +
+                        Vec3(from_bend, from_bend, from_twist).cwiseProduct(excess);
     // Bending towards a director turns about the other one.
     const auto about = [](const Vec3& parts) { return Vec3(-parts[1], parts[0], parts[2]); };
     const Vec3 change = about(moment).cross(about(turned));
@@ -453,6 +448,7 @@ class SectionField : public EdgewiseField<Vec3> {
     turn += further * natural_at(edge, rod_.edge_middle(edge));
     turn[2] = turn_between(edge, frame, rod_.edge_middle(edge), s, model, state)[2];
     turn -= lean(edge, frame, model, state);
+    turn += value_of(actuated_turn_from_edge(edge, s, rod_), model, state);
     const Vec3 axis = turn[0] * frame.second - turn[1] * frame.first + turn[2] * frame.tangent;
     const double angle = axis.norm();
     Vec3 seen = moment;
@@ -465,8 +461,8 @@ class SectionField : public EdgewiseField<Vec3> {
                       parts.cwiseQuotient(stiffness_));
   }
 
-  /// How far an edge's section turns from one place to another [rad]: the strains, in the middle of
-  /// each part between moments.
+  /// How far an edge's section turns from one place to another [rad], but for actuations: the
+  /// strains, in the middle of each part between moments.
   [[nodiscard]] Vec3 turn_between(Index edge, const SectionFrame& frame, double from, double to,
                                   const Model& model, const State& state) const {
     const auto [low, high] = std::minmax(from, to);
@@ -475,9 +471,8 @@ class SectionField : public EdgewiseField<Vec3> {
     const auto pass = [&](double b) {
       const MomentRecovery::Place middle{0.5 * (a + b), false};
       const Vec3 moment = components(value(edge, middle, model, state), frame);
-      turn += (b - a) * (natural_at(edge, middle.arc_length) +
-                         actuated_.strains(middle.arc_length, false, model, state) +
-                         Vec3(moment.cwiseQuotient(stiffness_)));
+      turn +=
+          (b - a) * (natural_at(edge, middle.arc_length) + Vec3(moment.cwiseQuotient(stiffness_)));
       a = b;
     };
     for (const auto& [s, jumps] : recovery_.breaks(edge)) {
@@ -504,9 +499,7 @@ class SectionField : public EdgewiseField<Vec3> {
         turn.head<2>() += twelfth * rod_.natural_curvatures[to_size(node)];
       }
     }
-    const Vec3 actuated =
-        actuated_lean(rod_, edge) * actuated_.strains(rod_.edge_middle(edge), false, model, state);
-    return {turn[0] + actuated[0], turn[1] + actuated[1], 0.0};
+    return {turn[0], turn[1], 0.0};
   }
 
   /// Natural curvatures and twist at a place of an edge [1/m].

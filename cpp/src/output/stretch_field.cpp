@@ -11,6 +11,7 @@
 #include "der/output/joint_strain.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spatial_clamp.hpp"
+#include "model/actuated_turn.hpp"
 #include "model/corner.hpp"
 #include "output/actuated_shape.hpp"
 #include "output/edge_excess.hpp"
@@ -66,7 +67,8 @@ class EffectiveVectors {
 /// in the edge's middle but a distance beyond it (supports/clamp.hpp; docs/mechanics.md). The
 /// excess is this distance times k . F, with the curvature k and the force F in the rod across it.
 /// The distance is another one for the curvature that a rod has as it is drawn
-/// (output/leaning_edge.hpp).
+/// (output/leaning_edge.hpp). What actuations turn an edge against the curve in its middle is known
+/// (model/actuated_turn.hpp); on an edge on which their curvature jumps that is all.
 class LeaningEdges {
  public:
   LeaningEdges(const RodLayout& rod, const Model& model) : rod_(rod), actuated_(rod) {
@@ -78,29 +80,38 @@ class LeaningEdges {
         const double further = clamp_cell_length(rod, edge) - 0.5 * rod.edge_length[to_size(edge)];
         const double sign = edge == clamp.place ? 1.0 : -1.0;
         const Vec2 natural = drawn_curvature(edge, model);
-        add({edge, sign * further, sign * (drawn_lean(rod, edge) - further), natural}, model);
+        add({edge, sign * further, sign * (drawn_lean(rod, edge) - further) * natural, {}}, model);
       }
     }
     add_free_end(false, model);
     add_free_end(true, model);
+    for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+      if (actuation_jumps_in(edge, rod, false)) add({edge, 0.0, Vec2::Zero(), {}}, model);
+    }
+    for (Lean& lean : leans_) {
+      lean.actuated = actuated_turn_from_edge(lean.edge, rod.edge_middle(lean.edge), rod);
+    }
   }
 
   /// [N]
   [[nodiscard]] double excess(Index edge, const Model& model, const State& state) const {
-    double excess = 0.0;
-    for (const Lean& lean : leans_) {
-      if (lean.edge == edge) excess += lean_times_force(lean, model, state);
-    }
-    return excess;
+    const Lean* lean = find(edge);
+    return lean == nullptr ? 0.0 : lean_times_force(*lean, model, state);
   }
 
  private:
   struct Lean {
     Index edge = 0;
-    double beyond = 0.0;          // [m] for the curvature
-    double natural_beyond = 0.0;  // [m] that natural curvature adds
-    Vec2 natural = Vec2::Zero();  // curvature [1/m]
+    double beyond = 0.0;          // [m] for the curvature, but for an actuated one
+    Vec2 natural = Vec2::Zero();  // [rad] that the natural curvature adds
+    ActuatedTurn actuated;        // from the edge's direction to the curve's in its middle
   };
+
+  [[nodiscard]] const Lean* find(Index edge) const {
+    const auto found = std::find_if(leans_.begin(), leans_.end(),
+                                    [&](const Lean& lean) { return lean.edge == edge; });
+    return found == leans_.end() ? nullptr : &*found;
+  }
 
   /// Curvature [1/m] of an edge of a rod that is free of stress as it is drawn; 0 of a straight
   /// one, and where the scene gives it: the cells of a clamp then have it.
@@ -139,9 +150,9 @@ class LeaningEdges {
     if (is_bent) {
       // A moment bends the end as a natural curvature does, and the curvature there has both; but
       // that of the drawn shape is no lean, since the nodes of a drawn curve lie on it.
-      add({edge, twelfth, -twelfth, drawn_curvature(edge, model)}, model);
+      add({edge, twelfth, -twelfth * drawn_curvature(edge, model), {}}, model);
     } else {
-      add({edge, 0.0, twelfth, natural}, model);
+      add({edge, 0.0, twelfth * natural, {}}, model);
     }
   }
   /// Whether a moment or a spring against turning acts at a place.
@@ -151,8 +162,16 @@ class LeaningEdges {
                        [&](double place) { return std::abs(place - s) <= rod_.same_place(); });
   }
 
+  /// An edge between two clamps leans against both.
   void add(const Lean& lean, const Model& model) {
-    leans_.push_back(lean);
+    const auto known = std::find_if(leans_.begin(), leans_.end(),
+                                    [&](const Lean& other) { return other.edge == lean.edge; });
+    if (known == leans_.end()) {
+      leans_.push_back(lean);
+    } else {
+      known->beyond += lean.beyond;
+      known->natural += lean.natural;
+    }
     if (!bends_.empty()) return;
     const auto field = [&](const char* quantity) { return make_rod_field(quantity, rod_, model); };
     if (model.has_sections()) {
@@ -185,10 +204,10 @@ class LeaningEdges {
     }
     if (twist_) force += mean(*twist_) * Vec2(moment[1], -moment[0]);
     const double product = lean.beyond * curvature.dot(force);
+    const Vec3 turned =
+        lean.actuated.value([&](Index control) { return control_value(model, state, control); });
     const Vec3 actuated = actuated_.strains(rod_.edge_middle(lean.edge), false, model, state);
-    const Vec2 without_load =
-        lean.natural_beyond * lean.natural +
-        (lean.beyond == 0.0 ? 0.0 : actuated_lean(rod_, lean.edge)) * actuated.head<2>();
+    const Vec2 without_load = lean.natural - turned.head<2>() - lean.beyond * actuated.head<2>();
     if (without_load.isZero(0.0)) return product;
     if (torque_) force += mean(*torque_) * Vec2(-curvature[1], curvature[0]);
     return product + without_load.dot(force);

@@ -7,6 +7,7 @@
 
 #include "der/core/index.hpp"
 #include "model/legs.hpp"
+#include "output/actuated_shape.hpp"
 
 namespace der {
 namespace {
@@ -70,6 +71,7 @@ class Layout {
       breaks_.push_back(place.from);
       breaks_.push_back(place.to);
     }
+    for (const double place : actuated_jumps(rod_, false)) breaks_.push_back(place);
     std::sort(breaks_.begin(), breaks_.end());
     const auto same = [&](double a, double b) { return b - a <= rod_.same_place(); };
     breaks_.erase(std::unique(breaks_.begin(), breaks_.end(), same), breaks_.end());

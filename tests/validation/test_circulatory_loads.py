@@ -16,7 +16,7 @@ from references.kirchhoff_rod import Rod, rotation
 from references.section_loads import Wrench
 from references.section_loads import held_at_start as held_at_places
 from scenes import END, START, arch
-from spatial_scenes import measured, rod_through, section, straight_rod
+from spatial_scenes import CLAMPED, measured, rod_through, section, straight_rod
 
 XYZ = ("x", "y", "z")
 SIZES = [16, 32, 64]
@@ -282,6 +282,31 @@ def test_a_rod_that_spins_about_its_clamped_tangent(load):
     spring = {"rotational_stiffness": [0, 0, 1.0]}
     supports.append({"rod": "rod", "at": 0.3, "spring": spring})
     der.Simulation(der.Scenario.from_dict(scene)).equilibrium()
+
+
+@pytest.mark.parametrize("seed", [79, 1005, 1035, 1048])
+def test_the_smallest_moment_leaves_the_equilibrium_that_is_there_without_it(seed):
+    """Rods with several equilibria, drawn straight: Newton's method goes far from there."""
+    random = np.random.default_rng(seed)
+    edges = int(random.choice([20, 40, 60]))
+    stiffnesses = {key: float(random.uniform(0.5, 2)) for key in ("EI1", "EI2", "GJ")}
+    largest = 6 if seed == 79 else 10
+    natural = {
+        "natural_curvature": random.uniform(-largest, largest, 2).tolist(),
+        "natural_twist": float(random.uniform(-6, 6)),
+    }
+    spring = {"stiffness": [50, 80, 30], "rotational_stiffness": [3, 1, 2]}
+    scene = straight_rod(
+        edges,
+        section(EA=1e4, **stiffnesses),
+        rod=natural,
+        supports=[*CLAMPED, {"rod": "rod", "at": 0.6, "spring": spring}],
+    )
+    without = der.run(scene).positions[-1]
+    for more in ({"follower": True}, {}):
+        tiny = {"rod": "rod", "at": 0.3, "moment": [2e-9, -1e-9, 3e-9], **more}
+        found = der.run({**scene, "loads": [{"moment": tiny}]}).positions[-1]
+        assert found == pytest.approx(without, abs=1e-5)
 
 
 @pytest.mark.parametrize(

@@ -131,32 +131,34 @@ void PlanarFollowerForce::evaluate(const Configuration& here, const Vec3& amount
                                    CirculatoryTerm& out) const {
   out.reset(size());
   const Vec2 drawn_force = amount.head<2>();
-  const auto weights = bending_weights(edges);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const FollowedEdge& followed = edges[i];
     const Vec2 e = followed.edge.vector(here);
     const Vec2 tangent = e.normalized();
-    const Vec2 force = weights[i] * (followed.drawn.dot(drawn_force) * tangent +
-                                     cross(followed.drawn, drawn_force) * perpendicular(tangent));
+    const Vec2 force =
+        followed.weight * (followed.drawn.dot(drawn_force) * tangent +
+                           cross(followed.drawn, drawn_force) * perpendicular(tangent));
     out.force.head<2>() += force;
     out.tangent.block<2, 2>(0, 2 + 2 * static_cast<Index>(i)) =
         -perpendicular(force) * direction_gradient(e, 1.0 / e.squaredNorm()).transpose();
   }
-  if (share < 1.0 && !drawn_force.isZero(0.0)) hold_back(drawn_force, out);
+  if (share == 1.0 || drawn_force.isZero(0.0)) return;
+  const double turned = clamp_turn < 0 ? 0.0 : here.controls[clamp_turn];
+  hold_back(Eigen::Rotation2Dd(turned) * drawn_force, out);
 }
 
-void PlanarFollowerForce::hold_back(const Vec2& drawn_force, CirculatoryTerm& out) const {
+void PlanarFollowerForce::hold_back(const Vec2& held, CirculatoryTerm& out) const {
   const Vec2 whole = out.force.head<2>();
-  const double turn = std::atan2(cross(drawn_force, whole), drawn_force.dot(whole));
+  const double turn = std::atan2(cross(held, whole), held.dot(whole));
   const Eigen::Rotation2Dd back((share - 1.0) * turn);
-  const Vec2 held = back * whole;
+  const Vec2 force = back * whole;
   using Slopes = Eigen::Matrix<double, 2, Eigen::Dynamic, 0, 2, CirculatoryTerm::kMost>;
   const Slopes slopes = out.tangent.topRightCorner(2, out.tangent.cols() - 2);
   // The turn changes by perpendicular(F) . dF / F^2.
-  const Vec2 by_turn = (share - 1.0) / whole.squaredNorm() * perpendicular(held);
+  const Vec2 by_turn = (share - 1.0) / whole.squaredNorm() * perpendicular(force);
   const Mat2 change = back.toRotationMatrix() + by_turn * perpendicular(whole).transpose();
   out.tangent.topRightCorner(2, slopes.cols()) = change * slopes;
-  out.force.head<2>() = held;
+  out.force.head<2>() = force;
 }
 
 void FollowerForce::evaluate(const Configuration& here, const Vec3& amount,

@@ -15,6 +15,7 @@
 #include "der/model/section_place.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/section_spring.hpp"
+#include "der/supports/spring.hpp"
 #include "model/actuated_turn.hpp"
 #include "model/corner.hpp"
 #include "model/curvature_jump.hpp"
@@ -76,17 +77,28 @@ Vec3 natural_turn(double s, const SectionPlace& place, const RodLayout& rod) {
   return natural_turn_from_line(s, place.first_edge, rod);
 }
 
+/// Weights of the directions of edges that a load follows.
+std::array<double, 2> in_bending(const SectionPlace& place) {
+  const std::vector<double>& weights = place.direction;
+  return weights_in_bending({weights[0], weights.size() > 1 ? weights[1] : 0.0});
+}
+
 PlanarFollowerForce planar_follower(double s, const SectionPlace& place, const RodLayout& rod,
                                     const Model& model, CirculatoryLoad& load) {
   PlanarFollowerForce follower;
   const double kink = natural_turn(s, place, rod).z();
+  const std::array<double, 2> weights = in_bending(place);
   for (std::size_t i = 0; i < place.direction.size(); ++i) {
     const Index number = rod.position(place.first_edge + static_cast<Index>(i));
     const EffectiveEdge edge = effective_edge(rod, number, model);
     const Vec2 chord = edge.vector(model.initial_positions, 0.0, 0.0).normalized();
     const Vec2 drawn = Eigen::Rotation2Dd(drawn_lean(number, rod, model) - kink) * chord;
-    follower.edges.push_back({edge, place.direction[i], drawn});
+    follower.edges.push_back({edge, weights[i], drawn});
     add_vector(edge.dofs[0], edge.dofs[2], model, load);
+  }
+  if (const auto beside = place_beside_clamp(rod, s)) {
+    follower.share = beside->share();
+    follower.clamp_turn = rod.clamps[to_size(beside->clamp)].rotation;
   }
   return follower;
 }
@@ -122,13 +134,13 @@ Mat3 compliance_of(const SectionPlace& place, const SpatialMoment& moment, const
 /// The actuated section for loads that follow the section at arc length `s` [m].
 ActuatedSection actuated_section(double s, const SectionPlace& place, const RodLayout& rod,
                                  const Model& model) {
-  const std::vector<double>& weights = place.direction;
-  const auto in_bending = weights_in_bending({weights[0], weights.size() > 1 ? weights[1] : 0.0});
-  ActuatedSection section{actuated_turn_of_follower(s, place, in_bending, rod), Mat3::Zero()};
+  const std::array<double, 2> weights = in_bending(place);
+  ActuatedSection section{actuated_turn_of_follower(s, place, weights, rod), Mat3::Zero()};
   if (model.dimension == 2) {
     section.axes.col(0) = Vec3::UnitZ();
+    if (place_beside_clamp(rod, s)) section.turn = actuated_turn(s, rod);
   } else {
-    const Index nearer = in_bending[1] > in_bending[0] ? 1 : 0;
+    const Index nearer = weights[1] > weights[0] ? 1 : 0;
     const Index edge = rod.position(place.first_edge + nearer);
     section.axes = turning_axes(drawn_frame(model, rod.first_edge + edge));
   }
@@ -246,6 +258,19 @@ void act_on_section(const typename SectionSpring<Edges>::Constants& section,
   }
 }
 
+/// Beyond an outermost middle a moment at the place bends the rod up to it, so that edges tell its
+/// tangent with the weights by which the moment turns them.
+void follow_as_moments(const MomentPlace& place, const RodLayout& rod, const Model& model,
+                       PlanarFollowerForce& follower) {
+  const Eigen::Rotation2Dd to_natural(natural_turn_of_edges(rod, place, model));
+  for (std::size_t i = 0; i < place.weights.size(); ++i) {
+    PlanarFollowerForce::FollowedEdge& followed = follower.edges[i];
+    const Vec2 chord = followed.edge.vector(model.initial_positions, 0.0, 0.0).normalized();
+    followed.weight = place.weights[i];
+    followed.drawn = to_natural * chord;
+  }
+}
+
 Index add(CirculatoryLoad&& load, Model& model) {
   auto& loads = circulatory_loads(*model.elements);
   loads.push_back(std::move(load));
@@ -299,19 +324,23 @@ void act_on_loaded_sections(const RodLayout& rod, Model& model) {
 
 void turn_followers_under_moments(const RodLayout& rod, Model& model) {
   for (const ForcePlace& force : rod.force_places) {
+    if (force.follower < 0 || rod.EI == 0.0) continue;
     const double s = force.arc_length;
-    // Beyond the outermost middles the directions of the edges are continued to the place.
-    const bool between = !place_beside_clamp(rod, s) && beyond_outer_middle(rod, s) == 0.0;
-    if (force.follower < 0 || !between) continue;
     const auto place = std::find_if(rod.moment_places.begin(), rod.moment_places.end(),
                                     [&](const MomentPlace& moments) {
                                       return std::abs(moments.arc_length - s) <= rod.same_place();
                                     });
-    if (place == rod.moment_places.end() || rod.EI == 0.0) continue;
+    if (place == rod.moment_places.end()) continue;
     CirculatoryLoad& load = circulatory_loads(*model.elements)[to_size(force.follower)];
-    std::get<PlanarFollowerForce>(load.kind).share = place->series_share(rod.EI);
+    auto& follower = std::get<PlanarFollowerForce>(load.kind);
+    if (beyond_outer_middle(rod, s) > 0.0) {
+      follow_as_moments(*place, rod, model, follower);
+      load.amount.actuated.turn = actuated_turn(s, rod);
+    }
+    const double share = place->series_share(rod.EI);
+    follower.share *= share;
     for (const Index moment : place->moments) {
-      load.amount.actuated.turn.terms.push_back({0, moment, place->cell_length / rod.EI});
+      load.amount.actuated.turn.terms.push_back({0, moment, share * place->cell_length / rod.EI});
     }
   }
 }

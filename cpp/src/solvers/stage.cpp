@@ -134,6 +134,7 @@ double StageProblem::residual_rounding(Vector& values) {
 
 /// One block of N for each load.
 void StageProblem::set_circulatory_tangent() {
+  if (stage_->is_conservative) return;
   Index first = 0;
   for (const CirculatoryLoad& load : circulatory_loads(*model_.elements)) {
     load.evaluate(*here_, term_of_load_);

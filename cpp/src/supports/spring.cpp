@@ -70,22 +70,19 @@ void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s, 
   }
 }
 
+/// Turn [rad] that is drawn between the two edges of a place; 0 of one edge.
+double drawn_bend(const RodLayout& rod, const MomentPlace& place, const Model& model) {
+  if (place.weights.size() == 1) return 0.0;
+  return angle_between(drawn_edge(rod, place.first_edge, model),
+                       drawn_edge(rod, place.first_edge + 1, model));
+}
+
 /// Turn [rad] of the weighted directions, from the initial direction of the first edge, at which
 /// the tangent has the direction of the drawn shape and no moment acts.
 double rest_turn(const RodLayout& rod, const MomentPlace& place, const Model& model) {
-  const double s = place.arc_length;
   const bool single = place.weights.size() == 1;
-  const double bend = single ? 0.0
-                             : angle_between(drawn_edge(rod, place.first_edge, model),
-                                             drawn_edge(rod, place.first_edge + 1, model));
-  if (rod.natural_curvature.empty()) return single ? 0.0 : place.weights[1] * bend;
-
-  const double first_middle = rod.edge_middle(place.first_edge);
-  const double spacing = single ? 1.0 : rod.edge_middle(place.first_edge + 1) - first_middle;
-  const auto [at_start, at_end] = natural_turn_lengths(rod, s, place.first_edge, place.weights);
-  const double kink = single ? 0.0 : natural_turn_from_line(s, place.first_edge, rod).z();
-  return (s - first_middle) / spacing * bend - kink + at_start * rod.natural_curvature.front() +
-         at_end * rod.natural_curvature[to_size(rod.num_edges())];
+  const double drawn = single ? 0.0 : place.weights[1] * drawn_bend(rod, place, model);
+  return drawn + natural_turn_of_edges(rod, place, model);
 }
 
 /// The spring of a place beside a clamp that turns acts on the edge alone: the clamp's turn is not
@@ -144,6 +141,20 @@ std::array<double, 2> natural_turn_lengths(const RodLayout& rod, double s, Index
     lengths[1] += turn(last_edge);
   }
   return lengths;
+}
+
+double natural_turn_of_edges(const RodLayout& rod, const MomentPlace& place, const Model& model) {
+  if (rod.natural_curvature.empty()) return 0.0;
+  const double s = place.arc_length;
+  const auto [at_start, at_end] = natural_turn_lengths(rod, s, place.first_edge, place.weights);
+  double turn = at_start * rod.natural_curvature.front() +
+                at_end * rod.natural_curvature[to_size(rod.num_edges())];
+  if (place.weights.size() == 1) return turn;
+  const double first_middle = rod.edge_middle(place.first_edge);
+  const double spacing = rod.edge_middle(place.first_edge + 1) - first_middle;
+  const double share = (s - first_middle) / spacing;
+  turn += (share - place.weights[1]) * drawn_bend(rod, place, model);
+  return turn - natural_turn_from_line(s, place.first_edge, rod).z();
 }
 
 void add_spring(const scenario::Support& support, Model& model) {

@@ -41,19 +41,22 @@ std::array<double, 2> weights_in_bending(const std::array<double, 2>& weights);
 struct PlanarFollowerForce {
   struct FollowedEdge {
     EffectiveEdge edge;
-    double weight = 1.0;        ///< d_i [-]
+    double weight = 1.0;        ///< d_i, in bending [-]
     Vec2 drawn = Vec2::Zero();  ///< unit vector along the edge as it is drawn
   };
   std::vector<FollowedEdge> edges;
-  double share = 1.0;  ///< of the turn of the edges, which springs at the place leave the tangent
+  /// Of the turn of the edges, which springs at the place and a clamp beside it leave the tangent.
+  double share = 1.0;
+  Index clamp_turn = -1;  ///< control: how far that clamp has turned [rad]; -1: it does not
 
   [[nodiscard]] Index size() const { return 2 + 2 * static_cast<Index>(edges.size()); }
   /// `amount` is F0 [N].
   void evaluate(const Configuration& here, const Vec3& amount, CirculatoryTerm& out) const;
 
  private:
-  /// Turns the force back, by less than half a turn, to `share` of its turn from F0.
-  void hold_back(const Vec2& drawn_force, CirculatoryTerm& out) const;
+  /// Turns the force back, by less than half a turn, to `share` of its turn from `held`: F0, turned
+  /// with the clamp.
+  void hold_back(const Vec2& held, CirculatoryTerm& out) const;
 };
 
 /// A force that turns with a rod in space: PlanarFollowerForce with the rotations of section

@@ -32,6 +32,9 @@ struct Stage {
   /// Whether the stage is one of a motion. The rates of angles are then spins of sections, which
   /// change the forces on nodes (model/spin.hpp).
   bool is_motion = false;
+  /// Whether all circulatory loads are zero: Newton's matrix is then symmetric, and the way to an
+  /// equilibrium is the one without these loads.
+  bool is_conservative = false;
   /// If set, it gives the forces in place of grad E: the stage is the middle of a step from
   /// `origin`.
   DiscreteGradientAssembler* discrete_gradient = nullptr;
@@ -54,7 +57,7 @@ class StageProblem final : public NewtonProblem {
   void residual(Vector& residual) override;
   void system(Vector& residual, Vector& values) override;
   [[nodiscard]] const LowRank* low_rank() const override {
-    return circulatory_.empty() ? nullptr : &circulatory_;
+    return circulatory_.empty() || stage_->is_conservative ? nullptr : &circulatory_;
   }
   void correct_after(const Vector& step, Vector& values) override;
   StepBound largest_step(const Vector& step) override;

@@ -27,6 +27,10 @@ struct Support;
 std::array<double, 2> natural_turn_lengths(const RodLayout& rod, double s, Index first_edge,
                                            const std::vector<double>& weights);
 
+/// How far [rad] the weighted directions of the edges of a place turn from the drawn shape to one
+/// in which no moment acts and the tangent there has its drawn direction; in a plane.
+double natural_turn_of_edges(const RodLayout& rod, const MomentPlace& place, const Model& model);
+
 /// Adds the springs of a support: the one to the anchor as an element, the one against turning to
 /// the moment places of its rod, where it joins what is at the same place.
 void add_spring(const scenario::Support& support, Model& model);

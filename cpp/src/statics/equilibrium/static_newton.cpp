@@ -25,6 +25,7 @@ StaticNewton::StaticNewton(const Model& model, const Assembler& assembler, Linea
 Stage StaticNewton::stage_of(const StaticLoads& loads) const {
   Stage stage(model_);
   stage.force = loads.force;
+  stage.is_conservative = is_unloaded(model_, loads);
   return stage;
 }
 

@@ -254,14 +254,18 @@ def over_the_rod(places, values, start, end):
 
 
 def test_work_is_the_moment_over_the_rest_turn(fitted_order):
-    """And the tension over the growth: from samples along the rod at the frames alone."""
+    """And the tension over the growth: from samples along the rod at the frames alone. The mesh does
+    not resolve waves along the rod: where the curvature jumps the tension, continued from both
+    sides, has more of them than in the middles of edges."""
     sizes = [1, 2, 4]
     errors = []
     for size in sizes:
         scene, ramp = frames_of(20 * size, 0.01 / size)
         result = der.run(scene)
         moment = over_the_rod(*result.along("rod", "moment"), 0.3, 0.7)
-        tension = over_the_rod(*result.along("rod", "tension"), 0.25, 0.9)
+        places, tensions = result.along("rod", "tension")
+        smooth = [not np.isclose(s, (0.3, 0.7)).any() for s in places]
+        tension = over_the_rod(places[smooth], tensions[:, smooth], 0.25, 0.9)
         power = -(2.0 * moment + 0.1 * tension)
         by_hand = np.sum(0.5 * (power[1:] + power[:-1]) * np.diff(ramp))
         errors.append(result.work["actuation"][-1] / by_hand - 1)

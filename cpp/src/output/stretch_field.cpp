@@ -189,8 +189,7 @@ class LeaningEdges {
   [[nodiscard]] double lean_times_force(const Lean& lean, const Model& model,
                                         const State& state) const {
     const auto mean = [&](const RodField& field) {
-      return 0.5 * (at_end(field, lean.edge, false, model, state) +
-                    at_end(field, lean.edge, true, model, state));
+      return mean_along(field, lean.edge, model, state);
     };
     Vec2 curvature = Vec2::Zero();
     Vec2 moment = Vec2::Zero();
@@ -222,20 +221,34 @@ class LeaningEdges {
              : std::upper_bound(samples.begin(), samples.end(), place + rod_.same_place()) - 1;
     return static_cast<std::size_t>(found - samples.begin());
   }
-  [[nodiscard]] double at_end(const RodField& field, Index edge, bool last, const Model& model,
-                              const State& state) const {
-    return field.sample(sample_at_end(field, edge, last), model, state);
+  /// Calls use(length, first, last) with the values at the ends of the parts of an edge between the
+  /// jumps of a field.
+  template <class Use>
+  void for_each_part(const RodField& field, Index edge, const Model& model, const State& state,
+                     const Use& use) const {
+    const std::vector<double>& samples = field.arc_length();
+    const std::size_t end = sample_at_end(field, edge, true);
+    for (std::size_t i = sample_at_end(field, edge, false); i < end; ++i) {
+      const double length = samples[i + 1] - samples[i];
+      if (length <= rod_.same_place()) continue;
+      use(length, field.sample(i, model, state), field.sample(i + 1, model, state));
+    }
+  }
+  /// The mean of a field along an edge.
+  [[nodiscard]] double mean_along(const RodField& field, Index edge, const Model& model,
+                                  const State& state) const {
+    double integral = 0.0;
+    for_each_part(field, edge, model, state, [&](double length, double first, double last) {
+      integral += 0.5 * length * (first + last);
+    });
+    return integral / rod_.edge_length[to_size(edge)];
   }
   /// By how much a field changes along an edge, but for its jumps.
   [[nodiscard]] double change(const RodField& field, Index edge, const Model& model,
                               const State& state) const {
-    const std::vector<double>& samples = field.arc_length();
     double change = 0.0;
-    for (std::size_t i = sample_at_end(field, edge, false); i < sample_at_end(field, edge, true);
-         ++i) {
-      if (samples[i + 1] - samples[i] <= rod_.same_place()) continue;
-      change += field.sample(i + 1, model, state) - field.sample(i, model, state);
-    }
+    for_each_part(field, edge, model, state,
+                  [&](double /*length*/, double first, double last) { change += last - first; });
     return change;
   }
 

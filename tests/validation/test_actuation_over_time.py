@@ -254,9 +254,10 @@ def over_the_rod(places, values, start, end):
 
 
 def test_work_is_the_moment_over_the_rest_turn(fitted_order):
-    """And the tension over the growth: from samples along the rod at the frames alone. The mesh does
-    not resolve waves along the rod: where the curvature jumps the tension, continued from both
-    sides, has more of them than in the middles of edges."""
+    """And the tension over the growth: from samples along the rod at the frames alone.
+
+    The mesh does not resolve waves along the rod: where the curvature jumps the tension, continued
+    from both sides, has more of them than in the middles of edges."""
     sizes = [1, 2, 4]
     errors = []
     for size in sizes:

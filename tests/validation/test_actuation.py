@@ -12,7 +12,18 @@ import der
 import numpy as np
 import pytest
 from actuated import PROFILES, bend, probed, stretch
-from references.actuated_rod import Segment, clamped, pinned, pulled, rod_slopes, solve
+from references.actuated_rod import (
+    ANGLE,
+    MOMENT,
+    Segment,
+    X,
+    Y,
+    clamped,
+    pinned,
+    pulled,
+    rod_slopes,
+    solve,
+)
 from scenes import END, START, straight, tip_force
 from scipy.integrate import solve_bvp
 from spatial_scenes import critical
@@ -236,12 +247,24 @@ def evenly(u):
 
 #: Supports of the scene, conditions of the reference, clamps inside; the force of both is at the
 #: end where it is free, else in the middle of the rod.
+SPRING = 2.5  # against turning
 HELD = {
     "cantilever": (clamped(), pulled(FORCE), False),
     "clamped-clamped": (clamped(), clamped(1.0), False),
     "clamped-pinned": (clamped(), pinned(1.0), False),
     "interior clamp": (clamped(), pulled(FORCE), True),
+    "spring at the start": (
+        lambda u: [u[MOMENT] - SPRING * u[ANGLE], u[X], u[Y]],
+        pulled(FORCE),
+        False,
+    ),
+    "spring at the end": (
+        clamped(),
+        lambda u: [u[MOMENT] + SPRING * u[ANGLE], u[4] - FORCE[0], u[5] - FORCE[1]],
+        False,
+    ),
 }
+ON_SPRINGS = ("spring at the start", "spring at the end")
 
 
 def held_scene(n, held, placed, EA):
@@ -255,7 +278,12 @@ def held_scene(n, held, placed, EA):
         "interior clamp": [{"rod": "rod", "at": {"node": n // 2}, "clamp": True}],
     }
     scene["supports"] = [{**START, "clamp": True}, *more.get(held, [])]
-    if held in ("cantilever", "interior clamp"):
+    turning = {"spring": {"rotational_stiffness": SPRING}}
+    if held == "spring at the start":
+        scene["supports"] = [{**START, "fix": ["x", "y"], **turning}]
+    if held == "spring at the end":
+        scene["supports"] += [{**END, **turning}]
+    if HELD[held][1] not in (HELD["clamped-clamped"][1], HELD["clamped-pinned"][1]):
         scene["loads"] = tip_force(*FORCE)
     return scene
 
@@ -307,9 +335,16 @@ def test_actuated_rod_that_is_held(fitted_order, held, profile):
     check_held(fitted_order, held, "inner", profile, SOFT)
 
 
+@pytest.mark.parametrize("part", PARTS)
+@pytest.mark.parametrize("held", ON_SPRINGS)
+def test_actuated_rod_on_a_spring_against_turning(fitted_order, held, part):
+    """Where the rod is actuated at the spring, it turns on from the edges to it."""
+    check_held(fitted_order, held, part, "constant", SLENDER)
+
+
 @pytest.mark.parametrize("held", HELD)
 def test_actuated_rod_on_an_uneven_mesh(fitted_order, held):
-    EA = SLENDER if held == "cantilever" else SOFT
+    EA = SLENDER if held in ("cantilever", *ON_SPRINGS) else SOFT
     check_held(fitted_order, held, "inner", "constant", EA, graded)
 
 

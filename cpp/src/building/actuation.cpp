@@ -6,6 +6,8 @@
 
 #include "der/core/index.hpp"
 #include "der/model/clamp_cell.hpp"
+#include "der/scenario/support.hpp"
+#include "der/supports/section_spring.hpp"
 #include "model/actuated_turn.hpp"
 
 namespace der {
@@ -31,6 +33,19 @@ Changes changes_of(const scenario::Rod& rod, const scenario::Scene& scene) {
 }
 
 Index strains_of_cell(int dimension) { return dimension == 2 ? 1 : 3; }
+
+/// At least the places at which springs against turning, or bearings, hold a rod.
+Index num_spring_places(const scenario::Rod& rod, const scenario::Scene& scene) {
+  Index count = 0;
+  for (const scenario::Support& support : scene.supports) {
+    const bool holds = support.clamp == scenario::Clamp::Tangent ||
+                       (support.spring && !support.spring->rotational_stiffness.empty());
+    if (support.rod != rod.name || !holds) continue;
+    const bool everywhere = support.at.kind == scenario::Location::Kind::All;
+    count += everywhere ? static_cast<Index>(rod.points.size()) : 1;
+  }
+  return count;
+}
 
 /// Where a stretch ends: on the node there, if there is one.
 double on_node(const RodLayout& rod, double s) {
@@ -129,7 +144,9 @@ Index num_rest_entries(const scenario::Scene& scene, int dimension) {
     const Changes changes = changes_of(rod, scene);
     if (changes.lengths) count += rod.num_edges();
     if (changes.cells) {
-      count += 2 * strains_of_cell(dimension) * static_cast<Index>(rod.points.size());
+      const Index places =
+          2 * static_cast<Index>(rod.points.size()) + num_spring_places(rod, scene);
+      count += strains_of_cell(dimension) * places;
     }
   }
   return count;
@@ -145,6 +162,10 @@ void set_rest_entries(const scenario::Scene& scene, Model& model) {
     if (changes.cells) {
       const Index size = 2 * rod.rest_entries.strains * static_cast<Index>(rod.nodes.size());
       rod.rest_entries.cells = std::exchange(next, next + size);
+      const Index places = num_spring_places(scene.rods[i], scene);
+      if (places > 0) {
+        rod.rest_entries.springs = std::exchange(next, next + rod.rest_entries.strains * places);
+      }
     }
   }
 }
@@ -182,8 +203,20 @@ void add_actuation(const scenario::Actuation& actuation, Model& model) {
 void set_actuated_turns(Model& model) {
   for (RodLayout& rod : model.rods) {
     if (rod.actuated_stretches.empty()) continue;
+    const auto shift = [&](const RestShift& spring, const ActuatedTurn& turn) {
+      if (spring.entry < 0) return;
+      std::vector<RestShape::Term> terms;
+      for (const auto& [strain, control, weight] : turn.terms) {
+        terms.push_back({spring.entry + strain, control, weight});
+      }
+      model.rest_shape.add(terms);
+    };
     for (MomentPlace& place : rod.moment_places) {
-      if (!place.moments.empty()) place.actuated = actuated_turn(place.arc_length, rod);
+      place.actuated = actuated_turn(place.arc_length, rod);
+      if (place.spring >= 0) shift(place.spring_shift, place.actuated);
+    }
+    for (const SectionSpringPlace& spring : rod.section_springs) {
+      shift(spring.shift, actuated_turn_at(spring.arc_length, rod, model));
     }
     for (SpatialMomentPlace& place : rod.spatial_moments) {
       place.actuated = actuated_turn(place.arc_length, section_place(place.arc_length, rod), rod);

@@ -19,8 +19,8 @@ void set_rest_entries(const scenario::Scene& scene, Model& model);
 /// wherever the stretch ends (docs/actuation.md).
 void add_actuation(const scenario::Actuation& actuation, Model& model);
 
-/// Tells the places of the loads' moments how far actuations turn the rod there, once both are in
-/// the model.
+/// Tells the places of the loads' moments, and of springs against turning, how far actuations turn
+/// the rod there, once all are in the model.
 void set_actuated_turns(Model& model);
 
 }  // namespace der

@@ -240,12 +240,13 @@ void act_on_section(const typename SectionSpring<Edges>::Constants& section,
                     std::vector<CirculatoryLoad>& loads) {
   LoadedSection<Edges> loaded;
   loaded.section = section;
+  const Mat3 axes = turning_axes(section.spring.drawn);
   for (const Index number : place.moments) {
     CirculatoryLoad& load = loads[to_size(number)];
     const auto& on_edges = std::get<SpatialMoment>(load.kind);
     const bool follower = on_edges.follower;
     loaded.edges.assign(on_edges.edges.begin(), on_edges.edges.end());
-    if (follower) load.amount.actuated.turn = actuated;
+    if (follower) load.amount.actuated = {actuated, axes};
     load.kind = HeldMoment<Edges>{loaded, follower};
     loaded.moments.push_back({load.amount, follower});
   }
@@ -253,7 +254,7 @@ void act_on_section(const typename SectionSpring<Edges>::Constants& section,
     CirculatoryLoad& load = loads[to_size(number)];
     const auto& on_edges = std::get<FollowerForce>(load.kind);
     loaded.edges.assign(on_edges.edges.begin(), on_edges.edges.end());
-    load.amount.actuated.turn = actuated;
+    load.amount.actuated = {actuated, axes};
     load.kind = HeldForce<Edges>{loaded};
   }
 }
@@ -312,7 +313,9 @@ void act_on_loaded_sections(const RodLayout& rod, Model& model) {
   for (const SectionLoads& place : section_loads(rod)) {
     if (!need_section(place, rod, model)) continue;
     const double s = place.arc_length;
-    const ActuatedTurn actuated = actuated_turn(s, section_place(s, rod), rod);
+    // Springs have it in the section that they hold.
+    const bool on_springs = rod.section_spring_at(s) != nullptr;
+    const ActuatedTurn actuated = on_springs ? ActuatedTurn() : actuated_turn_at(s, rod, model);
     const HeldSectionAt section = held_section_at(s, rod, model);
     if (const auto* on_one = std::get_if<SectionSpring<1>::Constants>(&section)) {
       act_on_section<1>(*on_one, actuated, place, loads);
@@ -339,8 +342,10 @@ void turn_followers_under_moments(const RodLayout& rod, Model& model) {
     }
     const double share = place->series_share(rod.EI);
     follower.share *= share;
+    auto& turned = load.amount.actuated.turn.terms;
+    for (ActuatedTurn::Term& term : turned) term.weight *= share;
     for (const Index moment : place->moments) {
-      load.amount.actuated.turn.terms.push_back({0, moment, share * place->cell_length / rod.EI});
+      turned.push_back({0, moment, share * place->cell_length / rod.EI});
     }
   }
 }

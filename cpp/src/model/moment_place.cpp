@@ -40,8 +40,8 @@ double turn_of(Index element, const Model& model, const Vector& positions, doubl
                       gather(springs.dofs[to_size(element)], positions));
 }
 
-/// Turn [rad] of the weighted directions from where the springs are slack, the first edge having
-/// turned by `before` [rad] in the last state; 0 without springs.
+/// Turn [rad] of the weighted directions from where the springs are slack without actuations, the
+/// first edge having turned by `before` [rad] in the last state; 0 without springs.
 double spring_turn(const MomentPlace& place, const Model& model, const Vector& positions,
                    double before) {
   if (place.spring < 0) return 0.0;
@@ -106,7 +106,10 @@ MomentPlace& place_of_moments(double s, RodLayout& rod) {
 double carried_moment(const MomentPlace& place, const RodLayout& rod, const Model& model,
                       const State& state, double applied) {
   const double before = place.followed >= 0 ? state.followed[place.followed] : 0.0;
-  return moment_of(place, rod, applied, spring_turn(place, model, state.positions, before));
+  const auto value = [&](Index control) { return control_value(model, state, control); };
+  const double turn =
+      spring_turn(place, model, state.positions, before) + place.actuated.value(value)[0];
+  return moment_of(place, rod, applied, turn);
 }
 
 Energies cell_energies(const RodLayout& rod, const Model& model, const Configuration& here) {
@@ -117,7 +120,8 @@ Energies cell_energies(const RodLayout& rod, const Model& model, const Configura
     const double before = place.followed >= 0
                               ? here.controls[model.followed_edges[to_size(place.followed)].turn]
                               : 0.0;
-    const double turn = spring_turn(place, model, here.coordinates, before);
+    const double turn =
+        spring_turn(place, model, here.coordinates, before) + place.actuated.at(here.controls)[0];
     const double moment = moment_of(place, rod, applied_moment(place, here.controls), turn);
     const double cell_turn = place.cell_length * moment / rod.EI;
     energies[EnergyTerm::Bend] += 0.5 * cell_turn * moment;

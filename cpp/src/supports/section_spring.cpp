@@ -12,6 +12,7 @@
 #include "der/model/section_place.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spring.hpp"
+#include "model/actuated_turn.hpp"
 #include "model/corner.hpp"
 #include "model/curvature_jump.hpp"
 #include "model/glue.hpp"
@@ -271,6 +272,36 @@ SectionHold hold_at(const SectionSpringPlace& spring, const SectionPlace& place,
              : smooth_hold(spring, place, rod, model);
 }
 
+/// The part of a turn about the axes of an edge that the section at a corner makes, by its weights.
+void add_turn(const ActuatedTurn& turn, const Mat3& weights, ActuatedTurn& sum) {
+  for (const auto& [strain, control, weight] : turn.terms) {
+    for (Index i = 0; i < 3; ++i) {
+      const double share = weights(i, strain);
+      if (share != 0.0) sum.terms.push_back({i, control, share * weight});
+    }
+  }
+}
+
+ActuatedTurn actuated_turn_around_corner(double s, Index first_edge, const SectionHold& hold,
+                                         const RodLayout& rod, const Model& model) {
+  const double corner = rod.arc_length_at(first_edge + 1);
+  const Mat3 to_section = turning_axes(hold.section).transpose();
+  const auto axes = [&](Index edge) -> Mat3 {
+    return to_section * turning_axes(drawn_frame(model, number_of(rod, edge)));
+  };
+  ActuatedTurn sum;
+  for (const Index side : {0, 1}) {
+    const Index edge = first_edge + side;
+    const Mat3& weights = hold.weights[to_size(side)];
+    const double own_end = side == 0 ? std::min(s, corner) : std::max(s, corner);
+    add_turn(actuated_turn_from_edge(edge, own_end, rod), weights * axes(edge), sum);
+    ActuatedTurnTo beyond(s, rod);
+    beyond.from(own_end, 1.0, 1.0);
+    add_turn(beyond.turn(), weights * axes(first_edge + 1 - side), sum);
+  }
+  return sum;
+}
+
 /// The section that springs hold, but for how the state counts twist.
 template <int Edges>
 typename SectionSpring<Edges>::Constants constants_of(const SectionHold& hold,
@@ -280,6 +311,7 @@ typename SectionSpring<Edges>::Constants constants_of(const SectionHold& hold,
   using Kernel = SectionSpring<Edges>;
   typename Kernel::Constants constants;
   constants.spring = {spring.stiffness, hold.on_the_way, hold.section};
+  constants.actuated = spring.shift;
   for (Index i = 0; i < Edges; ++i) {
     const Index number = number_of(rod, first_edge + i);
     const SpatialEdge& edge = model.framed_edges[to_size(number)];
@@ -361,6 +393,13 @@ bool is_held_or_at_corner(double s, const RodLayout& rod, const Model& model) {
   return rod.section_spring_at(s) != nullptr || is_around_corner(section_place(s, rod), rod, model);
 }
 
+ActuatedTurn actuated_turn_at(double s, const RodLayout& rod, const Model& model) {
+  const SectionPlace place = section_place(s, rod);
+  if (!is_around_corner(place, rod, model)) return actuated_turn(s, place, rod);
+  const SectionHold hold = corner_hold(s, place.first_edge, rod, model);
+  return actuated_turn_around_corner(s, place.first_edge, hold, rod, model);
+}
+
 HeldSectionAt held_section_at(double s, const RodLayout& rod, const Model& model) {
   if (const SectionSpringPlace* spring = rod.section_spring_at(s)) {
     const std::size_t element = to_size(spring->element);
@@ -376,7 +415,9 @@ HeldSectionAt held_section_at(double s, const RodLayout& rod, const Model& model
 }
 
 void add_section_springs(RodLayout& rod, Model& model) {
+  Index number = 0;
   for (SectionSpringPlace& spring : rod.section_springs) {
+    spring.shift = rod.rest_entries.spring(number++);
     const SectionPlace place = section_place(spring.arc_length, rod);
     const SectionHold hold = hold_at(spring, place, rod, model);
     spring.on_one_edge = place.across.size() == 1;

@@ -111,6 +111,7 @@ Index add_element(const RodLayout& rod, MomentPlace& place, Model& model) {
   constants.rest = rest_turn(rod, place, model);
   std::copy(place.weights.begin(), place.weights.end(), constants.weights.begin());
   constants.total = std::accumulate(place.weights.begin(), place.weights.end(), 0.0);
+  constants.actuated = place.spring_shift;
   auto& springs = elements_of<Kernel>(*model.elements);
   springs.add(dofs, constants);
   return static_cast<Index>(springs.size()) - 1;
@@ -173,11 +174,13 @@ void add_spring(const scenario::Support& support, Model& model) {
 }
 
 void add_rotational_springs(RodLayout& rod, Model& model) {
+  Index number = 0;
   for (MomentPlace& place : rod.moment_places) {
     // Clamps may have come since.
     const double stiffness = place.stiffness;
     place = planar_moment_place(place.arc_length, rod);
     place.stiffness = stiffness;
+    place.spring_shift = rod.rest_entries.spring(number++);
     if (is_beside_turning_clamp(rod, place.arc_length)) act_on_edge(place);
     place.spring = place.weights.size() == 1 ? add_element<1>(rod, place, model)
                                              : add_element<2>(rod, place, model);

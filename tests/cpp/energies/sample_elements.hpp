@@ -102,6 +102,7 @@ typename RotationalSpring<Edges>::Constants sample_constants(const RotationalSpr
   c.direction = uniform(random, -0.5, 0.5);
   c.rest = uniform(random, -1.0, 1.0);
   c.turn = kTurn;
+  c.actuated = {kStrains};
   c.total = uniform(random, 0.2, 1.2);
   c.weights.back() = Edges == 1 ? c.total : uniform(random, -0.1, 1.1);
   if constexpr (Edges == 2) c.weights.front() = c.total - c.weights.back();
@@ -203,6 +204,7 @@ template <int Edges>
 typename SectionSpring<Edges>::Constants sample_constants(const SectionSpring<Edges>&,
                                                           Random& random) {
   typename SectionSpring<Edges>::Constants c;
+  c.actuated = {kStrains};
   const auto matrix = [&] {
     return Mat3(Mat3::NullaryExpr([&] { return uniform(random, -1, 1); }));
   };
@@ -374,6 +376,8 @@ void sample_frames(const SectionSpring<Edges>& /*kernel*/,
     matrix << frame.first, frame.second, frame.tangent;
     return matrix;
   };
+  const Mat3 actuated =
+      typename SectionSpring<Edges>::ActuatedRotation(constants, here.controls).turn;
   const SectionFrame drawn = turned(constants.spring.stiffness.maxCoeff() > 1e6 ? 0.5 : 1.5);
   constants.spring.drawn = drawn;
   const double turns = 6.283185307179586 * std::round(uniform(random, -1.5, 1.5));
@@ -384,7 +388,7 @@ void sample_frames(const SectionSpring<Edges>& /*kernel*/,
     const double theta = x[3 * SectionSpring<Edges>::kNodes + i];
     const SectionFrame edge = sample_source(i, e, random, here).turned(theta);
     const SectionFrame section = turned(0.5);
-    held.carried = axes(edge).transpose() * axes(section);
+    held.carried = axes(edge).transpose() * axes(section) * actuated.transpose();
     if (held.reference_twist >= 0) {
       here.controls[held.reference_twist] = theta - turns - twist_between(drawn, section);
     }
@@ -393,7 +397,7 @@ void sample_frames(const SectionSpring<Edges>& /*kernel*/,
     const HeldFrame& clamp = constants.clamp->held;
     const SectionFrame held =
         clamp.untwisted(here.controls).turned(clamp.twist_angle(here.controls));
-    constants.clamp->carried = axes(held).transpose() * axes(turned(0.5));
+    constants.clamp->carried = axes(held).transpose() * axes(turned(0.5)) * actuated.transpose();
   }
 }
 

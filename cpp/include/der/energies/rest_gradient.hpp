@@ -4,6 +4,8 @@
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/energies/planar_clamp.hpp"
+#include "der/energies/rotational_spring.hpp"
+#include "der/energies/section_spring.hpp"
 #include "der/energies/spatial_bend.hpp"
 #include "der/energies/stretch.hpp"
 #include "der/kinematics/configuration.hpp"
@@ -111,6 +113,32 @@ struct RestGradient<SpatialClamp<Curvature>> : BendingRestGradient<SpatialClamp<
       moments[2] += 0.5 * c.side * (moments[0] * strain.kappa_2 - moments[1] * strain.kappa_1);
     }
     return moments;
+  }
+};
+
+template <int Edges>
+struct RestGradient<RotationalSpring<Edges>> {
+  using Kernel = RotationalSpring<Edges>;
+  static constexpr bool kExists = true;
+  static constexpr int kSize = 1;
+  static const RestShift& shift(const typename Kernel::Constants& c) { return c.actuated; }
+  static Eigen::Matrix<double, kSize, 1> of(const typename Kernel::Constants& c,
+                                            const Configuration& here,
+                                            const Eigen::Matrix<double, Kernel::kDofs, 1>& x) {
+    const double turn = Kernel::turn(c, here.controls[c.turn], x) + c.actuated.value(here.controls);
+    return Eigen::Matrix<double, kSize, 1>(c.stiffness * turn);
+  }
+};
+
+template <int Edges>
+struct RestGradient<SectionSpring<Edges>> {
+  using Kernel = SectionSpring<Edges>;
+  static constexpr bool kExists = true;
+  static constexpr int kSize = 3;
+  static const RestShift& shift(const typename Kernel::Constants& c) { return c.actuated; }
+  static Vec3 of(const typename Kernel::Constants& c, const Configuration& here,
+                 const Eigen::Matrix<double, Kernel::kDofs, 1>& x) {
+    return Kernel::by_actuated(c, here, x);
   }
 };
 

@@ -7,6 +7,7 @@
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "der/kinematics/rest_shift.hpp"
 
 namespace der {
 
@@ -26,10 +27,12 @@ struct RotationalSpring {
     double rest = 0.0;                    ///< [rad]
     std::array<double, Edges> weights{};  ///< [-]
     double total = 1.0;                   ///< of the weights
-    Index turn = -1;  ///< control that holds how far the first edge has turned [rad]
+    Index turn = -1;     ///< control that holds how far the first edge has turned [rad]
+    RestShift actuated;  ///< how far actuations turn the tangent beyond the sum [rad]
   };
 
-  /// sum w_i theta_i - rest [rad], the first edge being within half a turn of `before` [rad].
+  /// sum w_i theta_i - rest [rad] without actuations, the first edge being within half a turn of
+  /// `before` [rad].
   static double turn(const Constants& c, double before, const Eigen::Matrix<double, kDofs, 1>& x) {
     const Vec2 then{std::cos(c.direction + before), std::sin(c.direction + before)};
     const Vec2 first = x.template segment<2>(2) - x.template segment<2>(0);
@@ -45,7 +48,7 @@ struct RotationalSpring {
   static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     using Coordinates = Eigen::Matrix<double, kDofs, 1>;
-    const double turned = turn(c, here.controls[c.turn], x);
+    const double turned = turn(c, here.controls[c.turn], x) + c.actuated.value(here.controls);
     const double moment = c.stiffness * turned;
     out.energy = 0.5 * moment * turned;
     if constexpr (D == Derivatives::Energy) return;

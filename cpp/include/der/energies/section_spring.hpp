@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -9,10 +10,12 @@
 #include "der/energies/edge_moments.hpp"
 #include "der/energies/held_section.hpp"
 #include "der/energies/local_term.hpp"
+#include "der/energies/spatial_bend.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/kinematics/edge_frame.hpp"
 #include "der/kinematics/frame_block.hpp"
 #include "der/kinematics/held_frame.hpp"
+#include "der/kinematics/rest_shift.hpp"
 
 namespace der {
 
@@ -53,7 +56,8 @@ struct SectionSpring {
     SpringInSeries spring;
     std::array<HeldEdge, Edges> edges;
     std::optional<HeldBeside> clamp;  ///< beside the place on one edge
-    TwistBetween between;             ///< where there are no springs, of two carried sections
+    RestShift actuated;    ///< how far actuations turn the section beyond those that are carried
+    TwistBetween between;  ///< where there are no springs, of two carried sections
   };
 
   /// The section that turns with an edge, and therefore by the same rotation.
@@ -63,6 +67,30 @@ struct SectionSpring {
     const Mat3 carried = axes * section;
     return {carried.col(2), carried.col(0), carried.col(1)};
   }
+
+  /// What actuations turn a carried section by, in its own axes (the directors and the tangent).
+  struct ActuatedRotation {
+    Mat3 turn = Mat3::Identity();
+    Mat3 by_strains = Mat3::Zero();  ///< rotation of the turned section by the strains, in its axes
+
+    ActuatedRotation(const Constants& c, const Vector& controls) {
+      const JointStrain strain = c.actuated.strain(controls);
+      // Bending towards a director turns about the other one.
+      Mat3 about;
+      about << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+      const Vec3 vector = about * Vec3(strain.kappa_1, strain.kappa_2, strain.twist);
+      const double angle = vector.norm();
+      by_strains = about;
+      if (angle == 0.0) return;
+      const Mat3 across = cross_matrix(Vec3(vector / angle));
+      const double sine = std::sin(angle);
+      const double versine = 1.0 - std::cos(angle);
+      turn += sine * across + versine * across * across;
+      by_strains =
+          (Mat3::Identity() - versine / angle * across + (1.0 - sine / angle) * across * across) *
+          about;
+    }
+  };
 
   using EdgeFrames = std::array<EdgeFrame, Edges>;
   /// The edges, the sections beside the springs, and theirs.
@@ -85,6 +113,21 @@ struct SectionSpring {
     Response& operator=(Response&&) = delete;
     ~Response() = default;
   };
+
+  /// The derivative of the energy by the strains of `actuated` [N m]: all that is carried turns.
+  static Vec3 by_actuated(const Constants& c, const Configuration& here,
+                          const Eigen::Matrix<double, kDofs, 1>& x) {
+    const Response response(c, here, x);
+    const Mat3 by_strains = ActuatedRotation(c, here.controls).by_strains;
+    Vec3 result = Vec3::Zero();
+    for (std::size_t i = 0; i < response.count; ++i) {
+      const SectionFrame& section = response.carried[i].frame;
+      Mat3 axes;
+      axes << section.first, section.second, section.tangent;
+      result += by_strains.transpose() * (axes.transpose() * response.held.moment(i));
+    }
+    return result;
+  }
 
   /// The part of the energy [J] that the rod on the way to the springs stores.
   static double stored_on_the_way(const Constants& c, const Configuration& here,
@@ -158,17 +201,19 @@ struct SectionSpring {
                                                        const Configuration& here,
                                                        const Eigen::Matrix<double, kDofs, 1>& x) {
     HeldSection::CarriedSections carried;
+    const ActuatedRotation actuated(c, here.controls);
     double turned = 0.0;
     if (c.clamp) {
       turned = c.clamp->held.twist_angle(here.controls);
-      const SectionFrame section =
-          carried_by(c.clamp->held.untwisted(here.controls).turned(turned), c.clamp->carried);
+      const SectionFrame section = carried_by(c.clamp->held.untwisted(here.controls).turned(turned),
+                                              c.clamp->carried * actuated.turn);
       carried[1] = {section, nearest_turn(twist_between(c.spring.drawn, section), turned),
                     Mat3::Identity() - c.edges[0].weights};
     }
     for (int i = 0; i < Edges; ++i) {
       const HeldEdge& edge = c.edges[std::size_t(i)];
-      const SectionFrame section = carried_by(frames[std::size_t(i)].frame, edge.carried);
+      const SectionFrame section =
+          carried_by(frames[std::size_t(i)].frame, edge.carried * actuated.turn);
       const double near = edge.reference_twist < 0
                               ? turned
                               : x[3 * kNodes + i] - here.controls[edge.reference_twist];

@@ -29,12 +29,13 @@ struct ActuatedStretch {
   [[nodiscard]] bool jumps(bool at_end) const;
 };
 
-/// Where the controls have the shifts of the rest shape of a rod's elements: of each edge, and of
-/// each cell in which it bends.
+/// Where the controls have the shifts of the rest shape of a rod's elements: of each edge, of each
+/// cell in which it bends, and of each place at which springs hold it against turning.
 struct RestEntries {
-  Index edges = -1;   ///< entry of the first edge; -1: no actuation changes lengths
-  Index cells = -1;   ///< entry of the first cell; -1: none changes curvatures or twist
-  Index strains = 1;  ///< entries of a cell: 1 in a plane, 3 in space
+  Index edges = -1;    ///< entry of the first edge; -1: no actuation changes lengths
+  Index cells = -1;    ///< entry of the first cell; -1: none changes curvatures or twist
+  Index springs = -1;  ///< entry of the first place with springs; -1: as of cells, or no springs
+  Index strains = 1;   ///< entries of a cell and of a place: 1 in a plane, 3 in space
 
   /// Entry of the length of an edge.
   [[nodiscard]] RestShift edge(Index number) const { return {edges < 0 ? -1 : edges + number}; }
@@ -42,6 +43,10 @@ struct RestEntries {
   /// between it and the edge that leaves it (`leaves`) or that arrives.
   [[nodiscard]] RestShift cell(Index position, bool leaves) const {
     return {cells < 0 ? -1 : cells + strains * (2 * position + (leaves ? 1 : 0))};
+  }
+  /// Entry of a place with springs against turning, by its number among them.
+  [[nodiscard]] RestShift spring(Index number) const {
+    return {springs < 0 ? -1 : springs + strains * number};
   }
 };
 

@@ -79,7 +79,8 @@ struct MomentPlace {
   double stiffness = 0.0;       ///< of the springs together [N m/rad]
   Index spring = -1;            ///< number of their element in its list; -1: no spring
   Index followed = -1;          ///< place in Model::followed_edges of the first edge, with a spring
-  ActuatedTurn actuated;        ///< of the tangent there, beyond these edges (with loads)
+  RestShift spring_shift;       ///< of the springs by actuations
+  ActuatedTurn actuated;        ///< of the tangent there, beyond these edges
 
   /// Stiffness of springs and cell in series against that of the springs, 1/(1 + k c/EI); the part
   /// of the loads' moments that turns the edges.
@@ -111,6 +112,7 @@ struct SectionSpringPlace {
   Vec3 stiffness = Vec3::Zero();  ///< towards the two directors, about the tangent [N m/rad]
   Index element = -1;             ///< number of their element in its list
   bool on_one_edge = false;       ///< SectionSpring<1>; else <2>
+  RestShift shift;                ///< by actuations
 };
 
 /// A part of a rod on which a distributed force acts.

@@ -23,6 +23,10 @@ void add_section_springs(RodLayout& rod, Model& model);
 using HeldSectionAt = std::variant<SectionSpring<1>::Constants, SectionSpring<2>::Constants>;
 HeldSectionAt held_section_at(double s, const RodLayout& rod, const Model& model);
 
+/// How far actuations turn the section at arc length `s` [m] beyond those that the edges and a
+/// clamp beside it carry there; at a corner each part about the axes of its own leg.
+ActuatedTurn actuated_turn_at(double s, const RodLayout& rod, const Model& model);
+
 /// Whether springs or a corner keep the edges from telling how the section at `s` [m] lies under
 /// any moment there.
 bool is_held_or_at_corner(double s, const RodLayout& rod, const Model& model);

@@ -16,6 +16,11 @@ namespace der::test {
 namespace {
 
 template <class Kernel>
+constexpr bool kIsSectionSpring = false;
+template <int Edges>
+constexpr bool kIsSectionSpring<SectionSpring<Edges>> = true;
+
+template <class Kernel>
 void check_rest_gradient(Random& random) {
   using Rest = RestGradient<Kernel>;
   auto constants = sample_constants(Kernel{}, random);
@@ -28,8 +33,9 @@ void check_rest_gradient(Random& random) {
     evaluate_element<Kernel, Derivatives::Energy>(constants, there, x, term);
     return term.energy;
   };
-  // The error of a function of frequency 1 and amplitude 1 is h^6 / 140 = 5e-13.
-  constexpr double h = 0.02;
+  // The error of a function of frequency 1 and amplitude 1 is h^6 / 140 = 5e-13. The section on
+  // springs is one of equations that are not linear: its higher derivatives are larger.
+  constexpr double h = kIsSectionSpring<Kernel> ? 0.004 : 0.02;
   const auto gradient = Rest::of(constants, here, x);
   const Index first = Rest::shift(constants).entry;
   for (int i = 0; i < Rest::kSize; ++i) {

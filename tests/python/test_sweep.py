@@ -804,6 +804,46 @@ def test_failures_of_the_surroundings_are_tried_again(cantilever, tmp_path):
     assert [row["member"] for row in again.rows] == [0, 1]
 
 
+def test_a_member_that_is_tried_again_keeps_its_number(cantilever, tmp_path):
+    """Rows that are not asked for stay; they went, and came back with another number or never."""
+    out, name = tmp_path / "s", "start_from"
+    there, new, missing, never = (
+        str(tmp_path / folder) for folder in ("there", "new", "missing", "never")
+    )
+    for folder in (there, new):
+        der.run(cantilever, out=folder)
+
+    def swept(*values):
+        return der.sweep(cantilever, {name: values}, out=out, frames=True, resume=True)
+
+    first = swept(there, missing, never)
+    assert first.values["status"] == ["static_converged", "io_error", "io_error"]
+    other = swept(there)
+    assert other.rows == first.rows
+    der.run(cantilever, out=missing)
+    last = swept(new, missing)
+    assert last.values["status"] == ["static_converged"] * 2 + ["io_error", "static_converged"]
+    assert last.values[name] == [there, missing, never, new]
+    assert last.rows[2] == first.rows[2]
+    assert last.rows[1]["message"] is None
+    run = der.open_run(out / "runs/0000/0000001")
+    assert run.probes["tip_y"].summary["final"] == last.rows[1]["tip_y.final"]
+    assert run.scenario.to_dict()[name] == missing
+
+
+def test_an_interrupt_loses_no_row_that_was_to_be_tried_again(cantilever, tmp_path):
+    vary = {"start_from": [str(tmp_path / "a"), str(tmp_path / "b")]}
+    first = der.sweep(cantilever, vary, out=tmp_path / "s")
+
+    class Interrupted(Here):
+        def submit(self, function, *arguments):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        der.sweep(cantilever, vary, out=tmp_path / "s", resume=True, executor=Interrupted())
+    assert der.load_sweep(tmp_path / "s").rows == first.rows
+
+
 def test_a_sweep_that_another_version_began_says_so(cantilever, tmp_path):
     der.sweep(cantilever, {FORCE: [-1.0]}, out=tmp_path)
     base = sqlite3.connect(tmp_path / FILE)

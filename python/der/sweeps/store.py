@@ -39,6 +39,8 @@ _FORMAT = "1"
 _PATIENCE = 60.0
 #: How many columns a table of SQLite has at most, as it is built by default.
 MOST_COLUMNS = 2000
+#: For the statuses of members that are to be run again, in a question.
+_PLACES = ", ".join("?" * len(OF_SURROUNDINGS))
 #: Types of columns: parameters are kept as they are given.
 _TYPES: dict[Kind, str] = {"parameter": "", "probe": "REAL", "found": "", "error": "REAL"}
 _RUN_TYPES = {
@@ -162,19 +164,20 @@ class Store:
         rows = self._ask("SELECT design FROM requests ORDER BY rowid")
         return [json.loads(design) for (design,) in rows]
 
-    def forget_failures_of_surroundings(self) -> None:
-        """Take away the rows of members that are to be tried again."""
-        places = ", ".join("?" * len(OF_SURROUNDINGS))
-        with self._transaction():
-            self._base.execute(f"DELETE FROM runs WHERE status IN ({places})", OF_SURROUNDINGS)
-
     def finished(self, paths: Iterable[str]) -> set[tuple[Any, ...]]:
-        """Return the values of the parameters of all members that have a row."""
+        """Return the values of the parameters of all members that are not to be run again."""
         names = ", ".join(map(_quoted, paths))
-        return set(self._ask(f"SELECT {names} FROM runs"))
+        question = f"SELECT {names} FROM runs WHERE status NOT IN ({_PLACES})"
+        return set(self._ask(question, *OF_SURROUNDINGS))
+
+    def failed_for_surroundings(self, paths: Iterable[str]) -> dict[tuple[Any, ...], int]:
+        """Return the numbers of the members that are to be run again, by their values."""
+        names = ", ".join(map(_quoted, paths))
+        question = f"SELECT member, {names} FROM runs WHERE status IN ({_PLACES})"
+        return {row[1:]: row[0] for row in self._ask(question, *OF_SURROUNDINGS)}
 
     def write(self, table: Table, paths: Iterable[str], values: Mapping[int, Member]) -> None:
-        """Add finished members, all of them or none.
+        """Add finished members, all of them or none; one that was run again has its new row.
 
         Parameters
         ----------
@@ -194,8 +197,12 @@ class Store:
         with self._transaction():
             for column in table.columns.values():
                 self._add_column(column)
+            # The old row goes only now: nobody knows whether the member will be run to its end.
+            new = ", ".join(f"{own} = excluded.{own}" for own in map(_quoted, self._columns))
             self._base.executemany(
-                f"INSERT INTO runs ({', '.join(map(_quoted, names))}) VALUES ({places})", rows
+                f"INSERT INTO runs ({', '.join(map(_quoted, names))}) VALUES ({places}) "
+                f"ON CONFLICT (member) DO UPDATE SET {new}",
+                rows,
             )
 
     def _that_fits(self, table: Table) -> Table:
@@ -219,7 +226,7 @@ class Store:
         return Table(columns, rows)
 
     def last(self) -> int:
-        """Return how many members there are: none is ever changed, and new ones are added."""
+        """Return how many members there are: none is ever taken away, and new ones are added."""
         return int(self._ask("SELECT COALESCE(MAX(rowid), 0) FROM runs")[0][0])
 
     def read(self, columns: Iterable[Column], last: int) -> list[tuple[Any, ...]]:

@@ -208,7 +208,24 @@ def _begin(
                 f"{description['version']}: the column 'version' tells which members are whose"
             ]
         )
-    store.forget_failures_of_surroundings()
+
+
+def _unfinished(
+    members: Iterable[tuple[int, Member]],
+    done: set[tuple[Any, ...]],
+    again: dict[tuple[Any, ...], int],
+) -> Iterator[tuple[int, Member]]:
+    """Yield the members that are not done; those that are run again keep their numbers.
+
+    So a number, and the run folder that has it, never stands for other values.
+    """
+    if not (done or again):
+        yield from members  # their values need not be looked up
+        return
+    for number, member in members:
+        values = tuple(map(stored, member))
+        if values not in done:
+            yield again.get(values, number), member
 
 
 class _Sweeper:
@@ -237,13 +254,9 @@ class _Sweeper:
             verify=description["verify"] == "yes",
             frames=str(Path(out).resolve() / FRAMES) if frames and out is not None else "",
         )
-        done = store.finished(design.paths)
+        done, again = store.finished(design.paths), store.failed_for_surroundings(design.paths)
         first = store.request(design)
-        self._left = (
-            (number, member)
-            for number, member in enumerate(design, first)
-            if not done or tuple(map(stored, member)) not in done
-        )
+        self._left = _unfinished(enumerate(design, first), done, again)
         # With rows of other requests among `done`, the members of this one have to be counted.
         self._total = len(design) - (
             sum(tuple(map(stored, member)) in done for member in design) if done else 0

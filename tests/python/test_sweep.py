@@ -335,6 +335,16 @@ def test_a_run_that_fails_has_a_cost_and_no_values(swing):
     assert bad["tip.final"] is None
 
 
+def test_a_run_that_fails_tells_since_when_it_was_unreliable(swing):
+    swing["time"] = {"duration": 6, "step": 0.005, "integrator": "implicit_midpoint"}
+    integrators = ["implicit_midpoint", "implicit_euler"]
+    failed, good = der.sweep(swing, {"time.integrator": integrators}).rows
+    alone = der.run(swing, check=False)
+    assert failed["status"] == alone.status == "unstable_motion"
+    assert failed["unreliable_from"] == alone.unreliable_from > 0.0
+    assert (good["status"], good["unreliable_from"]) == ("completed", None)
+
+
 def test_errors_that_are_not_ders_are_rows_too(cantilever, monkeypatch):
     from der.sweeps import chunk
 

@@ -138,7 +138,7 @@ def _run_member(
     else:
         _add_row(table, number, outcome.value(), message, seconds)
     if outcome.result is not None:  # a failed run has cost something, and may have warned
-        for name in ("steps", "newton_iterations"):
+        for name in ("steps", "newton_iterations", "unreliable_from"):
             table.rows[-1][name] = outcome.result.summary[name]
         if warnings := outcome.result.summary["warnings"]:
             table.put(WARNINGS, "found", "", "\n".join(warnings))
@@ -184,7 +184,6 @@ def _add_row(table: Table, number: int, reading: _Reading, message: str, seconds
         status=summary["status"],
         message=message or None,
         seconds=seconds,
-        unreliable_from=summary["unreliable_from"],
         version=__version__,
     )
     for name, probe in summary["probes"].items():

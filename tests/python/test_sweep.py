@@ -324,6 +324,19 @@ def test_failed_members_are_rows(cantilever):
     assert "4 members, 2 failed (invalid_scene 2)" in sweep.summary()
 
 
+@pytest.mark.parametrize(
+    ("analysis", "when"), [("static", "s"), ({"continuation": {}}, "")], ids=["static", "path"]
+)
+def test_probes_have_columns_if_every_member_fails(cantilever, analysis, when):
+    """A program asked for the values of a probe, and met a KeyError."""
+    cantilever |= {"analysis": analysis, "start_from": "/nowhere"}
+    sweep = der.sweep(cantilever, {FORCE: [-1.0, -2.0]})
+    assert sweep.all_failed
+    assert np.isnan(sweep["tip_y"]).tolist() == [True, True]
+    names = [f"tip_y.{what}" for what in ("final", "min", "max", "t_min", "t_max")]
+    assert [sweep.column(name).unit for name in names] == ["m", "m", "m", when, when]
+
+
 def test_a_run_that_fails_has_a_cost_and_no_values(swing):
     swing["time"] |= {"integrator": "verlet", "step": 1e-4}
     steps = [1e-4, 5e-3]

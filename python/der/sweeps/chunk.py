@@ -17,13 +17,10 @@ from der.errors import DerError
 from der.parallel import attempt
 from der.simulation import recorded_result
 from der.sweeps.design import Member
-from der.sweeps.table import BROKEN, WARNINGS, Column, Table, failed_row
+from der.sweeps.probe_columns import TOLD, WHEN, columns_of_probe, names_of_columns
+from der.sweeps.table import BROKEN, WARNINGS, Table, failed_row
 
-#: What is told of each probe.
-_TOLD, _WHEN = ("final", "min", "max"), ("t_min", "t_max")
-_told = itemgetter(*_TOLD, *_WHEN)
-#: How many columns a probe has, and how many error bars.
-COLUMNS_OF_PROBE, BARS_OF_PROBE = len(_TOLD) + len(_WHEN), len(_TOLD)
+_told = itemgetter(*TOLD, *WHEN)
 #: What a row has of the summary of a run: to ask for all of it takes as long as the rest of a row.
 _OF_SUMMARY = (
     *("status", "unreliable_from", "stability", "out_of_plane", "warnings"),
@@ -187,12 +184,10 @@ def _add_row(table: Table, number: int, reading: _Reading, message: str, seconds
         version=__version__,
     )
     for name, probe in summary["probes"].items():
-        names = _probe_columns(name)
+        names = names_of_columns(name)
         if names[0] not in table.columns:
-            second = "" if reading.on_path else "s"
-            units = (probe["unit"],) * len(_TOLD) + (second,) * len(_WHEN)
-            for own, unit in zip(names, units, strict=True):
-                table.add(Column(own, "probe", unit))
+            for column in columns_of_probe(name, probe["unit"], reading.on_path):
+                table.add(column)
         row.update(zip(names, _told(probe), strict=True))
     if summary["stability"] is not None:
         table.put("stability", "found", "", summary["stability"])
@@ -203,15 +198,9 @@ def _add_row(table: Table, number: int, reading: _Reading, message: str, seconds
         table.put(found.label, "found", found.unit, found.value)
 
 
-@lru_cache(maxsize=1024)
-def _probe_columns(probe: str) -> tuple[str, ...]:
-    """Return the names of the columns of a probe, made once and not for each member."""
-    return tuple(f"{probe}.{what}" for what in (*_TOLD, *_WHEN))
-
-
 def _add_error_bars(table: Table, verification: Verification, reading: _Reading) -> None:
     for value in verification.values:
-        of_probe = value.probe in reading.summary["probes"] and value.what in _TOLD
+        of_probe = value.probe in reading.summary["probes"] and value.what in TOLD
         name = f"{value.probe}.{value.what}" if of_probe else value.label
         table.put(f"{name}.error", "error", value.unit, value.error_bar)
     table.put("flagged", "error", "", len(verification.flagged))

@@ -7,8 +7,8 @@ from typing import Any
 from der._core import Scenario, quantities
 from der.errors import SceneError
 from der.key_paths import check_apart
-from der.sweeps.chunk import BARS_OF_PROBE, COLUMNS_OF_PROBE
 from der.sweeps.design import Design
+from der.sweeps.probe_columns import BARS_OF_PROBE, COLUMNS_OF_PROBE
 from der.sweeps.store import MOST_COLUMNS
 from der.sweeps.table import RUN_COLUMNS
 from der.sweeps.values import Range, stored

@@ -126,8 +126,13 @@ class Store:
             self._columns = {name: Column(name, kind, unit) for name, kind, unit in rows}
         return found
 
-    def create(self, description: dict[str, str], paths: Iterable[str]) -> None:
-        """Make the tables of a sweep that varies these parameters, all of them or none."""
+    def create(
+        self, description: dict[str, str], paths: Iterable[str], probes: Iterable[Column] = ()
+    ) -> None:
+        """Make the tables of a sweep that varies these parameters, all of them or none.
+
+        The columns of probes are there from the start, even if every member fails.
+        """
         with self._transaction():
             self._base.execute("CREATE TABLE sweep (key TEXT PRIMARY KEY, value TEXT NOT NULL)")
             self._base.executemany(
@@ -139,7 +144,7 @@ class Store:
             )
             self._base.execute("CREATE TABLE columns (name TEXT, kind TEXT, unit TEXT)")
             number, *others = RUN_COLUMNS
-            columns = [number, *(Column(path, "parameter") for path in paths), *others]
+            columns = [number, *(Column(path, "parameter") for path in paths), *others, *probes]
             self._base.execute(f"CREATE TABLE runs ({', '.join(map(_definition, columns))})")
             for column in columns:
                 self._note_column(column)

@@ -23,6 +23,7 @@ from der.sweeps.chunk import Chunk
 from der.sweeps.design import Design, Member, make_design
 from der.sweeps.design_checks import check_design
 from der.sweeps.executors import AnyExecutor, Place, lost_its_worker, place_for
+from der.sweeps.probe_columns import probe_columns
 from der.sweeps.scene_difference import first_difference
 from der.sweeps.store import FILE, FRAMES, LOCK, Store, is_sweep, locked
 from der.sweeps.sweep_result import Sweep, load_sweep, read_sweep
@@ -127,7 +128,7 @@ def sweep(
         "version": __version__,
     }
     with _store(out, resume) as store:
-        _begin(store, description, design, out)
+        _begin(store, scene, description, design, out)
         with place_for(executor, jobs) as place:
             try:
                 _Sweeper(store, scene, design, description, out, place, progress).run()
@@ -175,12 +176,18 @@ def _check_folder(folder: Path, resume: bool) -> None:
 
 
 def _begin(
-    store: Store, description: dict[str, str], design: Design, out: str | os.PathLike[str] | None
+    store: Store,
+    scene: Scenario,
+    description: dict[str, str],
+    design: Design,
+    out: str | os.PathLike[str] | None,
 ) -> None:
     """Make the tables, or see that they are those of this sweep."""
     kept = store.description()
     if not kept:
-        store.create(description, design.paths)
+        # Of the first member, which is known to be valid: probes may be varied.
+        first = scene.with_(**dict(zip(design.paths, next(iter(design)), strict=True)))
+        store.create(description, design.paths, probe_columns(first))
         return
     if kept["scene"] != description["scene"]:
         raise ValueError(

@@ -141,6 +141,39 @@ def test_designs_that_are_none(vary, options, says):
         make_design(vary, **options)
 
 
+def test_products_that_nobody_waits_for(scene, tmp_path, capsys):
+    """One of more than 64 bits was an error of Python, and left a folder."""
+    vary = {FORCE: "-2:-1:100000", STIFFNESS: "1:2:100000"}
+    says = "are 10000000000 members, and a sweep has at most 1000000000: give fewer values, or take"
+    with pytest.raises(ValueError, match=says):
+        der.sweep(scene, vary, out=tmp_path / "s")
+    line = ["sweep", str(scene), "--out", str(tmp_path / "s")]
+    paths = (FORCE, STIFFNESS, "rods.arm.to.0", "rods.arm.from.0")
+    for path in paths:
+        line += ["--vary", f"{path}=1:2:1000000"]
+    assert main(line) == 1
+    assert f"are {10**24} members" in capsys.readouterr().err
+    assert not (tmp_path / "s").exists()
+
+
+def test_a_large_product_begins_at_once(scene):
+    """Also where texts have to be looked at: the unit of a probe must not depend on them."""
+
+    class Begun(Exception):
+        pass
+
+    class Begins(Here):
+        def submit(self, function, *arguments):
+            raise Begun
+
+    probe = "output.probes.tip_y.quantity"
+    vary = {FORCE: "-2:-1:100000", STIFFNESS: "1:2:1000", probe: ["x", "y"]}
+    begun = time.monotonic()
+    with pytest.raises(Begun):
+        der.sweep(scene, vary, executor=Begins())
+    assert time.monotonic() - begun < 20.0
+
+
 def test_the_cost_of_a_path_is_that_of_all_its_points(cantilever):
     cantilever["analysis"] = {"continuation": {}}
     sweep = der.sweep(cantilever, {FORCE: [-1.0]})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import math
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, get_args
@@ -19,6 +19,8 @@ from der.whole_numbers import whole_number
 
 #: The values of a member's parameters, in the order of the paths.
 Member = tuple[Any, ...]
+#: Members of a product, at most: the cheapest that there are take days on a core.
+MOST_MEMBERS = 1_000_000_000
 Sampling = Literal["sobol", "lhs"]
 
 
@@ -50,15 +52,26 @@ class Design:
 
     def __len__(self) -> int:
         """Return the number of members; two with the same values are one."""
-        if self.zipped or self.sampling is not None:
-            return len(self._listed)
-        return math.prod(map(len, self._unique_lists()))
+        return self.count()
 
     def __iter__(self) -> Iterator[Member]:
         """Yield the members in their order; those of a product are never all in memory."""
-        if self.zipped or self.sampling is not None:
+        return itertools.product(*self._unique_lists) if self._is_product else iter(self._listed)
+
+    def count(self) -> int:
+        """Return the number of members, also of a product that is too large for `len`."""
+        return math.prod(map(len, self._unique_lists)) if self._is_product else len(self._listed)
+
+    def members_that_differ_in(self, numbers: Collection[int]) -> Iterator[Member]:
+        """Yield at least one member for each set of values that some parameters have together.
+
+        A product may have many more members than it has such sets.
+        """
+        if not self._is_product:
             return iter(self._listed)
-        return itertools.product(*self._unique_lists())
+        return itertools.product(
+            *(own if i in numbers else own[:1] for i, own in enumerate(self._unique_lists))
+        )
 
     def to_json(self) -> str:
         """Return a text that tells this design from any other."""
@@ -75,8 +88,13 @@ class Design:
         """Return the values of all parameters that are no ranges."""
         return [values for values in self.values if not isinstance(values, Range)]
 
-    def _unique_lists(self) -> list[list[Any]]:
-        return [_unique((stored(value), value) for value in own) for own in self.lists()]
+    @property
+    def _is_product(self) -> bool:
+        return not self.zipped and self.sampling is None
+
+    @cached_property
+    def _unique_lists(self) -> list[Sequence[Any]]:
+        return list(map(_unique_values, self.lists()))
 
     @cached_property
     def _listed(self) -> list[Member]:
@@ -129,7 +147,7 @@ def make_design(
     ------
     ValueError
         For no parameter, values that are not spelled right, lists side by side of different
-        lengths, a range without a sample, and a seed below 0.
+        lengths, a range without a sample, more than `MOST_MEMBERS`, and a seed below 0.
     TypeError
         If `vary` is no dict of paths, or the seed no whole number.
     """
@@ -152,11 +170,23 @@ def make_design(
                 f"values, as {own.low:g}:{own.high:g}:11, or sample with sobol:N or lhs:N"
             )
     design = Design(tuple(values), tuple(values.values()), zipped)
+    if not zipped:
+        _check_product(design)
     lengths = {path: len(own) for path, own in zip(design.paths, design.lists(), strict=True)}
     if zipped and len(set(lengths.values())) > 1:
         counts = ", ".join(f"{path} has {count}" for path, count in lengths.items())
         raise ValueError(f"values side by side are as many for each parameter: {counts}")
     return design
+
+
+def _check_product(design: Design) -> None:
+    """Refuse a product that is a slip: nobody waits for its members."""
+    if (count := design.count()) > MOST_MEMBERS:
+        raise ValueError(
+            f"each value with each of the others are {count} members, and a sweep has at most "
+            f"{MOST_MEMBERS}: give fewer values, or take a sample of them with sobol:N or lhs:N "
+            "(--sample, sample=)"
+        )
 
 
 def _unique(keyed: Iterable[tuple[Hashable, Any]]) -> list[Any]:
@@ -170,6 +200,14 @@ def _unique(keyed: Iterable[tuple[Hashable, Any]]) -> list[Any]:
         if key not in kept or (isinstance(value, int) and isinstance(kept[key], float)):
             kept[key] = value
     return list(kept.values())
+
+
+def _unique_values(values: tuple[Any, ...]) -> Sequence[Any]:
+    """Return the values of a parameter without those that are there already."""
+    # Of millions of numbers, it takes seconds to look at each.
+    if set(map(type, values)) <= {int, float} and len(set(values)) == len(values):
+        return values
+    return _unique((stored(value), value) for value in values)
 
 
 def _values_of(path: str, given: str | Iterable[Any]) -> Values:

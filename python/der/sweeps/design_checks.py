@@ -87,7 +87,7 @@ def _check_units(scene: Scenario, design: Design) -> None:
         return
     seen: set[tuple[Any, ...]] = set()
     first: dict[str, str] = {}
-    for member in design:
+    for member in design.members_that_differ_in(telling):
         key = tuple(stored(member[i]) for i in telling)
         if key in seen:
             continue

@@ -67,6 +67,8 @@ def scene(cantilever, tmp_path):
         ("1e6:1e9:4:log", tuple(np.geomspace(1e6, 1e9, 4))),
         ("0:1", Range(0.0, 1.0)),
         ("1:100:log", Range(1.0, 100.0, log=True)),
+        ("+5,5.,.5,0e1,0", (5, 5.0, 0.5, 0.0, 0)),
+        ("1d3,0x1,1-2", ("1d3", "0x1", "1-2")),
     ],
 )
 def test_spelling_of_values(text, values):
@@ -87,7 +89,25 @@ def test_spelling_of_values(text, values):
         ("0:1:1", "at least 2"),
         ("0:1:3:log", "greater than 0"),
         ("[1", "is no value"),
-        ("0:inf:3", "is no range"),
+        ("0:1:2.5", "at least 2"),
+        ("0:1:log:3", "is no range"),
+        ("0:log", "is no range"),
+        # Python reads these, and scenes do not.
+        ("0:inf:3", "'inf': infinities and nan are out of range"),
+        ("1,nan", "'nan': infinities and nan are out of range; a word stands in double quotes"),
+        ("1,-.Inf", "'-.Inf': infinities and nan are out of range"),
+        ("010", r"'010': a leading zero is ambiguous \(octal\): write 10 or 8"),
+        ("-010,1", "write -10 or -8"),
+        ("089", "'089': numbers have no leading zero: write 89"),
+        ("00.5", "numbers have no leading zero: write 0.5"),
+        ("1_0", "'1_0': numbers have the digits 0 to 9 and no separators: 10"),
+        ("0:1_0.5:3", r"'1_0\.5': numbers have the digits 0 to 9 and no separators: 10\.5"),
+        ("0_1:1_0:3", "no separators: 1$"),
+        ("\u0663", "the digits 0 to 9 and no separators: 3"),
+        ("1e400", "'1e400': it is out of the range of double-precision numbers"),
+        ("1e-400", "'1e-400': it is out of the range of double-precision numbers"),
+        ("[1,0],[NaN,1]", r"the value \[nan, 1\] has nan, which is no number of a scene"),
+        ('{"a":[1,Infinity]}', "has inf, which is no number of a scene"),
     ],
 )
 def test_values_that_are_none(text, says):
@@ -282,6 +302,8 @@ def test_a_full_disk_says_how_to_go_on(cantilever, tmp_path, monkeypatch):
         ({"sample": "lhs:100000000000"}, ValueError, "a sample has at most 10000000 points"),
         ({"seed": -1}, ValueError, "seed must be a whole number of at least 0, got -1"),
         ({"seed": 1.5}, TypeError, "seed must be a whole number of at least 0, got 1.5"),
+        ({"sample": "lhs:1_0"}, ValueError, "no separators: 10"),
+        ({"sample": "lhs:1.5"}, ValueError, "'lhs:1.5' is no sample: write sobol:256 or lhs:100"),
         ({"sample": 5}, ValueError, "'5' is no sample: write sobol:256 or lhs:100"),
         ({"jobs": 1.5}, TypeError, "jobs must be a whole number of at least 1, got 1.5"),
     ],
@@ -453,8 +475,9 @@ def test_numbers_that_a_table_holds_otherwise(cantilever, tmp_path):
     for _ in range(2):
         sweep = der.sweep(cantilever, {nodes: [5, 10**20, 7]}, out=tmp_path / "s", resume=True)
         assert sweep.values["status"] == ["static_converged", "invalid_scene", "static_converged"]
-    with pytest.raises(ValueError, match="nan, which is no number"):
-        der.sweep(cantilever, {nodes: [5, np.nan]})
+    for value in (np.nan, np.inf, [1, [np.nan]], (np.inf, 2), {"a": np.inf}):
+        with pytest.raises(ValueError, match=r"(nan|inf), which is no number"):
+            der.sweep(cantilever, {nodes: [5, value]})
     for values in ([5, 7, 7.0], [5, 7.0, 7]):
         assert der.sweep(cantilever, {nodes: values}).values[nodes] == [5, 7]
 
@@ -695,9 +718,11 @@ def test_the_command(scene, tmp_path, capsys):
     assert "given twice" in capsys.readouterr().err
     assert main(["sweep", str(scene), "--vary", "nothing", "--out", str(out)]) == 1
     assert "write PATH=1,2,5" in capsys.readouterr().err
-    with pytest.raises(SystemExit) as caught:
-        main(["sweep", str(scene), "--vary", f"{FORCE}=1", "--out", str(out), "--seed", "x"])
-    assert caught.value.code == 2
+    for option in (["--seed", "x"], ["--jobs", "1_0"], ["--jobs", "1.5"], ["--jobs", "010"]):
+        with pytest.raises(SystemExit) as caught:
+            main(["sweep", str(scene), "--vary", f"{FORCE}=1", "--out", str(out), *option])
+        assert caught.value.code == 2
+        assert f"argument {option[0]}: '{option[1]}'" in capsys.readouterr().err
 
 
 def test_ctrl_c_of_the_command_says_what_is_kept(scene, tmp_path, capsys, monkeypatch):

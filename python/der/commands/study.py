@@ -15,6 +15,7 @@ from pathlib import Path
 
 from der.output_paths import check_output_folder, make_folder, output_folder
 from der.progress import progress_on_terminal
+from der.spelled_numbers import whole_number_argument
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -23,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--nodes",
         nargs="+",
-        type=int,
+        type=whole_number_argument,
         metavar="N",
         help="nodes of the first rod that can be refined (default: 1/2 to 4 times the elements)",
     )
@@ -55,7 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--jobs",
-        type=int,
+        type=whole_number_argument,
         metavar="N",
         help="runs at once for the reference (default: as many as there are cores)",
     )

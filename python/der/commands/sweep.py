@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from der.output_paths import output_folder
 from der.progress import progress_on_terminal
+from der.spelled_numbers import whole_number_argument
 
 if TYPE_CHECKING:
     from der.sweeps.executors import AnyExecutor
@@ -45,7 +46,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="sobol:N or lhs:N: N points in the space of all parameters",
     )
     parser.add_argument(
-        "--seed", type=int, default=0, metavar="N", help="where the sample starts (default: 0)"
+        "--seed",
+        type=whole_number_argument,
+        default=0,
+        metavar="N",
+        help="where the sample starts (default: 0)",
     )
     parser.add_argument(
         "--out",
@@ -66,7 +71,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--verify", action="store_true", help="put error bars on each member, as `der verify`"
     )
     parser.add_argument(
-        "--jobs", type=int, metavar="N", help="runs at once (default: as many as there are cores)"
+        "--jobs",
+        type=whole_number_argument,
+        metavar="N",
+        help="runs at once (default: as many as there are cores)",
     )
     where = parser.add_mutually_exclusive_group()
     where.add_argument(

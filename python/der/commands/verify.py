@@ -14,6 +14,7 @@ import json
 from der.accuracy import verify
 from der.output_paths import output_file
 from der.progress import progress_on_terminal
+from der.spelled_numbers import whole_number_argument
 
 _FLAGGED = 5
 
@@ -29,13 +30,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--levels",
-        type=int,
+        type=whole_number_argument,
         choices=(2, 3),
         help="2: one refinement, cheap; 3: two, which measure the order (default: 3 if that takes "
         "less than a minute)",
     )
     parser.add_argument(
-        "--jobs", type=int, metavar="N", help="runs at once (default: as many as there are cores)"
+        "--jobs",
+        type=whole_number_argument,
+        metavar="N",
+        help="runs at once (default: as many as there are cores)",
     )
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from der.key_paths import check_varied
+from der.spelled_numbers import read_number
 from der.sweeps.values import MOST_VALUES, Range, Values, as_values, stored
 from der.whole_numbers import whole_number
 
@@ -220,7 +221,8 @@ def _values_of(path: str, given: str | Iterable[Any]) -> Values:
 def _parse_sample(text: str) -> tuple[Sampling, int]:
     name, _, count = str(text).partition(":")
     for sampling in get_args(Sampling):
-        if name == sampling and count.isdecimal() and (samples := int(count)) > 0:
+        samples = read_number(count) if name == sampling else None
+        if isinstance(samples, int) and samples > 0:
             if samples > MOST_VALUES:
                 raise ValueError(f"'{text}': a sample has at most {MOST_VALUES} points")
             return sampling, samples

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 from collections.abc import Iterable
@@ -9,6 +10,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+
+from der.spelled_numbers import read_number
 
 #: Values of a range and points of a sample, at most: all of them are held in memory.
 MOST_VALUES = 10_000_000
@@ -110,8 +113,22 @@ def stored(value: Any) -> Any:
 
 
 def _check_numbers(values: Iterable[Any]) -> None:
-    if any(isinstance(value, float) and math.isnan(value) for value in values):
-        raise ValueError("a value is nan, which is no number")
+    """Refuse numbers that no scene has, and JSON neither."""
+    for value in values:
+        for number in _floats_in(value):
+            if not math.isfinite(number):
+                what = "a value is" if value is number else f"the value {value} has"
+                raise ValueError(f"{what} {number}, which is no number of a scene")
+
+
+def _floats_in(value: Any) -> Iterable[float]:
+    if isinstance(value, float):
+        return (value,)
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, (list, tuple)):
+        return itertools.chain.from_iterable(map(_floats_in, value))
+    return ()
 
 
 def _plain(value: Any) -> Any:
@@ -119,30 +136,27 @@ def _plain(value: Any) -> Any:
 
 
 def _parse_range(text: str) -> Values:
-    fields = text.split(":")
-    log = fields[-1].strip() == _LOG
-    numbers = fields[:-1] if log else fields
-    try:
-        low, high = (float(field) for field in numbers[:2])
-        count = int(numbers[2]) if len(numbers) == 3 else 0
-    except (ValueError, IndexError):
-        raise ValueError(f"'{text}' is no range: {_SPELLING}") from None
-    if len(numbers) > 3 or not np.isfinite([low, high]).all():
+    fields = [field.strip() for field in text.split(":")]
+    log = fields[-1] == _LOG
+    numbers = [number for field in fields if (number := read_number(field)) is not None]
+    if not 2 <= len(numbers) <= 3 or len(numbers) + log < len(fields):
         raise ValueError(f"'{text}' is no range: {_SPELLING}")
+    low, high = map(float, numbers[:2])
     if log and not (low > 0.0 and high > 0.0):
         raise ValueError(f"'{text}': both ends of a range in equal ratios are greater than 0")
     if len(numbers) == 2:
         return Range(low, high, log)
-    if not 2 <= count <= MOST_VALUES:
+    count = numbers[2]
+    if not isinstance(count, int) or not 2 <= count <= MOST_VALUES:
         raise ValueError(f"'{text}': a range has at least 2 values and at most {MOST_VALUES}")
     spaced = (np.geomspace if log else np.linspace)(low, high, count).tolist()
-    whole = all(_is_whole(field) for field in numbers) and all(v.is_integer() for v in spaced)
+    between_whole = isinstance(numbers[0], int) and isinstance(numbers[1], int)
     # A number of nodes is to be a whole number.
-    return tuple(int(value) for value in spaced) if whole else tuple(spaced)
+    return tuple(_whole_where_all_are(spaced) if between_whole else spaced)
 
 
-def _is_whole(text: str) -> bool:
-    return isinstance(_parse_value(text), int)
+def _whole_where_all_are(values: list[float]) -> list[float] | list[int]:
+    return list(map(int, values)) if all(value.is_integer() for value in values) else values
 
 
 def _split(text: str) -> list[str]:
@@ -162,11 +176,8 @@ def _parse_value(text: str) -> Any:
     text = text.strip()
     if not text:
         raise ValueError(f"a value is empty: {_SPELLING}")
-    for read in (int, float):
-        try:
-            return read(text)
-        except ValueError:
-            pass
+    if (number := read_number(text)) is not None:
+        return number
     if text[0] not in '["{' and text not in ("true", "false", "null"):
         return text
     try:

@@ -156,7 +156,10 @@ def _parse_range(text: str) -> Values:
 
 
 def _whole_where_all_are(values: list[float]) -> list[float] | list[int]:
-    return list(map(int, values)) if all(value.is_integer() for value in values) else values
+    """Return whole numbers if all are up to rounding: 4:16:3:log is 4, 8.000000000000002, 16."""
+    if all(abs(value - round(value)) <= min(1e-3, 1e-13 * abs(value)) for value in values):
+        return list(map(round, values))
+    return values
 
 
 def _split(text: str) -> list[str]:

@@ -14,6 +14,7 @@ from der.errors import DerError, UnreliableResultWarning, warn
 from der.key_paths import check_apart, check_varied
 from der.named_probes import NamedProbes
 from der.simulation import SceneLike, as_scenario
+from der.value_lists import check_value_list
 from der.whole_numbers import MOST, whole_number
 
 if TYPE_CHECKING:
@@ -84,7 +85,8 @@ class Batch(_core.Batch):
     SceneError, DerError
         Where a member cannot be simulated: the message names the first.
     ValueError
-        Where `vary` has not one value for each member, or two paths to the same value.
+        Where `vary` has not one value for each member, in an order, or two paths to the same
+        value.
 
     Warns
     -----
@@ -343,10 +345,14 @@ def _other_shape(name: str, values: NDArray[np.float64], shape: tuple[int, ...])
     )
 
 
-def _one_each(path: str, given: ArrayLike | Sequence[Any], members: int) -> list[Any]:
+def _one_each(path: str, given: Any, members: int) -> list[Any]:
     """Return the values of a path as a list with one for each member."""
+    try:
+        check_value_list(given)
+    except ValueError as error:
+        raise ValueError(f"vary: '{path}': {error}") from None
     values = given.tolist() if isinstance(given, np.ndarray) else given
-    if isinstance(values, (str, Mapping)) or not isinstance(values, Iterable):
+    if isinstance(values, str) or not isinstance(values, Iterable):
         raise ValueError(
             f"vary: '{path}' takes one value for each of the {members} members, not {given!r}; a "
             "value for all of them belongs into the scene (Scenario.with_)"

@@ -367,6 +367,12 @@ WIND = {"name": "push", "distributed_force": {"rod": "rod", "force": [0, 0]}}
         ({"rods.bar.nodes": [1, 2, 3]}, der.SceneError, "'rods' has no item 'bar'"),
         ({EI: [1.0, 2.0]}, ValueError, "has 2 values for 3 members"),
         ({EI: 1.0}, ValueError, "one value for each of the 3 members, not 1.0"),
+        ({EI: {1.0, 2.0, 3.0}}, ValueError, f"vary: '{EI}': a set has no order: write a list"),
+        ({EI: {1.0: 1, 2.0: 2, 3.0: 3}}, ValueError, "a dict is one value and no list"),
+        ({EI: b"abc"}, ValueError, "bytes are no list of values"),
+        ({EI: np.array(1.0)}, ValueError, r"one value for each of the 3 members, not array\(1"),
+        ({EI: np.ma.array([1.0, 2, 3], mask=[0, 1, 0])}, ValueError, "some values are masked"),
+        ({EI: [1.0, np.ma.masked, 2.0]}, ValueError, "some values are masked"),
         ({EI: [1.0, "x", 2.0]}, der.SceneError, r"member 1"),
         ({EI: [1.0, object(), 2.0]}, der.SceneError, "cannot stand in a scene"),
         (

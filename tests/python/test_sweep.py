@@ -124,6 +124,8 @@ def test_designs():
     assert list(product) == [(1, 0.0), (1, 0.5), (1, 1.0), (2, 0.0), (2, 0.5), (2, 1.0)]
     zipped = make_design({"a": [1, 1, 1], "b": [3, 4, 3]}, zipped=True)
     assert (len(zipped), list(zipped)) == (2, [(1, 3), (1, 4)])
+    whole = np.ma.array([3, 4], mask=False)
+    assert list(make_design({"a": whole, "b": range(1)})) == [(3, 0), (4, 0)]
     arrays = make_design({"a": np.array([[0.0, 1.0]]), "b": np.arange(2)})
     assert list(arrays) == [([0.0, 1.0], 0), ([0.0, 1.0], 1)]
 
@@ -152,6 +154,12 @@ def test_samples_are_those_of_scipy():
         ({}, {}, "nothing is varied"),
         ({"a": []}, {}, "a: there is no value"),
         ({"a": 3}, {}, r"a: expected a sequence of values, got 3: write \[3\]"),
+        ({"a": np.array(3.0)}, {}, r"a: expected a sequence of values, got 3.0: write \[3.0\]"),
+        ({"a": {1, 2}}, {}, "a: a set has no order: write a list of values"),
+        ({"a": {"x": 1}}, {}, "a: a dict is one value and no list of them"),
+        ({"a": b"12"}, {}, r"a: bytes are no list of values: write \[1, 2\]"),
+        ({"a": np.ma.array([1, 2], mask=[0, 1])}, {}, "a: some values are masked"),
+        ({"a": [1.0, np.ma.masked]}, {}, "a: some values are masked"),
         ({"a": "0:1"}, {}, "0:1:11"),
         ({"a": [1, 2], "b": [1]}, {"zipped": True}, "a has 2, b has 1"),
         ({"a": [1]}, {"sample": "grid:3"}, "write sobol:256"),

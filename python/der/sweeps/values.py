@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from der.spelled_numbers import read_number
+from der.value_lists import check_value_list
 
 #: Values of a range and points of a sample, at most: all of them are held in memory.
 MOST_VALUES = 10_000_000
@@ -80,14 +81,18 @@ def as_values(given: str | Iterable[Any]) -> Values:
     Raises
     ------
     ValueError
-        If there is no value, or a text is not spelled as `parse_values` reads it.
+        If there is no value, or a text is not spelled as `parse_values` reads it; for sets, which
+        have no order, dicts and bytes; for masked values.
     """
     if isinstance(given, Range):
         return given
     if isinstance(given, str):
         return parse_values(given)
+    if isinstance(given, np.ndarray) and given.ndim == 0:
+        given = given.item()  # Python takes it for iterable, and cannot go through it
     if not isinstance(given, Iterable):
         raise ValueError(f"expected a sequence of values, got {given!r}: write [{given!r}]")
+    check_value_list(given)
     values = tuple(_plain(value) for value in given)
     if not values:
         raise ValueError("there is no value")

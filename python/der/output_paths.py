@@ -54,6 +54,26 @@ def output_folder(text: str) -> Path:
     return Path(text)
 
 
+def folder_path(name: str, given: object) -> Path:
+    """Return the path of a folder that a program gives.
+
+    Parameters
+    ----------
+    name
+        The name of the argument, for messages.
+    given
+        What is given.
+
+    Raises
+    ------
+    TypeError
+        If it is no path.
+    """
+    if isinstance(given, (str, os.PathLike)):
+        return Path(given)
+    raise TypeError(f"{name} must be the path of a folder, got {given!r}")
+
+
 def make_folder(folder: Path) -> None:
     """Make a folder for results, unless it is there.
 

@@ -316,6 +316,9 @@ def test_a_full_disk_says_how_to_go_on(cantilever, tmp_path, monkeypatch):
         ({"sample": "lhs:1_0"}, ValueError, "no separators: 10"),
         ({"sample": "lhs:1.5"}, ValueError, "'lhs:1.5' is no sample: write sobol:256 or lhs:100"),
         ({"sample": 5}, ValueError, "'5' is no sample: write sobol:256 or lhs:100"),
+        ({"out": 3}, TypeError, "out must be the path of a folder, got 3"),
+        ({"out": b"s"}, TypeError, "out must be the path of a folder, got b's'"),
+        ({"progress": 3}, TypeError, "progress must be a function, got 3"),
         ({"jobs": 1.5}, TypeError, "jobs must be a whole number of at least 1, got 1.5"),
     ],
 )
@@ -593,6 +596,8 @@ def test_what_is_refused_by_name(cantilever, tmp_path):
         der.sweep(cantilever, {FORCE: [-1]}, executor="dask")
     with pytest.raises(FileNotFoundError, match="no sweep in"):
         der.load_sweep(tmp_path)
+    with pytest.raises(TypeError, match="folder must be the path of a folder, got 3"):
+        der.load_sweep(3)
     assert len(der.load_sweep(out)) == 1
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from der._core import Scenario, ended_as_asked
 from der.exporting.sweep_tables import SweepFormat, export_sweep
+from der.output_paths import folder_path
 from der.sweeps.store import FILE, Store, is_sweep
 from der.sweeps.sweep_data import Rows, SweepData
 from der.sweeps.table import WARNINGS, Column
@@ -117,10 +118,12 @@ def load_sweep(folder: str | os.PathLike[str]) -> Sweep:
         If it was written by another version of der, or never began.
     OSError
         If it is damaged.
+    TypeError
+        If the folder is no path.
     """
+    path = folder_path("folder", folder) / FILE
     if not is_sweep(folder):
-        raise FileNotFoundError(f"no sweep in {folder}: {Path(folder) / FILE} does not exist")
-    path = Path(folder) / FILE
+        raise FileNotFoundError(f"no sweep in {folder}: {path} does not exist")
     with closing(Store(path)) as store:
         return read_sweep(store, partial(_read_rows, path))
 

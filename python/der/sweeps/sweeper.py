@@ -15,7 +15,7 @@ from typing import Any
 from der._core import Scenario, __version__
 from der.accuracy.default_probes import with_default_probes
 from der.errors import DerError, warn
-from der.output_paths import make_folder
+from der.output_paths import folder_path, make_folder
 from der.parallel import as_they_finish, checked_jobs
 from der.progress import ProgressFunction
 from der.simulation import SceneLike, as_scenario
@@ -102,6 +102,8 @@ def sweep(
     ValueError
         For values that are not spelled right, two paths to the same value, a folder that is not
         empty, and a sweep there that is of another scene, other parameters or other options.
+    TypeError
+        If an argument is of another kind.
     DerError
         If another sweep is writing there, or a process of the executor died.
 
@@ -110,6 +112,10 @@ def sweep(
     >>> tips = der.sweep("cantilever.yaml", {"loads.0.point_force.force.1": "-5:0:51"})
     >>> tips["tip_y"]
     """
+    if out is not None:
+        out = folder_path("out", out)
+    if not (progress is None or callable(progress)):
+        raise TypeError(f"progress must be a function, got {progress!r}")
     given = as_scenario(scenario)
     warn(given.warnings)
     scene = with_default_probes(given)

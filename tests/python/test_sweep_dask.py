@@ -7,6 +7,7 @@ import threading
 import der
 import numpy as np
 import pytest
+from der.cli import main
 from der.sweeps import sweeper
 from der.sweeps.executors import connect, place_for
 from sweep_scenes import FORCE, STIFFNESS, bits, cantilever
@@ -53,12 +54,50 @@ def test_a_killed_worker_loses_no_row(cluster, tmp_path, monkeypatch):
     assert bits(swept) == bits(der.sweep(SCENE, VARY))
 
 
+def test_the_file_of_a_scheduler(cluster, tmp_path):
+    """Also one that is being written when it is read first."""
+    path = tmp_path / "scheduler.json"
+    path.write_text('{"type": "Sched')
+    written = threading.Timer(
+        0.3, path.write_text, [f'{{"address": "{cluster.scheduler_address}"}}']
+    )
+    written.start()
+    with connect(str(path)) as client:
+        assert client.status == "running"
+    written.join()
+
+
 def test_nobody_at_the_address():
     import dask
 
     impatient = dask.config.set({"distributed.comm.timeouts.connect": "0.2s"})
     with impatient, pytest.raises(OSError, match="Timed out"):
         connect("tcp://127.0.0.1:9")
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"title: a scene",
+        b"{}",
+        b'{"type": "Scheduler"}',
+        b"[1]",
+        b"\xff\x00",
+        b"",
+        b'{"address": 5}',
+    ],
+)
+def test_files_of_no_scheduler(content, tmp_path, capsys):
+    """Dask met them with an AssertionError."""
+    path = tmp_path / "scheduler.json"
+    path.write_bytes(content)
+    line = ["sweep", "scene.yaml", "--vary", "a=1", "--out", str(tmp_path / "s")]
+    assert main([*line, "--dask", str(path)]) == 1
+    error = capsys.readouterr().err
+    assert error.startswith(f"error: '{path}' is no scheduler (")
+    assert error.endswith("write tcp://HOST:PORT, or the path of a scheduler file\n")
+    with pytest.raises(ValueError, match=r"is no scheduler \(it is a folder\): write tcp"):
+        connect(str(tmp_path))
 
 
 def test_a_closed_client(cluster):

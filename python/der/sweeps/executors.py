@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import contextmanager
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
 #: Who can run a sweep.
 AnyExecutor: TypeAlias = "Executor | Client"
 
+#: How often a scheduler file is read that a scheduler may be writing just now, and the pause [s].
+_TRIES, _PAUSE = 10, 0.1
 #: Chunks that wait for each one that runs, so that nobody is idle while a table is written.
 _WAITING = 1
 
@@ -183,6 +187,8 @@ def connect(address: str) -> Client:
         Without the package distributed.
     OSError
         If nobody answers there.
+    ValueError
+        If it is neither.
     """
     try:
         from distributed import Client
@@ -190,12 +196,37 @@ def connect(address: str) -> Client:
         raise ModuleNotFoundError(
             "Dask needs the package distributed: pip install 'der[dask]'"
         ) from error
-    if Path(address).exists():
-        return Client(scheduler_file=address)
     try:
+        if Path(address).exists():
+            _check_scheduler_file(Path(address))
+            return Client(scheduler_file=address)
         return Client(address)
     except ValueError as error:
         raise ValueError(
             f"'{address}' is no scheduler ({error}): write tcp://HOST:PORT, or the path of a "
             "scheduler file"
         ) from error
+
+
+def _check_scheduler_file(path: Path) -> None:
+    """See that a file tells the address of a scheduler.
+
+    Dask stops at other files by an assertion.
+
+    Raises
+    ------
+    ValueError
+        If it does not.
+    """
+    if path.is_dir():
+        raise ValueError("it is a folder")
+    for _ in range(_TRIES):
+        try:
+            content = json.loads(path.read_text(encoding="utf-8"))
+        except ValueError:
+            time.sleep(_PAUSE)
+            continue
+        if isinstance(content, dict) and isinstance(content.get("address"), str):
+            return
+        break
+    raise ValueError("it is no JSON file with an address")

@@ -741,6 +741,32 @@ def test_the_command(scene, tmp_path, capsys):
         assert f"argument {option[0]}: '{option[1]}'" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("line", "says", "members"),
+    [
+        (["--vary", f"{FORCE}=-1,-2,-1.0"], f"{FORCE}: 3 values, 2 of them different", 2),
+        (
+            ["--vary", f"{FORCE}=-1,-2,-1", "--vary", f"{STIFFNESS}=1,2,1.0", "--zip"],
+            "3 values side by side, 2 of them different",
+            2,
+        ),
+        (
+            ["--vary", f"{FORCE}=-1,-2", "--sample", "lhs:5"],
+            "5 points of the sample, 2 of them different",
+            2,
+        ),
+        (["--vary", f"{FORCE}=-1,-2", "--vary", f"{STIFFNESS}=1:2:3"], None, 6),
+    ],
+)
+def test_the_command_says_what_is_given_twice(scene, tmp_path, capsys, line, says, members):
+    assert main(["sweep", str(scene), *line, "--out", str(tmp_path / "s")]) == 0
+    first, *_ = printed = capsys.readouterr().out.splitlines()
+    assert f"Cantilever: {members} members" in printed[-2]
+    assert len(printed) == 2 + (says is not None)
+    if says is not None:
+        assert first == f"{says}: each is taken once"
+
+
 def test_ctrl_c_of_the_command_says_what_is_kept(scene, tmp_path, capsys, monkeypatch):
     write = Store.write
 

@@ -94,11 +94,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def execute(arguments: argparse.Namespace) -> int:
     """Run the members that are not in the folder yet, and print how many failed."""
     from der.sweeps import sweep
+    from der.sweeps.design import make_design
     from der.sweeps.store import FILE
 
     vary = dict(map(_varied, arguments.vary))
     if len(vary) < len(arguments.vary):
         raise ValueError("--vary: a parameter is given twice; give all its values at once")
+    design = make_design(vary, zipped=arguments.zip, sample=arguments.sample, seed=arguments.seed)
+    for repeat in design.repeats():
+        print(repeat)
     try:
         with _executor(arguments) as executor, progress_on_terminal() as progress:
             found = sweep(

@@ -74,6 +74,26 @@ class Design:
             *(own if i in numbers else own[:1] for i, own in enumerate(self._unique_lists))
         )
 
+    def repeats(self) -> list[str]:
+        """Return in words what is given more than once, which is one member all the same."""
+        if self._is_product:
+            counts = [
+                (f"{path}: {len(own)} values", len(own), len(unique))
+                for path, own, unique in zip(
+                    self.paths, self.lists(), self._unique_lists, strict=True
+                )
+            ]
+        elif self.sampling is None:
+            given = len(self.lists()[0])
+            counts = [(f"{given} values side by side", given, len(self))]
+        else:
+            counts = [(f"{self.samples} points of the sample", self.samples, len(self))]
+        return [
+            f"{what}, {different} of them different: each is taken once"
+            for what, given, different in counts
+            if different < given
+        ]
+
     def to_json(self) -> str:
         """Return a text that tells this design from any other."""
         values = [

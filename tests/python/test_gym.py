@@ -10,7 +10,7 @@ import pytest
 gymnasium = pytest.importorskip("gymnasium")
 
 from der.gym import RodEnv, RodVectorEnv, Task  # noqa: E402
-from gymnasium.spaces import Box, Discrete  # noqa: E402
+from gymnasium.spaces import Box, Dict, Discrete, MultiBinary, MultiDiscrete, Tuple  # noqa: E402
 from gymnasium.utils.env_checker import check_env  # noqa: E402
 from gymnasium.vector import AutoresetMode, SyncVectorEnv  # noqa: E402
 
@@ -278,6 +278,69 @@ def test_actions_may_be_numbers():
     assert envs.step(np.array([2, 0]))[1].tolist() == [2.0, 0.0]
 
 
+@pytest.mark.parametrize(
+    ("space", "good", "bad", "says"),
+    [
+        (Box(-1, 1, (2,)), [7.0, 0.0], [0.0, np.nan], "its numbers must be finite"),
+        (Box(-1, 1, (2,)), [0, 1], [-np.inf, 0.0], "its numbers must be finite"),
+        (Discrete(3), 2, 3, r"is 3: it must be one of Discrete\(3\)"),
+        (Discrete(3), 0, -1, "is -1: it must be one of"),
+        (
+            Discrete(3),
+            0,
+            1.5,
+            r"actions are whole numbers of Discrete\(3\), got an array of floats",
+        ),
+        (Discrete(3, start=-1), -1, 2, "must be one of"),
+        (MultiDiscrete([2, 3]), [1, 2], [2, 0], r"must be one of MultiDiscrete\(\[2 3\]\)"),
+        (MultiBinary(2), [True, False], [2, 0], "must be one of MultiBinary"),
+        (Box(-1, 1, (2,)), [0.5, 0.5], ["a", "b"], "actions are numbers, got an array of <U"),
+    ],
+)
+def test_actions_that_nobody_can_take(space, good, bad, says):
+    """They moved nothing, or made a member fail; choices beyond the last one were taken."""
+
+    def nothing(batch, actions):
+        assert np.array_equal(actions[0], good)
+        batch.extra_force[:] = 0.0
+
+    task = reaching(action_space=space, act=nothing, reward=lambda batch, _: np.zeros(len(batch)))
+    env, envs = RodEnv(task), RodVectorEnv(task, 2)
+    env.reset(seed=0)
+    envs.reset(seed=0)
+    with pytest.raises(ValueError, match=says):
+        env.step(bad)
+    with pytest.raises(ValueError, match=says) as caught:
+        envs.step([good, bad])
+    if " array of " not in says:
+        assert "the action of environment 1 is" in str(caught.value)
+    assert not envs.batch.played.any()
+    env.step(good)
+    envs.step([good, good])
+
+
+@pytest.mark.parametrize(
+    ("ends", "good"),
+    [
+        (lambda batch: [True] * len(batch), True),
+        (lambda batch: np.ones(len(batch), np.uint8), True),
+        (lambda batch: np.ones(len(batch)), False),
+        (lambda batch: np.full(len(batch), np.nan), False),
+        (lambda batch: [2] * len(batch), False),
+        (lambda batch: [None] * len(batch), False),
+        (lambda batch: ["yes"] * len(batch), False),
+    ],
+)
+def test_ends_are_truth_values(ends, good):
+    env = RodEnv(reaching(terminate=ends))
+    env.reset(seed=0)
+    if good:
+        assert env.step(np.zeros(2))[2] is True
+    else:
+        with pytest.raises(ValueError, match=r"terminate returned .*: it returns truth values"):
+            env.step(np.zeros(2))
+
+
 @pytest.mark.parametrize("action", [0.5, [0.5], [0.5, 0.5, 0.5], [[0.5, 0.5]]])
 def test_actions_of_another_shape_are_refused(action):
     env = RodEnv(reaching())
@@ -344,6 +407,11 @@ def test_tasks_that_cannot_be_played(changes, message):
         ({"observe": None}, "observe must be a function, got None"),
         ({"draw": 5}, "draw must be a function, got 5"),
         ({"action_space": 5}, "action_space must be a space of gymnasium"),
+        (
+            {"action_space": Dict({"a": Box(0, 1)})},
+            "one of arrays or numbers, .* as gymnasium.spaces",
+        ),
+        ({"action_space": Tuple([Discrete(2)])}, "action_space must be one of arrays or numbers"),
         ({"observation_space": 5}, "observation_space must be a Box of gymnasium, got 5"),
     ],
 )

@@ -82,7 +82,8 @@ class RodEnv(gymnasium.Env["NDArray[Any]", Any]):
         gymnasium.error.ResetNeeded
             Before the first `reset`, and after the end of an episode.
         ValueError
-            For an action of another shape than the action space has.
+            For an action of another shape than the action space has, with numbers that are not
+            finite, or that is none of a space of choices.
         """
         if not self._running:
             raise ResetNeeded("an episode begins with reset()")

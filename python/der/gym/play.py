@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from gymnasium.spaces import Box
 
+from der.gym.actions import check_actions
 from der.gym.episodes import Episodes
 from der.gym.task import Task
 from der.simulation import as_scenario
@@ -96,15 +97,16 @@ class Play:
         self._check_observed(seen)
         return seen
 
-    def step(self, actions: Any) -> Outcome:
+    def step(self, actions: NDArray[Any]) -> Outcome:
         """Let every member take its action."""
         task, batch = self._task, self.batch
+        check_actions(task.action_space, actions)
         task.act(batch, actions)
         batch.step(task.steps_per_action)
         batch.played += 1
         ended = batch.failed.copy()
         if task.terminate is not None:
-            ended |= self._rows("terminate", task.terminate(batch), np.bool_, ndim=1)
+            ended |= self._ends(task.terminate(batch))
         return Outcome(
             self.observations(),
             self._rows("reward", task.reward(batch, actions), np.float64, ndim=1),
@@ -115,6 +117,15 @@ class Play:
                 for failure in batch.failures
             },
         )
+
+    def _ends(self, returned: ArrayLike) -> NDArray[np.bool_]:
+        """Return whose episode the task ends; other numbers than 0 and 1 are a slip."""
+        ends = self._rows("terminate", returned, dtype=None, ndim=1)
+        if ends.dtype.kind not in "biu" or not np.isin(ends, (0, 1)).all():
+            raise ValueError(
+                f"terminate returned {returned!r}: it returns truth values, one for each member"
+            )
+        return ends.astype(np.bool_)
 
     def _check_observed(self, seen: NDArray[Any]) -> None:
         if seen.shape[1:] == self.space.shape:

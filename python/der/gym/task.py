@@ -35,7 +35,9 @@ class Task:
     scene
         A scene over time with equal steps, without a ``tolerance``: its duration ends an episode.
     action_space
-        Of one member; its samples are arrays or numbers.
+        Of one member; its samples are arrays or numbers, so that it is no Dict and no Tuple.
+        Actions must be finite, and whole numbers of the space if it is one of choices, such as
+        Discrete; those of a Box may lie outside of it.
     act
         ``act(batch, actions)`` sets what the actions say, before the steps of an action: by
         ``batch.set``, ``batch.prescribe``, or into ``batch.extra_force``.
@@ -51,8 +53,8 @@ class Task:
         ``noise(batch, member, generator)`` changes the state that the episode of a member begins
         with, by ``batch.positions[member]`` and ``batch.velocities[member]``.
     terminate
-        ``terminate(batch)`` tells whose episode ends after this action, shape (members,), beside
-        those that failed.
+        ``terminate(batch)`` tells whose episode ends after this action, truth values of shape
+        (members,), beside those that failed.
     observation_space
         Of one member; unbounded numbers of double precision, unless given.
     steps_per_action
@@ -90,6 +92,12 @@ class Task:
             raise TypeError(
                 "action_space must be a space of gymnasium, such as Box(-1.0, 1.0, (2,)), got "
                 f"{self.action_space!r}"
+            )
+        if self.action_space.shape is None:
+            raise TypeError(
+                "action_space must be one of arrays or numbers, such as Box(-1.0, 1.0, (2,)), got "
+                f"{self.action_space!r}: put its parts side by side in one Box, as "
+                "gymnasium.spaces.flatten_space does"
             )
         if self.observation_space is not None and not isinstance(self.observation_space, Box):
             raise TypeError(

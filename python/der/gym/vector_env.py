@@ -125,7 +125,8 @@ class RodVectorEnv(VectorEnv["NDArray[Any]", Any, "NDArray[Any]"]):
         gymnasium.error.ResetNeeded
             Before the first `reset`; without automatic resets also where an episode has ended.
         ValueError
-            For actions of another shape than the action space has.
+            For actions of another shape than the action space has, with numbers that are not
+            finite, or that are none of a space of choices.
         """
         if not self._generators:
             raise ResetNeeded("episodes begin with reset()")

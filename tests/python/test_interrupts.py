@@ -176,6 +176,30 @@ def test_ctrl_c_ends_a_sweep_of_searches_in_processes(tmp_path):
     assert "Traceback" not in errors
 
 
+@pytest.mark.parametrize("delay", [0.05, 0.15, 0.3])
+def test_ctrl_c_while_processes_start(tmp_path, delay):
+    """They ended with tracebacks of their own while they loaded their modules."""
+    (tmp_path / "rod.yaml").write_text(der.Scenario.from_dict(SEARCH).to_yaml())
+    line = [sys.executable, "-m", "der", "sweep", "rod.yaml", "--out", "s", "--processes"]
+    sweep = subprocess.Popen(
+        [*line, "--vary", "loads.0.point_force.force.0=-1e5,-2e5,-3e5,-4e5", "--jobs", "2"],
+        cwd=tmp_path,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    deadline = time.monotonic() + 60.0
+    while not is_sweep(tmp_path / "s"):  # processes are started after the file
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    time.sleep(delay)
+    os.killpg(sweep.pid, signal.SIGINT)
+    errors = sweep.communicate(timeout=60)[1]
+    assert sweep.returncode == 130
+    assert errors.startswith("interrupted: ")
+    assert "Traceback" not in errors
+
+
 def test_ctrl_c_ends_a_sweep_of_searches(tmp_path):
     assert_answered(
         lambda: der.sweep(SEARCH, {"loads.0.point_force.force.0": [-1e5, -2e5]}, out=tmp_path / "s")

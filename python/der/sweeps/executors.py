@@ -9,13 +9,13 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from multiprocessing.synchronize import Event
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeAlias, TypeVar
 
 from der.errors import warn
 from der.parallel import EndsWithBlock, Threads, checked_jobs
@@ -25,6 +25,8 @@ from der.sweeps.table import Table
 if TYPE_CHECKING:
     from distributed import Client
 
+_Given = ParamSpec("_Given")
+_Done = TypeVar("_Done")
 #: Who can run a sweep.
 AnyExecutor: TypeAlias = "Executor | Client"
 
@@ -128,6 +130,18 @@ class Processes(EndsWithBlock, ProcessPoolExecutor):
         context = multiprocessing.get_context("spawn")
         self._stop = context.Event()
         super().__init__(self.count, context, initializer=_begin_process, initargs=(self._stop,))
+
+    def submit(
+        self, fn: Callable[_Given, _Done], /, *args: _Given.args, **kwargs: _Given.kwargs
+    ) -> Future[_Done]:
+        """Hand work over, which starts a process if none is idle."""
+        # A process that loads its modules would end with a traceback: it takes over what is blocked
+        # in the thread that starts it.
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            return super().submit(fn, *args, **kwargs)
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 #: In a process of `Processes`: whether nobody wants its work any more.

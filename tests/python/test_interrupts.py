@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from importlib.metadata import entry_points
 
 import der
 import numpy as np
@@ -174,6 +175,29 @@ def test_ctrl_c_ends_a_sweep_of_searches_in_processes(tmp_path):
     assert sweep.returncode == 130
     assert errors.startswith("interrupted: ")
     assert "Traceback" not in errors
+
+
+@pytest.mark.parametrize("delay", [0.02, 0.05, 0.1])
+def test_ctrl_c_while_the_command_loads_its_modules(delay):
+    """It printed a traceback."""
+    program = "import sys, der_command; print(flush=True); sys.exit(der_command.main())"
+    command = subprocess.Popen(
+        [sys.executable, "-c", program, "check"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    command.stdout.readline()
+    time.sleep(delay)
+    command.send_signal(signal.SIGINT)
+    errors = command.communicate(timeout=60)[1]
+    # Where it has loaded them, it misses the names of scenes.
+    assert command.returncode == 2 or (command.returncode, errors) == (130, "interrupted\n")
+
+
+def test_the_command_begins_where_ctrl_c_is_answered():
+    commands = {c.value for c in entry_points(group="console_scripts") if c.name == "der"}
+    assert commands == {"der_command:main"}
 
 
 @pytest.mark.parametrize("delay", [0.05, 0.15, 0.3])

@@ -816,6 +816,13 @@ def test_more_probes_than_a_table_has_columns(cantilever):
         der.sweep(with_probes(249), {FORCE: [-1.0]}, verify=True)
 
 
+def test_varied_probes_that_have_no_room(cantilever):
+    probe = cantilever["output"]["probes"]["tip_y"]
+    many = {f"p{i}": probe for i in range(400)}
+    sweep = der.sweep(cantilever, {"output.probes": [many, {"q": probe}]})
+    assert sweep.values["status"] == ["too_many_columns", "static_converged"]
+
+
 def test_a_file_that_is_no_sweep(cantilever, tmp_path):
     (tmp_path / FILE).write_text("garbage")
     with pytest.raises(OSError, match=r"is damaged, or no file of a sweep .*: name another folder"):

@@ -144,7 +144,11 @@ class Store:
             )
             self._base.execute("CREATE TABLE columns (name TEXT, kind TEXT, unit TEXT)")
             number, *others = RUN_COLUMNS
-            columns = [number, *(Column(path, "parameter") for path in paths), *others, *probes]
+            columns = [number, *(Column(path, "parameter") for path in paths), *others]
+            of_probes = list(probes)
+            # Of varied probes there may be more: members that have them are failures (TOO_WIDE).
+            if len(columns) + len(of_probes) <= MOST_COLUMNS:
+                columns += of_probes
             self._base.execute(f"CREATE TABLE runs ({', '.join(map(_definition, columns))})")
             for column in columns:
                 self._note_column(column)

@@ -963,7 +963,7 @@ def test_a_member_that_is_tried_again_keeps_its_number(cantilever, tmp_path):
 
 def test_an_interrupt_loses_no_row_that_was_to_be_tried_again(cantilever, tmp_path):
     vary = {"start_from": [str(tmp_path / "a"), str(tmp_path / "b")]}
-    first = der.sweep(cantilever, vary, out=tmp_path / "s")
+    first = der.sweep(cantilever, vary, out=tmp_path / "s").rows
 
     class Interrupted(Here):
         def submit(self, function, *arguments):
@@ -971,7 +971,7 @@ def test_an_interrupt_loses_no_row_that_was_to_be_tried_again(cantilever, tmp_pa
 
     with pytest.raises(KeyboardInterrupt):
         der.sweep(cantilever, vary, out=tmp_path / "s", resume=True, executor=Interrupted())
-    assert der.load_sweep(tmp_path / "s").rows == first.rows
+    assert der.load_sweep(tmp_path / "s").rows == first
 
 
 def test_a_sweep_that_another_version_began_says_so(cantilever, tmp_path):

@@ -92,7 +92,10 @@ def test_spelling_of_values(text, values):
         ("0:1:1", "at least 2"),
         ("0:1:3:log", "greater than 0"),
         ("[1", "is no value"),
-        ("0:1:2.5", "at least 2"),
+        ("0:1:2.5", "is no range"),
+        (":", "is no range"),
+        ("::log", "is no range"),
+        ("0:1:2:log:log", "is no range"),
         ("0:1:log:3", "is no range"),
         ("0:log", "is no range"),
         # Python reads these, and scenes do not.
@@ -744,15 +747,15 @@ def test_the_command(scene, tmp_path, capsys):
 @pytest.mark.parametrize(
     ("line", "says", "members"),
     [
-        (["--vary", f"{FORCE}=-1,-2,-1.0"], f"{FORCE}: 3 values, 2 of them different", 2),
+        (["--vary", f"{FORCE}=-1,-2,-1.0"], f"{FORCE}: 3 values, 2 distinct", 2),
         (
             ["--vary", f"{FORCE}=-1,-2,-1", "--vary", f"{STIFFNESS}=1,2,1.0", "--zip"],
-            "3 values side by side, 2 of them different",
+            "3 values side by side, 2 distinct",
             2,
         ),
         (
             ["--vary", f"{FORCE}=-1,-2", "--sample", "lhs:5"],
-            "5 points of the sample, 2 of them different",
+            "5 points of the sample, 2 distinct",
             2,
         ),
         (["--vary", f"{FORCE}=-1,-2", "--vary", f"{STIFFNESS}=1:2:3"], None, 6),

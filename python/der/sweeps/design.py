@@ -89,7 +89,7 @@ class Design:
         else:
             counts = [(f"{self.samples} points of the sample", self.samples, len(self))]
         return [
-            f"{what}, {different} of them different: each is taken once"
+            f"{what}, {different} distinct: each is taken once"
             for what, given, different in counts
             if different < given
         ]

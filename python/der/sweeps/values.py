@@ -144,15 +144,16 @@ def _parse_range(text: str) -> Values:
     fields = [field.strip() for field in text.split(":")]
     log = fields[-1] == _LOG
     numbers = [number for field in fields if (number := read_number(field)) is not None]
-    if not 2 <= len(numbers) <= 3 or len(numbers) + log < len(fields):
+    has_ends = len(numbers) == 2 or (len(numbers) == 3 and isinstance(numbers[2], int))
+    if not has_ends or len(numbers) + log < len(fields):
         raise ValueError(f"'{text}' is no range: {_SPELLING}")
     low, high = map(float, numbers[:2])
     if log and not (low > 0.0 and high > 0.0):
         raise ValueError(f"'{text}': both ends of a range in equal ratios are greater than 0")
     if len(numbers) == 2:
         return Range(low, high, log)
-    count = numbers[2]
-    if not isinstance(count, int) or not 2 <= count <= MOST_VALUES:
+    count = int(numbers[2])
+    if not 2 <= count <= MOST_VALUES:
         raise ValueError(f"'{text}': a range has at least 2 values and at most {MOST_VALUES}")
     spaced = (np.geomspace if log else np.linspace)(low, high, count).tolist()
     between_whole = isinstance(numbers[0], int) and isinstance(numbers[1], int)

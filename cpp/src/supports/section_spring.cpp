@@ -385,7 +385,10 @@ void add_to_section_spring(double s, const Vec3& stiffness, RodLayout& rod) {
     const auto number = static_cast<std::size_t>(known - rod.section_springs.data());
     rod.section_springs[number].stiffness += stiffness;
   } else {
-    rod.section_springs.push_back({s, stiffness});
+    SectionSpringPlace place;
+    place.arc_length = s;
+    place.stiffness = stiffness;
+    rod.section_springs.push_back(place);
   }
 }
 
@@ -407,7 +410,8 @@ HeldSectionAt held_section_at(double s, const RodLayout& rod, const Model& model
       return elements_of<SectionSpring<1>>(*model.elements).constants[element];
     return elements_of<SectionSpring<2>>(*model.elements).constants[element];
   }
-  const SectionSpringPlace none{s};
+  SectionSpringPlace none;
+  none.arc_length = s;
   const SectionPlace place = section_place(s, rod);
   const SectionHold hold = hold_at(none, place, rod, model);
   if (place.across.size() == 1) return free_section<1>(hold, none, place.first_edge, rod, model);

@@ -446,25 +446,3 @@ def test_director_stands_across_the_start_of_a_curve(fitted_order):
     tips = [tip(n) for n in sizes]
     changes = [np.linalg.norm(b - a) for a, b in pairwise(tips)]
     assert fitted_order([1 / n for n in sizes[1:]], changes) > 1.9
-
-
-@pytest.mark.parametrize("closed", [False, True])
-def test_a_clamp_that_would_part_sections_is_refused(closed):
-    angle = np.linspace(0, 5, 12)
-    section = {"EA": 1e4, "EI1": 1, "EI2": 2, "GJ": 1, "mass_per_length": 1}
-    points = np.column_stack([np.cos(angle), np.sin(angle), 0 * angle]).tolist()
-    scene = {
-        "model": "spatial",
-        "rods": [
-            {
-                "name": "rod",
-                "points": points,
-                "closed": closed,
-                "cross_section": {"stiffness": section},
-            }
-        ],
-        "supports": [{"rod": "rod", "at": {"node": 0 if closed else 5}, "clamp": "tangent"}],
-        "analysis": "static",
-    }
-    with pytest.raises(der.DerError, match="pass on no torque"):
-        der.Simulation(scene)

@@ -121,8 +121,8 @@ Vec3 natural_rotation(double s, const SectionPlace& place, const SectionFrame& s
   Vec3 rotation = Vec3::Zero();
   if (!rod.natural_curvatures.empty()) {
     const auto [at_start, at_end] = natural_turn_lengths(rod, s, place.first_edge, place.across);
-    rotation.head<2>() = at_start * rod.natural_curvatures.front() +
-                         at_end * rod.natural_curvatures[to_size(rod.num_edges())];
+    rotation.head<2>() =
+        at_start * rod.natural_curvatures.front() + at_end * rod.natural_curvatures.back();
     if (place.across.size() == 2) {
       const double middle = rod.edge_middle(place.first_edge);
       const double spacing = rod.edge_middle(place.first_edge + 1) - middle;
@@ -139,8 +139,7 @@ Vec3 natural_rotation(double s, const SectionPlace& place, const SectionFrame& s
   if (const double beyond = beyond_outer_middle(rod, s);
       beyond > 0.0 && !rod.natural_twist.empty()) {
     const bool start = s < rod.edge_middle(0);
-    const double twist =
-        start ? rod.natural_twist.front() : -rod.natural_twist[to_size(rod.num_edges())];
+    const double twist = start ? rod.natural_twist.front() : -rod.natural_twist.back();
     rotation.z() += beyond * (twist - (start ? 1.0 : -1.0) * rod.initial_twist);
   }
   return rotation;

@@ -148,8 +148,7 @@ double natural_turn_of_edges(const RodLayout& rod, const MomentPlace& place, con
   if (rod.natural_curvature.empty()) return 0.0;
   const double s = place.arc_length;
   const auto [at_start, at_end] = natural_turn_lengths(rod, s, place.first_edge, place.weights);
-  double turn = at_start * rod.natural_curvature.front() +
-                at_end * rod.natural_curvature[to_size(rod.num_edges())];
+  double turn = at_start * rod.natural_curvature.front() + at_end * rod.natural_curvature.back();
   if (place.weights.size() == 1) return turn;
   const double first_middle = rod.edge_middle(place.first_edge);
   const double spacing = rod.edge_middle(place.first_edge + 1) - first_middle;

@@ -61,6 +61,25 @@ TEST_CASE("springs against turning at one place are one element") {
   CHECK(model.rods.front().moment_place_at(0.4) == nullptr);
 }
 
+// The sanitizers see what is read beyond the curvature of the last node.
+TEST_CASE("springs on rings read natural curvatures of their nodes alone") {
+  for (const bool flat : {true, false}) {
+    const std::string z = flat ? "" : ", 0";
+    const std::string curvature = flat ? "1.2" : "[1.2, 0.1]";
+    const Model model = build_model(
+        Scenario::parse("rods:\n  - name: rod\n    closed: true\n    points: [[1, 0" + z +
+                        "], [0, 1" + z + "], [-1, 0" + z + "], [0, -1" + z +
+                        "]]\n    natural_curvature: [" + curvature + ", " + curvature + ", " +
+                        curvature + ", " + curvature +
+                        "]\n    cross_section: {stiffness: {EA: 1e3, EI: 1, GJ: 1, "
+                        "mass_per_length: 1}}\nanalysis: static\nmodel: " +
+                        (flat ? "planar" : "spatial") +
+                        "\nsupports:\n  - {rod: rod, at: 0.3, spring: {rotational_stiffness: 2}}\n")
+            .scene());
+    CHECK(energies(model, initial_state(model)).total() < 10.0);
+  }
+}
+
 TEST_CASE("a spring holds the part that it pulls, along its own axes only") {
   const Model model = model_with("  - {rod: rod, at: 0.33, spring: {stiffness: [0, 5]}}\n");
   Vector force = Vector::Zero(model.num_dofs());

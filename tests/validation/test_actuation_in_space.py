@@ -408,6 +408,33 @@ def test_ring_that_is_twisted_evenly_stays_as_it_is():
 
 
 @pytest.mark.parametrize("model", ["planar", "spatial"])
+def test_an_actuation_that_ends_at_the_start_of_a_ring_has_its_curvature_up_to_there(model):
+    """Curvature is M/EI, that of the circle and what is actuated, at any place."""
+    count, radius, own = 40, 0.5, 2.0
+    angle = 2 * np.pi * np.arange(count) / count
+    points = radius * np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+    length = 2 * radius * count * np.sin(np.pi / count)
+    flat = model == "planar"
+    scene = rod_through(
+        points[:, : 2 if flat else 3],
+        section(EA=1e4, EI=1.0) if flat else section([0, 0, 1], EA=1e4, EI=1.0, GJ=1.0),
+        supports=[{"rod": "rod", "at": {"node": 10}, "clamp": True}],
+        rod={"closed": True},
+        actuation=[bend(own if flat else [0.0, own], 0.6 * length, length)],
+    )
+    # Towards the second director, which points inwards.
+    part = "" if flat else "_2"
+    places = [(length - u * length / count, "after") for u in (0.9, 0.55, 0.3, 0.05)]
+    names = (f"curvature{part}", f"moment{part}", f"natural_curvature{part}")
+    found = probed({**scene, "model": model}, [*places, (0.0, "before"), (0.0, "after")], names)
+    curved, moment, natural = found.T
+    assert curved == pytest.approx(natural + moment, abs=1e-9)
+    circle = natural[-1]
+    assert abs(circle) == pytest.approx(1 / radius, rel=3e-3)
+    assert natural[:-1] == pytest.approx(circle + own, abs=1e-9)
+
+
+@pytest.mark.parametrize("model", ["planar", "spatial"])
 def test_ring_that_grows_evenly_is_free_of_stress(model):
     scene, points = ring(24, 0, (0.0, 1.0), model, elongation=0.1)
     result = der.run(scene)

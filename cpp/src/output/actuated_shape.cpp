@@ -66,6 +66,17 @@ std::vector<double> actuated_jumps(const RodLayout& rod, bool twists) {
   return places;
 }
 
+bool actuation_jumps_at_start(const RodLayout& rod) {
+  if (!rod.closed) return false;
+  return std::any_of(rod.actuated_stretches.begin(), rod.actuated_stretches.end(),
+                     [&](const ActuatedStretch& stretch) {
+                       const bool begins = stretch.from <= rod.same_place();
+                       const bool ends = stretch.to >= rod.rest_length() - rod.same_place();
+                       return stretch.strains() &&
+                              ((begins && stretch.jumps(false)) || (ends && stretch.jumps(true)));
+                     });
+}
+
 bool actuation_jumps_in(Index edge, const RodLayout& rod, bool twists) {
   const std::vector<double> jumps = actuated_jumps(rod, twists);
   return std::any_of(jumps.begin(), jumps.end(), [&](double s) {

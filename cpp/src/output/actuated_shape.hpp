@@ -42,7 +42,11 @@ class ActuatedShape {
 /// also those at which its twist jumps.
 std::vector<double> actuated_jumps(const RodLayout& rod, bool twists);
 
-/// Whether one of these is inside an edge.
+/// Whether an actuation lets the curvature or the twist of a ring jump at its start: it has two
+/// values there.
+bool actuation_jumps_at_start(const RodLayout& rod);
+
+/// Whether one of `actuated_jumps` is inside an edge.
 bool actuation_jumps_in(Index edge, const RodLayout& rod, bool twists);
 
 }  // namespace der

@@ -47,7 +47,16 @@ class EdgewiseField : public RodField {
       const bool end = !rod.is_inner(edge + 1);
       if (end || recovery.jumps_at(edge + 1)) add(rod.arc_length_at(edge + 1), true, false);
     }
+    if (actuation_jumps_at_start(rod)) part_at_start(rod, samples);
     return samples;
+  }
+
+  /// Takes the two sides of the start of a ring apart: the one before it is at the end of the last
+  /// edge.
+  static void part_at_start(const RodLayout& rod, std::vector<Sample>& samples) {
+    samples.front().smooth = false;
+    if (samples.back().place.arc_length >= rod.rest_length() - rod.same_place()) return;
+    samples.push_back({rod.num_edges() - 1, {rod.rest_length(), true}, false});
   }
 
   [[nodiscard]] const Sample& sample_at(std::size_t i) const { return samples_[i]; }

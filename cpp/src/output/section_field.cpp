@@ -65,10 +65,7 @@ class SectionField : public EdgewiseField<Vec3> {
     Lines lines;
     if (!rod.joints.empty()) {
       samples = samples_of(rod, recovery);
-      if (jumps_at_glue(quantity, rod) && !recovery.jumps_at(0)) {
-        samples.front().smooth = false;
-        samples.push_back({rod.num_edges() - 1, {rod.rest_length(), true}, false});
-      }
+      if (jumps_at_glue(quantity, rod)) part_at_start(rod, samples);
       for (Index edge = 0; edge < rod.num_edges(); ++edge) {
         const bool by_twist = is_of_twist(quantity) && !has_kinks(edge, rod, recovery);
         edges.emplace_back(known(by_twist, rod, edge, false, recovery),

@@ -39,6 +39,7 @@ class Case:
     tip: tuple[float, float, float] = NONE  # a force of a fixed direction
     natural: tuple[float, float, float] = NONE  # curvatures towards d1, d2 and twist beyond it
     longer: float = 1.0  # edges beyond the place, against those before it
+    actuated: bool = False  # whether an actuation gives the natural shape
 
     def place(self, edges):
         return self.share + self.edges_on / edges
@@ -66,6 +67,14 @@ CASES = {
     "spring at a natural jump": Case(fixed=OTHER, spring=3.0, **JUMP),
     "all at a natural jump of longer edges": Case(
         FORCE, MOMENT, OTHER, spring=3.0, share=0.4, longer=1.5, **JUMP
+    ),
+    "all on a spring where an actuation begins": Case(
+        FORCE, MOMENT, OTHER, spring=3.0, actuated=True, **JUMP
+    ),
+    "force at an actuated corner": Case(FORCE, corner=True, actuated=True, **JUMP),
+    "all at an actuated corner": Case(FORCE, MOMENT, OTHER, corner=True, actuated=True, **JUMP),
+    "all within an edge where an actuation begins": Case(
+        FORCE, MOMENT, OTHER, edges_on=0.3, actuated=True, **JUMP
     ),
 }
 
@@ -111,7 +120,13 @@ def scene_and_tip(case, edges):
 
     nodes = np.linspace(0, 1, edges + 1)[:, None] * DRAWN[:, 2]
     rod = {}
-    if case.natural != NONE:
+    if case.actuated:
+        beyond = {"rod": "rod", "from": place}
+        rod["actuation"] = [
+            {**beyond, "name": "bend", "natural_curvature": [towards_1, towards_2]},
+            {**beyond, "name": "turn", "natural_twist": twist},
+        ]
+    elif case.natural != NONE:
         nodes, shape = naturally_bent(case, edges)
         curvatures, twist = shape[:, :2].tolist(), shape[:, 2].tolist()
         rod = {"rod": {"natural_curvature": curvatures, "natural_twist": twist}}

@@ -62,7 +62,7 @@ def folder_path(name: str, given: object) -> Path:
     name
         The name of the argument, for messages.
     given
-        What is given.
+        The value of the argument.
 
     Raises
     ------

@@ -11,6 +11,15 @@ namespace der {
 // of both. Where a ring is glued turned, it bends about other directors. `curvature: tangent` does
 // not resolve this, at corners not even in their plane.
 
+/// G: a rotation w of the section after a joint changes its strains by G' w.
+template <class Curvature>
+Mat3 gradients_of(const JointKinematics<Curvature>& joint) {
+  const auto by_rotation = joint.gradients();
+  Mat3 gradients;
+  gradients << by_rotation.kappa_1, by_rotation.kappa_2, by_rotation.twist;
+  return gradients;
+}
+
 /// The joint whose compliance at rest is the sum of its two halves. `drawn` is the joint as strains
 /// see it, `before` and `after` are the drawn frames of its two edges, `smooth` is the joint of a
 /// smooth curve, with stiffnesses greater than 0, and `share` the part of the cell that lies before
@@ -25,9 +34,7 @@ inline CoupledJoint corner_joint(const SectionFrame& before, const SectionFrame&
     axes << frame.first, frame.second, frame.tangent;
     return axes * compliance.asDiagonal() * axes.transpose();
   };
-  const auto by_rotation = drawn.gradients();
-  Mat3 gradients;
-  gradients << by_rotation.kappa_1, by_rotation.kappa_2, by_rotation.twist;
+  const Mat3 gradients = gradients_of(drawn);
   // Strains are s = G' w of a rotation w = C m under a moment m = G q.
   const Mat3 sum = share * half(before) + (1.0 - share) * half(after);
   return {(gradients.transpose() * sum * gradients).inverse(), smooth.rest};
@@ -37,9 +44,7 @@ inline CoupledJoint corner_joint(const SectionFrame& before, const SectionFrame&
 template <class Curvature>
 CellHalves cell_halves(Index place, const SectionFrame& before, const SectionFrame& after,
                        const JointKinematics<Curvature>& drawn) {
-  const auto by_rotation = drawn.gradients();
-  Mat3 gradients;
-  gradients << by_rotation.kappa_1, by_rotation.kappa_2, by_rotation.twist;
+  const Mat3 gradients = gradients_of(drawn);
   return {place, gradients.transpose() * turning_axes(before),
           gradients.transpose() * turning_axes(after)};
 }

@@ -329,11 +329,8 @@ void turn_followers_under_moments(const RodLayout& rod, Model& model) {
   for (const ForcePlace& force : rod.force_places) {
     if (force.follower < 0 || rod.EI == 0.0) continue;
     const double s = force.arc_length;
-    const auto place = std::find_if(rod.moment_places.begin(), rod.moment_places.end(),
-                                    [&](const MomentPlace& moments) {
-                                      return std::abs(moments.arc_length - s) <= rod.same_place();
-                                    });
-    if (place == rod.moment_places.end()) continue;
+    const MomentPlace* place = rod.moment_place_at(s);
+    if (place == nullptr) continue;
     CirculatoryLoad& load = circulatory_loads(*model.elements)[to_size(force.follower)];
     auto& follower = std::get<PlanarFollowerForce>(load.kind);
     if (beyond_outer_middle(rod, s) > 0.0) {

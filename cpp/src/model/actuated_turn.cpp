@@ -96,6 +96,10 @@ ActuatedTurn actuated_turn_of_follower(double s, const SectionPlace& place,
   return turn.turn();
 }
 
+Vec3 value_of(const ActuatedTurn& turn, const Model& model, const State& state) {
+  return turn.value([&](Index control) { return control_value(model, state, control); });
+}
+
 ActuatedTurn actuated_turn_from_edge(Index edge, double s, const RodLayout& rod) {
   ActuatedTurnTo turn(s, rod);
   turn.from_edge(edge, 1.0, 1.0);

@@ -5,6 +5,7 @@
 #include "der/kinematics/actuated_turn.hpp"
 #include "der/model/model.hpp"
 #include "der/model/section_place.hpp"
+#include "der/model/state.hpp"
 #include "der/scenario/stretch_profile.hpp"
 
 namespace der {
@@ -46,6 +47,9 @@ ActuatedTurn actuated_turn(double s, const SectionPlace& place, const RodLayout&
 ActuatedTurn actuated_turn_of_follower(double s, const SectionPlace& place,
                                        const std::array<double, 2>& in_bending,
                                        const RodLayout& rod);
+
+/// The turn at a state.
+Vec3 value_of(const ActuatedTurn& turn, const Model& model, const State& state);
 
 /// To arc length `s` [m] from an edge, whose direction is the mean along it.
 ActuatedTurn actuated_turn_from_edge(Index edge, double s, const RodLayout& rod);

@@ -8,6 +8,7 @@
 #include "der/energies/rotational_spring.hpp"
 #include "der/model/clamp_cell.hpp"
 #include "der/model/location.hpp"
+#include "model/actuated_turn.hpp"
 #include "model/section_cells.hpp"
 
 namespace der {
@@ -106,9 +107,8 @@ MomentPlace& place_of_moments(double s, RodLayout& rod) {
 double carried_moment(const MomentPlace& place, const RodLayout& rod, const Model& model,
                       const State& state, double applied) {
   const double before = place.followed >= 0 ? state.followed[place.followed] : 0.0;
-  const auto value = [&](Index control) { return control_value(model, state, control); };
-  const double turn =
-      spring_turn(place, model, state.positions, before) + place.actuated.value(value)[0];
+  const double turn = spring_turn(place, model, state.positions, before) +
+                      value_of(place.actuated, model, state)[0];
   return moment_of(place, rod, applied, turn);
 }
 

@@ -5,6 +5,21 @@
 #include "der/core/index.hpp"
 
 namespace der {
+namespace {
+
+/// Calls use(s) with the arc lengths [m] at which an actuation lets the curvature of a rod jump;
+/// with `twists` also with those at which its twist jumps. Allocates nothing: fields ask for each
+/// sample.
+template <class Use>
+void for_each_jump(const RodLayout& rod, bool twists, const Use& use) {
+  for (const ActuatedStretch& stretch : rod.actuated_stretches) {
+    if (!stretch.strains() || (!twists && stretch.what == scenario::Actuated::Twist)) continue;
+    if (stretch.jumps(false)) use(stretch.from);
+    if (stretch.jumps(true)) use(stretch.to);
+  }
+}
+
+}  // namespace
 
 ActuatedRest::ActuatedRest(const RestShift& shift, Index size, const Model& model) {
   if (shift.entry < 0) return;
@@ -54,35 +69,31 @@ bool ActuatedShape::is_strained() const {
 
 std::vector<double> actuated_jumps(const RodLayout& rod, bool twists) {
   std::vector<double> places;
-  const auto add = [&](double s) {
+  for_each_jump(rod, twists, [&](double s) {
     const bool within = s > rod.same_place() && s < rod.rest_length() - rod.same_place();
     if (within) places.push_back(s);
-  };
-  for (const ActuatedStretch& stretch : rod.actuated_stretches) {
-    if (!stretch.strains() || (!twists && stretch.what == scenario::Actuated::Twist)) continue;
-    if (stretch.jumps(false)) add(stretch.from);
-    if (stretch.jumps(true)) add(stretch.to);
-  }
+  });
   return places;
 }
 
 bool actuation_jumps_at_start(const RodLayout& rod) {
   if (!rod.closed) return false;
-  return std::any_of(rod.actuated_stretches.begin(), rod.actuated_stretches.end(),
-                     [&](const ActuatedStretch& stretch) {
-                       const bool begins = stretch.from <= rod.same_place();
-                       const bool ends = stretch.to >= rod.rest_length() - rod.same_place();
-                       return stretch.strains() &&
-                              ((begins && stretch.jumps(false)) || (ends && stretch.jumps(true)));
-                     });
+  bool found = false;
+  for (const ActuatedStretch& stretch : rod.actuated_stretches) {
+    const bool begins = stretch.from <= rod.same_place();
+    const bool ends = stretch.to >= rod.rest_length() - rod.same_place();
+    const bool jumps = (begins && stretch.jumps(false)) || (ends && stretch.jumps(true));
+    found = found || (stretch.strains() && jumps);
+  }
+  return found;
 }
 
 bool actuation_jumps_in(Index edge, const RodLayout& rod, bool twists) {
-  const std::vector<double> jumps = actuated_jumps(rod, twists);
-  return std::any_of(jumps.begin(), jumps.end(), [&](double s) {
-    return s > rod.arc_length_at(edge) + rod.same_place() &&
-           s < rod.arc_length_at(edge + 1) - rod.same_place();
-  });
+  const double start = rod.arc_length_at(edge) + rod.same_place();
+  const double end = rod.arc_length_at(edge + 1) - rod.same_place();
+  bool found = false;
+  for_each_jump(rod, twists, [&](double s) { found = found || (start < s && s < end); });
+  return found;
 }
 
 }  // namespace der

@@ -373,10 +373,6 @@ class SectionField : public EdgewiseField<Vec3> {
             (strain.twist - rest.twist) / joint.twist_length};
   }
 
-  static Vec3 value_of(const ActuatedTurn& turn, const Model& model, const State& state) {
-    return turn.value([&](Index control) { return control_value(model, state, control); });
-  }
-
   /// The moments of a joint and its torque [N m], which it has in its own frame, in the section's
   /// frame at the known place. The joint's tangent is the mean of those beside it, and its
   /// directors are those in the middle of the length over which it twists. At inner nodes of an

@@ -203,8 +203,7 @@ class LeaningEdges {
     }
     if (twist_) force += mean(*twist_) * Vec2(moment[1], -moment[0]);
     const double product = lean.beyond * curvature.dot(force);
-    const Vec3 turned =
-        lean.actuated.value([&](Index control) { return control_value(model, state, control); });
+    const Vec3 turned = value_of(lean.actuated, model, state);
     const Vec3 actuated = actuated_.strains(rod_.edge_middle(lean.edge), false, model, state);
     const Vec2 without_load = lean.natural - turned.head<2>() - lean.beyond * actuated.head<2>();
     if (without_load.isZero(0.0)) return product;

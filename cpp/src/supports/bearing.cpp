@@ -14,8 +14,8 @@
 namespace der {
 namespace {
 
-/// Of a bearing against an edge beside it: the tangent yields by a part of the edge's turn that
-/// rounding hides.
+/// The stiffness of a bearing over that of an edge beside it: the tangent yields by a part of the
+/// edge's turn that rounding hides.
 constexpr double kStifferThanEdge = 1e14;
 
 [[noreturn]] void refuse(const char* what, Index place, const RodLayout& rod) {

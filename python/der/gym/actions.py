@@ -20,9 +20,9 @@ def check_actions(space: Space[Any], actions: NDArray[Any]) -> None:
     Parameters
     ----------
     space
-        Of the actions of one member.
+        The space of one member.
     actions
-        Of all members, shape (members, ...).
+        One action for each member, shape (members, ...).
 
     Raises
     ------

@@ -35,7 +35,7 @@ class Task:
     scene
         A scene over time with equal steps, without a ``tolerance``: its duration ends an episode.
     action_space
-        Of one member; its samples are arrays or numbers, so that it is no Dict and no Tuple.
+        The space of one member. Its samples are arrays or numbers: Dict and Tuple are refused.
         Actions must be finite, and whole numbers of the space if it is one of choices, such as
         Discrete; those of a Box may lie outside of it.
     act

@@ -225,7 +225,7 @@ def _unique(keyed: Iterable[tuple[Hashable, Any]]) -> list[Any]:
 
 def _unique_values(values: tuple[Any, ...]) -> Sequence[Any]:
     """Return the values of a parameter without those that are there already."""
-    # Of millions of numbers, it takes seconds to look at each.
+    # To look at each of millions of numbers takes seconds.
     if set(map(type, values)) <= {int, float} and len(set(values)) == len(values):
         return values
     return _unique((stored(value), value) for value in values)

@@ -146,7 +146,7 @@ class Store:
             number, *others = RUN_COLUMNS
             columns = [number, *(Column(path, "parameter") for path in paths), *others]
             of_probes = list(probes)
-            # Of varied probes there may be more: members that have them are failures (TOO_WIDE).
+            # Varied probes may need more columns: members that have them fail (TOO_WIDE).
             if len(columns) + len(of_probes) <= MOST_COLUMNS:
                 columns += of_probes
             self._base.execute(f"CREATE TABLE runs ({', '.join(map(_definition, columns))})")

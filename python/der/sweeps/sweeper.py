@@ -191,7 +191,7 @@ def _begin(
     """Make the tables, or see that they are those of this sweep."""
     kept = store.description()
     if not kept:
-        # Of the first member, which is known to be valid: probes may be varied.
+        # Probes may be varied; the first member is known to be valid.
         first = scene.with_(**dict(zip(design.paths, next(iter(design)), strict=True)))
         store.create(description, design.paths, probe_columns(first))
         return

@@ -45,7 +45,7 @@ struct PlanarFollowerForce {
     Vec2 drawn = Vec2::Zero();  ///< unit vector along the edge as it is drawn
   };
   std::vector<FollowedEdge> edges;
-  /// Of the turn of the edges, which springs at the place and a clamp beside it leave the tangent.
+  /// Share of the edges' turn that springs at the place and a clamp beside it leave the tangent.
   double share = 1.0;
   Index clamp_turn = -1;  ///< control: how far that clamp has turned [rad]; -1: it does not
 

@@ -68,7 +68,7 @@ struct SectionSpring {
     return {carried.col(2), carried.col(0), carried.col(1)};
   }
 
-  /// What actuations turn a carried section by, in its own axes (the directors and the tangent).
+  /// The rotation of a carried section by actuations, in its axes (the directors and the tangent).
   struct ActuatedRotation {
     Mat3 turn = Mat3::Identity();
     Mat3 by_strains = Mat3::Zero();  ///< rotation of the turned section by the strains, in its axes

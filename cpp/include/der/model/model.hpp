@@ -58,9 +58,9 @@ struct RodJoint {
   Vec2 natural_curvature = Vec2::Zero();  ///< towards the two directors [1/m]
 };
 
-/// What the two halves of the cell about a node, on the edge before it and on the one after, add to
-/// the strains of its joint where their sections point elsewhere: at a corner, and where a ring is
-/// glued turned. Each matrix takes the strains of a half to those of the joint.
+/// The two halves of the cell about a node, on the edge before it and on the one after, where their
+/// sections differ: at a corner, and where a ring is glued turned. Each adds its own part to the
+/// strains of the joint. Each matrix takes the strains of a half to those of the joint.
 struct CellHalves {
   Index place = 0;  ///< of the node
   Mat3 before = Mat3::Identity();

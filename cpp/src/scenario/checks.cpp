@@ -119,7 +119,7 @@ std::optional<std::vector<int>> CheckContext::nodes_at(int rod, Location& at, co
                                   at.node, count - 1, count));
       return std::nullopt;
     case Location::Kind::Middle:
-      s = 0.5 * line.length();
+      s = line.arc_length_of(at);
       break;
     case Location::Kind::ArcLength:
       if (at.arc_length > line.length() + line.same_place()) {
@@ -163,6 +163,7 @@ void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   const ChosenModel model = choose_model(scene);
   check_model(scene, model, diagnostics);
   if (diagnostics.size() > 0) return;
+  check_cells(context, model.kind);
   warn_of_touching_rods(context);
   conform(scene, model.kind);
 }

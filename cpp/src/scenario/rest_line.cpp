@@ -31,4 +31,32 @@ std::optional<int> RestLine::node_at(double s) const {
   return nearest;
 }
 
+std::optional<int> RestLine::cell_at(double s) const {
+  const int last = num_nodes() - 1;
+  const auto place = [&](int node) { return node > last ? length_ : arc_length(node); };
+  int before = nearest_node(s);
+  if (before > 0 && s < place(before)) --before;
+  if (before == last && !closed_) return last;
+  const double middle = 0.5 * (place(before) + place(before + 1));
+  if (std::abs(s - middle) <= same_place()) return std::nullopt;
+  return s < middle ? before : (before + 1) % num_nodes();
+}
+
+double RestLine::arc_length_of(const Location& at) const {
+  switch (at.kind) {
+    case Location::Kind::Middle:
+      return 0.5 * length_;
+    case Location::Kind::End:
+      return length_;
+    case Location::Kind::ArcLength:
+      return at.arc_length;
+    case Location::Kind::Node:
+      return arc_length(at.node < 0 ? at.node + num_nodes() : at.node);
+    case Location::Kind::Start:
+    case Location::Kind::All:
+      break;
+  }
+  return 0.0;
+}
+
 }  // namespace der::scenario

@@ -1,0 +1,148 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "der/scenario/load.hpp"
+#include "scenario/checks.hpp"
+
+namespace der::scenario {
+namespace {
+
+/// A mesh of more nodes than this is no advice.
+constexpr double kMostNodes = 2000.0;
+
+/// Something that turns the rod at a place, or turns with it. On the way from there to the middles
+/// of the edges beside it, in the cell of a node, the rod bends.
+struct TurningPlace {
+  int node = 0;     ///< whose cell it is
+  double at = 0.0;  ///< [m]; in the cell of a ring's start it may be below 0
+  std::string what;
+  bool bends = false;  ///< whether it bends the rod in the cell
+  bool feels = false;  ///< whether what else bends the cell changes what it does
+};
+
+/// Whether one of them should feel what the other bends.
+bool are_coupled(const TurningPlace& a, const TurningPlace& b) {
+  return (a.feels && b.bends) || (b.feels && a.bends);
+}
+
+bool resists_turning(const Support& support) {
+  if (!support.spring) return false;
+  const Components& stiffness = support.spring->rotational_stiffness;
+  return std::any_of(stiffness.begin(), stiffness.end(), [](double k) { return k > 0.0; });
+}
+
+/// Looks at the cells of one rod.
+class CellCheck {
+ public:
+  CellCheck(CheckContext& context, int rod, ModelChoice model)
+      : context_(context),
+        rod_(rod),
+        name_(context.scene.rods[static_cast<std::size_t>(rod)].name),
+        line_(*context.lines[static_cast<std::size_t>(rod)]),
+        model_(model) {}
+
+  void run() {
+    enter_supports();
+    enter_loads();
+    std::sort(places_.begin(), places_.end(), [](const TurningPlace& a, const TurningPlace& b) {
+      return a.node != b.node ? a.node < b.node : a.at < b.at;
+    });
+    std::pair<const TurningPlace*, const TurningPlace*> nearest;
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const TurningPlace& a = places_[i];
+      for (std::size_t k = i + 1; k < places_.size() && places_[k].node == a.node; ++k) {
+        const TurningPlace& b = places_[k];
+        const double apart = b.at - a.at;
+        if (apart <= line_.same_place() || !are_coupled(a, b)) continue;
+        if (nearest.first == nullptr || apart < nearest.second->at - nearest.first->at) {
+          nearest = {&a, &b};
+        }
+      }
+    }
+    if (nearest.first != nullptr) warn(*nearest.first, *nearest.second);
+  }
+
+ private:
+  void enter_supports() {
+    const auto& supports = context_.scene.supports;
+    for (std::size_t i = 0; i < supports.size(); ++i) {
+      const Support& support = supports[i];
+      if (support.rod != name_) continue;
+      if (resists_turning(support)) {
+        enter(support.at, fmt::format("supports.{}.spring", i), true, true);
+      } else if (is_bearing(support)) {
+        enter(support.at, fmt::format("supports.{}.clamp", i), true, true);
+      }
+    }
+  }
+
+  void enter_loads() {
+    const auto& loads = context_.scene.loads;
+    for (std::size_t i = 0; i < loads.size(); ++i) {
+      if (const auto* force = std::get_if<PointForce>(&loads[i].what)) {
+        if (force->rod != name_ || !force->follower) continue;
+        enter(force->at, fmt::format("loads.{}.point_force", i), false, true);
+      } else if (const auto* moment = std::get_if<Moment>(&loads[i].what)) {
+        if (moment->rod != name_) continue;
+        const bool turns = moment->follower && model_ != ModelChoice::Planar;
+        enter(moment->at, fmt::format("loads.{}.moment", i), true, turns);
+      }
+    }
+  }
+
+  /// In the middle of an edge nothing bends between the place and the middle, and where a support
+  /// turns the rod nothing else does.
+  void enter(const Location& at, std::string what, bool bends, bool feels) {
+    if (at.kind == Location::Kind::All) return;
+    double s = line_.arc_length_of(at);
+    const std::optional<int> node = line_.cell_at(s);
+    if (!node) return;
+    if (line_.closed() && *node == 0 && s > 0.5 * line_.length()) s -= line_.length();
+    if (is_turned(*node, s)) return;
+    places_.push_back({*node, s, std::move(what), bends, feels});
+  }
+
+  [[nodiscard]] bool is_turned(int node, double s) const {
+    if (std::abs(line_.arc_length(node) - s) > line_.same_place()) return false;
+    const HeldNode* held = context_.held_at(rod_, node);
+    if (held == nullptr || !held->holds(Hold::Angle)) return false;
+    const auto by = static_cast<std::size_t>(*held->holder(Hold::Angle));
+    return !is_bearing(context_.scene.supports[by]);
+  }
+
+  [[nodiscard]] bool is_bearing(const Support& support) const {
+    if (model_ != ModelChoice::Spatial || support.clamp != Clamp::Tangent) return false;
+    const double s = line_.arc_length_of(support.at);
+    return line_.closed() || (s > line_.same_place() && line_.length() - s > line_.same_place());
+  }
+
+  void warn(const TurningPlace& a, const TurningPlace& b) {
+    const double apart = b.at - a.at;
+    const double nodes = std::ceil(line_.length() / apart) + 1.0;
+    context_.scene.warnings.push_back(fmt::format(
+        "{} and {} act on rod '{}' within {:.3g} m, and no middle of an edge lies between them: "
+        "neither sees how the other bends the rod there. The error of the solution is then of "
+        "first order in the length of the edges. Put both at one place{}",
+        a.what, b.what, name_, apart,
+        nodes <= kMostNodes ? fmt::format(", or give the rod about {:g} nodes", nodes)
+                            : std::string()));
+  }
+
+  CheckContext& context_;
+  int rod_;
+  const std::string& name_;
+  const RestLine& line_;
+  ModelChoice model_;
+  std::vector<TurningPlace> places_;
+};
+
+}  // namespace
+
+void check_cells(CheckContext& context, ModelChoice model) {
+  for (int rod = 0; rod < static_cast<int>(context.lines.size()); ++rod) {
+    CellCheck(context, rod, model).run();
+  }
+}
+
+}  // namespace der::scenario

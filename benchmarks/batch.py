@@ -1,14 +1,14 @@
 """The cost of `der.Batch` beside the simulations in it, in one run; best on a machine that is idle.
 
-    python benchmarks/batch.py [--quick] [--cpp PROGRAM] [--peers]
+    python benchmarks/batch.py [--quick] [--threads N ...] [--cpp PROGRAM] [--peers]
 
 1. Swings: 1,000 soft rods of 24 elements, clamped at one end, fall for 1 s in 300 steps of
    `implicit_midpoint`: those with which benchmarks/peers.py finds the tip within 1e-3 m of the
    continuum's at 101 times. The error is measured here, too. Swings a second of a loop over
-   `Simulation.step(300)`, which is one C++ loop for each, of a batch on one thread and on two. With
-   DER_LOOPS=avx2 members go in four lanes, with DER_LOOPS=avx512 in eight. The same with the model
-   `spatial_bend`, and for the strip of benchmarks/peers.py, which twists, with as many elements and
-   steps (`spatial`).
+   `Simulation.step(300)`, which is one C++ loop for each, and of a batch on one thread and on two,
+   or on other numbers of threads (`--threads 1 4 16`). With DER_LOOPS=avx2 members go in four
+   lanes, with DER_LOOPS=avx512 in eight. The same with the model `spatial_bend`, and for the strip
+   of benchmarks/peers.py, which twists, with as many elements and steps (`spatial`).
 2. One step of all of many short rods: a loop in C++ against `Batch`, by the Google benchmarks
    `batch` and `loop_over_simulations` of der_benchmarks (`--cpp`; left out if it is not built).
 3. Building, memory and resets of members of 51 nodes, of one scene and with a modulus of its own
@@ -24,6 +24,7 @@ peers: those of the CPU.
 from __future__ import annotations
 
 import argparse
+import functools
 import json
 import multiprocessing
 import os
@@ -85,13 +86,15 @@ def kinds() -> dict[str, der.Scenario]:
     }
 
 
-def throughput(title: str, scene: der.Scenario, members: int, repeats: int) -> None:
-    """Print swings a second of a loop, of one thread and of two."""
+def throughput(
+    title: str, scene: der.Scenario, members: int, repeats: int, threads: Sequence[int]
+) -> None:
+    """Print swings a second of a loop and of batches on so many threads."""
     steps = FRAMES * steps_per_frame(SWING)
     print(f"{members} {title}, loops {der.loops()}:")
     simulations = [der.Simulation(scene) for _ in range(members)]
     start = simulations[0].save_state()
-    batches = {threads: der.Batch(scene, members, threads) for threads in (1, 2)}
+    batches = [der.Batch(scene, members, count) for count in threads]
 
     def loop() -> None:
         for simulation in simulations:
@@ -102,27 +105,27 @@ def throughput(title: str, scene: der.Scenario, members: int, repeats: int) -> N
         batch.reset()
         batch.step(steps)
 
-    seconds = best_of(
-        {
-            "loop over Simulation": loop,
-            "batch, one thread": lambda: run(batches[1]),
-            "batch, two threads": lambda: run(batches[2]),
-        },
-        repeats,
-    )
-    loop_time, one, two = seconds.values()
+    ways: dict[str, Callable[[], object]] = {"loop over Simulation": loop}
+    ways |= {threads_in_words(batch): functools.partial(run, batch) for batch in batches}
+    seconds = best_of(ways, repeats)
+    loop_time, first, *_ = seconds.values()
     for name, each in seconds.items():
-        print(f"  {name:22} {members / each:8.0f} swings a second")
-    print(
-        f"  two threads over one: {one / two:.2f}; one thread over the loop: {loop_time / one:.3f}"
-    )
+        print(
+            f"  {name:22} {members / each:8.0f} swings a second, {loop_time / each:6.3f} of the "
+            f"loop's, {first / each:6.2f} of the first batch's"
+        )
     same = all(
         batch.positions[i].tobytes() == simulations[0].positions.tobytes()
-        for batch in batches.values()
+        for batch in batches
         for i in range(members)
     )
-    lanes = " and ".join(str(batch.lanes) for batch in batches.values())
+    lanes = ", ".join(str(batch.lanes) for batch in batches)
     print(f"  members in lanes: {lanes}; the same bits: {'yes' if same else 'NO'}")
+
+
+def threads_in_words(batch: der.Batch) -> str:
+    """Return "batch, 1 thread"."""
+    return f"batch, {batch.threads} thread{'s' if batch.threads > 1 else ''}"
 
 
 def overheads(program: Path, repeats: int) -> None:
@@ -215,10 +218,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
         metavar="PROGRAM",
         help="der_benchmarks, as built by the preset `release`",
     )
+    parser.add_argument(
+        "--threads",
+        type=int,
+        nargs="+",
+        default=[1, 2],
+        metavar="N",
+        help="numbers of threads of the batches of swings (1 and 2)",
+    )
     parser.add_argument("--peers", action="store_true", help="compare with other codes as well")
     options = parser.parse_args(arguments)
     for title, scene in kinds().items():
-        throughput(title, scene, 100 if options.quick else 1000, 2 if options.quick else 5)
+        members, repeats = (100, 2) if options.quick else (1000, 5)
+        throughput(title, scene, members, repeats, options.threads)
     if options.cpp.exists():
         overheads(options.cpp, 3 if options.quick else 9)
     else:

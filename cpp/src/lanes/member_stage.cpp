@@ -180,14 +180,13 @@ void MemberStage<T>::measure() {
 /// Sets the step; returns the lanes in which there is one.
 template <class T>
 LaneSet MemberStage<T>::find_step(LaneSet lanes) {
-  const T positive = band_.factorize();
   const std::vector<Index>& free = members_->model.structure().dofs.free();
   run_member_loop<T>([&] {
     for (std::size_t i = 0; i < free.size(); ++i) {
       direction_[static_cast<Index>(i)] = -residual_[free[i]];
     }
   });
-  band_.solve(direction_);
+  const T positive = band_.factorize_and_solve(direction_);
   run_member_loop<T>([&] {
     for (std::size_t i = 0; i < free.size(); ++i) {
       step_[free[i]] = direction_[static_cast<Index>(i)];

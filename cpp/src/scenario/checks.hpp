@@ -91,7 +91,8 @@ void check_model(const SceneText& scene, const ChosenModel& model, Diagnostics& 
 void check_availability(const SceneText& scene, ModelChoice kind, Diagnostics& diagnostics);
 /// Reports natural shapes that a mesh cannot take, and warns of those that it hardly resolves.
 void check_resolution(CheckContext& context);
-/// Warns of what turns a rod, or turns with it, so near another that the mesh does not part the two.
+/// Warns of what turns a rod, or turns with it, so near another that the mesh does not part the
+/// two.
 void check_cells(CheckContext& context, ModelChoice model);
 /// Warns of ends of rods that lie on a node: nothing joins them, unless supports hold both.
 void warn_of_touching_rods(CheckContext& context);

@@ -25,8 +25,8 @@ class RestLine {
   [[nodiscard]] int nearest_node(double s) const;
   /// The node at arc length `s` [m], if there is one within `same_place()`.
   [[nodiscard]] std::optional<int> node_at(double s) const;
-  /// The node in whose Voronoi cell arc length `s` [m] lies; none in the middle of an edge, where two
-  /// cells meet.
+  /// The node in whose Voronoi cell arc length `s` [m] lies; none in the middle of an edge, where
+  /// two cells meet.
   [[nodiscard]] std::optional<int> cell_at(double s) const;
   /// Arc length [m] of a checked location, which is a single place.
   [[nodiscard]] double arc_length_of(const Location& at) const;

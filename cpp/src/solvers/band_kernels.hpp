@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <utility>
 
 #include "der/core/index.hpp"
@@ -51,9 +52,10 @@ class PivotCount {
 };
 
 /// Takes off `entries`, those of a column so far, what they lose to the column `distance` before
-/// it, and leaves that one's multiplier in its place. Entries in the band are `step` apart.
+/// it, and leaves that one's multiplier in its place; returns it. Entries in the band are `step`
+/// apart.
 template <class T>
-void take_off(Index distance, Index width, Index step, T* column, T* entries) {
+T take_off(Index distance, Index width, Index step, T* column, T* entries) {
   T* const other = column - static_cast<std::ptrdiff_t>(distance) * (width + 1) * step;
   const T entry = other[distance * step];
   const T multiplier = entry * other[0];
@@ -62,41 +64,62 @@ void take_off(Index distance, Index width, Index step, T* column, T* entries) {
   for (Index i = 1; i + distance <= width; ++i) {
     entries[i] -= multiplier * other[(distance + i) * step];
   }
+  return multiplier;
 }
 
 /// Finishes a column but for the division: takes off what it loses to those `farthest` to `nearest`
-/// before it, the farthest first. Unrolled, so that its entries stay in registers. Returns the
-/// first.
-template <Index kWidth, Index kStep, class T, Index... kBehind>
-T finish_column(Index farthest, Index nearest, T* column,
+/// before it, the farthest first, and calls also(distance, multiplier) for each. Unrolled, so that
+/// its entries stay in registers. Returns the first.
+template <Index kWidth, Index kStep, class T, class Also, Index... kBehind>
+T finish_column(Index farthest, Index nearest, T* column, const Also& also,
                 std::integer_sequence<Index, kBehind...> /*columns*/) {
   std::array<T, to_size(kWidth) + 1> entries;
   for (Index i = 0; i <= kWidth; ++i) entries[to_size(i)] = column[i * kStep];
   const auto take = [&](Index distance) {
     if (distance > farthest || distance < nearest) return;
-    take_off(distance, kWidth, kStep, column, entries.data());
+    also(distance, take_off(distance, kWidth, kStep, column, entries.data()));
   };
   (take(kWidth - kBehind), ...);
   for (Index i = 0; i <= kWidth; ++i) column[i * kStep] = entries[to_size(i)];
   return entries[0];
 }
 
+/// Where a right side is not eliminated along with its matrix.
+struct NoRightSide {};
+
 /// Turns `size` columns into 1/d_j and the multipliers l_{j+1,j} .., and eliminates them from those
 /// behind. Each column is read and written once, when all before it are done: memory takes fewer
 /// writes than numbers. `kMatrices` lie side by side, entry by entry. `pivots.take(column, pivot)`
-/// sees every pivot and says whether to go on.
-template <Index kWidth, Index kMatrices, class T, class Pivots>
-void factorize_band(Index size, T* band, Pivots& pivots) {
+/// sees every pivot and says whether to go on. A right side, a T* with as many numbers side by
+/// side, is left as `eliminate` leaves it: the multipliers are at hand.
+template <Index kWidth, Index kMatrices, class T, class Pivots, class RightSide>
+void factorize_band(Index size, T* band, Pivots& pivots, RightSide right_side) {
   constexpr std::make_integer_sequence<Index, kWidth> distances;
   for (Index j = 0; j < size + kWidth; ++j) {
     for (Index matrix = 0; matrix < kMatrices; ++matrix) {
-      T* const column = band + static_cast<std::ptrdiff_t>(j) * (kWidth + 1) * kMatrices + matrix;
+      const std::ptrdiff_t place = static_cast<std::ptrdiff_t>(j) * kMatrices + matrix;
+      T* const column = band + place + static_cast<std::ptrdiff_t>(j) * kWidth * kMatrices;
+      const auto finish = [&](Index farthest, Index nearest) {
+        if constexpr (std::is_same_v<RightSide, NoRightSide>) {
+          const auto nothing = [](Index /*distance*/, const T& /*multiplier*/) {};
+          return finish_column<kWidth, kMatrices>(farthest, nearest, column, nothing, distances);
+        } else {
+          T* const entry = right_side + place;
+          T value = *entry;
+          const auto eliminate_entry = [&](Index distance, const T& multiplier) {
+            value -= multiplier * entry[-distance * kMatrices];
+          };
+          const T pivot = finish_column<kWidth, kMatrices>(farthest, nearest, column,
+                                                           eliminate_entry, distances);
+          *entry = value;
+          return pivot;
+        }
+      };
       if (j >= size) {
-        finish_column<kWidth, kMatrices>(j, j - size + 1, column, distances);
+        finish(j, j - size + 1);
         continue;
       }
-      const T pivot = j < kWidth ? finish_column<kWidth, kMatrices>(j, 1, column, distances)
-                                 : finish_column<kWidth, kMatrices>(kWidth, 1, column, distances);
+      const T pivot = j < kWidth ? finish(j, 1) : finish(kWidth, 1);
       if (!pivots.take(j, pivot)) return;
       column[0] = 1.0 / pivot;
     }
@@ -129,14 +152,14 @@ template <Index kWidth, class T>
 Inertia factorize_band(Index size, Index run_time_width, T* band, T* scratch) {
   PivotCount<T> pivots;
   if constexpr (kWidth > 0) {
-    factorize_band<kWidth, 1>(size, band, pivots);
+    factorize_band<kWidth, 1>(size, band, pivots, NoRightSide{});
   } else {
     factorize_band(size, run_time_width, band, scratch, pivots);
   }
   return pivots.inertia();
 }
 
-/// Takes the multiples of `size` columns off the entries of `b` behind each, and divides by d_j.
+/// Takes the multiples of `size` columns off the entries of `b` behind each.
 template <Index kWidth, class T>
 void eliminate(Index size, Index run_time_width, const T* band, T* b) {
   const Index width = kWidth > 0 ? kWidth : run_time_width;
@@ -144,17 +167,17 @@ void eliminate(Index size, Index run_time_width, const T* band, T* b) {
     const T* column = band + static_cast<std::ptrdiff_t>(j) * (width + 1);
     const T y = b[j];
     for (Index k = 1; k <= width; ++k) b[j + k] -= column[k] * y;
-    b[j] = y * column[0];
   }
 }
 
-/// Solves for the `size` first entries of `b`, the `width` behind them being known.
+/// Divides the `size` first entries of `b`, from which columns have been eliminated, by d_j and
+/// solves for them, the `width` behind them being known.
 template <Index kWidth, class T>
 void substitute(Index size, Index run_time_width, const T* band, T* b) {
   const Index width = kWidth > 0 ? kWidth : run_time_width;
   for (Index j = size - 1; j >= 0; --j) {
     const T* column = band + static_cast<std::ptrdiff_t>(j) * (width + 1);
-    T x = b[j];
+    T x = b[j] * column[0];
     // From the far end: the value needed last is the one computed last.
     for (Index k = width; k >= 1; --k) x -= column[k] * b[j + k];
     b[j] = x;

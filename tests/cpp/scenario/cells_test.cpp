@@ -1,5 +1,5 @@
-// Warnings of springs against turning, bearings, moments and loads that follow, which act in the cell
-// of one node but not at one place: between the same middles of edges.
+// Warnings of springs against turning, bearings, moments and loads that follow, which act in the
+// cell of one node but not at one place: between the same middles of edges.
 
 #include <doctest/doctest.h>
 
@@ -38,7 +38,8 @@ std::string following_moment(const std::string& at) {
 TEST_CASE("cells: a moment near a spring is warned of, with what to do") {
   const Warnings warnings = warnings_of(spring("start"), moment("0.04"));
   REQUIRE(warnings.size() == 1);
-  CHECK(contains(warnings[0], "supports.0.spring and loads.0.moment act on rod 'beam' within 0.04"));
+  CHECK(
+      contains(warnings[0], "supports.0.spring and loads.0.moment act on rod 'beam' within 0.04"));
   CHECK(contains(warnings[0], "Put both at one place, or give the rod about 26 nodes"));
 }
 

@@ -17,13 +17,14 @@ class MemberBand {
   /// For the values in the layout of TwoEndedLdlt or of BandedLdlt.
   MemberBand(const Pattern& pattern, Elimination order);
 
-  /// The matrices' values, to be set before `factorize`, which overwrites them. They have a spare
-  /// slot behind those of the layout.
+  /// The matrices' values, to be set before they are factorised, which overwrites them. They have a
+  /// spare slot behind those of the layout.
   [[nodiscard]] MemberVector<T>& values() { return band_; }
-  /// In each lane 1 if its matrix was positive definite, else 0: its solutions are worth nothing
-  /// then.
+  /// Factorises, and solves for the entries of `b`, in place. In each lane 1 if its matrix was
+  /// positive definite, else 0: its solution is worth nothing then.
+  T factorize_and_solve(MemberVector<T>& b);
+  /// The same in two steps, for many right sides; for elimination from the start.
   T factorize();
-  /// Solves for the entries of `b`, in place.
   void solve(MemberVector<T>& b);
 
  private:
@@ -31,16 +32,18 @@ class MemberBand {
     T (*factorize)(Index columns, T* band);
     void (*eliminate)(Index columns, const T* band, T* b);
     void (*substitute)(Index columns, const T* band, T* b);
-    T (*factorize_pairs)(Index columns, T* band);
-    void (*eliminate_pairs)(Index columns, const LanePair<T>* band, LanePair<T>* b);
+    T (*factorize_and_eliminate)(Index columns, T* band, T* b);
+    T (*factorize_and_eliminate_pairs)(Index columns, T* band, T* b);
     void (*substitute_pairs)(Index columns, const LanePair<T>* band, LanePair<T>* b);
   };
   static Kernels kernels_of(Index half_bandwidth);
   template <Index kWidth>
   static Kernels kernels();
 
-  T factorize_from_both_ends();
-  void solve_from_both_ends(MemberVector<T>& b);
+  void clear_columns_behind();
+  void take_right_side(const MemberVector<T>& b);
+  void substitute(MemberVector<T>& b);
+  T solve_from_both_ends(MemberVector<T>& b);
   [[nodiscard]] LanePair<T>* pairs(MemberVector<T>& numbers) {
     return reinterpret_cast<LanePair<T>*>(numbers.data());
   }

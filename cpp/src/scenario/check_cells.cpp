@@ -91,24 +91,21 @@ class CellCheck {
     }
   }
 
-  /// In the middle of an edge nothing bends between the place and the middle, and where a support
-  /// turns the rod nothing else does.
+  /// In the middle of an edge nothing bends between the place and the middle.
   void enter(const Location& at, std::string what, bool bends, bool feels) {
     if (at.kind == Location::Kind::All) return;
     double s = line_.arc_length_of(at);
     const std::optional<int> node = line_.cell_at(s);
-    if (!node) return;
+    if (!node || is_turned_by_clamp(s)) return;
     if (line_.closed() && *node == 0 && s > 0.5 * line_.length()) s -= line_.length();
-    if (is_turned(*node, s)) return;
     places_.push_back({*node, s, std::move(what), bends, feels});
   }
 
-  [[nodiscard]] bool is_turned(int node, double s) const {
-    if (std::abs(line_.arc_length(node) - s) > line_.same_place()) return false;
-    const HeldNode* held = context_.held_at(rod_, node);
-    if (held == nullptr || !held->holds(Hold::Angle)) return false;
-    const auto by = static_cast<std::size_t>(*held->holder(Hold::Angle));
-    return !is_bearing(context_.scene.supports[by]);
+  /// Whether a clamp holds the section at a place, so that nothing else turns it.
+  [[nodiscard]] bool is_turned_by_clamp(double s) const {
+    const std::optional<int> node = line_.node_at(s);
+    const Support* clamp = node ? context_.clamp_at(rod_, *node) : nullptr;
+    return clamp != nullptr && !is_bearing(*clamp);
   }
 
   [[nodiscard]] bool is_bearing(const Support& support) const {

@@ -107,10 +107,10 @@ class LoadCheck {
   }
 
   void check_own(const Moment& load, const Path& /*here*/, const Where& where) {
-    if (where.nodes.empty() || !context_.is_clamped(where.rod, where.nodes.front())) return;
-    const HeldNode* holding = context_.held_at(where.rod, where.nodes.front());
-    const auto by = static_cast<std::size_t>(*holding->holder(Hold::Angle));
-    const bool may_spin = context_.scene.supports[by].clamp == Clamp::Tangent;
+    if (where.nodes.empty()) return;
+    const Support* clamp = context_.clamp_at(where.rod, where.nodes.front());
+    if (clamp == nullptr) return;
+    const bool may_spin = clamp->clamp == Clamp::Tangent;
     if (context_.dimension == 3 && may_spin) return;  // the rod has the torque
     warn_of_taken(fmt::format("loads.{}.moment", number_), load.rod, "angle");
   }

@@ -60,9 +60,13 @@ const HeldNode* CheckContext::held_at(int rod, int node) const {
   return found == held.end() ? nullptr : &found->second;
 }
 
-bool CheckContext::is_clamped(int rod, int node) const {
+bool CheckContext::is_clamped(int rod, int node) const { return clamp_at(rod, node) != nullptr; }
+
+const Support* CheckContext::clamp_at(int rod, int node) const {
   const HeldNode* holding = held_at(rod, node);
-  return holding && holding->holds(Hold::Angle);
+  if (holding == nullptr) return nullptr;
+  const std::optional<int> by = holding->holder(Hold::Angle);
+  return by ? &scene.supports[static_cast<std::size_t>(*by)] : nullptr;
 }
 
 bool CheckContext::is_fixed(int rod, int node) const {

@@ -54,6 +54,8 @@ struct CheckContext {
   /// Null where no support holds the node.
   [[nodiscard]] const HeldNode* held_at(int rod, int node) const;
   [[nodiscard]] bool is_clamped(int rod, int node) const;
+  /// The support that clamps the node; null where none does.
+  [[nodiscard]] const Support* clamp_at(int rod, int node) const;
   /// Whether supports hold all components of its position.
   [[nodiscard]] bool is_fixed(int rod, int node) const;
 

@@ -97,14 +97,13 @@ void factorize_band(Index size, T* band, Pivots& pivots, RightSide right_side) {
   constexpr std::make_integer_sequence<Index, kWidth> distances;
   for (Index j = 0; j < size + kWidth; ++j) {
     for (Index matrix = 0; matrix < kMatrices; ++matrix) {
-      const std::ptrdiff_t place = static_cast<std::ptrdiff_t>(j) * kMatrices + matrix;
-      T* const column = band + place + static_cast<std::ptrdiff_t>(j) * kWidth * kMatrices;
+      T* const column = band + static_cast<std::ptrdiff_t>(j) * (kWidth + 1) * kMatrices + matrix;
       const auto finish = [&](Index farthest, Index nearest) {
         if constexpr (std::is_same_v<RightSide, NoRightSide>) {
           const auto nothing = [](Index /*distance*/, const T& /*multiplier*/) {};
           return finish_column<kWidth, kMatrices>(farthest, nearest, column, nothing, distances);
         } else {
-          T* const entry = right_side + place;
+          T* const entry = right_side + static_cast<std::ptrdiff_t>(j) * kMatrices + matrix;
           T value = *entry;
           const auto eliminate_entry = [&](Index distance, const T& multiplier) {
             value -= multiplier * entry[-distance * kMatrices];

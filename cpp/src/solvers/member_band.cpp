@@ -120,7 +120,7 @@ void MemberBand<T>::solve(MemberVector<T>& b) {
 
 template <class T>
 T MemberBand<T>::factorize_and_solve(MemberVector<T>& b) {
-  if (order_ == Elimination::FromBothEnds) return solve_from_both_ends(b);
+  if (order_ == Elimination::FromBothEnds) return factorize_and_solve_from_both_ends(b);
   clear_columns_behind();
   take_right_side(b);
   const T positive = kernels_.factorize_and_eliminate(size_, band_.data(), right_side_.data());
@@ -152,7 +152,7 @@ void MemberBand<T>::substitute(MemberVector<T>& b) {
 
 /// The middle's own entries are in the first half; the second has its rows and columns reversed.
 template <class T>
-T MemberBand<T>::solve_from_both_ends(MemberVector<T>& b) {
+T MemberBand<T>::factorize_and_solve_from_both_ends(MemberVector<T>& b) {
   const auto reversed = [&](Index row) { return size_ - 1 - (row - padding_); };
   LanePair<T>* const right_side = pairs(right_side_);
   LanePair<T>* const rest_right = right_side + columns_;
@@ -170,9 +170,9 @@ T MemberBand<T>::solve_from_both_ends(MemberVector<T>& b) {
     std::fill_n(middle_.data(), middle_.size(), T(0.0));
     for (Index column = 0; column < width_; ++column) {
       for (Index below = 0; column + below < width_; ++below) {
-        const Index row = width_ - 1 - (column + below);
+        const Index opposite = width_ - 1 - (column + below);
         middle_[column * stride + below] =
-            rest[column * stride + below].first + rest[row * stride + below].second;
+            rest[column * stride + below].first + rest[opposite * stride + below].second;
       }
     }
     for (Index i = 0; i < width_; ++i) {

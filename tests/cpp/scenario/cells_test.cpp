@@ -15,7 +15,8 @@ namespace {
 using test::contains;
 using Warnings = std::vector<std::string>;
 
-/// Of the beam, whose edges of 0.1 m have their middles at 0.05 m, 0.15 m, ...
+/// The warnings of the beam with these supports and loads. Its edges of 0.1 m have their middles at
+/// 0.05 m, 0.15 m, ...
 Warnings warnings_of(const std::string& supports, const std::string& loads) {
   return test::beam({{"supports", "[" + supports + "]"}, {"loads", "[" + loads + "]"}})
       .scene()
@@ -66,7 +67,9 @@ TEST_CASE("cells: springs that do not resist turning, and loads of clamps, do no
   CHECK(warnings_of(pull, moment("0.04")).empty());
   const std::string wall = "{rod: beam, at: start, clamp: true}";
   CHECK(warnings_of(wall, moment("0.04")).empty());
-  CHECK(warnings_of(wall + ", " + spring("0.04"), follower("start")).size() == 1);
+  const Warnings held = warnings_of(wall + ", " + spring("0.04"), follower("start"));
+  REQUIRE(held.size() == 1);
+  CHECK(contains(held[0], "the support takes it up"));
 }
 
 TEST_CASE("cells: loads that follow feel moments and springs, and not one another") {
@@ -76,7 +79,7 @@ TEST_CASE("cells: loads that follow feel moments and springs, and not one anothe
   CHECK(warnings_of(pin + ", " + spring("0.04"), follower("start")).size() == 1);
 }
 
-/// Of the beam in space, its sections of two widths.
+/// The same for the beam in space with a rectangular section.
 Warnings in_space(const std::string& supports, const std::string& loads) {
   return test::beam({{"rods.beam.from", "[0, 0, 0]"},
                      {"rods.beam.to", "[1, 0, 0]"},

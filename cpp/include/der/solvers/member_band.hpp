@@ -43,7 +43,7 @@ class MemberBand {
   void clear_columns_behind();
   void take_right_side(const MemberVector<T>& b);
   void substitute(MemberVector<T>& b);
-  T solve_from_both_ends(MemberVector<T>& b);
+  T factorize_and_solve_from_both_ends(MemberVector<T>& b);
   [[nodiscard]] LanePair<T>* pairs(MemberVector<T>& numbers) {
     return reinterpret_cast<LanePair<T>*>(numbers.data());
   }

@@ -25,6 +25,7 @@
 #include "der/supports/supports.hpp"
 #include "model/corner_twist.hpp"
 #include "model/curvature_jump.hpp"
+#include "model/drawn_edge.hpp"
 
 namespace der {
 namespace {
@@ -96,7 +97,7 @@ void draw_sections(const scenario::Rod& rod, RodLayout& layout, const Model& mod
   // With a natural curvature, which the layout does not have yet, it has none.
   const bool has_corners = std::holds_alternative<scenario::AsDrawn>(rod.natural_curvature);
   for (Index edge = 0; edge < layout.num_edges(); ++edge) {
-    const Vec3 next = along_edge<3>(layout.edge(edge, model), model.initial_positions).normalized();
+    const Vec3 next = drawn_edge<3>(layout, edge, model).normalized();
     director = made_perpendicular(transport(director, tangent, next), next);
     if (has_corners && edge > 0) {
       director = SectionFrame::of(next, director).turned(corner_twist(layout, edge, model)).first;

@@ -5,16 +5,10 @@
 #include "der/core/index.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "model/curvature_jump.hpp"
+#include "model/drawn_edge.hpp"
 #include "model/legs.hpp"
 
 namespace der {
-namespace {
-
-Vec2 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
-  return along_edge(rod.edge(edge, model), model.initial_positions);
-}
-
-}  // namespace
 
 NaturalCurvature::NaturalCurvature(const RodLayout& rod, const Model& model) {
   const std::vector<Index> bounds = leg_bounds(rod, model);

@@ -13,6 +13,7 @@
 #include "der/supports/clamp.hpp"
 #include "der/supports/spatial_clamp.hpp"
 #include "model/curvature_jump.hpp"
+#include "model/drawn_edge.hpp"
 #include "output/glue_kink.hpp"
 #include "output/moment_recovery.hpp"
 #include "output/natural_curvature.hpp"
@@ -189,7 +190,7 @@ class PlanarDirection : public DirectionField<double> {
     for (Index edge = 0; edge < rod_.num_edges(); ++edge) {
       drawn_leans_.push_back(0.0);
       if (!leans_as_drawn(rod_, edge)) continue;
-      const Vec2 chord = along_edge(rod_.edge(edge, model), model.initial_positions);
+      const Vec2 chord = drawn_edge(rod_, edge, model);
       const Vec2 effective = edges_[to_size(edge)].vector(model.initial_positions, 0.0, 0.0);
       drawn_leans_.back() =
           angle_between(chord, effective) -
@@ -342,7 +343,7 @@ class SpatialDirection : public DirectionField<Vec3> {
       if (joint.clamp < 0) continue;
       const Index edge = joint.leaves_clamp() ? joint.after : joint.before;
       if (!leans_as_drawn(rod_, edge)) continue;
-      const Vec3 chord = along_edge<3>(rod_.edge(edge, model), model.initial_positions);
+      const Vec3 chord = drawn_edge<3>(rod_, edge, model);
       const SectionFrame section = drawn_frame(model, rod_.first_edge + edge);
       const Vec3 leant = section.tangent - chord.normalized();
       drawn_leans_[to_size(edge)] = Vec2(leant.dot(section.first), leant.dot(section.second)) -

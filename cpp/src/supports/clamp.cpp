@@ -14,15 +14,11 @@
 #include "model/corner.hpp"
 #include "model/corner_twist.hpp"
 #include "model/curvature_jump.hpp"
+#include "model/drawn_edge.hpp"
 #include "supports/leg_clamp.hpp"
 
 namespace der {
 namespace {
-
-/// From node to node in the initial shape.
-Vec2 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
-  return along_edge(rod.edge(edge, model), model.initial_positions);
-}
 
 double direction(const Vec2& e) { return std::atan2(e.y(), e.x()); }
 

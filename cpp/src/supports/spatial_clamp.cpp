@@ -14,20 +14,16 @@
 #include "model/corner.hpp"
 #include "model/corner_twist.hpp"
 #include "model/curvature_jump.hpp"
+#include "model/drawn_edge.hpp"
 #include "supports/leg_clamp.hpp"
 
 namespace der {
 namespace {
 
-/// From node to node in the initial shape.
-Vec3 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
-  return along_edge<3>(rod.edge(edge, model), model.initial_positions);
-}
-
 /// Rotation vector of the turning angle at a place with two edges, per metre [1/m].
 Vec3 initial_curvature(const RodLayout& rod, Index inner, const Model& model) {
-  const Vec3 before = drawn_edge(rod, inner - 1, model);
-  const Vec3 after = drawn_edge(rod, inner, model);
+  const Vec3 before = drawn_edge<3>(rod, inner - 1, model);
+  const Vec3 after = drawn_edge<3>(rod, inner, model);
   const Vec3 axis = before.cross(after);
   const double sine = axis.norm();
   if (sine == 0.0) return Vec3::Zero();
@@ -53,7 +49,7 @@ bool jumps_at_start(const RodLayout& ring, const Model& model) {
 /// curvature jumps at the place, that of the edge after it.
 Vec3 tangent_on_circle(const RodLayout& rod, Index place, Index inner, const Model& model) {
   const Index edge = edge_beside(rod, place);
-  const Vec3 chord = drawn_edge(rod, edge, model).normalized();
+  const Vec3 chord = drawn_edge<3>(rod, edge, model).normalized();
   if (!rod.is_inner(inner) || (inner != place && is_corner(rod, inner, model))) return chord;
   Vec3 curvature = initial_curvature(rod, inner, model);
   if (inner == place) {

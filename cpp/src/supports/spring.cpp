@@ -19,17 +19,10 @@
 #include "der/supports/section_spring.hpp"
 #include "model/corner.hpp"
 #include "model/curvature_jump.hpp"
+#include "model/drawn_edge.hpp"
 
 namespace der {
 namespace {
-
-Vec2 drawn_node(const RodLayout& rod, Index place, const Model& model) {
-  return model.initial_positions.segment<2>(model.dof(rod.node(place), 0));
-}
-
-Vec2 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
-  return drawn_node(rod, edge + 1, model) - drawn_node(rod, edge, model);
-}
 
 template <int Dim, int Nodes>
 void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s,

@@ -123,9 +123,10 @@ TEST_CASE("members that fail while others do fail as on their own, and start aga
   for (int attempt = 0; attempt < 2; ++attempt) {
     batch.step(kLong, no_beat);
     REQUIRE(batch.failures().size() == kMembers);
-    for (const auto& [member, failure] : batch.failures()) {
+    for (const auto& entry : batch.failures()) {
+      const std::size_t member = entry.first;
       CAPTURE(member);
-      CHECK(failure.message == message);
+      CHECK(entry.second.message == message);
       CHECK(batch.unreliable()[member] == 1);
       CHECK(first_difference(batch.member(member).state(), alone.state()) == "");
     }

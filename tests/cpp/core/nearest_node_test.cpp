@@ -11,9 +11,10 @@ TEST_CASE("the nearest node, the later of two, within the rod and beyond its end
   const std::vector<std::pair<double, Index>> expected{{-1.0, 0}, {0.0, 0}, {0.2, 0}, {0.25, 1},
                                                        {0.5, 1},  {0.6, 1}, {0.7, 2}, {1.3, 2},
                                                        {1.4, 3},  {2.0, 3}, {9.0, 3}};
-  for (const auto& [s, node] : expected) {
+  for (const auto& place : expected) {
+    const double s = place.first;
     CAPTURE(s);
-    CHECK(nearest_node(arc_length, s) == node);
+    CHECK(nearest_node(arc_length, s) == place.second);
   }
   CHECK(nearest_node({0.0}, 3.0) == 0);
 }

@@ -30,9 +30,10 @@ TEST_CASE("numbers: decimal notations") {
       {"-2", -2.0},   {"70e9", 70e9},     {"1E+2", 100.0}, {"0.1", 0.1},
       {"-.5e1", -5},  {"5e-150", 5e-150}, {"1e00", 1.0},
   };
-  for (const auto& [text, value] : notations) {
+  for (const auto& notation : notations) {
+    const std::string& text = notation.first;
     CAPTURE(text);
-    CHECK(read(text) == value);
+    CHECK(read(text) == notation.second);
   }
 }
 
@@ -75,12 +76,13 @@ TEST_CASE("numbers: what other readers would take differently is refused with a 
       {"true", "expected a number in m, got 'true'"},
       {"~", "expected a number in m, got nothing"},
   };
-  for (const auto& [text, hint] : refused) {
+  for (const auto& notation : refused) {
+    const std::string& text = notation.first;
     CAPTURE(text);
     const std::string said = diagnostics({{"rods.beam.to", "[" + text + ", 0]"}});
     CAPTURE(said);
     CHECK(contains(said, "rods.beam.to.0: "));
-    CHECK(contains(said, hint));
+    CHECK(contains(said, notation.second));
   }
 }
 
@@ -98,11 +100,12 @@ TEST_CASE("numbers: whole numbers") {
       {"4294967299", "is too large"}, {"99999999999999999999", "too large"},
       {"3 nodes", "alone"},           {"-3", "must be between"},
   };
-  for (const auto& [text, hint] : refused) {
+  for (const auto& notation : refused) {
+    const std::string& text = notation.first;
     CAPTURE(text);
     const std::string said = diagnostics({{"rods.beam.nodes", text}});
     CAPTURE(said);
-    CHECK(contains(said, hint));
+    CHECK(contains(said, notation.second));
   }
 }
 

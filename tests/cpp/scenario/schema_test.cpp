@@ -70,12 +70,14 @@ TEST_CASE("schema: names come from the registries") {
 TEST_CASE("reference: tells of every key of the schema, with its unit") {
   const Json schema = Json::parse(json_schema());
   const std::string reference = scene_reference();
-  for (const auto& [name, definition] : schema["$defs"].items()) {
-    for (const auto& [key, property] : definition["properties"].items()) {
-      CAPTURE(name);
+  for (const auto& definition : schema["$defs"].items()) {
+    const std::string& name = definition.key();
+    CAPTURE(name);
+    for (const auto& property : definition.value()["properties"].items()) {
+      const std::string& key = property.key();
       CAPTURE(key);
       CHECK(test::contains(reference, "| `" + key + "` |"));
-      CHECK(property["description"].is_string());
+      CHECK(property.value()["description"].is_string());
     }
   }
   CHECK(test::contains(reference,

@@ -119,21 +119,27 @@ void compare_with_dense_algebra(const Pattern& pattern) {
 
 TEST_CASE("every linear solver solves and counts negative eigenvalues as dense algebra does") {
   // 5, 8 and 10 have two halves, of the same number of rows or not.
-  using Size = std::pair<Index, Index>;
-  for (const auto& [width, size] : {Size{0, 40}, Size{1, 40}, Size{3, 40}, Size{5, 40}, Size{5, 41},
-                                    Size{8, 40}, Size{8, 41}, Size{10, 40}, Size{10, 41}}) {
-    CAPTURE(width);
-    CAPTURE(size);
-    compare_with_dense_algebra(band_pattern(size, width));
+  struct Band {
+    Index width;
+    Index size;
+  };
+  for (const Band& band :
+       {Band{0, 40}, {1, 40}, {3, 40}, {5, 40}, {5, 41}, {8, 40}, {8, 41}, {10, 40}, {10, 41}}) {
+    CAPTURE(band.width);
+    CAPTURE(band.size);
+    compare_with_dense_algebra(band_pattern(band.size, band.width));
   }
 }
 
 TEST_CASE("so it does with the borders of rings") {
-  using Sizes = std::pair<Index, Index>;
-  for (const auto& [width, rows] : {Sizes{5, 4}, {8, 6}, {10, 7}, {6, 5}, {9, 2}}) {
-    CAPTURE(width);
-    CAPTURE(rows);
-    compare_with_dense_algebra(rings_pattern(width, rows));
+  struct Rings {
+    Index width;
+    Index rows;
+  };
+  for (const Rings& rings : {Rings{5, 4}, {8, 6}, {10, 7}, {6, 5}, {9, 2}}) {
+    CAPTURE(rings.width);
+    CAPTURE(rings.rows);
+    compare_with_dense_algebra(rings_pattern(rings.width, rings.rows));
   }
 }
 
@@ -156,13 +162,13 @@ analysis: static
     Index half_bandwidth;
     Index border_rows;
   };
-  for (const auto& [model, half_bandwidth, border_rows] :
+  for (const Expected& expected :
        {Expected{"planar", 5, 4}, {"spatial_bend", 8, 6}, {"spatial", 10, 7}}) {
-    CAPTURE(model);
-    const Pattern pattern = pattern_of(model);
-    CHECK(pattern.half_bandwidth == half_bandwidth);
+    CAPTURE(expected.model);
+    const Pattern pattern = pattern_of(expected.model);
+    CHECK(pattern.half_bandwidth == expected.half_bandwidth);
     REQUIRE(pattern.borders.size() == 1);
-    CHECK(pattern.borders[0].rows() == border_rows);
+    CHECK(pattern.borders[0].rows() == expected.border_rows);
   }
 }
 

@@ -428,18 +428,13 @@ void PlanarChain::add_members(const PlanarChainConstants<T>& constants, const T*
   });
 }
 
-template PlanarChainConstants<FourLanes> PlanarChain::constants_of(
-    const MemberModels<FourLanes>&) const;
-template void PlanarChain::add_members<Derivatives::Gradient>(
-    const PlanarChainConstants<FourLanes>&, const FourLanes*, FourLanes*, FourLanes*) const;
-template void PlanarChain::add_members<Derivatives::Hessian>(const PlanarChainConstants<FourLanes>&,
-                                                             const FourLanes*, FourLanes*,
-                                                             FourLanes*) const;
-template PlanarChainConstants<EightLanes> PlanarChain::constants_of(
-    const MemberModels<EightLanes>&) const;
-template void PlanarChain::add_members<Derivatives::Gradient>(
-    const PlanarChainConstants<EightLanes>&, const EightLanes*, EightLanes*, EightLanes*) const;
-template void PlanarChain::add_members<Derivatives::Hessian>(
-    const PlanarChainConstants<EightLanes>&, const EightLanes*, EightLanes*, EightLanes*) const;
+#define DER_INSTANTIATE(T)                                                                      \
+  template PlanarChainConstants<T> PlanarChain::constants_of(const MemberModels<T>&) const;     \
+  template void PlanarChain::add_members<Derivatives::Gradient>(const PlanarChainConstants<T>&, \
+                                                                const T*, T*, T*) const;        \
+  template void PlanarChain::add_members<Derivatives::Hessian>(const PlanarChainConstants<T>&,  \
+                                                               const T*, T*, T*) const;
+DER_FOR_MEMBER_LANES(DER_INSTANTIATE)
+#undef DER_INSTANTIATE
 
 }  // namespace der

@@ -640,21 +640,13 @@ void SpatialChain::add_members(const SpatialChainConstants<T>& constants, const 
   });
 }
 
-template SpatialChainConstants<FourLanes> SpatialChain::constants_of(
-    const MemberModels<FourLanes>&) const;
-template void SpatialChain::add_members<Derivatives::Gradient>(
-    const SpatialChainConstants<FourLanes>&, const FourLanes*, const FourLanes*, FourLanes*,
-    FourLanes*) const;
-template void SpatialChain::add_members<Derivatives::Hessian>(
-    const SpatialChainConstants<FourLanes>&, const FourLanes*, const FourLanes*, FourLanes*,
-    FourLanes*) const;
-template SpatialChainConstants<EightLanes> SpatialChain::constants_of(
-    const MemberModels<EightLanes>&) const;
-template void SpatialChain::add_members<Derivatives::Gradient>(
-    const SpatialChainConstants<EightLanes>&, const EightLanes*, const EightLanes*, EightLanes*,
-    EightLanes*) const;
-template void SpatialChain::add_members<Derivatives::Hessian>(
-    const SpatialChainConstants<EightLanes>&, const EightLanes*, const EightLanes*, EightLanes*,
-    EightLanes*) const;
+#define DER_INSTANTIATE(T)                                                                       \
+  template SpatialChainConstants<T> SpatialChain::constants_of(const MemberModels<T>&) const;    \
+  template void SpatialChain::add_members<Derivatives::Gradient>(                                \
+      const SpatialChainConstants<T>&, const T*, const T*, T*, T*) const;                        \
+  template void SpatialChain::add_members<Derivatives::Hessian>(const SpatialChainConstants<T>&, \
+                                                                const T*, const T*, T*, T*) const;
+DER_FOR_MEMBER_LANES(DER_INSTANTIATE)
+#undef DER_INSTANTIATE
 
 }  // namespace der

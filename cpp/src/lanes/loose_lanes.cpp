@@ -81,9 +81,10 @@ std::vector<std::unique_ptr<LooseKind<T>>> loose_kinds(const Assembler& assemble
   return kinds;
 }
 
-template std::vector<std::unique_ptr<LooseKind<FourLanes>>> loose_kinds(
-    const Assembler&, const MemberModels<FourLanes>&);
-template std::vector<std::unique_ptr<LooseKind<EightLanes>>> loose_kinds(
-    const Assembler&, const MemberModels<EightLanes>&);
+#define DER_INSTANTIATE(T)                                                          \
+  template std::vector<std::unique_ptr<LooseKind<T>>> loose_kinds(const Assembler&, \
+                                                                  const MemberModels<T>&);
+DER_FOR_MEMBER_LANES(DER_INSTANTIATE)
+#undef DER_INSTANTIATE
 
 }  // namespace der

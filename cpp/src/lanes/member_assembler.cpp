@@ -216,7 +216,8 @@ void MemberAssembler<T>::add_damping(const T& factor, MemberVector<T>& values) c
   });
 }
 
-template class MemberAssembler<FourLanes>;
-template class MemberAssembler<EightLanes>;
+#define DER_INSTANTIATE(T) template class MemberAssembler<T>;
+DER_FOR_MEMBER_LANES(DER_INSTANTIATE)
+#undef DER_INSTANTIATE
 
 }  // namespace der

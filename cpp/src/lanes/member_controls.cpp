@@ -115,7 +115,8 @@ T MemberControls<T>::driven_gravity_energy(const MemberVector<T>& positions) con
   return energy;
 }
 
-template class MemberControls<FourLanes>;
-template class MemberControls<EightLanes>;
+#define DER_INSTANTIATE(T) template class MemberControls<T>;
+DER_FOR_MEMBER_LANES(DER_INSTANTIATE)
+#undef DER_INSTANTIATE
 
 }  // namespace der

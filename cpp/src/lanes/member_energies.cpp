@@ -94,11 +94,10 @@ std::array<Energies, to_size(LaneTraits<T>::kCount)> member_energies(
   return result;
 }
 
-template std::array<Energies, 4> member_energies(const Members<FourLanes>&,
-                                                 const MemberVector<FourLanes>&,
-                                                 const MemberVector<FourLanes>&);
-template std::array<Energies, 8> member_energies(const Members<EightLanes>&,
-                                                 const MemberVector<EightLanes>&,
-                                                 const MemberVector<EightLanes>&);
+#define DER_INSTANTIATE(T)                                                       \
+  template std::array<Energies, to_size(LaneTraits<T>::kCount)> member_energies( \
+      const Members<T>&, const MemberVector<T>&, const MemberVector<T>&);
+DER_FOR_MEMBER_LANES(DER_INSTANTIATE)
+#undef DER_INSTANTIATE
 
 }  // namespace der

@@ -86,7 +86,8 @@ void MemberFrames<T>::follow(LaneSet lanes, const MemberVector<T>& coordinates,
   });
 }
 
-template class MemberFrames<FourLanes>;
-template class MemberFrames<EightLanes>;
+#define DER_INSTANTIATE(T) template class MemberFrames<T>;
+DER_FOR_MEMBER_LANES(DER_INSTANTIATE)
+#undef DER_INSTANTIATE
 
 }  // namespace der

@@ -297,7 +297,9 @@ std::unique_ptr<MemberGroups> MemberGroups::make(const std::vector<Simulation*>&
   const auto is_alike = [&](const Simulation* each) { return are_alike(*members.front(), *each); };
   if (!fills(4) || !std::all_of(members.begin(), members.end(), is_alike)) return nullptr;
   if (!has_plain_steps(*members.front())) return nullptr;
+#ifdef DER_HAS_WIDE_LOOPS
   if (loops() == Loops::Avx512 && fills(8)) return std::make_unique<Groups<EightLanes>>(members);
+#endif
   return std::make_unique<Groups<FourLanes>>(members);
 }
 

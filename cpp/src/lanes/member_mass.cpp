@@ -53,7 +53,8 @@ void MemberMass<T>::solve(MemberVector<T>& b) {
   for (const HeldDof& held : structure.held) b[held.dof] = T(0.0);
 }
 
-template class MemberMass<FourLanes>;
-template class MemberMass<EightLanes>;
+#define DER_INSTANTIATE(T) template class MemberMass<T>;
+DER_FOR_MEMBER_LANES(DER_INSTANTIATE)
+#undef DER_INSTANTIATE
 
 }  // namespace der

@@ -148,7 +148,8 @@ T MemberModel<T>::largest_edge_change(const MemberVector<T>& displacement) const
   return result;
 }
 
-template struct MemberModel<FourLanes>;
-template struct MemberModel<EightLanes>;
+#define DER_INSTANTIATE(T) template struct MemberModel<T>;
+DER_FOR_MEMBER_LANES(DER_INSTANTIATE)
+#undef DER_INSTANTIATE
 
 }  // namespace der

@@ -224,7 +224,8 @@ void MemberStage<T>::move(LaneSet lanes) {
   });
 }
 
-template class MemberStage<FourLanes>;
-template class MemberStage<EightLanes>;
+#define DER_INSTANTIATE(T) template class MemberStage<T>;
+DER_FOR_MEMBER_LANES(DER_INSTANTIATE)
+#undef DER_INSTANTIATE
 
 }  // namespace der

@@ -313,7 +313,8 @@ void MemberStepper<T>::finish(LaneSet done, const T& dt, MemberState<T>& state) 
   members_->frames.follow(done, state.positions, state.frames);
 }
 
-template class MemberStepper<FourLanes>;
-template class MemberStepper<EightLanes>;
+#define DER_INSTANTIATE(T) template class MemberStepper<T>;
+DER_FOR_MEMBER_LANES(DER_INSTANTIATE)
+#undef DER_INSTANTIATE
 
 }  // namespace der

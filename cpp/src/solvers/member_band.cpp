@@ -196,7 +196,8 @@ T MemberBand<T>::factorize_and_solve_from_both_ends(MemberVector<T>& b) {
   return halves * middle;
 }
 
-template class MemberBand<FourLanes>;
-template class MemberBand<EightLanes>;
+#define DER_INSTANTIATE(T) template class MemberBand<T>;
+DER_FOR_MEMBER_LANES(DER_INSTANTIATE)
+#undef DER_INSTANTIATE
 
 }  // namespace der

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "der/assembly/member_lanes.hpp"
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/registry.hpp"
@@ -94,8 +95,9 @@ TEST_CASE("each lane has the bits of its element alone") {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if constexpr (GoesInLanes<Kernel>::value) {
       ++kinds;
-      check_lanes<Kernel, FourLanes>();
-      check_lanes<Kernel, EightLanes>();
+#define DER_CHECK_LANES(T) check_lanes<Kernel, T>();
+      DER_FOR_MEMBER_LANES(DER_CHECK_LANES)
+#undef DER_CHECK_LANES
     }
   });
   CHECK(kinds == 34);

@@ -71,6 +71,14 @@ Eigen::Matrix<T, Dim, 1> along_edge(const Edge& edge, const MemberVector<T>& fie
   return vector;
 }
 
+// Compiles what INSTANTIATE(T) names for each number type of members: eight lanes are there where
+// loops for AVX-512 are.
+#ifdef DER_HAS_WIDE_LOOPS
+#define DER_FOR_MEMBER_LANES(INSTANTIATE) INSTANTIATE(FourLanes) INSTANTIATE(EightLanes)
+#else
+#define DER_FOR_MEMBER_LANES(INSTANTIATE) INSTANTIATE(FourLanes)
+#endif
+
 /// `run_loop` of a loop over members: eight lanes need AVX-512, four run on every processor.
 template <class T, class Loop>
 auto run_member_loop(const Loop& loop) {

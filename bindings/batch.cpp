@@ -193,8 +193,8 @@ RowMatrix to_rows(const Array& values) {
   return rows;
 }
 
-void set(PyBatch& batch, const std::vector<std::pair<std::string, Array>>& values,
-         const std::optional<Number>& given_over) {
+void set_rows(PyBatch& batch, const std::vector<std::pair<std::string, Array>>& values,
+              const std::optional<Number>& given_over) {
   const std::optional<double> over = to_optional(given_over, "over");
   std::vector<Batch::Setting> settings;
   settings.reserve(values.size());
@@ -203,8 +203,8 @@ void set(PyBatch& batch, const std::vector<std::pair<std::string, Array>>& value
   py::module_::import("der.errors").attr("warn")(py::cast(batch.engine().take_warnings()));
 }
 
-void prescribe(PyBatch& batch, const WholeNumber& given_support,
-               const std::vector<std::pair<std::string, Array>>& values) {
+void prescribe_rows(PyBatch& batch, const WholeNumber& given_support,
+                    const std::vector<std::pair<std::string, Array>>& values) {
   const auto support =
       static_cast<std::size_t>(given_support.at_least(0, "the number of the support"));
   std::vector<Batch::Prescription> prescriptions;
@@ -215,7 +215,7 @@ void prescribe(PyBatch& batch, const WholeNumber& given_support,
   batch.alone([&](Batch& engine) { engine.prescribe(support, prescriptions); });
 }
 
-Array value(PyBatch& batch, const Text& given_name) {
+Array value_rows(PyBatch& batch, const Text& given_name) {
   const std::string name(given_name.value("the name"));
   const RowMatrix rows = batch.alone([&](Batch& engine) { return engine.value(name); });
   return Array({static_cast<py::ssize_t>(rows.rows()), static_cast<py::ssize_t>(rows.cols())},
@@ -342,12 +342,12 @@ void bind_actions(BatchClass& cls) {
          "the first time\nthat the integrator of a member has created energy.")
       .def("settle", &equilibrium, py::arg("leave_saddles"),
            "Move every member to its equilibrium; `equilibrium` describes it.")
-      .def("set_rows", &set, py::arg("values"), py::arg("over"),
+      .def("set_rows", &set_rows, py::arg("values"), py::arg("over"),
            "Set pairs of a name and an array of shape (members, components); `set` makes them.")
-      .def("prescribe_rows", &prescribe, py::arg("support"), py::arg("values"),
+      .def("prescribe_rows", &prescribe_rows, py::arg("support"), py::arg("values"),
            "Prescribe pairs of a component and an array of shape (members,); `prescribe` makes "
            "them.")
-      .def("value_rows", &value, py::arg("name"),
+      .def("value_rows", &value_rows, py::arg("name"),
            "Present values of a name, shape (members, components); `value` shapes them.")
       .def(
           "save_state",

@@ -74,18 +74,18 @@ bool is_one_by_one(const LooseElements<Kernel>& loose) {
   return kIsOf<Kinds::OneByOne, Kernel> && !loose.elements.empty();
 }
 
-/// Where a mass between two degrees of freedom goes.
-struct CouplingSlots {
-  Index a;  // diagonal entries
-  Index b;
-  Index ab;  // the entry between them
-};
-
 constexpr auto kKinds = std::make_index_sequence<std::tuple_size_v<ElementLists::Lists>>{};
 
 }  // namespace
 
 struct Assembler::ScatterMaps {
+  /// Where a mass between two degrees of freedom goes.
+  struct CouplingSlots {
+    Index a;  // diagonal entries
+    Index b;
+    Index ab;  // the entry between them
+  };
+
   std::vector<Index> diagonal;           // slot of each free degree of freedom
   std::vector<CouplingSlots> couplings;  // of each of the model's mass couplings
   std::vector<PlanarChain> planar_chains;
@@ -254,7 +254,7 @@ void Assembler::add_mass(const Mass& mass, double factor, Vector& values) const 
   add_diagonal(mass.lumped, factor, values);
   for (std::size_t i = 0; i < mass.coupling.size(); ++i) {
     const double shared = factor * mass.coupling[i].mass;
-    const CouplingSlots& slots = maps_->couplings[i];
+    const ScatterMaps::CouplingSlots& slots = maps_->couplings[i];
     values[slots.a] -= shared;
     values[slots.b] -= shared;
     values[slots.ab] += shared;

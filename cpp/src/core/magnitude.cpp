@@ -9,13 +9,13 @@ namespace {
 
 // The loops see plain arrays.
 
-double largest_of(Index size, const double* x) {
+double largest_in_loop(Index size, const double* x) {
   std::int64_t largest = 0;
   for (Index i = 0; i < size; ++i) largest = std::max(largest, magnitude_bits(x[i]));
   return magnitude_of(largest);
 }
 
-double largest_of(Index size, const double* x, const std::int64_t* counts) {
+double largest_in_loop(Index size, const double* x, const std::int64_t* counts) {
   std::int64_t largest = 0;
   for (Index i = 0; i < size; ++i) largest = std::max(largest, magnitude_bits(x[i]) & counts[i]);
   return magnitude_of(largest);
@@ -24,11 +24,11 @@ double largest_of(Index size, const double* x, const std::int64_t* counts) {
 }  // namespace
 
 double largest_magnitude(Index size, const double* x) {
-  return run_loop([&] { return largest_of(size, x); });
+  return run_loop([&] { return largest_in_loop(size, x); });
 }
 
 double largest_magnitude(Index size, const double* x, const std::int64_t* counts) {
-  return run_loop([&] { return largest_of(size, x, counts); });
+  return run_loop([&] { return largest_in_loop(size, x, counts); });
 }
 
 }  // namespace der

@@ -6,16 +6,17 @@
 namespace der {
 namespace {
 
-constexpr double kRounding = 1e-9;  // [rad]
+constexpr double kLeastGluedTurn = 1e-9;  // [rad]
 
 }  // namespace
 
-bool is_glued_turned(const RodJoint& joint) { return std::abs(joint.glued) > kRounding; }
+bool is_glued_turned(const RodJoint& joint) { return std::abs(joint.glued) > kLeastGluedTurn; }
 
 bool meets_turned(const RodJoint& joint) { return joint.clamp < 0 && is_glued_turned(joint); }
 
 bool turns_axes(const RodJoint& joint, const RodLayout& rod) {
-  return meets_turned(joint) && std::abs(std::sin(joint.glued)) > kRounding && rod.EI_1 != rod.EI_2;
+  return meets_turned(joint) && std::abs(std::sin(joint.glued)) > kLeastGluedTurn &&
+         rod.EI_1 != rod.EI_2;
 }
 
 bool parts_bending(const RodJoint& joint, const RodLayout& rod) {

@@ -12,7 +12,7 @@ namespace der {
 namespace {
 
 /// Relative; of equal turns the first one counts.
-constexpr double kRounding = 1e-12;
+constexpr double kEqualTurns = 1e-12;
 
 }  // namespace
 
@@ -100,7 +100,7 @@ void TurningLimits::look(const Curvature& curvature, const Cell*& found) const {
   double sharpest = found != nullptr ? angle(*found) : scenario::kCoarseTurn;
   for (const std::size_t number : curvature.cells) {
     const double turn = angle(cells_[number]);
-    if (turn <= (1.0 + kRounding) * sharpest) continue;
+    if (turn <= (1.0 + kEqualTurns) * sharpest) continue;
     sharpest = turn;
     found = &cells_[number];
   }

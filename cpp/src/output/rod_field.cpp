@@ -24,7 +24,7 @@ const char* advice_on(QuantityScope scope) {
   return "";
 }
 
-std::string quantities_along_rods() {
+std::string names_along_rods() {
   std::string names;
   for (const Quantity& quantity : quantities()) {
     if (quantity.make_field == nullptr) continue;
@@ -63,7 +63,7 @@ std::unique_ptr<RodField> make_rod_field(const std::string& quantity, const RodL
     return rod.closed ? around_ring(std::move(field), rod) : std::move(field);
   }
   throw Error("model_error", fmt::format("'{}' is not a quantity along a rod; these are: {}",
-                                         quantity, quantities_along_rods()));
+                                         quantity, names_along_rods()));
 }
 
 }  // namespace der

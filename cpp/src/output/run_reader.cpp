@@ -77,7 +77,7 @@ RunFileHead read_head(hid_t file) {
   return head;
 }
 
-LastFrame read_last_frame(hid_t file) {
+LastFrame last_frame_in(hid_t file) {
   const FrameColumns columns = FrameColumns::open(file);
   if (columns.size() == 0) throw IoError("it holds no frame");
   const FrameData frame = columns.read(columns.size() - 1, 1);
@@ -124,7 +124,7 @@ RunFileHead read_head(const std::filesystem::path& path) {
 LastFrame read_last_frame(const std::filesystem::path& path) {
   const hdf5::Session session;
   const Handle file = open_run_file(path);
-  return naming(path, [&] { return read_last_frame(file.id()); });
+  return naming(path, [&] { return last_frame_in(file.id()); });
 }
 
 SavedRun read_run(const std::filesystem::path& path) {

@@ -11,7 +11,7 @@ struct ActuationText : Actuation {
 };
 
 /// One table, or two toward the directors of the section.
-Format<std::vector<Series>> curvature_format() {
+Format<std::vector<Series>> actuated_curvature_format() {
   const Format<Series> one = series("1/m");
   const Format<std::vector<Series>> two = list_of(one, 2);
   Shape shape{Shape::Kind::AnyOf};
@@ -91,7 +91,7 @@ Format<Actuation> actuation_format() {
                     "Arc length where the stretch ends.", "the rod's length")
           .optional("profile", &Actuation::profile, profile_format(),
                     "How the value is spread over the stretch.")
-          .optional("natural_curvature", &ActuationText::curvature, curvature_format(),
+          .optional("natural_curvature", &ActuationText::curvature, actuated_curvature_format(),
                     "Curvature per rest length: a number or a table, positive counter-clockwise; "
                     "in a scene of three components also a pair of such, toward the director and "
                     "across it.")

@@ -35,20 +35,20 @@ void solve_middle_of(const double* band, double* b) {
 }
 
 template <Index kWidth>
-constexpr TwoEndedLdlt::Kernels kKernels{factorize_halves<kWidth>, eliminate_halves<kWidth>,
-                                         substitute_halves<kWidth>, factorize_middle_of<kWidth>,
-                                         solve_middle_of<kWidth>};
+constexpr TwoEndedLdlt::Kernels kTwoEndedKernels{
+    factorize_halves<kWidth>, eliminate_halves<kWidth>, substitute_halves<kWidth>,
+    factorize_middle_of<kWidth>, solve_middle_of<kWidth>};
 
 }  // namespace
 
 TwoEndedLdlt::Kernels TwoEndedLdlt::kernels_of(Index half_bandwidth) {
   switch (half_bandwidth) {
     case 5:  // chains in the plane
-      return kKernels<5>;
+      return kTwoEndedKernels<5>;
     case 8:  // chains in space
-      return kKernels<8>;
+      return kTwoEndedKernels<8>;
     case 10:  // the same with angles of sections
-      return kKernels<10>;
+      return kTwoEndedKernels<10>;
     default:
       return {};
   }

@@ -19,7 +19,7 @@ constexpr double kGreatestFactor = 2.0;
 constexpr double kRetryFactor = 0.25;
 /// Differences below this fraction of the positions are not significant: they come from rounding
 /// and from the tolerance of Newton's method.
-constexpr double kRounding = 1e-14;
+constexpr double kInsignificant = 1e-14;
 /// Share of its length by which the ends of an edge may be off against each other, gathered over
 /// the duration. An edge that is shorter than the tolerance could otherwise turn over within it.
 constexpr double kEdgeError = 0.5;
@@ -135,7 +135,7 @@ void AdaptiveStepper::measure(const State& state, AdaptiveReport& report) {
   const Index worst = model_.dofs.most_moved(difference_);
   const double difference = model_.dofs.motion_of(worst, difference_[worst]);
   report.last.worst_dof = worst;
-  const double rounding = kRounding * model_.dofs.largest_motion(state.positions);
+  const double rounding = kInsignificant * model_.dofs.largest_motion(state.positions);
   const double of_position = difference / (options_.tolerance * model_.size());
   const double change = largest_edge_change(model_, difference_);
   const double of_edge = change * shortest_edge_ <= rounding ? 0.0 : change / kEdgeError;

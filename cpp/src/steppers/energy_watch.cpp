@@ -23,7 +23,7 @@ namespace {
 constexpr double kDoubtful = 0.05;
 constexpr double kUnstable = 0.5;
 /// Share of the energy held below which a change is rounding.
-constexpr double kRounding = 1e-10;
+constexpr double kEnergyRounding = 1e-10;
 /// Strain of all edges whose energy is rounding, in a structure at rest too.
 constexpr double kRoundingStrain = 1e-10;
 
@@ -163,7 +163,7 @@ void EnergyWatch::enter_energies(const Energies& now, State& state) const {
                 std::abs(work.loads), std::abs(work.supports), std::abs(work.actuation)});
   const double held =
       std::abs(work.start) + kinetic + now.elastic() + std::abs(now[EnergyTerm::Gravity]);
-  if (!(created > std::max(kRounding * held, rounding_))) return;
+  if (!(created > std::max(kEnergyRounding * held, rounding_))) return;
   audit.created = std::max(audit.created, created);
   if (audit.unreliable_from < 0.0 && is_doubtful(audit)) audit.unreliable_from = state.time;
 }

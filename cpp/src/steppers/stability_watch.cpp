@@ -30,7 +30,7 @@ constexpr double kLeastMargin = 0.6;
 /// another limit.
 constexpr double kLeastPiece = 1e-5;
 /// A step longer than the stable one by no more than this share is the stable one.
-constexpr double kRounding = 1e-9;
+constexpr double kStepRounding = 1e-9;
 
 constexpr const char* kAdvice =
     "Write 'step: auto', which follows the limit, or a step of at most {:.2g} s, take an implicit "
@@ -126,7 +126,7 @@ void StabilityWatch::check_start(const State& state) {
                             time_.minimum_step,
                             describe_stable_step(explain(state), time_.integrator, model_)));
   }
-  if (automatic || time_.step <= limit * (1.0 + kRounding)) return;
+  if (automatic || time_.step <= limit * (1.0 + kStepRounding)) return;
   const StableStep stable = explain(state);
   throw Error("unstable_step", fmt::format("time.step of {:g} s is above {}. ", time_.step,
                                            describe_stable_step(stable, time_.integrator, model_)) +
@@ -144,13 +144,13 @@ void StabilityWatch::look(State& state, double step) {
 
   const double stable = stable_step(state);
   if (time_.stepping == scenario::Stepping::Fixed) {
-    if (!(step <= stable * (1.0 + kRounding))) throw DivergedError(explain_overrun(state));
+    if (!(step <= stable * (1.0 + kStepRounding))) throw DivergedError(explain_overrun(state));
     state.next_step = step;
     return;
   }
   const double longest = std::min(stable, kLargestChange / rate_of_change(model_, state));
   const auto bears = [&](double length, double margin) {
-    return length <= margin * longest * (1.0 + kRounding);
+    return length <= margin * longest * (1.0 + kStepRounding);
   };
   const bool whole = bears(step, kStepMargin);
   const double least = time_.minimum_step > 0.0 ? time_.minimum_step : kLeastPiece * step;

@@ -21,7 +21,7 @@ namespace der {
 namespace {
 
 /// Rotation vector of the turning angle at a place with two edges, per metre [1/m].
-Vec3 initial_curvature(const RodLayout& rod, Index inner, const Model& model) {
+Vec3 initial_curvature_vector(const RodLayout& rod, Index inner, const Model& model) {
   const Vec3 before = drawn_edge<3>(rod, inner - 1, model);
   const Vec3 after = drawn_edge<3>(rod, inner, model);
   const Vec3 axis = before.cross(after);
@@ -36,7 +36,7 @@ Vec3 initial_curvature(const RodLayout& rod, Index inner, const Model& model) {
 bool jumps_at_start(const RodLayout& ring, const Model& model) {
   constexpr double kLeast = 0.01;  // of the larger curvature
   constexpr double kAlone = 10.0;
-  const auto curvature = [&](Index place) { return initial_curvature(ring, place, model); };
+  const auto curvature = [&](Index place) { return initial_curvature_vector(ring, place, model); };
   const Vec3 before = curvature(-1);
   const Vec3 after = curvature(1);
   const double change = (after - before).norm();
@@ -51,7 +51,7 @@ Vec3 tangent_on_circle(const RodLayout& rod, Index place, Index inner, const Mod
   const Index edge = edge_beside(rod, place);
   const Vec3 chord = drawn_edge<3>(rod, edge, model).normalized();
   if (!rod.is_inner(inner) || (inner != place && is_corner(rod, inner, model))) return chord;
-  Vec3 curvature = initial_curvature(rod, inner, model);
+  Vec3 curvature = initial_curvature_vector(rod, inner, model);
   if (inner == place) {
     curvature += curvature_beyond_mean(rod, place, true, rod.drawn_jumps);
   }
@@ -76,7 +76,7 @@ void check_axis_of_twist(const RodLayout& rod, Index place, const Model& model) 
                           rod.name, rod.arc_length_at(place)));
 }
 
-SpatialPivot pivot_at(const RodLayout& rod, Index place, Index edge, const Model& model) {
+SpatialPivot spatial_pivot_at(const RodLayout& rod, Index place, Index edge, const Model& model) {
   const Clamp* clamp = rod.clamp_at(place);
   if (clamp == nullptr) return {};
   const bool arrives = edge != clamp->place;
@@ -123,8 +123,8 @@ void hold_section(const scenario::Support& support, Index place, RodLayout& rod,
 SpatialEdge spatial_edge(const RodLayout& rod, Index edge, const Model& model) {
   const Index number = rod.first_edge + edge;
   return {model.dof(rod.node(edge), 0), model.dof(rod.node(edge + 1), 0),
-          model.has_sections() ? model.dofs.angle(number) : -1, pivot_at(rod, edge, edge, model),
-          pivot_at(rod, edge + 1, edge, model)};
+          model.has_sections() ? model.dofs.angle(number) : -1,
+          spatial_pivot_at(rod, edge, edge, model), spatial_pivot_at(rod, edge + 1, edge, model)};
 }
 
 }  // namespace der

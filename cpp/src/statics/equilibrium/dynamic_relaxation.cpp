@@ -9,17 +9,17 @@
 namespace der::statics {
 namespace {
 
-constexpr int kMaxSteps = 3000;
+constexpr int kMaxTimeSteps = 3000;
 /// A step changes no edge by more than this [rad].
-constexpr double kLargestEdgeChange = 0.2;
+constexpr double kLargestStepChange = 0.2;
 /// The relaxation gives up when the step has shrunk to this fraction of the first one.
-constexpr double kSmallestStep = 1e-6;
+constexpr double kSmallestTimeStep = 1e-6;
 /// Damping coefficient times the first step.
 constexpr double kDamping = 0.3;
 constexpr double kGrowth = 1.2;
 /// A plain Newton step is tried once a step changes no edge by more than this [rad], and, if it
 /// fails, again when the change has halved.
-constexpr double kTryNewton = 0.1;
+constexpr double kCalmEnough = 0.1;
 
 /// The time in which the largest force moves a unit mass by about the size of the model.
 double first_time_step(const Model& model, const StaticLoads& loads, Stiffness& stiffness,
@@ -38,11 +38,11 @@ bool relax_dynamically(const Model& model, const StaticLoads& loads, StaticNewto
   Vector velocity = Vector::Zero(now.positions.size());
   double step = first_time_step(model, loads, stiffness, now);
   const double damping = kDamping / step;
-  const double smallest = kSmallestStep * step;
-  double change_for_newton = kTryNewton;
+  const double smallest = kSmallestTimeStep * step;
+  double change_for_newton = kCalmEnough;
   Stage stage = newton.stage_of(loads);
   Configuration here = loads.at(model, now);
-  for (int i = 0; i < kMaxSteps && step > smallest; ++i) {
+  for (int i = 0; i < kMaxTimeSteps && step > smallest; ++i) {
     ++steps;
     const double damped = 1.0 + damping * step;
     stage.inertia = damped / (step * step);
@@ -51,7 +51,7 @@ bool relax_dynamically(const Model& model, const StaticLoads& loads, StaticNewto
     const bool solved = !newton.solve(stage, here);
     const double change =
         solved ? largest_edge_change(model, here.coordinates - now.positions) : 0.0;
-    if (!solved || change > kLargestEdgeChange) {
+    if (!solved || change > kLargestStepChange) {
       step *= 0.5;
       continue;
     }
@@ -59,7 +59,7 @@ bool relax_dynamically(const Model& model, const StaticLoads& loads, StaticNewto
     now.positions = here.coordinates;
     loads.follow(model, now);
     here = loads.at(model, now);
-    if (change < 0.5 * kLargestEdgeChange) step *= kGrowth;
+    if (change < 0.5 * kLargestStepChange) step *= kGrowth;
     if (change < change_for_newton) {
       if (newton.balance_nearby(loads, now).reached) {
         shape = std::move(now);

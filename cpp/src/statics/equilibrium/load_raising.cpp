@@ -14,7 +14,7 @@ namespace {
 /// A step changes no edge by more than this [rad], so that it stays on the path of equilibria.
 constexpr double kLargestChange = 0.25;
 /// The search gives up when a step has shrunk to this share of the loads.
-constexpr double kSmallestStep = 1.0 / 4096.0;
+constexpr double kSmallestShare = 1.0 / 4096.0;
 
 /// Takes the loads to a share of them. Returns whether `shape` is now an equilibrium near the one
 /// before; if not it stays as it was.
@@ -62,7 +62,7 @@ std::optional<FailedSearch> raise_loads(const Model& model, const StaticLoads& l
     if (take_step(model, loads, done + step, newton, now, failed)) {
       done += step;
       step = std::min(2.0 * step, 1.0 - done);
-    } else if (step *= 0.5; step < kSmallestStep) {
+    } else if (step *= 0.5; step < kSmallestShare) {
       return lost(done, failed);
     }
   }

@@ -14,7 +14,7 @@ namespace {
 /// A step changes no edge, and turns no clamp [rad], by more than this.
 constexpr double kLargestStep = 0.3;
 /// The first step of supports that need several, as a fraction of the whole motion.
-constexpr double kFirstStep = 1e-9;
+constexpr double kFirstTrial = 1e-9;
 /// A clamp has not moved yet if the edge beside it differs from its direction by less than this
 /// [rad]: that much the rod may bend there.
 constexpr double kBentBesideClamp = 1.0;
@@ -62,7 +62,7 @@ std::vector<double> move_supports(const Model& model, const StaticLoads& loads,
   if (!rotation.isZero(0.0)) {
     whole_turns = planar_whole_turns(model, {shape.positions, target_controls - rotation});
   }
-  double step = longest < 1.0 ? kFirstStep : 1.0;
+  double step = longest < 1.0 ? kFirstTrial : 1.0;
   for (double done = step; done < 1.0; done += step) {
     shape.positions += step * displacement;
     const StaticLoads on_the_way{target_controls - (1.0 - done) * rotation, loads.force};

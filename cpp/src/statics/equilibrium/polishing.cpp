@@ -7,7 +7,7 @@
 namespace der::statics {
 namespace {
 
-constexpr int kMaxSteps = 8;
+constexpr int kMaxPolishingSteps = 8;
 /// A step that moves a degree of freedom by more than this fraction of the size is not taken.
 constexpr double kLongestStep = 1e-1;
 /// The last step must be shorter than this fraction of the size.
@@ -29,7 +29,7 @@ bool polish(const Model& model, const Vector& force, const Stability& stability,
             Stiffness& stiffness, Configuration& here) {
   double length = std::numeric_limits<double>::infinity();
   Vector step;
-  for (int i = 0; i < kMaxSteps; ++i) {
+  for (int i = 0; i < kMaxPolishingSteps; ++i) {
     step = (force - stiffness.gradient())(model.dofs.free());
     const bool solved = solve_for_step(stiffness, stability, step);
     const double next = solved ? model.dofs.largest_motion(over_all_dofs(model, step)) : length;

@@ -3,7 +3,7 @@
     python tests/fuzz/run.py --seconds 60
     python tests/fuzz/run.py --only run_file_reader --seconds 3600
 
-Builds the preset `fuzz` (clang, libFuzzer), fuzzes each target for so long, and prints a table.
+Builds the fuzzers of the preset `asan-ubsan` (clang, libFuzzer), fuzzes each target for so long, and prints a table.
 Inputs that covered something new are kept in build/fuzz/corpus/ and are where the next run starts.
 Exits with 1 if an input crashes, hangs or takes too much memory; such inputs are in
 build/fuzz/findings/.
@@ -25,7 +25,8 @@ from pathlib import Path
 from dictionary import dictionary
 
 ROOT = Path(__file__).resolve().parents[2]
-BUILD = ROOT / "build" / "fuzz"
+BUILD = ROOT / "build" / "asan-ubsan"
+KEPT = ROOT / "build" / "fuzz"
 REGRESSIONS = Path(__file__).parent / "regressions"
 LEAKS = Path(__file__).parent / "leaks_of_hdf5.txt"
 
@@ -108,8 +109,8 @@ HEADER = (
 def build() -> None:
     """Build the fuzzers; what the compilers say is shown if they fail."""
     for command in (
-        ["cmake", "--preset", "fuzz"],
-        ["cmake", "--build", "--preset", "fuzz"],
+        ["cmake", "--preset", "asan-ubsan"],
+        ["cmake", "--build", "--preset", "asan-ubsan", "--target", "der_fuzzers"],
     ):
         done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
         if done.returncode:
@@ -147,8 +148,8 @@ def outcome_of(log: str) -> Outcome:
 
 def fuzz(target: Target, seconds: int, scratch: Path) -> Outcome:
     """Fuzz one target, from its seeds, its regressions and what earlier runs have kept."""
-    corpus = BUILD / "corpus" / target.name
-    findings = BUILD / "findings" / target.name
+    corpus = KEPT / "corpus" / target.name
+    findings = KEPT / "findings" / target.name
     for folder in (corpus, findings):
         folder.mkdir(parents=True, exist_ok=True)
     command = [

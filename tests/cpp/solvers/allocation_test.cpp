@@ -6,11 +6,12 @@
 #include <string>
 
 #include "der/catalog/quantities.hpp"
+#include "der/core/sanitizer.hpp"
 #include "der/output/recorder.hpp"
 #include "der/simulation.hpp"
 
 // The sanitizers bring their own allocator, which cannot be replaced; they do not look for this.
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__GLIBC__) && !DER_HAS_SANITIZER
 
 namespace {
 std::atomic<long> allocations{0};

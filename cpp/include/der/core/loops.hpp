@@ -2,6 +2,8 @@
 
 #include <string_view>
 
+#include "der/core/sanitizer.hpp"
+
 namespace der {
 
 /// The processors that the innermost loops are compiled for.
@@ -20,7 +22,7 @@ Loops loops();
 std::string_view name_of(Loops loops);
 
 // Sanitizers add so much to each call that the compiler would take minutes for a whole loop in one.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if DER_HAS_SANITIZER
 #define DER_INLINE_ALL
 #else
 #define DER_INLINE_ALL __attribute__((flatten))

@@ -3,7 +3,8 @@
     python tests/fuzz/run.py --seconds 60
     python tests/fuzz/run.py --only run_file_reader --seconds 3600
 
-Builds the fuzzers of the preset `asan-ubsan` (clang, libFuzzer), fuzzes each target for so long, and prints a table.
+Builds the fuzzers of the preset `asan-ubsan` (clang, libFuzzer), fuzzes each target for so long,
+and prints a table.
 Inputs that covered something new are kept in build/fuzz/corpus/ and are where the next run starts.
 Exits with 1 if an input crashes, hangs or takes too much memory; such inputs are in
 build/fuzz/findings/.

@@ -428,12 +428,14 @@ void PlanarChain::add_members(const PlanarChainConstants<T>& constants, const T*
   });
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): the argument is a type
 #define DER_INSTANTIATE(T)                                                                      \
   template PlanarChainConstants<T> PlanarChain::constants_of(const MemberModels<T>&) const;     \
   template void PlanarChain::add_members<Derivatives::Gradient>(const PlanarChainConstants<T>&, \
                                                                 const T*, T*, T*) const;        \
   template void PlanarChain::add_members<Derivatives::Hessian>(const PlanarChainConstants<T>&,  \
                                                                const T*, T*, T*) const;
+// NOLINTEND(bugprone-macro-parentheses)
 DER_FOR_MEMBER_LANES(DER_INSTANTIATE)
 #undef DER_INSTANTIATE
 

@@ -640,12 +640,14 @@ void SpatialChain::add_members(const SpatialChainConstants<T>& constants, const 
   });
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): the argument is a type
 #define DER_INSTANTIATE(T)                                                                       \
   template SpatialChainConstants<T> SpatialChain::constants_of(const MemberModels<T>&) const;    \
   template void SpatialChain::add_members<Derivatives::Gradient>(                                \
       const SpatialChainConstants<T>&, const T*, const T*, T*, T*) const;                        \
   template void SpatialChain::add_members<Derivatives::Hessian>(const SpatialChainConstants<T>&, \
                                                                 const T*, const T*, T*, T*) const;
+// NOLINTEND(bugprone-macro-parentheses)
 DER_FOR_MEMBER_LANES(DER_INSTANTIATE)
 #undef DER_INSTANTIATE
 

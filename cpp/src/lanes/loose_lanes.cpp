@@ -81,9 +81,11 @@ std::vector<std::unique_ptr<LooseKind<T>>> loose_kinds(const Assembler& assemble
   return kinds;
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): the argument is a type
 #define DER_INSTANTIATE(T)                                                          \
   template std::vector<std::unique_ptr<LooseKind<T>>> loose_kinds(const Assembler&, \
                                                                   const MemberModels<T>&);
+// NOLINTEND(bugprone-macro-parentheses)
 DER_FOR_MEMBER_LANES(DER_INSTANTIATE)
 #undef DER_INSTANTIATE
 

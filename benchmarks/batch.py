@@ -18,7 +18,8 @@
 
 Ways are taken in turns, and the best of several times counts, so that other work on the machine
 disturbs all alike. Seconds are those of the clock but for building, resets and
-peers: those of the CPU.
+peers: those of the CPU. Ends with exit code 1 if a member of a batch has other bits than its
+simulation.
 """
 
 from __future__ import annotations
@@ -88,8 +89,14 @@ def kinds() -> dict[str, der.Scenario]:
 
 def throughput(
     title: str, scene: der.Scenario, members: int, repeats: int, threads: Sequence[int]
-) -> None:
-    """Print swings a second of a loop and of batches on so many threads."""
+) -> bool:
+    """Print swings a second of a loop and of batches on so many threads.
+
+    Returns
+    -------
+    bool
+        Whether all have the same bits.
+    """
     steps = FRAMES * steps_per_frame(SWING)
     print(f"{members} {title}, loops {der.loops()}:")
     simulations = [der.Simulation(scene) for _ in range(members)]
@@ -121,6 +128,7 @@ def throughput(
     )
     lanes = ", ".join(str(batch.lanes) for batch in batches)
     print(f"  members in lanes: {lanes}; the same bits: {'yes' if same else 'NO'}")
+    return same
 
 
 def threads_in_words(batch: der.Batch) -> str:
@@ -206,7 +214,7 @@ def peers(repeats: int, quick: bool) -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Measure and print."""
+    """Measure and print; return the exit code."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -228,9 +236,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--peers", action="store_true", help="compare with other codes as well")
     options = parser.parse_args(arguments)
-    for title, scene in kinds().items():
-        members, repeats = (100, 2) if options.quick else (1000, 5)
+    members, repeats = (100, 2) if options.quick else (1000, 5)
+    same = [
         throughput(title, scene, members, repeats, options.threads)
+        for title, scene in kinds().items()
+    ]
     if options.cpp.exists():
         overheads(options.cpp, 3 if options.quick else 9)
     else:
@@ -238,7 +248,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     print_building(1000 if options.quick else 10_000)
     if options.peers:
         peers(2 if options.quick else 5, options.quick)
-    return 0
+    return 0 if all(same) else 1
 
 
 if __name__ == "__main__":

@@ -1,7 +1,25 @@
-"""The scene that tests of sweeps vary, and its rows for comparison bit by bit."""
+"""The scenes that tests of sweeps vary, and their rows for comparison bit by bit."""
 
 FORCE = "loads.0.point_force.force.1"
 STIFFNESS = "rods.arm.cross_section.stiffness.EI"
+
+#: A strip loaded in its stiff plane, out of which it buckles sideways; at -1 it does not.
+STRIP = {
+    "rods": [
+        {
+            "name": "strip",
+            "nodes": 11,
+            "from": [0, 0],
+            "to": [1, 0],
+            "cross_section": {
+                "stiffness": {"EA": 1e6, "EI1": 1, "EI2": 100, "GJ": 1, "mass_per_length": 1}
+            },
+        }
+    ],
+    "supports": [{"rod": "strip", "at": "start", "clamp": True}],
+    "loads": [{"point_force": {"rod": "strip", "at": "end", "force": [0, -20]}}],
+    "output": {"probes": {"tip_y": {"rod": "strip", "at": "end", "quantity": "y"}}},
+}
 
 
 def cantilever(nodes=11):

@@ -22,7 +22,7 @@ from der.sweeps.design import make_design
 from der.sweeps.store import FILE, Store, locked
 from der.sweeps.table import Column, Table
 from der.sweeps.values import Range, parse_values
-from sweep_scenes import FORCE, STIFFNESS, bits, cantilever
+from sweep_scenes import FORCE, STIFFNESS, STRIP, bits, cantilever
 
 
 class Here(Executor):
@@ -853,25 +853,6 @@ def test_findings_that_have_no_columns_left():
     )
     assert "x4" not in {column.name for column in store.columns}
     store.close()
-
-
-#: A strip loaded in its stiff plane, out of which it buckles sideways; at -1 it does not.
-STRIP = {
-    "rods": [
-        {
-            "name": "strip",
-            "nodes": 11,
-            "from": [0, 0],
-            "to": [1, 0],
-            "cross_section": {
-                "stiffness": {"EA": 1e6, "EI1": 1, "EI2": 100, "GJ": 1, "mass_per_length": 1}
-            },
-        }
-    ],
-    "supports": [{"rod": "strip", "at": "start", "clamp": True}],
-    "loads": [{"point_force": {"rod": "strip", "at": "end", "force": [0, -20]}}],
-    "output": {"probes": {"tip_y": {"rod": "strip", "at": "end", "quantity": "y"}}},
-}
 
 
 @pytest.mark.parametrize(

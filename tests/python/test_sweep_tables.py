@@ -1,4 +1,4 @@
-"""Sweeps as tables for other programs, and as pictures."""
+"""Sweeps as tables for other programs."""
 
 import csv
 import importlib
@@ -8,10 +8,7 @@ import der
 import numpy as np
 import pytest
 from der.cli import main
-from matplotlib.image import imread
 from sweep_scenes import FORCE, STIFFNESS, cantilever
-
-NODES = "rods.arm.nodes"
 
 CANTILEVER = cantilever()
 
@@ -102,50 +99,3 @@ def test_packages_that_are_missing(folder, tmp_path, monkeypatch):
         sweep.export("parquet", tmp_path / "x")
     with pytest.raises(ValueError, match="a sweep is not written as 'vtk'"):
         sweep.export("vtk", tmp_path / "x")
-
-
-@pytest.mark.parametrize(
-    ("vary", "axes"),
-    [
-        ({FORCE: "-2:0:5"}, 1),
-        ({NODES: [11, 21], FORCE: [-1]}, 1),  # one value is no axis
-        ({FORCE: "-2:0:5", STIFFNESS: [1.0, -1.0, 30.0]}, 2),  # with its colour bar
-        ({FORCE: "-2:0:3", STIFFNESS: [1.0, 2.0], NODES: [11, 1]}, 2),
-    ],
-)
-def test_pictures(vary, axes, tmp_path, capsys):
-    out = tmp_path / "s"
-    sweep = der.sweep(CANTILEVER, vary, out=out)
-    figure = sweep.plot()
-    assert len(figure.axes) == axes
-    texts = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
-    assert bool(texts) == bool(sweep.failed.any())
-    assert main(["plot", str(out), "--probes", "tip_y.max"]) == 0
-    assert capsys.readouterr().out == f"{out / 'plot.png'}\n"
-    assert imread(out / "plot.png").std() > 0.01
-
-
-def test_a_line_marks_failed_members_and_error_bars(tmp_path):
-    sweep = der.sweep(CANTILEVER, {STIFFNESS: [1.0, -1.0, 2.0]}, verify=True)
-    (axes,) = sweep.plot().axes
-    line, *_, crosses = axes.get_lines()
-    assert line.get_xdata().tolist() == [-1.0, 1.0, 2.0]
-    assert crosses.get_xdata().tolist() == [-1.0]
-    assert axes.get_legend().get_texts()[0].get_text() == "failed: 1 of 3"
-    assert len(axes.collections) == 1  # the bars
-
-
-def test_scattered_members_are_dots(tmp_path):
-    vary = {FORCE: "-2:0", STIFFNESS: "1:100:log"}
-    figure = der.sweep(CANTILEVER, vary, sample="sobol:16").plot(["tip_y"])
-    assert figure.axes[0].get_yscale() == "log"
-    assert len(figure.axes[0].collections[0].get_offsets()) == 16
-
-
-def test_pictures_that_are_refused(folder, capsys):
-    assert main(["plot", str(folder), "--probes", "tip_z"]) == 1
-    assert "no column 'tip_z'" in capsys.readouterr().err
-    assert main(["plot", str(folder), "--probes", "status"]) == 1
-    assert "no numbers to draw" in capsys.readouterr().err
-    assert main(["plot", str(folder), "--view", "xz"]) == 1
-    assert "neither times nor views" in capsys.readouterr().err

@@ -1,7 +1,8 @@
 """Draw a run or a sweep.
 
 A run shows its shapes, coloured by time, and its probes against time. A sweep shows its probes over
-its parameters: lines over one, maps over two, parallel axes over more; failed members are marked.
+its parameters: lines over one, maps over two, parallel axes over more. Failed and doubtful members
+are marked.
 """
 
 from __future__ import annotations

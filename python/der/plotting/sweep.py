@@ -6,8 +6,10 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
+import matplotlib as mpl
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
@@ -17,6 +19,7 @@ from numpy.typing import NDArray
 from der.errors import warn
 from der.plotting.style import (
     FIGURE_TITLE,
+    MUTED,
     PALETTE,
     WARNING,
     axis_label,
@@ -24,6 +27,7 @@ from der.plotting.style import (
     wrapped,
 )
 from der.sweeps.sweep_data import SweepData
+from der.sweeps.table import WARNINGS
 
 Array = NDArray[np.float64]
 
@@ -38,8 +42,19 @@ _MOST_LINES = 5000
 _WIDE = 20.0
 #: Letters of a line of an axis' name: on maps and parallel axes there is little room.
 _MAP_LETTERS, _PARALLEL_LETTERS = 28, 14
-#: How a failed member is marked.
+_NOTE = 9.0  # font size of what parallel axes do not show [points]
+#: How a failed member is marked, and one whose results are doubtful.
 _CROSS: dict[str, Any] = {"marker": "x", "color": WARNING, "linestyle": "none", "markersize": 5.0}
+_RING: dict[str, Any] = {
+    "marker": "o",
+    "color": PALETTE[1],
+    "markerfacecolor": "none",
+    "markeredgewidth": 1.2,
+    "linestyle": "none",
+    "markersize": 7.0,
+}
+#: How a member is marked that has not failed and has no value; the colour of its line.
+_DOT: dict[str, Any] = {"marker": ".", "color": MUTED, "linestyle": "none", "markersize": 5.0}
 
 
 class _Scale:
@@ -142,8 +157,56 @@ def _label(sweep: SweepData, name: str) -> str:
     return axis_label(name.removesuffix(".final"), sweep.column(name).unit)
 
 
-def _failures(sweep: SweepData) -> str:
-    return f"failed: {int(sweep.failed.sum())} of {len(sweep)}"
+class _Marks:
+    """The members that are marked, and what the legend says of them."""
+
+    def __init__(self, sweep: SweepData) -> None:
+        self.failed = sweep.failed
+        self.failures = f"failed: {int(self.failed.sum())} of {len(sweep)}"
+        doubts = _doubts(sweep)
+        self.doubtful = np.logical_or.reduce(list(doubts.values()))
+        counts = ", ".join(f"{why} {int(own.sum())}" for why, own in doubts.items() if own.any())
+        self.doubted = f"doubtful: {int(self.doubtful.sum())} of {len(sweep)} ({counts})"
+
+    def draw_rings(self, axes: Axes, across: Array, up: Array) -> None:
+        """Draw a ring about each of these places of doubtful members."""
+        if len(across):
+            axes.plot(across, up, **_RING, label=self.doubted)
+
+    def draw_crosses(self, axes: Axes, across: Array, up: Array, **options: Any) -> None:
+        """Draw a cross at each of these places of failed members."""
+        if len(across):
+            axes.plot(across, up, **_CROSS, **options, label=self.failures)
+
+    def draw_dots(self, axes: Axes, across: Array, up: Array, **options: Any) -> None:
+        """Draw a dot at each of these places of members without a value."""
+        if len(across):
+            axes.plot(across, up, **_DOT, **options, label="no value")
+
+
+def _legend_of(panels: NDArray[Any]) -> tuple[list[Artist], list[str]]:
+    """Return what the panels have to explain, each once."""
+    named: dict[str, Artist] = {}
+    for axes in panels.flat:
+        handles, labels = axes.get_legend_handles_labels()
+        named |= dict(zip(labels, handles, strict=True))
+    return list(named.values()), list(named)
+
+
+def _doubts(sweep: SweepData) -> dict[str, NDArray[np.bool_]]:
+    """Return, by reason, which members have not failed but have results that are doubtful."""
+    unknown = [None] * len(sweep)
+
+    def tells(column: str, nothing: Any = None) -> NDArray[np.bool_]:
+        told = [value not in (None, nothing) for value in sweep.values.get(column, unknown)]
+        return np.array(told, bool) & ~sweep.failed
+
+    return {
+        "unreliable": tells("unreliable_from"),
+        "with warnings": tells(WARNINGS),
+        "flagged": tells("flagged", nothing=0),
+        "not verified": tells("message"),
+    }
 
 
 def _plot_lines(sweep: SweepData, over: _Scale, names: list[str]) -> Figure:
@@ -156,7 +219,8 @@ def _plot_lines(sweep: SweepData, over: _Scale, names: list[str]) -> Figure:
         layout="constrained",
     )
     order = np.argsort(over.at, kind="stable")
-    failed = over.at[sweep.failed]
+    marks = _Marks(sweep)
+    failed = over.at[marks.failed]
     for axes, name in zip(panels[:, 0], names, strict=True):
         values = np.asarray(sweep[name], float)
         axes.plot(over.at[order], values[order], "o-", color=PALETTE[0], markersize=3.0)
@@ -165,21 +229,17 @@ def _plot_lines(sweep: SweepData, over: _Scale, names: list[str]) -> Figure:
             axes.errorbar(
                 over.at, values, bars, fmt="none", ecolor=PALETTE[0], capsize=2.0, elinewidth=1.0
             )
-        if len(failed):
-            low = np.zeros(len(failed))
-            axes.plot(
-                failed,
-                low,
-                transform=axes.get_xaxis_transform(),
-                clip_on=False,
-                **_CROSS,
-                label=_failures(sweep),
-            )
+        without = over.at[~marks.failed & ~np.isfinite(values)]
+        at_the_bottom = {"transform": axes.get_xaxis_transform(), "clip_on": False}
+        marks.draw_rings(axes, over.at[marks.doubtful], values[marks.doubtful])
+        marks.draw_dots(axes, without, np.zeros(len(without)), **at_the_bottom)
+        marks.draw_crosses(axes, failed, np.zeros(len(failed)), **at_the_bottom)
         axes.set_ylabel(_label(sweep, name))
         over.title(axes)
         axes.label_outer()
-    if len(failed):
-        panels[0, 0].legend(loc="best")
+    handles, labels = _legend_of(panels)
+    if handles:
+        panels[0, 0].legend(handles, labels, loc="best")
     figure.align_ylabels()
     return figure
 
@@ -196,18 +256,21 @@ def _plot_maps(sweep: SweepData, over: _Scale, up: _Scale, names: list[str]) -> 
     )
     for axes in panels.flat[len(names) :]:
         axes.set_axis_off()
+    marks = _Marks(sweep)
     for axes, name in zip(panels.flat, names, strict=False):
-        _draw_map(axes, over, up, np.asarray(sweep[name], float))
+        values = np.asarray(sweep[name], float)
+        _draw_map(axes, over, up, values)
         axes.set_title(_label(sweep, name), fontsize=10.0)
-        failed = sweep.failed
-        if failed.any():
-            axes.plot(over.at[failed], up.at[failed], **_CROSS, label=_failures(sweep))
+        without = ~marks.failed & ~np.isfinite(values)
+        marks.draw_rings(axes, over.at[marks.doubtful], up.at[marks.doubtful])
+        marks.draw_dots(axes, over.at[without], up.at[without])
+        marks.draw_crosses(axes, over.at[marks.failed], up.at[marks.failed])
         over.title(axes)
         up.title(axes, across=False)
         axes.label_outer()
         axes.grid(False)
-    if sweep.failed.any():
-        handles, labels = panels[0, 0].get_legend_handles_labels()
+    handles, labels = _legend_of(panels)
+    if handles:
         figure.legend(handles, labels, loc="outside lower center")
     return figure
 
@@ -238,36 +301,57 @@ def _plot_parallel(sweep: SweepData, varied: list[_Scale], names: list[str]) -> 
     scales = [*varied, *results]
     along = [scale.shares() for scale in scales]
     lines = np.column_stack([places for places, _, _ in along])
-    failed = sweep.failed
+    marks = _Marks(sweep)
+    sound = _few(np.flatnonzero(~marks.failed & ~marks.doubtful))
+    doubtful = _few(np.flatnonzero(marks.doubtful))
+    failed = _few(np.flatnonzero(marks.failed))
+    good = np.concatenate([sound, doubtful])
     figure, axes = plt.subplots(figsize=(_WIDTH, _PARALLEL_HEIGHT + 0.7), layout="constrained")
     x = np.arange(len(scales), dtype=float)
-    good = _few(np.flatnonzero(~failed & np.isfinite(lines).all(axis=1)))
-    bad = _few(np.flatnonzero(failed))
-    alpha = float(np.clip(30.0 / max(len(good), 1), 0.08, 0.7))
     _, low, high = along[len(varied)]
     drawn = LineCollection(
         [np.column_stack([x, line]) for line in lines[good]],
-        cmap=_COLOURS,
+        cmap=mpl.colormaps[_COLOURS].with_extremes(bad=MUTED),
         norm=Normalize(low, high),
         linewidths=0.9,
-        alpha=alpha,
+        alpha=float(np.clip(30.0 / max(len(good), 1), 0.08, 0.7)),
         rasterized=True,
     )
     drawn.set_array(results[0].at[good])
     axes.add_collection(drawn)
+    ends = _ends(lines[doubtful])
+    marks.draw_rings(axes, x[ends], lines[doubtful, ends])
     # A failed member has parameters and no results.
-    own = x[: len(varied)]
-    for number, line in enumerate(lines[bad, : len(varied)]):
-        label = _failures(sweep) if number == 0 else None
-        axes.plot(own, line, color=WARNING, linewidth=0.9, alpha=0.7, label=label)
-        axes.plot(own[-1], line[-1], **_CROSS)
+    own = lines[failed, : len(varied)]
+    segments = [np.column_stack([x[: len(varied)], line]) for line in own]
+    axes.add_collection(LineCollection(segments, colors=WARNING, linewidths=0.9, alpha=0.7))
+    marks.draw_crosses(axes, np.full(len(failed), len(varied) - 1.0), own[:, -1])
     _finish_parallel(axes, scales, along)
+    with_gaps = int((~np.isfinite(lines[good])).any(axis=1).sum())
+    note = _left_out(len(good) + len(failed), len(sweep), with_gaps)
+    axes.set_title(note, fontsize=_NOTE)
     bar = figure.colorbar(drawn, ax=axes, label=results[0].label)
     if bar.solids is not None:
         bar.solids.set_alpha(1.0)
-    if len(bad):
+    if axes.get_legend_handles_labels()[0]:
         figure.legend(loc="outside lower center")
     return figure
+
+
+def _ends(lines: Array) -> NDArray[np.intp]:
+    """Return the last axis on which each line has a place."""
+    known = np.isfinite(lines[:, ::-1])
+    return np.asarray(lines.shape[1] - 1 - np.argmax(known, axis=1))
+
+
+def _left_out(shown: int, members: int, with_gaps: int) -> str:
+    """Return in words what parallel axes do not show."""
+    told = []
+    if shown < members:
+        told.append(f"{shown} of {members} members are drawn: more lines would hide one another")
+    if with_gaps:
+        told.append(f"lines with gaps where a member has no value: {with_gaps}")
+    return "\n".join(told)
 
 
 def _finish_parallel(

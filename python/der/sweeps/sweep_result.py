@@ -66,7 +66,7 @@ class Sweep(SweepData):
         return export_sweep(self, format, out)
 
     def plot(self, columns: Sequence[str] | None = None) -> Figure:
-        """Draw columns over the parameters; failed members are marked.
+        """Draw columns over the parameters; failed and doubtful members are marked.
 
         Over one parameter a line, over two a map, over more parallel axes.
 

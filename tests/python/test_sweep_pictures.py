@@ -156,6 +156,14 @@ def test_parallel_axes_draw_members_without_some_values_with_gaps(over_three):
     assert axes.get_title(loc="left") == "lines with gaps where a member has no value: 2"
 
 
+def test_names_of_parallel_axes_are_broken_between_keys_and_words():
+    vary = {FORCE: [-40.0, -39.0], SIDEWAYS: [1.0, 2.0], "rods.strip.nodes": [11, 15]}
+    growth = der.sweep({**STRIP, "analysis": "modes"}, vary)
+    axes, _ = growth.plot(["growth rate out of plane"]).axes
+    names = [text.get_text() for text in axes.get_xticklabels()]
+    assert names[2:] == ["rods.strip.\nnodes", "growth rate\nout of plane\n[1/s]"]
+
+
 def test_parallel_axes_say_how_many_members_they_leave_out(over_three, monkeypatch):
     monkeypatch.setattr("der.plotting.sweep._MOST_LINES", 3)
     axes, good, failed, places = drawn_on_parallel_axes(over_three)

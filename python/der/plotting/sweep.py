@@ -382,14 +382,14 @@ def _few(rows: NDArray[np.intp]) -> NDArray[np.intp]:
     return np.asarray(rows[np.linspace(0, len(rows) - 1, _MOST_LINES).astype(int)])
 
 
-def _broken(path: str, letters: int) -> str:
-    """Return a key path in lines of at most so many letters, if its keys allow it."""
+def _broken(name: str, letters: int) -> str:
+    """Return a name in lines of at most so many letters, if its keys and words allow it."""
     lines = [""]
-    for key in re.findall(r"[^.]+\.?", path):
-        if lines[-1] and len(lines[-1]) + len(key) > letters:
+    for part in re.findall(r"(?:\[.*?\]|[^. ])+[. ]?", name):  # a unit in one piece
+        if lines[-1] and len(lines[-1]) + len(part.rstrip()) > letters:
             lines.append("")
-        lines[-1] += key
-    return "\n".join(lines)
+        lines[-1] += part
+    return "\n".join(line.rstrip() for line in lines)
 
 
 def _is_logarithmic(values: Array) -> bool:

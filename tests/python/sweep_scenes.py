@@ -42,6 +42,22 @@ def cantilever(nodes=11):
     }
 
 
+def of_each_kind():
+    """Return a cantilever for each kind of run, by name; all take any positive STIFFNESS."""
+    over_time, buckling = cantilever(), cantilever()
+    del over_time["analysis"]
+    over_time["time"] = {"duration": 0.1, "step": 0.002, "integrator": "implicit_midpoint"}
+    buckling["analysis"] = {"buckling": {"count": 2}}
+    buckling["loads"][0]["point_force"]["force"] = [-1, 0]
+    return {
+        "static": cantilever(),
+        "over time": over_time,
+        "modes": cantilever() | {"analysis": {"modes": {"count": 2}}},
+        "buckling": buckling,
+        "path": cantilever() | {"analysis": {"continuation": {}}},
+    }
+
+
 def bits(sweep):
     """Return the rows without their run times, floats as exact texts."""
     return [

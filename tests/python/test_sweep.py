@@ -22,7 +22,7 @@ from der.sweeps.design import make_design
 from der.sweeps.store import FILE, Store, locked
 from der.sweeps.table import Column, Table
 from der.sweeps.values import Range, parse_values
-from sweep_scenes import FORCE, STIFFNESS, STRIP, bits, cantilever
+from sweep_scenes import FORCE, STIFFNESS, STRIP, bits, cantilever, of_each_kind
 
 
 class Here(Executor):
@@ -378,11 +378,15 @@ def test_analyses_tell_what_they_find(cantilever):
 def test_a_path_tells_its_events():
     arch = der.load("configs/snap_through_arch.yaml", **{"analysis.continuation.branches": 0})
     stiffness = "rods.arch.cross_section.stiffness.EA"
-    (row,) = der.sweep(arch, {stiffness: [2e4]}).rows
+    (row,) = der.sweep(arch, {stiffness: [2e4]}, verify=True).rows
     alone = der.run(arch.with_(**{stiffness: 2e4}))
     event = alone.path.rows("bifurcation")[0]
     assert row["factor, bifurcation 1"] == alone.path.factor[event]
     assert row["top, bifurcation 1"] == alone.probes["top"][event]
+    verified = der.verify(arch.with_(**{stiffness: 2e4}), jobs=1)
+    for name in ("factor, bifurcation 1", "top, bifurcation 1"):
+        probe, _, event = name.partition(", ")
+        assert row[f"{name}.error"] == verified[probe, event].error_bar
 
 
 def test_failed_members_are_rows(cantilever):
@@ -524,15 +528,38 @@ def test_a_scene_without_probes_is_given_some(cantilever):
     assert sweep["arm_end_y"] < 0.0
 
 
-def test_verify_adds_error_bars(cantilever):
-    sweep = der.sweep(cantilever, {FORCE: [-1.0, -2.0], STIFFNESS: [1.0, -1.0]}, verify=True)
-    alone = der.verify(der.Scenario.from_dict(cantilever), jobs=1)
-    row = sweep.rows[0]
-    assert row["tip_y.final.error"] == alone["tip_y"].error_bar
+@pytest.mark.parametrize(
+    ("kind", "values"),
+    [
+        ("static", {"tip_y.final": "tip_y"}),
+        ("over time", {f"tip_y.{what}": ("tip_y", what) for what in ("final", "min", "max")}),
+        (
+            "modes",
+            {"tip_y.final": "tip_y", "frequency 1": "frequency 1", "frequency 2": "frequency 2"},
+        ),
+        (
+            "buckling",
+            {
+                "tip_y.final": "tip_y",
+                "load factor 1": "load factor 1",
+                "load factor 2": "load factor 2",
+            },
+        ),
+        ("path", {"tip_y, end": ("tip_y", "end")}),
+    ],
+)
+def test_verify_adds_error_bars(kind, values):
+    scene = of_each_kind()[kind]
+    sweep = der.sweep(scene, {STIFFNESS: [1.0, -1.0]}, verify=True)
+    alone = der.verify(der.Scenario.from_dict(scene), jobs=1)
+    row, failed = sweep.rows
+    bars = {name: bar for name, bar in row.items() if name.endswith(".error")}
+    assert bars == {f"{name}.error": alone[value].error_bar for name, value in values.items()}
+    assert all(0.0 < bar < np.inf for bar in bars.values())
+    for name in values:
+        assert sweep.column(f"{name}.error").unit == sweep.column(name).unit
     assert row["flagged"] == len(alone.flagged)
-    assert sweep.column("tip_y.final.error").unit == "m"
-    assert row["seconds"] > 0.0
-    assert sweep.rows[1]["tip_y.final.error"] is None
+    assert [failed[name] for name in bars] == [None] * len(bars)
 
 
 def test_frames_are_run_folders(cantilever, tmp_path):
@@ -544,15 +571,21 @@ def test_frames_are_run_folders(cantilever, tmp_path):
         der.sweep(cantilever, {FORCE: [-1.0]}, frames=True)
 
 
-def test_the_same_bits_in_threads_and_processes(cantilever, tmp_path):
-    vary = {FORCE: np.linspace(-5.0, 0.0, 37), STIFFNESS: [1.0, -1.0]}
-    reference = bits(der.sweep(cantilever, vary, jobs=1))
-    assert len(reference) == 74
-    assert bits(der.sweep(cantilever, vary, executor=Here())) == reference
-    for jobs in (2, 3):
-        assert bits(der.sweep(cantilever, vary, jobs=jobs)) == reference
+@pytest.fixture(scope="module")
+def processes():
     with ProcessPoolExecutor(2, get_context("spawn")) as pool:
-        assert bits(der.sweep(cantilever, vary, executor=pool, out=tmp_path / "s")) == reference
+        yield pool
+
+
+@pytest.mark.parametrize("kind", of_each_kind())
+def test_the_same_bits_in_threads_and_processes(kind, processes, tmp_path):
+    scene, vary = of_each_kind()[kind], {STIFFNESS: [*np.linspace(0.2, 2.0, 36), -1.0]}
+    reference = bits(der.sweep(scene, vary, jobs=1))
+    assert [row["message"] == "None" for row in reference] == [True] * 36 + [False]
+    assert bits(der.sweep(scene, vary, executor=Here())) == reference
+    for jobs in (2, 3):
+        assert bits(der.sweep(scene, vary, jobs=jobs)) == reference
+    assert bits(der.sweep(scene, vary, executor=processes, out=tmp_path / "s")) == reference
 
 
 def test_more_values_run_the_new_ones_alone(cantilever, tmp_path):
@@ -742,6 +775,25 @@ def test_the_command(scene, tmp_path, capsys):
             main(["sweep", str(scene), "--vary", f"{FORCE}=1", "--out", str(out), *option])
         assert caught.value.code == 2
         assert f"argument {option[0]}: '{option[1]}'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("options", [["--frames"], ["--verify"], ["--processes", "--jobs", "2"]])
+def test_the_command_with_options(options, scene, cantilever, tmp_path, capsys):
+    out = tmp_path / "s"
+    line = ["sweep", str(scene), "--vary", f"{FORCE}=-1,-2", "--out", str(out), *options]
+    assert main(line) == 0
+    assert "Cantilever: 2 members, none failed" in capsys.readouterr().out
+    swept = der.load_sweep(out)
+    alone = der.sweep(cantilever, {FORCE: [-1, -2]}, verify="--verify" in options)
+    assert bits(swept) == bits(alone)
+    assert ("tip_y.final.error" in swept.values) == ("--verify" in options)
+    folders = sorted(str(path.relative_to(out)) for path in out.glob("runs/*/*"))
+    kept = ["runs/0000/0000000", "runs/0000/0000001"] if "--frames" in options else []
+    assert folders == kept
+    for folder, row in zip(kept, swept.rows, strict=False):
+        run = der.open_run(out / folder)
+        assert run.probes["tip_y"].summary["final"] == row["tip_y.final"]
+    assert main([*line, "--resume"]) == 0
 
 
 @pytest.mark.parametrize(

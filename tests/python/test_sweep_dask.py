@@ -10,7 +10,7 @@ import pytest
 from der.cli import main
 from der.sweeps import sweeper
 from der.sweeps.executors import connect, place_for
-from sweep_scenes import FORCE, STIFFNESS, bits, cantilever
+from sweep_scenes import FORCE, STIFFNESS, bits, cantilever, of_each_kind
 
 distributed = pytest.importorskip("distributed")
 
@@ -52,6 +52,31 @@ def test_a_killed_worker_loses_no_row(cluster, tmp_path, monkeypatch):
         swept = der.sweep(SCENE, VARY, out=tmp_path / "s", executor=client, progress=kill)
     assert killed.is_set()
     assert bits(swept) == bits(der.sweep(SCENE, VARY))
+
+
+@pytest.mark.parametrize("kind", of_each_kind())
+def test_the_same_bits_in_threads_and_on_a_cluster(cluster, kind):
+    scene, vary = of_each_kind()[kind], {STIFFNESS: [*np.linspace(0.2, 2.0, 12), -1.0]}
+    with connect(cluster.scheduler_address) as client:
+        swept = der.sweep(scene, vary, executor=client)
+    assert bits(swept) == bits(der.sweep(scene, vary))
+
+
+@pytest.mark.parametrize("options", [[], ["--frames", "--verify"]], ids=["plain", "all"])
+def test_the_command(cluster, options, tmp_path, capsys):
+    path, out = tmp_path / "cantilever.yaml", tmp_path / "s"
+    path.write_text(der.Scenario.from_dict(cantilever()).to_yaml())
+    line = ["sweep", str(path), "--vary", f"{FORCE}=-2:0:12", "--out", str(out), *options]
+    before = cluster.scheduler.transition_counter
+    assert main([*line, "--dask", cluster.scheduler_address]) == 0
+    assert cluster.scheduler.transition_counter > before  # the cluster had something to do
+    assert "Cantilever: 12 members, none failed" in capsys.readouterr().out
+    swept = der.load_sweep(out)
+    assert bits(swept) == bits(der.sweep(cantilever(), {FORCE: "-2:0:12"}, verify=bool(options)))
+    folders = sorted(out.glob("runs/*/*"))
+    assert len(folders) == (12 if options else 0)
+    for folder, row in zip(folders, swept.rows, strict=False):
+        assert der.open_run(folder).probes["tip_y"].summary["final"] == row["tip_y.final"]
 
 
 def test_the_file_of_a_scheduler(cluster, tmp_path):

@@ -3,6 +3,7 @@
 import csv
 import importlib
 import os
+import sys
 
 import der
 import numpy as np
@@ -87,9 +88,7 @@ def test_parquet_of_words_beside_numbers(tmp_path):
     assert table["supports.0.at"].to_pylist() == ["start", "0"]
 
 
-def test_packages_that_are_missing(folder, tmp_path, monkeypatch):
-    import sys
-
+def test_packages_that_are_missing(folder, tmp_path, monkeypatch, capsys):
     for name in ("pandas", "pyarrow", "distributed"):
         monkeypatch.setitem(sys.modules, name, None)
     sweep = der.load_sweep(folder)
@@ -97,5 +96,9 @@ def test_packages_that_are_missing(folder, tmp_path, monkeypatch):
         sweep.to_pandas()
     with pytest.raises(ModuleNotFoundError, match="pyarrow"):
         sweep.export("parquet", tmp_path / "x")
+    line = ["sweep", "scene.yaml", "--vary", "a=1", "--out", str(tmp_path / "s")]
+    assert main([*line, "--dask", "tcp://127.0.0.1:8786"]) == 1
+    needed = "error: Dask needs the package distributed: pip install 'der[dask]'\n"
+    assert capsys.readouterr().err == needed
     with pytest.raises(ValueError, match="a sweep is not written as 'vtk'"):
         sweep.export("vtk", tmp_path / "x")

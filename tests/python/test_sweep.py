@@ -131,6 +131,9 @@ def test_designs():
     assert list(make_design({"a": whole, "b": range(1)})) == [(3, 0), (4, 0)]
     arrays = make_design({"a": np.array([[0.0, 1.0]]), "b": np.arange(2)})
     assert list(arrays) == [([0.0, 1.0], 0), ([0.0, 1.0], 1)]
+    rows = {(1, 0), (1.0, 0.5), (2, 1.0), (3, 0.0), (1, 3), (1, 4)}
+    assert (product.count_among(rows), zipped.count_among(rows)) == (3, 2)
+    assert arrays.count_among({(json.dumps([0.0, 1.0]), 1), (1, 1)}) == 1
 
 
 def test_samples_are_those_of_scipy():
@@ -190,8 +193,11 @@ def test_products_that_nobody_waits_for(scene, tmp_path, capsys):
     assert not (tmp_path / "s").exists()
 
 
-def test_a_large_product_begins_at_once(scene):
-    """Also where texts have to be looked at: the unit of a probe must not depend on them."""
+def test_a_large_product_begins_at_once(scene, tmp_path):
+    """Also where texts have to be looked at: the unit of a probe must not depend on them.
+
+    And where it goes on from a row: its 2e8 members are not counted one by one, which took minutes.
+    """
 
     class Begun(Exception):
         pass
@@ -205,6 +211,10 @@ def test_a_large_product_begins_at_once(scene):
     begun = time.monotonic()
     with pytest.raises(Begun):
         der.sweep(scene, vary, executor=Begins())
+    out = tmp_path / "s"
+    assert len(der.sweep(scene, {FORCE: [-2.0], STIFFNESS: [1.0], probe: ["x"]}, out=out)) == 1
+    with pytest.raises(Begun):
+        der.sweep(scene, vary, executor=Begins(), out=out, resume=True)
     assert time.monotonic() - begun < 20.0
 
 

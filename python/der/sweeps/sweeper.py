@@ -270,10 +270,8 @@ class _Sweeper:
         done, again = store.finished(design.paths), store.failed_for_surroundings(design.paths)
         first = store.request(design)
         self._left = _unfinished(enumerate(design, first), done, again)
-        # With rows of other requests among `done`, the members of this one have to be counted.
-        self._total = len(design) - (
-            sum(tuple(map(stored, member)) in done for member in design) if done else 0
-        )
+        # Among `done` there may be rows of other requests.
+        self._total = len(design) - (design.count_among(done) if done else 0)
         self._taken = self._finished = 0
         self._seconds = 0.0
         self._again: deque[Chunk] = deque()

@@ -12,6 +12,7 @@
 
 namespace der {
 
+/// A register of `N` numbers; `fill` sets all of them to one, and `any` asks whether a bit is set.
 template <int N>
 struct LaneRegister;
 // A `using` cannot have this attribute, and GCC does not take it with the size of a template.
@@ -20,17 +21,35 @@ template <>
 struct LaneRegister<2> {
   typedef double type __attribute__((vector_size(16)));
   typedef std::int64_t bits __attribute__((vector_size(16)));
+  static void fill(double x, type& all) { all = type{x, x}; }
+  static bool any(const bits& b) { return (b[0] | b[1]) != 0; }
 };
 // Eigen aligns its matrices to 16 bytes.
 template <>
 struct LaneRegister<4> {
   typedef double type __attribute__((vector_size(32), aligned(16)));
   typedef std::int64_t bits __attribute__((vector_size(32), aligned(16)));
+  static void fill(double x, type& all) { all = type{x, x, x, x}; }
+  static bool any(const bits& b) {
+    const bits halves = b | __builtin_shufflevector(b, b, 2, 3, 0, 1);
+    return (halves[0] | halves[1]) != 0;
+  }
 };
 template <>
 struct LaneRegister<8> {
   typedef double type __attribute__((vector_size(64), aligned(16)));
   typedef std::int64_t bits __attribute__((vector_size(64), aligned(16)));
+  // Of eight numbers in a list GCC 12 puts each one in its place, even where they are equal.
+  static void fill(double x, type& all) {
+    type first{};
+    first[0] = x;
+    all = __builtin_shufflevector(first, first, 0, 0, 0, 0, 0, 0, 0, 0);
+  }
+  static bool any(const bits& b) {
+    const bits halves = b | __builtin_shufflevector(b, b, 4, 5, 6, 7, 0, 1, 2, 3);
+    const bits quarters = halves | __builtin_shufflevector(halves, halves, 2, 3, 0, 1, 6, 7, 4, 5);
+    return (quarters[0] | quarters[1]) != 0;
+  }
 };
 // NOLINTEND(modernize-use-using)
 
@@ -55,8 +74,9 @@ class Lanes {
     return *this;
   }
   // Not explicit: a constant of a formula is the same in all lanes.
-  Lanes(double value)  // NOLINT(google-explicit-constructor)
-      : Lanes([&](int /*lane*/) { return value; }, All{}) {}
+  Lanes(double value) {  // NOLINT(google-explicit-constructor)
+    LaneRegister<N>::fill(value, values_);
+  }
   /// One number for each lane.
   template <class... Rest, class = std::enable_if_t<sizeof...(Rest) + 1 == N>>
   Lanes(double first, Rest... rest)  // NOLINT(google-explicit-constructor)
@@ -110,9 +130,7 @@ class Lanes {
     Bits misses;
     const Register miss = a.values_ < b.values_ ? Lanes(0.0).values_ : Lanes(1.0).values_;
     std::memcpy(&misses, &miss, sizeof misses);
-    std::int64_t any = 0;
-    for (int lane = 0; lane < N; ++lane) any |= misses[lane];
-    return any == 0;
+    return !LaneRegister<N>::any(misses);
   }
   friend Lanes abs(const Lanes& x) {
     Bits bits;

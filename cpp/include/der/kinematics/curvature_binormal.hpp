@@ -1,8 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
+#include "der/core/constants_in_turn.hpp"
 #include "der/core/lanes.hpp"
 #include "der/kinematics/curvature_measure.hpp"
 
@@ -50,22 +53,32 @@ struct Binormal<AngleCurvature> {
  private:
   static constexpr double kSmall = 0.125;
 
-  /// f = sum of c_n u^n with c_{n+1}/c_n = (n + 1)/(2 n + 3): its terms from n = 2 on.
+  /// f = sum of c_n u^n. These are c_{n+1}/c_n = (n + 1)/(2 n + 3) for n = 14 .. 2.
+  static constexpr std::array<double, 13> kQuotients = [] {
+    std::array<double, 13> quotients{};
+    for (std::size_t i = 0; i < quotients.size(); ++i) {
+      const double n = 14.0 - static_cast<double>(i);
+      quotients[i] = (n + 1.0) / (2.0 * n + 3.0);
+    }
+    return quotients;
+  }();
+
+  /// The terms of f from n = 2 on, over u^2.
   template <class T>
   static T series(const T& u) {
     T sum = 1.0;
-    for (int n = 14; n >= 2; --n) sum = 1.0 + sum * u * ((n + 1.0) / (2.0 * n + 3.0));
+    for_each_constant<kQuotients>([&](double quotient) { sum = 1.0 + sum * u * quotient; });
     return 2.0 / 15.0 * sum;
   }
-  static double second_quotient(double u) {
-    if (u < kSmall) return series(u);
-    const double f = std::acos(std::max(-1.0, 1.0 - u)) / std::sqrt(u * (2.0 - u));
-    return (f - 1.0 - u / 3.0) / (u * u);
-  }
-  template <int N>
-  static Lanes<N> second_quotient(const Lanes<N>& u) {
-    if (in_all_lanes<Lanes<N>>([&](int lane) { return u.lane(lane) < kSmall; })) return series(u);
-    return in_lanes<Lanes<N>>([&](int lane) { return second_quotient(u.lane(lane)); });
+  template <class T>
+  static T second_quotient(const T& u) {
+    if (all_less<T>(u, kSmall)) return series(u);
+    if constexpr (LaneTraits<T>::kCount == 1) {
+      const double f = std::acos(std::max(-1.0, 1.0 - u)) / std::sqrt(u * (2.0 - u));
+      return (f - 1.0 - u / 3.0) / (u * u);
+    } else {
+      return in_lanes<T>([&](int lane) { return second_quotient(u.lane(lane)); });
+    }
   }
 };
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 
+#include "der/core/constants_in_turn.hpp"
 #include "der/core/lanes.hpp"
 
 namespace der {
@@ -12,16 +14,18 @@ struct SineAndCosine {
   T cosine;
 };
 
+/// Powers of the terms of the sine's series, the last one first.
+constexpr std::array<double, 8> kSinePowers{17.0, 15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0};
 /// For |x| <= pi/4: power series, exact to rounding.
 template <class T>
 SineAndCosine<T> small_sine_and_cosine(const T& x) {
   const T u = x * x;
   T sine = 1.0;
   T cosine = 1.0;
-  for (const double n : {17.0, 15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0}) {
+  for_each_constant<kSinePowers>([&](double n) {
     sine = 1.0 - u * (1.0 / (n * (n - 1.0))) * sine;
     cosine = 1.0 - u * (1.0 / ((n - 1.0) * (n - 2.0))) * cosine;
-  }
+  });
   return {x * sine, cosine};
 }
 

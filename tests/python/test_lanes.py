@@ -252,32 +252,37 @@ def test_all_runge_kutta_methods_go_in_lanes(name: str, integrator: str) -> None
     assert_all_as_alone(scene, 9, 1, WIDEST)
 
 
+@pytest.mark.parametrize("name", ["clamped", "wire", "strip"])
 @pytest.mark.parametrize("threads", [1, 2, 3, 16])
-def test_threads_do_not_change_the_bits(threads: int) -> None:
-    assert_all_as_alone(
-        SCENES["clamped"], 17, threads, {1: WIDEST, 2: WIDEST, 3: 4, 16: 1}[threads]
-    )
+def test_threads_do_not_change_the_bits(threads: int, name: str) -> None:
+    assert_all_as_alone(SCENES[name], 17, threads, {1: WIDEST, 2: WIDEST, 3: 4, 16: 1}[threads])
 
 
+def test_lanes_on_many_threads() -> None:
+    """A full group and a part of one for each of sixteen threads."""
+    assert_all_as_alone(SCENES["strip"], 16 * WIDEST + 3, 16, WIDEST)
+
+
+@pytest.mark.parametrize("name", ["clamped", "wire", "strip"])
 @pytest.mark.parametrize("loops", ["plain", "avx2"])
-def test_other_loops_have_the_same_bits(loops: str) -> None:
+def test_other_loops_have_the_same_bits(loops: str, name: str) -> None:
     if loops == "avx2" and der.loops() == "plain":
         pytest.skip("this processor has no AVX2")
     code = """if True:
-        import sys, der, numpy as np
+        import sys, der
         from test_lanes import SCENES, state_of
-        batch = der.Batch(SCENES["clamped"], 9, 1)
+        batch = der.Batch(SCENES[sys.argv[1]], 9, 1)
         batch.step(30)
         sys.stdout.buffer.write(state_of(batch, 8))
     """
     done = subprocess.run(
-        [sys.executable, "-c", code],
+        [sys.executable, "-c", code, name],
         cwd=Path(__file__).parent,
         env={**os.environ, "DER_LOOPS": loops},
         capture_output=True,
         check=True,
     )
-    one = der.Simulation(SCENES["clamped"])
+    one = der.Simulation(SCENES[name])
     one.step(30)
     assert done.stdout == state_of(one)
 

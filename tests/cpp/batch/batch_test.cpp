@@ -71,14 +71,40 @@ TEST_CASE("members have the bits of simulations on their own, on any number of t
   }
 }
 
+/// A scene whose members go in lanes, and what is varied in it.
+struct LaneSample {
+  const char* text;
+  std::vector<Override> changes;
+  std::string varied;
+  double value;
+};
+const std::vector<LaneSample> kLaneSamples{
+    {kPlanar,
+     {{"supports.0.prescribe", "{x: 0}"}, {"time.integrator", "implicit_midpoint"}},
+     "rods.rod.cross_section.stiffness.EI",
+     1e-2},
+    {kPlanar,
+     {{"supports.0.prescribe", "{x: 0}"}, {"time.integrator", "tr_bdf2"}},
+     "rods.rod.cross_section.stiffness.EI",
+     1e-2},
+    {kSpatial,
+     {{"model", "spatial_bend"},
+      {"supports.0.clamp", "tangent"},
+      {"time.integrator", "implicit_midpoint"}},
+     "rods.rod.material.youngs_modulus",
+     1e7},
+    {kSpatial,
+     {{"model", "spatial"}, {"time.integrator", "implicit_midpoint"}},
+     "rods.rod.material.youngs_modulus",
+     1e7},
+};
+
 TEST_CASE("members in lanes have the bits of simulations on their own, on any number of threads") {
   constexpr std::size_t kMembers = 19;
-  const std::string varied_path = "rods.rod.cross_section.stiffness.EI";
-  for (const char* integrator : {"implicit_midpoint", "tr_bdf2"}) {
-    CAPTURE(integrator);
-    const Scenario scene = Scenario::parse(
-        kPlanar, "scene", {{"supports.0.prescribe", "{x: 0}"}, {"time.integrator", integrator}});
-    const Variation variation = varied(varied_path, 1e-2, kMembers);
+  for (const LaneSample& sample : kLaneSamples) {
+    CAPTURE(sample.varied);
+    const Scenario scene = Scenario::parse(sample.text, "scene", sample.changes);
+    const Variation variation = varied(sample.varied, sample.value, kMembers);
     for (const int threads : {1, 2, 4}) {
       CAPTURE(threads);
       Batch batch(scene, kMembers, {variation}, threads, no_beat);
@@ -88,11 +114,44 @@ TEST_CASE("members in lanes have the bits of simulations on their own, on any nu
       batch.step(5, no_beat);
       for (std::size_t i = 0; i < kMembers; ++i) {
         CAPTURE(i);
-        Simulation alone(with_values(scene, {{varied_path, variation.values[i]}}));
+        Simulation alone(with_values(scene, {{sample.varied, variation.values[i]}}));
         for (int step = 0; step < (i == 3 ? 5 : 25); ++step) alone.step();
         CHECK(difference(batch, i, alone) == "");
       }
     }
+  }
+}
+
+TEST_CASE("members that fail or take a step in parts do it beside others in their lanes") {
+  constexpr std::size_t kMembers = 16;
+  for (const LaneSample& sample : kLaneSamples) {
+    CAPTURE(sample.varied);
+    const Scenario scene = Scenario::parse(sample.text, "scene", sample.changes)
+                               .with({{"time.step", "0.25"},
+                                      {"time.duration", "10"},
+                                      {"time.allow_unstable", "true"},
+                                      {"output.every", "0.25"}});
+    // Steps far too long for the motion of all but the stiff ones.
+    Variation variation = varied(sample.varied, sample.value, kMembers);
+    for (std::size_t i = 1; i < kMembers; i += 3) {
+      variation.values[i] = scenario::make_scalar(sample.value * (i % 2 == 0 ? 1e4 : 0.1));
+    }
+    Batch batch(scene, kMembers, {variation}, 2, no_beat);
+    REQUIRE(batch.lanes() >= 4);
+    batch.step(2, no_beat);
+    batch.positions()(5, batch.model().dof(4, 1)) = std::numeric_limits<double>::quiet_NaN();
+    batch.step(6, no_beat);
+    std::int64_t retried = 0;
+    for (std::size_t i = 0; i < kMembers; ++i) {
+      CAPTURE(i);
+      CHECK(batch.failed()[i] == (i == 5 ? 1 : 0));
+      if (i == 5) continue;
+      Simulation alone(with_values(scene, {{sample.varied, variation.values[i]}}));
+      for (int step = 0; step < 8; ++step) alone.step();
+      retried += alone.counters().retried_steps;
+      CHECK(difference(batch, i, alone) == "");
+    }
+    CHECK(retried > 0);
   }
 }
 

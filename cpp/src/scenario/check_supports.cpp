@@ -124,7 +124,18 @@ void check_spring(CheckContext& context, int number) {
        c < std::min(static_cast<std::size_t>(context.dimension), stiffness.size()); ++c) {
     if (stiffness[c] > 0.0) report_if_held(axes[c], "stiffness");
   }
-  if (turns) report_if_held(Hold::Angle, "rotational_stiffness");
+  if (!turns) return;
+  const Support* clamp = context.clamp_at(*rod, nodes->front());
+  if (context.dimension == 3 && clamp != nullptr && clamp->clamp == Clamp::Tangent) {
+    context.diagnostics.add(
+        here / "rotational_stiffness",
+        fmt::format("'clamp: tangent' holds the tangent at node {} of rod '{}', and a spring "
+                    "against turning has to be at another place, one about the tangent, too: a "
+                    "quarter of an edge from the node, say",
+                    nodes->front(), support.rod));
+    return;
+  }
+  report_if_held(Hold::Angle, "rotational_stiffness");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Batches against a loop over simulations of the same scene: one step of all, where each member's
 // memory comes from afar in both, and many steps of each member after another. Compare lines of one
-// run. Arguments: nodes; members; steps. benchmarks/batch.py runs these.
+// run. Arguments: nodes; members; steps; whether members go in lanes. Those that do not show what a
+// batch costs beyond its members. benchmarks/batch.py runs these.
 #include <benchmark/benchmark.h>
 
 #include <cstdint>
@@ -13,7 +14,8 @@
 namespace der {
 namespace {
 
-Scenario swing(std::int64_t nodes) {
+/// A clamp whose angle is set keeps members out of lanes.
+Scenario swing(std::int64_t nodes, bool in_lanes) {
   return Scenario::parse(R"(
 rods:
   - name: rod
@@ -23,7 +25,8 @@ rods:
     to: [1, 0]
     cross_section: {circle: {radius: 0.01}}
     material: {youngs_modulus: 1e7, density: 1000}
-supports: [{rod: rod, at: start, clamp: true}]
+supports: [{rod: rod, at: start, clamp: true, prescribe: {)" +
+                         (in_lanes ? "x: 0" : "angle: 0") + R"(}}]
 loads: [{gravity: [0, -9.81]}]
 time: {duration: 1, step: 0.0025, integrator: implicit_midpoint}
 solver: {residual_tolerance: 1e-3, step_tolerance: 1e-3}
@@ -31,7 +34,7 @@ solver: {residual_tolerance: 1e-3, step_tolerance: 1e-3}
 }
 
 void loop_over_simulations(benchmark::State& state) {
-  const Scenario scene = swing(state.range(0));
+  const Scenario scene = swing(state.range(0), state.range(3) != 0);
   std::vector<std::unique_ptr<Simulation>> simulations;
   simulations.push_back(std::make_unique<Simulation>(scene));
   for (std::int64_t i = 1; i < state.range(1); ++i) {
@@ -52,7 +55,7 @@ void loop_over_simulations(benchmark::State& state) {
 
 void batch(benchmark::State& state) {
   const auto members = static_cast<std::size_t>(state.range(1));
-  Batch batch(swing(state.range(0)), members, {}, 1, {});
+  Batch batch(swing(state.range(0), state.range(3) != 0), members, {}, 1, {});
   for (auto _ : state) {
     state.PauseTiming();
     for (std::size_t i = 0; i < members; ++i) batch.reset(i, nullptr);
@@ -63,10 +66,9 @@ void batch(benchmark::State& state) {
 }
 
 void arguments(benchmark::internal::Benchmark* each) {
-  each->ArgNames({"nodes", "members", "steps"})
-      ->Args({3, 1000, 1})
-      ->Args({51, 1000, 1})
-      ->Args({25, 200, 100})
+  each->ArgNames({"nodes", "members", "steps", "lanes"})
+      ->ArgsProduct({{3, 51}, {1000}, {1}, {0, 1}})
+      ->ArgsProduct({{25}, {200}, {100}, {0, 1}})
       ->Unit(benchmark::kMicrosecond);
 }
 

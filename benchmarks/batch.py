@@ -11,6 +11,8 @@
    of benchmarks/peers.py, which twists, with as many elements and steps (`spatial`).
 2. One step of all of many short rods: a loop in C++ against `Batch`, by the Google benchmarks
    `batch` and `loop_over_simulations` of der_benchmarks (`--cpp`; left out if it is not built).
+   Members one by one, which a prescribed angle keeps out of lanes, show what a step of a batch
+   costs beyond its members' own.
 3. Building, memory and resets of members of 51 nodes, of one scene and with a modulus of its own
    for each.
 4. With `--peers` (`pip install .[peers]`): swings for a second of one core in a batch of `der`, in
@@ -28,7 +30,6 @@ import argparse
 import functools
 import json
 import multiprocessing
-import os
 import subprocess
 import sys
 import time
@@ -44,6 +45,7 @@ from comparison.run_der import controls, implicit, run_batch
 from comparison.scene import FRAMES, distance, steps_per_frame
 from comparison.strip import code_der as strip
 from comparison.swing import batches, code_der, problem
+from memory import resident
 
 SWING = implicit(24, 3, "implicit_midpoint")
 ROOT = Path(__file__).resolve().parents[1]
@@ -157,17 +159,12 @@ def overheads(program: Path, repeats: int) -> None:
         loop = best[f"loop_over_simulations/{case}"]
         size = dict(part.split(":") for part in case.split("/"))
         members = int(size["members"])
+        how = "in lanes" if int(size["lanes"]) else "one by one"
         print(
-            f"{size['nodes']} nodes, {members} members, {size['steps']} steps: own "
+            f"{size['nodes']} nodes, {members} members {how}, {size['steps']} steps: own "
             f"{loop / members:.2f} us a member, beyond that {(batch - loop) / members:+.3f} us; "
             f"loop over batch {loop / batch:.3f}"
         )
-
-
-def resident() -> int:
-    """Return the bytes of memory that this process holds (Linux only)."""
-    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
-    return pages * os.sysconf("SC_PAGE_SIZE")
 
 
 def building(members: int, varies: bool) -> dict[str, float]:

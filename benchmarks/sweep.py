@@ -5,6 +5,7 @@
 Sweeps equilibria of a cantilever with 51 nodes, the cheapest members there are. The share that is
 not the engine's is measured in CPU time on one thread, in turns with a loop that does nothing but
 vary the scene, build the simulation and run it, so that other work on the machine counts little.
+The memory of this process is that of the driver, with Dask also that of the scheduler.
 The sweep that is meant has 100,000 members, and takes some minutes. Ends with exit code 1 if not
 all ways have the same rows, bit for bit but for their cost.
 """
@@ -24,6 +25,7 @@ from pathlib import Path
 import der
 from der import _core
 from der.sweeps.chunk import Chunk, run_chunk
+from memory import resident
 
 FORCE = "loads.0.point_force.force.1"
 CHUNKS = 60  # without members, for the overhead of a chunk
@@ -103,17 +105,27 @@ def digest(sweep: der.Sweep) -> str:
 def show_rows(
     label: str, scene: der.Scenario, members: int, executor: object = None, jobs: int | None = None
 ) -> str:
-    """Print how fast a sweep with a file is, and how large the file; return its digest."""
+    """Print how fast a sweep with a file is, what it takes; return its digest."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "s"
         vary = {FORCE: f"-5:0:{members}"}
         begun, cpu = time.perf_counter(), time.process_time()
-        sweep = der.sweep(scene, vary, out=out, executor=executor, jobs=jobs)
+        held: list[tuple[float, int]] = []
+
+        def note_memory(done: float) -> None:
+            held.append((done, resident()))
+
+        sweep = der.sweep(scene, vary, out=out, executor=executor, jobs=jobs, progress=note_memory)
         wall, cpu = time.perf_counter() - begun, time.process_time() - cpu
         size = (out / "sweep.sqlite").stat().st_size
         print(
             f"{label}: {members} rows in {wall:.1f} s ({members / wall:.0f} a second; {cpu:.1f} s "
             f"of CPU time in this process), {size / 1e6:.1f} MB ({size / members:.0f} bytes a row)"
+        )
+        early = next(bytes_held for done, bytes_held in held if done >= 0.1)
+        print(
+            f"  memory of this process: {early / 1e6:.0f} MB when a tenth of the rows is there, "
+            f"{held[-1][1] / 1e6:.0f} MB when all are"
         )
         return digest(sweep)
 

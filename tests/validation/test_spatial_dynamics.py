@@ -189,6 +189,36 @@ def test_ledger_of_a_clamp_that_turns_and_twists(fitted_order, stepper):
     assert np.abs(supports[-1]) < 1e-4 * fine.work["supports"][-1]
 
 
+def moment_beside_turning_clamp(stepper, step):
+    """A moment on the edge of a clamp that turns about an oblique axis: the clamp moves the edge
+    and has a part of the moment."""
+    soft = section([0, 1, 0], EA=20.0, EI1=0.05, EI2=0.03, GJ=0.02, rotary_inertia=2e-3)
+    angle = {"times": [0, 0.1, 0.2], "values": [0, 0.9, 0.2]}
+    turn = {"rotation": {"axis": [0, 1, 0.3], "angle": angle}}
+    values = {"times": [0, 0.1, 0.2], "values": [[0, 0, 0], [0.02, 0.05, 0.03], [0.04, -0.02, 0]]}
+    return der.run(
+        straight_rod(
+            6,
+            soft,
+            supports=[{**START, "clamp": True, "prescribe": turn}],
+            loads=[{"moment": {"rod": "rod", "at": 0.03, "moment": values}}],
+            time={"duration": 0.2, "step": step, "integrator": stepper},
+            output={"every": 0.01},
+        )
+    ).work
+
+
+@pytest.mark.parametrize("stepper", ["newmark", "tr_bdf2", "sdirk4", "verlet"])
+def test_works_of_a_moment_beside_a_clamp_that_turns(fitted_order, stepper):
+    """They had an error of order 1: the turn that the transport of frames gives the edge is no turn
+    of its section."""
+    steps = [5e-4, 2.5e-4, 1.25e-4]
+    fine = moment_beside_turning_clamp("sdirk5", 2e-5)["loads"]
+    works = [moment_beside_turning_clamp(stepper, step) for step in steps]
+    assert fitted_order(steps, [np.abs(w["numerical"]).max() for w in works]) > 1.9
+    assert fitted_order(steps, [np.abs(w["loads"] - fine).max() for w in works]) > 1.9
+
+
 @pytest.mark.parametrize("stepper", ["tr_bdf2", "newmark", "sdirk4"])
 def test_adaptive_steps_keep_their_tolerance(stepper):
     fine, _ = held_and_turned("sdirk4", step=0.5 / 8192)

@@ -91,6 +91,7 @@ void DenseOutput::add_table_powers(const State& where, const State& start, const
   evaluate_controls(model_, end, end.time, after_.controls);
   controls_ = 0.5 * (after_.controls - before_.controls);
   evaluate_controls(model_, end, where.time, before_.controls);
+  enter_followed(model_, where.followed, before_.controls);  // as at the ends of steps
   after_.controls = before_.controls + controls_;
   before_.controls -= controls_;
   const double dt = end.time - start.time;

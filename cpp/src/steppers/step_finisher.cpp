@@ -3,21 +3,24 @@
 #include "der/model/gravity.hpp"
 #include "der/model/moment_place.hpp"
 #include "der/model/prescribed_motion.hpp"
-#include "der/steppers/work.hpp"
+#include "der/supports/clamp.hpp"
 
 namespace der {
 
 StepFinisher::StepFinisher(const Model& model)
     : model_(model),
+      controls_work_(any_clamp_turns(model) || model.rest_shape.is_actuated()),
       start_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
-      end_(start_) {}
+      end_(start_),
+      ahead_(start_),
+      behind_(start_) {}
 
 void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector>& velocities,
                           double dt, State& state) {
   configuration_of(model_, state, start_);
   end_.coordinates = positions;
   evaluate_controls(model_, state, state.time + dt, end_.controls);
-  const ControlWork work = control_work(model_, start_, end_);
+  const ControlWork work = follow_and_work(dt, state);
   state.work.loads += work.loads;
   state.work.supports += work.supports;
   state.work.actuation += work.actuation;
@@ -38,8 +41,29 @@ void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector
     state.velocities[dof] = velocities[dof];
     state.positions[dof] = positions[dof];
   }
-  follow(model_, state.positions, end_.controls, state.followed);
   state.last_step = dt;
+}
+
+/// Moves what `state` follows to the end of the step, and returns the works of its controls: the
+/// mean of those of their whole change at the start and at the end. There each has the frames of
+/// its own place. Seen from the frames of the start, the edge that a clamp moves at the end turns
+/// its section by the transport from there, which is no turn that the clamp makes: the spin of
+/// sections takes that up (model/spin.hpp). Its work with the edge's torque is of the second order
+/// in each step.
+ControlWork StepFinisher::follow_and_work(double dt, State& state) {
+  if (controls_work_) {
+    ahead_.coordinates = start_.coordinates;
+    ahead_.controls = end_.controls;
+  }
+  follow(model_, end_.coordinates, end_.controls, state.followed);
+  enter_followed(model_, state.followed, end_.controls);
+  if (!controls_work_) return {};
+  behind_.coordinates = end_.coordinates;
+  evaluate_controls(model_, state, state.time, behind_.controls);
+  const ControlWork first = control_work(model_, start_, ahead_);
+  const ControlWork last = control_work(model_, behind_, end_);
+  return {0.5 * (first.supports + last.supports), 0.5 * (first.actuation + last.actuation),
+          0.5 * (first.loads + last.loads)};
 }
 
 }  // namespace der

@@ -10,36 +10,31 @@
 namespace der {
 namespace {
 
-/// Energy [J] that elements take up as the controls change from those of `before` to those of
-/// `after`: the mean of that at the coordinates of the ends of a step.
-double energy_given(const Model& model, const Configuration& before, const Configuration& after,
-                    const Configuration& start, const Configuration& end) {
+/// Energy [J] that elements take up as the controls change.
+double energy_given(const Model& model, const Configuration& before, const Configuration& after) {
   double energy = 0.0;
   for_each_list(*model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if constexpr (Kernel::kTerm != EnergyTerm::Load) {
-      for (const Configuration* there : {&start, &end}) {
-        energy += 0.5 * (element_energy(list, after, there->coordinates) -
-                         element_energy(list, before, there->coordinates));
-      }
+      energy += element_energy(list, after) - element_energy(list, before);
     }
   });
   return energy;
 }
 
-/// The turn that the tables of actuations make in a step [rad].
-Vec3 turned(const ActuatedTurn& turn, const Configuration& start, const Configuration& end) {
-  return turn.at(end.controls) - turn.at(start.controls);
+/// The turn that the tables of actuations make [rad].
+Vec3 turned(const ActuatedTurn& turn, const Configuration& before, const Configuration& after) {
+  return turn.at(after.controls) - turn.at(before.controls);
 }
 
-double planar_work_on_actuated_turns(const RodLayout& rod, const Configuration& start,
-                                     const Configuration& end) {
+double planar_work_on_actuated_turns(const RodLayout& rod, const Configuration& before,
+                                     const Configuration& after) {
   double work = 0.0;
   for (const MomentPlace& place : rod.moment_places) {
     if (place.actuated.is_zero()) continue;
-    const double turn = turned(place.actuated, start, end)[0];
+    const double turn = turned(place.actuated, before, after)[0];
     for (const Index moment : place.moments) {
-      const double mean = 0.5 * (start.controls[moment] + end.controls[moment]);
+      const double mean = 0.5 * (before.controls[moment] + after.controls[moment]);
       work += place.series_share(rod.EI) * mean * turn;
     }
   }
@@ -47,14 +42,14 @@ double planar_work_on_actuated_turns(const RodLayout& rod, const Configuration& 
 }
 
 double spatial_work_on_actuated_turns(const RodLayout& rod, const Model& model,
-                                      const Configuration& start, const Configuration& end) {
+                                      const Configuration& before, const Configuration& after) {
   double work = 0.0;
   for (const SpatialMomentPlace& place : rod.spatial_moments) {
     if (place.actuated.is_zero()) continue;
-    const Vec3 turn = turned(place.actuated, start, end);
+    const Vec3 turn = turned(place.actuated, before, after);
     const CirculatoryLoad& load = circulatory_loads(*model.elements)[to_size(place.load)];
     const FramedEdge& nearer = load.nearer_edge();
-    for (const Configuration* there : {&start, &end}) {
+    for (const Configuration* there : {&before, &after}) {
       const Mat3 axes = turning_axes(nearer.frame(*there).frame);
       work += 0.5 * load.moments(*there).whole.dot(axes * turn);
     }
@@ -62,15 +57,40 @@ double spatial_work_on_actuated_turns(const RodLayout& rod, const Model& model,
   return work;
 }
 
+/// Whether a clamp turns a point from which the edge starts, or at which it ends.
+bool is_turned(const SpatialEdge& edge) {
+  return edge.first.held.rotation >= 0 || edge.last.held.rotation >= 0;
+}
+
+/// Work [J] of moments on the turn that the transport of frames gives their edges along a
+/// displacement of nodes, where it counts: of an edge that moves as a whole it is of the third
+/// order in a step. The equations of motion are without it (model/spin.hpp).
+double work_on_transport(const Model& model, const Configuration& here,
+                         const Vector& displacement) {
+  double work = 0.0;
+  for (const CirculatoryLoad& load : circulatory_loads(*model.elements)) {
+    const auto edges = load.turned_edges();
+    for (std::size_t i = 0; i < edges.size() && edges[i] != nullptr; ++i) {
+      const SpatialEdge& edge = edges[i]->edge;
+      if (!is_turned(edge)) continue;
+      const EdgeFrame frame = edges[i]->frame(here);
+      const double torque = load.moments(here).on_edge[i].dot(frame.frame.tangent);
+      const Vec3 moved = displacement.segment<3>(edge.end) - displacement.segment<3>(edge.start);
+      work += torque * frame.spin.dot(moved);
+    }
+  }
+  return work;
+}
+
 /// Work [J] of moments on the turns that actuations make between the edges and the moments' places:
 /// displacements of nodes do not have it.
-double work_on_actuated_turns(const Model& model, const Configuration& start,
-                              const Configuration& end) {
+double work_on_actuated_turns(const Model& model, const Configuration& before,
+                              const Configuration& after) {
   double work = 0.0;
   for (const RodLayout& rod : model.rods) {
     if (rod.actuated_stretches.empty()) continue;
-    work += planar_work_on_actuated_turns(rod, start, end) +
-            spatial_work_on_actuated_turns(rod, model, start, end);
+    work += planar_work_on_actuated_turns(rod, before, after) +
+            spatial_work_on_actuated_turns(rod, model, before, after);
   }
   return work;
 }
@@ -87,7 +107,8 @@ void stage_displacement(const Model& model, const Vector& start, const Vector& e
 }
 
 double moment_work(const Model& model, const Configuration& here, const Vector& displacement) {
-  double work = circulatory_work(circulatory_loads(*model.elements), here, displacement);
+  double work = circulatory_work(circulatory_loads(*model.elements), here, displacement) -
+                work_on_transport(model, here, displacement);
   for_each_list(*model.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if constexpr (Kernel::kTerm == EnergyTerm::Load) {
@@ -102,23 +123,24 @@ double moment_work(const Model& model, const Configuration& here, const Vector& 
   return work;
 }
 
-ControlWork control_work(const Model& model, const Configuration& start, const Configuration& end) {
+ControlWork control_work(const Model& model, const Configuration& before,
+                         const Configuration& after) {
   const bool turns = any_clamp_turns(model);
   if (!model.rest_shape.is_actuated()) {
-    return {turns ? energy_given(model, start, end, start, end) : 0.0, 0.0, 0.0};
+    return {turns ? energy_given(model, before, after) : 0.0, 0.0, 0.0};
   }
-  const double loads = work_on_actuated_turns(model, start, end);
-  if (!turns) return {0.0, energy_given(model, start, end, start, end) - loads, loads};
+  const double loads = work_on_actuated_turns(model, before, after);
+  if (!turns) return {0.0, energy_given(model, before, after) - loads, loads};
   // Each of the two changes first, and after the other.
-  Configuration turned = end;
-  model.rest_shape.copy(start.controls, turned.controls);
-  Configuration actuated = start;
-  model.rest_shape.copy(end.controls, actuated.controls);
-  const auto given = [&](const Configuration& before, const Configuration& after) {
-    return 0.5 * energy_given(model, before, after, start, end);
+  Configuration turned = after;
+  model.rest_shape.copy(before.controls, turned.controls);
+  Configuration actuated = before;
+  model.rest_shape.copy(after.controls, actuated.controls);
+  const auto given = [&](const Configuration& from, const Configuration& to) {
+    return 0.5 * energy_given(model, from, to);
   };
-  return {given(start, turned) + given(actuated, end),
-          given(start, actuated) + given(turned, end) - loads, loads};
+  return {given(before, turned) + given(actuated, after),
+          given(before, actuated) + given(turned, after) - loads, loads};
 }
 
 }  // namespace der

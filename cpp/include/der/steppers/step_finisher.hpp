@@ -4,6 +4,7 @@
 #include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
+#include "der/steppers/work.hpp"
 
 namespace der {
 
@@ -21,9 +22,14 @@ class StepFinisher {
               State& state);
 
  private:
+  ControlWork follow_and_work(double dt, State& state);
+
   const Model& model_;
+  bool controls_work_ = false;  // whether any control does work without a displacement
   Configuration start_;
   Configuration end_;
+  Configuration ahead_;   // the start with the controls of the end
+  Configuration behind_;  // the end with the controls of the start
 };
 
 }  // namespace der

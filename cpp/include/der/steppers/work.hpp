@@ -27,8 +27,10 @@ struct ControlWork {
   double actuation = 0.0;  ///< by changes of the rest shape
   double loads = 0.0;      ///< by moments, where actuations turn their place against its edges
 };
-/// The works of a step: the energy that the change of the controls gives the elements, the mean of
-/// that at both ends. What moments do on actuated turns comes out of it.
-ControlWork control_work(const Model& model, const Configuration& start, const Configuration& end);
+/// The works of controls that change from those of `before` to those of `after`, which are alike in
+/// all else: the energy that this gives the elements. What moments do on actuated turns comes out
+/// of it.
+ControlWork control_work(const Model& model, const Configuration& before,
+                         const Configuration& after);
 
 }  // namespace der

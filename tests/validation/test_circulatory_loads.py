@@ -177,23 +177,31 @@ def test_a_turned_scene_gives_the_turned_answer():
     assert answer(turn) == pytest.approx(answer(np.eye(3)) @ turn.T, abs=1e-10)
 
 
-def test_moments_anywhere_along_a_rod():
-    """Small ones, between nodes, beside the clamp and at a node: beam theory, in every direction.
-
-    A moment M at a moves the end by M a (1 - a/2)/EI. Spread over two edges of length l it keeps a,
-    but a^2 grows by up to l^2/4: the bound is sharp, and the error jumps from mesh to mesh. Within
-    the first edge it bends the whole cell of the clamp, at any place."""
-    weak, strong, twisting = 1.0, 3.0, 0.8
-    strip = section([0, 1, 0], EA=1e6, EI1=strong, EI2=weak, GJ=twisting)
+def error_of_small_moment(place, edges):
+    """How far the end is off beam theory, over M L^2/EI of the weak axis: a moment M at a moves it
+    by M a (1 - a/2)/EI."""
+    strip = section([0, 1, 0], EA=1e6, EI1=3.0, EI2=1.0, GJ=0.8)
     small = 1e-6
-    for place in (0.013, 0.29, 0.5, 0.7183, 1.0):
-        for n in SIZES:
-            loads = [moment(2 * small, -small, small, at=place)]
-            scene = straight_rod(n, strip, loads=loads)
-            values, _ = measured(scene, ["end"], ("y", "z"))
-            exact = np.array([1 / strong, 1 / weak]) * small * place * (1 - place / 2)
-            error = np.abs(values[0] - exact).max() / small
-            assert error < (0.126 / n**2 if place > 1 / n else 0.6 / n) + 1e-5
+    scene = straight_rod(edges, strip, loads=[moment(2 * small, -small, small, at=place)])
+    values, _ = measured(scene, ["end"], ("y", "z"))
+    exact = np.array([1 / 3, 1]) * place * (1 - place / 2)
+    return np.abs(values[0] / small - exact).max()
+
+
+@pytest.mark.parametrize("place", [0.013, 0.29, 0.5, 0.7183, 1.0])
+def test_moments_anywhere_along_a_rod(place):
+    """Small ones, between nodes, beside the clamp and at a node, in every direction. The error is
+    at most l^2/12 of M/EI, at a node, and jumps from mesh to mesh."""
+    for n in SIZES:
+        assert error_of_small_moment(place, n) < 1.01 / 12 / n**2 + 1e-6
+
+
+@pytest.mark.parametrize("edges", [0.2, 0.5, 0.7, 1.2])
+def test_moments_beside_a_clamp(fitted_order, edges):
+    """At the same part of the edges beside it, on both sides of where it begins to take a part."""
+    errors = [error_of_small_moment(edges / n, n) for n in SIZES]
+    assert fitted_order([1 / n for n in SIZES], errors) > 1.99
+    assert max(errors) < 0.08 / SIZES[0] ** 2
 
 
 def ledger_of(loads, supports, step):

@@ -67,7 +67,7 @@ struct Binormal<AngleCurvature> {
   template <class T>
   static T series(const T& u) {
     T sum = 1.0;
-    for_each_constant<kQuotients>([&](double quotient) { sum = 1.0 + sum * u * quotient; });
+    for_each_constant(kQuotients, [&](double quotient) { sum = 1.0 + sum * u * quotient; });
     return 2.0 / 15.0 * sum;
   }
   template <class T>

@@ -22,7 +22,7 @@ SineAndCosine<T> small_sine_and_cosine(const T& x) {
   const T u = x * x;
   T sine = 1.0;
   T cosine = 1.0;
-  for_each_constant<kSinePowers>([&](double n) {
+  for_each_constant(kSinePowers, [&](double n) {
     sine = 1.0 - u * (1.0 / (n * (n - 1.0))) * sine;
     cosine = 1.0 - u * (1.0 / ((n - 1.0) * (n - 2.0))) * cosine;
   });

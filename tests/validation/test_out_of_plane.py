@@ -687,6 +687,38 @@ def test_hanging_coil(spatial_reference, fitted_order):
     assert abs(errors[-1]) < 5e-3
 
 
+def test_shapes_of_the_coil_in_space_and_in_its_plane(spatial_reference, fitted_order):
+    """A little longer than the critical length. The model in space leaves the saddle in the plane
+    downhill, to one of two mirror images."""
+
+    def exact(shape):
+        names = [[f"{shape}.6.s{s}.{c}" for c in "xyz"] for s in ("0.5", "1")]
+        return np.array([[spatial_reference("hanging_coil", n) for n in row] for row in names])
+
+    gap = spatial_reference("hanging_coil", "space.6.energy_above_plane")
+    wire = section([1, 0, 0], EI=1.0, GJ=1 / 1.3, mass_per_length=0.1)
+    sizes = [40, 80, 160]
+    errors = []
+    for n in sizes:
+        rod = {"natural_curvature": [1.0, 0.0], "natural_twist": 0.0}
+        scene = straight_rod(n, wire, to=[0, 0, 6], rod=rod, loads=[{"gravity": [0, 0, 1]}])
+        found, energies = {}, {}
+        for shape in ("plane", "space"):
+            simulation = der.Simulation(der.Scenario.from_dict(scene))
+            equilibrium = simulation.equilibrium(leave_saddles=shape == "space")
+            assert equilibrium.unstable_directions == (1 if shape == "plane" else 0)
+            found[shape] = simulation.positions[[n // 2, -1]]
+            energy = simulation.energies
+            energies[shape] = energy.stretch + energy.bend + energy.gravity
+        found["space"][:, 1] *= np.sign(found["space"][-1, 1])
+        off = [np.linalg.norm(found[k] - exact(k), axis=1).max() for k in ("plane", "space")]
+        errors.append([*off, energies["space"] - energies["plane"] - gap])
+    for column in np.transpose(errors):
+        assert fitted_order([1 / n for n in sizes], column) > 1.9
+    # So near the bifurcation, the shape in space depends on the mesh a hundred times more.
+    assert (np.abs(errors[-1]) < [2e-4, 6e-3, 0.012 * abs(gap)]).all()
+
+
 def test_a_free_rod_is_neutral():
     """Its rigid motions out of the plane: along z, and about x and y."""
     verdict = planar_verdict(strip(10, [], [], 0.3, 0.2))

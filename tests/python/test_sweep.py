@@ -218,6 +218,13 @@ def test_a_large_product_begins_at_once(scene, tmp_path):
     assert time.monotonic() - begun < 20.0
 
 
+def test_what_buckling_does_not_find_is_no_failure(cantilever):
+    """Without a load, and without EI, there is no load factor out of the plane either."""
+    cantilever["analysis"] = "buckling"
+    force = {FORCE: [0.0]}
+    assert der.sweep(cantilever, {**force, STIFFNESS: [1.0, 0.0]}).statuses == {"completed": 2}
+
+
 def test_the_cost_of_a_path_is_that_of_all_its_points(cantilever):
     cantilever["analysis"] = {"continuation": {}}
     sweep = der.sweep(cantilever, {FORCE: [-1.0]})

@@ -91,8 +91,8 @@ def _finals(result: Result) -> Iterator[Reading]:
     if result.scenario.analysis in ("modes", "buckling"):
         out_of_plane = result.summary.get("out_of_plane", {})
         for key, unit in _OUT_OF_PLANE.items():
-            if key in out_of_plane:
-                yield _final(f"{key.replace('_', ' ')} out of plane", unit, out_of_plane[key])
+            if (found := out_of_plane.get(key)) is not None:  # there may be no such number
+                yield _final(f"{key.replace('_', ' ')} out of plane", unit, found)
 
 
 def _final(name: str, unit: str, value: float) -> Reading:

@@ -55,8 +55,8 @@ def test_a_line_marks_failed_members_and_error_bars():
     assert marked(axes) == {"failed: 1 of 3": [(-1.0, 0.0)]}
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["failed: 1 of 3"]
     (bars,) = axes.collections
-    value, error = sweep["tip_y"], sweep["tip_y.final.error"]
-    assert (error[[0, 2]] > 0.0).all()
+    value, error = sweep["tip_y"][[0, 2]], sweep["tip_y.final.error"][[0, 2]]
+    assert (error > 0.0).all()
     np.testing.assert_allclose(points(bars)[:, :, 1].T, [value - error, value + error])
 
 
@@ -68,7 +68,10 @@ def test_a_line_marks_doubtful_members(swing):
     assert sweep.values["flagged"] == [0, 3]
     (axes,) = sweep.plot().axes
     label = "doubtful: 1 of 2 (unreliable 1, with warnings 1, flagged 1)"
-    assert marked(axes) == {label: [(11.0, sweep["tip"][1])]}
+    assert marked(axes) == {
+        label: [(11.0, sweep["tip"][1])],
+        "error without bound": [(11.0, 0.0), (11.0, 1.0)],
+    }
 
 
 def test_a_line_marks_members_that_are_not_verified():
@@ -82,7 +85,23 @@ def test_a_member_without_a_value_is_a_dot():
     sweep = der.sweep(CANTILEVER, {FORCE: [-1.0, -2.0]})
     sweep.values["tip_y.final"][0] = None
     (axes,) = sweep.plot().axes
-    assert marked(axes) == {"no value": [(-1.0, 0.0)]}
+    assert marked(axes) == {"no finite value": [(-1.0, 0.0)]}
+    sweep.values["message"][0] = "not verified: no convergence"
+    (axes,) = sweep.plot().axes
+    assert marked(axes) == {
+        "doubtful: 1 of 2 (not verified 1)": [(-1.0, 0.0)],
+        "no finite value": [(-1.0, 0.0)],
+    }
+
+
+def test_an_error_without_bound_goes_across_the_panel():
+    """It looked exact: without an error bar at all."""
+    sweep = der.sweep(CANTILEVER, {STIFFNESS: [1.0, 2.0]}, verify=True)
+    sweep.values["tip_y.final.error"][1] = np.inf
+    (axes,) = sweep.plot().axes
+    assert marked(axes) == {"error without bound": [(2.0, 0.0), (2.0, 1.0)]}
+    (bars,) = axes.collections
+    assert len(points(bars)) == 1
 
 
 @pytest.mark.parametrize(
@@ -105,7 +124,7 @@ def test_maps_mark_members_at_their_places(vary, sample):
         f"doubtful: {warned} of {len(sweep)} (with warnings {warned})": [
             place for place, row in zip(places, sweep.rows, strict=True) if row["warnings"]
         ],
-        "no value": [places[missing]],
+        "no finite value": [places[missing]],
         f"failed: {failed} of {len(sweep)}": [
             place for place, bad in zip(places, sweep.failed, strict=True) if bad
         ],

@@ -168,10 +168,10 @@ class _Marks:
         counts = ", ".join(f"{why} {int(own.sum())}" for why, own in doubts.items() if own.any())
         self.doubted = f"doubtful: {int(self.doubtful.sum())} of {len(sweep)} ({counts})"
 
-    def draw_rings(self, axes: Axes, across: Array, up: Array) -> None:
+    def draw_rings(self, axes: Axes, across: Array, up: Array, **options: Any) -> None:
         """Draw a ring about each of these places of doubtful members."""
         if len(across):
-            axes.plot(across, up, **_RING, label=self.doubted)
+            axes.plot(across, up, **_RING, **options, label=self.doubted)
 
     def draw_crosses(self, axes: Axes, across: Array, up: Array, **options: Any) -> None:
         """Draw a cross at each of these places of failed members."""
@@ -181,7 +181,7 @@ class _Marks:
     def draw_dots(self, axes: Axes, across: Array, up: Array, **options: Any) -> None:
         """Draw a dot at each of these places of members without a value."""
         if len(across):
-            axes.plot(across, up, **_DOT, **options, label="no value")
+            axes.plot(across, up, **_DOT, **options, label="no finite value")
 
 
 def _legend_of(panels: NDArray[Any]) -> tuple[list[Artist], list[str]]:
@@ -225,13 +225,13 @@ def _plot_lines(sweep: SweepData, over: _Scale, names: list[str]) -> Figure:
         values = np.asarray(sweep[name], float)
         axes.plot(over.at[order], values[order], "o-", color=PALETTE[0], markersize=3.0)
         if f"{name}.error" in sweep.values:
-            bars = np.nan_to_num(np.asarray(sweep[f"{name}.error"], float), posinf=0.0)
-            axes.errorbar(
-                over.at, values, bars, fmt="none", ecolor=PALETTE[0], capsize=2.0, elinewidth=1.0
-            )
-        without = over.at[~marks.failed & ~np.isfinite(values)]
+            _draw_error_bars(axes, over.at, values, np.asarray(sweep[f"{name}.error"], float))
+        known = np.isfinite(values)
+        without = over.at[~marks.failed & ~known]
+        doubtful_without = over.at[marks.doubtful & ~known]
         at_the_bottom = {"transform": axes.get_xaxis_transform(), "clip_on": False}
-        marks.draw_rings(axes, over.at[marks.doubtful], values[marks.doubtful])
+        marks.draw_rings(axes, over.at[marks.doubtful & known], values[marks.doubtful & known])
+        marks.draw_rings(axes, doubtful_without, np.zeros(len(doubtful_without)), **at_the_bottom)
         marks.draw_dots(axes, without, np.zeros(len(without)), **at_the_bottom)
         marks.draw_crosses(axes, failed, np.zeros(len(failed)), **at_the_bottom)
         axes.set_ylabel(_label(sweep, name))
@@ -242,6 +242,22 @@ def _plot_lines(sweep: SweepData, over: _Scale, names: list[str]) -> Figure:
         panels[0, 0].legend(handles, labels, loc="best")
     figure.align_ylabels()
     return figure
+
+
+def _draw_error_bars(axes: Axes, at: Array, values: Array, bars: Array) -> None:
+    """Draw error bars; one without bound goes across the panel."""
+    known = np.isfinite(bars)
+    axes.errorbar(
+        at[known],
+        values[known],
+        bars[known],
+        fmt="none",
+        ecolor=PALETTE[0],
+        capsize=2.0,
+        elinewidth=1.0,
+    )
+    for place in at[np.isposinf(bars)]:
+        axes.axvline(place, color=PALETTE[0], linewidth=1.0, alpha=0.5, label="error without bound")
 
 
 def _plot_maps(sweep: SweepData, over: _Scale, up: _Scale, names: list[str]) -> Figure:

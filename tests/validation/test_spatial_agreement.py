@@ -205,6 +205,58 @@ def test_any_shape_stays_at_rest(time, supports):
     assert result.energies["kinetic"][-1] + result.energies["bend"][-1] < 1e-20
 
 
+def resting(seed, kind, **more):
+    """A rod of a random shape and orientation, somewhere, held at its start or free: smooth, with
+    a corner of 69 degrees, or drawn straight with random lists of natural curvatures and twists,
+    in its natural shape.
+    """
+    random = np.random.default_rng(seed)
+    s = np.linspace(0, 1, 14)
+    waves = np.sin(np.outer(s, [2, 4, 6]) + random.uniform(0, 6, 3))
+    tangents = waves @ (random.normal(size=(3, 3)) / [[1], [2], [3]]) + 2 * random.normal(size=3)
+    tangents /= np.linalg.norm(tangents, axis=1)[:, None]
+    rod = {"material": {"youngs_modulus": 1e7, "density": 1000, "poissons_ratio": 0.3}}
+    if kind == "natural lists":
+        tangents[:] = tangents[0]
+        rod["natural_curvature"] = random.uniform(-3, 3, (15, 2)).tolist()
+        rod["natural_twist"] = random.uniform(-4, 4, 15).tolist()
+        more["start_from"] = "equilibrium"
+    else:
+        rod["initial_twist"] = random.uniform(-6, 6)
+    if kind == "corner":
+        across = np.cross(tangents[7], random.normal(size=3))
+        tangents[7:] = tangents[7:] @ rotation(across / np.linalg.norm(across), 1.2).T
+    points = random.normal(size=3) + np.vstack([np.zeros(3), np.cumsum(tangents / 14, axis=0)])
+    director = random.normal(size=3).tolist()
+    strip = {"rectangle": {"width": 0.05, "height": 0.02}, "director": director}
+    supports = [{**START, "clamp": True}] if seed % 2 else []
+    return rod_through(points, strip, supports=supports, rod=rod, **more)
+
+
+RESTING = [
+    pytest.param(stepper, kind, 3 * i + k, 2000, id=f"{stepper}-{kind}")
+    for i, stepper in enumerate(STEPPERS)
+    for k, kind in enumerate(["smooth", "corner", "natural lists"])
+]
+RESTING.append(pytest.param("sdirk5", "corner", 31, 20_000, id="longer"))
+RESTING.append(pytest.param("newmark", "corner", 33, 100_000, id="longest"))
+
+
+@pytest.mark.parametrize(("stepper", "kind", "seed", "steps"), RESTING)
+def test_random_shapes_stay_at_rest(stepper, kind, seed, steps):
+    """As above, every shape, orientation and director another one."""
+    time = {"duration": 1e-3 * steps, "step": 1e-3, "integrator": stepper}
+    if stepper == "verlet":
+        time = {"duration": 0.8, "step": "auto", "integrator": stepper}
+    solver = {"residual_tolerance": 1e-13, "step_tolerance": 1e-14}
+    scene = resting(seed, kind, time=time, solver=solver)
+    values, result = measured(scene, ["start", "end"], ("x", "y", "z", "vx", "vy", "vz"))
+    assert result.summary["steps"] >= steps
+    assert np.abs(result.positions[-1] - result.positions[0]).max() < 1e-12
+    assert np.abs(values[:, 3:]).max() < 1e-9
+    assert result.energies["kinetic"][-1] + result.energies["bend"][-1] < 1e-20
+
+
 def test_end_of_the_same_rod_drawn_backwards():
     """Nothing depends on where a rod begins but the signs of its directors' handedness."""
     strip = {"rectangle": {"width": 0.05, "height": 0.02}, "director": [0.2, 1, 0.3]}

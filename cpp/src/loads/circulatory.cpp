@@ -208,12 +208,18 @@ bool beside_held_section(double s, const RodLayout& rod) {
   return beside && rod.clamps[to_size(beside->clamp)].holds_section;
 }
 
-/// Whether the place is the node of a clamp that lets the section spin: it takes up a part of a
-/// moment.
-bool at_held_tangent(double s, const RodLayout& rod) {
+/// Whether a clamp that lets the section spin is beside the place, or there: it takes up a part of
+/// a moment, and passes on what this has about the tangent at the place.
+bool beside_held_tangent(double s, const RodLayout& rod) {
   const auto beside = place_beside_clamp(rod, s);
-  return beside && !rod.clamps[to_size(beside->clamp)].holds_section &&
-         beside->distance <= rod.same_place();
+  return beside && !rod.clamps[to_size(beside->clamp)].holds_section;
+}
+
+/// Whether the place is beyond the middle of an outermost edge and not at its free end. There a
+/// moment bends the rod up to the place, which the edges do not tell of one that follows.
+bool is_before_free_end(double s, const RodLayout& rod) {
+  const double from_end = std::min(s, rod.rest_length() - s);
+  return beyond_outer_middle(rod, s) > 0.0 && from_end > rod.same_place();
 }
 
 /// Whether the edges tell less than the loads at a place need. Moments of a fixed direction act on
@@ -223,12 +229,13 @@ bool need_section(const SectionLoads& place, const RodLayout& rod, const Model& 
   if (is_held_or_at_corner(s, rod, model)) return true;
   if (rod.EI_1 <= 0.0 || rod.EI_2 <= 0.0 || rod.GJ <= 0.0) return false;
   if (!place.moments.empty() && place.moments.size() + place.forces.size() > 1) return true;
-  if (!place.moments.empty() && at_held_tangent(s, rod)) return true;
+  if (!place.moments.empty() && beside_held_tangent(s, rod)) return true;
   const auto& loads = circulatory_loads(*model.elements);
-  const bool any_follows =
-      !place.forces.empty() ||
+  const bool moment_follows =
       std::any_of(place.moments.begin(), place.moments.end(),
                   [&](Index moment) { return follows(loads[to_size(moment)]); });
+  if (moment_follows && is_before_free_end(s, rod)) return true;
+  const bool any_follows = moment_follows || !place.forces.empty();
   return any_follows && (beside_held_section(s, rod) || beside_leaning_end(s, rod) ||
                          !natural_turn(s, section_place(s, rod), rod).isZero(0.0));
 }

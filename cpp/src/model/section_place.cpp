@@ -19,11 +19,13 @@ SectionPlace section_place(double s, const RodLayout& rod) {
     // Without a hold on the section the edge alone has the twist.
     const double half = 0.5 * rod.edge_length[to_size(beside->edge)];
     const bool held = rod.clamps[to_size(beside->clamp)].holds_section;
-    const double twisted = held ? std::min(1.0, beside->distance / half) : 1.0;
+    // Beyond the edge's middle, up to where a clamp reaches in bending, more than 1: the edges
+    // behind it then have the twist that the torque makes on its way, and only this one has not.
+    const double twisted = held ? beside->distance / half : 1.0;
     place.direction = {1.0};
     place.along = {twisted};
     place.twist_cell =
-        held ? twisted * (1.0 - twisted) * half : std::max(0.0, half - beside->distance);
+        std::max(0.0, held ? twisted * (1.0 - twisted) * half : half - beside->distance);
     return place;
   }
   if (moments.weights.size() == 1) {

@@ -14,8 +14,8 @@ constexpr double kMostNodes = 2000.0;
 /// Something that turns the rod at a place, or turns with it. On the way from there to the middles
 /// of the edges beside it, in the cell of a node, the rod bends.
 struct TurningPlace {
-  int node = 0;     ///< whose cell it is
-  double at = 0.0;  ///< [m]; in the cell of a ring's start it may be below 0
+  std::optional<int> node;  ///< whose cell it is; none in the middle of an edge
+  double at = 0.0;          ///< [m]; in the cell of a ring's start it may be below 0
   std::string what;
   bool bends = false;  ///< whether it bends the rod in the cell
   bool feels = false;  ///< whether what else bends the cell changes what it does
@@ -45,25 +45,50 @@ class CellCheck {
   void run() {
     enter_supports();
     enter_loads();
-    std::sort(places_.begin(), places_.end(), [](const TurningPlace& a, const TurningPlace& b) {
-      return a.node != b.node ? a.node < b.node : a.at < b.at;
-    });
-    std::pair<const TurningPlace*, const TurningPlace*> nearest;
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      const TurningPlace& a = places_[i];
-      for (std::size_t k = i + 1; k < places_.size() && places_[k].node == a.node; ++k) {
-        const TurningPlace& b = places_[k];
-        const double apart = b.at - a.at;
-        if (apart <= line_.same_place() || !are_coupled(a, b)) continue;
-        if (nearest.first == nullptr || apart < nearest.second->at - nearest.first->at) {
-          nearest = {&a, &b};
+    std::sort(places_.begin(), places_.end(),
+              [](const TurningPlace& a, const TurningPlace& b) { return a.at < b.at; });
+    const auto nearest_where = [&](const auto& meet) {
+      std::pair<const TurningPlace*, const TurningPlace*> nearest;
+      for (std::size_t i = 0; i < places_.size(); ++i) {
+        for (std::size_t k = i + 1; k < places_.size(); ++k) {
+          const TurningPlace& a = places_[i];
+          const TurningPlace& b = places_[k];
+          const double apart = b.at - a.at;
+          if (apart <= line_.same_place() || !are_coupled(a, b) || !meet(a, b)) continue;
+          if (nearest.first == nullptr || apart < nearest.second->at - nearest.first->at) {
+            nearest = {&a, &b};
+          }
         }
       }
-    }
-    if (nearest.first != nullptr) warn(*nearest.first, *nearest.second);
+      return nearest;
+    };
+    const auto [first, second] = nearest_where(
+        [](const TurningPlace& a, const TurningPlace& b) { return a.node && a.node == b.node; });
+    if (first != nullptr) return warn_of_cell(*first, *second);
+    const auto [before, behind] = nearest_where([&](const TurningPlace& a, const TurningPlace& b) {
+      return meet_beside_start(a, b) || meet_beside_end(a, b);
+    });
+    if (before != nullptr) warn_of_end(*before, *behind);
   }
 
  private:
+  /// At a free end the outermost edge leans under what bends the rod there, and the edges of the
+  /// next cell tell the tangent there with it.
+  [[nodiscard]] bool meet_beside_start(const TurningPlace& a, const TurningPlace& b) const {
+    return is_free(0) && a.node == 0 && b.at < middle(1) - line_.same_place();
+  }
+  [[nodiscard]] bool meet_beside_end(const TurningPlace& a, const TurningPlace& b) const {
+    const int last = line_.num_nodes() - 1;
+    return is_free(last) && b.node == last && a.at > middle(last - 2) + line_.same_place();
+  }
+  [[nodiscard]] bool is_free(int end) const {
+    return !line_.closed() && line_.num_nodes() > 2 && context_.clamp_at(rod_, end) == nullptr;
+  }
+  /// Arc length of the middle of an edge [m].
+  [[nodiscard]] double middle(int edge) const {
+    return 0.5 * (line_.arc_length(edge) + line_.arc_length(edge + 1));
+  }
+
   void enter_supports() {
     const auto& supports = context_.scene.supports;
     for (std::size_t i = 0; i < supports.size(); ++i) {
@@ -91,14 +116,13 @@ class CellCheck {
     }
   }
 
-  /// In the middle of an edge nothing bends between the place and the middle.
   void enter(const Location& at, std::string what, bool bends, bool feels) {
     if (at.kind == Location::Kind::All) return;
     double s = line_.arc_length_of(at);
     const std::optional<int> node = line_.cell_at(s);
-    if (!node || is_turned_by_clamp(s)) return;
-    if (line_.closed() && *node == 0 && s > 0.5 * line_.length()) s -= line_.length();
-    places_.push_back({*node, s, std::move(what), bends, feels});
+    if (is_turned_by_clamp(s)) return;
+    if (line_.closed() && node == 0 && s > 0.5 * line_.length()) s -= line_.length();
+    places_.push_back({node, s, std::move(what), bends, feels});
   }
 
   /// Whether a clamp holds the section at a place, so that nothing else turns it.
@@ -114,14 +138,21 @@ class CellCheck {
     return line_.closed() || (s > line_.same_place() && line_.length() - s > line_.same_place());
   }
 
-  void warn(const TurningPlace& a, const TurningPlace& b) {
-    const double apart = b.at - a.at;
-    const double nodes = std::ceil(line_.length() / apart) + 1.0;
+  void warn_of_cell(const TurningPlace& a, const TurningPlace& b) {
+    warn(a, b, "no middle of an edge lies between them", line_.length() / (b.at - a.at));
+  }
+  void warn_of_end(const TurningPlace& a, const TurningPlace& b) {
+    const double from_end = meet_beside_start(a, b) ? b.at : line_.length() - a.at;
+    warn(a, b, "both act within an edge and a half of its free end",
+         1.5 * line_.length() / from_end);
+  }
+  void warn(const TurningPlace& a, const TurningPlace& b, const char* where, double edges) {
+    const double nodes = std::ceil(edges) + 1.0;
     context_.scene.warnings.push_back(fmt::format(
-        "{} and {} act on rod '{}' within {:.3g} m, and no middle of an edge lies between them: "
-        "neither sees how the other bends the rod there. The error of the solution is then of "
-        "first order in the length of the edges. Put both at one place{}",
-        a.what, b.what, name_, apart,
+        "{} and {} act on rod '{}' within {:.3g} m, and {}: neither sees how the other bends the "
+        "rod there. The error of the solution is then of first order in the length of the edges. "
+        "Put both at one place{}",
+        a.what, b.what, name_, b.at - a.at, where,
         nodes <= kMostNodes ? fmt::format(", or give the rod about {:g} nodes", nodes)
                             : std::string()));
   }

@@ -45,13 +45,29 @@ TEST_CASE("cells: a moment near a spring is warned of, with what to do") {
 }
 
 TEST_CASE("cells: at one place, in the middle of an edge and in other cells nothing is warned of") {
-  for (const char* at : {"start", "0.05", "0.06", "0.1"}) {
+  for (const char* at : {"start", "0.15", "0.2"}) {
     CAPTURE(at);
     CHECK(warnings_of(spring("start"), moment(at)).empty());
   }
+  CHECK(warnings_of(spring("0.46"), moment("0.55")).empty());
   CHECK(warnings_of(spring("0.46"), moment("0.54")).size() == 1);
   CHECK(warnings_of(spring("0.46"), moment("0.56")).empty());
   CHECK(warnings_of(spring("0.96"), moment("end")).size() == 1);
+}
+
+TEST_CASE("cells: beside a free end what acts in the next cell is warned of, too") {
+  for (const char* at : {"0.05", "0.06", "0.1", "0.149"}) {
+    CAPTURE(at);
+    CHECK(warnings_of(spring("start"), moment(at)).size() == 1);
+    CHECK(warnings_of(spring("0.03"), moment(at)).size() == 1);
+  }
+  const Warnings warnings = warnings_of(spring("0.9"), moment("end"));
+  REQUIRE(warnings.size() == 1);
+  CHECK(contains(warnings[0], "both act within an edge and a half of its free end"));
+  CHECK(contains(warnings[0], "or give the rod about 16 nodes"));
+  CHECK(warnings_of(spring("0.85"), moment("end")).empty());
+  const std::string clamp = "{rod: beam, at: start, clamp: true}, ";
+  CHECK(warnings_of(clamp + spring("0.03"), moment("0.08")).empty());
 }
 
 TEST_CASE("cells: the nearest pair is told, and no count of nodes where none would do") {

@@ -61,10 +61,10 @@ TEST_CASE("cells: beside a free end what acts in the next cell is warned of, too
     CHECK(warnings_of(spring("start"), moment(at)).size() == 1);
     CHECK(warnings_of(spring("0.03"), moment(at)).size() == 1);
   }
-  const Warnings warnings = warnings_of(spring("0.9"), moment("end"));
+  const Warnings warnings = warnings_of(spring("0.92"), moment("end"));
   REQUIRE(warnings.size() == 1);
   CHECK(contains(warnings[0], "both act within an edge and a half of its free end"));
-  CHECK(contains(warnings[0], "or give the rod about 16 nodes"));
+  CHECK(contains(warnings[0], "or give the rod about 20 nodes"));
   CHECK(warnings_of(spring("0.85"), moment("end")).empty());
   const std::string clamp = "{rod: beam, at: start, clamp: true}, ";
   CHECK(warnings_of(clamp + spring("0.03"), moment("0.08")).empty());

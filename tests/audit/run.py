@@ -29,7 +29,7 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "validation"))  # its 
 import numpy as np
 from audit import KINDS, aims_missed
 from audit.answers import Answer, aims_of_answers_missed, answer, table
-from audit.score import Outcome, judge, report, summarise
+from audit.score import Outcome, judge, report
 
 # Statics has the richest grammar, and takes every other turn.
 TURNS = [turn for kind in sorted(KINDS) if kind != "static" for turn in ("static", kind)]
@@ -105,7 +105,7 @@ def main() -> int:
             if any(row.measured and not row.inside for row in outcome.rows):
                 name = outcome.name.replace(":", "_") + ".yaml"
                 (arguments.dump / name).write_text(outcome.scene, encoding="utf-8")
-    missed = aims_missed(summarise(row for outcome in outcomes for row in outcome.rows))
+    missed = aims_missed(row for outcome in outcomes for row in outcome.rows)
     print(*missed, sep="\n")
     return 1 if missed else 0
 

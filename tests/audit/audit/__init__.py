@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from .case import Case
 from .modes import modes
 from .motions import fall, motion
 from .paths import paths
-from .score import Summary
+from .score import Row, summarise
 from .space_motion import space_motion
 from .space_static import space_static
 from .statics import static
@@ -28,15 +28,27 @@ KINDS: dict[str, Callable[[np.random.Generator], Case]] = {
 }
 
 
-def aims_missed(summary: Summary) -> list[str]:
-    """The aims that a run of the audit misses, in sentences."""
+def aims_missed(rows: Iterable[Row]) -> list[str]:
+    """The aims that a run of the audit misses, in sentences: in the plane, and in space."""
+    rows = list(rows)
     missed = []
-    if summary.coverage < 0.98:
-        missed.append(
-            f"Only {summary.coverage:.1%} of the true values are inside; the aim is 98 %."
-        )
-    if summary.false_flags > 0.05:
-        missed.append(f"{summary.false_flags:.1%} of the right values are flagged; the aim is 5 %.")
-    if summary.quietly_wrong:
-        missed.append(f"{summary.quietly_wrong} values outside their bars are not flagged.")
+    for where, some in (
+        ("In the plane", [row for row in rows if not row.in_space]),
+        ("In space", [row for row in rows if row.in_space]),
+    ):
+        summary = summarise(some)
+        if some and summary.coverage < 0.98:
+            missed.append(
+                f"{where} only {summary.coverage:.1%} of the true values are inside; "
+                "the aim is 98 %."
+            )
+        if summary.false_flags > 0.05:
+            missed.append(
+                f"{where} {summary.false_flags:.1%} of the right values are flagged; "
+                "the aim is 5 %."
+            )
+        if summary.quietly_wrong:
+            missed.append(
+                f"{where} {summary.quietly_wrong} values outside their bars are not flagged."
+            )
     return missed

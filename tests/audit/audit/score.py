@@ -32,6 +32,10 @@ class Row:
     scale: float
 
     @property
+    def in_space(self) -> bool:
+        return self.kind.startswith("space_")
+
+    @property
     def error(self) -> float:
         return abs(self.value - self.truth)
 
@@ -228,6 +232,11 @@ def report(outcomes: list[Outcome]) -> str:
     for quantity in sorted({row.quantity for row in rows}):
         line(quantity, [row for row in rows if row.quantity == quantity])
     lines.append("")
+    planar = [row for row in rows if not row.in_space]
+    spatial = [row for row in rows if row.in_space]
+    if planar and spatial:
+        line("in the plane", planar)
+        line("in space", spatial)
     line("all", rows)
     scenes = sum(bool(outcome.rows) for outcome in outcomes)
     lines += ["", f"{scenes} of {len(outcomes)} scenes compared."]

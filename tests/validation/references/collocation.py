@@ -128,12 +128,14 @@ class Boundary:
         y = trial.values[k] @ sample.T
         residual = trial.values[k] @ slope.T - length * self.rate(k, s, y, p)
 
+        # All components are bumped at once, each in a copy of the points.
+        bumped = np.repeat(y.astype(complex)[:, None], m, axis=1)
+        bumped[np.arange(m), np.arange(m)] += 1j * _STEP
+        partial = self.rate(k, np.tile(s, m), bumped.reshape(m, -1), p).imag / _STEP
+        partial = partial.reshape(m, m, degree)
         by_values = np.zeros((m, degree, segments, m, points))
         for c in range(m):
-            bumped = y.astype(complex)
-            bumped[c] += 1j * _STEP
-            partial = self.rate(k, s, bumped, p).imag / _STEP
-            by_values[:, :, k, c, :] -= length * partial[:, :, None] * sample
+            by_values[:, :, k, c, :] -= length * partial[:, c, :, None] * sample
             by_values[c, :, k, c, :] += slope
         by_parameters = np.zeros((m, degree, len(p)))
         for j in range(len(p)):

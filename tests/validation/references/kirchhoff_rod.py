@@ -29,7 +29,7 @@ from typing import TypeAlias
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from .collocation import Boundary, Numbers, Solution, constant_start
+from .collocation import Boundary, Numbers, Rate, Solution, constant_start
 from .record import Array, Reference
 
 Vector: TypeAlias = Sequence[float] | Array
@@ -175,18 +175,7 @@ def problem(
     """The boundary value problem in the units of `rod.units`; `weight` is f, and the loads inside
     are at this share.
     """
-    length = rod.length
-    stiffness = (rod.stiffness / rod.bending[0])[:, None]
-    compliance = rod.compliance[:, None] * rod.bending[0] / length**2
-    load = np.asarray(weight, dtype=float)[:, None] * length**3 / rod.bending[0]
-    first = np.concatenate([np.asarray(start.position) / length, quaternion(start.frame)])
-
-    def rate(_k: int, s: Array, y: Numbers, _p: Numbers) -> Numbers:
-        q, n, m = y[3:7], y[7:10], y[10:13]
-        d = directors(q)
-        slope = d[:, 2] + (d * compliance * (n[:, None] * d).sum(axis=0)).sum(axis=1)
-        u = rod.natural(s * length) * length + (m[:, None] * d).sum(axis=0) / stiffness
-        return np.concatenate([slope, turn(q, u), np.broadcast_to(-load, n.shape), cross(n, slope)])
+    first = np.concatenate([np.asarray(start.position) / rod.length, quaternion(start.frame)])
 
     def ends(left: Numbers, right: Numbers, _p: Numbers) -> Numbers:
         joints = right[:-1] - left[1:]
@@ -199,7 +188,24 @@ def problem(
         joints = joints.ravel()
         return np.concatenate([left[0, :7] - first, _end(rod, end, right[-1]), joints])
 
-    return Boundary(rate, ends)
+    return Boundary(rates(rod, weight), ends)
+
+
+def rates(rod: Rod, weight: Vector) -> Rate:
+    """y' of the 13 unknowns by the share of the length, in the units of `rod.units`."""
+    length = rod.length
+    stiffness = (rod.stiffness / rod.bending[0])[:, None]
+    compliance = rod.compliance[:, None] * rod.bending[0] / length**2
+    load = np.asarray(weight, dtype=float)[:, None] * length**3 / rod.bending[0]
+
+    def rate(_k: int, s: Array, y: Numbers, _p: Numbers) -> Numbers:
+        q, n, m = y[3:7], y[7:10], y[10:13]
+        d = directors(q)
+        slope = d[:, 2] + (d * compliance * (n[:, None] * d).sum(axis=0)).sum(axis=1)
+        u = rod.natural(s * length) * length + (m[:, None] * d).sum(axis=0) / stiffness
+        return np.concatenate([slope, turn(q, u), np.broadcast_to(-load, n.shape), cross(n, slope)])
+
+    return rate
 
 
 def _end(rod: Rod, end: Held | HeldTangent | Loaded, y: Numbers) -> Numbers:

@@ -10,7 +10,17 @@ from itertools import pairwise
 import der
 import numpy as np
 import pytest
-from references.kirchhoff_rod import UPRIGHT, Rod, constant, march, rotation
+from references.kirchhoff_rod import (
+    UPRIGHT,
+    Held,
+    Loaded,
+    Rod,
+    constant,
+    follow,
+    march,
+    rotation,
+    solve,
+)
 from references.side_buckling import beam_on_a_spring
 from scenes import END, START, tip_force
 from scipy.integrate import solve_ivp
@@ -107,6 +117,60 @@ def test_verdict_is_that_of_the_spatial_model(spatial_reference, load):
     seeded = straight_rod(20, bar, loads=tip_force(0, force, 1e-5 * force))
     values, _ = measured(seeded, ["end"], "z")
     assert (abs(values[0, 0]) > 0.05) == (load > exact)
+
+
+ADVICE = (
+    "write 'model: spatial', draw a node in its middle a millionth of its length off the plane, "
+    "and let the supports hold z ('clamp: true' holds the section, too)"
+)
+
+
+def as_advised(scene, warning):
+    """A planar scene of a straight rod with a clamp after what `warning` says to write."""
+    assert warning.endswith(ADVICE)
+    rod = dict(scene["rods"][0])
+    start, end, nodes = rod.pop("from"), rod.pop("to"), rod.pop("nodes")
+    points = np.linspace([*start, 0.0], [*end, 0.0], nodes)
+    points[nodes // 2, 2] = 1e-6 * np.linalg.norm(points[-1] - points[0])
+    loads = tip_force(*scene["loads"][0]["point_force"]["force"], 0.0)
+    rod["points"] = points.tolist()
+    return {**scene, "model": "spatial", "rods": [rod], "loads": loads}
+
+
+def bent_to_the_side(weak, twisting, force):
+    """The tip of a rod clamped along x under a force there that makes it leave the x-y plane: the
+    boundary value problem, pushed to the side and let go."""
+    rod, start = Rod(1.0, (weak, 1.0), twisting, SLENDER), Held((0, 0, 0), UPRIGHT)
+    force, push = np.array([*force, 0.0]), np.array([0.0, 0.0, 0.1 * weak])
+    found = follow(rod, start, lambda share: Loaded(share * (force + push)), 8, degree=14)
+    for share in (0.3, 0.1, 0.03, 0.0):
+        found = solve(rod, start, Loaded(force + share * push), found.solution)
+    return found.tip
+
+
+@pytest.mark.parametrize(
+    "force",
+    [
+        (0.0, -0.5),  # a strip bent in its stiff direction turns sideways, from 0.462 on
+        (-0.35, 0.0),  # a column buckles about its weak axis, from pi^2/4 of its stiffness on
+    ],
+    ids=["strip", "column"],
+)
+def test_the_advice_leads_to_the_stable_shape_in_space(fitted_order, force):
+    weak = twisting = 0.1
+    exact = bent_to_the_side(weak, twisting, force)
+    assert exact[2] > 0.2
+    sizes, errors = (20, 40, 80), []
+    for n in sizes:
+        scene = strip(n, CANTILEVER, tip_force(*force), weak, twisting)
+        with pytest.warns(der.DerWarning, match="unstable out of it: 1 direction"):
+            verdict = der.run(scene).summary["out_of_plane"]
+        followed = der.run(as_advised(scene, verdict["warning"]))
+        assert followed.summary["stability"] == "stable"
+        tip = followed.positions[-1][-1]
+        errors.append(np.abs([*tip[:2], abs(tip[2])] - exact).max())
+    assert fitted_order([1 / n for n in sizes], errors) > 1.9
+    assert errors[-1] < 2e-4
 
 
 @pytest.mark.parametrize(

@@ -269,8 +269,8 @@ def helical_buckling() -> Figure:
 
 
 def twisted_ring() -> Figure:
-    """Draw a ring that leaves its plane."""
-    return der.run(CONFIGS / "twisted_ring.yaml").plot()
+    """Draw a ring that leaves its plane, from above and from the side."""
+    return der.run(CONFIGS / "twisted_ring.yaml").plot(views=["xy", "xz"])
 
 
 def tutorial_falling_rod() -> Figure:

@@ -277,6 +277,56 @@ TEST_CASE("model: bending without twist takes at most one section of a rod that 
         "loads.0.gravity has a z component, and supports.0 holds every section of rod 'beam'");
 }
 
+TEST_CASE("model: actuations that bend the rod in the plane, and out of it") {
+  // The width points along z, so that the second director lies in the plane.
+  const auto bent = [](const std::string& curvature, const Overrides& more = {}) {
+    return model_of(more + Overrides{{"actuation", "[{name: bend, rod: beam, natural_curvature: " +
+                                                       curvature + "}]"}});
+  };
+  const std::string table = "{times: [0, 1], values: [0, 2]}";
+  CHECK(bent("2").kind == ModelChoice::Planar);
+  CHECK(bent("[0, 2]").kind == ModelChoice::Planar);
+  CHECK(bent("[0, " + table + "]").kind == ModelChoice::Planar);
+  CHECK(bent("[2, 0]").kind == ModelChoice::Spatial);
+  CHECK(bent("[1e-6, 2]").kind == ModelChoice::Spatial);
+  CHECK(bent("[" + table + ", 2]").kind == ModelChoice::Spatial);
+  CHECK(bent("[2, 0]").reason ==
+        "actuation.bend bends rod 'beam' to two sides, and actuation.bend curves rod 'beam' "
+        "without stress");
+  // A program may drive either of two that are 0.
+  CHECK(bent("[0, 0]").kind == ModelChoice::Spatial);
+
+  const Overrides upright{{"rods.beam.cross_section.director", "[0, 1, 0]"}};
+  CHECK(bent("[2, 0]", upright).kind == ModelChoice::Planar);
+  CHECK(bent("[0, 2]", upright).kind == ModelChoice::Spatial);
+  const Overrides askew{{"rods.beam.cross_section.director", "[0, 1, 1]"}};
+  CHECK(bent("[0, 2]", askew).kind == ModelChoice::Spatial);
+}
+
+TEST_CASE("model: bending without twist takes rods that no actuation bends or twists") {
+  const auto driven = [](const std::string& what) {
+    return model_of(kAlongZ +
+                    Overrides{{"actuation", "[{name: muscle, rod: beam, " + what + "}]"}});
+  };
+  CHECK(driven("elongation: 0.1").kind == ModelChoice::SpatialBend);
+  CHECK(driven("natural_curvature: [0, 1]").kind == ModelChoice::Spatial);
+  CHECK(driven("natural_curvature: [0, 1]").reason ==
+        "loads.0.point_force has a z component, and actuation.muscle curves rod 'beam' without "
+        "stress");
+  CHECK(driven("natural_twist: 1").kind == ModelChoice::Spatial);
+  CHECK(driven("natural_twist: 1").reason ==
+        "loads.0.point_force has a z component, and actuation.muscle twists rod 'beam'");
+}
+
+TEST_CASE("model: actuations that twist the rod are not of a plane") {
+  const auto driven = [](const std::string& what) {
+    return model_of({{"actuation", "[{name: muscle, rod: beam, " + what + "}]"}});
+  };
+  CHECK(driven("elongation: 0.1").kind == ModelChoice::Planar);
+  CHECK(driven("natural_twist: 0").kind == ModelChoice::Spatial);  // a program may drive it
+  CHECK(driven("natural_twist: 1").reason == "actuation.muscle twists rod 'beam'");
+}
+
 TEST_CASE("model: one that is asked for may be larger than needed, not smaller") {
   for (const char* model : {"planar", "spatial_bend", "spatial"}) {
     const ChosenModel asked = model_of({{"model", model}});
@@ -290,6 +340,18 @@ TEST_CASE("model: one that is asked for may be larger than needed, not smaller")
                  "model: 'planar' cannot represent this scene: loads.0.point_force has a z"));
   CHECK(contains(refused(kStrip + Overrides{{"model", "spatial_bend"}}),
                  "model: 'spatial_bend' cannot represent this scene: the two bending"));
+  const auto driven = [](const std::string& what) {
+    return Overrides{{"actuation", "[{name: muscle, rod: beam, " + what + "}]"}};
+  };
+  CHECK(
+      contains(refused(driven("natural_twist: 1") + Overrides{{"model", "planar"}}),
+               "model: 'planar' cannot represent this scene: actuation.muscle twists rod 'beam'"));
+  CHECK(contains(
+      refused(driven("natural_twist: 1") + Overrides{{"model", "spatial_bend"}}),
+      "model: 'spatial_bend' cannot represent this scene: actuation.muscle twists rod 'beam'"));
+  CHECK(contains(
+      refused(driven("natural_curvature: [0, 1]") + Overrides{{"model", "spatial_bend"}}),
+      "model: 'spatial_bend' cannot represent this scene: actuation.muscle curves rod 'beam'"));
 }
 
 TEST_CASE("model: the same is chosen of a scene in the terms of its model") {

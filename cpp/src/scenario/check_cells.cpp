@@ -54,6 +54,7 @@ class CellCheck {
           const TurningPlace& a = places_[i];
           const TurningPlace& b = places_[k];
           const double apart = b.at - a.at;
+          if (apart > two_edges_) break;  // in no cell together, and not beside one end
           if (apart <= line_.same_place() || !are_coupled(a, b) || !meet(a, b)) continue;
           if (nearest.first == nullptr || apart < nearest.second->at - nearest.first->at) {
             nearest = {&a, &b};
@@ -83,6 +84,14 @@ class CellCheck {
   }
   [[nodiscard]] bool is_free(int end) const {
     return !line_.closed() && line_.num_nodes() > 2 && context_.clamp_at(rod_, end) == nullptr;
+  }
+  [[nodiscard]] double longest_edge() const {
+    double longest =
+        line_.closed() ? line_.length() - line_.arc_length(line_.num_nodes() - 1) : 0.0;
+    for (int node = 1; node < line_.num_nodes(); ++node) {
+      longest = std::max(longest, line_.arc_length(node) - line_.arc_length(node - 1));
+    }
+    return longest;
   }
   /// Arc length of the middle of an edge [m].
   [[nodiscard]] double middle(int edge) const {
@@ -162,6 +171,7 @@ class CellCheck {
   const std::string& name_;
   const RestLine& line_;
   ModelChoice model_;
+  double two_edges_ = 2.0 * longest_edge();  // [m]
   std::vector<TurningPlace> places_;
 };
 

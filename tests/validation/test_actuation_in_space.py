@@ -536,8 +536,8 @@ def work_of_turning_clamp():
 @pytest.mark.parametrize("turns", [False, True], ids=["clamp", "turning clamp"])
 @pytest.mark.parametrize("info", SPATIAL_STEPPERS, ids=lambda info: info.name)
 def test_ledger_in_space(fitted_order, info, turns, work_of_turning_clamp):
-    """What steppers make or lose, and the work of the clamp, are of their order in the step. With
-    frames of the start at the end of a step, the clamp's work had an error of order 1."""
+    """The energy that a stepper makes or loses has the stepper's order in the step, and so has the
+    work of the clamp. With frames of the start at the end of a step, that work had order 1."""
     steps = [5e-4, 2.5e-4, 1.25e-4]
     losses, of_clamp = [], []
     for step in steps:

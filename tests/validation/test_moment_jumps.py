@@ -161,7 +161,7 @@ def test_both_sides_of_a_jump(name, sizes, fitted_order):
     assert worst[-1].max() < 2e-4
     for place, column in zip(places, worst.T, strict=True):
         assert fitted_order(steps, column) > 1.9, (place, column)
-    # Of all places: at one that follows a moment its error changes its sign.
+    # Over all places at once: at one that follows a moment the error changes its sign.
     assert fitted_order(steps, tension.max(axis=1)) > 1.9
     assert tension[-1].max() < 1e-4
 

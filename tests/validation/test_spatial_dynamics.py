@@ -154,7 +154,7 @@ def test_a_free_rod_whose_sections_spin_keeps_its_momenta(fitted_order, stepper)
     [("sdirk5", 250), ("sdirk4", 1000), ("implicit_midpoint", 4000), ("verlet", 8000)],
 )
 def test_steps_that_keep_the_momenta_to_1e_10(stepper, steps, spin):
-    """Of all steppers, those that do with few enough steps (docs/steppers.md)."""
+    """The steppers that reach it with few enough steps for a test (docs/steppers.md)."""
     assert max(drift(stepper, steps, spin)) < 1e-10
 
 

@@ -47,7 +47,7 @@ void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector
 /// Moves what `state` follows to the end of the step, and returns the works of its controls: the
 /// mean of those of their whole change at the start and at the end. There each has the frames of
 /// its own place. Seen from the frames of the start, the edge that a clamp moves at the end turns
-/// its section by the transport from there, which is no turn that the clamp makes: the spin of
+/// its section by the transport from there, which is not a turn of the clamp: the spin of
 /// sections takes that up (model/spin.hpp). Its work with the edge's torque is of the second order
 /// in each step.
 ControlWork StepFinisher::follow_and_work(double dt, State& state) {

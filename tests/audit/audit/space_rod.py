@@ -95,7 +95,7 @@ class Drawn:
 
 @dataclass
 class Place:
-    """What holds and loads the rod at a place. Vectors along fixed axes; those of loads that
+    """The supports and loads of the rod at a place. Vectors along fixed axes; those of loads that
     follow as they are in the drawn shape.
     """
 
@@ -165,7 +165,7 @@ class _Border:
 
 
 def _product(a: Numbers, b: Numbers) -> Numbers:
-    """Of two quaternions."""
+    """The product of two quaternions."""
     vector = a[0] * b[1:] + b[0] * a[1:] + cross(a[1:], b[1:])
     return np.concatenate([[a[0] * b[0] - (a[1:] * b[1:]).sum()], vector])
 

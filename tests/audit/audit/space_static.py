@@ -343,7 +343,7 @@ def _inside(rng: Random, scene: _Scene) -> list[tuple[Any, float]]:
 
 
 def _energy(placed: Placed, problem: Problem, solved: Equilibrium) -> float:
-    """What rod and springs store."""
+    """The energy that the rod and the springs store."""
     points, weights = np.polynomial.legendre.leggauss(12)
     total = problem.spring_energy(solved)
     for a, b in pairwise(solved.solution.breaks):

@@ -39,7 +39,7 @@ template <>
 struct LaneRegister<8> {
   typedef double type __attribute__((vector_size(64), aligned(16)));
   typedef std::int64_t bits __attribute__((vector_size(64), aligned(16)));
-  // Of eight numbers in a list GCC 12 puts each one in its place, even where they are equal.
+  // GCC 12 puts the eight numbers of a list in their places one by one, even where they are equal.
   static void fill(double x, type& all) {
     type first{};
     first[0] = x;

@@ -20,7 +20,7 @@ void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector
   configuration_of(model_, state, start_);
   end_.coordinates = positions;
   evaluate_controls(model_, state, state.time + dt, end_.controls);
-  const ControlWork work = follow_and_work(dt, state);
+  const ControlWork work = follow_and_work(state);
   state.work.loads += work.loads;
   state.work.supports += work.supports;
   state.work.actuation += work.actuation;
@@ -50,7 +50,7 @@ void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector
 /// its section by the transport from there, which is not a turn of the clamp: the spin of
 /// sections takes that up (model/spin.hpp). Its work with the edge's torque is of the second order
 /// in each step.
-ControlWork StepFinisher::follow_and_work(double dt, State& state) {
+ControlWork StepFinisher::follow_and_work(State& state) {
   if (controls_work_) {
     ahead_.coordinates = start_.coordinates;
     ahead_.controls = end_.controls;

@@ -22,7 +22,7 @@ class StepFinisher {
               State& state);
 
  private:
-  ControlWork follow_and_work(double dt, State& state);
+  ControlWork follow_and_work(State& state);
 
   const Model& model_;
   bool controls_work_ = false;  // whether any control does work without a displacement

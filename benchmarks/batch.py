@@ -16,7 +16,8 @@
 3. Building, memory and resets of members of 51 nodes, of one scene and with a modulus of its own
    for each.
 4. With `--peers` (`pip install .[peers]`): swings for a second of one core in a batch of `der`, in
-   `mujoco.rollout` and in a block of PyElastica, with the error of each.
+   `mujoco.rollout`, in a block of PyElastica or DiSMech-Newton, and of Exudyn one by one, with the
+   error of each.
 
 Ways are taken in turns, and the best of several times counts, so that other work on the machine
 disturbs all alike. Seconds are those of the clock but for building, resets and
@@ -40,7 +41,7 @@ from typing import Any
 
 import der
 import numpy as np
-from comparison.codes import DER, MUJOCO, PYELASTICA, missing_text
+from comparison.codes import CODES, missing_text
 from comparison.run_der import controls, implicit, run_batch
 from comparison.scene import FRAMES, distance, steps_per_frame
 from comparison.strip import code_der as strip
@@ -204,8 +205,7 @@ def print_building(members: int) -> None:
 
 def peers(repeats: int, quick: bool) -> None:
     """Print members a second of each code that is installed."""
-    codes = (DER, MUJOCO, PYELASTICA)
-    for code in codes:
+    for code in CODES:
         print(f"{code.title} {code.version()}" if code.is_installed() else missing_text(code))
     print(batches.table(batches.measure(repeats, quick)))
 

@@ -6,7 +6,7 @@
 
 A soft rod, 1 m long, is clamped horizontally at one end and falls for 1 s. The scene ``swing`` is a
 round rod, which stays in its plane; ``strip`` is a strip that is clamped askew and therefore bends
-about both axes and twists (DiSMech-Newton runs this one only). Each code tries many
+about both axes and twists. Each code tries many
 numbers of elements, time steps and settings; the error is the largest distance of the tip from the
 continuum's at 101 times. Times are CPU seconds of the time loop on one core, the least of several
 runs taken in turns; imports, compilation and the building of models do not count. A peer that is
@@ -19,8 +19,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Mapping, Sequence
-from itertools import chain
+from collections.abc import Sequence
 
 THREAD_LIMITS = (
     "OMP_NUM_THREADS",
@@ -36,14 +35,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     use_one_core()
     # Not before: libraries read the thread limits when they are first imported.
     from comparison import plot, report
-    from comparison.codes import missing_text
+    from comparison.codes import CODES, missing_text
     from comparison.measure import measure
     from comparison.scenes import SCENES
     from der.progress import progress_on_terminal
 
-    options = parse(arguments, {s.key: [code.key for code in s.codes] for s in SCENES.values()})
+    options = parse(arguments, list(SCENES), [code.key for code in CODES])
     scene = SCENES[options.scene]
-    codes = [code for code in scene.codes if code.key in options.peers]
+    codes = [code for code in CODES if code.key in options.peers]
     for code in codes:
         if not code.is_installed():
             print(missing_text(code))
@@ -66,29 +65,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def parse(
-    arguments: Sequence[str] | None, codes: Mapping[str, Sequence[str]]
+    arguments: Sequence[str] | None, scenes: Sequence[str], codes: Sequence[str]
 ) -> argparse.Namespace:
-    """Read the command line; `codes` are the keys of the codes of each scene."""
+    """Read the command line; `scenes` and `codes` are the keys of all that there are."""
     from der.output_paths import output_file, output_picture  # not before: see main
 
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    every = list(dict.fromkeys(chain.from_iterable(codes.values())))
-    parser.add_argument("--scene", choices=list(codes), default="swing")
-    parser.add_argument("--peers", nargs="+", choices=every, metavar="CODE")
+    parser.add_argument("--scene", choices=scenes, default="swing")
+    parser.add_argument("--peers", nargs="+", choices=codes, default=codes, metavar="CODE")
     parser.add_argument("--quick", action="store_true", help="few configurations, two runs each")
     parser.add_argument("--repeats", type=int, default=3, help="runs of those that are worth it")
     parser.add_argument("--csv", type=output_file, metavar="FILE", help="write every run")
     parser.add_argument(
         "--plot", type=output_picture, metavar="FILE", help="draw cost against error"
     )
-    options = parser.parse_args(arguments)
-    options.peers = options.peers or codes[options.scene]
-    for key in options.peers:
-        if key not in codes[options.scene]:
-            parser.error(f"{key} cannot run the scene {options.scene}")
-    return options
+    return parser.parse_args(arguments)
 
 
 def use_one_core() -> None:

@@ -57,6 +57,9 @@ MUJOCO = Code("mujoco", "MuJoCo", "mujoco", "mujoco")
 PYELASTICA = Code("pyelastica", "PyElastica", "elastica", "pyelastica")
 DISMECH = Code("dismech", "DiSMech-Newton", "dismech_newton", "dismech-newton")
 
+#: The first is the one that the others are compared with.
+CODES = (DER, EXUDYN, MUJOCO, PYELASTICA, DISMECH)
+
 
 def missing_text(code: Code) -> str:
     """Say that a code is left out, and how to get it."""

@@ -1,7 +1,8 @@
 """The swing many times over, as each code runs a batch: members for a second of one core.
 
-`der` has `Batch`, MuJoCo `mujoco.rollout`, each on one thread here. PyElastica has no batch, but
-steps all rods of a simulation as one block, which spares most of the cost of Python.
+`der` has `Batch`, MuJoCo `mujoco.rollout`, each on one thread here. PyElastica and DiSMech-Newton
+have no batch, but step all rods of a simulation together, which spares most of the cost of Python.
+Exudyn runs one after the other.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from functools import cache
 import der
 
 from comparison import run_der
-from comparison.codes import DER, MUJOCO, PYELASTICA, Code
+from comparison.codes import DER, DISMECH, EXUDYN, MUJOCO, PYELASTICA, Code
 from comparison.run_der import controls, implicit
 from comparison.scene import FRAMES, Config, Path, distance, steps_per_frame
 from comparison.swing import code_der, problem
@@ -67,8 +68,8 @@ def ways() -> list[Way]:
     """Return the ways of all codes that are installed.
 
     First is what a code needs for 1e-3 m, by benchmarks/peers.py, or of PyElastica for as much from
-    its own limit; then the 24 elements that are enough for `der`. Peers take their largest stable
-    steps.
+    its own limit; then the 24 elements that are enough for `der`. Explicit ones take their largest
+    stable steps.
     """
     every = [
         Way(DER, "`Batch`, 24 elements, 300 steps", 100, _der(implicit(24, 3, "implicit_midpoint")))
@@ -78,6 +79,10 @@ def ways() -> list[Way]:
             kind = "links with slides" if slides else "links"
             text = f"`rollout`, {links} {kind}, {FRAMES * steps} steps"
             every.append(Way(MUJOCO, text, 8, _mujoco(links, slides, steps)))
+    if EXUDYN.is_installed():
+        every.append(Way(EXUDYN, "22 cable elements, 300 steps", 8, _exudyn(22, 3)))
+    if DISMECH.is_installed():
+        every.append(Way(DISMECH, "one model, 144 edges, 300 steps", 8, _dismech(144, 3)))
     if PYELASTICA.is_installed():
         for elements, steps in ((50, 85), (24, 66)):
             text = f"one block, {elements} elements, {FRAMES * steps} steps"
@@ -128,6 +133,26 @@ def _mujoco(links: int, slides: bool, steps: int) -> Callable[[int], tuple[float
     config = {**code_mujoco.links_config(links, "Euler", "straddle", slides), "steps": steps}
     model, body, offset = code_mujoco.links(config)
     return lambda members: run_mujoco.roll_out(model, config, body, offset, 2, members)
+
+
+def _exudyn(elements: int, steps: int) -> Callable[[int], tuple[float, Sequence[Path]]]:
+    from comparison.swing import code_exudyn  # not before: it may not be installed
+
+    config = code_exudyn.configuration(elements, steps, 1e-2, 0.5, 1.0, 2)
+
+    def run(members: int) -> tuple[float, Sequence[Path]]:
+        seconds, tips = zip(*(code_exudyn.run(config) for _ in range(members)), strict=True)
+        return sum(seconds), tips
+
+    return run
+
+
+def _dismech(elements: int, steps: int) -> Callable[[int], tuple[float, Sequence[Path]]]:
+    from comparison import run_dismech  # not before: it may not be installed
+    from comparison.swing import code_dismech
+
+    config = run_dismech.configuration(elements, steps, iterations=2, line_search=1)
+    return lambda members: run_dismech.march(code_dismech.ROD, config, members, dimension=2)
 
 
 def _pyelastica(config: Config) -> Callable[[int], tuple[float, Sequence[Path]]]:

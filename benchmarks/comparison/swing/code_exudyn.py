@@ -27,21 +27,26 @@ def run(config: Config) -> tuple[float, Path]:
 def grid(quick: bool) -> list[Config]:
     """Return the configurations that are tried."""
     if quick:
-        return [_config(n, m, 1e-3, 0.5, 1.0, 0) for n, m in ((12, 2), (20, 3), (24, 5), (32, 10))]
+        return [
+            configuration(n, m, 1e-3, 0.5, 1.0, 0) for n, m in ((12, 2), (20, 3), (24, 5), (32, 10))
+        ]
     coarse = product((10, 11, 12, 14, 16, 18, 20, 22, 24), (2, 3, 4, 5))
     middle = product((24, 28, 32, 36), (4, 5, 7, 10, 14))
     fine = product((32, 34, 36, 40, 48), (10, 12, 14, 17, 20, 30, 40))
     finest = product((48, 52, 56, 64), (40, 50, 60, 80))
     schemes = list(product((1e-2, 1e-3), (0.3, 0.5), (1.0, 0.9)))
     return [
-        *(_config(n, m, *s, i) for (n, m), s, i in product(coarse, schemes, (0, 2))),
-        *(_config(n, m, *s, 0) for (n, m), s in product(middle, schemes)),
-        *(_config(n, m, t, 0.3, r, 0) for (n, m), t, r in product(fine, (1e-3, 1e-4), (1.0, 0.9))),
-        *(_config(n, m, t, 0.3, 1.0, 0) for (n, m), t in product(finest, (1e-3, 1e-4))),
+        *(configuration(n, m, *s, i) for (n, m), s, i in product(coarse, schemes, (0, 2))),
+        *(configuration(n, m, *s, 0) for (n, m), s in product(middle, schemes)),
+        *(
+            configuration(n, m, t, 0.3, r, 0)
+            for (n, m), t, r in product(fine, (1e-3, 1e-4), (1.0, 0.9))
+        ),
+        *(configuration(n, m, t, 0.3, 1.0, 0) for (n, m), t in product(finest, (1e-3, 1e-4))),
     ]
 
 
-def _config(
+def configuration(
     elements: int,
     steps: int,
     tolerance: float,
@@ -49,6 +54,7 @@ def _config(
     spectral_radius: float,
     integration: int,
 ) -> Config:
+    """Return a configuration."""
     return {
         "elements": elements,
         "steps": steps,

@@ -30,17 +30,6 @@
 namespace der {
 namespace {
 
-const char* name_of(scenario::ModelChoice kind) {
-  switch (kind) {
-    case scenario::ModelChoice::Spatial:
-      return "spatial";
-    case scenario::ModelChoice::SpatialBend:
-      return "spatial_bend";
-    default:
-      return "planar";
-  }
-}
-
 /// Returns whether sections count.
 bool choose_model(const scenario::Scene& scene, Model& model) {
   const auto [kind, reason] = scenario::choose_model(scene);

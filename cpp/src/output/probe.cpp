@@ -260,7 +260,6 @@ std::unique_ptr<ProbeReader> make_reader(const scenario::Probe& probe, const Qua
   if (quantity.kind == QuantityKind::Energy) {
     return make_energy_reader(quantity.energies, probe.rod, model);
   }
-  if (!is_available(quantity, model)) throw not_available(quantity, model);
   if (quantity.kind == QuantityKind::Support) {
     const std::size_t support = scenario::find_support(scene, probe.support.value()).value();
     return std::make_unique<SupportReader>(quantity.read_reaction, support, scene, model);

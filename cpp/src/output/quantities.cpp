@@ -1,5 +1,7 @@
 #include "der/catalog/quantities.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -240,6 +242,21 @@ std::vector<Quantity> all_quantities() {
   return rows;
 }
 
+/// The advice to whoever asks for a quantity that the model lacks.
+const char* advice_on(QuantityScope scope) {
+  switch (scope) {
+    case QuantityScope::All:
+      break;
+    case QuantityScope::Planar:
+      return "it is one of planar rods";
+    case QuantityScope::Space:
+      return "write 'model: spatial', or 'spatial_bend' for a rod that cannot twist";
+    case QuantityScope::Sections:
+      return "write 'model: spatial', in which sections count";
+  }
+  return "";
+}
+
 }  // namespace
 
 const std::vector<Quantity>& quantities() {
@@ -248,17 +265,26 @@ const std::vector<Quantity>& quantities() {
 }
 
 bool is_available(const Quantity& quantity, const Model& model) {
+  return is_available_in(model.dimension, model.has_sections(), quantity);
+}
+
+bool is_available_in(int dimension, bool has_sections, const Quantity& quantity) {
   switch (quantity.scope) {
     case QuantityScope::All:
       return true;
     case QuantityScope::Planar:
-      return model.dimension == 2;
+      return dimension == 2;
     case QuantityScope::Space:
-      return model.dimension == 3;
+      return dimension == 3;
     case QuantityScope::Sections:
       break;
   }
-  return model.has_sections();
+  return has_sections;
+}
+
+std::string lacks(std::string_view model, const Quantity& quantity) {
+  const std::string advice = quantity.advice.empty() ? advice_on(quantity.scope) : quantity.advice;
+  return fmt::format("the model '{}' has no '{}': {}", model, quantity.name, advice);
 }
 
 const Quantity* find_quantity(std::string_view name) {

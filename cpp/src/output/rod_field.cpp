@@ -9,21 +9,6 @@
 namespace der {
 namespace {
 
-/// The advice to whoever asks for a quantity that the model lacks.
-const char* advice_on(QuantityScope scope) {
-  switch (scope) {
-    case QuantityScope::All:
-      break;
-    case QuantityScope::Planar:
-      return "it is one of planar rods";
-    case QuantityScope::Space:
-      return "write 'model: spatial', or 'spatial_bend' for a rod that cannot twist";
-    case QuantityScope::Sections:
-      return "write 'model: spatial', in which sections count";
-  }
-  return "";
-}
-
 std::string names_along_rods() {
   std::string names;
   for (const Quantity& quantity : quantities()) {
@@ -36,9 +21,7 @@ std::string names_along_rods() {
 }  // namespace
 
 Error not_available(const Quantity& quantity, const Model& model) {
-  const std::string& advice = quantity.advice;
-  return {"model_error", fmt::format("the model '{}' has no '{}': {}", model.name, quantity.name,
-                                     advice.empty() ? advice_on(quantity.scope) : advice)};
+  return {"model_error", lacks(model.name, quantity)};
 }
 
 void RodField::sample_all(const Model& model, const State& state, double* values) const {

@@ -1,13 +1,10 @@
+#include "der/catalog/quantities.hpp"
 #include "der/scenario/model_choice.hpp"
 #include "scenario/checks.hpp"
 #include "scenario/directions.hpp"
 
 namespace der::scenario {
 namespace {
-
-const char* word_of(ModelChoice kind) {
-  return kind == ModelChoice::Planar ? "planar" : "spatial_bend";
-}
 
 struct ZeroOrNoNumber {
   bool operator()(double curvature) const { return curvature == 0.0; }
@@ -38,6 +35,16 @@ void check_twisting(const Rod& rod, const Path& path, const std::string& reason,
                   direct ? "'GJ'" : "'poissons_ratio' or 'shear_modulus'", reason));
 }
 
+/// A probe changes no model: what the chosen one does not have has to be asked for.
+void check_quantities(const SceneText& scene, ModelChoice kind, Diagnostics& diagnostics) {
+  for (const Probe& probe : scene.output.probes) {
+    const Quantity& quantity = *find_quantity(probe.quantity);
+    const int dimension = kind == ModelChoice::Planar ? 2 : 3;
+    if (is_available_in(dimension, kind == ModelChoice::Spatial, quantity)) continue;
+    diagnostics.add({"output", "probes", probe.name, "quantity"}, lacks(name_of(kind), quantity));
+  }
+}
+
 }  // namespace
 
 void check_model(const SceneText& scene, const ChosenModel& model, Diagnostics& diagnostics) {
@@ -47,10 +54,11 @@ void check_model(const SceneText& scene, const ChosenModel& model, Diagnostics& 
     diagnostics.add({"model"},
                     fmt::format("'{}' cannot represent this scene: {}. Write 'auto' for the "
                                 "smallest model that can",
-                                word_of(model.kind), obstacle));
+                                name_of(model.kind), obstacle));
     return;
   }
   check_availability(scene, model.kind, diagnostics);
+  check_quantities(scene, model.kind, diagnostics);
   if (model.kind == ModelChoice::Planar) return;
   for (int i = 0; i < static_cast<int>(scene.rods.size()); ++i) {
     const Rod& rod = scene.rods[static_cast<std::size_t>(i)];

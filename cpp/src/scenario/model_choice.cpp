@@ -325,6 +325,17 @@ std::string why_not_spatial_bend(const Scene& scene) {
 
 }  // namespace
 
+const char* name_of(ModelChoice kind) {
+  switch (kind) {
+    case ModelChoice::Spatial:
+      return "spatial";
+    case ModelChoice::SpatialBend:
+      return "spatial_bend";
+    default:
+      return "planar";
+  }
+}
+
 std::string why_not(ModelChoice kind, const Scene& scene) {
   if (kind == ModelChoice::Planar) return why_not_planar(scene);
   if (kind == ModelChoice::SpatialBend) return why_not_spatial_bend(scene);

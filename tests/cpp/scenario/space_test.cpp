@@ -123,6 +123,34 @@ TEST_CASE("space: a number is a curvature about z, wherever the width points") {
   }
 }
 
+/// The diagnostics of a beam in space, of a given model, with a probe of a quantity at its end.
+std::string diagnostics_of_probe(const std::string& quantity, const std::string& model) {
+  return test::diagnostics(
+      {{"model", model},
+       {"rods.beam.from", "[0, 0, 0]"},
+       {"rods.beam.to", "[1, 0, 0]"},
+       {"rods.beam.material.poissons_ratio", "0.3"},
+       {"output", "{probes: {tip: {rod: beam, at: end, quantity: " + quantity + "}}}"}});
+}
+
+TEST_CASE("space: a probe asks for what the chosen model has, and chooses none") {
+  for (const std::string model : {"auto", "planar"}) {
+    CHECK(diagnostics_of_probe("slope", model).empty());
+    CHECK(contains(diagnostics_of_probe("z", model),
+                   "output.probes.tip.quantity: the model 'planar' has no 'z': write 'model: "
+                   "spatial', or 'spatial_bend' for a rod that cannot twist"));
+    CHECK(contains(diagnostics_of_probe("twist", model), "the model 'planar' has no 'twist'"));
+  }
+  CHECK(diagnostics_of_probe("z", "spatial_bend").empty());
+  CHECK(contains(diagnostics_of_probe("curvature_1", "spatial_bend"),
+                 "the model 'spatial_bend' has no 'curvature_1': write 'model: spatial', in which "
+                 "sections count"));
+  CHECK(contains(diagnostics_of_probe("slope", "spatial_bend"), "take 'tx', 'ty' and 'tz'"));
+  CHECK(diagnostics_of_probe("curvature_1", "spatial").empty());
+  CHECK(contains(diagnostics_of_probe("natural_curvature", "spatial"),
+                 "the model 'spatial' has no 'natural_curvature': in space take"));
+}
+
 TEST_CASE("space: a scene of three components in the plane is a planar scene") {
   const Scene scene =
       test::beam({{"rods.beam.from", "[0, 0, 0]"},

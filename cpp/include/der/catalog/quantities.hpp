@@ -82,8 +82,11 @@ inline constexpr std::string_view kSlope = "slope";
 /// The table. It is written in output/quantities.cpp, where the makers are; this header is all that
 /// the reader of scenes knows of it.
 const std::vector<Quantity>& quantities();
-/// Whether a model has the quantity.
+/// Whether a model has the quantity, and whether models of its kind have it.
 bool is_available(const Quantity& quantity, const Model& model);
+bool is_available_in(int dimension, bool has_sections, const Quantity& quantity);
+/// The message that the model of this name does not have the quantity, with what to write.
+std::string lacks(std::string_view model, const Quantity& quantity);
 /// Null for an unknown name.
 const Quantity* find_quantity(std::string_view name);
 

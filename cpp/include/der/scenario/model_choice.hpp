@@ -32,6 +32,9 @@ struct ChosenModel {
 /// is returned even where it cannot represent the scene; the reader refuses such scenes.
 ChosenModel choose_model(const Scene& scene);
 
+/// Its name in scenes, `spatial_bend`. Not for Auto.
+const char* name_of(ModelChoice kind);
+
 /// Why the model of this kind cannot represent the scene, as a clause; empty if it can.
 std::string why_not(ModelChoice kind, const Scene& scene);
 

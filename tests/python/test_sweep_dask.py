@@ -1,5 +1,6 @@
 """Sweeps on a Dask cluster of processes, one of which is killed."""
 
+import gc
 import os
 import signal
 import threading
@@ -9,6 +10,7 @@ import numpy as np
 import pytest
 from der.cli import main
 from der.sweeps import sweeper
+from der.sweeps.chunk import Chunk
 from der.sweeps.executors import connect, place_for
 from sweep_scenes import FORCE, STIFFNESS, bits, cantilever, of_each_kind
 
@@ -60,6 +62,14 @@ def test_the_same_bits_in_threads_and_on_a_cluster(cluster, kind):
     with connect(cluster.scheduler_address) as client:
         swept = der.sweep(scene, vary, executor=client)
     assert bits(swept) == bits(der.sweep(scene, vary))
+
+
+def test_the_scheduler_keeps_no_members(cluster):
+    """It is in this process. Its log of messages would grow to gigabytes if they held members."""
+    with connect(cluster.scheduler_address) as client:
+        der.sweep(SCENE, {FORCE: np.linspace(-5.0, 0.0, 200)}, executor=client)
+        gc.collect()
+        assert not [each for each in gc.get_objects() if type(each) is Chunk]
 
 
 @pytest.mark.parametrize("options", [[], ["--frames", "--verify"]], ids=["plain", "all"])

@@ -5,9 +5,11 @@ from __future__ import annotations
 import json
 import multiprocessing
 import os
+import pickle
 import signal
 import threading
 import time
+import zlib
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
@@ -95,7 +97,7 @@ def place_for(executor: AnyExecutor | None, jobs: int | None) -> Iterator[Place]
         if not client.nthreads():
             warn(["the Dask cluster has no workers yet: the sweep waits for them"])
         yield Place(
-            client.get_executor(pure=False),
+            _OnDask(client.get_executor(pure=False)),
             run_chunk,
             lambda: sum(client.nthreads().values()) if jobs is None else count,
         )
@@ -103,6 +105,31 @@ def place_for(executor: AnyExecutor | None, jobs: int | None) -> Iterator[Place]
         raise TypeError(
             f"executor must be an executor of concurrent.futures or a Dask client, got {executor!r}"
         )
+
+
+class _OnDask(Executor):
+    """Hands work to Dask, packed.
+
+    A scheduler keeps the last thousand messages for each worker and client, chunks with them
+    (``distributed.admin.low-level-log-length``): 190 kB for one of 1000 members as objects of
+    Python, 10 kB packed.
+    """
+
+    def __init__(self, executor: Executor) -> None:
+        self._executor = executor
+
+    def submit(
+        self, fn: Callable[_Given, _Done], /, *args: _Given.args, **kwargs: _Given.kwargs
+    ) -> Future[_Done]:
+        """Hand work over."""
+        packed = zlib.compress(pickle.dumps((fn, args, kwargs)), level=1)
+        return self._executor.submit(run_packed, packed)
+
+
+def run_packed(packed: bytes) -> Any:
+    """Do packed work; the name is what Dask shows of it."""
+    function, args, kwargs = pickle.loads(zlib.decompress(packed))
+    return function(*args, **kwargs)
 
 
 class Processes(EndsWithBlock, ProcessPoolExecutor):

@@ -25,6 +25,7 @@ from pathlib import Path
 import der
 from der import _core
 from der.sweeps.chunk import Chunk, run_chunk
+from der.sweeps.executors import pack
 from memory import resident
 
 FORCE = "loads.0.point_force.force.1"
@@ -159,10 +160,8 @@ def show_dask(scene: der.Scenario, members: int) -> str:
                 executor.submit(run_chunk, empty).result()
             each = (time.perf_counter() - begun) / CHUNKS
             print(f"a chunk without members, {label}: {1e3 * each:.2f} ms")
-        sizes = [sum(map(len, map(bytes, serialize(what)[1]))) for what in (full, table)]
-        print(
-            f"a chunk of 1000 members: {sizes[0] / 1e3:.0f} kB there, {sizes[1] / 1e3:.0f} kB back"
-        )
+        there, back = len(pack(run_chunk, full)), sum(map(len, map(bytes, serialize(table)[1])))
+        print(f"a chunk of 1000 members: {there / 1e3:.0f} kB there, {back / 1e3:.0f} kB back")
     return rows
 
 

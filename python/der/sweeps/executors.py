@@ -122,8 +122,12 @@ class _OnDask(Executor):
         self, fn: Callable[_Given, _Done], /, *args: _Given.args, **kwargs: _Given.kwargs
     ) -> Future[_Done]:
         """Hand work over."""
-        packed = zlib.compress(pickle.dumps((fn, args, kwargs)), level=1)
-        return self._executor.submit(run_packed, packed)
+        return self._executor.submit(run_packed, pack(fn, *args, **kwargs))
+
+
+def pack(fn: Callable[_Given, Any], /, *args: _Given.args, **kwargs: _Given.kwargs) -> bytes:
+    """Return work as the bytes that travel."""
+    return zlib.compress(pickle.dumps((fn, args, kwargs)), level=1)
 
 
 def run_packed(packed: bytes) -> Any:

@@ -322,11 +322,15 @@ def _as_array(members: Any) -> NDArray[Any]:
 def _as_numbers(name: str, given: ArrayLike) -> NDArray[np.float64]:
     try:
         values = np.asarray(given)
-        if values.dtype.kind in "biuf":
-            return values.astype(float, copy=False)
     except ValueError:  # rows of different lengths
-        pass
-    raise TypeError(f"'{name}' takes numbers, or arrays of them, got {given!r}")
+        values = np.asarray(None)
+    if values.dtype.kind not in "biuf":
+        raise TypeError(f"'{name}' takes numbers, or arrays of them, got {given!r}")
+    try:
+        check_value_list(given)
+    except ValueError as error:
+        raise ValueError(f"'{name}': {error}") from None
+    return values.astype(float, copy=False)
 
 
 def _broadcast(

@@ -302,6 +302,11 @@ def test_values_that_do_not_fit_set_nothing():
         batch.set("push", [1.0, 2.0, 3.0])
     with pytest.raises(der.DerError, match="nothing that could be set has the name 'pull'"):
         batch.set("pull", 1.0)
+    masked = np.ma.array([0.1, 0.2, 0.3], mask=[1, 0, 0])
+    with pytest.raises(ValueError, match=r"'push\.y': some values are masked"):
+        batch.set("push.y", masked)
+    with pytest.raises(ValueError, match="'x': some values are masked"):
+        batch.prescribe(0, x=masked)
     batch.step()
     assert_same(batch, 2, alone_after(2))
 

@@ -8,6 +8,7 @@ import sys
 import time
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing
 from multiprocessing import get_context
 
 import der
@@ -167,6 +168,9 @@ def test_samples_are_those_of_scipy():
         ({"a": np.ma.array([1, 2], mask=[0, 1])}, {}, "a: some values are masked"),
         ({"a": [1.0, np.ma.masked]}, {}, "a: some values are masked"),
         ({"a": "0:1"}, {}, "0:1:11"),
+        ({"a": "-1e308:1e308:3"}, {}, "a: the difference of the ends of a range, -1e.308 and"),
+        ({"a": "-1e308:1e308"}, {"sample": "lhs:3"}, "a: the difference of the ends of a range"),
+        ({"a": "1e-160:1e160:log"}, {"sample": "lhs:3"}, "a: the ratio of the ends of a range"),
         ({"a": [1, 2], "b": [1]}, {"zipped": True}, "a has 2, b has 1"),
         ({"a": [1]}, {"sample": "grid:3"}, "write sobol:256"),
         ({"a": [1]}, {"sample": "lhs:0"}, "write sobol:256"),
@@ -339,6 +343,10 @@ def test_a_full_disk_says_how_to_go_on(cantilever, tmp_path, monkeypatch):
         ({"out": 3}, TypeError, "out must be the path of a folder, got 3"),
         ({"out": b"s"}, TypeError, "out must be the path of a folder, got b's'"),
         ({"progress": 3}, TypeError, "progress must be a function, got 3"),
+        ({"zipped": "no"}, TypeError, "zipped must be True or False, got 'no'"),
+        ({"resume": "false"}, TypeError, "resume must be True or False, got 'false'"),
+        ({"verify": 1}, TypeError, "verify must be True or False, got 1"),
+        ({"frames": None}, TypeError, "frames must be True or False, got None"),
         ({"jobs": 1.5}, TypeError, "jobs must be a whole number of at least 1, got 1.5"),
     ],
 )
@@ -899,6 +907,16 @@ def test_a_file_that_is_no_sweep(cantilever, tmp_path):
     (tmp_path / FILE).write_text("garbage")
     with pytest.raises(OSError, match=r"is damaged, or no file of a sweep .*: name another folder"):
         der.sweep(cantilever, {FORCE: [-1.0]}, out=tmp_path, resume=True)
+
+
+@pytest.mark.parametrize("table", ["mine", "runs", "sweep"])
+def test_the_database_of_another_program_is_left_alone(table, cantilever, tmp_path):
+    with closing(sqlite3.connect(tmp_path / FILE)) as base:
+        base.execute(f"CREATE TABLE {table} (x)")
+    before = (tmp_path / FILE).read_bytes()
+    with pytest.raises(OSError, match=r"no(ne| file) of a sweep.*: name another folder"):
+        der.sweep(cantilever, {FORCE: [-1.0]}, out=tmp_path, resume=True)
+    assert (tmp_path / FILE).read_bytes() == before
 
 
 def test_findings_that_have_no_columns_left():

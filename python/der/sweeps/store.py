@@ -37,6 +37,8 @@ FRAMES = "runs"
 _FORMAT = "1"
 #: How long to wait for another program that reads or writes the file [s].
 _PATIENCE = 60.0
+#: What SQLite says of a file that is damaged, or has other tables.
+_SIGNS_OF_ANOTHER_FILE = ("not a database", "malformed", "no such column", "no such table")
 #: How many columns a table of SQLite has at most, as it is built by default.
 MOST_COLUMNS = 2000
 #: For the statuses of members that are to be run again, in a question.
@@ -115,6 +117,10 @@ class Store:
             if not self._base.execute(
                 "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'sweep'"
             ).fetchall():
+                if self._base.execute("SELECT 1 FROM sqlite_master").fetchall():
+                    raise OSError(
+                        f"{self._path} has tables, and none of a sweep: name another folder"
+                    )
                 return {}
             found = dict(self._base.execute("SELECT key, value FROM sweep").fetchall())
             if found.get("format") != _FORMAT:
@@ -295,7 +301,7 @@ class Store:
         try:
             yield
         except sqlite3.Error as error:
-            if "not a database" in str(error) or "malformed" in str(error):
+            if any(sign in str(error) for sign in _SIGNS_OF_ANOTHER_FILE):
                 raise OSError(
                     f"{self._path} is damaged, or no file of a sweep ({error}): name another folder"
                 ) from error

@@ -12,6 +12,8 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from der._core import Scenario, __version__
 from der.accuracy.default_probes import with_default_probes
 from der.errors import DerError, warn
@@ -116,6 +118,14 @@ def sweep(
         out = folder_path("out", out)
     if not (progress is None or callable(progress)):
         raise TypeError(f"progress must be a function, got {progress!r}")
+    for name, value in {
+        "resume": resume,
+        "zipped": zipped,
+        "frames": frames,
+        "verify": verify,
+    }.items():
+        if not isinstance(value, (bool, np.bool_)):
+            raise TypeError(f"{name} must be True or False, got {value!r}")
     given = as_scenario(scenario)
     warn(given.warnings)
     scene = with_default_probes(given)

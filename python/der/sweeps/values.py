@@ -33,11 +33,25 @@ class Range:
         Its ends.
     log
         Whether equal shares of it are equal ratios.
+
+    Raises
+    ------
+    ValueError
+        If no number tells how far apart its ends are.
     """
 
     low: float
     high: float
     log: bool = False
+
+    def __post_init__(self) -> None:
+        """See that `at` has numbers to compute with."""
+        if not math.isfinite(self.high / self.low if self.log else self.high - self.low):
+            what = "ratio" if self.log else "difference"
+            raise ValueError(
+                f"the {what} of the ends of a range, {self.low:g} and {self.high:g}, is beyond the "
+                "largest number: take ends that are nearer"
+            )
 
     def at(self, share: float) -> float:
         """Return the value at a share of the range, from 0 to 1."""
@@ -155,7 +169,11 @@ def _parse_range(text: str) -> Values:
     count = int(numbers[2])
     if not 2 <= count <= MOST_VALUES:
         raise ValueError(f"'{text}': a range has at least 2 values and at most {MOST_VALUES}")
-    spaced = (np.geomspace if log else np.linspace)(low, high, count).tolist()
+    if log:
+        spaced = np.geomspace(low, high, count).tolist()
+    else:
+        ends = Range(low, high)
+        spaced = np.linspace(ends.low, ends.high, count).tolist()
     between_whole = isinstance(numbers[0], int) and isinstance(numbers[1], int)
     # A number of nodes is to be a whole number.
     return tuple(_whole_where_all_are(spaced) if between_whole else spaced)

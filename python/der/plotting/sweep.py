@@ -144,7 +144,11 @@ def _names(sweep: SweepData, columns: Sequence[str] | None) -> list[str]:
     except KeyError as error:
         raise ValueError(error.args[0]) from None
     for name in names:
-        if not _is_number(sweep, name):
+        # Those of a probe may be missing because all members failed, and that is a picture.
+        is_empty = sweep.column(name).kind == "run" and not any(
+            value is not None for value in sweep.values[name]
+        )
+        if is_empty or not _is_number(sweep, name):
             raise ValueError(f"the column '{name}' has no numbers to draw")
     return names
 

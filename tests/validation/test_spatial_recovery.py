@@ -391,3 +391,46 @@ def test_natural_twist_beside_a_jump_of_a_list_on_alternating_edges():
     found = der.run({**scene, "output": {"probes": probes}}).probes
     values = [found[side][-1] for side in ("before", "after")]
     assert values == pytest.approx([before[node], after[node]], abs=1e-9)
+
+
+@pytest.mark.parametrize("model", ["spatial_bend", "spatial"])
+def test_magnitudes_where_the_vector_passes_by_zero(model):
+    """Between the nodes beside a zero the moment is a line, and its magnitude is none: with a line
+    between the magnitudes it was twice the moment at any mesh, and its minimum was not 0.
+    Exact: M = 12 EI u (1/2 - s) / L^3 of a beam whose end is shifted by u, to second order in u.
+    """
+    shift = 1e-3
+    rod = straight_rod(
+        9,
+        section([0, 1, 0], EA=1e4, EI=1.0, GJ=0.7),
+        supports=[
+            {"rod": "rod", "at": "start", "clamp": True if model == "spatial" else "tangent"},
+            {"rod": "rod", "at": "end", "clamp": "tangent", "prescribe": {"y": shift}},
+        ],
+    )
+    rod["model"] = model
+    probes = {
+        f"{quantity}_{i}": {"rod": "rod", "at": at, "quantity": quantity}
+        for quantity in ("moment", "curvature")
+        for i, at in enumerate((0.47, 0.52))
+    }
+    for reduce in ("min", "max"):
+        probes[reduce] = {"rod": "rod", "over": "rod", "reduce": reduce, "quantity": "moment"}
+    found = der.run({**rod, "output": {"probes": probes}}).probes
+    for i, at in enumerate((0.47, 0.52)):
+        exact = 12 * shift * abs(0.5 - at)
+        assert found[f"moment_{i}"][-1] == pytest.approx(exact, rel=1e-2)
+        assert found[f"curvature_{i}"][-1] == pytest.approx(exact, rel=1e-2)
+    assert found["min"][-1] == pytest.approx(0.0, abs=1e-12)
+    assert found["max"][-1] == pytest.approx(6 * shift, rel=1e-2)
+
+
+def test_the_least_speed_of_a_rod_that_turns_about_a_place_between_nodes():
+    scene = straight_rod(9, section([0, 1, 0], EA=1e4, EI=1.0, GJ=0.7), supports=[])
+    s = np.linspace(0, 1, 10)
+    scene["rods"][0]["initial_velocity"] = np.column_stack([0 * s, 0 * s, s - 0.5]).tolist()
+    scene |= {"time": {"duration": 1, "step": 0.1}}
+    scene.pop("analysis", None)
+    low = {"rod": "rod", "over": "rod", "reduce": "min", "quantity": "speed"}
+    simulation = der.Simulation({**scene, "output": {"probes": {"low": low}}})
+    assert simulation.probes["low"] == pytest.approx(0.0, abs=1e-15)

@@ -83,6 +83,9 @@ class RingField : public RodField {
     }
     return own_->interpolate(own_weights_, model, state);
   }
+  [[nodiscard]] double dip(const Model& model, const State& state) const override {
+    return own_->dip(model, state);
+  }
   [[nodiscard]] bool continuous() const override { return own_->continuous(); }
   [[nodiscard]] bool smooth_at(std::size_t i) const override {
     const SampleWeights& weights = samples_[i].own;

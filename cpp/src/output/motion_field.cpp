@@ -1,8 +1,11 @@
 #include "output/motion_field.hpp"
-#include "model/corner.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
+
+#include "model/corner.hpp"
+#include "output/dip.hpp"
+#include "output/in_space.hpp"
 
 namespace der {
 namespace {
@@ -38,27 +41,39 @@ class ComponentField : public NodeField {
 
 class SpeedField : public NodeField {
  public:
-  SpeedField(const RodLayout& rod, const Model& model) : NodeField(rod, model) {
+  SpeedField(const RodLayout& rod, const Model& model)
+      : NodeField(rod, model), closed_(rod.closed) {
     for (const Index node : rod.nodes) dofs_.push_back(model.dof(node, 0));
   }
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
-    return state.velocities.segment(dofs_[i], model.dimension).norm();
+    return velocity(i, model, state).norm();
   }
   [[nodiscard]] double interpolate(const SampleWeights& weights, const Model& model,
                                    const State& state) const override {
-    double squared = 0.0;
-    for (int c = 0; c < model.dimension; ++c) {
-      double component = 0.0;
-      for (const auto& [sample, weight] : weights) {
-        component += weight * state.velocities[dofs_[sample] + c];
-      }
-      squared += component * component;
+    Vec3 sum = Vec3::Zero();
+    for (const auto& [sample, weight] : weights) sum += weight * velocity(sample, model, state);
+    return sum.norm();
+  }
+  [[nodiscard]] double dip(const Model& model, const State& state) const override {
+    double least = std::numeric_limits<double>::infinity();
+    Vec3 before = velocity(closed_ ? dofs_.size() - 1 : 0, model, state);
+    for (std::size_t i = closed_ ? 0 : 1; i < dofs_.size(); ++i) {
+      const Vec3 here = velocity(i, model, state);
+      least = std::min(least, dip_between(before, here));
+      before = here;
     }
-    return std::sqrt(squared);
+    return least;
   }
 
  private:
+  [[nodiscard]] Vec3 velocity(std::size_t i, const Model& model, const State& state) const {
+    Vec3 velocity = Vec3::Zero();
+    velocity.head(model.dimension) = state.velocities.segment(dofs_[i], model.dimension);
+    return velocity;
+  }
+
+  bool closed_;
   std::vector<Index> dofs_;  // of the first component
 };
 

@@ -98,6 +98,12 @@ class ExtremeReader : public ProbeReader {
   }
 
   double value(const Model& model, const State& state) override {
+    const double smooth = smooth_extreme(model, state);
+    return sign_ < 0.0 ? std::min(smooth, field_->dip(model, state)) : smooth;
+  }
+
+ private:
+  double smooth_extreme(const Model& model, const State& state) {
     evaluate(model, state);
     const auto best = static_cast<std::size_t>(std::max_element(values_.begin(), values_.end()) -
                                                values_.begin());
@@ -109,7 +115,6 @@ class ExtremeReader : public ProbeReader {
     return sign_ * parabola_extreme(&arc_length_[best - 1], &values_[best - 1]);
   }
 
- private:
   /// A field that has no sample at an end of the rod is continued to it, for its extreme may be
   /// there (the tension of a hanging cable).
   void add_ends(const RodLayout& rod) {

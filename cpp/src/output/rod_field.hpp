@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -40,6 +41,11 @@ class RodField {
   /// The value at a place between samples, or beyond them: their weighted sum.
   [[nodiscard]] virtual double interpolate(const SampleWeights& weights, const Model& model,
                                            const State& state) const;
+  /// The least value between samples where that is far below theirs, as of the length of a vector
+  /// that passes by zero; infinity if there is none.
+  [[nodiscard]] virtual double dip(const Model& /*model*/, const State& /*state*/) const {
+    return std::numeric_limits<double>::infinity();
+  }
   /// False if values between the samples have no meaning.
   [[nodiscard]] virtual bool continuous() const { return true; }
   /// False if the quantity may have a kink or jump at sample number `i`.

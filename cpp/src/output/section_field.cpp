@@ -16,6 +16,7 @@
 #include "model/glue.hpp"
 #include "model/natural_twist.hpp"
 #include "output/actuated_shape.hpp"
+#include "output/dip.hpp"
 #include "output/edgewise_field.hpp"
 #include "output/leaning_edge.hpp"
 #include "output/moment_recovery.hpp"
@@ -80,33 +81,70 @@ class SectionField : public EdgewiseField<Vec3> {
 
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
-    const auto& [edge, place, smooth] = sample_at(i);
-    if (is_natural(quantity_)) {
-      return natural_at(edge, place.arc_length)[*component()] +
-             actuated_.strains(place.arc_length, place.loads_here_are_beyond, model,
-                               state)[*component()];
-    }
-    Vec3 all = value(edge, place, model, state);
-    if (is_vector(edge, model)) {
-      all = in_turned_section(edge, place, all, model, state);
-    } else if (!is_moment(quantity_)) {
-      all += actuated_.strains(place.arc_length, place.loads_here_are_beyond, model, state);
-    }
+    const Vec3 all = parts(i, model, state);
     if (const auto part = component()) return all[*part];
-    return model.has_sections() ? all.head<2>().norm() : all.norm();
+    return bending_of(all, model).norm();
   }
 
   /// Actuated curvatures and twist are what their profiles have at the place, not lines between
-  /// samples; the magnitude of a curvature is a line.
+  /// samples. A magnitude is that of the vector there.
   [[nodiscard]] double interpolate(const SampleWeights& weights, const Model& model,
                                    const State& state) const override {
-    const double own = RodField::interpolate(weights, model, state);
     const auto part = component();
-    if (is_moment(quantity_) || !part) return own;
-    return own + bulge(actuated_, weights, model, state)[*part];
+    Vec3 all = Vec3::Zero();
+    if (part) {
+      all[*part] = RodField::interpolate(weights, model, state);
+    } else {
+      for (const auto& [sample, weight] : weights) {
+        const bool is_end_of_ring = sample == 0 && weights.front().sample > 0;
+        all += weight * (is_end_of_ring ? end_of_ring(model, state) : parts(sample, model, state));
+      }
+    }
+    if (!is_moment(quantity_)) all += bulge(actuated_, weights, model, state);
+    return part ? all[*part] : bending_of(all, model).norm();
+  }
+
+  [[nodiscard]] double dip(const Model& model, const State& state) const override {
+    double least = RodField::dip(model, state);
+    if (component() || arc_length().empty()) return least;
+    Vec3 before = bending_of(parts(0, model, state), model);
+    double s_before = arc_length().front();
+    // Where it jumps it does not pass what lies between.
+    const auto go_on_to = [&](double s, const Vec3& all) {
+      const Vec3 here = bending_of(all, model);
+      if (s > s_before + rod_.same_place()) least = std::min(least, dip_between(before, here));
+      before = here;
+      s_before = s;
+    };
+    for (std::size_t i = 1; i < arc_length().size(); ++i) {
+      go_on_to(arc_length()[i], parts(i, model, state));
+    }
+    if (rod_.closed) go_on_to(rod_.rest_length(), end_of_ring(model, state));
+    return least;
   }
 
  private:
+  /// Curvatures and twist, or moments and torque, of a sample.
+  [[nodiscard]] Vec3 parts(std::size_t i, const Model& model, const State& state) const {
+    const auto& [edge, place, smooth] = sample_at(i);
+    const auto strains = [&] {
+      return actuated_.strains(place.arc_length, place.loads_here_are_beyond, model, state);
+    };
+    if (is_natural(quantity_)) return natural_at(edge, place.arc_length) + strains();
+    const Vec3 all = value(edge, place, model, state);
+    if (is_vector(edge, model)) return in_turned_section(edge, place, all, model, state);
+    return is_moment(quantity_) ? all : Vec3(all + strains());
+  }
+  /// The first sample of a ring, in the section at the end of the ring.
+  [[nodiscard]] Vec3 end_of_ring(const Model& model, const State& state) const {
+    const Vec3 first = parts(0, model, state);
+    return model.has_sections() ? turned(first, -rod_.joints.back().glued) : first;
+  }
+  /// The part of bending.
+  static Vec3 bending_of(const Vec3& all, const Model& model) {
+    return model.has_sections() ? Vec3(all[0], all[1], 0.0) : all;
+  }
+
   /// Which of the two bendings and the twist the quantity is; none: a magnitude.
   [[nodiscard]] std::optional<Index> component() const {
     switch (quantity_) {

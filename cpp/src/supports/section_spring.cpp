@@ -66,22 +66,23 @@ SectionFrame turned_by(const Vec3& rotation, const SectionFrame& section) {
   return SectionFrame::of(turn * section.tangent, turn * section.first);
 }
 
-/// The drawn section at `share` of the way from one to another [-].
-SectionFrame between(const SectionFrame& from, const SectionFrame& to, double share) {
+/// The drawn section between one and another, bent and twisted by shares of the whole [-].
+SectionFrame between(const SectionFrame& from, const SectionFrame& to, double bent,
+                     double twisted) {
   const Vec3 axis = from.tangent.cross(to.tangent);
   const double sine = axis.norm();
-  const double angle = share * std::atan2(sine, from.tangent.dot(to.tangent));
+  const double angle = bent * std::atan2(sine, from.tangent.dot(to.tangent));
   const Eigen::AngleAxisd bend(angle, sine > 0.0 ? Vec3(axis / sine) : Vec3::UnitZ());
   return SectionFrame::of(bend * from.tangent, bend * from.first)
-      .turned(share * twist_between(from, to));
+      .turned(twisted * twist_between(from, to));
 }
 
 /// The drawn section at arc length `s` [m] on the line through those of an edge and the next.
 SectionFrame section_on_line(double s, Index first_edge, const RodLayout& rod, const Model& model) {
   const double middle = rod.edge_middle(first_edge);
-  const double spacing = rod.edge_middle(first_edge + 1) - middle;
+  const double share = (s - middle) / (rod.edge_middle(first_edge + 1) - middle);
   return between(drawn_frame(model, number_of(rod, first_edge)),
-                 drawn_frame(model, number_of(rod, first_edge + 1)), (s - middle) / spacing);
+                 drawn_frame(model, number_of(rod, first_edge + 1)), share, share);
 }
 
 /// The drawn section at arc length `s` [m], inter- or extrapolated from the edges, or from the one
@@ -98,7 +99,8 @@ SectionFrame drawn_section_at(double s, const SectionPlace& place, const RodLayo
     return first.turned(rod.initial_twist * (s - rod.edge_middle(place.first_edge)));
   }
   const double half = 0.5 * rod.edge_length[to_size(beside->edge)];
-  return between(first, held_beside(*beside, rod, model).drawn, 1.0 - beside->distance / half);
+  return between(first, held_beside(*beside, rod, model).drawn, 1.0 - place.across[0],
+                 1.0 - beside->distance / half);
 }
 
 Mat3 axes_of(const SectionFrame& section) {
@@ -323,7 +325,8 @@ typename SectionSpring<Edges>::Constants constants_of(const SectionHold& hold,
   }
   if (const auto beside = place_beside_clamp(rod, spring.arc_length)) {
     const HeldFrame held = held_beside(*beside, rod, model);
-    constants.clamp = {held, axes_of(held.drawn).transpose() * axes_of(hold.of_natural)};
+    constants.clamp = {held, axes_of(held.drawn).transpose() * axes_of(hold.of_natural),
+                       rod.clamps[to_size(beside->clamp)].holds_section};
   }
   return constants;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "der/core/types.hpp"
 #include "der/energies/circulatory_term.hpp"
 #include "der/energies/edge_moments.hpp"
@@ -42,11 +44,26 @@ struct HeldMoment : LoadedSection<Edges> {
     typename Kernel::Response free;
     HeldSection before;
     HeldSection after;
+    /// Tangent of a clamp that lets the section spin. Of what the clamp would take, it bears no
+    /// torque about that tangent: the edge has this torque about its own.
+    std::optional<Vec3> spins_about;
 
     Change(const HeldMoment& moment, const Configuration& here, const Vec3& amount);
-    [[nodiscard]] Vec3 moment(std::size_t i) const { return after.moment(i) - before.moment(i); }
+    /// Change of HeldSection::moment.
+    [[nodiscard]] Vec3 on_carried(std::size_t i) const {
+      return after.moment(i) - before.moment(i);
+    }
+    /// The torque [N m] that the clamp does not bear.
+    [[nodiscard]] double passed_on() const {
+      return spins_about ? spins_about->dot(on_carried(kClamp)) : 0.0;
+    }
+    [[nodiscard]] Vec3 on_edge(std::size_t i) const {
+      return on_carried(i) + passed_on() * free.edges[i].frame.tangent;
+    }
     [[nodiscard]] Vec3 on_rod() const;
   };
+  /// The number of a clamp among the carried sections, behind the one edge beside it.
+  static constexpr std::size_t kClamp = 1;
   [[nodiscard]] SectionLoad load_with(const Vector& controls, const Vec3& amount) const;
 };
 

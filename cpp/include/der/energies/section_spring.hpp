@@ -51,6 +51,7 @@ struct SectionSpring {
   struct HeldBeside {
     HeldFrame held;
     Mat3 carried = Mat3::Identity();  ///< as that of an edge
+    bool holds_section = true;        ///< against turning about the tangent, too
   };
   struct Constants {
     SpringInSeries spring;

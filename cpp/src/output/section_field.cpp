@@ -126,7 +126,8 @@ class SectionField : public EdgewiseField<Vec3> {
  private:
   /// Curvatures and twist, or moments and torque, of a sample.
   [[nodiscard]] Vec3 parts(std::size_t i, const Model& model, const State& state) const {
-    const auto& [edge, place, smooth] = sample_at(i);
+    const Index edge = sample_at(i).edge;
+    const MomentRecovery::Place& place = sample_at(i).place;
     const auto strains = [&] {
       return actuated_.strains(place.arc_length, place.loads_here_are_beyond, model, state);
     };

@@ -8,8 +8,10 @@ moments of inertia are replaced by those of the rod at hand.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from itertools import chain, product
 
 import numpy as np
 import warp
@@ -62,6 +64,18 @@ def configuration(elements: int, steps: int, iterations: int, line_search: int) 
         "iterations": iterations,
         "line_search": line_search,
     }
+
+
+def grid(quick: bool, coarse: Sequence[int], middle: Sequence[int]) -> list[Config]:
+    """Return the configurations that are tried, with few elements and with more of them."""
+    if quick:
+        return [configuration(n, m, 2, 1) for n, m in ((20, 1), (40, 1))]
+    every = chain(
+        product(coarse, (1, 2), (2, 3), (1, 4)),
+        product(middle, (2, 3, 4), (2, 3), (1,)),
+        product((160, 240, 320), (4, 8), (2,), (1,)),
+    )
+    return [configuration(*parameters) for parameters in dict.fromkeys(every)]
 
 
 def run(rod: Rod, config: Config, dimension: int) -> tuple[float, Path]:

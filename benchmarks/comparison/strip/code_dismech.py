@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import chain, product
-
 from comparison import run_dismech
-from comparison.run_dismech import configuration
 from comparison.scene import Config, Path
 from comparison.strip import problem
 
@@ -30,9 +27,5 @@ def run(config: Config) -> tuple[float, Path]:
 
 def grid(quick: bool) -> list[Config]:
     """Return the configurations that are tried."""
-    if quick:
-        return [configuration(n, m, 2, 1) for n, m in ((20, 1), (40, 1))]
-    coarse = product((28, 36, 40, 44, 48, 56), (1, 2), (2, 3), (1, 4))
-    middle = product((120, 136, 144, 152, 160, 176), (2, 3, 4), (2, 3), (1,))
-    fine = product((160, 240, 320), (4, 8), (2,), (1,))
-    return [configuration(*parameters) for parameters in dict.fromkeys(chain(coarse, middle, fine))]
+    coarse, middle = (28, 36, 40, 44, 48, 56), (120, 136, 144, 152, 160, 176)
+    return run_dismech.grid(quick, coarse, middle)

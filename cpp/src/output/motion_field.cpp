@@ -5,7 +5,6 @@
 
 #include "model/corner.hpp"
 #include "output/dip.hpp"
-#include "output/in_space.hpp"
 
 namespace der {
 namespace {

@@ -39,7 +39,7 @@ std::vector<SpringSupport> springs(const Scenario& scenario) {
     for (const double k : support.spring->rotational_stiffness) {
       spring.rotational_stiffness = std::max(spring.rotational_stiffness, k);
     }
-    for (const auto& [place, weight] : node_weights(rod, arc_length_of(support.at, rod))) {
+    for (const auto& [place, weight] : node_weights(rod, arc_length_of(support.at, rod), model)) {
       spring.nodes.push_back(rod.node(place));
       spring.weights.push_back(weight);
     }

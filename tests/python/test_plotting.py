@@ -188,7 +188,7 @@ def test_springs_have_their_symbols(swing):
     springs = der.springs(result.scenario)
     assert [spring.stiffness for spring in springs] == [[0.0, 0.0], [0.0, 3.0], [2.0, 2.0]]
     assert [spring.rotational_stiffness for spring in springs] == [1.0, 0.0, 0.0]
-    assert [len(spring.nodes) for spring in springs] == [1, 4, 1]
+    assert [len(spring.nodes) for spring in springs] == [1, 6, 1]
     assert springs[1].weights.sum() == pytest.approx(1.0)
     drawn = [line for line in result.plot("shapes").axes[0].lines if line.get_gid()]
     at_end = [line for line in drawn if line.get_gid() == "spring-arm-2"]

@@ -135,7 +135,7 @@ def test_springs(tube):
     assert (end["nodes"], end["weights"], end["turns"]) == ([20], [1.0], False)
     assert end["along"] == [[1, 0, 0], [0, -1, 0]], "away from the rod, and to the ground"
     assert between["along"] == [[0, -1, 0]]
-    assert between["nodes"] == [5, 6, 7, 8]
+    assert between["nodes"] == [4, 5, 6, 7, 8, 9]
 
 
 def test_loads_and_gravity(tube):

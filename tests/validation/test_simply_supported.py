@@ -23,7 +23,7 @@ def settled(scenario):
 def test_deflection_converges_at_second_order(scene, reference, fitted_order, name, load):
     """The load stands at 0.75 m: in the middle of an edge, a quarter of one away from a node, and
     on a node, and the order shows all the same."""
-    nodes = [27, 51, 101, 201]
+    nodes = [51, 100, 201, 399]
     sizes = [1.0 / (n - 1) for n in nodes]
     deflections, rollers = [], []
     for n in nodes:
@@ -35,7 +35,7 @@ def test_deflection_converges_at_second_order(scene, reference, fitted_order, na
     assert fitted_order(sizes, [d - exact for d in deflections]) > 1.9
     assert fitted_order(sizes, [r - roller for r in rollers]) > 1.9
     # Error constant of a second-order method with 50 elements: below 1e-3 of the deflection.
-    assert deflections[1] == pytest.approx(exact, rel=1e-3)
+    assert deflections[0] == pytest.approx(exact, rel=1e-3)
 
 
 @pytest.mark.parametrize("name", ["simply_supported", "simply_supported_20kN"])

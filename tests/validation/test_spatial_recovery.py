@@ -69,7 +69,7 @@ def found(edges):
     )
 
 
-@pytest.mark.parametrize("sizes", [(22, 42, 82), (20, 40, 80)], ids=["between nodes", "at a node"])
+@pytest.mark.parametrize("sizes", [(42, 82, 162), (20, 40, 80)], ids=["between nodes", "at a node"])
 def test_order_2_everywhere(exact, fitted_order, sizes):
     """The force stands at 4/5 of an edge, or at a node."""
     errors = np.array([found(edges) - exact for edges in sizes])

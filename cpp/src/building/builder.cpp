@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "building/actuation.hpp"
+#include "building/force_nodes.hpp"
 #include "building/load_variation.hpp"
 #include "building/spatial_rod_elements.hpp"
 #include "der/building/rod_elements.hpp"
@@ -276,6 +277,7 @@ Model build_model(const scenario::Scene& scene) {
   const bool with_sections = choose_model(scene, model);
   place_nodes(scene, with_sections, model);
   lay_out_rods(scene, model);
+  find_force_nodes(scene, model);
   for (std::size_t i = 0; i < scene.supports.size(); ++i) {
     add_support(scene.supports[i], i, model);
   }

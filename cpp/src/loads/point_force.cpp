@@ -4,7 +4,6 @@
 #include "der/loads/dead_force.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/location.hpp"
-#include "model/corner.hpp"
 
 namespace der {
 

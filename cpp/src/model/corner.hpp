@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "der/model/location.hpp"
 #include "der/model/model.hpp"
 
 namespace der {
@@ -16,8 +15,5 @@ bool is_corner(const RodLayout& rod, Index place, const Model& model);
 
 /// Positions of all corners in RodLayout::nodes, ascending.
 std::vector<Index> corners_of(const RodLayout& rod, const Model& model);
-
-/// Like the weights of location.hpp, but through nodes of the leg on which `s` lies alone.
-std::vector<Weighted> node_weights(const RodLayout& rod, double s, const Model& model);
 
 }  // namespace der

@@ -7,7 +7,6 @@
 #include "der/core/index.hpp"
 #include "der/core/nearest_node.hpp"
 #include "der/model/clamp_cell.hpp"
-#include "model/corner.hpp"
 
 namespace der {
 namespace {
@@ -19,43 +18,6 @@ constexpr double kEndShare = 1.0 / 12.0;
 
 bool is_node(const RodLayout& rod, Index i, double s) {
   return std::abs(rod.arc_length_at(i) - s) <= rod.same_place();
-}
-
-/// The place where a leg ends on the way from a place of it, by steps of 1 or -1; two steps on if
-/// it goes on there.
-template <class IsCorner>
-Index end_of_leg(const RodLayout& rod, Index place, Index step, const IsCorner& is_corner_at) {
-  const Index furthest = place + 2 * step;
-  while (place != furthest && rod.is_inner(place) && !is_corner_at(place)) place += step;
-  return place;
-}
-
-/// Weights of nodes between corners.
-template <class IsCorner>
-std::vector<Weighted> node_weights_within(const RodLayout& rod, double s,
-                                          const IsCorner& is_corner_at) {
-  const Index nearest = nearest_node(rod.arc_length, s);
-  if (is_node(rod, nearest, s)) return {{nearest, 1.0}};
-
-  // Four nodes with `s` in the middle edge, moved inwards at the ends of its leg, fewer on a short
-  // one.
-  const auto& arc = rod.arc_length;
-  const auto count = static_cast<Index>(arc.size());
-  const auto right = static_cast<Index>(std::upper_bound(arc.begin(), arc.end(), s) - arc.begin());
-  const Index least = end_of_leg(rod, right - 1, -1, is_corner_at);
-  const Index most = end_of_leg(rod, right, 1, is_corner_at);
-  const Index stencil = std::min<Index>({4, count, most - least + 1});
-  const Index first = std::clamp<Index>(right - 2, least, most - stencil + 1);
-  std::vector<Weighted> weights;
-  for (Index i = first; i < first + stencil; ++i) {
-    double weight = 1.0;
-    for (Index j = first; j < first + stencil; ++j) {
-      if (j == i) continue;
-      weight *= (s - rod.arc_length_at(j)) / (rod.arc_length_at(i) - rod.arc_length_at(j));
-    }
-    weights.push_back({i, weight});
-  }
-  return weights;
 }
 
 }  // namespace
@@ -167,14 +129,6 @@ std::vector<Index> nodes_at(const scenario::Location& location, const RodLayout&
   std::vector<Index> all(rod.nodes.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Index>(i);
   return all;
-}
-
-std::vector<Weighted> node_weights(const RodLayout& rod, double s) {
-  return node_weights_within(rod, s, [](Index /*place*/) { return false; });
-}
-
-std::vector<Weighted> node_weights(const RodLayout& rod, double s, const Model& model) {
-  return node_weights_within(rod, s, [&](Index place) { return is_corner(rod, place, model); });
 }
 
 std::vector<Weighted> edge_weights(const RodLayout& rod, double s) {

@@ -137,12 +137,14 @@ class BendField : public EdgewiseField<double> {
   /// end that is not clamped.
   struct Known {
     double arc_length = 0.0;         // [m]
+    double share = 0.0;              // of the edge before it
     double natural_curvature = 0.0;  // [1/m]
-    std::optional<BendCell> cell;    // none at an end
-    double length = 0.0;             // over which the cell turns [m]
-    double rest_angle = 0.0;         // of the cell, without actuations [rad]
-    ActuatedRest actuated;           // [rad]
-    EffectiveEdge effective;         // of the edge
+    bool is_at_clamp = false;
+    std::optional<BendCell> cell;  // none at an end
+    double length = 0.0;           // over which the cell turns [m]
+    double rest_angle = 0.0;       // of the cell, without actuations [rad]
+    ActuatedRest actuated;         // [rad]
+    EffectiveEdge effective;       // of the edge
   };
 
   BendField(Bending what, const RodLayout& rod, std::vector<Sample> samples, Lines lines,
@@ -164,6 +166,7 @@ class BendField : public EdgewiseField<double> {
     if (const Clamp* clamp = rod.clamp_at(node)) {
       const double pivot = clamp_pivot_share() * rod.edge_length[to_size(edge)];
       result.arc_length += last ? -pivot : pivot;
+      result.is_at_clamp = true;
       result.cell.emplace();
       if (last) {
         result.cell->before = result.effective;
@@ -181,25 +184,58 @@ class BendField : public EdgewiseField<double> {
       result.rest_angle = rod.rest_turning_angle[to_size(rod.position(node))];
       result.actuated = ActuatedRest(rod.rest_entries.cell(rod.position(node), false), 1, model);
     }
+    result.share = (result.arc_length - rod.arc_length_at(edge)) / rod.edge_length[to_size(edge)];
     result.natural_curvature = natural.at(edge, result.arc_length);
     return result;
   }
 
   [[nodiscard]] double line(Index edge, bool last, const Model& model,
                             const State& state) const override {
-    const auto& ends = edges_[to_size(edge)];
-    const Known& known = last ? ends.second : ends.first;
+    const Known& known = known_of(edge, last);
     if (what_ == Bending::NaturalCurvature) return known.natural_curvature;
+    const Bent here = bent(edge, last, model, state);
+    const double natural = is_moment() ? 0.0 : known.natural_curvature;
+    if (!known.is_at_clamp) return natural + here.value;
+    return natural + here.value + (known.share - here.share) * slope(edge, model, state);
+  }
+
+  [[nodiscard]] double slope(Index edge, const Model& model, const State& state) const override {
+    const Bent first = bent(edge, false, model, state);
+    const Bent last = bent(edge, true, model, state);
+    return (last.value - first.value) / (last.share - first.share);
+  }
+
+  [[nodiscard]] double displaced(Index edge, double s, const Model& model,
+                                 const State& state) const override {
+    if (what_ == Bending::NaturalCurvature) return 0.0;
+    return recovery_.displaced(edge, s, model, state);
+  }
+
+  /// What stress bends the rod, and where along the edge.
+  struct Bent {
+    double value = 0.0;  // moment [N m] or curvature beyond the natural one [1/m]
+    double share = 0.0;  // of the edge
+  };
+
+  /// At the first or the last of an edge's two places.
+  [[nodiscard]] Bent bent(Index edge, bool last, const Model& model, const State& state) const {
+    const Known& known = known_of(edge, last);
     if (!known.cell) {
       const MomentRecovery::Place end{known.arc_length, last};
       const double moment =
           recovery_.at_end(last, model, state).z() - recovery_.inside(edge, end, model, state).z();
-      return moment / per_moment_ + (is_moment() ? 0.0 : known.natural_curvature);
+      return {moment / per_moment_, known.share};
     }
     const double angle = turning_angle(*known.cell, model, state);
     const Vec3 point = in_space(effective_end(known.effective, last, model, state));
-    return chain(known, angle, known.actuated.value(0, model, state)) +
-           recovery_.smooth(edge, last, point, model, state).z() / per_moment_;
+    return {chain(known, angle, known.actuated.value(0, model, state)) +
+                recovery_.smooth(edge, last, point, model, state).z() / per_moment_,
+            recovery_.share_of(edge, point, state)};
+  }
+
+  [[nodiscard]] const Known& known_of(Index edge, bool last) const {
+    const auto& ends = edges_[to_size(edge)];
+    return last ? ends.second : ends.first;
   }
 
   [[nodiscard]] double inside(Index edge, const MomentRecovery::Place& place, const Model& model,
@@ -208,11 +244,11 @@ class BendField : public EdgewiseField<double> {
     return recovery_.inside(edge, place, model, state).z() / per_moment_;
   }
 
-  /// Moment of the chain at this turning angle, or its curvature less that of actuations, which add
-  /// `actuated` to the rest angle.
+  /// Moment of the chain at this turning angle, or its curvature beyond the natural one.
+  /// Actuations add `actuated` to the rest angle.
   [[nodiscard]] double chain(const Known& known, double angle, double actuated) const {
     if (!is_moment()) {
-      return (angle - known.rest_angle - actuated) / known.length + known.natural_curvature;
+      return (angle - known.rest_angle - actuated) / known.length;
     }
     const double rest_kappa = Measure::of(known.rest_angle).kappa + actuated;
     return bend_response<Measure>(EI_ / known.length, rest_kappa, angle).moment;

@@ -85,6 +85,9 @@ class EdgewiseField : public RodField {
     Value value = inside(edge, place, model, state);
     if (share != 1.0) value += (1.0 - share) * line(edge, false, model, state);
     if (share != 0.0) value += share * line(edge, true, model, state);
+    if (const double further = displaced(edge, place.arc_length, model, state); further != 0.0) {
+      value += further * slope(edge, model, state);
+    }
     return value;
   }
 
@@ -92,6 +95,11 @@ class EdgewiseField : public RodField {
   /// The straight line of an edge at the first or the last of its two places.
   [[nodiscard]] virtual Value line(Index edge, bool last, const Model& model,
                                    const State& state) const = 0;
+  /// Change of what is due to stress on the line along the whole edge.
+  [[nodiscard]] virtual Value slope(Index edge, const Model& model, const State& state) const = 0;
+  /// MomentRecovery::displaced
+  [[nodiscard]] virtual double displaced(Index edge, double s, const Model& model,
+                                         const State& state) const = 0;
   /// The part that loads inside the edge add to it.
   [[nodiscard]] virtual Value inside(Index edge, const MomentRecovery::Place& place,
                                      const Model& model, const State& state) const = 0;

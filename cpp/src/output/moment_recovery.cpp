@@ -38,7 +38,6 @@ MomentRecovery::MomentRecovery(const RodLayout& rod, const Model& model)
       forces_(rod, model),
       moments_(rod, model),
       edges_(to_size(rod.num_edges())),
-      kinks_(loaded_nodes(rod, model)),
       corners_(rod.nodes.size()),
       bounds_(rod.nodes.size()) {
   for (const Index corner : corners_of(rod, model)) corners_[to_size(corner)] = true;
@@ -141,9 +140,8 @@ Vec3 MomentRecovery::smooth(Index edge, bool last, const Vec3& point, const Mode
   double missing = 0.0;
   if (const Index node = last ? edge + 1 : edge;
       model.dimension == 2 && rod_.clamp_at(node) != nullptr) {
-    const Vec3 along = forces_.node_point(edge + 1, state) - forces_.node_point(edge, state);
-    const double arm =
-        1.0 - std::abs((point - forces_.node_point(node, state)).dot(along)) / along.squaredNorm();
+    const double share = share_of(edge, point, state);
+    const double arm = last ? share : 1.0 - share;
     missing = (last ? -1.0 : 1.0) * (1.0 - arm / turn_of_line(rod_, edge));
   }
   for (const MomentTerm& term : terms.moments) {
@@ -160,6 +158,38 @@ Vec3 MomentRecovery::smooth(Index edge, bool last, const Vec3& point, const Mode
     moment += term.sign * arm.cross(forces_.value(term.place, model, state));
   }
   return moment;
+}
+
+double MomentRecovery::share_of(Index edge, const Vec3& point, const State& state) const {
+  const Vec3 along = edge_vector(edge, state);
+  return (point - forces_.node_point(edge, state)).dot(along) / along.squaredNorm();
+}
+
+Vec3 MomentRecovery::edge_vector(Index edge, const State& state) const {
+  return forces_.node_point(edge + 1, state) - forces_.node_point(edge, state);
+}
+
+/// Twice what a unit of strain moves the section at arc length `s` further along the rod than the
+/// chain [m], as the strain jumps by it at a force, and at the force's nodes by their weights.
+double MomentRecovery::kink(const SpreadForces::Force& force, double s) const {
+  double kink = -std::abs(s - force.place.arc_length);
+  for (const auto& [node, weight] : force.nodes) {
+    kink += weight * std::abs(s - rod_.arc_length_at(node));
+  }
+  return kink;
+}
+
+double MomentRecovery::displaced(Index edge, double s, const Model& model,
+                                 const State& state) const {
+  const std::vector<ForceTerm>& terms = edges_[to_size(edge)].forces;
+  if (terms.empty()) return 0.0;
+  const Vec3 along = edge_vector(edge, state);
+  double sum = 0.0;
+  for (const ForceTerm& term : terms) {
+    const double force = forces_.value(term.place, model, state).dot(along);
+    sum += 0.5 * kink(forces_[term.place], s) * force / rod_.EA;
+  }
+  return sum / along.squaredNorm();
 }
 
 Vec3 MomentRecovery::inside(Index edge, const Place& place, const Model& model,
@@ -180,8 +210,11 @@ Vec3 MomentRecovery::inside(Index edge, const Place& place, const Model& model,
     const bool counts = term.sign > 0.0 ? there > s : there < s;
     if (!counts) continue;
     const Index end = term.sign > 0.0 ? edge : edge + 1;
-    const double share = (there - s) / (there - rod_.arc_length_at(end));
-    const Vec3 arm = share * (forces_.point(term.place, state) - forces_.node_point(end, state));
+    const double s_end = rod_.arc_length_at(end);
+    const double share = (there - s) / (there - s_end);
+    const Vec3 section = forces_.node_point(end, state) +
+                         displaced(edge, s_end, model, state) * edge_vector(edge, state);
+    const Vec3 arm = share * (forces_.point(term.place, state) - section);
     moment += term.sign * arm.cross(forces_.value(term.place, model, state));
   }
   return moment;

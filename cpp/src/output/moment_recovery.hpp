@@ -16,11 +16,11 @@ namespace der {
 /// Makes the bending moment of a rod out of that of its chain.
 ///
 /// The chain's moment at a node is that of the loads beyond it as they are spread over nodes and
-/// edges: a moment over two edges, a point force between nodes over four nodes (docs/mechanics.md).
-/// Spread and true load have the same resultants, so that the two moments differ next to the load
-/// alone: by what the true loads beyond a place give more than the spread ones, in the deformed
-/// shape. That is of order 0 for moments and of order 1 for forces; without it curvature and moment
-/// would be wrong next to each load.
+/// edges: a moment over two edges, a point force between nodes over up to six nodes
+/// (docs/mechanics.md). Spread and true load have the same resultants, so that the two moments
+/// differ next to the load alone: by what the true loads beyond a place give more than the spread
+/// ones, in the deformed shape. That is of order 0 for moments and of order 1 for forces; without
+/// it curvature and moment would be wrong next to each load.
 ///
 /// Along an edge the moment is the sum of a straight line, given by `smooth` at both its ends, and
 /// of a correction for the loads inside the edge, `inside`. Moments are vectors in space, exerted
@@ -47,6 +47,14 @@ class MomentRecovery {
   /// Correction [N m] of the straight line at a place of an edge.
   [[nodiscard]] Vec3 inside(Index edge, const Place& place, const Model& model,
                             const State& state) const;
+  /// Where along an edge a point is, as a share of the edge. A clamp's pivot does not move as the
+  /// edge stretches: it is then at another section of the rod than as drawn.
+  [[nodiscard]] double share_of(Index edge, const Vec3& point, const State& state) const;
+  /// By which share of its edge the section at arc length `s` [m] is further on than on an edge
+  /// that stretches evenly. Where a force between nodes stands the strain jumps, and the chain's
+  /// nodes beside it are where the spread force pulls them.
+  [[nodiscard]] double displaced(Index edge, double s, const Model& model,
+                                 const State& state) const;
   /// Moment [N m] at the start or the end of the rod, which are not clamped.
   [[nodiscard]] Vec3 at_end(bool last, const Model& model, const State& state) const;
 
@@ -72,7 +80,7 @@ class MomentRecovery {
   }
   /// Whether a force at a node, of a load or a support, may give the moment a kink there.
   [[nodiscard]] bool has_kink_at(Index node) const {
-    return kinks_[static_cast<std::size_t>(rod_.position(node))];
+    return rod_.bears_force[static_cast<std::size_t>(rod_.position(node))];
   }
 
  private:
@@ -109,6 +117,8 @@ class MomentRecovery {
   };
 
   [[nodiscard]] Where where_is(double s, Index edge) const;
+  [[nodiscard]] Vec3 edge_vector(Index edge, const State& state) const;
+  [[nodiscard]] double kink(const SpreadForces::Force& force, double s) const;
   void add_moments(Index edge, Index turns, std::optional<Index> start, std::optional<Index> end);
   void add_forces(Index edge, std::optional<Index> start, std::optional<Index> end);
   [[nodiscard]] bool is_same_place(double a, double b) const;
@@ -117,7 +127,6 @@ class MomentRecovery {
   SpreadForces forces_;
   SpreadMoments moments_;
   std::vector<EdgeTerms> edges_;
-  std::vector<bool> kinks_;
   std::vector<bool> corners_;  // for each node
   std::vector<bool> bounds_;   // for each node, of legs
 };

@@ -13,7 +13,6 @@
 #include "der/output/reactions.hpp"
 #include "der/scenario/find_support.hpp"
 #include "der/scenario/scenario.hpp"
-#include "model/corner.hpp"
 #include "output/energy_reader.hpp"
 #include "output/rod_field.hpp"
 

@@ -146,7 +146,7 @@ void Reactions::Reader::add_place(const scenario::Scene& scene, std::size_t numb
   const RodLayout& rod = model.rod(support.rod);
   Place place;
   place.rod = static_cast<std::size_t>(&rod - model.rods.data());
-  place.nodes = node_weights(rod, s);
+  place.nodes = node_weights(rod, s, model);
   if (support.holds()) {
     const Index node = place.nodes.front().place;
     place.held = held_by(support, rod.node(node), model);

@@ -171,6 +171,7 @@ class SectionField : public EdgewiseField<Vec3> {
     const RodJoint* joint = nullptr;  // of the model's rod; none at an end
     double arc_length = 0.0;          // [m]
     double twist_place = 0.0;         // where it twists [m]
+    bool is_at_pivot = false;         // of a clamp
     Vec3 natural = Vec3::Zero();      // curvatures and twist
     double joint_ahead = 0.0;         // [m] by which the joint counts its places further on
     double glued = 0.0;               // [rad] by which the section is turned against the joint's
@@ -334,6 +335,7 @@ class SectionField : public EdgewiseField<Vec3> {
     result.arc_length = joint->bend_place - result.joint_ahead;
     result.twist_place = has_kink ? result.arc_length : joint->twist_place - result.joint_ahead;
     if (by_twist) result.arc_length = result.twist_place;
+    result.is_at_pivot = joint->clamp >= 0 && !by_twist;
     result.actuated = actuated_turn_from(*joint, result.arc_length + result.joint_ahead, rod);
     return result;
   }
@@ -345,8 +347,53 @@ class SectionField : public EdgewiseField<Vec3> {
 
   [[nodiscard]] Vec3 line(Index edge, bool last, const Model& model,
                           const State& state) const override {
+    const Vec3 line = unstretched_line(edge, last, model, state);
+    const Known& known = known_of(edge, last);
+    if (!known.is_at_pivot) return line;
+    const double drawn =
+        (known.arc_length - rod_.arc_length_at(edge)) / rod_.edge_length[to_size(edge)];
+    return line + (drawn - bent(edge, last, model, state).share) * slope(edge, model, state);
+  }
+
+  [[nodiscard]] Vec3 slope(Index edge, const Model& model, const State& state) const override {
+    const Bent first = bent(edge, false, model, state);
+    const Bent last = bent(edge, true, model, state);
+    const Vec3 change = (last.moment - first.moment) / (last.share - first.share);
+    return is_vector(edge, model) ? change : in_section(edge, change, model, state);
+  }
+
+  [[nodiscard]] double displaced(Index edge, double s, const Model& model,
+                                 const State& state) const override {
+    return recovery_.displaced(edge, s, model, state);
+  }
+
+  [[nodiscard]] const Known& known_of(Index edge, bool last) const {
     const auto& ends = edges_[to_size(edge)];
-    const Known& known = last ? ends.second : ends.first;
+    return last ? ends.second : ends.first;
+  }
+
+  /// The moment [N m], in fixed axes, at the first or last of an edge's two places, and where along
+  /// the edge.
+  struct Bent {
+    Vec3 moment;
+    double share = 0.0;  // of the edge
+  };
+  [[nodiscard]] Bent bent(Index edge, bool last, const Model& model, const State& state) const {
+    const Known& known = known_of(edge, last);
+    const Vec3 point = point_at(edge, last, model, state);
+    if (known.joint == nullptr) {
+      const MomentRecovery::Place end{known.arc_length, last};
+      return {recovery_.at_end(last, model, state) - recovery_.inside(edge, end, model, state),
+              recovery_.share_of(edge, point, state)};
+    }
+    return {cell_moment(*known.joint, rod_, model, state) +
+                recovery_.smooth(edge, last, point, model, state),
+            recovery_.share_of(edge, point, state)};
+  }
+  /// The line, where a clamp's pivot is as if that did not move along its edge as this stretches.
+  [[nodiscard]] Vec3 unstretched_line(Index edge, bool last, const Model& model,
+                                      const State& state) const {
+    const Known& known = known_of(edge, last);
     const Vec3 natural = is_moment(quantity_) ? Vec3::Zero() : known.natural;
     const bool vector = is_vector(edge, model);
     if (known.joint == nullptr) {
@@ -371,8 +418,7 @@ class SectionField : public EdgewiseField<Vec3> {
   /// where the clamp's cell twists [N m].
   [[nodiscard]] Vec3 taken_by_spin(Index edge, bool last, const Model& model,
                                    const State& state) const {
-    const auto& ends = edges_[to_size(edge)];
-    const Known& known = last ? ends.second : ends.first;
+    const Known& known = known_of(edge, last);
     if (known.joint->clamp < 0) return Vec3::Zero();
     const double torque = spin_.along(edge, model, state);
     if (torque == 0.0) return Vec3::Zero();
@@ -383,9 +429,10 @@ class SectionField : public EdgewiseField<Vec3> {
 
   /// The point [m] where the first or the last moment of an edge is known.
   [[nodiscard]] Vec3 point_at(Index edge, bool last, const Model& model, const State& state) const {
-    const auto& ends = edges_[to_size(edge)];
-    const double place = (last ? ends.second : ends.first).arc_length;
+    const Known& known = known_of(edge, last);
+    const double place = known.arc_length;
     const SpatialEdge vector = spatial_edge(rod_, edge, model);
+    if (known.is_at_pivot) return effective_end(vector, last, model, state);
     const double share =
         (place - rod_.arc_length_at(last ? edge + 1 : edge)) / rod_.edge_length[to_size(edge)];
     const Vec3 along =

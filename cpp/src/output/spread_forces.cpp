@@ -1,11 +1,9 @@
 #include "output/spread_forces.hpp"
 
-#include <cmath>
 #include <utility>
 
 #include "der/core/index.hpp"
 #include "der/energies/circulatory_load.hpp"
-#include "model/corner.hpp"
 
 namespace der {
 
@@ -48,20 +46,6 @@ Vec3 SpreadForces::value(std::size_t i, const Model& model, const State& state) 
     if (control >= 0) value[c] += control_value(model, state, control);
   }
   return value;
-}
-
-std::vector<bool> loaded_nodes(const RodLayout& rod, const Model& model) {
-  std::vector<bool> loaded(rod.nodes.size());
-  for (std::size_t i = 0; i < loaded.size(); ++i) {
-    loaded[i] = rod.sphere_radius[i] > 0.0;
-    for (int c = 0; c < model.dimension; ++c) {
-      if (!model.dofs.is_free(model.dof(rod.nodes[i], c))) loaded[i] = true;
-    }
-    for (const ForcePlace& place : rod.force_places) {
-      if (std::abs(place.arc_length - rod.arc_length[i]) <= rod.same_place()) loaded[i] = true;
-    }
-  }
-  return loaded;
 }
 
 }  // namespace der

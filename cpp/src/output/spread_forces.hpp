@@ -39,7 +39,4 @@ class SpreadForces {
   std::vector<Force> forces_;
 };
 
-/// For each node of a rod: whether a force of a load, a support or a sphere may act on it.
-std::vector<bool> loaded_nodes(const RodLayout& rod, const Model& model);
-
 }  // namespace der

@@ -93,10 +93,11 @@ class LeaningEdges {
     }
   }
 
-  /// [N]
-  [[nodiscard]] double excess(Index edge, const Model& model, const State& state) const {
+  /// [N], of an edge that is `stretch` times as long as without stress.
+  [[nodiscard]] double excess(Index edge, double stretch, const Model& model,
+                              const State& state) const {
     const Lean* lean = find(edge);
-    return lean == nullptr ? 0.0 : lean_times_force(*lean, model, state);
+    return lean == nullptr ? 0.0 : lean_times_force(*lean, model, state) / stretch;
   }
 
  private:
@@ -184,8 +185,9 @@ class LeaningEdges {
     }
   }
 
-  /// F = -M', with the components of M along directors that turn with the twist u as
-  /// F1 = -M1' + u M2 - k2 T, F2 = -M2' - u M1 + k1 T. The torque's part falls out of k . F.
+  /// On the unstretched rod: F = -M', with the components of M along directors that turn with the
+  /// twist u as F1 = -M1' + u M2 - k2 T, F2 = -M2' - u M1 + k1 T. The torque's part falls out of k
+  /// . F.
   [[nodiscard]] double lean_times_force(const Lean& lean, const Model& model,
                                         const State& state) const {
     const auto mean = [&](const RodField& field) {
@@ -357,8 +359,8 @@ class StretchField : public RodField {
     const double length = effective.norm();
     const double chain =
         (length - vectors_.rest_length(edge, model, state)) / rod_.edge_length[to_size(edge)];
-    const double excess =
-        leans_.excess(edge, model, state) + couples_.excess(edge, effective, model, state);
+    const double excess = leans_.excess(edge, 1.0 + chain, model, state) +
+                          couples_.excess(edge, effective, model, state);
     const double upright = chain - excess / rod_.EA;
     if (excess_.none(edge)) return upright;
     return upright + effective.dot(excess_.force(edge, forces_, model, state)) / (length * rod_.EA);

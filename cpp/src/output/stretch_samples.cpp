@@ -30,7 +30,7 @@ class Layout {
   Layout(const RodLayout& rod, const SpreadForces& forces, const Model& model)
       : rod_(rod), forces_(forces), bounds_(leg_bounds(rod, model)) {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) middles_.push_back(rod.edge_middle(edge));
-    find_breaks(model);
+    find_breaks();
   }
 
   [[nodiscard]] std::vector<StretchSample> samples() const {
@@ -50,11 +50,10 @@ class Layout {
     [[nodiscard]] bool has_slope() const { return first < last; }
   };
 
-  void find_breaks(const Model& model) {
+  void find_breaks() {
     breaks_ = {0.0, rod_.rest_length()};
-    const std::vector<bool> loaded = loaded_nodes(rod_, model);
     for (Index i = 1; i < rod_.num_edges(); ++i) {
-      if (loaded[to_size(i)] || rod_.clamp_at(i) != nullptr)
+      if (rod_.bears_force[to_size(i)] || rod_.clamp_at(i) != nullptr)
         breaks_.push_back(rod_.arc_length[to_size(i)]);
     }
     for (std::size_t f = 0; f < forces_.size(); ++f) {

@@ -17,7 +17,6 @@
 #include "der/scenario/support.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/section_spring.hpp"
-#include "model/corner.hpp"
 #include "model/curvature_jump.hpp"
 #include "model/drawn_edge.hpp"
 
@@ -48,19 +47,16 @@ void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s,
   rod.force_places.push_back(place);
 }
 
-template <int Dim>
-void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s, Model& model) {
-  const std::vector<Weighted> weights = node_weights(rod, s, model);
-  switch (weights.size()) {
-    case 1:
-      return add_point_spring<Dim, 1>(spring, rod, s, weights, model);
-    case 2:
-      return add_point_spring<Dim, 2>(spring, rod, s, weights, model);
-    case 3:
-      return add_point_spring<Dim, 3>(spring, rod, s, weights, model);
-    default:
-      return add_point_spring<Dim, 4>(spring, rod, s, weights, model);
+/// Each number of nodes has a kind of element of its own.
+template <int Dim, int Nodes = 1>
+void add_point_spring_at(const scenario::Spring& spring, RodLayout& rod, double s,
+                         const std::vector<Weighted>& weights, Model& model) {
+  if constexpr (Nodes < kMostPointNodes) {
+    if (to_size(Nodes) < weights.size()) {
+      return add_point_spring_at<Dim, Nodes + 1>(spring, rod, s, weights, model);
+    }
   }
+  add_point_spring<Dim, Nodes>(spring, rod, s, weights, model);
 }
 
 /// Turn [rad] that is drawn between the two edges of a place; 0 of one edge.
@@ -155,7 +151,9 @@ void add_spring(const scenario::Support& support, Model& model) {
   RodLayout& rod = model.rod(support.rod);
   const double s = arc_length_of(support.at, rod);
   if (!spring.stiffness.empty()) {
-    with_dimension(model, [&](auto dim) { add_point_spring<dim>(spring, rod, s, model); });
+    const std::vector<Weighted> weights = node_weights(rod, s, model);
+    with_dimension(model,
+                   [&](auto dim) { add_point_spring_at<dim>(spring, rod, s, weights, model); });
   }
   if (spring.rotational_stiffness.empty()) return;
   if (model.dimension == 2) {

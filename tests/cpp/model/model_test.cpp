@@ -1,8 +1,11 @@
 // The model that the builder makes of a scene: masses, places along a rod, clamps, tables.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "der/building/builder.hpp"
 #include "der/energies/elements_of.hpp"
@@ -11,6 +14,7 @@
 #include "der/energies/planar_clamp.hpp"
 #include "der/energies/stretch.hpp"
 #include "der/model/location.hpp"
+#include "der/model/node_weights.hpp"
 #include "der/model/state.hpp"
 #include "der/scenario/reader.hpp"
 #include "der/supports/clamp.hpp"
@@ -30,6 +34,15 @@ Model model_of(const std::string& rod, const std::string& rest = "") {
 
 const std::string kUneven =
     "    points: [[0, 0], [0.1, 0], [0.4, 0], [0.5, 0], [0.9, 0], [1, 0]]\n"
+    "    cross_section: {circle: {radius: 0.01}}\n"
+    "    material: {youngs_modulus: 1e7, density: 1000}\n";
+const std::string kEven =
+    "    nodes: 11\n    from: [0, 0]\n    to: [1, 0]\n"
+    "    cross_section: {circle: {radius: 0.01}}\n"
+    "    material: {youngs_modulus: 1e7, density: 1000}\n";
+const std::string kRing =
+    "    points: [[1, 0], [0.5, 0.8], [-0.5, 0.9], [-1, 0], [-0.5, -0.9], [0, -1], [0.7, -0.8]]\n"
+    "    closed: true\n"
     "    cross_section: {circle: {radius: 0.01}}\n"
     "    material: {youngs_modulus: 1e7, density: 1000}\n";
 
@@ -56,13 +69,61 @@ TEST_CASE("weights between nodes reproduce cubics, so a load keeps its first thr
   for (const double s : {0.0, 0.03, 0.1, 0.27, 0.45, 0.5, 0.77, 0.98, 1.0}) {
     for (int power = 0; power <= 3; ++power) {
       double sum = 0.0;
-      for (const auto& [place, weight] : node_weights(rod, s)) {
+      for (const auto& [place, weight] : node_weights(rod, s, model)) {
         sum += weight * std::pow(rod.arc_length[static_cast<std::size_t>(place)], power);
       }
       CHECK(sum == doctest::Approx(std::pow(s, power)).epsilon(kRounding));
     }
   }
-  CHECK(node_weights(rod, 0.5).size() == 1);
+  CHECK(node_weights(rod, 0.5, model).size() == 1);
+}
+
+TEST_CASE("a chain gives way to a force between nodes as the rod does") {
+  // sum_ij w_i w_j |s_i - s_j|, the kink that spread forces make, is that of the rod: 0.
+  const auto kink = [](const RodLayout& rod, const std::vector<Weighted>& nodes) {
+    double sum = 0.0;
+    for (const auto& [i, w] : nodes) {
+      for (const auto& [j, v] : nodes) {
+        sum += w * v * std::abs(rod.arc_length_at(i) - rod.arc_length_at(j));
+      }
+    }
+    return sum;
+  };
+  const Model even = model_of(kEven);
+  const Model uneven = model_of(
+      "    points: [[0, 0], [0.1, 0], [0.2, 0], [0.4, 0], [0.55, 0], [0.85, 0], [1, 0]]\n"
+      "    cross_section: {circle: {radius: 0.01}}\n"
+      "    material: {youngs_modulus: 1e7, density: 1000}\n");
+  const Model ring = model_of(kRing);
+  for (const Model* model : {&even, &uneven, &ring}) {
+    const RodLayout& rod = model->rods.front();
+    for (const double s : {0.03, 0.07, 0.13, 0.27, 0.45, 0.57, 0.77, 0.98}) {
+      const std::vector<Weighted> nodes = node_weights(rod, s * rod.rest_length(), *model);
+      CHECK(nodes.size() == std::min<std::size_t>(6, rod.nodes.size()));
+      CHECK(std::abs(kink(rod, nodes)) < 1e-12);
+    }
+  }
+  // Seen from the other end it is the same.
+  const RodLayout& rod = even.rods.front();
+  const std::vector<Weighted> here = node_weights(rod, 0.43, even);
+  const std::vector<Weighted> mirrored = node_weights(rod, 0.57, even);
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    CHECK(here[i].weight == doctest::Approx(mirrored[here.size() - 1 - i].weight).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("places between nodes have no nodes beyond others on which forces act") {
+  const std::string pinned = "supports:\n  - {rod: rod, at: 0.5, fix: [x, y]}\n";
+  const Model model = model_of(kEven, pinned);
+  const auto range = [&](double s) {
+    const std::vector<Weighted> nodes = node_weights(model.rods.front(), s, model);
+    return std::pair(nodes.front().place, nodes.back().place);
+  };
+  CHECK(range(0.43) == std::pair<Index, Index>(0, 5));
+  CHECK(range(0.52) == std::pair<Index, Index>(5, 10));
+  // Between two that leave fewer than four nodes it is as if they were not there.
+  const Model twice = model_of(kEven, pinned + "  - {rod: rod, at: 0.7, fix: [x, y]}\n");
+  CHECK(node_weights(twice.rods.front(), 0.55, twice).front().place == 3);
 }
 
 TEST_CASE("weights of edges reproduce a linear change of direction between edge midpoints") {

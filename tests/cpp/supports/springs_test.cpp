@@ -40,13 +40,13 @@ std::size_t count(const Model& model) {
 
 }  // namespace
 
-TEST_CASE("a spring at a node touches it alone, one between nodes the four around it") {
+TEST_CASE("a spring at a node touches it alone, one between nodes the six around it") {
   const Model at_node = model_with("  - {rod: rod, at: 0.3, spring: {stiffness: 5}}\n");
   CHECK(count<PointSpring<2, 1>>(at_node) == 1);
   CHECK(build_pattern(at_node).half_bandwidth == 5);
   const Model between = model_with("  - {rod: rod, at: 0.33, spring: {stiffness: 5}}\n");
-  CHECK(count<PointSpring<2, 4>>(between) == 1);
-  CHECK(build_pattern(between).half_bandwidth == 7);
+  CHECK(count<PointSpring<2, 6>>(between) == 1);
+  CHECK(build_pattern(between).half_bandwidth == 11);
   CHECK(energies(between, initial_state(between)).total() < 1e-30);
 }
 

@@ -10,7 +10,7 @@
 namespace der {
 
 /// A linear spring between an anchor a and a point p = sum w_i x_i of a rod, w the weights of a
-/// place (model/location.hpp): E = 1/2 (p - a)^T k (p - a), k diagonal. With the cubic weights of a
+/// place (model/node_weights.hpp): E = 1/2 (p - a)^T k (p - a), k diagonal. With the weights of a
 /// point force it converges with order 2 wherever the place lies.
 template <int Dim, int Nodes>
 struct PointSpring {

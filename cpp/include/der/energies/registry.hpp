@@ -58,10 +58,14 @@ struct ElementLists {
                            ElementList<PointSpring<2, 2>>,                                   //
                            ElementList<PointSpring<2, 3>>,                                   //
                            ElementList<PointSpring<2, 4>>,                                   //
+                           ElementList<PointSpring<2, 5>>,                                   //
+                           ElementList<PointSpring<2, 6>>,                                   //
                            ElementList<PointSpring<3, 1>>,                                   //
                            ElementList<PointSpring<3, 2>>,                                   //
                            ElementList<PointSpring<3, 3>>,                                   //
                            ElementList<PointSpring<3, 4>>,                                   //
+                           ElementList<PointSpring<3, 5>>,                                   //
+                           ElementList<PointSpring<3, 6>>,                                   //
                            ElementList<RotationalSpring<1>>,                                 //
                            ElementList<RotationalSpring<2>>,                                 //
                            ElementList<SectionSpring<1>>,                                    //

@@ -5,15 +5,10 @@
 
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
+#include "der/model/node_weights.hpp"
 #include "der/scenario/location.hpp"
 
 namespace der {
-
-/// A place along a rod as a weighted sum of its nodes (or of its edges).
-struct Weighted {
-  Index place = 0;  ///< of the node (RodLayout::node), or number of the edge after that place
-  double weight = 0.0;
-};
 
 /// The part of an edge from one rest arc length [m] to another.
 struct EdgePart {
@@ -66,13 +61,6 @@ std::vector<double> arc_lengths_of(const scenario::Location& location, const Rod
 Index node_at(const scenario::Location& location, const RodLayout& rod);
 /// Positions in RodLayout::nodes of the nodes at `location`: every node for Kind::All, else one.
 std::vector<Index> nodes_at(const scenario::Location& location, const RodLayout& rod);
-
-/// Weights of the cubic Lagrange polynomial through the (up to) four nodes nearest to arc length
-/// `s`; a single node when `s` is at one. Applied to positions it gives the point at `s`; the same
-/// weights spread a point force, so force and displacement are work-conjugate. A linear split would
-/// move the second moment of the load by f (1 - f) l^2 (f the place in the edge), an error of order
-/// l^2 that jumps from mesh to mesh; the cubic keeps the first three moments.
-std::vector<Weighted> node_weights(const RodLayout& rod, double s);
 
 /// Weights of the edges whose direction angles, linearly interpolated between the places where the
 /// tangent has them, give the direction at arc length `s`. Beside a clamp they add up to less than

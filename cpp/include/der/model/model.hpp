@@ -177,6 +177,8 @@ struct RodLayout {
   std::vector<Clamp> clamps;               ///< none on a rod that does not bend
   std::vector<MomentPlace> moment_places;  ///< no two at the same place
   std::vector<ForcePlace> force_places;    ///< of forces at single places
+  /// Whether single forces act on each node, of supports, loads or spheres: strain may jump there.
+  std::vector<bool> bears_force;
   std::vector<SpatialMomentPlace> spatial_moments;
   std::vector<SectionSpringPlace> section_springs;  ///< no two at the same place
   std::vector<DistributedPlace> distributed_places;

@@ -30,8 +30,8 @@ class ProbeReader {
 
 /// A scalar read off a state, as the scene's `output.probes` name it, with order 2 in the element
 /// length or better wherever the solution is smooth:
-/// - positions and velocities between nodes by the cubic through the four nearest nodes (the
-///   weights that also spread a point force, see location.hpp);
+/// - positions and velocities between nodes by the weights that also spread a point force
+///   (model/node_weights.hpp);
 /// - strain and tension, which belong to the middles of the edges, linearly between those and
 ///   beyond the outermost ones;
 /// - turning angles at the nodes that bend;

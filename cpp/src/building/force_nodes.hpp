@@ -1,0 +1,12 @@
+#pragma once
+
+#include "der/model/model.hpp"
+#include "der/scenario/scenario.hpp"
+
+namespace der {
+
+/// Sets RodLayout::bears_force, which places of supports and loads between nodes need. Spheres are
+/// known before.
+void find_force_nodes(const scenario::Scene& scene, Model& model);
+
+}  // namespace der

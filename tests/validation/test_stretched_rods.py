@@ -1,0 +1,206 @@
+"""Rods that stretch by a fifth under a force between nodes, which a spring may exert, or which may
+follow the rod.
+
+The reference is `references/section_loads.py`, for which each force is given in the axes of the
+section there. A spring has its anchor where it exerts that force in equilibrium.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+from references.kirchhoff_rod import UPRIGHT, Rod
+from references.record import Array
+from references.section_loads import Wrench, held_at_start
+from spatial_scenes import measured, section, straight_rod
+
+STRETCHING = 20.0
+ROUNDING = 1e-10
+STIFFNESS = np.array([30.0, 10.0, 20.0])  # of springs [N/m]
+#: Places with numbers of edges: the middle of an edge, and a quarter from its start.
+PLACES = {0.425: (60, 180, 540), 0.4125: (100, 260, 500)}
+#: Along d1, d2 and d3 of the sections; in a plane along d1 and d3.
+INNER, TIP = np.array([1.5, 0.0, 3.0]), np.array([-1.0, 0.0, 1.0])
+ACROSS = np.array([0.0, 0.8, 0.0])
+MODELS = {
+    "planar": section(EA=STRETCHING, EI=1.0),
+    "spatial": section([0, 1, 0], EA=STRETCHING, EI1=1.0, EI2=2.0, GJ=0.7),
+}
+
+
+def loaded(how: str, place: float, force: Array, position: Array) -> dict[str, Any]:
+    """A force [N] at a place of the rod as a load, or a spring that exerts it."""
+    if how == "spring":
+        anchor = position + force / STIFFNESS
+        spring = {"stiffness": STIFFNESS.tolist(), "anchor": anchor.tolist()}
+        return {"supports": [{"rod": "rod", "at": place, "spring": spring}]}
+    load = {"rod": "rod", "at": place, "force": force.tolist(), "follower": how == "follower"}
+    return {"loads": [{"point_force": load}]}
+
+
+def scene_of(
+    model: str, hows: tuple[str, ...], places: tuple[float, ...], forces: Any, positions: Any
+) -> Any:
+    """A scene maker by edges: a force at each place, and a fixed one at the end."""
+    supports: list[Any] = [{"rod": "rod", "at": "start", "clamp": True}]
+    loads: list[Any] = []
+    for how, place, force, position in zip(hows, places, forces, positions, strict=True):
+        more = loaded(how, place, force, position)
+        supports += more.get("supports", [])
+        loads += more.get("loads", [])
+
+    def scene(edges: int) -> Any:
+        made = straight_rod(
+            edges, MODELS[model], model=model, supports=supports, loads=loads, analysis="static"
+        )
+        if model == "planar":
+            flatten(made)
+        return made
+
+    return scene
+
+
+def flatten(scene: Any) -> None:
+    """Takes the third component of all vectors away."""
+    for rod in scene["rods"]:
+        rod["points"] = [point[:2] for point in rod["points"]]
+    for support in scene["supports"]:
+        for key, vector in support.get("spring", {}).items():
+            support["spring"][key] = vector[:2]
+    for load in scene["loads"]:
+        load["point_force"]["force"] = load["point_force"]["force"][:2]
+
+
+QUANTITIES = {
+    "planar": ("x", "y", "moment", "tension"),
+    "spatial": ("x", "y", "z", "moment_1", "moment_2", "torque", "tension"),
+}
+
+
+@dataclass
+class Exact:
+    """Of a rod under a force at a place and another at its end."""
+
+    forces: list[Array]  # [N], of a fixed direction
+    positions: Array  # of the place and the end [m]
+    force: Array  # in the rod at its start [N]
+    moment: Array  # likewise [N m]
+    section: Array  # at the place, columns d1, d2, d3
+
+    @property
+    def moment_there(self) -> Array:
+        """In the rod at the place [N m]."""
+        return np.cross(self.positions[1] - self.positions[0], self.forces[1])
+
+
+def exact(model: str, place: float, force: Array, tip: Array) -> Exact:
+    """`force` and `tip` [N] along d1, d2, d3 of the sections there."""
+    bending = (2.0, 1.0) if model == "spatial" else (1.0, 1.0)  # about d1 and d2
+    rod = Rod(1.0, bending, 0.7, STRETCHING)
+    wrenches = [Wrench(place, tuple(force)), Wrench(1.0, tuple(tip))]
+    end, positions, frames = held_at_start(rod, wrenches)
+    forces = [frames[0] @ force, frames[1] @ tip]
+    moment = np.cross(positions[0], forces[0]) + np.cross(end, forces[1])
+    return Exact(forces, positions, forces[0] + forces[1], moment, frames[0])
+
+
+def bends(model: str, moment: Array, section: Array) -> list[float]:
+    """The moment of a section as probes have it."""
+    if model == "planar":
+        return [moment[2]]
+    about_first, about_second, torque = section.T @ moment
+    return [about_second, -about_first, torque]  # towards a director it turns about the other
+
+
+@pytest.mark.parametrize(("place", "meshes"), PLACES.items())
+@pytest.mark.parametrize("how", ["fixed", "follower", "spring"])
+@pytest.mark.parametrize("model", ["planar", "spatial"])
+def test_forces_between_nodes(model, how, place, meshes, fitted_order):
+    """The whole solution is of order 2 wherever the force stands; so is what the clamp bears, and
+    what probes tell of the rod at the clamp and where the force stands."""
+    across = ACROSS if model == "spatial" else 0.0 * ACROSS
+    true = exact(model, place, INNER + across, TIP + across)
+    drawn = UPRIGHT @ (INNER + across)
+    makers = scene_of(
+        model,
+        (how, "fixed"),
+        (place, 1.0),
+        [drawn if how == "follower" else true.forces[0], true.forces[1]],
+        true.positions,
+    )
+    size = 2 if model == "planar" else 3
+    tensions = [true.force[0], true.forces[1] @ true.section[:, 2]]
+    expected = [
+        *(*true.positions[0][:size], *true.positions[1][:size], *-true.force[:size]),
+        *(-true.moment[3 - len(bends(model, true.moment, UPRIGHT)) :]),
+        *(*bends(model, true.moment, UPRIGHT), tensions[0]),
+        *(*bends(model, true.moment_there, true.section), tensions[1]),
+    ]
+    errors = []
+    for edges in meshes:
+        values, result = measured(makers(edges), ["start", place, "end"], QUANTITIES[model])
+        clamp = result.reactions()[0]
+        found = [*values[1, :size], *values[2, :size], *clamp.force[-1]]
+        found += [*np.atleast_1d(clamp.moment[-1]), *values[0, size:], *values[1, size:]]
+        errors.append(np.array(found) - expected)
+    sizes = [1.0 / edges for edges in meshes]
+    for column in np.transpose(errors):
+        if abs(column[0]) > ROUNDING:  # clamps bear exactly what loads of a fixed direction are
+            assert fitted_order(sizes, column) > 1.9
+
+
+CURVATURE = 2.0  # [1/m], in the plane
+
+
+@pytest.mark.parametrize("model", ["planar", "spatial"])
+@pytest.mark.parametrize("shape", ["drawn", "given"])
+def test_ends_of_curved_rods(model, shape, fitted_order):
+    """Moment and tension at a clamp and at an end on which a moment acts."""
+    bending = (2.0, 1.0) if model == "spatial" else (1.0, 1.0)
+    rod = Rod(
+        1.0,
+        bending,
+        0.7,
+        STRETCHING,
+        natural=lambda s: np.stack([0.0 * s, CURVATURE + 0.0 * s, 0.0 * s]),
+    )
+    # Along d1, d2 and d3; the moment is about d2, out of the plane of the natural curvature.
+    force = np.array([1.0, 0.4 if model == "spatial" else 0.0, 3.0])
+    turning = np.array([0.0, 0.5, 0.0])
+    end, _, frames = held_at_start(rod, [Wrench(1.0, tuple(force), tuple(turning))])
+    pull, moment = frames[0] @ force, frames[0] @ turning
+    at_start = np.cross(end, pull) + moment
+    expected = [*bends(model, at_start, UPRIGHT), pull[0]]
+    expected += [*bends(model, moment, frames[0]), force[2]]
+    size = 2 if model == "planar" else 3
+
+    def scene(edges: int) -> Any:
+        angles = CURVATURE * np.linspace(0.0, 1.0, edges + 1)
+        arc = np.stack([np.sin(angles), 1.0 - np.cos(angles), 0.0 * angles], axis=1) / CURVATURE
+        made = straight_rod(edges, MODELS[model], model=model, analysis="static")
+        if shape == "drawn":
+            made["rods"][0]["points"] = arc.tolist()
+        else:
+            given = CURVATURE if model == "planar" else [CURVATURE, 0.0]
+            made["rods"][0]["natural_curvature"] = given
+        loads = [
+            {"point_force": {"rod": "rod", "at": "end", "force": pull[:size].tolist()}},
+            {"moment": {"rod": "rod", "at": "end", "moment": moment.tolist()}},
+        ]
+        if model == "planar":
+            made["rods"][0]["points"] = [point[:2] for point in made["rods"][0]["points"]]
+            loads[1]["moment"]["moment"] = moment[2]
+        return {**made, "loads": loads}
+
+    meshes = (40, 80, 160, 320)
+    errors = []
+    for edges in meshes:
+        values, _ = measured(scene(edges), ["start", "end"], QUANTITIES[model])
+        errors.append(values[:, size:].ravel() - expected)
+    sizes = [1.0 / edges for edges in meshes]
+    for column in np.transpose(errors):
+        if abs(column[0]) > 1e-6:  # moments at a free end are known
+            assert fitted_order(sizes, column) > 1.9

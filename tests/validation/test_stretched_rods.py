@@ -204,3 +204,29 @@ def test_ends_of_curved_rods(model, shape, fitted_order):
     for column in np.transpose(errors):
         if abs(column[0]) > 1e-6:  # moments at a free end are known
             assert fitted_order(sizes, column) > 1.9
+
+
+@pytest.mark.parametrize("share", [0.2, 0.45, 0.7, 1.2])
+def test_moments_beside_a_clamp(share, fitted_order):
+    """At a share of an edge from the clamp, or beyond the first edge, of a planar rod."""
+    rod, pull, turning = Rod(1.0, (1.0, 1.0), 0.7, STRETCHING), [0.0, 0.0, 4.0], [0.0, 0.5, 0.0]
+    meshes = (80, 160, 320, 640)
+    errors = []
+    for edges in meshes:
+        place = share / edges
+        wrenches = [Wrench(place, moment=tuple(turning)), Wrench(1.0, tuple(pull))]
+        end, _, frames = held_at_start(rod, wrenches)
+        force = frames[1] @ pull
+        loads = [
+            {"point_force": {"rod": "rod", "at": "end", "force": force[:2].tolist()}},
+            {"moment": {"rod": "rod", "at": place, "moment": turning[1]}},
+        ]
+        scene = straight_rod(edges, MODELS["planar"], model="planar", loads=loads)
+        scene["rods"][0]["points"] = [point[:2] for point in scene["rods"][0]["points"]]
+        values, result = measured(scene, ["start", "end"], QUANTITIES["planar"])
+        bears = np.cross(end, force)[2] + turning[1]
+        found = [*values[1, :2], result.reactions()[0].moment[-1], *values[0, 2:]]
+        errors.append(np.array(found) - [*end[:2], -bears, bears, force[0]])
+    sizes = [1.0 / edges for edges in meshes]
+    for column in np.transpose(errors):
+        assert fitted_order(sizes, column) > 1.9

@@ -61,7 +61,8 @@ double DiscreteGradientAssembler::work_at_pivots(const Configuration& middle) {
   if (!tables_change_) return work;
   for_each_list(*model_.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
-    if constexpr (IsFromPivot<Kernel>::value) {
+    // What moments do at pivots is work of loads (control_work).
+    if constexpr (IsFromPivot<Kernel>::value && Kernel::kTerm != EnergyTerm::Load) {
       Local<Kernel::kDofs> moving;
       for (std::size_t e = 0; e < list.size(); ++e) {
         const auto before = gather(list.dofs[e], start.coordinates);

@@ -9,6 +9,7 @@
 #include "der/kinematics/planar_edge.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spring.hpp"
+#include "energies/add_element.hpp"
 
 namespace der {
 namespace {
@@ -18,19 +19,6 @@ void make_room_for_elements(Index count, Model& model) {
   ElementList<Kernel>& list = elements_of<Kernel>(*model.elements);
   make_room(list.dofs, to_size(count));
   make_room(list.constants, to_size(count));
-}
-
-/// Adds an element of the rod to the list of its kind: the plain one, or that of elements between
-/// pivots.
-template <class Kernel>
-void add_element(const std::array<Index, Kernel::kDofs>& dofs,
-                 const typename Kernel::Constants& constants, const Pivot& first, const Pivot& last,
-                 Model& model) {
-  if (first.distance == 0.0 && last.distance == 0.0) {
-    elements_of<Kernel>(*model.elements).add(dofs, constants);
-  } else {
-    elements_of<FromPivot<Kernel>>(*model.elements).add(dofs, {constants, first, last});
-  }
 }
 
 Vec2 drawn(const EffectiveEdge& effective, const Model& model) {
@@ -56,7 +44,7 @@ void add_stretch(const RodLayout& rod, const std::vector<EffectiveEdge>& edges, 
         effective.has_pivot() ? drawn(effective, model).norm() : rod.edge_length[to_size(edge)];
     const double EA = rod.EA * (length / rod.edge_length[to_size(edge)]);
     add_element<Stretch<2>>(effective.dofs, {EA, length, rod.rest_entries.edge(edge)},
-                            effective.first, effective.last, model);
+                            effective.first, effective.last, *model.elements);
   }
 }
 
@@ -90,7 +78,7 @@ void add_bend(RodLayout& rod, const std::vector<EffectiveEdge>& edges, Model& mo
                                         after.dofs[1], after.dofs[2], after.dofs[3]},
                                        {rod.EI / bend_length(rod, i), Curvature::of(rest).kappa,
                                         rod.rest_entries.cell(rod.position(i), false)},
-                                       before.first, after.last, model);
+                                       before.first, after.last, *model.elements);
   }
 }
 

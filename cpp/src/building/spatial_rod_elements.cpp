@@ -18,6 +18,7 @@
 #include "der/supports/clamp.hpp"
 #include "der/supports/section_spring.hpp"
 #include "der/supports/spatial_clamp.hpp"
+#include "energies/add_element.hpp"
 #include "model/corner.hpp"
 #include "model/corner_twist.hpp"
 #include "model/curvature_jump.hpp"
@@ -29,17 +30,6 @@
 namespace der {
 namespace {
 
-template <class Kernel>
-void add_element(const std::array<Index, Kernel::kDofs>& dofs,
-                 const typename Kernel::Constants& constants, const SpatialPivot& first,
-                 const SpatialPivot& last, Model& model) {
-  if (first.distance == 0.0 && last.distance == 0.0) {
-    elements_of<Kernel>(*model.elements).add(dofs, constants);
-  } else {
-    elements_of<FromSpatialPivot<Kernel>>(*model.elements).add(dofs, {constants, first, last});
-  }
-}
-
 /// An effective edge from a pivot is shorter than its edge and stretches for all of it.
 void add_stretch(const RodLayout& rod, const SpatialEdge& edge, Index number, Model& model) {
   const double whole = rod.edge_length[to_size(number)];
@@ -47,7 +37,7 @@ void add_stretch(const RodLayout& rod, const SpatialEdge& edge, Index number, Mo
   add_element<Stretch<3>>(
       {edge.start, edge.start + 1, edge.start + 2, edge.end, edge.end + 1, edge.end + 2},
       {rod.EA * (length / whole), length, rod.rest_entries.edge(number)}, edge.first, edge.last,
-      model);
+      *model.elements);
 }
 
 Joint stiffness_of(const RodLayout& rod, const RodJoint& joint, bool holds_section) {
@@ -352,7 +342,7 @@ class SectionElements {
          after.start + 2, after.end, after.end + 1, after.end + 2, before.theta, after.theta},
         {stiffness, FrameBlock::of(number(joint.before)), FrameBlock::of(number(joint.after)),
          joint.glued, rest_shift(rod_, joint)},
-        before.first, after.last, model_);
+        before.first, after.last, *model_.elements);
   }
 
   void add_clamp(RodJoint& joint) {
@@ -404,7 +394,7 @@ void add_isotropic_bending(const RodLayout& rod, Model& model) {
       add_element<IsotropicBend<Curvature>>(
           {before.start, before.start + 1, before.start + 2, after.start, after.start + 1,
            after.start + 2, after.end, after.end + 1, after.end + 2},
-          {stiffness}, before.first, after.last, model);
+          {stiffness}, before.first, after.last, *model.elements);
     } else {
       const Index edge = joint.after >= 0 ? joint.after : joint.before;
       const SpatialEdge own = spatial_edge(rod, edge, model);

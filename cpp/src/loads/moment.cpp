@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "der/energies/elements_of.hpp"
 #include "der/energies/planar_moment.hpp"
-#include "der/energies/registry.hpp"
 #include "der/loads/circulatory.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/location.hpp"
 #include "der/model/moment_place.hpp"
+#include "der/supports/clamp.hpp"
+#include "energies/add_element.hpp"
 
 namespace der {
 namespace {
@@ -44,10 +44,10 @@ void add_load(const scenario::Moment& load, const LoadContext& context, Model& m
   if (clamp != nullptr) return;
   MomentPlace& place = place_of_moments(s, rod);
   place.moments.push_back(control);
-  auto& moments = elements_of<PlanarMoment>(*model.elements);
   for (std::size_t i = 0; i < place.weights.size(); ++i) {
-    moments.add(rod.edge_dofs(place.first_edge + static_cast<Index>(i), model),
-                {place.series_share(rod.EI) * place.weights[i], control});
+    const EffectiveEdge edge = effective_edge(rod, place.first_edge + static_cast<Index>(i), model);
+    add_element<PlanarMoment>(edge.dofs, {place.series_share(rod.EI) * place.weights[i], control},
+                              edge.first, edge.last, *model.elements);
   }
 }
 

@@ -5,9 +5,11 @@
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
+#include "der/energies/from_pivot.hpp"
 #include "der/energies/rotational_spring.hpp"
 #include "der/model/clamp_cell.hpp"
 #include "der/model/location.hpp"
+#include "der/supports/clamp.hpp"
 #include "model/actuated_turn.hpp"
 #include "model/section_cells.hpp"
 
@@ -33,21 +35,36 @@ double applied_moment(const MomentPlace& place, const Vector& controls) {
   return sum;
 }
 
-template <int Edges>
-double turn_of(Index element, const Model& model, const Vector& positions, double before) {
+/// Turn [rad] of the weighted directions from where the springs are slack without actuations, the
+/// first edge having turned by `before` [rad] in the last state. `offset(pivot)` is where clamps
+/// have their pivots [m].
+template <int Edges, class Offset>
+double turn_of(const MomentPlace& place, const RodLayout& rod, const Model& model,
+               const Vector& coordinates, const Offset& offset, double before) {
   using Kernel = RotationalSpring<Edges>;
-  const auto& springs = elements_of<Kernel>(*model.elements);
-  return Kernel::turn(springs.constants[to_size(element)], before,
-                      gather(springs.dofs[to_size(element)], positions));
+  const std::size_t number = to_size(place.spring);
+  const bool is_beside_clamp = rod.clamp_at(place.first_edge) != nullptr ||
+                               rod.clamp_at(place.first_edge + Edges) != nullptr;
+  if (!is_beside_clamp) {
+    const auto& springs = elements_of<Kernel>(*model.elements);
+    return Kernel::turn(springs.constants[number], before,
+                        gather(springs.dofs[number], coordinates));
+  }
+  using Pivoted = FromPivot<Kernel>;
+  const auto& springs = elements_of<Pivoted>(*model.elements);
+  const auto& [element, first, last] = springs.constants[number];
+  return Kernel::turn(
+      element, before,
+      Pivoted::from_pivots(offset(first), offset(last), gather(springs.dofs[number], coordinates)));
 }
 
-/// Turn [rad] of the weighted directions from where the springs are slack without actuations, the
-/// first edge having turned by `before` [rad] in the last state; 0 without springs.
-double spring_turn(const MomentPlace& place, const Model& model, const Vector& positions,
-                   double before) {
+/// 0 without springs.
+template <class Offset>
+double spring_turn(const MomentPlace& place, const RodLayout& rod, const Model& model,
+                   const Vector& coordinates, const Offset& offset, double before) {
   if (place.spring < 0) return 0.0;
-  return place.weights.size() == 1 ? turn_of<1>(place.spring, model, positions, before)
-                                   : turn_of<2>(place.spring, model, positions, before);
+  return place.weights.size() == 1 ? turn_of<1>(place, rod, model, coordinates, offset, before)
+                                   : turn_of<2>(place, rod, model, coordinates, offset, before);
 }
 
 double moment_of(const MomentPlace& place, const RodLayout& rod, double applied, double turn) {
@@ -81,33 +98,18 @@ MomentPlace moment_place(double s, const RodLayout& rod) {
   return place;
 }
 
-MomentPlace planar_moment_place(double s, const RodLayout& rod) {
-  MomentPlace place = moment_place(s, rod);
-  for (std::size_t i = 0; i < place.weights.size(); ++i) {
-    place.weights[i] /= turn_of_line(rod, place.first_edge + static_cast<Index>(i));
-  }
-  return place;
-}
-
-double turn_of_line(const RodLayout& rod, Index edge) {
-  double turn = 1.0;
-  for (const Index node : {edge, edge + 1}) {
-    if (rod.clamp_at(node) != nullptr) turn -= kPivotShare;
-  }
-  return turn;
-}
-
 MomentPlace& place_of_moments(double s, RodLayout& rod) {
   if (const MomentPlace* known = rod.moment_place_at(s)) {
     return rod.moment_places[static_cast<std::size_t>(known - rod.moment_places.data())];
   }
-  return rod.moment_places.emplace_back(planar_moment_place(s, rod));
+  return rod.moment_places.emplace_back(moment_place(s, rod));
 }
 
 double carried_moment(const MomentPlace& place, const RodLayout& rod, const Model& model,
                       const State& state, double applied) {
   const double before = place.followed >= 0 ? state.followed[place.followed] : 0.0;
-  const double turn = spring_turn(place, model, state.positions, before) +
+  const auto offset = [&](const Pivot& pivot) { return offset_of(pivot, model, state); };
+  const double turn = spring_turn(place, rod, model, state.positions, offset, before) +
                       value_of(place.actuated, model, state)[0];
   return moment_of(place, rod, applied, turn);
 }
@@ -116,12 +118,13 @@ Energies cell_energies(const RodLayout& rod, const Model& model, const Configura
   if (model.has_sections()) return section_cell_energies(rod, model, here);
   Energies energies;
   if (rod.EI == 0.0) return energies;
+  const auto offset = [&](const Pivot& pivot) { return pivot.offset(here.controls); };
   for (const MomentPlace& place : rod.moment_places) {
     const double before = place.followed >= 0
                               ? here.controls[model.followed_edges[to_size(place.followed)].turn]
                               : 0.0;
-    const double turn =
-        spring_turn(place, model, here.coordinates, before) + place.actuated.at(here.controls)[0];
+    const double turn = spring_turn(place, rod, model, here.coordinates, offset, before) +
+                        place.actuated.at(here.controls)[0];
     const double moment = moment_of(place, rod, applied_moment(place, here.controls), turn);
     const double cell_turn = place.cell_length * moment / rod.EI;
     energies[EnergyTerm::Bend] += 0.5 * cell_turn * moment;

@@ -135,19 +135,8 @@ Vec3 MomentRecovery::smooth(Index edge, bool last, const Vec3& point, const Mode
                             const State& state) const {
   const EdgeTerms& terms = edges_[to_size(edge)];
   Vec3 moment = Vec3::Zero();
-  // In a plane a moment is a couple at the nodes of its edge: a pivot between them sees the nearer
-  // one's force taken by the clamp. In space it is one at the pivot.
-  double missing = 0.0;
-  if (const Index node = last ? edge + 1 : edge;
-      model.dimension == 2 && rod_.clamp_at(node) != nullptr) {
-    const double share = share_of(edge, point, state);
-    const double arm = last ? share : 1.0 - share;
-    missing = (last ? -1.0 : 1.0) * (1.0 - arm / turn_of_line(rod_, edge));
-  }
   for (const MomentTerm& term : terms.moments) {
-    const EdgeMoments value = moments_.value(term.number, model, state);
-    moment += (last ? term.last : term.first).times(value);
-    if (term.own >= 0) moment += missing * value.on_edge[to_size(term.own)];
+    moment += (last ? term.last : term.first).times(moments_.value(term.number, model, state));
   }
   for (const ForceTerm& term : terms.forces) {
     const Vec3 stands = forces_.point(term.place, state);

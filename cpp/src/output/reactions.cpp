@@ -318,31 +318,18 @@ void Reactions::Reader::add_joints(const Model& model, const State& state) {
   }
 }
 
-/// A moment beside a clamp acts in part on the edges, by couples on their nodes; the clamp takes
-/// the rest of it.
+/// A moment beside a clamp acts in part on the edge; the clamp takes the rest of it.
 void Reactions::Reader::add_planar_moments(std::size_t rod_number, const Model& model,
                                            const State& state) {
   const RodLayout& rod = model.rods[rod_number];
   for (const MomentPlace& place : rod.moment_places) {
+    const auto beside = place_beside_clamp(rod, place.arc_length);
+    if (!beside) continue;
     double applied = 0.0;
     for (const Index moment : place.moments) applied += here_.controls[moment];
     const double carried = carried_moment(place, rod, model, state, applied);
-    double on_edges = 0.0;
-    for (std::size_t k = 0; k < place.weights.size(); ++k) {
-      const Index edge = place.first_edge + static_cast<Index>(k);
-      on_edges += place.weights[k] * turn_of_line(rod, edge);
-      for (const Index node : {edge, edge + 1}) {
-        const Clamp* clamp = rod.clamp_at(node);
-        if (clamp == nullptr) continue;
-        // The line between the nodes turns with the clamp by this share.
-        moments_[clamp_number(rod_number, *clamp, model)].z() +=
-            kPivotShare * place.weights[k] * carried;
-      }
-    }
-    const auto beside = place_beside_clamp(rod, place.arc_length);
-    if (!beside) continue;
     const Clamp& clamp = rod.clamps[to_size(beside->clamp)];
-    moments_[clamp_number(rod_number, clamp, model)].z() -= (1.0 - on_edges) * carried;
+    moments_[clamp_number(rod_number, clamp, model)].z() -= (1.0 - place.weights[0]) * carried;
   }
 }
 

@@ -30,11 +30,7 @@ EdgeMoments moments_of_spring(std::size_t number, const Model& model, const Stat
 SpreadMoments::SpreadMoments(const RodLayout& rod, const Model& model) : rod_(rod) {
   for (std::size_t i = 0; i < rod.moment_places.size(); ++i) {
     const MomentPlace& place = rod.moment_places[i];
-    Moment moment{place.arc_length, place.first_edge, place.weights};
-    for (std::size_t k = 0; k < moment.weights.size(); ++k) {
-      moment.weights[k] *= turn_of_line(rod, place.first_edge + static_cast<Index>(k));
-    }
-    moments_.push_back(std::move(moment));
+    moments_.push_back({place.arc_length, place.first_edge, place.weights});
     sources_.emplace_back(PlanarPlace{i});
   }
   if (!model.has_sections()) return;

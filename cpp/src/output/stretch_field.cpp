@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "der/core/index.hpp"
-#include "der/model/moment_place.hpp"
 #include "der/output/joint_strain.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spatial_clamp.hpp"
@@ -21,7 +20,6 @@
 #include "output/natural_curvature.hpp"
 #include "output/rod_field.hpp"
 #include "output/spread_forces.hpp"
-#include "output/spread_moments.hpp"
 #include "output/stretch_samples.hpp"
 
 namespace der {
@@ -265,35 +263,6 @@ class LeaningEdges {
   std::unique_ptr<RodField> twist_, torque_;  // of sections
 };
 
-/// The tension that edges next to a clamp have in excess in a plane, where a moment is a couple
-/// across the line between the nodes: the edge from the clamp's pivot has another direction, and
-/// the clamp takes the force of the couple on the node that it holds.
-class Couples {
- public:
-  Couples(const RodLayout& rod, const Model& model) : rod_(rod), moments_(rod, model) {}
-
-  /// [N] along `effective`, an edge's vector as its elements see it.
-  [[nodiscard]] double excess(Index edge, const Vec3& effective, const Model& model,
-                              const State& state) const {
-    if (model.dimension != 2) return 0.0;
-    double excess = 0.0;
-    for (std::size_t m = 0; m < moments_.size(); ++m) {
-      const Index number = edge - moments_[m].first_edge;
-      if (number < 0 || number >= static_cast<Index>(moments_[m].weights.size())) continue;
-      const Vec2 along = along_edge(rod_.edge(edge, model), state.positions);
-      const double moment =
-          moments_.value(m, model, state).on_edge[to_size(number)].z() / turn_of_line(rod_, edge);
-      excess +=
-          moment * in_space(along).cross(effective).z() / (along.squaredNorm() * effective.norm());
-    }
-    return excess;
-  }
-
- private:
-  const RodLayout& rod_;
-  SpreadMoments moments_;
-};
-
 /// The strain, times a stiffness [N] (1: the strain itself).
 ///
 /// The tension in an edge of the chain is that of the loads beyond it as they are spread over the
@@ -344,7 +313,6 @@ class StretchField : public RodField {
         forces_(std::move(forces)),
         vectors_(rod, model),
         leans_(rod, model),
-        couples_(rod, model),
         excess_(rod, forces_),
         samples_(std::move(samples)) {}
 
@@ -359,8 +327,7 @@ class StretchField : public RodField {
     const double length = effective.norm();
     const double chain =
         (length - vectors_.rest_length(edge, model, state)) / rod_.edge_length[to_size(edge)];
-    const double excess = leans_.excess(edge, 1.0 + chain, model, state) +
-                          couples_.excess(edge, effective, model, state);
+    const double excess = leans_.excess(edge, 1.0 + chain, model, state);
     const double upright = chain - excess / rod_.EA;
     if (excess_.none(edge)) return upright;
     return upright + effective.dot(excess_.force(edge, forces_, model, state)) / (length * rod_.EA);
@@ -371,7 +338,6 @@ class StretchField : public RodField {
   SpreadForces forces_;
   EffectiveVectors vectors_;
   LeaningEdges leans_;
-  Couples couples_;
   EdgeExcess excess_;
   std::vector<StretchSample> samples_;
 };

@@ -4,7 +4,11 @@
 
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/from_pivot.hpp"
+#include "der/energies/planar_moment.hpp"
 #include "der/energies/registry.hpp"
+#include "der/kinematics/planar_edge.hpp"
 #include "der/supports/clamp.hpp"
 
 namespace der {
@@ -95,6 +99,27 @@ double work_on_actuated_turns(const Model& model, const Configuration& before,
   return work;
 }
 
+/// Work [J] of planar moments on the turns that edges make as clamps turn their pivots: of
+/// displacements of nodes it is no part.
+double work_at_turned_pivots(const Model& model, const Configuration& before,
+                             const Configuration& after) {
+  using Kernel = FromPivot<PlanarMoment>;
+  const auto& moments = elements_of<Kernel>(*model.elements);
+  double work = 0.0;
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    const auto& c = moments.constants[i];
+    const auto edge = [&](const Configuration& there) -> Vec2 {
+      const auto ends =
+          Kernel::from_pivots(c, there.controls, gather(moments.dofs[i], there.coordinates));
+      return ends.tail<2>() - ends.head<2>();
+    };
+    const Index control = c.element.moment;
+    const double mean = 0.5 * (before.controls[control] + after.controls[control]);
+    work += c.element.share * mean * angle_between(edge(before), edge(after));
+  }
+  return work;
+}
+
 }  // namespace
 
 void stage_displacement(const Model& model, const Vector& start, const Vector& end, double share,
@@ -126,8 +151,9 @@ double moment_work(const Model& model, const Configuration& here, const Vector& 
 ControlWork control_work(const Model& model, const Configuration& before,
                          const Configuration& after) {
   const bool turns = any_clamp_turns(model);
+  const double at_pivots = turns ? work_at_turned_pivots(model, before, after) : 0.0;
   if (!model.rest_shape.is_actuated()) {
-    return {turns ? energy_given(model, before, after) : 0.0, 0.0, 0.0};
+    return {turns ? energy_given(model, before, after) - at_pivots : 0.0, 0.0, at_pivots};
   }
   const double loads = work_on_actuated_turns(model, before, after);
   if (!turns) return {0.0, energy_given(model, before, after) - loads, loads};
@@ -139,8 +165,8 @@ ControlWork control_work(const Model& model, const Configuration& before,
   const auto given = [&](const Configuration& from, const Configuration& to) {
     return 0.5 * energy_given(model, from, to);
   };
-  return {given(before, turned) + given(actuated, after),
-          given(before, actuated) + given(turned, after) - loads, loads};
+  return {given(before, turned) + given(actuated, after) - at_pivots,
+          given(before, actuated) + given(turned, after) - loads, loads + at_pivots};
 }
 
 }  // namespace der

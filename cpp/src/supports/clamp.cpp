@@ -107,14 +107,16 @@ EffectiveEdge effective_edge(const RodLayout& rod, Index edge, const Model& mode
           pivot_at(rod, own + 1, own, model)};
 }
 
+Vec2 offset_of(const Pivot& pivot, const Model& model, const State& state) {
+  if (pivot.rotation < 0) return pivot.drawn_offset;
+  return pivot.offset(control_value(model, state, pivot.rotation));
+}
+
 Vec2 effective_end(const EffectiveEdge& effective, bool last, const Model& model,
                    const State& state) {
-  const Pivot& pivot = last ? effective.last : effective.first;
-  const Vec2 offset = pivot.rotation >= 0
-                          ? pivot.offset(control_value(model, state, pivot.rotation))
-                          : pivot.drawn_offset;
   const std::size_t x = last ? 2 : 0;
-  return Vec2(state.positions[effective.dofs[x]], state.positions[effective.dofs[x + 1]]) + offset;
+  return Vec2(state.positions[effective.dofs[x]], state.positions[effective.dofs[x + 1]]) +
+         offset_of(last ? effective.last : effective.first, model, state);
 }
 
 Vec2 effective_vector(const EffectiveEdge& effective, const Model& model, const State& state) {

@@ -17,8 +17,8 @@
 #include "der/scenario/support.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/section_spring.hpp"
+#include "energies/add_element.hpp"
 #include "model/curvature_jump.hpp"
-#include "model/drawn_edge.hpp"
 
 namespace der {
 namespace {
@@ -59,11 +59,16 @@ void add_point_spring_at(const scenario::Spring& spring, RodLayout& rod, double 
   add_point_spring<Dim, Nodes>(spring, rod, s, weights, model);
 }
 
+/// The drawn vector of an edge as its elements see it [m].
+Vec2 drawn(const EffectiveEdge& edge, const Model& model) {
+  return edge.vector(model.initial_positions, 0.0, 0.0);
+}
+
 /// Turn [rad] that is drawn between the two edges of a place; 0 of one edge.
 double drawn_bend(const RodLayout& rod, const MomentPlace& place, const Model& model) {
   if (place.weights.size() == 1) return 0.0;
-  return angle_between(drawn_edge(rod, place.first_edge, model),
-                       drawn_edge(rod, place.first_edge + 1, model));
+  return angle_between(drawn(effective_edge(rod, place.first_edge, model), model),
+                       drawn(effective_edge(rod, place.first_edge + 1, model), model));
 }
 
 /// Turn [rad] of the weighted directions, from the initial direction of the first edge, at which
@@ -83,7 +88,7 @@ void act_on_edge(MomentPlace& place) {
 
 /// Returns the number of the element in its list.
 template <int Edges>
-Index add_element(const RodLayout& rod, MomentPlace& place, Model& model) {
+Index add_element_of(const RodLayout& rod, MomentPlace& place, Model& model) {
   using Kernel = RotationalSpring<Edges>;
   std::array<Index, Kernel::kDofs> dofs{};
   for (Index i = 0; i <= Edges; ++i) {
@@ -91,19 +96,19 @@ Index add_element(const RodLayout& rod, MomentPlace& place, Model& model) {
       dofs[to_size(2 * i + c)] = model.dof(rod.node(place.first_edge + i), c);
     }
   }
+  const EffectiveEdge first = effective_edge(rod, place.first_edge, model);
+  const EffectiveEdge last = effective_edge(rod, place.first_edge + Edges - 1, model);
+  const Vec2 along = drawn(first, model);
   typename Kernel::Constants constants;
   constants.stiffness = place.stiffness * place.series_share(rod.EI);
   place.followed = follow_edge(rod, place.first_edge, model);
-  const FollowedEdge& first = model.followed_edges[to_size(place.followed)];
-  constants.direction = first.direction;
-  constants.turn = first.turn;
+  constants.direction = std::atan2(along.y(), along.x());
+  constants.turn = model.followed_edges[to_size(place.followed)].turn;
   constants.rest = rest_turn(rod, place, model);
   std::copy(place.weights.begin(), place.weights.end(), constants.weights.begin());
   constants.total = std::accumulate(place.weights.begin(), place.weights.end(), 0.0);
   constants.actuated = place.spring_shift;
-  auto& springs = elements_of<Kernel>(*model.elements);
-  springs.add(dofs, constants);
-  return static_cast<Index>(springs.size()) - 1;
+  return add_element<Kernel>(dofs, constants, first.first, last.last, *model.elements);
 }
 
 }  // namespace
@@ -168,12 +173,12 @@ void add_rotational_springs(RodLayout& rod, Model& model) {
   for (MomentPlace& place : rod.moment_places) {
     // Clamps may have come since.
     const double stiffness = place.stiffness;
-    place = planar_moment_place(place.arc_length, rod);
+    place = moment_place(place.arc_length, rod);
     place.stiffness = stiffness;
     place.spring_shift = rod.rest_entries.spring(number++);
     if (is_beside_turning_clamp(rod, place.arc_length)) act_on_edge(place);
-    place.spring = place.weights.size() == 1 ? add_element<1>(rod, place, model)
-                                             : add_element<2>(rod, place, model);
+    place.spring = place.weights.size() == 1 ? add_element_of<1>(rod, place, model)
+                                             : add_element_of<2>(rod, place, model);
   }
 }
 

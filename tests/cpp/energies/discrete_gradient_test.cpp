@@ -21,6 +21,28 @@ template <class Kernel>
 struct FollowsTurns : std::false_type {};
 template <int Edges>
 struct FollowsTurns<RotationalSpring<Edges>> : std::true_type {};
+template <class Kernel>
+struct FollowsTurns<FromPivot<Kernel>> : FollowsTurns<Kernel> {};
+
+/// The constants and the coordinates of the kernel itself, which may start from a clamp's pivot.
+template <class Kernel>
+struct Plain {
+  static const auto& constants(const typename Kernel::Constants& c) { return c; }
+  template <class Coordinates>
+  static Coordinates seen(const typename Kernel::Constants& /*c*/, const Configuration& /*here*/,
+                          const Coordinates& x) {
+    return x;
+  }
+};
+template <class Kernel>
+struct Plain<FromPivot<Kernel>> {
+  using Constants = typename FromPivot<Kernel>::Constants;
+  static const auto& constants(const Constants& c) { return c.element; }
+  template <class Coordinates>
+  static Coordinates seen(const Constants& c, const Configuration& here, const Coordinates& x) {
+    return FromPivot<Kernel>::from_pivots(c, here.controls, x);
+  }
+};
 
 /// One element with its controls, and what is asked of it.
 template <class Kernel>
@@ -53,6 +75,8 @@ struct Element {
     double gap = followed(start, end).energy(end) - energy(start) - d.dot(end - start);
     if constexpr (std::is_same_v<Kernel, PlanarMoment>) {
       gap = std::remainder(gap, PlanarMoment::period(constants, here));
+    } else if constexpr (std::is_same_v<Kernel, FromPivot<PlanarMoment>>) {
+      gap = std::remainder(gap, PlanarMoment::period(constants.element, here));
     }
     const double scale = 1.0 + std::abs(energy(start)) + std::abs(energy(end)) +
                          d.norm() * (start.norm() + end.norm());
@@ -63,11 +87,13 @@ struct Element {
   [[nodiscard]] Element followed(const Coordinates& start, const Coordinates& end) const {
     Element element = *this;
     if constexpr (FollowsTurns<Kernel>::value) {
-      const auto edge = [](const Coordinates& x) -> Vec2 {
-        return x.template segment<2>(2) - x.template head<2>();
+      const auto edge = [&](const Coordinates& x) -> Vec2 {
+        const Coordinates ends = Plain<Kernel>::seen(constants, here, x);
+        return ends.template segment<2>(2) - ends.template head<2>();
       };
-      double& turn = element.here.controls[constants.turn];
-      const double then = constants.direction + turn;
+      const auto& spring = Plain<Kernel>::constants(constants);
+      double& turn = element.here.controls[spring.turn];
+      const double then = spring.direction + turn;
       turn += angle_between({std::cos(then), std::sin(then)}, edge(start)) +
               angle_between(edge(start), edge(end));
     }

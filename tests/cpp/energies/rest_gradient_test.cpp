@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <type_traits>
 
 #include "der/energies/element_energy.hpp"
 #include "der/energies/registry.hpp"
@@ -19,6 +20,17 @@ template <class Kernel>
 constexpr bool kIsSectionSpring = false;
 template <int Edges>
 constexpr bool kIsSectionSpring<SectionSpring<Edges>> = true;
+
+/// Samples have sections that no spring holds, too: what they rest at does not matter.
+template <class Constants>
+bool has_no_spring(const Constants& constants) {
+  if constexpr (std::is_same_v<Constants, SectionSpring<1>::Constants> ||
+                std::is_same_v<Constants, SectionSpring<2>::Constants>) {
+    return constants.spring.stiffness.isZero(0.0);
+  } else {
+    return false;
+  }
+}
 
 template <class Kernel>
 void check_rest_gradient(Random& random) {
@@ -48,7 +60,7 @@ void check_rest_gradient(Random& random) {
     };
     const double slope = 1.5 * rise(h) - 0.6 * rise(2.0 * h) + 0.1 * rise(3.0 * h);
     CHECK(std::abs(slope - gradient[i]) < 1e-12 * (1.0 + std::abs(energy(here))));
-    CHECK(gradient[i] != 0.0);
+    CHECK((gradient[i] != 0.0 || has_no_spring(constants)));
   }
 }
 
@@ -66,7 +78,7 @@ TEST_CASE("derivatives by the rest shape are those of the energy") {
   });
   // Two of Stretch, in each dimension, all that bend but IsotropicBend, and springs against
   // turning.
-  CHECK(kinds == 22);
+  CHECK(kinds == 24);
 }
 
 }  // namespace der::test

@@ -15,6 +15,7 @@ namespace der {
 /// of 2 pi M, the derivatives are exact.
 struct PlanarMoment {
   static constexpr int kDofs = 4;
+  static constexpr int kNodes = 2;
   static constexpr EnergyTerm kTerm = EnergyTerm::Load;
   struct Constants {
     double share = 1.0;  ///< part of the moment that this edge takes [-]

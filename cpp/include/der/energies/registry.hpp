@@ -52,6 +52,7 @@ struct ElementLists {
                            ElementList<FromSpatialPivot<Fork>>,                              //
                            ElementList<FromSpatialPivot<CornerFork>>,                        //
                            ElementList<PlanarMoment>,                                        //
+                           ElementList<FromPivot<PlanarMoment>>,                             //
                            ElementList<Foundation<2>>,                                       //
                            ElementList<Foundation<3>>,                                       //
                            ElementList<PointSpring<2, 1>>,                                   //
@@ -68,6 +69,8 @@ struct ElementLists {
                            ElementList<PointSpring<3, 6>>,                                   //
                            ElementList<RotationalSpring<1>>,                                 //
                            ElementList<RotationalSpring<2>>,                                 //
+                           ElementList<FromPivot<RotationalSpring<1>>>,                      //
+                           ElementList<FromPivot<RotationalSpring<2>>>,                      //
                            ElementList<SectionSpring<1>>,                                    //
                            ElementList<SectionSpring<2>>>;
   Lists lists;

@@ -19,7 +19,8 @@ namespace der {
 template <int Edges>
 struct RotationalSpring {
   static_assert(Edges == 1 || Edges == 2);
-  static constexpr int kDofs = 2 * (Edges + 1);
+  static constexpr int kNodes = Edges + 1;
+  static constexpr int kDofs = 2 * kNodes;
   static constexpr EnergyTerm kTerm = EnergyTerm::Spring;
   struct Constants {
     double stiffness = 0.0;               ///< [N m/rad]

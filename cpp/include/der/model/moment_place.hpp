@@ -19,13 +19,6 @@ namespace der {
 /// The edges on which moments at arc length `s` [m] of a rod act, as its elements see them.
 MomentPlace moment_place(double s, const RodLayout& rod);
 
-/// The same in a plane, where moments act on the lines between nodes: weights of these.
-MomentPlace planar_moment_place(double s, const RodLayout& rod);
-
-/// How much the line between the nodes of an edge turns where the edge turns by 1: from a clamp's
-/// pivot on by 4/5 only.
-double turn_of_line(const RodLayout& rod, Index edge);
-
 /// The place of moments at arc length `s` [m] of a rod, made if it is not there.
 MomentPlace& place_of_moments(double s, RodLayout& rod);
 

@@ -5,8 +5,7 @@
 
 #include "der/core/constants.hpp"
 #include "der/energies/element_energy.hpp"
-#include "der/energies/elements_of.hpp"
-#include "der/energies/planar_moment.hpp"
+#include "der/energies/planar_moments.hpp"
 #include "der/kinematics/planar_edge.hpp"
 
 namespace der::statics {
@@ -25,31 +24,28 @@ double rotational_compliance(const Model& model) {
   return rods + springs;
 }
 
-const ElementList<PlanarMoment>& moments_of(const Model& model) {
-  return elements_of<PlanarMoment>(*model.elements);
-}
-
 }  // namespace
 
 PlanarMomentTurning::PlanarMomentTurning(const Model& model)
-    : model_(model),
-      compliance_(rotational_compliance(model)),
-      turned_(Vector::Zero(static_cast<Index>(moments_of(model).size()))) {}
+    : compliance_(rotational_compliance(model)) {
+  for_each_planar_moment(*model.elements, [&](const auto& dofs, const PlanarMoment::Constants& c) {
+    moments_.push_back({dofs, c.moment});
+  });
+  turned_.setZero(static_cast<Index>(moments_.size()));
+}
 
 void PlanarMomentTurning::add(const Vector& from, const Vector& to) {
-  const auto& moments = moments_of(model_);
-  for (std::size_t i = 0; i < moments.size(); ++i) {
-    const auto before = gather(moments.dofs[i], from);
-    const auto after = gather(moments.dofs[i], to);
+  for (std::size_t i = 0; i < moments_.size(); ++i) {
+    const auto before = gather(moments_[i].dofs, from);
+    const auto after = gather(moments_[i].dofs, to);
     turned_[static_cast<Index>(i)] +=
         angle_between(before.tail<2>() - before.head<2>(), after.tail<2>() - after.head<2>());
   }
 }
 
 bool PlanarMomentTurning::is_unbounded(const Vector& controls) const {
-  const auto& moments = moments_of(model_);
-  for (std::size_t i = 0; i < moments.size(); ++i) {
-    const double moment = std::abs(controls[moments.constants[i].moment]);
+  for (std::size_t i = 0; i < moments_.size(); ++i) {
+    const double moment = std::abs(controls[moments_[i].control]);
     const double turned = std::abs(turned_[static_cast<Index>(i)]);
     if (turned > 4.0 * kPi + 2.0 * moment * compliance_) return true;
   }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 
@@ -18,7 +21,12 @@ class PlanarMomentTurning {
   [[nodiscard]] bool is_unbounded(const Vector& controls) const;
 
  private:
-  const Model& model_;
+  struct Moment {
+    std::array<Index, 4> dofs;  // of the edge
+    Index control = 0;
+  };
+
+  std::vector<Moment> moments_;
   double compliance_;  // largest turn of the structure by a unit moment [1/(N m)]
   Vector turned_;      // of each edge with a moment [rad]
 };

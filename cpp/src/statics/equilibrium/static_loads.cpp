@@ -1,8 +1,7 @@
 #include "statics/equilibrium/static_loads.hpp"
 
 #include "der/energies/circulatory_load.hpp"
-#include "der/energies/elements_of.hpp"
-#include "der/energies/planar_moment.hpp"
+#include "der/energies/planar_moments.hpp"
 #include "der/statics/potential.hpp"
 
 namespace der::statics {
@@ -10,9 +9,9 @@ namespace der::statics {
 StaticLoads scaled(const Model& model, const StaticLoads& loads, double share) {
   StaticLoads result = loads;
   result.force = share * loads.force;
-  for (const auto& moment : elements_of<PlanarMoment>(*model.elements).constants) {
+  for_each_planar_moment(*model.elements, [&](const auto& /*dofs*/, const auto& moment) {
     result.controls[moment.moment] = share * loads.controls[moment.moment];
-  }
+  });
   for (const CirculatoryLoad& load : circulatory_loads(*model.elements)) {
     for (const Index control : load.amount.components) {
       if (control >= 0) result.controls[control] = share * loads.controls[control];

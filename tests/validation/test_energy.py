@@ -376,3 +376,58 @@ def test_a_new_start_from_an_equilibrium_starts_a_new_ledger():
     simulation.equilibrium()
     result = simulation.run()
     assert result.work["numerical"][0] == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("place", [0.01, 0.03, 0.06])
+@pytest.mark.parametrize("model", ["planar", "spatial"])
+def test_moments_beside_a_clamp_that_turns_do_their_own_work(model, place):
+    """A constant moment works by what the tangent turns at its place, however much of that the
+    clamp turns: places within half of the first edge, in it and in the next one."""
+    size = 2 if model == "planar" else 3
+    moment = 0.8
+    turn = {"times": [0.0, 0.5, 1.0], "values": [0.0, 0.4, 0.6]}
+    planar = {"EA": 1e3, "EI": 1.0, "mass_per_length": 1.0}
+    spatial = {"EA": 1e3, "EI1": 1.0, "EI2": 1.0, "GJ": 0.7, "rotary_inertia": 1e-4}
+    spatial["mass_per_length"] = 1.0
+    rotation = {"rotation": {"axis": [0, 0, 1], "angle": turn}}
+    scene = {
+        "model": model,
+        "rods": [
+            {
+                "name": "rod",
+                "nodes": 21,
+                "from": [0.0] * size,
+                "to": [1.0, *[0.0] * (size - 1)],
+                "cross_section": {"stiffness": planar if model == "planar" else spatial},
+            }
+        ],
+        "supports": [
+            {
+                "rod": "rod",
+                "at": "start",
+                "clamp": True,
+                "prescribe": {"angle": turn} if model == "planar" else rotation,
+            }
+        ],
+        "loads": [
+            {
+                "moment": {
+                    "rod": "rod",
+                    "at": place,
+                    "moment": moment if model == "planar" else [0.0, 0.0, moment],
+                }
+            }
+        ],
+        "time": {"duration": 1.0, "step": 0.001, "integrator": "generalized_alpha"},
+        "output": {
+            "every": 0.5,
+            "probes": {
+                name: {"rod": "rod", "quantity": name, "at": place} for name in ("tx", "ty")
+            },
+        },
+    }
+    result = der.run(der.Scenario.from_dict(scene))
+    angle = np.arctan2(result.probes["ty"], result.probes["tx"])
+    assert angle[-1] - angle[0] > 0.6
+    done = moment * (angle[-1] - angle[0])
+    assert result.work["loads"][-1] == pytest.approx(done, rel=1e-4)

@@ -9,8 +9,8 @@
 #include "der/energies/rotational_spring.hpp"
 #include "der/model/clamp_cell.hpp"
 #include "der/model/location.hpp"
-#include "der/supports/clamp.hpp"
 #include "model/actuated_turn.hpp"
+#include "model/pivot_offset.hpp"
 #include "model/section_cells.hpp"
 
 namespace der {

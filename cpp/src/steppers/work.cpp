@@ -1,5 +1,6 @@
 #include "der/steppers/work.hpp"
 
+#include <cmath>
 #include <type_traits>
 
 #include "der/core/index.hpp"
@@ -9,6 +10,7 @@
 #include "der/energies/planar_moment.hpp"
 #include "der/energies/registry.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "der/model/location.hpp"
 #include "der/supports/clamp.hpp"
 
 namespace der {
@@ -99,9 +101,8 @@ double work_on_actuated_turns(const Model& model, const Configuration& before,
   return work;
 }
 
-/// Work [J] of planar moments on the turns that edges make as clamps turn their pivots: of
-/// displacements of nodes it is no part.
-double work_at_turned_pivots(const Model& model, const Configuration& before,
+/// Work [J] of planar moments on the turns that clamps give edges by their pivots.
+double planar_work_at_pivots(const Model& model, const Configuration& before,
                              const Configuration& after) {
   using Kernel = FromPivot<PlanarMoment>;
   const auto& moments = elements_of<Kernel>(*model.elements);
@@ -116,6 +117,76 @@ double work_at_turned_pivots(const Model& model, const Configuration& before,
     const Index control = c.element.moment;
     const double mean = 0.5 * (before.controls[control] + after.controls[control]);
     work += c.element.share * mean * angle_between(edge(before), edge(after));
+  }
+  return work;
+}
+
+/// The part of a rod's moments that a clamp beside them bears works on the clamp's own turn [J].
+double planar_work_on_clamps(const RodLayout& rod, const Configuration& before,
+                             const Configuration& after) {
+  double work = 0.0;
+  for (const MomentPlace& place : rod.moment_places) {
+    const auto beside = place_beside_clamp(rod, place.arc_length);
+    if (!beside) continue;
+    const Index rotation = rod.clamps[to_size(beside->clamp)].rotation;
+    if (rotation < 0) continue;
+    const double turn = after.controls[rotation] - before.controls[rotation];
+    for (const Index moment : place.moments) {
+      const double mean = 0.5 * (before.controls[moment] + after.controls[moment]);
+      work += (1.0 - place.weights[0]) * mean * turn;
+    }
+  }
+  return work;
+}
+
+/// The small rotation [rad] that takes the direction of one vector to that of another.
+Vec3 rotation_between(const Vec3& from, const Vec3& to) {
+  const Vec3 axis = from.cross(to);
+  const double size = axis.norm();
+  return size > 0.0 ? Vec3(std::atan2(size, from.dot(to)) / size * axis) : Vec3(Vec3::Zero());
+}
+
+double turned_by(Index control, const Configuration& before, const Configuration& after) {
+  return control < 0 ? 0.0 : after.controls[control] - before.controls[control];
+}
+
+/// Both works [J] of the moments on a rod in space.
+double spatial_work_at_clamps(const RodLayout& rod, const Model& model, const Configuration& before,
+                              const Configuration& after) {
+  double work = 0.0;
+  for (const SpatialMomentPlace& place : rod.spatial_moments) {
+    const CirculatoryLoad& load = circulatory_loads(*model.elements)[to_size(place.load)];
+    const EdgeMoments first = load.moments(before);
+    const EdgeMoments last = load.moments(after);
+    const auto edges = load.turned_edges();
+    for (std::size_t k = 0; k < edges.size() && edges[k] != nullptr; ++k) {
+      const SpatialEdge& edge = edges[k]->edge;
+      const Vec3 turn = rotation_between(edge.vector(before.coordinates, before.controls),
+                                         edge.vector(after.coordinates, after.controls));
+      work += 0.5 * (first.on_edge[k] + last.on_edge[k]).dot(turn);
+    }
+    const auto beside = place_beside_clamp(rod, place.arc_length);
+    if (!beside) continue;
+    const HeldFrame& held = rod.clamps[to_size(beside->clamp)].held;
+    const Vec3 turn = turned_by(held.rotation, before, after) * held.axis +
+                      turned_by(held.twist, before, after) * held.tangent(after.controls);
+    const auto borne = [](const EdgeMoments& moment) -> Vec3 {
+      return moment.whole - moment.on_edge[0] - moment.on_edge[1];
+    };
+    work += 0.5 * (borne(first) + borne(last)).dot(turn);
+  }
+  return work;
+}
+
+/// Work [J] of moments on the turns that clamps give their places, through pivots of edges and
+/// where the clamps bear a part of them: displacements of nodes do not have it.
+double work_at_turned_clamps(const Model& model, const Configuration& before,
+                             const Configuration& after) {
+  double work = 0.0;
+  if (model.dimension == 2) work += planar_work_at_pivots(model, before, after);
+  for (const RodLayout& rod : model.rods) {
+    work += model.dimension == 2 ? planar_work_on_clamps(rod, before, after)
+                                 : spatial_work_at_clamps(rod, model, before, after);
   }
   return work;
 }
@@ -151,9 +222,9 @@ double moment_work(const Model& model, const Configuration& here, const Vector& 
 ControlWork control_work(const Model& model, const Configuration& before,
                          const Configuration& after) {
   const bool turns = any_clamp_turns(model);
-  const double at_pivots = turns ? work_at_turned_pivots(model, before, after) : 0.0;
+  const double at_clamps = turns ? work_at_turned_clamps(model, before, after) : 0.0;
   if (!model.rest_shape.is_actuated()) {
-    return {turns ? energy_given(model, before, after) - at_pivots : 0.0, 0.0, at_pivots};
+    return {turns ? energy_given(model, before, after) - at_clamps : 0.0, 0.0, at_clamps};
   }
   const double loads = work_on_actuated_turns(model, before, after);
   if (!turns) return {0.0, energy_given(model, before, after) - loads, loads};
@@ -165,8 +236,8 @@ ControlWork control_work(const Model& model, const Configuration& before,
   const auto given = [&](const Configuration& from, const Configuration& to) {
     return 0.5 * energy_given(model, from, to);
   };
-  return {given(before, turned) + given(actuated, after) - at_pivots,
-          given(before, actuated) + given(turned, after) - loads, loads + at_pivots};
+  return {given(before, turned) + given(actuated, after) - at_clamps,
+          given(before, actuated) + given(turned, after) - loads, loads + at_clamps};
 }
 
 }  // namespace der

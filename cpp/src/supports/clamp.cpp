@@ -15,6 +15,7 @@
 #include "model/corner_twist.hpp"
 #include "model/curvature_jump.hpp"
 #include "model/drawn_edge.hpp"
+#include "model/pivot_offset.hpp"
 #include "supports/leg_clamp.hpp"
 
 namespace der {
@@ -105,11 +106,6 @@ EffectiveEdge effective_edge(const RodLayout& rod, Index edge, const Model& mode
   const Index own = rod.position(edge);  // behind the last edge of a ring its first one follows
   return {rod.edge_dofs(own, model), pivot_at(rod, own, own, model),
           pivot_at(rod, own + 1, own, model)};
-}
-
-Vec2 offset_of(const Pivot& pivot, const Model& model, const State& state) {
-  if (pivot.rotation < 0) return pivot.drawn_offset;
-  return pivot.offset(control_value(model, state, pivot.rotation));
 }
 
 Vec2 effective_end(const EffectiveEdge& effective, bool last, const Model& model,

@@ -25,7 +25,7 @@ double moment_work(const Model& model, const Configuration& here, const Vector& 
 struct ControlWork {
   double supports = 0.0;   ///< by clamps that turn
   double actuation = 0.0;  ///< by changes of the rest shape
-  /// By moments, where actuations turn their place against its edges, or clamps their edge.
+  /// By moments, where actuations turn their place against its edges, or clamps turn it.
   double loads = 0.0;
 };
 /// The works of controls that change from those of `before` to those of `after`, which are alike in

@@ -66,8 +66,6 @@ void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod,
 EffectiveEdge effective_edge(const RodLayout& rod, Index edge, const Model& model);
 /// The vector [m] in a state, with the clamps as they are turned there.
 Vec2 effective_vector(const EffectiveEdge& effective, const Model& model, const State& state);
-/// From a node to the pivot [m] in a state; 0 without a clamp.
-Vec2 offset_of(const Pivot& pivot, const Model& model, const State& state);
 /// The point [m] about which an effective edge turns at its first or last end: a clamp's pivot, or
 /// the node.
 Vec2 effective_end(const EffectiveEdge& effective, bool last, const Model& model,

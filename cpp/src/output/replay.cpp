@@ -11,6 +11,7 @@
 #include "der/output/joint_strain.hpp"
 #include "der/scenario/scenario.hpp"
 #include "output/rod_field.hpp"
+#include "output/turns_in_balance.hpp"
 
 namespace der {
 namespace {
@@ -68,6 +69,7 @@ void Replay::go_to(std::size_t frame, const SavedFrames& frames) {
   state_.velocities.head(nodes) = frames.velocities.row(row);
   state_.positions.tail(frames.theta.cols()) = frames.theta.row(row);
   follow(model_, state_);
+  if (!scenario_.scene().is_dynamic()) find_turns_in_balance(model_, state_);
   // Frames depend on the way of the rod, which is not saved, so that they are.
   state_.followed.tail(frames.section_frames.cols()) = frames.section_frames.row(row);
 }

@@ -46,7 +46,8 @@ struct SavedFrames {
 
 /// Goes through the frames of a run that is over, to read off them what was not saved. Supports
 /// stand as the scene has them, not as `Simulation::prescribe` may have moved them. Whole turns of
-/// planar edges are not saved: they are followed from frame to frame, the shorter way.
+/// planar edges are not saved: in a motion they are followed from frame to frame, the shorter way;
+/// in an equilibrium they are those with which springs against turning are in balance.
 class Replay {
  public:
   /// `instants` tells what each frame is of: a time [s], or, `on_path`, the factor of a point on

@@ -1,0 +1,57 @@
+"""Whole turns of springs against turning, which frames of equilibria do not tell."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import der
+import numpy as np
+import pytest
+
+STIFFNESS = 0.01  # [N m/rad]
+
+
+def wound(moment: float, *springs: Any, **more: Any) -> der.Scenario:
+    """A planar rod, held at its start, that a moment at its end winds up."""
+    rod = {
+        "name": "rod",
+        "nodes": 41,
+        "from": [0, 0],
+        "to": [1, 0],
+        "cross_section": {"stiffness": {"EA": 1000.0, "EI": 0.05, "mass_per_length": 0.1}},
+    }
+    holds = {"rod": "rod", "at": "start", "fix": ["x", "y"]}
+    supports = [{**holds, "spring": {"rotational_stiffness": STIFFNESS}}, *springs]
+    load = {"moment": {"rod": "rod", "at": "end", "moment": moment}}
+    scene = {"rods": [rod], "supports": supports, "loads": [load], "analysis": "static", **more}
+    return der.Scenario.from_dict(scene)
+
+
+@pytest.mark.parametrize("moment", [0.08, -0.15, 0.02])
+def test_reactions_and_moments_of_wound_springs(moment, tmp_path):
+    """The spring has wound by 8, -15 and 2 rad; it bears the moment all the same."""
+    result = der.run(wound(moment))
+    result.save(tmp_path / "run")
+    for run in (result, der.open_run(tmp_path / "run")):
+        assert run.reactions()[0].moment[-1] == pytest.approx(-moment, rel=1e-6)
+        assert run.along("rod", "moment")[1][-1] == pytest.approx(moment, rel=1e-6)
+
+
+def test_two_wound_springs_side_by_side():
+    """Each bears its part of the moment: the second one turns with the rod between them."""
+    beside = {"rod": "rod", "at": 0.1, "spring": {"rotational_stiffness": 2 * STIFFNESS}}
+    probes = {f"m{i}": {"support": i, "quantity": "reaction_moment"} for i in (0, 1)}
+    result = der.run(wound(0.5, beside, output={"probes": probes}))
+    found = [reaction.moment[-1] for reaction in result.reactions()]
+    assert found == pytest.approx([result.probes[f"m{i}"][-1] for i in (0, 1)], rel=1e-6)
+    assert sum(found) == pytest.approx(-0.5, rel=1e-6)
+    assert abs(found[0]) / STIFFNESS > 4 * np.pi
+
+
+def test_a_path_that_winds_a_spring():
+    """Every point of the path, from no moment on to three turns."""
+    path = {"continuation": {"vary": "loads", "from": 0.0, "to": 1.0}}
+    result = der.run(wound(0.2, analysis=path))
+    factors = result.path.factor
+    moments = result.reactions()[0].moment
+    assert moments == pytest.approx(-0.2 * np.asarray(factors), abs=1e-6)

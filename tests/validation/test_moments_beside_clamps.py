@@ -8,13 +8,15 @@ those of each mesh.
 import der
 import numpy as np
 import pytest
+from references.kirchhoff_rod import UPRIGHT, Rod, rotation
+from references.section_loads import Wrench, held_at_start
 from scenes import straight
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 SIZES = [80, 160, 320]
 EDGES = [0.2, 0.7, 1.3]
-EA = 1e5  # at a clamp the moment of a rod that stretches noticeably is of order 1
+EA = 30.0
 FORCE = (-1.0, 2.0)
 MOMENT = 1.5
 
@@ -133,3 +135,37 @@ def test_pure_bending(fitted_order, model, edges):
         assert column[-1] < 1e-4
         if column.max() > 1e-6:
             assert fitted_order([1 / n for n in SIZES], column) > 1.9, column
+
+
+@pytest.mark.parametrize("edges", [0.2, 0.45, 0.7])
+def test_a_spring_beside_a_clamp_that_turns(fitted_order, edges):
+    """It winds up by what the tangent at its place turns, of which the clamp turns the most.
+
+    The reference is `references/section_loads.py`, to which the spring's moment is given; its
+    stiffness follows from the angle there.
+    """
+    rod, turn, exerts = Rod(1.0, (1.0, 1.0), 0.7, EA), 0.5, -1.2
+    errors = []
+    for n in SIZES:
+        place = edges / n
+        wrenches = [Wrench(place, moment=(0.0, exerts, 0.0)), Wrench(1.0, (0.5, 0.0, 1.0))]
+        end, _, frames = held_at_start(rod, wrenches, rotation((0, 0, 1), turn) @ UPRIGHT)
+        force = frames[1] @ np.array([0.5, 0.0, 1.0])
+        angle = np.arctan2(frames[0][1, 2], frames[0][0, 2])
+        scene = straight(n, "free-free", EA)
+        scene["supports"] = [
+            {"rod": "rod", "at": "start", "clamp": True, "prescribe": {"angle": turn}},
+            {"rod": "rod", "at": place, "spring": {"rotational_stiffness": -exerts / angle}},
+        ]
+        load = {"rod": "rod", "at": "end", "force": force[:2].tolist()}
+        scene["loads"] = [{"point_force": load}]
+        probes = {axis: {"rod": "rod", "at": "end", "quantity": axis} for axis in "xy"}
+        probes["moment"] = {"rod": "rod", "at": "start", "quantity": "moment"}
+        result = der.run({**scene, "output": {"probes": probes}})
+        bears = np.cross(end, force)[2] + exerts
+        clamp, spring = (reaction.moment[-1] for reaction in result.reactions())
+        found = [*(values[-1] for values in result.probes.values()), clamp, spring]
+        errors.append(np.array(found) - [*end[:2], bears, -bears, exerts])
+    for column in np.transpose(errors):
+        assert abs(column[-1]) < 1e-3
+        assert fitted_order([1 / n for n in SIZES], column) > 1.9

@@ -152,6 +152,29 @@ def test_forces_between_nodes(model, how, place, meshes, fitted_order):
             assert fitted_order(sizes, column) > 1.9
 
 
+@pytest.mark.parametrize("apart", [1.0, 1.3, 2.2])
+@pytest.mark.parametrize("how", ["fixed", "spring"])
+def test_forces_in_neighbouring_edges(how, apart, fitted_order):
+    """Each sees the jump of the strain that the other makes, so many edges from it."""
+    rod = Rod(1.0, (1.0, 1.0), 0.7, STRETCHING)
+    meshes = (40, 80, 160, 320)
+    errors = []
+    for edges in meshes:
+        places = (0.5 + 0.4 / edges, 0.5 + (0.4 + apart) / edges, 1.0)
+        shares = [INNER, -0.6 * INNER + np.array([0.5, 0.0, 0.0]), TIP]
+        wrenches = [Wrench(s, tuple(force)) for s, force in zip(places, shares, strict=True)]
+        end, positions, frames = held_at_start(rod, wrenches)
+        forces = [frame @ force for frame, force in zip(frames, shares, strict=True)]
+        makers = scene_of("planar", (how, how, "fixed"), places, forces, positions)
+        values, result = measured(makers(edges), ["end"], ("x", "y"))
+        bears = sum(np.cross(r, f)[2] for r, f in zip(positions, forces, strict=True))
+        found = [*values[0], result.reactions()[0].moment[-1]]
+        errors.append(np.array(found) - [*end[:2], -bears])
+    sizes = [1.0 / edges for edges in meshes]
+    for column in np.transpose(errors):
+        assert fitted_order(sizes, column) > 1.9
+
+
 CURVATURE = 2.0  # [1/m], in the plane
 
 

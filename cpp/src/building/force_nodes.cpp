@@ -1,7 +1,11 @@
 #include "building/force_nodes.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "der/core/index.hpp"
 #include "der/core/nearest_node.hpp"
@@ -11,16 +15,37 @@
 namespace der {
 namespace {
 
-void enter(const std::string& name, const scenario::Location& at, Model& model) {
-  RodLayout& rod = model.rod(name);
-  for (const double s : arc_lengths_of(at, rod)) {
-    const std::size_t node = to_size(nearest_node(rod.arc_length, s));
-    if (std::abs(rod.arc_length[node] - s) <= rod.same_place()) rod.bears_force[node] = true;
+bool bears_force(const scenario::Support& support) {
+  return support.holds() || (support.spring && !support.spring->stiffness.empty());
+}
+
+/// Calls use(rod, s) with the arc length [m] of each single force of the scene. A load on every
+/// node is distributed: its jumps are as small as those of gravity.
+template <class Use>
+void for_each_force(const scenario::Scene& scene, Model& model, const Use& use) {
+  const auto enter = [&](const std::string& name, const scenario::Location& at) {
+    RodLayout& rod = model.rod(name);
+    for (const double s : arc_lengths_of(at, rod)) use(rod, s);
+  };
+  for (const scenario::Support& support : scene.supports) {
+    if (bears_force(support)) enter(support.rod, support.at);
+  }
+  for (const auto& load : scene.loads) {
+    const auto* force = std::get_if<scenario::PointForce>(&load.what);
+    if (force == nullptr || force->at.kind == scenario::Location::Kind::All) continue;
+    enter(force->rod, force->at);
   }
 }
 
-bool bears_force(const scenario::Support& support) {
-  return support.holds() || (support.spring && !support.spring->stiffness.empty());
+/// Edges of forces between nodes, in ascending order.
+using Edges = std::vector<Index>;
+
+/// Between two edges with forces the node in the middle divides what belongs to them.
+void divide_between(const Edges& edges, RodLayout& rod) {
+  for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+    if (edges[i] == edges[i + 1]) continue;
+    rod.divides_places[to_size(rod.position((edges[i] + edges[i + 1] + 1) / 2))] = true;
+  }
 }
 
 }  // namespace
@@ -32,14 +57,23 @@ void find_force_nodes(const scenario::Scene& scene, Model& model) {
       rod.bears_force[i] = rod.sphere_radius[i] > 0.0;
     }
   }
-  for (const scenario::Support& support : scene.supports) {
-    if (bears_force(support)) enter(support.rod, support.at, model);
-  }
-  for (const auto& load : scene.loads) {
-    const auto* force = std::get_if<scenario::PointForce>(&load.what);
-    // One on every node is distributed: its jumps are as small as those of gravity.
-    if (force == nullptr || force->at.kind == scenario::Location::Kind::All) continue;
-    enter(force->rod, force->at, model);
+  std::map<const RodLayout*, Edges> between_nodes;
+  for_each_force(scene, model, [&](RodLayout& rod, double s) {
+    const std::size_t node = to_size(nearest_node(rod.arc_length, s));
+    const bool is_node = std::abs(rod.arc_length[node] - s) <= rod.same_place();
+    if (is_node) {
+      rod.bears_force[node] = true;
+    } else {
+      const auto behind = std::upper_bound(rod.arc_length.begin(), rod.arc_length.end(), s);
+      between_nodes[&rod].push_back(static_cast<Index>(behind - rod.arc_length.begin()) - 1);
+    }
+  });
+  for (RodLayout& rod : model.rods) {
+    rod.divides_places = rod.bears_force;
+    Edges& edges = between_nodes[&rod];
+    std::sort(edges.begin(), edges.end());
+    if (rod.closed && !edges.empty()) edges.push_back(edges.front() + rod.num_edges());
+    divide_between(edges, rod);
   }
 }
 

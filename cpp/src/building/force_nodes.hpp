@@ -5,8 +5,8 @@
 
 namespace der {
 
-/// Sets RodLayout::bears_force, which places of supports and loads between nodes need. Spheres are
-/// known before.
+/// Sets RodLayout::bears_force and divides_places, which places of supports and loads between nodes
+/// need. Spheres are known before.
 void find_force_nodes(const scenario::Scene& scene, Model& model);
 
 }  // namespace der

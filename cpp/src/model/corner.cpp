@@ -9,8 +9,9 @@
 namespace der {
 
 bool is_corner(const RodLayout& rod, Index place, const Model& model) {
-  constexpr double kLeast = 0.1;        // [rad]
-  constexpr double kSharp = kPi / 3.0;  // [rad]
+  constexpr double kLeast = 0.1;  // [rad]
+  // [rad]; a little more, so that rounding does not tell the nodes of a regular hexagon apart.
+  constexpr double kSharp = kPi / 3.0 + 1e-9;
   constexpr double kAlone = 3.0;
   if (!bends_as_drawn(rod, model)) return false;
   const DrawnTurn here = drawn_turn(rod, place, model);

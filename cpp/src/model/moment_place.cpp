@@ -67,6 +67,16 @@ double spring_turn(const MomentPlace& place, const RodLayout& rod, const Model& 
                                    : turn_of<2>(place, rod, model, coordinates, offset, before);
 }
 
+/// What a clamp beside the place turns of the tangent there [rad]; `control(i)` is the value of a
+/// control.
+template <class Control>
+double turn_by_clamp(const MomentPlace& place, const RodLayout& rod, const Control& control) {
+  const auto beside = place_beside_clamp(rod, place.arc_length);
+  if (!beside) return 0.0;
+  const Index rotation = rod.clamps[to_size(beside->clamp)].rotation;
+  return rotation < 0 ? 0.0 : (1.0 - beside->share()) * control(rotation);
+}
+
 double moment_of(const MomentPlace& place, const RodLayout& rod, double applied, double turn) {
   return place.series_share(rod.EI) * (applied - place.stiffness * turn);
 }
@@ -109,7 +119,9 @@ double carried_moment(const MomentPlace& place, const RodLayout& rod, const Mode
                       const State& state, double applied) {
   const double before = place.followed >= 0 ? state.followed[place.followed] : 0.0;
   const auto offset = [&](const Pivot& pivot) { return offset_of(pivot, model, state); };
+  const auto control = [&](Index number) { return control_value(model, state, number); };
   const double turn = spring_turn(place, rod, model, state.positions, offset, before) +
+                      turn_by_clamp(place, rod, control) +
                       value_of(place.actuated, model, state)[0];
   return moment_of(place, rod, applied, turn);
 }
@@ -119,12 +131,13 @@ Energies cell_energies(const RodLayout& rod, const Model& model, const Configura
   Energies energies;
   if (rod.EI == 0.0) return energies;
   const auto offset = [&](const Pivot& pivot) { return pivot.offset(here.controls); };
+  const auto control = [&](Index number) { return here.controls[number]; };
   for (const MomentPlace& place : rod.moment_places) {
     const double before = place.followed >= 0
                               ? here.controls[model.followed_edges[to_size(place.followed)].turn]
                               : 0.0;
     const double turn = spring_turn(place, rod, model, here.coordinates, offset, before) +
-                        place.actuated.at(here.controls)[0];
+                        turn_by_clamp(place, rod, control) + place.actuated.at(here.controls)[0];
     const double moment = moment_of(place, rod, applied_moment(place, here.controls), turn);
     const double cell_turn = place.cell_length * moment / rod.EI;
     energies[EnergyTerm::Bend] += 0.5 * cell_turn * moment;

@@ -1,6 +1,6 @@
 #include "der/model/node_weights.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -31,11 +31,11 @@ Numbers lagrange_weights(const Numbers& nodes, std::size_t first, std::size_t la
   return weights;
 }
 
-/// Weights of the fourth divided difference of the five nodes from `first` on, times the fourth
-/// power of their mean distance: of cubics it is 0.
-Numbers fourth_difference(const Numbers& nodes, std::size_t first) {
-  const std::size_t last = first + kCubic;
-  const double distance = (nodes[last] - nodes[first]) / kCubic;
+/// Weights of the divided difference of an order through the nodes from `first` on, times the same
+/// power of their mean distance: of polynomials of a lower degree it is 0.
+Numbers difference(const Numbers& nodes, std::size_t first, std::size_t order) {
+  const std::size_t last = first + order;
+  const double distance = (nodes[last] - nodes[first]) / static_cast<double>(order);
   Numbers weights(nodes.size(), 0.0);
   for (std::size_t i = first; i <= last; ++i) {
     weights[i] = 1.0;
@@ -57,39 +57,49 @@ double kink(const Numbers& a, const Numbers& b, const Numbers& nodes) {
   return sum;
 }
 
-/// Adds fourth differences to the weights of a cubic so that they have no kink: the kink of
-/// w + D b is k + 2 g . b - b . A b, with A positive definite, as |s| is conditionally negative
-/// definite. It is largest at b = A^-1 g, and on the line from 0 through that the nearer of the two
-/// places with no kink is taken. Where there is none, on very uneven edges, the weights stay.
-void take_kink_out(const Numbers& nodes, Numbers& weights) {
+/// Adds differences of an order to weights so that they have no kink: the kink of w + D b is
+/// k + 2 g . b - b . A b, with A positive definite, as |s| is conditionally negative definite. It
+/// is largest at b = A^-1 g, and on the line from 0 through that the nearer of the two places with
+/// no kink is taken. False, with the weights as they were, if there is none.
+bool take_kink_out(const Numbers& nodes, std::size_t order, Numbers& weights) {
+  constexpr int kMostDifferences = 3;
+  using Vec = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostDifferences, 1>;
+  using Mat =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostDifferences, kMostDifferences>;
   std::vector<Numbers> differences;
-  for (std::size_t i = 0; i + kCubic < nodes.size(); ++i) {
-    differences.push_back(fourth_difference(nodes, i));
+  for (std::size_t i = 0; i + order < nodes.size(); ++i) {
+    differences.push_back(difference(nodes, i, order));
   }
   const auto count = static_cast<Index>(differences.size());
-  Eigen::Vector2d slope = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d curving = Eigen::Matrix2d::Identity();
+  Vec slope(count);
+  Mat curving(count, count);
   for (Index i = 0; i < count; ++i) {
     slope[i] = kink(weights, differences[to_size(i)], nodes);
     for (Index j = 0; j < count; ++j) {
       curving(i, j) = -kink(differences[to_size(i)], differences[to_size(j)], nodes);
     }
   }
-  const Eigen::Vector2d top = curving.inverse() * slope;
+  const Vec top = curving.ldlt().solve(slope);
   const double rise = slope.dot(top);
   const double kink_at_top = kink(weights, weights, nodes) + rise;
-  if (kink_at_top < 0.0) return;
+  if (kink_at_top < 0.0) return false;
   // By the square roots, so that it holds without a slope, too, in whatever direction.
   const double size = std::sqrt(rise);
-  const Eigen::Vector2d direction = size > 0.0
-                                        ? Eigen::Vector2d(top / size)
-                                        : Eigen::Vector2d(1.0 / std::sqrt(curving(0, 0)), 0.0);
-  const Eigen::Vector2d amounts = (size - std::sqrt(kink_at_top)) * direction;
+  const Vec direction =
+      size > 0.0 ? Vec(top / size) : Vec(Vec::Unit(count, 0) / std::sqrt(curving(0, 0)));
+  const Vec amounts = (size - std::sqrt(kink_at_top)) * direction;
   for (Index i = 0; i < count; ++i) {
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       weights[k] += amounts[i] * differences[to_size(i)][k];
     }
   }
+  return true;
+}
+
+/// Weights of a cubic without its kink. Where an edge at an end is much longer than its neighbours
+/// they give up the third moment for that.
+void take_kink_out(const Numbers& nodes, Numbers& weights) {
+  if (!take_kink_out(nodes, kCubic, weights)) take_kink_out(nodes, kCubic - 1, weights);
 }
 
 /// The places from the first to the last one that a point between `right - 1` and `right` may have:
@@ -117,7 +127,7 @@ std::vector<Weighted> node_weights(const RodLayout& rod, double s, const Model& 
   const auto right = static_cast<Index>(std::upper_bound(arc.begin(), arc.end(), s) - arc.begin());
   const auto at_corner = [&](Index place) { return is_corner(rod, place, model); };
   const auto at_force = [&](Index place) {
-    return rod.bears_force[to_size(rod.position(place))] || at_corner(place);
+    return rod.divides_places[to_size(rod.position(place))] || at_corner(place);
   };
   auto [least, most] = range_about(rod, right, at_force);
   if (most - least + 1 < kCubic) std::tie(least, most) = range_about(rod, right, at_corner);

@@ -329,7 +329,7 @@ void Reactions::Reader::add_planar_moments(std::size_t rod_number, const Model& 
     for (const Index moment : place.moments) applied += here_.controls[moment];
     const double carried = carried_moment(place, rod, model, state, applied);
     const Clamp& clamp = rod.clamps[to_size(beside->clamp)];
-    moments_[clamp_number(rod_number, clamp, model)].z() -= (1.0 - place.weights[0]) * carried;
+    moments_[clamp_number(rod_number, clamp, model)].z() -= (1.0 - beside->share()) * carried;
   }
 }
 

@@ -133,7 +133,7 @@ double planar_work_on_clamps(const RodLayout& rod, const Configuration& before,
     const double turn = after.controls[rotation] - before.controls[rotation];
     for (const Index moment : place.moments) {
       const double mean = 0.5 * (before.controls[moment] + after.controls[moment]);
-      work += (1.0 - place.weights[0]) * mean * turn;
+      work += place.series_share(rod.EI) * (1.0 - beside->share()) * mean * turn;
     }
   }
   return work;

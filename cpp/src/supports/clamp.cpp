@@ -84,15 +84,6 @@ double largest_turn_of_clamps(const Model& model, const Vector& controls) {
   return largest;
 }
 
-bool is_beside_turning_clamp(const RodLayout& rod, double s) {
-  const auto beside = place_beside_clamp(rod, s);
-  bool turns = false;
-  if (beside) {
-    for_each_turning_control(rod.clamps[to_size(beside->clamp)], [&](Index) { turns = true; });
-  }
-  return turns;
-}
-
 void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod, Model& model) {
   if (rod.EI == 0.0 || rod.clamp_at(place) != nullptr) return;
   const Index rotation = support.rotation ? model.tables.add(*support.rotation) : -1;

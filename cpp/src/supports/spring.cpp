@@ -79,13 +79,6 @@ double rest_turn(const RodLayout& rod, const MomentPlace& place, const Model& mo
   return drawn + natural_turn_of_edges(rod, place, model);
 }
 
-/// The spring of a place beside a clamp that turns acts on the edge alone: the clamp's turn is not
-/// among its coordinates.
-void act_on_edge(MomentPlace& place) {
-  place.weights = {1.0};
-  place.cell_length = 0.0;
-}
-
 /// Returns the number of the element in its list.
 template <int Edges>
 Index add_element_of(const RodLayout& rod, MomentPlace& place, Model& model) {
@@ -108,6 +101,10 @@ Index add_element_of(const RodLayout& rod, MomentPlace& place, Model& model) {
   std::copy(place.weights.begin(), place.weights.end(), constants.weights.begin());
   constants.total = std::accumulate(place.weights.begin(), place.weights.end(), 0.0);
   constants.actuated = place.spring_shift;
+  if (const auto beside = place_beside_clamp(rod, place.arc_length)) {
+    constants.clamp_share = 1.0 - beside->share();
+    constants.clamp_turn = rod.clamps[to_size(beside->clamp)].rotation;
+  }
   return add_element<Kernel>(dofs, constants, first.first, last.last, *model.elements);
 }
 
@@ -176,7 +173,6 @@ void add_rotational_springs(RodLayout& rod, Model& model) {
     place = moment_place(place.arc_length, rod);
     place.stiffness = stiffness;
     place.spring_shift = rod.rest_entries.spring(number++);
-    if (is_beside_turning_clamp(rod, place.arc_length)) act_on_edge(place);
     place.spring = place.weights.size() == 1 ? add_element_of<1>(rod, place, model)
                                              : add_element_of<2>(rod, place, model);
   }

@@ -125,7 +125,7 @@ struct RestGradient<RotationalSpring<Edges>> {
   static Eigen::Matrix<double, kSize, 1> of(const typename Kernel::Constants& c,
                                             const Configuration& here,
                                             const Eigen::Matrix<double, Kernel::kDofs, 1>& x) {
-    const double turn = Kernel::turn(c, here.controls[c.turn], x) + c.actuated.value(here.controls);
+    const double turn = Kernel::turn(c, here.controls[c.turn], x) + c.turned_by(here.controls);
     return Eigen::Matrix<double, kSize, 1>(c.stiffness * turn);
   }
 };

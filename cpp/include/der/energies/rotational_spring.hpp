@@ -28,12 +28,19 @@ struct RotationalSpring {
     double rest = 0.0;                    ///< [rad]
     std::array<double, Edges> weights{};  ///< [-]
     double total = 1.0;                   ///< of the weights
-    Index turn = -1;     ///< control that holds how far the first edge has turned [rad]
-    RestShift actuated;  ///< how far actuations turn the tangent beyond the sum [rad]
+    Index turn = -1;           ///< control that holds how far the first edge has turned [rad]
+    RestShift actuated;        ///< how far actuations turn the tangent beyond the sum [rad]
+    double clamp_share = 0.0;  ///< part that the tangent turns of what a clamp beside it turns [-]
+    Index clamp_turn = -1;     ///< control: how far that clamp has turned [rad]; -1: it does not
+
+    /// What controls turn the tangent beyond the sum [rad].
+    [[nodiscard]] double turned_by(const Vector& controls) const {
+      return actuated.value(controls) + (clamp_turn < 0 ? 0.0 : clamp_share * controls[clamp_turn]);
+    }
   };
 
-  /// sum w_i theta_i - rest [rad] without actuations, the first edge being within half a turn of
-  /// `before` [rad].
+  /// sum w_i theta_i - rest [rad] without what controls add, the first edge being within half a
+  /// turn of `before` [rad].
   static double turn(const Constants& c, double before, const Eigen::Matrix<double, kDofs, 1>& x) {
     const Vec2 then{std::cos(c.direction + before), std::sin(c.direction + before)};
     const Vec2 first = x.template segment<2>(2) - x.template segment<2>(0);
@@ -49,7 +56,7 @@ struct RotationalSpring {
   static void evaluate(const Constants& c, const Configuration& here,
                        const Eigen::Matrix<double, kDofs, 1>& x, LocalTerm<kDofs>& out) {
     using Coordinates = Eigen::Matrix<double, kDofs, 1>;
-    const double turned = turn(c, here.controls[c.turn], x) + c.actuated.value(here.controls);
+    const double turned = turn(c, here.controls[c.turn], x) + c.turned_by(here.controls);
     const double moment = c.stiffness * turned;
     out.energy = 0.5 * moment * turned;
     if constexpr (D == Derivatives::Energy) return;

@@ -179,6 +179,8 @@ struct RodLayout {
   std::vector<ForcePlace> force_places;    ///< of forces at single places
   /// Whether single forces act on each node, of supports, loads or spheres: strain may jump there.
   std::vector<bool> bears_force;
+  /// Whether places on both sides of each node have no nodes in common but this (node_weights).
+  std::vector<bool> divides_places;
   std::vector<SpatialMomentPlace> spatial_moments;
   std::vector<SectionSpringPlace> section_springs;  ///< no two at the same place
   std::vector<DistributedPlace> distributed_places;

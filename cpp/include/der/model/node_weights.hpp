@@ -30,9 +30,11 @@ inline constexpr int kMostPointNodes = 6;
 /// strain, and the force would stand there: an error of order 1 of the whole solution.
 ///
 /// The nodes are those of one leg (model/corner.hpp), and of the stretch between two nodes on which
-/// other forces act, where that has at least four nodes: strain jumps there, too. With four nodes
-/// the weights are those of the cubic through them, as on edges that are too uneven for more, and
-/// with fewer nodes those of the polynomial.
+/// other forces act, where that has at least four nodes: strain jumps there, too. Forces in two
+/// edges have no nodes in common but one: so neither sees the jump of the other.
+/// With four nodes the weights are those of the cubic through them, with fewer nodes those of the
+/// polynomial. Where an edge at an end is much longer than its neighbours the third moment is given
+/// up.
 std::vector<Weighted> node_weights(const RodLayout& rod, double s, const Model& model);
 
 }  // namespace der

@@ -56,9 +56,6 @@ inline bool any_clamp_turns(const Model& model) {
 /// The largest absolute value [rad] of the controls that turn the clamps of a model.
 double largest_turn_of_clamps(const Model& model, const Vector& controls);
 
-/// Whether a place is beside a clamp that turns (model/location.hpp).
-bool is_beside_turning_clamp(const RodLayout& rod, double s);
-
 /// Enters a clamp into the layout of `rod`, which is one of the model's. The rod's elements are
 /// made after it. Without effect on a rod that does not bend.
 void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod, Model& model);

@@ -217,8 +217,8 @@ void discrete_gradient(KernelTag<RotationalSpring<Edges>> /*kernel*/,
     act(0, c.weights[1] * second.by_a);
     act(1, c.weights[1] * second.by_b);
   }
-  const double before = RotationalSpring<Edges>::turn(c, here.controls[c.turn], start) +
-                        c.turned_by(here.controls);
+  const double before =
+      RotationalSpring<Edges>::turn(c, here.controls[c.turn], start) + c.turned_by(here.controls);
   double moment = c.stiffness * (before + 0.5 * known);
   // As for bends, but what is lost of one of two angles is a share of a turn.
   constexpr double kLostTurn = 1e-6;

@@ -82,7 +82,7 @@ QUANTITIES = {
 
 @dataclass
 class Exact:
-    """Of a rod under a force at a place and another at its end."""
+    """The solution for a rod under a force at a place and another at its end."""
 
     forces: list[Array]  # [N], of a fixed direction
     positions: Array  # of the place and the end [m]

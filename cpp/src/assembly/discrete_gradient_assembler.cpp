@@ -61,7 +61,7 @@ double DiscreteGradientAssembler::work_at_pivots(const Configuration& middle) {
   if (!tables_change_) return work;
   for_each_list(*model_.elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
-    // What moments do at pivots is work of loads (control_work).
+    // The work of moments at pivots is among that of loads (control_work).
     if constexpr (IsFromPivot<Kernel>::value && Kernel::kTerm != EnergyTerm::Load) {
       Local<Kernel::kDofs> moving;
       for (std::size_t e = 0; e < list.size(); ++e) {

@@ -67,7 +67,7 @@ double spring_turn(const MomentPlace& place, const RodLayout& rod, const Model& 
                                    : turn_of<2>(place, rod, model, coordinates, offset, before);
 }
 
-/// What a clamp beside the place turns of the tangent there [rad]; `control(i)` is the value of a
+/// The turn of the tangent at the place by a clamp beside it [rad]; `control(i)` is the value of a
 /// control.
 template <class Control>
 double turn_by_clamp(const MomentPlace& place, const RodLayout& rod, const Control& control) {

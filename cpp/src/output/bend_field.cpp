@@ -211,7 +211,7 @@ class BendField : public EdgewiseField<double> {
     return recovery_.displaced(edge, s, model, state);
   }
 
-  /// What stress bends the rod, and where along the edge.
+  /// The bending of the rod by stress, and its place along the edge.
   struct Bent {
     double value = 0.0;  // moment [N m] or curvature beyond the natural one [1/m]
     double share = 0.0;  // of the edge

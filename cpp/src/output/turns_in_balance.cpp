@@ -23,7 +23,7 @@ Vector on_free(const Model& model, const Vector& all) {
   return free;
 }
 
-/// What is missing in the balance of forces on free nodes [N].
+/// The forces that the balance of the free nodes lacks [N].
 Vector out_of_balance(const Model& model, const State& state, const Configuration& here) {
   Vector missing;
   external_force(model, here, state.extra_force, missing);
@@ -40,7 +40,7 @@ Vector out_of_balance(const Model& model, const State& state, const Configuratio
   return on_free(model, missing);
 }
 
-/// By how much one more turn of a followed edge changes them [N].
+/// Adds the change of these forces by one more turn of a followed edge [N].
 template <class Kernel>
 void add_change_by_turn(const Model& model, Index control, const Configuration& here,
                         Vector& change) {

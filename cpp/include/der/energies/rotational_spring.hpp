@@ -30,10 +30,10 @@ struct RotationalSpring {
     double total = 1.0;                   ///< of the weights
     Index turn = -1;           ///< control that holds how far the first edge has turned [rad]
     RestShift actuated;        ///< how far actuations turn the tangent beyond the sum [rad]
-    double clamp_share = 0.0;  ///< part that the tangent turns of what a clamp beside it turns [-]
+    double clamp_share = 0.0;  ///< share of the turn of a clamp beside it that the tangent has [-]
     Index clamp_turn = -1;     ///< control: how far that clamp has turned [rad]; -1: it does not
 
-    /// What controls turn the tangent beyond the sum [rad].
+    /// The turn of the tangent that controls add to the sum [rad].
     [[nodiscard]] double turned_by(const Vector& controls) const {
       return actuated.value(controls) + (clamp_turn < 0 ? 0.0 : clamp_share * controls[clamp_turn]);
     }

@@ -20,7 +20,7 @@ inline constexpr int kMostPointNodes = 6;
 /// `s` is at one. The same weights spread a point force, so that force and displacement are
 /// work-conjugate.
 ///
-/// Of five or six nodes they reproduce cubics, so that a load keeps its first three moments. A
+/// Weights of five or six nodes reproduce cubics, so that a load keeps its first three moments. A
 /// linear split between two nodes would move the second moment by f (1 - f) l^2 (f the place in the
 /// edge), an error of order l^2 that jumps from mesh to mesh. And the point gives way to a force
 /// along the rod as the rod does. At the force the strain jumps: the displacements that a unit

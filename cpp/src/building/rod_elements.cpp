@@ -21,10 +21,6 @@ void make_room_for_elements(Index count, Model& model) {
   make_room(list.constants, to_size(count));
 }
 
-Vec2 drawn(const EffectiveEdge& effective, const Model& model) {
-  return effective.vector(model.initial_positions, 0.0, 0.0);
-}
-
 /// One for each edge of the rod.
 std::vector<EffectiveEdge> effective_edges(const RodLayout& rod, const Model& model) {
   std::vector<EffectiveEdge> edges;
@@ -40,8 +36,8 @@ void add_stretch(const RodLayout& rod, const std::vector<EffectiveEdge>& edges, 
   make_room_for_elements<Stretch<2>>(rod.num_edges(), model);
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     const EffectiveEdge& effective = edges[to_size(edge)];
-    const double length =
-        effective.has_pivot() ? drawn(effective, model).norm() : rod.edge_length[to_size(edge)];
+    const double length = effective.has_pivot() ? effective.drawn(model.initial_positions).norm()
+                                                : rod.edge_length[to_size(edge)];
     const double EA = rod.EA * (length / rod.edge_length[to_size(edge)]);
     add_element<Stretch<2>>(effective.dofs, {EA, length, rod.rest_entries.edge(edge)},
                             effective.first, effective.last, *model.elements);
@@ -50,8 +46,10 @@ void add_stretch(const RodLayout& rod, const std::vector<EffectiveEdge>& edges, 
 
 double rest_angle_between(const RodLayout& rod, Index place, const EffectiveEdge& before,
                           const EffectiveEdge& after, const Model& model) {
-  if (rod.natural_curvature.empty())
-    return angle_between(drawn(before, model), drawn(after, model));
+  if (rod.natural_curvature.empty()) {
+    return angle_between(before.drawn(model.initial_positions),
+                         after.drawn(model.initial_positions));
+  }
   double angle = rod.natural_curvature[to_size(rod.position(place))] * bend_length(rod, place);
   if (rod.closed) return angle;
   // A free end lies on the curve, the nodes next to it l^2 kappa/12 beside it (supports/clamp.hpp).

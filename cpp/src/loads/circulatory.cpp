@@ -91,7 +91,7 @@ PlanarFollowerForce planar_follower(double s, const SectionPlace& place, const R
   for (std::size_t i = 0; i < place.direction.size(); ++i) {
     const Index number = rod.position(place.first_edge + static_cast<Index>(i));
     const EffectiveEdge edge = effective_edge(rod, number, model);
-    const Vec2 chord = edge.vector(model.initial_positions, 0.0, 0.0).normalized();
+    const Vec2 chord = edge.drawn(model.initial_positions).normalized();
     const Vec2 drawn = Eigen::Rotation2Dd(drawn_lean(number, rod, model) - kink) * chord;
     follower.edges.push_back({edge, weights[i], drawn});
     add_vector(edge.dofs[0], edge.dofs[2], model, load);
@@ -273,7 +273,7 @@ void follow_as_moments(const MomentPlace& place, const RodLayout& rod, const Mod
   const Eigen::Rotation2Dd to_natural(natural_turn_of_edges(rod, place, model));
   for (std::size_t i = 0; i < place.weights.size(); ++i) {
     PlanarFollowerForce::FollowedEdge& followed = follower.edges[i];
-    const Vec2 chord = followed.edge.vector(model.initial_positions, 0.0, 0.0).normalized();
+    const Vec2 chord = followed.edge.drawn(model.initial_positions).normalized();
     followed.weight = place.weights[i];
     followed.drawn = to_natural * chord;
   }

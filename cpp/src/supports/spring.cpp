@@ -59,16 +59,12 @@ void add_point_spring_at(const scenario::Spring& spring, RodLayout& rod, double 
   add_point_spring<Dim, Nodes>(spring, rod, s, weights, model);
 }
 
-/// The drawn vector of an edge as its elements see it [m].
-Vec2 drawn(const EffectiveEdge& edge, const Model& model) {
-  return edge.vector(model.initial_positions, 0.0, 0.0);
-}
-
 /// Turn [rad] that is drawn between the two edges of a place; 0 of one edge.
 double drawn_bend(const RodLayout& rod, const MomentPlace& place, const Model& model) {
   if (place.weights.size() == 1) return 0.0;
-  return angle_between(drawn(effective_edge(rod, place.first_edge, model), model),
-                       drawn(effective_edge(rod, place.first_edge + 1, model), model));
+  const Vector& drawn = model.initial_positions;
+  return angle_between(effective_edge(rod, place.first_edge, model).drawn(drawn),
+                       effective_edge(rod, place.first_edge + 1, model).drawn(drawn));
 }
 
 /// Turn [rad] of the weighted directions, from the initial direction of the first edge, at which
@@ -91,7 +87,7 @@ Index add_element_of(const RodLayout& rod, MomentPlace& place, Model& model) {
   }
   const EffectiveEdge first = effective_edge(rod, place.first_edge, model);
   const EffectiveEdge last = effective_edge(rod, place.first_edge + Edges - 1, model);
-  const Vec2 along = drawn(first, model);
+  const Vec2 along = first.drawn(model.initial_positions);
   typename Kernel::Constants constants;
   constants.stiffness = place.stiffness * place.series_share(rod.EI);
   place.followed = follow_edge(rod, place.first_edge, model);

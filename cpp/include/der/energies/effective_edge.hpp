@@ -23,6 +23,8 @@ struct EffectiveEdge {
   [[nodiscard]] Vec2 vector(const Configuration& here) const {
     return vector(here.coordinates, first.turn(here.controls), last.turn(here.controls));
   }
+  /// The vector [m] in the initial shape, where no clamp has turned yet.
+  [[nodiscard]] Vec2 drawn(const Vector& positions) const { return vector(positions, 0.0, 0.0); }
 };
 
 }  // namespace der

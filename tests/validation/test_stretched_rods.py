@@ -8,8 +8,10 @@ section there. A spring has its anchor where it exerts that force in equilibrium
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
+import der
 import numpy as np
 import pytest
 from references.kirchhoff_rod import UPRIGHT, Rod
@@ -253,3 +255,106 @@ def test_moments_beside_a_clamp(share, fitted_order):
     sizes = [1.0 / edges for edges in meshes]
     for column in np.transpose(errors):
         assert fitted_order(sizes, column) > 1.9
+
+
+def tensions(result: der.Result, places: list[tuple[float, bool]]) -> list[float]:
+    """At places, or before them, where a field has two values, before the jump and after it."""
+    samples, values = result.along("rod", "tension")
+    found = []
+    for place, before in places:
+        here = np.flatnonzero(np.abs(samples - place) < 1e-9)
+        if here.size:
+            found.append(values[-1, here[0] if before else here[-1]])
+        else:
+            found.append(np.interp(place, samples, values[-1]))
+    return found
+
+
+def exact_tensions(
+    rod: Rod, wrenches: list[Wrench], places: list[tuple[float, bool]]
+) -> tuple[list[float], list[Array]]:
+    """Of a rod held at its start, and the forces of the wrenches in space [N]."""
+    markers = [Wrench(place) for place, _ in places]
+    _, _, frames = held_at_start(rod, [*wrenches, *markers])
+    order = np.argsort([-wrench.s for wrench in [*wrenches, *markers]], kind="stable")[::-1]
+    at = dict(zip(order.tolist(), frames, strict=True))
+    forces = [at[i] @ wrench.force for i, wrench in enumerate(wrenches)]
+    found = []
+    for i, (place, before) in enumerate(places):
+        beyond = [
+            force
+            for force, wrench in zip(forces, wrenches, strict=True)
+            if wrench.s > place + 1e-12 or (before and abs(wrench.s - place) < 1e-12)
+        ]
+        found.append(float(np.sum(beyond, axis=0) @ at[len(wrenches) + i][:, 2]))
+    return found, forces
+
+
+#: Places of forces, from the first in numbers of edges: few middles of edges lie between two of
+#: them, or between one and the clamp.
+NEAR = {
+    "in the first edge": (0.0, [0.2]),
+    "before its middle": (0.0, [0.45]),
+    "beyond its middle": (0.0, [0.55]),
+    "far in the first edge": (0.0, [0.9]),
+    "in the second edge": (0.0, [1.2]),
+    "before its middle too": (0.0, [1.45]),
+    "one edge apart": (0.5, [0.4, 1.4]),
+    "about a middle": (0.5, [0.3, 0.7]),
+    "on one side of a middle": (0.5, [0.1, 0.4]),
+    "on the other side": (0.5, [0.6, 0.9]),
+}
+
+
+@pytest.mark.parametrize(("start", "shares"), NEAR.values(), ids=NEAR.keys())
+@pytest.mark.parametrize("model", ["planar", "spatial"])
+def test_tension_between_places_close_to_one_another(model, start, shares, fitted_order):
+    """Few middles of edges tell of the tension there: its slope is that of the forces across the
+    rod, as it curves."""
+    across = ACROSS if model == "spatial" else 0.0 * ACROSS
+    given = [INNER + across, np.array([-4.0, 0.0, 0.0]) - across][: len(shares)]
+    if len(shares) == 2 and shares[1] < 1.0:
+        given[0] = given[0] * [1.0, 1.0, 0.0]  # forces along the rod in one edge are a known limit
+    rod = Rod(1.0, (2.0, 1.0) if model == "spatial" else (1.0, 1.0), 0.7, STRETCHING)
+    meshes = (40, 80, 160, 320)
+    errors = []
+    for edges in meshes:
+        places = [start + share / edges for share in shares]
+        wrenches = [Wrench(s, tuple(f)) for s, f in zip(places, given, strict=True)]
+        wrenches.append(Wrench(1.0, tuple(TIP + across)))
+        bounds = [start, *places, start + 2.0 / edges]
+        told = [(place, before) for place in places for before in (True, False)]
+        told += [(0.5 * (a + b), False) for a, b in pairwise(bounds)]
+        if start == 0.0:
+            told.append((0.0, False))
+        expected, forces = exact_tensions(rod, wrenches, told)
+        makers = scene_of(
+            model,
+            ("fixed",) * len(wrenches),
+            (*places, 1.0),
+            forces,
+            [None] * len(wrenches),
+        )
+        result = der.run(der.Scenario.from_dict(makers(edges)))
+        errors.append(np.array(tensions(result, told)) - expected)
+    sizes = [1.0 / edges for edges in meshes]
+    for column in np.transpose(errors):
+        if np.max(np.abs(column) / np.square(sizes)) > 0.1:  # of tensions of 1 to 4
+            assert fitted_order(sizes, column) > 1.9
+
+
+def test_weight_between_a_clamp_and_a_force_close_to_it():
+    """Tension of a rod that hangs is exactly what hangs below, wherever the force is."""
+    for share in (0.3, 0.8, 1.0, 1.4, 1.7):
+        loads = [
+            {"gravity": [0.0, -10.0]},
+            {"point_force": {"rod": "rod", "at": share / 10, "force": [0.0, -5.0]}},
+        ]
+        scene = straight_rod(10, MODELS["planar"], model="planar", loads=loads, analysis="static")
+        scene["rods"][0]["points"] = [[0.0, -point[0]] for point in scene["rods"][0]["points"]]
+        mass = scene["rods"][0]["cross_section"]["stiffness"]["mass_per_length"]
+        places, found = der.run(der.Scenario.from_dict(scene)).along("rod", "tension")
+        expected = mass * 10.0 * (1.0 - places) + 5.0 * (places < share / 10 - 1e-9)
+        at = np.flatnonzero(np.abs(places - share / 10) < 1e-9)
+        expected[at[0]] += 5.0
+        assert found[-1] == pytest.approx(expected, abs=1e-7)

@@ -19,16 +19,6 @@
 namespace der {
 namespace {
 
-/// Linear between the two samples nearest to `s`, and beyond the outermost ones.
-SampleWeights linear_weights(const std::vector<double>& arc, double s) {
-  if (arc.size() == 1) return {{0, 1.0}};
-  const auto above =
-      static_cast<std::size_t>(std::upper_bound(arc.begin(), arc.end(), s) - arc.begin());
-  const std::size_t right = std::clamp<std::size_t>(above, 1, arc.size() - 1);
-  const double share = (s - arc[right - 1]) / (arc[right] - arc[right - 1]);
-  return {{right - 1, 1.0 - share}, {right, share}};
-}
-
 /// Linear between the samples on one side of `s`, which may be a place where the field jumps.
 SampleWeights one_sided_weights(const std::vector<double>& arc, double s, scenario::Side side,
                                 double same_place) {

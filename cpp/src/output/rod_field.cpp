@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "der/catalog/quantities.hpp"
 #include "der/core/error.hpp"
 #include "output/around_ring.hpp"
@@ -19,6 +21,15 @@ std::string names_along_rods() {
 }
 
 }  // namespace
+
+SampleWeights linear_weights(const std::vector<double>& arc, double s) {
+  if (arc.size() == 1) return {{0, 1.0}};
+  const auto above =
+      static_cast<std::size_t>(std::upper_bound(arc.begin(), arc.end(), s) - arc.begin());
+  const std::size_t right = std::clamp<std::size_t>(above, 1, arc.size() - 1);
+  const double share = (s - arc[right - 1]) / (arc[right] - arc[right - 1]);
+  return {{right - 1, 1.0 - share}, {right, share}};
+}
 
 Error not_available(const Quantity& quantity, const Model& model) {
   return {"model_error", lacks(model.name, quantity)};

@@ -21,6 +21,10 @@ struct SampleWeight {
 };
 using SampleWeights = std::vector<SampleWeight>;
 
+/// Linear between the two of these samples, by their arc lengths [m], that are nearest to `s`, and
+/// beyond the outermost ones.
+SampleWeights linear_weights(const std::vector<double>& arc, double s);
+
 /// A quantity along a rod, sampled where the discrete rod has it: at nodes, at the middles of
 /// edges, or, of bending, where it has a kink as well.
 class RodField {

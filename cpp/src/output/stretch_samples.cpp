@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
-#include <utility>
+#include <optional>
 
 #include "der/core/index.hpp"
 #include "model/legs.hpp"
@@ -42,12 +41,21 @@ class Layout {
  private:
   using Passed = StretchSample::Passed;
 
-  /// The line that a sample continues: that of the edges with their middles in a part.
-  struct Line {
+  /// The edges with their middles in a part.
+  struct Middles {
     std::size_t part = 0;
-    Index first = 0, last = 0;  // edges
+    Index first = 0, last = 0;
 
-    [[nodiscard]] bool has_slope() const { return first < last; }
+    [[nodiscard]] bool make_a_line() const { return first < last; }
+  };
+  /// From where a sample continues the line of another part, at that part's end or its only middle.
+  struct Way {
+    double from = 0.0;  // [m]
+    double to = 0.0;    // the sample [m]
+
+    [[nodiscard]] double length() const { return to - from; }
+    [[nodiscard]] double start() const { return std::min(from, to); }
+    [[nodiscard]] double end() const { return std::max(from, to); }
   };
 
   void find_breaks() {
@@ -99,9 +107,27 @@ class Layout {
     while (!has_middle(beyond)) ++beyond;
     return beyond;
   }
-  [[nodiscard]] Line line_of(std::size_t part) const {
-    const std::size_t from = part_to_go_on_from(part);
-    return {from, first_middle(from), first_middle(from + 1) - 1};
+  [[nodiscard]] Middles middles_of(std::size_t part) const {
+    return {part, first_middle(part), first_middle(part + 1) - 1};
+  }
+  /// The nearest part of the same leg with middles that make a line; none: there is no such part.
+  [[nodiscard]] std::optional<Middles> nearest_line(const Middles& here) const {
+    if (here.make_a_line()) return here;
+    std::optional<Middles> nearest;
+    const auto look_at = [&](std::size_t part) {
+      const Middles there = middles_of(part);
+      const auto distance = [&](const Middles& other) {
+        return std::abs(other.first - here.first);
+      };
+      if (!there.make_a_line() || leg_of(there.first) != leg_of(here.first)) return;
+      if (!nearest || distance(there) < distance(*nearest)) nearest = there;
+    };
+    for (std::size_t part = 0; part + 1 < breaks_.size(); ++part) look_at(part);
+    return nearest;
+  }
+  /// Number of the leg that an edge belongs to.
+  [[nodiscard]] std::ptrdiff_t leg_of(Index edge) const {
+    return std::upper_bound(bounds_.begin(), bounds_.end(), edge) - bounds_.begin();
   }
 
   void add_part(std::size_t part, std::vector<StretchSample>& all) const {
@@ -119,14 +145,48 @@ class Layout {
   }
 
   [[nodiscard]] StretchSample sample_of(std::size_t part, double s) const {
-    const Line line = line_of(part);
+    const Middles own = middles_of(part_to_go_on_from(part));
     StretchSample sample;
     sample.arc_length = s;
-    sample.edges = line_weights(middles_, line.first, line.last, s);
-    sample.forces = forces_between(part, line.part);
-    sample.distributed = loads_between(s, part, line, rod_.distributed_places);
-    sample.foundations = loads_between(s, part, line, rod_.foundation_places);
+    sample.line = {line_weights(middles_, own.first, own.last, s), forces_between(part, own.part)};
+    if (part == own.part && own.make_a_line()) return sample;
+    const std::vector<Weighted> edges = sample.line.edges;
+    const std::optional<Middles> slope = nearest_line(own);
+    const Way way = way_to(s, own);
+    if (slope) take_slope(*slope, way, !own.make_a_line(), sample);
+    for (std::size_t other = std::min(part, own.part); other <= std::max(part, own.part); ++other) {
+      add_curving(std::clamp(breaks_[other], way.start(), way.end()),
+                  std::clamp(breaks_[other + 1], way.start(), way.end()),
+                  way.length() > 0.0 ? 1.0 : -1.0, {edges, forces_between(other, own.part)},
+                  sample);
+    }
+    sample.distributed = loads_between(way, slope, rod_.distributed_places);
+    sample.foundations = loads_between(way, slope, rod_.foundation_places);
     return sample;
+  }
+  /// The slope of other middles, less what curving has in it. The sample's own line has it, or does
+  /// not yet have it.
+  void take_slope(const Middles& other, const Way& way, bool add, StretchSample& sample) const {
+    const std::vector<Weighted> pair = line_weights(middles_, other.first, other.last, way.to);
+    const Index before = pair.front().place;
+    const double start = middles_[to_size(before)];
+    const double end = middles_[to_size(before + 1)];
+    const double times = way.length() / (end - start);
+    if (add) {
+      sample.line.edges.push_back({before, -times});
+      sample.line.edges.push_back({before + 1, times});
+    }
+    add_curving(start, end, -times, {{{before, 0.5}, {before + 1, 0.5}}, {}}, sample);
+  }
+  [[nodiscard]] Way way_to(double s, const Middles& own) const {
+    if (!own.make_a_line()) return {middles_[to_size(own.first)], s};
+    return {std::clamp(s, breaks_[own.part], breaks_[own.part + 1]), s};
+  }
+  void add_curving(double from, double to, double times, const StretchSample::Line& line,
+                   StretchSample& sample) const {
+    if (to - from > rod_.same_place()) {
+      sample.curving.push_back({from, to, times * (to - from), line});
+    }
   }
 
   /// The point forces between a part and the one whose line it continues.
@@ -138,53 +198,37 @@ class Layout {
         return std::abs(there - breaks_[number]) <= rod_.same_place();
       };
       for (std::size_t number = from + 1; number <= part; ++number) {
-        if (is_at(number)) passed.push_back({f, -1.0, there, direction_at(there)});
+        if (is_at(number)) passed.push_back({f, -1.0, there});
       }
       for (std::size_t number = part + 1; number <= from; ++number) {
-        if (is_at(number)) passed.push_back({f, 1.0, there, direction_at(there)});
+        if (is_at(number)) passed.push_back({f, 1.0, there});
       }
     }
     return passed;
   }
 
-  /// The loads along the rod between arc length `s` of a part and the middle from which it
-  /// continues a line, less those that the slope of the line contains.
+  /// The loads along the rod on the way to a sample, less those that the slope of the line has.
   template <class Place>
-  [[nodiscard]] std::vector<Passed> loads_between(double s, std::size_t part, const Line& line,
+  [[nodiscard]] std::vector<Passed> loads_between(const Way& way,
+                                                  const std::optional<Middles>& slope,
                                                   const std::vector<Place>& places) const {
     std::vector<Passed> passed;
-    if (part == line.part && line.has_slope()) return passed;
-    const double middle = middles_[to_size(part < line.part ? line.first : line.last)];
-    const double under_line = 0.5 * (breaks_[line.part] + breaks_[line.part + 1]);
-    const bool before = s < middle;
+    const double sign = way.length() < 0.0 ? 1.0 : -1.0;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      double a = std::clamp(places[i].from, std::min(s, middle), std::max(s, middle));
-      double b = std::clamp(places[i].to, std::min(s, middle), std::max(s, middle));
-      double sign = before ? 1.0 : -1.0;
-      if (line.has_slope() && places[i].from < under_line && under_line < places[i].to) {
-        // The slope contains it on the whole way: too much where it does not act.
-        std::tie(a, b) = before ? std::pair(s, a) : std::pair(b, s);
-        sign = -sign;
-      }
-      if (b - a <= rod_.same_place()) continue;
-      const double there = 0.5 * (a + b);
-      passed.push_back({i, sign * (b - a), there, direction_at(there)});
+      const double a = std::clamp(places[i].from, way.start(), way.end());
+      const double b = std::clamp(places[i].to, way.start(), way.end());
+      const bool is_in_slope = slope && acts_on(slope->part, places[i]);
+      const double amount = b - a - (is_in_slope ? way.end() - way.start() : 0.0);
+      if (std::abs(amount) <= rod_.same_place()) continue;
+      const double there = is_in_slope ? 0.5 * (way.from + way.to) : 0.5 * (a + b);
+      passed.push_back({i, sign * amount, there});
     }
     return passed;
   }
-
-  /// The direction at a place within a leg: a line through those of the leg's edges.
-  [[nodiscard]] std::vector<Weighted> direction_at(double s) const {
-    Index first = 0;
-    Index last = rod_.num_edges() - 1;
-    for (const Index bound : bounds_) {
-      if (rod_.arc_length_at(bound) > s) {
-        last = bound - 1;
-        break;
-      }
-      first = bound;
-    }
-    return line_weights(middles_, first, last, s);
+  template <class Place>
+  [[nodiscard]] bool acts_on(std::size_t part, const Place& place) const {
+    const double middle = 0.5 * (breaks_[part] + breaks_[part + 1]);
+    return place.from < middle && middle < place.to;
   }
 
   const RodLayout& rod_;

@@ -1,0 +1,86 @@
+#include "output/force_across.hpp"
+
+#include <algorithm>
+
+#include "der/core/index.hpp"
+
+namespace der {
+namespace {
+
+/// Calls use(length, first, last) with the values at the ends of the parts between two arc lengths
+/// on which a field is a line.
+template <class Use>
+void for_each_line(const RodField& field, double from, double to, const Model& model,
+                   const State& state, const Use& use) {
+  const std::vector<double>& samples = field.arc_length();
+  const auto beyond = std::upper_bound(samples.begin(), samples.end(), from);
+  auto i = static_cast<std::size_t>(std::max<std::ptrdiff_t>(beyond - samples.begin(), 1));
+  for (; i < samples.size() && samples[i - 1] < to; ++i) {
+    const double spacing = samples[i] - samples[i - 1];
+    const double start = std::max(from, samples[i - 1]);
+    const double end = std::min(to, samples[i]);
+    if (spacing <= 0.0 || end <= start) continue;
+    const double first = field.sample(i - 1, model, state);
+    const double slope = (field.sample(i, model, state) - first) / spacing;
+    use(end - start, first + slope * (start - samples[i - 1]),
+        first + slope * (end - samples[i - 1]));
+  }
+}
+
+double mean_of(const RodField& field, double from, double to, const Model& model,
+               const State& state) {
+  double integral = 0.0;
+  for_each_line(field, from, to, model, state, [&](double length, double first, double last) {
+    integral += 0.5 * length * (first + last);
+  });
+  return integral / (to - from);
+}
+
+/// By how much a field changes, but for its jumps.
+double change_of(const RodField& field, double from, double to, const Model& model,
+                 const State& state) {
+  double change = 0.0;
+  for_each_line(field, from, to, model, state,
+                [&](double /*length*/, double first, double last) { change += last - first; });
+  return change;
+}
+
+}  // namespace
+
+bool bears_forces_across(const RodLayout& rod, const Model& model) {
+  return model.dimension == 2 ? rod.EI > 0.0 : !rod.joints.empty();
+}
+
+ForceAcross::ForceAcross(const RodLayout& rod, const Model& model) {
+  const auto field = [&](const char* quantity) { return make_rod_field(quantity, rod, model); };
+  if (!model.has_sections()) {
+    bends_.push_back({field("curvature"), field("moment")});
+    return;
+  }
+  bends_.push_back({field("curvature_1"), field("moment_1")});
+  bends_.push_back({field("curvature_2"), field("moment_2")});
+  twist_ = field("twist");
+  torque_ = field("torque");
+}
+
+/// F = -M', with the components of M along directors that turn with the twist u as F1 = -M1' + u M2
+/// - k2 T, F2 = -M2' - u M1 + k1 T with the torque T.
+ForceAcross::Mean ForceAcross::mean(double from, double to, const Model& model,
+                                    const State& state) const {
+  const auto along = [&](const RodField& field) { return mean_of(field, from, to, model, state); };
+  Mean mean;
+  Vec2 moment = Vec2::Zero();
+  for (std::size_t k = 0; k < bends_.size(); ++k) {
+    const auto component = static_cast<Index>(k);
+    mean.curvature[component] = along(*bends_[k].curvature);
+    moment[component] = along(*bends_[k].moment);
+    mean.force[component] = -change_of(*bends_[k].moment, from, to, model, state) / (to - from);
+  }
+  if (twist_) {
+    mean.force += along(*twist_) * Vec2(moment[1], -moment[0]) +
+                  along(*torque_) * Vec2(-mean.curvature[1], mean.curvature[0]);
+  }
+  return mean;
+}
+
+}  // namespace der

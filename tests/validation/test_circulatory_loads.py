@@ -553,3 +553,55 @@ def test_what_follows_a_free_end_of_a_rod_drawn_as_an_arc(fitted_order, model, l
         errors.append(np.linalg.norm(found - tip[:dimension]))
     assert errors[0] < 1.0 / sizes[0] ** 2
     assert fitted_order([1 / n for n in sizes], errors) > 1.9
+
+
+@pytest.mark.parametrize("bends", [True, False])
+@pytest.mark.parametrize("model", ["planar", "spatial"])
+def test_a_force_that_follows_keeps_its_size_at_a_kink(model, bends):
+    """At the corner of a wire that is straight without stress, and where it bends a cable: it turns
+    with the mean of both sides, and the supports bear all of it."""
+    size = 2 if model == "planar" else 3
+    force = np.array([0.6, -0.8, 1.2])[:size]
+    legs = [[0.05 * i, 0.0, 0.0] for i in range(11)] + [[0.5, 0.05 * i, 0.0] for i in range(1, 11)]
+    rod = {
+        "name": "rod",
+        "points": [point[:size] for point in legs],
+        "cross_section": {"stiffness": {"EA": 1e4, "EI": 1.0, "GJ": 1.0, "mass_per_length": 1.0}},
+        "natural_curvature": 0.0,
+    }
+    supports = [{"rod": "rod", "at": "start", "clamp": True}]
+    load = {"rod": "rod", "at": {"node": 10}, "force": force.tolist(), "follower": True}
+    scene = {"model": model, "rods": [rod], "supports": supports, "analysis": "static"}
+    scene["loads"] = [{"point_force": load}]
+    if not bends:
+        force = np.array([0.0, -1.0, 0.0])[:size]
+        sag = [[0.05 * i, 0.02 * i * (0.05 * i - 1.0), 0.0] for i in range(21)]
+        rod["points"] = [point[:size] for point in sag]
+        del rod["natural_curvature"]
+        rod["cross_section"]["stiffness"] |= {"EI": 0.0}
+        held = {"fix": ["x", "y", "z"][:size]}
+        scene["supports"] = [{"rod": "rod", "at": end, **held} for end in ("start", "end")]
+        load["force"] = force.tolist()
+    reactions = der.run(der.Scenario.from_dict(scene)).reactions()
+    whole = sum(reaction.force[-1] for reaction in reactions)
+    assert np.linalg.norm(whole) == pytest.approx(np.linalg.norm(force), rel=1e-7)
+
+
+def test_a_moment_that_follows_keeps_its_size_at_a_kink():
+    legs = [[0.05 * i, 0.0, 0.0] for i in range(11)] + [[0.5, 0.05 * i, 0.0] for i in range(1, 11)]
+    rod = {
+        "name": "rod",
+        "points": legs,
+        "cross_section": {"stiffness": {"EA": 1e4, "EI": 1.0, "GJ": 1.0, "mass_per_length": 1.0}},
+        "natural_curvature": 0.0,
+    }
+    moment = [0.3, -0.4, 0.5]
+    load = {"rod": "rod", "at": {"node": 10}, "moment": moment, "follower": True}
+    scene = {
+        "rods": [rod],
+        "supports": [{"rod": "rod", "at": "start", "clamp": True}],
+        "loads": [{"moment": load}],
+        "analysis": "static",
+    }
+    reaction = der.run(der.Scenario.from_dict(scene)).reactions()[0]
+    assert np.linalg.norm(reaction.moment[-1]) == pytest.approx(np.linalg.norm(moment), rel=1e-9)

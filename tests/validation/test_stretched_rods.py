@@ -358,3 +358,70 @@ def test_weight_between_a_clamp_and_a_force_close_to_it():
         at = np.flatnonzero(np.abs(places - share / 10) < 1e-9)
         expected[at[0]] += 5.0
         assert found[-1] == pytest.approx(expected, abs=1e-7)
+
+
+@pytest.mark.parametrize("share", [0.3, 0.51, 0.9, 1.0, 1.2])
+def test_a_force_that_follows_near_the_end_of_a_naturally_curved_rod(share, fitted_order):
+    """The outermost edge leans against the curve; the force does not, on either side of its
+    middle. The rod is drawn straight."""
+    rod = Rod(
+        1.0,
+        (1.0, 1.0),
+        0.7,
+        STRETCHING,
+        natural=lambda s: np.stack([0.0 * s, CURVATURE + 0.0 * s, 0.0 * s]),
+    )
+    meshes = (40, 80, 160, 320)
+    errors = []
+    for edges in meshes:
+        place = 1.0 - share / edges
+        wrenches = [Wrench(place, tuple(INNER)), Wrench(1.0, tuple(TIP))]
+        end, positions, frames = held_at_start(rod, wrenches)
+        forces = [frames[0] @ INNER, frames[1] @ TIP]
+        drawn = UPRIGHT @ INNER
+        scene = scene_of(
+            "planar", ("follower", "fixed"), (place, 1.0), [drawn, forces[1]], positions
+        )(edges)
+        scene["rods"][0]["natural_curvature"] = CURVATURE
+        values, result = measured(scene, ["end"], ("x", "y"))
+        bears = sum(np.cross(r, f)[2] for r, f in zip(positions, forces, strict=True))
+        found = [*values[0], result.reactions()[0].moment[-1]]
+        errors.append(np.array(found) - [*end[:2], -bears])
+    sizes = [1.0 / edges for edges in meshes]
+    for column in np.transpose(errors):
+        assert fitted_order(sizes, column) > 1.9
+
+
+@pytest.mark.parametrize("share", [0.2, 0.45, 0.51])
+@pytest.mark.parametrize("torque", [-0.2, -2.0])
+def test_a_force_that_follows_on_a_spring_beside_a_clamp_that_turns(share, torque, fitted_order):
+    """The spring takes its part of the clamp's turn, too. It is given the stiffness that the
+    moment which it exerts asks for."""
+    turn = 1.0
+    turned = np.array(
+        [[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]]
+    )
+    rod = Rod(1.0, (1.0, 1.0), 0.7, STRETCHING)
+    meshes = (40, 80, 160, 320)
+    errors = []
+    for edges in meshes:
+        place = share / edges
+        wrenches = [Wrench(place, tuple(INNER), (0.0, torque, 0.0)), Wrench(1.0, tuple(TIP))]
+        end, positions, frames = held_at_start(rod, wrenches, start=turned @ UPRIGHT)
+        forces = [frames[0] @ INNER, frames[1] @ TIP]
+        tangent = frames[0][:, 2]
+        stiffness = -torque / np.arctan2(tangent[1], tangent[0])
+        drawn = UPRIGHT @ INNER
+        scene = scene_of(
+            "planar", ("follower", "fixed"), (place, 1.0), [drawn, forces[1]], positions
+        )(edges)
+        scene["supports"][0]["prescribe"] = {"angle": turn}
+        spring = {"rotational_stiffness": stiffness}
+        scene["supports"].append({"rod": "rod", "at": place, "spring": spring})
+        values, result = measured(scene, ["end"], ("x", "y"))
+        clamp = result.reactions()[0]
+        found = [*values[0], *clamp.force[-1]]
+        errors.append(np.array(found) - [*end[:2], *-sum(forces)[:2]])
+    sizes = [1.0 / edges for edges in meshes]
+    for column in np.transpose(errors):
+        assert fitted_order(sizes, column) > 1.9

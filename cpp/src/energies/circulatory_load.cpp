@@ -12,9 +12,10 @@
 namespace der {
 namespace {
 
-/// Beyond the middle of an outermost edge, where its weight is above 1: the edge is bent against
-/// the next one over 13/12 of its length, which brings its free end onto the curve
-/// (supports/clamp.hpp). This share of that turn is the true one.
+/// An outermost edge is bent against the next one over 13/12 of its length, which brings its free
+/// end onto the curve (supports/clamp.hpp). This share of that turn is the true one. It counts
+/// where the weight of the edge is above 1, beyond its middle; elsewhere only if the rod is bent at
+/// its end.
 constexpr double kTrueTurn = 12.0 / 13.0;
 
 bool is_beyond(double weight) { return weight > 1.0; }
@@ -31,12 +32,23 @@ struct FollowingVector {
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 8> slope;
 };
 
-/// sum d_i R_i v0. Beyond an outermost edge, a, bending takes kTrueTurn of d_a. Twisting takes the
-/// whole of d_a: with the small twist rho_t of R_a against R_b this is d_a/13 rho_t (t x R_a v0)
-/// more.
+/// Gives a sum of turned vectors, and its derivative, the length of the one that they turn: where
+/// the edges have a kink between them the sum is shorter.
+template <class Value, class Slope>
+void take_length(double length, Value& value, Slope&& slope) {
+  const double sum = value.norm();
+  if (sum == 0.0) return;
+  const Value along = value / sum;
+  slope = length / sum * (slope - along * (along.transpose() * slope));
+  value = length * along;
+}
+
+/// sum d_i R_i v0, as long as `length`. Beyond an outermost edge, a, bending takes kTrueTurn of
+/// d_a. Twisting takes the whole of d_a: with the small twist rho_t of R_a against R_b this is
+/// d_a/13 rho_t (t x R_a v0) more.
 template <class Edge>
 FollowingVector following(const std::vector<Edge>& edges, const Configuration& here,
-                          const Vec3& drawn) {
+                          const Vec3& drawn, double length) {
   FollowingVector result;
   result.slope.setZero(3, 4 * static_cast<Index>(edges.size()));
   const auto add = [&](std::size_t i, double weight) {
@@ -51,7 +63,11 @@ FollowingVector following(const std::vector<Edge>& edges, const Configuration& h
   const double weight = edges[outer].weight;
   const auto in_bending = bending_weights(edges);
   for (std::size_t i = 0; i < edges.size(); ++i) add(i, in_bending[i]);
-  if (!has_two || !is_beyond(weight)) return result;
+  if (!has_two) return result;
+  if (!is_beyond(weight)) {
+    take_length(length, result.value, result.slope);
+    return result;
+  }
   const std::size_t next = 1 - outer;
 
   const EdgeFrame a = edges[outer].frame(here);
@@ -76,6 +92,7 @@ FollowingVector following(const std::vector<Edge>& edges, const Configuration& h
       (aside * twist_by_a.transpose() - twist * cross_matrix(aside)) * a.rotation();
   result.slope.template middleCols<4>(4 * static_cast<Index>(next)) +=
       aside * twist_by_b.transpose() * b.rotation();
+  take_length(length, result.value, result.slope);
   return result;
 }
 
@@ -120,10 +137,14 @@ Result of_moment(const Kinds& kind, const F& f) {
 
 std::array<double, 2> weights_in_bending(const std::array<double, 2>& weights) {
   const std::size_t outer = weights[1] > weights[0] ? 1 : 0;
-  if (!is_beyond(weights[outer])) return weights;
+  return is_beyond(weights[outer]) ? turn_of_outermost_edge(weights, outer) : weights;
+}
+
+std::array<double, 2> turn_of_outermost_edge(const std::array<double, 2>& weights,
+                                             std::size_t outermost) {
   std::array<double, 2> result{};
-  result[outer] = kTrueTurn * weights[outer];
-  result[1 - outer] = 1.0 - result[outer];
+  result[outermost] = kTrueTurn * weights[outermost];
+  result[1 - outermost] = 1.0 - result[outermost];
   return result;
 }
 
@@ -142,8 +163,14 @@ void PlanarFollowerForce::evaluate(const Configuration& here, const Vec3& amount
     out.tangent.block<2, 2>(0, 2 + 2 * static_cast<Index>(i)) =
         -perpendicular(force) * direction_gradient(e, 1.0 / e.squaredNorm()).transpose();
   }
-  if (share == 1.0 || drawn_force.isZero(0.0)) return;
-  const double turned = clamp_turn < 0 ? 0.0 : here.controls[clamp_turn];
+  if (drawn_force.isZero(0.0)) return;
+  if (edges.size() == 2) {
+    Vec2 force = out.force.head<2>();
+    take_length(drawn_force.norm(), force, out.tangent.block<2, 4>(0, 2));
+    out.force.head<2>() = force;
+  }
+  if (share == 1.0) return;
+  const double turned = clamp_turn < 0 ? 0.0 : held_share * here.controls[clamp_turn];
   hold_back(Eigen::Rotation2Dd(turned) * drawn_force, out);
 }
 
@@ -164,7 +191,7 @@ void PlanarFollowerForce::hold_back(const Vec2& held, CirculatoryTerm& out) cons
 void FollowerForce::evaluate(const Configuration& here, const Vec3& amount,
                              CirculatoryTerm& out) const {
   out.reset(size());
-  const FollowingVector force = following(edges, here, amount);
+  const FollowingVector force = following(edges, here, amount, amount.norm());
   out.force.head<3>() = force.value;
   out.tangent.topRightCorner(3, force.slope.cols()) = -force.slope;
 }
@@ -172,7 +199,8 @@ void FollowerForce::evaluate(const Configuration& here, const Vec3& amount,
 EdgeMoments SpatialMoment::moments_at(const Configuration& here, const Vec3& amount) const {
   EdgeMoments result;
   result.whole = amount;
-  if (follower) result.whole = following(edges, here, drawn_moment(*this, amount)).value;
+  if (follower)
+    result.whole = following(edges, here, drawn_moment(*this, amount), amount.norm()).value;
   const Vec3 t = edges[torque_axis(edges)].frame(here).frame.tangent;
   const double torque = result.whole.dot(t);
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -192,7 +220,7 @@ void SpatialMoment::evaluate(const Configuration& here, const Vec3& amount,
   out.reset(size());
   FollowingVector whole{amount, {}};
   whole.slope.setZero(3, size());
-  if (follower) whole = following(edges, here, drawn_moment(*this, amount));
+  if (follower) whole = following(edges, here, drawn_moment(*this, amount), amount.norm());
   const auto& [moment, turning] = whole;
 
   const std::size_t axis = torque_axis(edges);

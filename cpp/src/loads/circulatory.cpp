@@ -77,17 +77,28 @@ Vec3 natural_turn(double s, const SectionPlace& place, const RodLayout& rod) {
   return natural_turn_from_line(s, place.first_edge, rod);
 }
 
-/// Weights of the directions of edges that a load follows.
-std::array<double, 2> in_bending(const SectionPlace& place) {
-  const std::vector<double>& weights = place.direction;
-  return weights_in_bending({weights[0], weights.size() > 1 ? weights[1] : 0.0});
+/// Weights of the directions of edges that a load follows. A planar rod turns by less than its
+/// outermost edge against the next one at a free end, on either side of that edge's middle.
+std::array<double, 2> in_bending(const SectionPlace& place, const RodLayout& rod,
+                                 const Model& model) {
+  const std::vector<double>& given = place.direction;
+  if (given.size() == 1) return weights_in_bending({given[0], 0.0});
+  std::array<double, 2> weights{given[0], given[1]};
+  if (model.dimension == 2 && !rod.closed) {
+    const bool at_start = place.first_edge == 0 && rod.clamp_at(0) == nullptr;
+    const bool at_end =
+        place.first_edge + 2 == rod.num_edges() && rod.clamp_at(rod.num_edges()) == nullptr;
+    if (at_start) return turn_of_outermost_edge(weights, 0);
+    if (at_end) return turn_of_outermost_edge(weights, 1);
+  }
+  return weights_in_bending(weights);
 }
 
 PlanarFollowerForce planar_follower(double s, const SectionPlace& place, const RodLayout& rod,
                                     const Model& model, CirculatoryLoad& load) {
   PlanarFollowerForce follower;
   const double kink = natural_turn(s, place, rod).z();
-  const std::array<double, 2> weights = in_bending(place);
+  const std::array<double, 2> weights = in_bending(place, rod, model);
   for (std::size_t i = 0; i < place.direction.size(); ++i) {
     const Index number = rod.position(place.first_edge + static_cast<Index>(i));
     const EffectiveEdge edge = effective_edge(rod, number, model);
@@ -134,7 +145,7 @@ Mat3 compliance_of(const SectionPlace& place, const SpatialMoment& moment, const
 /// The actuated section for loads that follow the section at arc length `s` [m].
 ActuatedSection actuated_section(double s, const SectionPlace& place, const RodLayout& rod,
                                  const Model& model) {
-  const std::array<double, 2> weights = in_bending(place);
+  const std::array<double, 2> weights = in_bending(place, rod, model);
   ActuatedSection section{actuated_turn_of_follower(s, place, weights, rod), Mat3::Zero()};
   if (model.dimension == 2) {
     section.axes.col(0) = Vec3::UnitZ();
@@ -345,7 +356,10 @@ void turn_followers_under_moments(const RodLayout& rod, Model& model) {
       load.amount.actuated.turn = actuated_turn(s, rod);
     }
     const double share = place->series_share(rod.EI);
+    // The spring takes as much of the clamp's part of the turn.
+    const double by_clamp = share * (1.0 - follower.share);
     follower.share *= share;
+    if (follower.share != 1.0) follower.held_share = by_clamp / (1.0 - follower.share);
     auto& turned = load.amount.actuated.turn.terms;
     for (ActuatedTurn::Term& term : turned) term.weight *= share;
     for (const Index moment : place->moments) {

@@ -34,10 +34,13 @@ struct ElementLists;  // energies/registry.hpp
 /// beyond the middle of an outermost edge, whose weight is above 1, its turn against the next one
 /// is more than that of the rod.
 std::array<double, 2> weights_in_bending(const std::array<double, 2>& weights);
+/// The same with the number of the edge that is outermost, on both sides of its middle.
+std::array<double, 2> turn_of_outermost_edge(const std::array<double, 2>& weights,
+                                             std::size_t outermost);
 
-/// A force that turns with a planar rod, F = sum d_i R_i F0: R_i is the rotation of an edge from
-/// its drawn direction, d_i are weights of the one or two edges. Local coordinates: the point on
-/// which it acts, then the vectors of the edges.
+/// A force that turns with a planar rod, along sum d_i R_i F0 and as large as F0: R_i is the
+/// rotation of an edge from its drawn direction, d_i are weights of the one or two edges. Local
+/// coordinates: the point on which it acts, then the vectors of the edges.
 struct PlanarFollowerForce {
   struct FollowedEdge {
     EffectiveEdge edge;
@@ -48,6 +51,8 @@ struct PlanarFollowerForce {
   /// Share of the edges' turn that springs at the place and a clamp beside it leave the tangent.
   double share = 1.0;
   Index clamp_turn = -1;  ///< control: how far that clamp has turned [rad]; -1: it does not
+  /// Share of the clamp's turn that the tangent would have if the edges had none of theirs left.
+  double held_share = 1.0;
 
   [[nodiscard]] Index size() const { return 2 + 2 * static_cast<Index>(edges.size()); }
   /// `amount` is F0 [N].
@@ -72,8 +77,9 @@ struct FollowerForce {
   void evaluate(const Configuration& here, const Vec3& amount, CirculatoryTerm& out) const;
 };
 
-/// A moment M on a rod in space, fixed in space or turning with the rod, M = sum d_i R_i M0. Edge i
-/// takes the part across_i of M across the tangent t, and the part along_i along it:
+/// A moment M on a rod in space, fixed in space or turning with the rod, then along sum d_i R_i M0
+/// and as large as M0. Edge i takes the part across_i of M across the tangent t, and the part
+/// along_i along it:
 ///   N_i = across_i M + (along_i - across_i) (M . t) t,   with the work sum N_i . omega_i,
 /// t being that of the edge with the larger part along it. The two weights differ beyond the middle
 /// of an outermost edge (model/section_place.hpp). Each of them adds up to 1, so that the whole is
@@ -81,8 +87,8 @@ struct FollowerForce {
 ///
 /// Under M the section at its place turns further than the edges tell, by c M with c = `compliance`
 /// in the axes of the drawn section, since the rod between them bends and twists. So the moment
-/// that turns with the section is that sum of M0 + c M0 x M0, to the same order, unless its place
-/// lies where the weights d_i extrapolate.
+/// that turns with the section is along that sum of M0 + c M0 x M0, to the same order, unless its
+/// place lies where the weights d_i extrapolate.
 struct SpatialMoment {
   struct TurnedEdge : FramedEdge {
     double weight = 1.0;  ///< d_i [-]

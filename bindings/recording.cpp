@@ -8,6 +8,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "der/kinematics/frame_block.hpp"
+#include "der/model/followed.hpp"
 #include "der/output/memory_sink.hpp"
 #include "der/output/run_arrays.hpp"
 #include "der/output/summary.hpp"
@@ -55,6 +56,12 @@ py::object sections(const py::object& self) {
       table_view(recording.frames.theta, {frames, edges}, self),
       table_view(recording.frames.spin, {frames, edges}, self),
       table_view(recording.frames.section_frames, {frames, edges, FrameBlock::kSize}, self));
+}
+
+py::array_t<double> turns(const py::object& self) {
+  const auto& recording = self.cast<const Recording&>();
+  const auto frames = static_cast<py::ssize_t>(recording.frames.num_frames());
+  return table_view(recording.frames.turns, {frames, py::ssize_t{recording.turns}}, self);
 }
 
 py::array_t<double> column(const std::vector<double>& data, const py::object& self) {
@@ -115,6 +122,7 @@ std::unique_ptr<RunRecording> record(const py::object& self,
   const Model& model = simulation.engine().model();
   recording->dimension = model.dimension;
   if (model.has_sections()) recording->sections = static_cast<Index>(model.framed_edges.size());
+  recording->turns = num_turns(model);
   Recorder recorder(simulation.engine());
   MemorySink memory;
   recorder.add(memory);
@@ -159,6 +167,9 @@ void bind_recording(py::module_& module) {
                              "the frames that they count from, shape (frames, edges, 8), in the "
                              "model ``spatial``;\n"
                              "None in other models.")
+      .def_property_readonly("turns", &turns,
+                             "Angles [rad] by which the edges that the planar model follows have "
+                             "turned, whole\nturns included, shape (frames, edges).")
       .def_property_readonly("energies", &energy_columns, "Energies [J] by name, shape (frames,).")
       .def_property_readonly("work", &work_columns,
                              "Works done and energy lost since the start [J] by name, "

@@ -25,6 +25,7 @@ struct Recording {
   std::vector<std::string> probe_units;
   Index dimension = 0;
   Index sections = 0;  ///< edges that have a section
+  Index turns = 0;     ///< edges whose whole turns are followed
 };
 
 /// The recorded data of a run that has just ended, and how it ended.

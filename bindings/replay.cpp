@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "bindings.hpp"
 #include "der/core/index.hpp"
 #include "der/kinematics/frame_block.hpp"
+#include "der/model/followed.hpp"
 #include "der/model/location.hpp"
 #include "der/output/joint_strain.hpp"
 #include "der/scenario/load.hpp"
@@ -121,40 +123,46 @@ Eigen::Map<const FrameTable> to_table(const Frames& frames, const char* name, co
 /// The arrays of a run as the engine takes them. ValueError if they are not those of the replayed
 /// run.
 SavedFrames to_frames(const Replay& replay, const Frames& positions, const Frames& velocities,
-                      const Frames& theta, const Frames& section_frames) {
+                      const Frames& theta, const Frames& section_frames, const Frames& turns) {
   const Model& model = replay.model();
   const std::size_t frames = replay.num_frames();
   const Index edges = model.num_dofs() - model.dofs.num_positions();
   const py::tuple nodes = py::make_tuple(frames, model.num_nodes, model.dimension);
+  // The replay follows the slopes of rods besides.
+  const py::ssize_t given = turns.ndim() == 2 ? turns.shape(1) : 0;
+  const py::ssize_t followed = std::min(given, py::ssize_t{num_turns(model)});
   return {to_table(positions, "positions", "(frames, nodes, dim)", nodes),
           to_table(velocities, "velocities", "(frames, nodes, dim)", nodes),
           to_table(theta, "theta", "(frames, edges)", py::make_tuple(frames, edges)),
           to_table(section_frames, "the frames of sections", "(frames, edges, 8)",
-                   py::make_tuple(frames, edges, FrameBlock::kSize))};
+                   py::make_tuple(frames, edges, FrameBlock::kSize)),
+          to_table(turns, "turns", "(frames, followed edges)", py::make_tuple(frames, followed))};
 }
 
 py::tuple along(Replay& replay, const Text& rod, const Text& quantity, const Frames& positions,
-                const Frames& velocities, const Frames& theta, const Frames& section_frames) {
+                const Frames& velocities, const Frames& theta, const Frames& section_frames,
+                const Frames& turns) {
   const RodSeries series =
       replay.along(std::string(rod.value("the name of the rod")),
                    std::string(quantity.value("the name of the quantity")),
-                   to_frames(replay, positions, velocities, theta, section_frames));
+                   to_frames(replay, positions, velocities, theta, section_frames, turns));
   return py::make_tuple(
       Array(static_cast<py::ssize_t>(series.arc_length.size()), series.arc_length.data()),
       Array({series.values.rows(), series.values.cols()}, series.values.data()));
 }
 
 Array directors(Replay& replay, const Frames& positions, const Frames& velocities,
-                const Frames& theta, const Frames& section_frames) {
+                const Frames& theta, const Frames& section_frames, const Frames& turns) {
   const FrameTable table =
-      replay.directors(to_frames(replay, positions, velocities, theta, section_frames));
+      replay.directors(to_frames(replay, positions, velocities, theta, section_frames, turns));
   return Array({py::ssize_t{table.rows()}, py::ssize_t{table.cols() / 3}, py::ssize_t{3}},
                table.data());
 }
 
 py::tuple reactions(Replay& replay, const Frames& positions, const Frames& velocities,
-                    const Frames& theta, const Frames& section_frames, const Frames& spin) {
-  const SavedFrames frames = to_frames(replay, positions, velocities, theta, section_frames);
+                    const Frames& theta, const Frames& section_frames, const Frames& turns,
+                    const Frames& spin) {
+  const SavedFrames frames = to_frames(replay, positions, velocities, theta, section_frames, turns);
   const Index edges = replay.model().num_dofs() - replay.model().dofs.num_positions();
   const ReactionSeries series = replay.reactions(
       frames,
@@ -168,9 +176,9 @@ py::tuple reactions(Replay& replay, const Frames& positions, const Frames& veloc
 }
 
 py::tuple actuation_forces(Replay& replay, const Frames& positions, const Frames& velocities,
-                           const Frames& theta, const Frames& section_frames) {
-  const ActuationForceSeries series =
-      replay.actuation_forces(to_frames(replay, positions, velocities, theta, section_frames));
+                           const Frames& theta, const Frames& section_frames, const Frames& turns) {
+  const ActuationForceSeries series = replay.actuation_forces(
+      to_frames(replay, positions, velocities, theta, section_frames, turns));
   const Eigen::Index frames = series.values.rows();
   return py::make_tuple(
       stretches_of(series.actuations),
@@ -218,24 +226,25 @@ void bind_replay(py::module_& module) {
            "factors of\nthe points of the scene's continuation. Raises SceneError or DerError "
            "where no model can be\nbuilt, and on a path if the scene has no continuation.")
       .def("along", &along, py::arg("rod"), py::arg("quantity"), py::arg("positions"),
-           py::arg("velocities"), py::arg("theta"), py::arg("section_frames"),
+           py::arg("velocities"), py::arg("theta"), py::arg("section_frames"), py::arg("turns"),
            "Return arc lengths [m], shape (samples,), and values in the quantity's SI unit, shape\n"
            "(frames, samples), of a quantity of probes along a rod: at its nodes, at those that "
            "bend, or\nat the middles of its edges. `positions` [m] and `velocities` [m/s] have the "
            "shape\n(frames, nodes, dim), `theta` [rad] (frames, edges), `section_frames` (frames, "
-           "edges, 8): without\nsections there are 0 edges. Raises DerError for an unknown rod or "
+           "edges, 8): without\nsections there are 0 edges; `turns` [rad] (frames, followed "
+           "edges). Raises DerError for an unknown rod or "
            "quantity, or one that the model\nhas not, ValueError for another shape.")
       .def("directors", &directors, py::arg("positions"), py::arg("velocities"), py::arg("theta"),
-           py::arg("section_frames"),
+           py::arg("section_frames"), py::arg("turns"),
            "Return director 1 of the section of each edge, shape (frames, edges, 3); the arrays as "
            "for\n`along`.")
       .def("reactions", &reactions, py::arg("positions"), py::arg("velocities"), py::arg("theta"),
-           py::arg("section_frames"), py::arg("spin"),
+           py::arg("section_frames"), py::arg("turns"), py::arg("spin"),
            "Return places of supports, and points [m], forces [N] and moments [N m] on the rods "
            "there,\neach of shape (frames, places, 3); the arrays as for `along`, `spin` [rad/s] "
            "of shape (frames, edges).")
       .def("actuation_forces", &actuation_forces, py::arg("positions"), py::arg("velocities"),
-           py::arg("theta"), py::arg("section_frames"),
+           py::arg("theta"), py::arg("section_frames"), py::arg("turns"),
            "Return actuations (name, rod, length [m], number of values), and the moments [N m] or "
            "forces\n[N] that they exert on the rods, shape (frames, actuations, 2); the arrays as "
            "for `along`.")

@@ -13,6 +13,7 @@
 
 #include "bindings.hpp"
 #include "der/kinematics/frame_block.hpp"
+#include "der/model/followed.hpp"
 #include "der/output/run_arrays.hpp"
 #include "der/output/run_folder.hpp"
 #include "recording.hpp"
@@ -30,6 +31,7 @@ std::unique_ptr<FileRecording> read(const std::filesystem::path& file) {
   recording->scene = std::move(run.scene);
   recording->dimension = run.dimension;
   recording->sections = run.sections;
+  recording->turns = run.turns;
   recording->probe_names = std::move(run.probe_names);
   recording->probe_units = std::move(run.probe_units);
   recording->frames = std::move(run.frames);
@@ -103,6 +105,12 @@ void save(const std::filesystem::path& folder, const Scenario& scenario, const M
     run.frames.section_frames =
         numbers(sections.attr("frames").cast<Numbers>(), {times.size(), edges, FrameBlock::kSize},
                 "the frames of sections");
+  }
+  if (num_turns(model) > 0) {
+    const py::object turns = result.attr("turns");
+    if (turns.is_none()) throw py::value_error("the run needs the turns of its edges");
+    run.frames.turns =
+        numbers(turns.cast<Numbers>(), {times.size(), py::ssize_t{num_turns(model)}}, "turns");
   }
   run.frames.energies = table(result.attr("energies"), names_in_group("energies"), frames);
   run.frames.work = table(result.attr("work"), names_in_group("work"), frames);

@@ -115,6 +115,7 @@ class Replay:
         velocities: ArrayLike,
         theta: ArrayLike,
         section_frames: ArrayLike,
+        turns: ArrayLike,
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
     def directors(
         self,
@@ -122,6 +123,7 @@ class Replay:
         velocities: ArrayLike,
         theta: ArrayLike,
         section_frames: ArrayLike,
+        turns: ArrayLike,
     ) -> NDArray[np.float64]: ...
     def reactions(
         self,
@@ -129,6 +131,7 @@ class Replay:
         velocities: ArrayLike,
         theta: ArrayLike,
         section_frames: ArrayLike,
+        turns: ArrayLike,
         spin: ArrayLike,
     ) -> tuple[
         list[tuple[int, str, float]],
@@ -142,6 +145,7 @@ class Replay:
         velocities: ArrayLike,
         theta: ArrayLike,
         section_frames: ArrayLike,
+        turns: ArrayLike,
     ) -> tuple[list[tuple[str, str, float, int]], NDArray[np.float64]]: ...
     def held_nodes(self, frame: int) -> list[HeldNode]: ...
     def load_arc_lengths(self, number: int) -> list[float]: ...
@@ -273,6 +277,8 @@ class Recording:
     def probe_units(self) -> dict[str, str]: ...
     @property
     def data(self) -> dict[str, NDArray[np.float64]]: ...
+    @property
+    def turns(self) -> NDArray[np.float64]: ...
     @property
     def sections(
         self,

@@ -397,6 +397,7 @@ def _without_motion(outcome: Outcome[Result]) -> Outcome[Result]:
         velocities=np.empty((0, *result.velocities.shape[1:])),
         energies={name: values.copy() for name, values in result.energies.items()},
         sections=None,
+        turns=None,
     )
     return replace(outcome, result=slim)
 

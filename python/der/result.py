@@ -109,4 +109,5 @@ def to_result(
         summary=summary,
         data=recording.data,
         sections=None if recording.sections is None else Sections(*recording.sections),
+        turns=recording.turns,
     )

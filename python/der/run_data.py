@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +41,16 @@ class Sections:
     theta: NDArray[np.float64]
     spin: NDArray[np.float64]
     frames: NDArray[np.float64]
+
+
+#: Positions, velocities, angles and frames of sections, turns.
+_Frames: TypeAlias = tuple[
+    NDArray[np.float64],
+    NDArray[np.float64],
+    NDArray[np.float64],
+    NDArray[np.float64],
+    NDArray[np.float64],
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +90,10 @@ class RunData:
     sections
         Angles and frames of the edges' sections, of the model ``spatial``; None of others. `theta`
         and `directors` are what one wants of them.
+    turns
+        Angles [rad] by which edges of planar rods have turned, whole turns included, shape
+        (frames, edges): of the edges beside springs against turning and clamps that turn, and those
+        that probes of the slope count from. None: the replay follows them from frame to frame.
     """
 
     scenario: Scenario
@@ -93,6 +107,7 @@ class RunData:
     summary: dict[str, Any]
     data: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     sections: Sections | None = None
+    turns: NDArray[np.float64] | None = None
 
     @property
     def status(self) -> str:
@@ -154,12 +169,14 @@ class RunData:
         return self._replay.directors(*self._frames)
 
     @property
-    def _frames(self) -> tuple[NDArray[np.float64], ...]:
+    def _frames(self) -> _Frames:
         """The frames as the replay takes them."""
         count = len(self.positions)
-        if self.sections is None:
-            return self.positions, self.velocities, np.empty((count, 0)), np.empty((count, 0, 8))
-        return self.positions, self.velocities, self.sections.theta, self.sections.frames
+        sections = self.sections
+        theta = np.empty((count, 0)) if sections is None else sections.theta
+        frames = np.empty((count, 0, 8)) if sections is None else sections.frames
+        turns = np.empty((count, 0)) if self.turns is None else self.turns
+        return self.positions, self.velocities, theta, frames, turns
 
     def along(self, rod: str, quantity: str) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return a quantity along a rod at every frame, where the discrete rod has it.
@@ -209,8 +226,7 @@ class RunData:
         """
         count = len(self.positions)
         spin = np.empty((count, 0)) if self.sections is None else self.sections.spin
-        positions, velocities, theta, frames = self._frames
-        vectors = self._replay.reactions(positions, velocities, theta, frames, spin)
+        vectors = self._replay.reactions(*self._frames, spin)
         return make_reactions(*vectors, self.model.dimension)
 
     def actuation_forces(self) -> list[ActuationForce]:

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "base_runs.hpp"
+#include "der/model/followed.hpp"
 #include "der/output/io_error.hpp"
 #include "der/output/recorder.hpp"
 #include "der/output/replay.hpp"
@@ -69,6 +70,7 @@ void write_edited(const fs::path& path, const Edits& edits) {
        state.positions.tail(angles),
        state.velocities.tail(angles),
        simulation.model().has_sections() ? der::Vector(state.followed.tail(8 * angles)) : none,
+       state.followed.head(der::num_turns(simulation.model())),
        {},
        state.work,
        probes});
@@ -108,12 +110,14 @@ void replay(const der::SavedRun& run) {
   const der::Index edges =
       model.has_sections() ? static_cast<der::Index>(model.framed_edges.size()) : 0;
   if (run.dimension != model.dimension || run.sections != edges ||
+      run.turns > der::num_turns(model) ||
       data.positions.size() !=
           frames * static_cast<std::size_t>(model.num_nodes * model.dimension)) {
     return;
   }
   const der::SavedFrames saved{table(data.positions, frames), table(data.velocities, frames),
-                               table(data.theta, frames), table(data.section_frames, frames)};
+                               table(data.theta, frames), table(data.section_frames, frames),
+                               table(data.turns, frames)};
   replay.reactions(saved, table(data.spin, frames));
   replay.directors(saved);
   for (const char* quantity : {"curvature", "moment", "tension", "vy"}) {

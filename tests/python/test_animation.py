@@ -203,7 +203,7 @@ def test_what_does_not_move_is_an_error(tube, swing, tmp_path):
         der.equilibrium(tube).animate(tmp_path / "a.gif")
     whole = der.run(swing)
     single = replace(whole, times=whole.times[:1], positions=whole.positions[:1])
-    single = replace(single, velocities=whole.velocities[:1])
+    single = replace(single, velocities=whole.velocities[:1], turns=whole.turns[:1])
     with pytest.raises(ValueError, match="single frame"):
         single.animate(tmp_path / "a.gif")
     with pytest.raises(ValueError, match="continuation has no time"):

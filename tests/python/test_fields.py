@@ -240,7 +240,11 @@ def test_drawn_circle(swing):
 def test_no_frames(swing):
     whole = der.run(swing)
     result = replace(
-        whole, times=whole.times[:0], positions=whole.positions[:0], velocities=whole.velocities[:0]
+        whole,
+        times=whole.times[:0],
+        positions=whole.positions[:0],
+        velocities=whole.velocities[:0],
+        turns=whole.turns[:0],
     )
     (fields,) = rod_fields(result)
     assert {values.shape for values in fields.at_nodes.values()} == {(0, 11)}

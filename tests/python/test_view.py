@@ -228,6 +228,7 @@ def test_run_with_one_frame(swing):
         times=whole.times[:1],
         positions=whole.positions[:1],
         velocities=whole.velocities[:1],
+        turns=whole.turns[:1],
     )
     assert make_payload(single)["captions"] == ["t = 0 s"]
     none = replace(single, times=whole.times[:0])

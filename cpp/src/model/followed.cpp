@@ -14,9 +14,9 @@ Vec2 turned_by(const FollowedEdge& edge, double turn) {
   return {std::cos(edge.direction + turn), std::sin(edge.direction + turn)};
 }
 
-Index num_turns(const Model& model) { return static_cast<Index>(model.followed_edges.size()); }
-
 }  // namespace
+
+Index num_turns(const Model& model) { return static_cast<Index>(model.followed_edges.size()); }
 
 Index num_followed(const Model& model) {
   return num_turns(model) + static_cast<Index>(model.drawn_frames.size());

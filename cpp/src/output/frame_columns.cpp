@@ -34,6 +34,7 @@ hsize_t bytes_of(const std::vector<hsize_t>& row) {
 constexpr const char* kEnergies = "energies";
 constexpr const char* kWork = "work";
 constexpr const char* kSections = "sections";
+constexpr const char* kTurns = "turns";
 
 std::vector<std::size_t> alphabetical(const std::vector<std::string>& names) {
   std::vector<std::size_t> order(names.size());
@@ -85,6 +86,18 @@ hsize_t sections_in(hid_t file) {
   return dimensions[1];
 }
 
+/// Edges whose turns are in a file.
+hsize_t turns_in(hid_t file) {
+  if (!hdf5::exists(file, kTurns)) return 0;
+  const hdf5::Handle turns = hdf5::open_dataset(file, kTurns, hdf5::native_type<double>());
+  const std::vector<hsize_t> dimensions = hdf5::dimensions_of(turns.id());
+  if (dimensions.size() != 2 || dimensions[1] == 0) {
+    throw IoError("'turns' should be frames x edges");
+  }
+  hdf5::check_stored(turns.id(), 1, dimensions[1]);
+  return dimensions[1];
+}
+
 /// The layout of a file, with the probes in alphabetical order.
 FrameLayout layout_in(hid_t file) {
   const hdf5::Handle positions = hdf5::open_dataset(file, "positions", hdf5::native_type<double>());
@@ -101,7 +114,7 @@ FrameLayout layout_in(hid_t file) {
   const hdf5::Handle probes = hdf5::open_group(file, "probes");
   std::vector<std::string> names = hdf5::names_in(probes.id());
   std::sort(names.begin(), names.end());
-  return {dimensions[1], dimensions[2], sections_in(file), std::move(names), {}};
+  return {dimensions[1], dimensions[2], sections_in(file), turns_in(file), std::move(names), {}};
 }
 
 void check_times(const std::vector<double>& times) {
@@ -121,6 +134,7 @@ FrameRow row_of(const FrameData& data, std::size_t frame, const FrameLayout& lay
           data.theta.data() + frame * layout.sections,
           data.spin.data() + frame * layout.sections,
           data.section_frames.data() + frame * layout.frame_numbers(),
+          data.turns.data() + frame * layout.turns,
           data.energies.data() + frame * kEnergyTerms.size(),
           data.work.data() + frame * kLedger.size(),
           data.probes.data() + frame * layout.probe_names.size()};
@@ -181,6 +195,11 @@ FrameColumns FrameColumns::create(hid_t file, const FrameLayout& layout, hsize_t
           chunk_rows(bytes_of(entries), frames)));
     }
   }
+  if (layout.turns > 0) {
+    const std::vector<hsize_t> entries{layout.turns};
+    columns.turns_.push_back(Column<double>::create(file, kTurns, entries, unit_of_array(kTurns),
+                                                    chunk_rows(bytes_of(entries), frames)));
+  }
   columns.energies_ = create_group(file, kEnergies, scalar_chunk);
   columns.work_ = create_group(file, kWork, scalar_chunk);
   columns.probes_ =
@@ -196,7 +215,8 @@ FrameColumns FrameColumns::open(hid_t file, const FrameLayout& layout) {
   std::vector<std::string> names = layout.probe_names;
   std::sort(names.begin(), names.end());
   if (layout.nodes != there.nodes || layout.dimension != there.dimension ||
-      layout.sections != there.sections || names != there.probe_names) {
+      layout.sections != there.sections || layout.turns != there.turns ||
+      names != there.probe_names) {
     throw IoError("its nodes, edges or probes are not those of the scene");
   }
   FrameColumns columns;
@@ -212,6 +232,9 @@ FrameColumns FrameColumns::open(hid_t file, const FrameLayout& layout) {
       columns.sections_.push_back(Column<double>::open(group.id(), name, entries));
     }
   }
+  if (layout.turns > 0) {
+    columns.turns_.push_back(Column<double>::open(file, kTurns, {layout.turns}));
+  }
   columns.energies_ = open_group(file, kEnergies, names_in_group(kEnergies));
   columns.work_ = open_group(file, kWork, names_in_group(kWork));
   columns.probes_ = open_group(file, "probes", layout.probe_names);
@@ -220,7 +243,7 @@ FrameColumns FrameColumns::open(hid_t file, const FrameLayout& layout) {
 }
 
 std::size_t FrameColumns::bytes_per_frame() const {
-  const std::size_t numbers = 2 * layout_.num_dofs() + layout_.frame_numbers() +
+  const std::size_t numbers = 2 * layout_.num_dofs() + layout_.frame_numbers() + layout_.turns +
                               energies_.columns.size() + work_.columns.size() +
                               probes_.columns.size() + 3;  // time, step, checksum
   return sizeof(double) * numbers;
@@ -232,6 +255,7 @@ void FrameColumns::for_each_data_column(F&& f) {
   f(positions_);
   f(velocities_);
   for (auto& column : sections_) f(column);
+  for (auto& column : turns_) f(column);
   for (Group* group : {&energies_, &work_, &probes_}) {
     for (auto& column : group->columns) f(column);
   }
@@ -249,6 +273,7 @@ std::uint64_t FrameColumns::checksum(const FrameRow& row) const {
     sum.add(row.spin, layout_.sections);
     sum.add(row.section_frames, layout_.frame_numbers());
   }
+  if (layout_.turns > 0) sum.add(row.turns, layout_.turns);
   for (const std::size_t i : energies_.order) sum.add(row.energies[i]);
   for (const std::size_t i : work_.order) sum.add(row.work[i]);
   for (const std::size_t i : probes_.order) sum.add(row.probes[i]);
@@ -265,6 +290,7 @@ void FrameColumns::push(const FrameRow& row) {
     sections_[1].push(row.spin);
     sections_[2].push(row.section_frames);
   }
+  if (layout_.turns > 0) turns_[0].push(row.turns);
   const auto push_all = [](Group& group, const double* values) {
     for (std::size_t i = 0; i < group.columns.size(); ++i) group.columns[i].push(values[i]);
   };
@@ -301,6 +327,7 @@ FrameData FrameColumns::read(hsize_t first, hsize_t count) const {
     data.spin = sections_[1].read(first, count);
     data.section_frames = sections_[2].read(first, count);
   }
+  if (layout_.turns > 0) data.turns = turns_[0].read(first, count);
   data.energies = table(energies_.columns, first, count);
   data.work = table(work_.columns, first, count);
   data.probes = table(probes_.columns, first, count);

@@ -18,6 +18,7 @@ struct FrameLayout {
   hsize_t nodes = 0;
   hsize_t dimension = 0;
   hsize_t sections = 0;  ///< edges that have a section; 0: the model has none
+  hsize_t turns = 0;     ///< edges whose whole turns are followed
   std::vector<std::string> probe_names;
   std::vector<std::string> probe_units;  ///< one a probe, to create the columns
 
@@ -42,6 +43,7 @@ struct FrameRow {
   const double* theta = nullptr;  ///< of as many sections as the layout has, and so the next two
   const double* spin = nullptr;
   const double* section_frames = nullptr;
+  const double* turns = nullptr;
   const double* energies = nullptr;
   const double* work = nullptr;
   const double* probes = nullptr;
@@ -50,7 +52,8 @@ struct FrameRow {
 FrameRow row_of(const FrameData& data, std::size_t frame, const FrameLayout& layout);
 
 /// The columns of a run file that have one row a frame: times, steps, positions, velocities, angles
-/// and frames of sections if there are any, energies, works, probes, and the checksum of each row.
+/// and frames of sections and turns of edges if there are any, energies, works, probes, and the
+/// checksum of each row.
 class FrameColumns {
  public:
   /// `frames`: how many there will be, as far as one can tell.
@@ -105,6 +108,7 @@ class FrameColumns {
   Column<double> time_, positions_, velocities_;
   Column<std::int64_t> step_;
   std::vector<Column<double>> sections_;  // theta, spin and frames; none without sections
+  std::vector<Column<double>> turns_;     // one, or none if no edge is followed
   Group energies_, work_, probes_;
   Column<std::uint64_t> checksum_;
   hsize_t waiting_ = 0;

@@ -17,6 +17,7 @@ void MemorySink::write(const Frame& frame) {
   append(theta, frame.theta);
   append(spin, frame.spin);
   append(section_frames, frame.section_frames);
+  append(turns, frame.turns);
   const auto& terms = frame.energies.values();
   energies.insert(energies.end(), terms.begin(), terms.end());
   const auto works = ledger(frame.work, frame.energies);

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "der/core/error.hpp"
+#include "der/model/followed.hpp"
 #include "der/scenario/scenario.hpp"
 
 namespace der {
@@ -94,6 +95,7 @@ void Recorder::hand_out(const Model& model, const State& state) {
                     state.positions.tail(angles),
                     state.velocities.tail(angles),
                     state.followed.tail(model.drawn_frames.size()),
+                    state.followed.head(num_turns(model)),
                     *energies_,
                     state.work,
                     values_};

@@ -8,10 +8,10 @@
 #include "der/building/builder.hpp"
 #include "der/catalog/quantities.hpp"
 #include "der/core/error.hpp"
+#include "der/model/followed.hpp"
 #include "der/output/joint_strain.hpp"
 #include "der/scenario/scenario.hpp"
 #include "output/rod_field.hpp"
-#include "output/turns_in_balance.hpp"
 
 namespace der {
 namespace {
@@ -68,8 +68,10 @@ void Replay::go_to(std::size_t frame, const SavedFrames& frames) {
   state_.positions.head(nodes) = frames.positions.row(row);
   state_.velocities.head(nodes) = frames.velocities.row(row);
   state_.positions.tail(frames.theta.cols()) = frames.theta.row(row);
+  if (frame == 0) state_.followed = followed_as_drawn(model_);
+  // Edges that are followed for the slopes alone come last.
+  state_.followed.head(frames.turns.cols()) = frames.turns.row(row);
   follow(model_, state_);
-  if (!scenario_.scene().is_dynamic()) find_turns_in_balance(model_, state_);
   // Frames depend on the way of the rod, which is not saved, so that they are.
   state_.followed.tail(frames.section_frames.cols()) = frames.section_frames.row(row);
 }

@@ -17,6 +17,7 @@ std::vector<RunArray> all_arrays() {
       {"sections/theta", "rad"},
       {"sections/spin", "rad/s"},
       {"sections/frames", ""},
+      {"turns", "rad"},
       {"rods/nodes", ""},
       {"rods/arc_length", "m"},
       {"rods/rest_turning_angle", "rad"},

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "der/catalog/run_status.hpp"
+#include "der/model/followed.hpp"
 #include "der/output/io_error.hpp"
 #include "der/output/pacer.hpp"
 #include "der/output/recorder.hpp"
@@ -36,6 +37,7 @@ FrameLayout layout_of(const Model& model) {
   return {static_cast<hsize_t>(model.num_nodes),
           static_cast<hsize_t>(model.dimension),
           model.has_sections() ? static_cast<hsize_t>(model.framed_edges.size()) : 0,
+          static_cast<hsize_t>(num_turns(model)),
           {},
           {}};
 }
@@ -157,7 +159,8 @@ void RunFile::Writer::add(const Frame& frame) {
   const auto works = ledger(frame.work, frame.energies);
   frames_.push({frame.time, frame.step, frame.positions.data(), frame.velocities.data(),
                 frame.theta.data(), frame.spin.data(), frame.section_frames.data(),
-                frame.energies.values().data(), works.data(), frame.probes.data()});
+                frame.turns.data(), frame.energies.values().data(), works.data(),
+                frame.probes.data()});
   ahead_of_checkpoint_ = true;
 }
 

@@ -89,8 +89,7 @@ LastFrame last_frame_in(hid_t file) {
   last.scene = read_text(file, "scene");
   check_rods(last.rods, columns.layout());
   last.section_frames = joined(frame.section_frames, {});
-  if (const auto checkpoint = read_checkpoint(file, columns))
-    last.followed = checkpoint->state.followed;
+  last.turns = joined(frame.turns, {});
   return last;
 }
 
@@ -102,6 +101,7 @@ SavedRun read_run(hid_t file) {
   run.scene = read_text(file, "scene");
   run.dimension = static_cast<Index>(layout.dimension);
   run.sections = static_cast<Index>(layout.sections);
+  run.turns = static_cast<Index>(layout.turns);
   run.probe_names = layout.probe_names;
   run.probe_units = probe_units(file, layout.probe_names);
   run.frames = columns.read(0, columns.size());

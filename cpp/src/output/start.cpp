@@ -81,14 +81,14 @@ std::string difference(const std::vector<SavedRod>& there, const std::vector<Rod
 /// Takes over whole turns if that run followed the same edges; else they count from the initial
 /// shape. Angles of edges count from the frames of sections, which come with them.
 void take_over_turns(const LastFrame& last, const Model& model, State& state) {
-  if (last.followed.size() == state.followed.size()) {
+  if (last.turns.size() == num_turns(model)) {
     const Model there = build_model(Scenario::parse(last.scene).scene());
     const auto& before = there.followed_edges;
     if (std::equal(before.begin(), before.end(), model.followed_edges.begin(),
                    model.followed_edges.end(), [](const FollowedEdge& a, const FollowedEdge& b) {
                      return a.edge.first == b.edge.first && a.edge.last == b.edge.last;
                    })) {
-      state.followed = last.followed;
+      state.followed.head(last.turns.size()) = last.turns;
     }
   }
   state.followed.tail(last.section_frames.size()) = last.section_frames;

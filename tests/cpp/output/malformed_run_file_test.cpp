@@ -127,25 +127,39 @@ struct Mistake {
   std::function<void(hid_t)> make;
 };
 
-/// Those of a run of `kStrip`, and a word of the message.
-struct SectionMistake {
+/// One that the message names, by a word of it.
+struct NamedMistake {
   std::string name;
   std::string said;
   std::function<void(hid_t)> make;
 };
 
-const std::vector<SectionMistake>& section_mistakes() {
-  const auto dataset = [](const char* name, const Dimensions& dimensions) {
-    return [=](hid_t file) { put_dataset(file, name, H5T_NATIVE_DOUBLE, dimensions); };
+std::function<void(hid_t)> dataset(const char* name, const Dimensions& dimensions) {
+  return [=](hid_t file) { put_dataset(file, name, H5T_NATIVE_DOUBLE, dimensions); };
+}
+std::function<void(hid_t)> without(const char* name) {
+  return [=](hid_t file) { H5Ldelete(file, name, H5P_DEFAULT); };
+}
+std::function<void(hid_t)> changed(const char* name) {
+  return [=](hid_t file) { overwrite(file, name, H5T_NATIVE_DOUBLE, 0.25); };
+}
+
+/// Of a run of `kWound`, which follows the turns of an edge.
+const std::vector<NamedMistake>& turn_mistakes() {
+  static const std::vector<NamedMistake> all{
+      {"none", "checksum", without("turns")},
+      {"a list", "'turns'", dataset("turns", {3})},
+      {"of no edges", "'turns'", dataset("turns", {3, 0})},
+      {"too short", "too few rows", [](hid_t file) { set_length(file, "turns", {1, 1}); }},
+      {"changed", "checksum", changed("turns")},
   };
-  const auto without = [](const char* name) {
-    return [=](hid_t file) { H5Ldelete(file, name, H5P_DEFAULT); };
-  };
-  const auto changed = [](const char* name) {
-    return [=](hid_t file) { overwrite(file, name, H5T_NATIVE_DOUBLE, 0.25); };
-  };
+  return all;
+}
+
+/// Of a run of `kStrip`.
+const std::vector<NamedMistake>& section_mistakes() {
   const hsize_t edges = 5;
-  static const std::vector<SectionMistake> all{
+  static const std::vector<NamedMistake> all{
       {"no group", "no group 'sections'", without("sections")},
       {"of a planar run", "'dimension'",
        [](hid_t file) { put_integer_attribute(file, "dimension", 4); }},
@@ -188,16 +202,13 @@ const std::vector<Mistake>& mistakes() {
   const auto dataset = [](const char* name, hid_t type, const Dimensions& dimensions) {
     return [=](hid_t file) { put_dataset(file, name, type, dimensions); };
   };
-  const auto without = [](const char* name) {
-    return [=](hid_t file) { H5Ldelete(file, name, H5P_DEFAULT); };
-  };
   static const std::vector<Mistake> all{
       {"format_version: 50 numbers", attribute("/", "format_version", H5T_NATIVE_INT64, {50})},
       {"format_version: a double", attribute("/", "format_version", H5T_NATIVE_DOUBLE, {})},
       {"format_version: a text", attribute("/", "format_version", variable_text(), {})},
       {"format_version: none", [](hid_t file) { H5Adelete(file, "format_version"); }},
       {"format_version: older",
-       [](hid_t file) { put_integer_attribute(file, "format_version", 3); }},
+       [](hid_t file) { put_integer_attribute(file, "format_version", 4); }},
       {"format_version: newer",
        [](hid_t file) { put_integer_attribute(file, "format_version", 99); }},
       {"format_version: negative",
@@ -393,9 +404,9 @@ std::string all_of(const fs::path& path) {
   }
   add(run.frames.times);
   add(run.frames.steps);
-  for (const auto* values :
-       {&run.frames.positions, &run.frames.velocities, &run.frames.theta, &run.frames.spin,
-        &run.frames.section_frames, &run.frames.energies, &run.frames.work, &run.frames.probes}) {
+  for (const auto* values : {&run.frames.positions, &run.frames.velocities, &run.frames.theta,
+                             &run.frames.spin, &run.frames.section_frames, &run.frames.turns,
+                             &run.frames.energies, &run.frames.work, &run.frames.probes}) {
     add(*values);
   }
   const LastFrame last = read_last_frame(path);
@@ -444,13 +455,13 @@ TEST_CASE("run files of wrong content are refused and named") {
   }
 }
 
-TEST_CASE("sections that do not fit are refused by name") {
+void check_named(const std::string& scene, const std::vector<NamedMistake>& mistakes) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "results.h5";
-  write_run_file(path, kStrip);
+  write_run_file(path, scene);
   const std::string good = bytes_of(path);
   CHECK(refusal([&] { all_of(path); }).empty());
-  for (const SectionMistake& mistake : section_mistakes()) {
+  for (const NamedMistake& mistake : mistakes) {
     CAPTURE(mistake.name);
     put_bytes(path, good);
     mend(path, mistake.make);
@@ -458,15 +469,21 @@ TEST_CASE("sections that do not fit are refused by name") {
     CAPTURE(message);
     CHECK(message.find(path.string()) != std::string::npos);
     CHECK(message.find(mistake.said) != std::string::npos);
-    refusal([&] { resume(path, kStrip); });
+    refusal([&] { resume(path, scene); });
   }
 }
+
+TEST_CASE("sections that do not fit are refused by name") {
+  check_named(kStrip, section_mistakes());
+}
+
+TEST_CASE("turns that do not fit are refused by name") { check_named(kWound, turn_mistakes()); }
 
 TEST_CASE("the message tells an older file from a newer one") {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "results.h5";
   write_run_file(path);
-  mend(path, [](hid_t file) { put_integer_attribute(file, "format_version", 3); });
+  mend(path, [](hid_t file) { put_integer_attribute(file, "format_version", 4); });
   CHECK(refusal([&] { read_run(path); }).find("run its scene again") != std::string::npos);
   mend(path, [](hid_t file) { put_integer_attribute(file, "format_version", 99); });
   CHECK(refusal([&] { read_run(path); }).find("install a newer der") != std::string::npos);
@@ -522,8 +539,17 @@ TEST_CASE("numbers that no run has are refused although their checksums are righ
     const Vector probes = Vector::Zero(4);
     const Vector none;
     for (const double time : {first, second}) {
-      file->write(
-          {time, 0, state.positions, state.velocities, none, none, none, {}, state.work, probes});
+      file->write({time,
+                   0,
+                   state.positions,
+                   state.velocities,
+                   none,
+                   none,
+                   none,
+                   none,
+                   {},
+                   state.work,
+                   probes});
     }
   };
   for (const auto& [first, second] : {std::pair{0.0, nan}, {nan, 1.0}, {1.0, 0.5}}) {

@@ -35,6 +35,23 @@ output:
     kinetic: {quantity: kinetic_energy}
 )";
 
+/// A planar rod on a spring against turning.
+inline const std::string kWound = R"(
+rods:
+  - name: rod
+    nodes: 5
+    from: [0, 0]
+    to: [1, 0]
+    cross_section: {stiffness: {EA: 1e4, EI: 1, mass_per_length: 1}}
+supports:
+  - {rod: rod, at: start, fix: [x, y]}
+  - {rod: rod, at: 0.5, spring: {rotational_stiffness: 0.1}}
+loads:
+  - moment: {rod: rod, at: end, moment: 0.5}
+time: {duration: 0.02, step: 0.005}
+output: {every: 0.01, probes: {tip: {rod: rod, at: end, quantity: y}}}
+)";
+
 /// A flat strip with a natural bow and twist, dropped from a clamp: 5 edges, every third of 12
 /// steps saved.
 inline const std::string kStrip = R"(

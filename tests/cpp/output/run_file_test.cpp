@@ -311,8 +311,17 @@ TEST_CASE("frames that come without a step in between are not kept in memory") {
   const Vector none;
   const State& state = simulation.state();
   for (int i = 0; i < 100; ++i) {  // of 320 kB each
-    file->write(
-        {1e-9 * i, 0, state.positions, state.velocities, none, none, none, {}, state.work, values});
+    file->write({1e-9 * i,
+                 0,
+                 state.positions,
+                 state.velocities,
+                 none,
+                 none,
+                 none,
+                 none,
+                 {},
+                 state.work,
+                 values});
   }
   CHECK(fs::file_size(path) > empty + 20'000'000);
 }

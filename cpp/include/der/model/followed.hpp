@@ -21,6 +21,8 @@ struct FollowedEdge {
   Index turn = -1;  ///< entry of the controls through which elements see what it has turned by
 };
 
+/// Number of followed edges.
+Index num_turns(const Model& model);
 /// Number of entries of a vector `followed` of the model.
 Index num_followed(const Model& model);
 /// That of the initial shape as it is drawn.

@@ -42,12 +42,12 @@ struct SavedFrames {
   Eigen::Ref<const FrameTable> velocities;      ///< frames x (nodes * dimension) [m/s]
   Eigen::Ref<const FrameTable> theta;           ///< frames x edges [rad]; x 0 without sections
   Eigen::Ref<const FrameTable> section_frames;  ///< frames x (edges * FrameBlock::kSize)
+  Eigen::Ref<const FrameTable> turns;           ///< frames x followed edges [rad]
 };
 
 /// Goes through the frames of a run that is over, to read off them what was not saved. Supports
 /// stand as the scene has them, not as `Simulation::prescribe` may have moved them. Whole turns of
-/// planar edges are not saved: in a motion they are followed from frame to frame, the shorter way;
-/// in an equilibrium they are those with which springs against turning are in balance.
+/// planar rods that the run did not follow are followed from frame to frame, the shorter way.
 class Replay {
  public:
   /// `instants` tells what each frame is of: a time [s], or, `on_path`, the factor of a point on

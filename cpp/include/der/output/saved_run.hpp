@@ -44,7 +44,7 @@ struct LastFrame {
   Vector velocities;  ///< [m/s] and [rad/s]
   std::vector<SavedRod> rods;
   std::string scene;  ///< YAML text of the scene as run
-  Vector followed;    ///< as in the state, of that scene's model [rad]; none if not known
+  Vector turns;       ///< of the edges that this scene's model follows [rad]
   Vector
       section_frames;  ///< blocks of the edges that `positions` count from; none without sections
 };
@@ -56,6 +56,7 @@ struct SavedRun {
   std::string scene;  ///< YAML text of the scene as run
   Index dimension = 0;
   Index sections = 0;  ///< edges that have a section
+  Index turns = 0;     ///< edges whose whole turns are followed
   std::vector<std::string> probe_names;
   std::vector<std::string> probe_units;
   FrameData frames;

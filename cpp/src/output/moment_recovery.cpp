@@ -58,7 +58,7 @@ MomentRecovery::Where MomentRecovery::where_is(double s, Index edge) const {
 
 // The moment at a place is that of all that stands beyond it, or the opposite of all that stands
 // before it. A clamp at `start` or `end` takes what acts on its other side: the sums go to the side
-// on which a load is not spread across a clamp.
+// on which a load is not spread across a clamp, and of forces next to a clamp to its other side.
 
 void MomentRecovery::add_moments(Index edge, Index turns, std::optional<Index> start,
                                  std::optional<Index> end) {
@@ -116,7 +116,9 @@ void MomentRecovery::add_forces(Index edge, std::optional<Index> start, std::opt
   for (std::size_t f = 0; f < forces_.size(); ++f) {
     const SpreadForces::Force& force = forces_[f];
     if (force.nodes.front().place > edge || force.nodes.back().place <= edge) continue;
-    const bool from_before = end && force.nodes.back().place > *end;
+    const bool next_to_end = end && edge + 1 == *end && (!start || edge > *start) &&
+                             force.nodes.front().place >= start.value_or(0);
+    const bool from_before = end && (force.nodes.back().place > *end || next_to_end);
     ForceTerm term{f, where_is(force.place.arc_length, edge), from_before ? -1.0 : 1.0, {}};
     for (const Weighted& node : force.nodes) {
       const bool before = node.place <= edge;

@@ -10,6 +10,7 @@
 #include "der/core/index.hpp"
 #include "der/core/nearest_node.hpp"
 #include "der/model/location.hpp"
+#include "der/model/node_weights.hpp"
 #include "der/scenario/load.hpp"
 
 namespace der {
@@ -40,10 +41,12 @@ void for_each_force(const scenario::Scene& scene, Model& model, const Use& use) 
 /// Edges of forces between nodes, in ascending order.
 using Edges = std::vector<Index>;
 
-/// Between two edges with forces the node in the middle divides what belongs to them.
+/// Between two edges with forces, whose places may have nodes in common, the node in the middle
+/// divides what belongs to them.
 void divide_between(const Edges& edges, RodLayout& rod) {
   for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
-    if (edges[i] == edges[i + 1]) continue;
+    const Index apart = edges[i + 1] - edges[i];
+    if (apart == 0 || apart > 2 * kMostPointNodes) continue;
     rod.divides_places[to_size(rod.position((edges[i] + edges[i + 1] + 1) / 2))] = true;
   }
 }
@@ -72,7 +75,8 @@ void find_force_nodes(const scenario::Scene& scene, Model& model) {
     rod.divides_places = rod.bears_force;
     Edges& edges = between_nodes[&rod];
     std::sort(edges.begin(), edges.end());
-    if (rod.closed && !edges.empty()) edges.push_back(edges.front() + rod.num_edges());
+    const bool go_around = rod.closed && !edges.empty() && edges.front() != edges.back();
+    if (go_around) edges.push_back(edges.front() + rod.num_edges());
     divide_between(edges, rod);
   }
 }

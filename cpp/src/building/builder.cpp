@@ -72,7 +72,7 @@ auto position(const Model& model, Index node) {
 
 /// Direction of the section's width at the rod's start, not yet perpendicular to the tangent there.
 Vec3 first_director(const scenario::Rod& rod, const Vec3& tangent) {
-  if (rod.director) return Eigen::Map<const Vec3>(rod.director->data());
+  if (rod.director) return Eigen::Map<const Vec3>(rod.director->data()).stableNormalized();
   const Vec3 across_plane = Vec3::UnitZ();
   return across_plane.cross(tangent).norm() > 1e-6 ? across_plane : Vec3(tangent.unitOrthogonal());
 }

@@ -8,7 +8,10 @@ namespace {
 
 Vec3 first_edge(const Rod& rod) { return in_space(rod.points[1]) - in_space(rod.points[0]); }
 
-Vec3 director_of(const Rod& rod) { return rod.director ? in_space(*rod.director) : Vec3::UnitZ(); }
+/// Of length 1, whatever length is given.
+Vec3 director_of(const Rod& rod) {
+  return rod.director ? in_space(*rod.director).stableNormalized() : Vec3::UnitZ();
+}
 
 struct IsIsotropic {
   bool operator()(const Circle& /*section*/) const { return true; }
@@ -67,7 +70,7 @@ bool has_width_direction(const Rod& rod) {
   constexpr double parallel = 1e-9;  // [rad]
   const Vec3 director = director_of(rod);
   const Vec3 edge = first_edge(rod);
-  return director.cross(edge).norm() > parallel * director.norm() * edge.norm();
+  return director.cross(edge).norm() > parallel * edge.norm();
 }
 
 FlatDirector flat_director(const Rod& rod) {

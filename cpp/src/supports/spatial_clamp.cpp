@@ -107,7 +107,7 @@ void hold_section(const scenario::Support& support, Index place, RodLayout& rod,
   clamp.held.drawn = drawn_section(rod, place, model);
   if (support.axis_rotation) {
     const auto& [axis, angle] = *support.axis_rotation;
-    clamp.held.axis = Eigen::Map<const Vec3>(axis.data()).normalized();
+    clamp.held.axis = Eigen::Map<const Vec3>(axis.data()).stableNormalized();
     clamp.held.rotation = model.tables.add(angle);
   } else if (support.rotation) {
     clamp.held.rotation = model.tables.add(*support.rotation);

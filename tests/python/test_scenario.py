@@ -2,6 +2,7 @@
 
 import math
 import pickle
+import re
 from collections import OrderedDict
 
 import der
@@ -350,6 +351,38 @@ def test_meshes_that_hardly_resolve_the_natural_shape_are_warned_of(natural, war
     ]
     assert len(found) == len(expected)
     assert all(e in f for e, f in zip(expected, found, strict=True))
+
+
+def strip_between_clamps(twists, **rod):
+    """A flat strip of 10 edges between two clamps, which twist it so."""
+    stiffness = {"EA": 1e4, "EI1": 1.0, "EI2": 9.0, "GJ": 0.1, "mass_per_length": 1.0}
+    strip = {"name": "strip", "nodes": 11, "from": [0, 0, 0], "to": [1, 0, 0]}
+    clamps = [
+        {"rod": "strip", "at": end, "clamp": True, "prescribe": {"twist": twist}}
+        for end, twist in zip(("start", "end"), twists, strict=True)
+    ]
+    strip["cross_section"] = {"stiffness": stiffness, "director": [0, 0, 1]}
+    return {"rods": [{**strip, **rod}], "supports": clamps, "time": {"duration": 1, "step": 0.01}}
+
+
+@pytest.mark.parametrize(
+    ("twists", "rod", "words"),
+    [
+        (
+            [0, {"times": [0, 1], "values": [0, 12]}],
+            {},
+            r"clamps prescribe: .* 1.2 rad .* about 25",
+        ),
+        ([0, {"times": [0, 1], "values": [0, 8]}], {}, None),
+        ([{"times": [0, 1], "values": [0, 12]}] * 2, {}, None),  # they turn together
+        ([0, 0], {"initial_twist": 12.0}, r"its initial_twist: .* turn by 1.2 rad .* about 25"),
+        ([0, 0], {"initial_twist": 12.0, "natural_twist": 2.0}, None),
+    ],
+)
+def test_strips_that_are_too_coarse_for_their_twist(twists, rod, words):
+    found = der.Scenario.from_dict(strip_between_clamps(twists, **rod)).warnings
+    assert len(found) == (0 if words is None else 1)
+    assert all(re.search(words, warning) for warning in found)
 
 
 _TAKEN = "a support holds: the support takes it up without any effect on the rod"

@@ -82,6 +82,7 @@ LastFrame last_frame_in(hid_t file) {
   if (columns.size() == 0) throw IoError("it holds no frame");
   const FrameData frame = columns.read(columns.size() - 1, 1);
   LastFrame last;
+  last.time = frame.times.back();
   last.model = hdf5::read_text_attribute(file, "model");
   last.positions = joined(frame.positions, frame.theta);
   last.velocities = joined(frame.velocities, frame.spin);

@@ -8,14 +8,18 @@
 #include <filesystem>
 #include <string>
 #include <system_error>
+#include <variant>
 #include <vector>
 
 #include "der/building/builder.hpp"
+#include "der/model/location.hpp"
 #include "der/model/prescribed_motion.hpp"
 #include "der/output/io_error.hpp"
 #include "der/output/run_folder.hpp"
 #include "der/output/saved_run.hpp"
 #include "der/scenario/scenario.hpp"
+#include "der/scenario/series.hpp"
+#include "der/scenario/support.hpp"
 
 namespace der {
 namespace {
@@ -76,6 +80,79 @@ std::string difference(const std::vector<SavedRod>& there, const std::vector<Rod
   if (there.size() == here.size()) return {};
   return fmt::format("it has {} rods, {}, and this scene {}", there.size(), names_of(there),
                      here.size());
+}
+
+/// Throws IoError where supports hold a node of a run over time elsewhere than it is in that frame:
+/// it would begin with a jump.
+void check_held_nodes(const std::string& from, const LastFrame& last, const Model& model,
+                      const State& state) {
+  constexpr double kSame = 1e-6;  // of the rod's length
+  for (const RodLayout& rod : model.rods) {
+    for (Index place = 0; place < static_cast<Index>(rod.nodes.size()); ++place) {
+      const Index dof = model.dof(rod.node(place), 0);
+      const double jump = (state.positions.segment(dof, model.dimension) -
+                           last.positions.segment(dof, model.dimension))
+                              .norm();
+      if (jump <= kSame * rod.rest_length()) continue;
+      throw IoError(fmt::format(
+          "start_from: the supports hold node {} of rod '{}' {:.3g} m from where it is in the last "
+          "frame of '{}': the run would begin with a jump. Let the tables of 'prescribe' begin "
+          "where it is there; supports without a table hold nodes as they are drawn",
+          place, rod.name, jump, from));
+    }
+  }
+}
+
+/// A turn of a clamp [rad]; 0 without a table.
+double turn_of(const scenario::Support& clamp, const std::string& key, double time) {
+  double turn = 0.0;
+  scenario::for_each_motion(clamp, [&](const std::string& other, const scenario::Series& table) {
+    if (other == key) turn = value_at(table, time);
+  });
+  return turn;
+}
+
+bool has_table(const scenario::Support& clamp, const std::string& key) {
+  bool has = false;
+  scenario::for_each_motion(clamp,
+                            [&](const std::string& other, const scenario::Series& /*table*/) {
+                              has = has || other == key;
+                            });
+  return has;
+}
+
+/// Throws IoError where a clamp of a run over time begins turned otherwise than the same clamp was
+/// in that frame. What is 0 there by a table may have been moved by a program.
+void check_clamp(const std::string& from, double time, const scenario::Support& before,
+                 const scenario::Support& clamp) {
+  constexpr double kSame = 1e-6;  // [rad]
+  for (const char* key : {"angle", "rotation.angle", "twist"}) {
+    const double was = turn_of(before, key, time);
+    const double is = turn_of(clamp, key, 0.0);
+    const bool may_be_moved = was == 0.0 && has_table(before, key);
+    if (may_be_moved || std::abs(is - was) <= kSame) continue;
+    throw IoError(
+        fmt::format("start_from: a clamp of rod '{}' begins with {} {:g}, and in the last frame of "
+                    "'{}' it is {:g}: the run would begin with a jump. Let the table of "
+                    "'prescribe' begin with {:g}",
+                    clamp.rod, key, is, from, was, was));
+  }
+}
+
+void check_clamps(const std::string& from, const LastFrame& last, const Simulation& simulation) {
+  const Scenario before = Scenario::parse(last.scene);
+  const auto& analysis = before.scene().analysis;
+  if (std::holds_alternative<scenario::ContinuationAnalysis>(analysis))
+    return;  // times are factors
+  for (const scenario::Support& clamp : simulation.scenario().scene().supports) {
+    if (!clamp.clamps()) continue;
+    const RodLayout& rod = simulation.model().rod(clamp.rod);
+    const std::vector<Index> places = nodes_at(clamp.at, rod);
+    for (const scenario::Support& other : before.scene().supports) {
+      const bool is_same = other.clamps() && other.rod == clamp.rod;
+      if (is_same && nodes_at(other.at, rod) == places) check_clamp(from, last.time, other, clamp);
+    }
+  }
 }
 
 /// Takes over whole turns if that run followed the same edges; else they count from the initial
@@ -143,6 +220,10 @@ void apply_start(Simulation& simulation, const Beat& beat) {
   model.tables.evaluate(state.time, controls);
   apply_prescribed_motion(model, controls,
                           state.positions);  // supports are where this scene has them
+  if (simulation.scenario().scene().is_dynamic()) {
+    check_held_nodes(from, last, model, state);
+    check_clamps(from, last, simulation);
+  }
   take_over_turns(last, model, state);
   simulation.start_anew();
   simulation.check_first_step();

@@ -61,6 +61,29 @@ double fine_nodes(const Turning& largest, const RestLine& line) {
   return more + std::round((line.num_nodes() - more) * largest.angle / (0.5 * kCoarseTurn));
 }
 
+Series twist_of(const Support& clamp) { return clamp.twist.value_or(Series()); }
+
+/// The greatest difference of two tables; of sines that of their greatest values.
+double largest_difference(const Series& a, const Series& b) {
+  const auto greatest = [](const Series& sine) {
+    return std::abs(sine.values[0]) + std::abs(sine.values[1]);
+  };
+  const bool a_is_sine = a.course.kind == Course::Kind::Sine;
+  const bool b_is_sine = b.course.kind == Course::Kind::Sine;
+  double largest = 0.0;
+  if (a_is_sine || b_is_sine) {
+    largest += a_is_sine ? greatest(a) : std::abs(value_at(a, 0.0));
+    largest += b_is_sine ? greatest(b) : std::abs(value_at(b, 0.0));
+    return largest;
+  }
+  for (const Series* series : {&a, &b}) {
+    for (const double time : series->times) {
+      largest = std::max(largest, std::abs(value_at(a, time) - value_at(b, time)));
+    }
+  }
+  return largest;
+}
+
 class Resolution {
  public:
   Resolution(CheckContext& context, int rod)
@@ -86,11 +109,34 @@ class Resolution {
   /// Sections without a direction may turn by any angle.
   void check_twist() {
     if (is_isotropic(rod_.cross_section) && size_at(rod_.natural_curvature, 0) == 0.0) return;
-    const Turning largest = largest_turning(rod_.natural_twist, line_);
-    if (largest.angle > kCoarseTurn) warn("natural_twist", "the sections", largest);
+    if (std::holds_alternative<AsDrawn>(rod_.natural_twist)) {
+      const Turning drawn = largest_turning(NaturalTwist(rod_.initial_twist), line_);
+      if (drawn.angle > kCoarseTurn) warn("initial_twist", "the sections", drawn);
+    } else {
+      const Turning largest = largest_turning(rod_.natural_twist, line_);
+      if (largest.angle > kCoarseTurn) warn("natural_twist", "the sections", largest);
+    }
+    check_prescribed_twist();
   }
 
  private:
+  /// Two clamps that twist a rod between them spread the twist over its edges.
+  void check_prescribed_twist() {
+    std::vector<const Support*> clamps;
+    for (const Support& support : context_.scene.supports) {
+      if (support.rod == rod_.name && support.clamp == Clamp::Section) clamps.push_back(&support);
+    }
+    if (clamps.size() != 2) return;
+    const double between = largest_difference(twist_of(*clamps[0]), twist_of(*clamps[1]));
+    const int more = line_.closed() ? 0 : 1;  // nodes than edges
+    const Turning mean{between / (line_.num_nodes() - more), 0};
+    if (mean.angle <= kCoarseTurn) return;
+    context_.scene.warnings.push_back(fmt::format(
+        "rod '{}' is too coarse for the twist that its clamps prescribe: the sections turn by "
+        "{:.2g} rad from edge to edge. Give it about {:g} nodes",
+        rod_.name, mean.angle, fine_nodes(mean, line_)));
+  }
+
   void warn(const char* key, const char* what, const Turning& largest) {
     context_.scene.warnings.push_back(fmt::format(
         "rod '{}' is too coarse for its {}: without stress {} turn by {:.2g} rad at node {}. Give "

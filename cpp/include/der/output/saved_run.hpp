@@ -38,6 +38,7 @@ struct SavedRod {
 /// The last complete frame of a run file, with its scene and rods.
 struct LastFrame {
   std::string model;  ///< name of the model that it is a state of
+  double time = 0.0;  ///< [s]
   /// One entry a degree of freedom, as in the state: components of the nodes' positions [m], then
   /// angles of the edges [rad] if there are sections.
   Vector positions;

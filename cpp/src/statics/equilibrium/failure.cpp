@@ -35,7 +35,11 @@ FailureInfo info(EquilibriumFailure cause) {
     case EquilibriumFailure::HeldTooWeakly:
       return {"not_held", "", "Add a support, or make the springs or the foundation stiffer."};
     case EquilibriumFailure::DriftsAway:
-      return {"unbounded", "the structure moves away: nothing holds it", kHold};
+      return {
+          "unbounded",
+          "the structure moves away: nothing holds it, or a load is far beyond what it bears",
+          "Is the structure held against every rigid motion, rotation included? Is the load the "
+          "one that was meant?"};
     case EquilibriumFailure::TurnsWithoutEnd:
       return {"unbounded", "a moment turns the rod without end", kHold};
     case EquilibriumFailure::Collapsed:

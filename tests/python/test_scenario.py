@@ -415,3 +415,19 @@ def test_a_moment_on_a_clamp_bends_nothing(tube):
     with pytest.warns(der.DerWarning):
         result = der.run({**tube, "analysis": "static"})
     assert np.array_equal(result.positions[0, :, 1], np.zeros(21))
+
+
+@pytest.mark.parametrize("quantity", ["moment", "curvature_1", "twist", "natural_twist"])
+def test_a_probe_of_how_a_cable_in_space_bends_is_refused(quantity):
+    stiffness = {"EA": 1e3, "EI": 0, "GJ": 1.0, "mass_per_length": 1.0}
+    rod = {"name": "rope", "nodes": 5, "from": [0, 0, 0], "to": [1, 0, 0]}
+    scene = {
+        "model": "spatial",
+        "rods": [{**rod, "cross_section": {"stiffness": stiffness}}],
+        "analysis": "static",
+        "output": {"probes": {"p": {"rod": "rope", "at": 0.3, "quantity": quantity}}},
+    }
+    with pytest.raises(
+        der.SceneError, match=rf"probes\.p\.quantity: rod 'rope' .* no '{quantity}'"
+    ):
+        der.Scenario.from_dict(scene)

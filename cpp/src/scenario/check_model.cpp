@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "der/catalog/quantities.hpp"
 #include "der/scenario/model_choice.hpp"
 #include "scenario/checks.hpp"
@@ -35,13 +37,29 @@ void check_twisting(const Rod& rod, const Path& path, const std::string& reason,
                   direct ? "'GJ'" : "'poissons_ratio' or 'shear_modulus'", reason));
 }
 
+bool is_of_bending(QuantityKind kind) {
+  return kind == QuantityKind::Bend || kind == QuantityKind::Section ||
+         kind == QuantityKind::Natural;
+}
+
+bool is_of_cable(const Probe& probe, const SceneText& scene) {
+  return std::any_of(scene.rods.begin(), scene.rods.end(),
+                     [&](const Rod& rod) { return probe.rod == rod.name && does_not_bend(rod); });
+}
+
 /// A probe changes no model: what the chosen one does not have has to be asked for.
 void check_quantities(const SceneText& scene, ModelChoice kind, Diagnostics& diagnostics) {
   for (const Probe& probe : scene.output.probes) {
     const Quantity& quantity = *find_quantity(probe.quantity);
     const int dimension = kind == ModelChoice::Planar ? 2 : 3;
-    if (is_available_in(dimension, kind == ModelChoice::Spatial, quantity)) continue;
-    diagnostics.add({"output", "probes", probe.name, "quantity"}, lacks(name_of(kind), quantity));
+    const Path path{"output", "probes", probe.name, "quantity"};
+    if (!is_available_in(dimension, kind == ModelChoice::Spatial, quantity)) {
+      diagnostics.add(path, lacks(name_of(kind), quantity));
+    } else if (dimension == 3 && is_of_bending(quantity.kind) && is_of_cable(probe, scene)) {
+      diagnostics.add(path, fmt::format("rod '{}' has no stiffness against bending, EI: it has no "
+                                        "'{}' in space",
+                                        *probe.rod, probe.quantity));
+    }
   }
 }
 

@@ -30,6 +30,9 @@ class Layout {
       : rod_(rod), forces_(forces), bounds_(leg_bounds(rod, model)) {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) middles_.push_back(rod.edge_middle(edge));
     find_breaks();
+    for (std::size_t part = 0; part + 1 < breaks_.size(); ++part) {
+      if (middles_of(part).make_a_line()) lines_.push_back(middles_of(part));
+    }
   }
 
   [[nodiscard]] std::vector<StretchSample> samples() const {
@@ -113,16 +116,12 @@ class Layout {
   /// The nearest part of the same leg with middles that make a line; none: there is no such part.
   [[nodiscard]] std::optional<Middles> nearest_line(const Middles& here) const {
     if (here.make_a_line()) return here;
+    const auto distance = [&](const Middles& other) { return std::abs(other.first - here.first); };
     std::optional<Middles> nearest;
-    const auto look_at = [&](std::size_t part) {
-      const Middles there = middles_of(part);
-      const auto distance = [&](const Middles& other) {
-        return std::abs(other.first - here.first);
-      };
-      if (!there.make_a_line() || leg_of(there.first) != leg_of(here.first)) return;
+    for (const Middles& there : lines_) {
+      if (leg_of(there.first) != leg_of(here.first)) continue;
       if (!nearest || distance(there) < distance(*nearest)) nearest = there;
-    };
-    for (std::size_t part = 0; part + 1 < breaks_.size(); ++part) look_at(part);
+    }
     return nearest;
   }
   /// Number of the leg that an edge belongs to.
@@ -236,6 +235,7 @@ class Layout {
   std::vector<Index> bounds_;    // between the legs
   std::vector<double> middles_;  // of the edges [m]
   std::vector<double> breaks_;   // ascending, the ends of the rod too [m]
+  std::vector<Middles> lines_;   // of the parts that have one of their own
 };
 
 }  // namespace

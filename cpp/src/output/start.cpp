@@ -1,6 +1,9 @@
 #include "der/output/start.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +15,7 @@
 #include <vector>
 
 #include "der/building/builder.hpp"
+#include "der/core/constants.hpp"
 #include "der/model/location.hpp"
 #include "der/model/prescribed_motion.hpp"
 #include "der/output/io_error.hpp"
@@ -20,6 +24,7 @@
 #include "der/scenario/scenario.hpp"
 #include "der/scenario/series.hpp"
 #include "der/scenario/support.hpp"
+#include "der/supports/spatial_clamp.hpp"
 
 namespace der {
 namespace {
@@ -94,63 +99,81 @@ void check_held_nodes(const std::string& from, const LastFrame& last, const Mode
                            last.positions.segment(dof, model.dimension))
                               .norm();
       if (jump <= kSame * rod.rest_length()) continue;
+      const Vector there = last.positions.segment(dof, model.dimension);
       throw IoError(fmt::format(
           "start_from: the supports hold node {} of rod '{}' {:.3g} m from where it is in the last "
-          "frame of '{}': the run would begin with a jump. Let the tables of 'prescribe' begin "
-          "where it is there; supports without a table hold nodes as they are drawn",
-          place, rod.name, jump, from));
+          "frame of '{}', ({}): the run would begin with a jump. Let the tables of 'prescribe' "
+          "begin there; supports without a table hold nodes as they are drawn",
+          place, rod.name, jump, from, fmt::join(there.begin(), there.end(), ", ")));
     }
   }
 }
 
-/// A turn of a clamp [rad]; 0 without a table.
-double turn_of(const scenario::Support& clamp, const std::string& key, double time) {
-  double turn = 0.0;
-  scenario::for_each_motion(clamp, [&](const std::string& other, const scenario::Series& table) {
-    if (other == key) turn = value_at(table, time);
-  });
+/// How a clamp has turned by its tables from where it is drawn.
+struct ClampTurn {
+  double angle = 0.0;                ///< in a plane [rad]
+  Mat3 rotation = Mat3::Identity();  ///< in space, of the section if it is held
+  double winding = 0.0;              ///< about the tangent, whole turns included [rad]
+  bool may_be_moved = false;         ///< by a program: a table holds it as drawn
+  bool holds_section = false;        ///< in space
+};
+
+ClampTurn turn_of(const scenario::Support& clamp, double time, const Vec3& tangent) {
+  ClampTurn turn;
+  turn.holds_section = clamp.clamp == scenario::Clamp::Section;
+  if (clamp.rotation) turn.angle = value_at(*clamp.rotation, time);
+  if (clamp.twist) turn.winding = value_at(*clamp.twist, time);
+  turn.rotation = Eigen::AngleAxisd(turn.winding, tangent);
+  if (clamp.axis_rotation) {
+    const Vec3 axis = Eigen::Map<const Vec3>(clamp.axis_rotation->axis.data()).stableNormalized();
+    const double angle = value_at(clamp.axis_rotation->angle, time);
+    turn.rotation = Eigen::AngleAxisd(angle, axis) * turn.rotation;
+    turn.winding += angle * axis.dot(tangent);
+  }
+  const bool has_table = clamp.rotation || clamp.twist || clamp.axis_rotation;
+  turn.may_be_moved = has_table && turn.angle == 0.0 && turn.rotation.isIdentity(0.0);
   return turn;
 }
 
-bool has_table(const scenario::Support& clamp, const std::string& key) {
-  bool has = false;
-  scenario::for_each_motion(clamp,
-                            [&](const std::string& other, const scenario::Series& /*table*/) {
-                              has = has || other == key;
-                            });
-  return has;
+/// By how much the two hold the rod otherwise [rad], which may be by whole turns about the tangent.
+double difference(const ClampTurn& a, const ClampTurn& b, const Vec3& tangent) {
+  const Mat3 between = a.rotation.transpose() * b.rotation;
+  double difference = std::abs(a.angle - b.angle);
+  if (a.holds_section && b.holds_section) {
+    difference += Eigen::AngleAxisd(between).angle();
+    if (const double wound = std::abs(a.winding - b.winding); wound > kPi) difference += wound;
+  } else {
+    difference +=
+        std::atan2(tangent.cross(between * tangent).norm(), tangent.dot(between * tangent));
+  }
+  return difference;
 }
 
 /// Throws IoError where a clamp of a run over time begins turned otherwise than the same clamp was
-/// in that frame. What is 0 there by a table may have been moved by a program.
-void check_clamp(const std::string& from, double time, const scenario::Support& before,
-                 const scenario::Support& clamp) {
-  constexpr double kSame = 1e-6;  // [rad]
-  for (const char* key : {"angle", "rotation.angle", "twist"}) {
-    const double was = turn_of(before, key, time);
-    const double is = turn_of(clamp, key, 0.0);
-    const bool may_be_moved = was == 0.0 && has_table(before, key);
-    if (may_be_moved || std::abs(is - was) <= kSame) continue;
-    throw IoError(
-        fmt::format("start_from: a clamp of rod '{}' begins with {} {:g}, and in the last frame of "
-                    "'{}' it is {:g}: the run would begin with a jump. Let the table of "
-                    "'prescribe' begin with {:g}",
-                    clamp.rod, key, is, from, was, was));
-  }
-}
-
+/// in that frame, by their tables. What these hold as drawn there a program may have turned.
 void check_clamps(const std::string& from, const LastFrame& last, const Simulation& simulation) {
+  constexpr double kSame = 1e-6;  // [rad]
   const Scenario before = Scenario::parse(last.scene);
   const auto& analysis = before.scene().analysis;
   if (std::holds_alternative<scenario::ContinuationAnalysis>(analysis))
     return;  // times are factors
+  const Model& model = simulation.model();
   for (const scenario::Support& clamp : simulation.scenario().scene().supports) {
     if (!clamp.clamps()) continue;
-    const RodLayout& rod = simulation.model().rod(clamp.rod);
+    const RodLayout& rod = model.rod(clamp.rod);
     const std::vector<Index> places = nodes_at(clamp.at, rod);
+    const Vec3 tangent =
+        model.dimension == 3 ? initial_tangent(rod, places.front(), model) : Vec3(Vec3::UnitX());
     for (const scenario::Support& other : before.scene().supports) {
-      const bool is_same = other.clamps() && other.rod == clamp.rod;
-      if (is_same && nodes_at(other.at, rod) == places) check_clamp(from, last.time, other, clamp);
+      if (!other.clamps() || other.rod != clamp.rod || nodes_at(other.at, rod) != places) continue;
+      const ClampTurn was = turn_of(other, last.time, tangent);
+      const double jump = difference(was, turn_of(clamp, 0.0, tangent), tangent);
+      if (was.may_be_moved || jump <= kSame) continue;
+      throw IoError(fmt::format(
+          "start_from: a clamp of rod '{}' begins {:.3g} rad from how it was turned in the last "
+          "frame of '{}': the run would begin with a jump. Let the tables of its 'prescribe' begin "
+          "with the values that they have there",
+          clamp.rod, jump, from));
     }
   }
 }

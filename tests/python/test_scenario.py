@@ -375,6 +375,7 @@ def strip_between_clamps(twists, **rod):
         ),
         ([0, {"times": [0, 1], "values": [0, 8]}], {}, None),
         ([{"times": [0, 1], "values": [0, 12]}] * 2, {}, None),  # they turn together
+        ([0, {"times": [0, 9, 10], "values": [0, 0, 12]}], {}, None),  # after the end of the run
         ([0, 0], {"initial_twist": 12.0}, r"its initial_twist: .* turn by 1.2 rad .* about 25"),
         ([0, 0], {"initial_twist": 12.0, "natural_twist": 2.0}, None),
     ],
@@ -415,6 +416,36 @@ def test_a_moment_on_a_clamp_bends_nothing(tube):
     with pytest.warns(der.DerWarning):
         result = der.run({**tube, "analysis": "static"})
     assert np.array_equal(result.positions[0, :, 1], np.zeros(21))
+
+
+@pytest.mark.parametrize(
+    ("clamps", "words"),
+    [
+        ({"start": {}, "end": {"rotation": {"axis": [-2, 0, 0], "angle": 12.0}}}, "1.2 rad"),
+        ({"start": {}, "end": {"rotation": {"axis": [0, 1, 0], "angle": 12.0}}}, None),
+        (
+            {
+                "start": {},
+                "end": {"rotation": {"axis": [1, 0, 0], "angle": 12.0}, "twist": -12.0},
+            },
+            None,
+        ),
+        ({"start": {}, "middle": {"twist": 8.0}, "end": {}}, "1.6 rad"),
+        ({"start": {}, "middle": {"twist": 8.0}, "end": {"twist": 10.0}}, "1.6 rad"),
+        ({"start": {}, "middle": {"twist": 8.0}}, "1.6 rad"),
+    ],
+)
+def test_the_twist_between_neighbouring_clamps(clamps, words):
+    scene = strip_between_clamps([0, 0])
+    del scene["time"]
+    scene |= {"analysis": "static"}
+    scene["supports"] = [
+        {"rod": "strip", "at": place, "clamp": True, "prescribe": prescribe}
+        for place, prescribe in clamps.items()
+    ]
+    found = der.Scenario.from_dict(scene).warnings
+    assert len(found) == (0 if words is None else 1)
+    assert all(f"turn by {words} from edge to edge" in warning for warning in found)
 
 
 @pytest.mark.parametrize("quantity", ["moment", "curvature_1", "twist", "natural_twist"])

@@ -61,24 +61,60 @@ double fine_nodes(const Turning& largest, const RestLine& line) {
   return more + std::round((line.num_nodes() - more) * largest.angle / (0.5 * kCoarseTurn));
 }
 
-Series twist_of(const Support& clamp) { return clamp.twist.value_or(Series()); }
+/// A clamp that holds the section, and how its tables twist it about the tangent.
+struct TwistedClamp {
+  double arc_length = 0.0;        // [m]
+  std::vector<const Series*> by;  // `sign` times the first of them, plus the others [rad]
+  double sign = 1.0;
 
-/// The greatest difference of two tables; of sines that of their greatest values.
-double largest_difference(const Series& a, const Series& b) {
-  const auto greatest = [](const Series& sine) {
-    return std::abs(sine.values[0]) + std::abs(sine.values[1]);
-  };
-  const bool a_is_sine = a.course.kind == Course::Kind::Sine;
-  const bool b_is_sine = b.course.kind == Course::Kind::Sine;
-  double largest = 0.0;
-  if (a_is_sine || b_is_sine) {
-    largest += a_is_sine ? greatest(a) : std::abs(value_at(a, 0.0));
-    largest += b_is_sine ? greatest(b) : std::abs(value_at(b, 0.0));
-    return largest;
+  [[nodiscard]] double twist(double time) const {
+    double sum = 0.0;
+    for (const Series* table : by) {
+      sum += (table == by.front() ? sign : 1.0) * value_at(*table, time);
+    }
+    return sum;
   }
-  for (const Series* series : {&a, &b}) {
-    for (const double time : series->times) {
-      largest = std::max(largest, std::abs(value_at(a, time) - value_at(b, time)));
+};
+
+/// The sine of the angle between two directions below which they are one.
+constexpr double kParallel = 1e-9;
+
+/// Rotations twist a straight rod where they are about its own axis.
+TwistedClamp twisted_clamp(const Support& clamp, const Rod& rod, const RestLine& line) {
+  TwistedClamp result;
+  result.arc_length = line.arc_length_of(clamp.at);
+  if (clamp.axis_rotation && is_straight(rod)) {
+    const Vec3 along =
+        (in_space(rod.points.back()) - in_space(rod.points.front())).stableNormalized();
+    const Vec3 axis = in_space(clamp.axis_rotation->axis).stableNormalized();
+    if (axis.cross(along).norm() <= kParallel) {
+      result.by.push_back(&clamp.axis_rotation->angle);
+      result.sign = axis.dot(along);
+    }
+  }
+  if (clamp.twist) result.by.push_back(&*clamp.twist);
+  return result;
+}
+
+/// The instants of a run until `end` [s] at which tables have their entries; of a sine many.
+std::vector<double> instants_of(const TwistedClamp& clamp, double end) {
+  constexpr int kMany = 400;
+  std::vector<double> instants{0.0, end};
+  for (const Series* table : clamp.by) {
+    if (table->course.kind == Course::Kind::Sine) {
+      for (int i = 1; i < kMany; ++i) instants.push_back(end * i / kMany);
+    } else {
+      for (const double time : table->times) instants.push_back(std::min(time, end));
+    }
+  }
+  return instants;
+}
+
+double largest_difference(const TwistedClamp& a, const TwistedClamp& b, double end) {
+  double largest = 0.0;
+  for (const TwistedClamp* clamp : {&a, &b}) {
+    for (const double time : instants_of(*clamp, end)) {
+      largest = std::max(largest, std::abs(a.twist(time) - b.twist(time)));
     }
   }
   return largest;
@@ -120,21 +156,32 @@ class Resolution {
   }
 
  private:
-  /// Two clamps that twist a rod between them spread the twist over its edges.
+  /// Neighbouring clamps spread the twist between them over its edges.
   void check_prescribed_twist() {
-    std::vector<const Support*> clamps;
+    std::vector<TwistedClamp> clamps;
     for (const Support& support : context_.scene.supports) {
-      if (support.rod == rod_.name && support.clamp == Clamp::Section) clamps.push_back(&support);
+      const bool is_single = support.at.kind != Location::Kind::All;
+      if (support.rod == rod_.name && support.clamp == Clamp::Section && is_single) {
+        clamps.push_back(twisted_clamp(support, rod_, line_));
+      }
     }
-    if (clamps.size() != 2) return;
-    const double between = largest_difference(twist_of(*clamps[0]), twist_of(*clamps[1]));
+    std::sort(clamps.begin(), clamps.end(), [](const TwistedClamp& a, const TwistedClamp& b) {
+      return a.arc_length < b.arc_length;
+    });
+    const double end = context_.scene.is_dynamic() ? context_.scene.time.duration : 0.0;
     const int more = line_.closed() ? 0 : 1;  // nodes than edges
-    const Turning mean{between / (line_.num_nodes() - more), 0};
-    if (mean.angle <= kCoarseTurn) return;
+    const double edge = line_.length() / (line_.num_nodes() - more);
+    Turning largest;
+    for (std::size_t i = 0; i + 1 < clamps.size(); ++i) {
+      const double length = clamps[i + 1].arc_length - clamps[i].arc_length;
+      if (length <= line_.same_place()) continue;
+      largest.enter(largest_difference(clamps[i], clamps[i + 1], end) * edge / length, 0);
+    }
+    if (largest.angle <= kCoarseTurn) return;
     context_.scene.warnings.push_back(fmt::format(
         "rod '{}' is too coarse for the twist that its clamps prescribe: the sections turn by "
         "{:.2g} rad from edge to edge. Give it about {:g} nodes",
-        rod_.name, mean.angle, fine_nodes(mean, line_)));
+        rod_.name, largest.angle, fine_nodes(largest, line_)));
   }
 
   void warn(const char* key, const char* what, const Turning& largest) {

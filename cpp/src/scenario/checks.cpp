@@ -157,11 +157,11 @@ void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   }
   check_springs(context);
   check_free_nodes(context);
-  check_resolution(context);
   check_loads(context);
   check_actuations(context);
   check_names(context);
   check_time(context);
+  check_resolution(context);
   check_probes(context);
   if (diagnostics.size() > 0) return;
   const ChosenModel model = choose_model(scene);

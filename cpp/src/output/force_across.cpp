@@ -27,22 +27,20 @@ void for_each_line(const RodField& field, double from, double to, const Model& m
   }
 }
 
-double mean_of(const RodField& field, double from, double to, const Model& model,
-               const State& state) {
-  double integral = 0.0;
-  for_each_line(field, from, to, model, state, [&](double length, double first, double last) {
-    integral += 0.5 * length * (first + last);
-  });
-  return integral / (to - from);
-}
-
-/// By how much a field changes, but for its jumps.
-double change_of(const RodField& field, double from, double to, const Model& model,
-                 const State& state) {
+/// The mean of a field, and by how much it changes but for its jumps.
+struct Course {
+  double mean = 0.0;
   double change = 0.0;
-  for_each_line(field, from, to, model, state,
-                [&](double /*length*/, double first, double last) { change += last - first; });
-  return change;
+};
+
+Course course_of(const RodField& field, double from, double to, const Model& model,
+                 const State& state) {
+  Course course;
+  for_each_line(field, from, to, model, state, [&](double length, double first, double last) {
+    course.mean += 0.5 * length * (first + last) / (to - from);
+    course.change += last - first;
+  });
+  return course;
 }
 
 }  // namespace
@@ -67,18 +65,21 @@ ForceAcross::ForceAcross(const RodLayout& rod, const Model& model) {
 /// - k2 T, F2 = -M2' - u M1 + k1 T with the torque T.
 ForceAcross::Mean ForceAcross::mean(double from, double to, const Model& model,
                                     const State& state) const {
-  const auto along = [&](const RodField& field) { return mean_of(field, from, to, model, state); };
+  const auto course = [&](const RodField& field) {
+    return course_of(field, from, to, model, state);
+  };
   Mean mean;
   Vec2 moment = Vec2::Zero();
   for (std::size_t k = 0; k < bends_.size(); ++k) {
     const auto component = static_cast<Index>(k);
-    mean.curvature[component] = along(*bends_[k].curvature);
-    moment[component] = along(*bends_[k].moment);
-    mean.force[component] = -change_of(*bends_[k].moment, from, to, model, state) / (to - from);
+    const Course bending = course(*bends_[k].moment);
+    moment[component] = bending.mean;
+    mean.curvature[component] = course(*bends_[k].curvature).mean;
+    mean.force[component] = -bending.change / (to - from);
   }
   if (twist_) {
-    mean.force += along(*twist_) * Vec2(moment[1], -moment[0]) +
-                  along(*torque_) * Vec2(-mean.curvature[1], mean.curvature[0]);
+    mean.force += course(*twist_).mean * Vec2(moment[1], -moment[0]) +
+                  course(*torque_).mean * Vec2(-mean.curvature[1], mean.curvature[0]);
   }
   return mean;
 }

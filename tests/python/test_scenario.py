@@ -462,3 +462,57 @@ def test_a_probe_of_how_a_cable_in_space_bends_is_refused(quantity):
         der.SceneError, match=rf"probes\.p\.quantity: rod 'rope' .* no '{quantity}'"
     ):
         der.Scenario.from_dict(scene)
+
+
+@pytest.mark.parametrize("length", [1.0, 1e-200, 1e200])
+def test_the_length_of_an_axis_and_of_a_director_does_not_count(length):
+    turned = {"axis": [0, 0, length], "angle": 1.0}
+    scene = strip_between_clamps([0, 0])
+    scene["rods"][0]["cross_section"]["director"] = [0, 0, length]
+    scene["supports"] = [
+        {"rod": "strip", "at": "start", "clamp": True, "prescribe": {"rotation": turned}}
+    ]
+    del scene["time"]
+    scene |= {"model": "spatial", "analysis": "static"}
+    result = der.run(der.Scenario.from_dict(scene))
+    assert result.positions[-1, -1] == pytest.approx([math.cos(1), math.sin(1), 0], abs=1e-9)
+
+
+def test_a_force_in_the_edge_of_an_end_clamp_is_read_as_at_a_start_clamp():
+    """The mirror image has the same moments along it, to rounding."""
+    found = []
+    for clamped, free, place in (("start", "end", 0.03), ("end", "start", 0.97)):
+        rod = {"name": "rod", "nodes": 11, "from": [0, 0], "to": [1, 0]}
+        rod["cross_section"] = {"stiffness": {"EA": 10.0, "EI": 0.1, "mass_per_length": 1.0}}
+        sign = 1.0 if clamped == "start" else -1.0
+        loads = [
+            {"point_force": {"rod": "rod", "at": at, "force": [sign * force[0], force[1]]}}
+            for at, force in ((place, [0.5, 0.4]), (free, [0.8, -0.1]))
+        ]
+        support = {"rod": "rod", "at": clamped, "clamp": True}
+        scene = {"rods": [rod], "supports": [support], "loads": loads, "analysis": "static"}
+        places, moments = der.run(der.Scenario.from_dict(scene)).along("rod", "moment")
+        order = slice(None) if clamped == "start" else slice(None, None, -1)
+        assert len(places) == 12
+        found.append(moments[-1][order])
+    assert found[1] == pytest.approx(found[0], abs=1e-9)
+
+
+def test_a_force_on_a_ring_changes_no_place_on_the_other_side():
+    angles = np.linspace(0, 2 * np.pi, 17, endpoint=False)
+    points = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    rod = {"name": "ring", "closed": True, "points": points.tolist()}
+    rod["cross_section"] = {"stiffness": {"EA": 1e3, "EI": 1.0, "mass_per_length": 1.0}}
+    edge = float(np.linalg.norm(points[1] - points[0]))
+    probes = {
+        f"{c}{i}": {"rod": "ring", "quantity": c, "at": (i + 0.4) * edge}
+        for i in range(17)
+        for c in "xy"
+    }
+    scene = {"rods": [rod], "time": {"duration": 1e-6, "step": 1e-6}, "output": {"probes": probes}}
+    free = der.run(der.Scenario.from_dict(scene))
+    load = {"point_force": {"rod": "ring", "at": 0.7 * edge, "force": [0, 1e-9]}}
+    loaded = der.run(der.Scenario.from_dict({**scene, "loads": [load]}))
+    for i in range(5, 13):
+        for c in "xy":
+            assert loaded.probes[f"{c}{i}"][0] == free.probes[f"{c}{i}"][0]

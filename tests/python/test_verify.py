@@ -629,6 +629,13 @@ def test_scene_without_probes_gets_some(arm, swing):
     assert any("no probes" in note for note in verification.notes)
 
 
+def test_a_scene_in_space_without_probes_gets_some_along_z(arm):
+    del arm["output"]
+    names = {value.probe for value in der.verify({**arm, "model": "spatial_bend"}, levels=2).values}
+    ends = {"arm_end_x", "arm_end_y", "arm_end_z"}
+    assert names == ends | {"arm_lowest", "arm_highest", "arm_least_z", "arm_greatest_z"}
+
+
 def test_solver_tolerance_is_part_of_the_bar(sagging):
     sagging["time"]["step"] = 0.05
     sagging["output"]["every"] = 0.05

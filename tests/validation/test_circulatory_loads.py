@@ -555,6 +555,17 @@ def test_what_follows_a_free_end_of_a_rod_drawn_as_an_arc(fitted_order, model, l
     assert fitted_order([1 / n for n in sizes], errors) > 1.9
 
 
+def corner_wire(size):
+    """A wire of `size` components, drawn with a corner at node 10 and straight without stress."""
+    legs = [[0.05 * i, 0.0, 0.0] for i in range(11)] + [[0.5, 0.05 * i, 0.0] for i in range(1, 11)]
+    return {
+        "name": "rod",
+        "points": [point[:size] for point in legs],
+        "cross_section": {"stiffness": {"EA": 1e4, "EI": 1.0, "GJ": 1.0, "mass_per_length": 1.0}},
+        "natural_curvature": 0.0,
+    }
+
+
 @pytest.mark.parametrize("bends", [True, False])
 @pytest.mark.parametrize("model", ["planar", "spatial"])
 def test_a_force_that_follows_keeps_its_size_at_a_kink(model, bends):
@@ -562,13 +573,7 @@ def test_a_force_that_follows_keeps_its_size_at_a_kink(model, bends):
     with the mean of both sides, and the supports bear all of it."""
     size = 2 if model == "planar" else 3
     force = np.array([0.6, -0.8, 1.2])[:size]
-    legs = [[0.05 * i, 0.0, 0.0] for i in range(11)] + [[0.5, 0.05 * i, 0.0] for i in range(1, 11)]
-    rod = {
-        "name": "rod",
-        "points": [point[:size] for point in legs],
-        "cross_section": {"stiffness": {"EA": 1e4, "EI": 1.0, "GJ": 1.0, "mass_per_length": 1.0}},
-        "natural_curvature": 0.0,
-    }
+    rod = corner_wire(size)
     supports = [{"rod": "rod", "at": "start", "clamp": True}]
     load = {"rod": "rod", "at": {"node": 10}, "force": force.tolist(), "follower": True}
     scene = {"model": model, "rods": [rod], "supports": supports, "analysis": "static"}
@@ -588,13 +593,7 @@ def test_a_force_that_follows_keeps_its_size_at_a_kink(model, bends):
 
 
 def test_a_moment_that_follows_keeps_its_size_at_a_kink():
-    legs = [[0.05 * i, 0.0, 0.0] for i in range(11)] + [[0.5, 0.05 * i, 0.0] for i in range(1, 11)]
-    rod = {
-        "name": "rod",
-        "points": legs,
-        "cross_section": {"stiffness": {"EA": 1e4, "EI": 1.0, "GJ": 1.0, "mass_per_length": 1.0}},
-        "natural_curvature": 0.0,
-    }
+    rod = corner_wire(3)
     moment = [0.3, -0.4, 0.5]
     load = {"rod": "rod", "at": {"node": 10}, "moment": moment, "follower": True}
     scene = {

@@ -154,6 +154,14 @@ def test_forces_between_nodes(model, how, place, meshes, fitted_order):
             assert fitted_order(sizes, column) > 1.9
 
 
+def errors_of(scene: Any, end: Array, positions: Array, forces: list[Array]) -> Array:
+    """Errors of the end, in a plane, and of the moment that the clamp at the start exerts."""
+    values, result = measured(scene, ["end"], ("x", "y"))
+    bears = sum(np.cross(r, f)[2] for r, f in zip(positions, forces, strict=True))
+    found = [*values[0], result.reactions()[0].moment[-1]]
+    return np.array(found) - [*end[:2], -bears]
+
+
 @pytest.mark.parametrize("apart", [1.0, 1.3, 2.2])
 @pytest.mark.parametrize("how", ["fixed", "spring"])
 def test_forces_in_neighbouring_edges(how, apart, fitted_order):
@@ -168,10 +176,7 @@ def test_forces_in_neighbouring_edges(how, apart, fitted_order):
         end, positions, frames = held_at_start(rod, wrenches)
         forces = [frame @ force for frame, force in zip(frames, shares, strict=True)]
         makers = scene_of("planar", (how, how, "fixed"), places, forces, positions)
-        values, result = measured(makers(edges), ["end"], ("x", "y"))
-        bears = sum(np.cross(r, f)[2] for r, f in zip(positions, forces, strict=True))
-        found = [*values[0], result.reactions()[0].moment[-1]]
-        errors.append(np.array(found) - [*end[:2], -bears])
+        errors.append(errors_of(makers(edges), end, positions, forces))
     sizes = [1.0 / edges for edges in meshes]
     for column in np.transpose(errors):
         assert fitted_order(sizes, column) > 1.9
@@ -273,7 +278,7 @@ def tensions(result: der.Result, places: list[tuple[float, bool]]) -> list[float
 def exact_tensions(
     rod: Rod, wrenches: list[Wrench], places: list[tuple[float, bool]]
 ) -> tuple[list[float], list[Array]]:
-    """Of a rod held at its start, and the forces of the wrenches in space [N]."""
+    """The tensions of a rod held at its start, and the forces of the wrenches in space [N]."""
     markers = [Wrench(place) for place, _ in places]
     _, _, frames = held_at_start(rod, [*wrenches, *markers])
     order = np.argsort([-wrench.s for wrench in [*wrenches, *markers]], kind="stable")[::-1]
@@ -383,10 +388,7 @@ def test_a_force_that_follows_near_the_end_of_a_naturally_curved_rod(share, fitt
             "planar", ("follower", "fixed"), (place, 1.0), [drawn, forces[1]], positions
         )(edges)
         scene["rods"][0]["natural_curvature"] = CURVATURE
-        values, result = measured(scene, ["end"], ("x", "y"))
-        bears = sum(np.cross(r, f)[2] for r, f in zip(positions, forces, strict=True))
-        found = [*values[0], result.reactions()[0].moment[-1]]
-        errors.append(np.array(found) - [*end[:2], -bears])
+        errors.append(errors_of(scene, end, positions, forces))
     sizes = [1.0 / edges for edges in meshes]
     for column in np.transpose(errors):
         assert fitted_order(sizes, column) > 1.9

@@ -18,7 +18,7 @@ bool bears_forces_across(const RodLayout& rod, const Model& model);
 /// each of its unstretched length.
 class ForceAcross {
  public:
-  /// Of a rod that `bears_forces_across`.
+  /// The rod `bears_forces_across`.
   ForceAcross(const RodLayout& rod, const Model& model);
 
   /// Towards the two directors, or in the plane.

@@ -68,6 +68,17 @@ std::vector<SectionColumn> section_columns(hsize_t sections) {
           {"frames", {sections, hsize_t{FrameBlock::kSize}}}};
 }
 
+/// Edges of which a dataset has an entry in each frame; errors call it `path`.
+hsize_t edges_in(hid_t parent, const char* name, const std::string& path) {
+  const hdf5::Handle dataset = hdf5::open_dataset(parent, name, hdf5::native_type<double>());
+  const std::vector<hsize_t> dimensions = hdf5::dimensions_of(dataset.id());
+  if (dimensions.size() != 2 || dimensions[1] == 0) {
+    throw IoError("'" + path + "' should be frames x edges");
+  }
+  hdf5::check_stored(dataset.id(), 1, dimensions[1]);
+  return dimensions[1];
+}
+
 /// Edges that have a section in a file; 0: its model has none.
 hsize_t sections_in(hid_t file) {
   const bool expected = hdf5::read_text_attribute(file, "model") == "spatial";
@@ -77,25 +88,12 @@ hsize_t sections_in(hid_t file) {
   }
   if (!expected) return 0;
   const hdf5::Handle group = hdf5::open_group(file, kSections);
-  const hdf5::Handle theta = hdf5::open_dataset(group.id(), "theta", hdf5::native_type<double>());
-  const std::vector<hsize_t> dimensions = hdf5::dimensions_of(theta.id());
-  if (dimensions.size() != 2 || dimensions[1] == 0) {
-    throw IoError("'sections/theta' should be frames x edges");
-  }
-  hdf5::check_stored(theta.id(), 1, dimensions[1]);
-  return dimensions[1];
+  return edges_in(group.id(), "theta", "sections/theta");
 }
 
 /// Edges whose turns are in a file.
 hsize_t turns_in(hid_t file) {
-  if (!hdf5::exists(file, kTurns)) return 0;
-  const hdf5::Handle turns = hdf5::open_dataset(file, kTurns, hdf5::native_type<double>());
-  const std::vector<hsize_t> dimensions = hdf5::dimensions_of(turns.id());
-  if (dimensions.size() != 2 || dimensions[1] == 0) {
-    throw IoError("'turns' should be frames x edges");
-  }
-  hdf5::check_stored(turns.id(), 1, dimensions[1]);
-  return dimensions[1];
+  return hdf5::exists(file, kTurns) ? edges_in(file, kTurns, kTurns) : 0;
 }
 
 /// The layout of a file, with the probes in alphabetical order.

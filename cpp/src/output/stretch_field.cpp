@@ -140,7 +140,7 @@ class StretchField : public RodField {
     return strain;
   }
 
-  /// What a load adds to the strain, of which this is the force, or the force per length.
+  /// The strain that a load adds; `force` is its force [N], or its force per length [N/m].
   [[nodiscard]] double passed_strain(const StretchSample::Passed& load, const Vec3& force,
                                      const Model& model, const State& state) const {
     return load.amount * tangent(load.arc_length, model, state).dot(force) / rod_.EA;

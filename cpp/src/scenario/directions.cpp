@@ -8,7 +8,7 @@ namespace {
 
 Vec3 first_edge(const Rod& rod) { return in_space(rod.points[1]) - in_space(rod.points[0]); }
 
-/// Of length 1, whatever length is given.
+/// The director as a unit vector, whatever length is given.
 Vec3 director_of(const Rod& rod) {
   return rod.director ? in_space(*rod.director).stableNormalized() : Vec3::UnitZ();
 }

@@ -144,7 +144,7 @@ std::function<void(hid_t)> changed(const char* name) {
   return [=](hid_t file) { overwrite(file, name, H5T_NATIVE_DOUBLE, 0.25); };
 }
 
-/// Of a run of `kWound`, which follows the turns of an edge.
+/// Mistakes in a run of `kWound`, which follows the turns of an edge.
 const std::vector<NamedMistake>& turn_mistakes() {
   static const std::vector<NamedMistake> all{
       {"none", "checksum", without("turns")},
@@ -156,7 +156,7 @@ const std::vector<NamedMistake>& turn_mistakes() {
   return all;
 }
 
-/// Of a run of `kStrip`.
+/// Mistakes in a run of `kStrip`.
 const std::vector<NamedMistake>& section_mistakes() {
   const hsize_t edges = 5;
   static const std::vector<NamedMistake> all{

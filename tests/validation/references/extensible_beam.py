@@ -75,12 +75,14 @@ def _load_steps(load: float) -> Array:
 
 @dataclass(frozen=True)
 class Deflection:
-    """Largest deflection (m, positive down), where it is (rest arc length, m), and the
-    x displacement of the roller (m); `shooting_gap` is an independent error (m).
+    """Largest deflection (m, positive down), where it is (rest arc length, m), the deflection at
+    half the rest length, and the x displacement of the roller (m); `shooting_gap` is an
+    independent error (m).
     """
 
     largest: float
     position: float
+    middle: float
     roller: float
     shooting_gap: float
 
@@ -111,6 +113,7 @@ def simply_supported(beam: Beam, load: float, at: float, degree: int = 40) -> De
     return Deflection(
         -lowest * beam.length,
         low * beam.length,
+        -float(solution.at(np.array([0.5]))[1, 0]) * beam.length,
         float(solution.values[-1, 0, -1] - 1.0) * beam.length,
         problem.shooting_gap(solution) * beam.length,
     )

@@ -209,7 +209,7 @@ def prepare(folder: Path) -> None:
     (folder / ".venv").symlink_to(sys.prefix)
     scripts = folder / "scripts"
     scripts.mkdir()
-    for script in ("run", "test"):
+    for script in ("run", "test", "reproduce"):
         (scripts / script).write_text(f'#!/bin/sh\nexec "{ROOT}/scripts/{script}" "$@"\n')
         (scripts / script).chmod(0o755)
 

@@ -24,11 +24,6 @@ class ProgressLine:
         self._stream = sys.stderr if stream is None else stream
         self._start = time.monotonic()
         self._width = 0
-        self._label = ""
-
-    def label(self, text: str) -> None:
-        """Show the name of the current stage beside the percentage."""
-        self._label = f"  {text}"
 
     def __call__(self, done: float) -> None:
         """Show that the share `done` (0 to 1) of the run is done."""
@@ -36,7 +31,7 @@ class ProgressLine:
         if elapsed < self.delay:
             return
         left = f", {_duration(elapsed * (1.0 - done) / done)} left" if done > 0.0 else ""
-        self._write(f"{done:4.0%}{left}{self._label}")
+        self._write(f"{done:4.0%}{left}")
 
     def close(self) -> None:
         """Wipe the line."""

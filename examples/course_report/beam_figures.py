@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.axes import Axes
+from der.plotting import PALETTE, draw_shapes, draw_supports
+from der.plotting.style import LOAD, MUTED
 from matplotlib.figure import Figure
 
-from der.plotting import PALETTE, draw_shapes, draw_supports
-from der.plotting.style import MUTED
-from der.reproduce.beam_exact import Tube, euler_bernoulli_deflection
-from der.reproduce.measurements import LOADS, Measurements
-
-_LOAD = PALETTE[1]
+from .exact import LOAD_AT, linear_deflection
+from .measurements import LOADS, Measurements
 
 
 def loaded_beam(m: Measurements) -> Figure:
@@ -24,11 +21,14 @@ def loaded_beam(m: Measurements) -> Figure:
     draw_shapes(axes, run.rods, shape, PALETTE[0], "under 2 kN")
     draw_supports(axes, run.rods, run.held_nodes(len(run.times) - 1), shape)
     arc = run.rods[0].arc_lengths
-    _draw_load(
-        axes,
-        float(np.interp(Tube().load_at, arc, shape[:, 0])),
-        float(np.interp(Tube().load_at, arc, shape[:, 1])),
+    x, y = (float(np.interp(LOAD_AT, arc, shape[:, axis])) for axis in (0, 1))
+    axes.annotate(
         "2 kN",
+        (x, y),
+        xytext=(x, y + 0.13),
+        ha="center",
+        color=LOAD,
+        arrowprops={"arrowstyle": "-|>", "color": LOAD, "linewidth": 1.8, "shrinkB": 0},
     )
     axes.set_aspect("equal")
     axes.set_xlim(-0.06, 1.06)
@@ -37,17 +37,6 @@ def loaded_beam(m: Measurements) -> Figure:
     axes.set_ylabel("y [m]")
     axes.legend(loc="upper left", ncols=2)
     return figure
-
-
-def _draw_load(axes: Axes, x: float, y: float, label: str) -> None:
-    axes.annotate(
-        label,
-        (x, y),
-        xytext=(x, y + 0.13),
-        ha="center",
-        color=_LOAD,
-        arrowprops={"arrowstyle": "-|>", "color": _LOAD, "linewidth": 1.8, "shrinkB": 0},
-    )
 
 
 def deflection_history(m: Measurements) -> Figure:
@@ -79,12 +68,9 @@ def deflection_history(m: Measurements) -> Figure:
         linewidth=1.0,
         label="the largest along the tube, likewise",
     )
-    place = Tube().load_at
-    for exact, label in (
-        (m.exact_middles[place][2000.0], "exact, at rest"),
-        (m.exact_deflections[place][2000.0], None),
-    ):
-        axes.axhline(exact, color="black", linestyle="--", linewidth=0.8, label=label)
+    exact = m.exact_beams[LOAD_AT][2000.0]
+    for value, label in ((exact.middle, "exact, at rest"), (exact.largest, None)):
+        axes.axhline(value, color="black", linestyle="--", linewidth=0.8, label=label)
     axes.set_xlim(-0.005, float(swing.times[-1]))
     axes.set_ylim(-0.002, 0.11)
     axes.set_xlabel("time [s]")
@@ -95,11 +81,10 @@ def deflection_history(m: Measurements) -> Figure:
 
 def deflection_by_load(m: Measurements) -> Figure:
     """Draw deflection against load, on logarithmic axes, and how far each theory is off."""
-    tube = Tube()
     loads = np.array(LOADS)
-    exact = np.array([m.exact_deflections[tube.load_at][load] for load in LOADS])
+    exact = np.array([m.exact_beams[LOAD_AT][load].largest for load in LOADS])
     ours = np.array([m.deflections[load].value for load in LOADS])
-    linear = np.array([euler_bernoulli_deflection(tube, load) for load in LOADS])
+    linear = np.array([linear_deflection(load) for load in LOADS])
     figure, (left, right) = plt.subplots(1, 2, figsize=(8.8, 4.2), layout="constrained")
     left.loglog(loads, linear, color=MUTED, linestyle="--", label="Euler-Bernoulli")
     left.loglog(loads, exact, color="black", linewidth=1.0, label="exact elastica")

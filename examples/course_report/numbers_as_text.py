@@ -21,9 +21,9 @@ def number(value: float, digits: int = 3) -> str:
     return f"{mantissa}{_TIMES_TEN}{str(power).translate(_SUPERSCRIPTS)}"
 
 
-def with_error_bar(value: float, error_bar: float) -> str:
-    """Return a value with the digits that its error bar leaves, of which two are uncertain."""
-    return number(value, digits_within(value, error_bar))
+def error_bar_text(error_bar: float) -> str:
+    """Return an error bar to its two digits."""
+    return f"±\u00a0{number(error_bar, 2)}"
 
 
 def digits_within(value: float, error_bar: float) -> int:

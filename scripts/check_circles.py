@@ -114,7 +114,17 @@ def against_order(graph: Graph, order: list[str]) -> Iterator[str]:
 
 def missing_files(page: str) -> Iterator[str]:
     """Yield the files that the page names and that do not exist."""
-    roots = ("cpp", "bindings", "python", "tests", "benchmarks", "docs", "scripts", "configs", "examples")
+    roots = (
+        "cpp",
+        "bindings",
+        "python",
+        "tests",
+        "benchmarks",
+        "docs",
+        "scripts",
+        "configs",
+        "examples",
+    )
     files = [
         "/" + file.relative_to(ROOT).as_posix()
         for root in roots

@@ -296,11 +296,19 @@ def test_captions_and_parameters(text):
         assert said in words[start : start + 900], figure
     for row in (
         "Nodes 3 21 51 ",
+        "Length of the rod m 0.1 0.1 1 ",
         "from inside to outside m 0.001 0.001 0.011 to 0.013 ",
+        "Young's modulus Pa 1e+09 1e+09 7e+10 ",
+        "Density of the rod kg/m^3 0 0 2700 ",
+        "Radius of the small spheres m 0.005 0.0005 - ",
+        "Radius of the middle sphere m 0.025 0.025 - ",
+        "Density of the spheres kg/m^3 7000 7000 - ",
         "Gravity, downward m/s^2 9.8 9.8 - ",
+        "Viscosity of the fluid Pa s 1000 1000 - ",
         "no buoyancy kg/m^3 1000 0 - ",
         "Force, downward N - - 2000 ",
         "Place of the force along the rod m - - 0.75 ",
+        "Time step, implicit s 0.01 0.01 0.01 ",
         "Duration s 10 50 1 ",
     ):
         assert row in words

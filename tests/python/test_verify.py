@@ -11,13 +11,20 @@ import numpy as np
 import pytest
 from der.accuracy.error_bars import ErrorEstimate, estimate_error
 from der.accuracy.event_matching import match_places
+from der.accuracy.noise import ExactBelow, exact_below
 from der.accuracy.probe_extremes import parabola_top, probe_values
-from der.accuracy.refinement import rods_that_cannot_be_refined, with_elements, with_time
+from der.accuracy.refinement import (
+    curves_between_points,
+    rods_that_cannot_be_refined,
+    with_elements,
+    with_time,
+)
 from der.accuracy.resampling import (
     find_corners,
     find_curvature_jumps,
     resample_line,
     resample_list,
+    resample_ring,
 )
 from der.accuracy.static_verifier import StaticVerifier
 from der.accuracy.verification import Verification, VerifiedValue
@@ -226,7 +233,7 @@ def test_points_of_a_curve_stay_on_the_curve(half_circle):
     half_circle["loads"][0]["point_force"]["at"] = "middle"
     finer = with_elements(der.Scenario.from_dict(half_circle), 4)
     points = np.array(finer.to_dict()["rods"][0]["points"])
-    assert np.linalg.norm(points, axis=1) == pytest.approx(np.ones(65), abs=2e-4)
+    assert np.linalg.norm(points, axis=1) == pytest.approx(np.ones(65), abs=2e-6)
     assert finer.to_dict()["loads"][0]["point_force"]["at"] == {"node": 32}
 
 
@@ -255,6 +262,16 @@ def test_corners_stay_corners():
     # One kink of 40 degrees in a straight line is a corner too.
     kink = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.77, 0.64], [3.54, 1.28]])
     assert find_corners(kink) == [2]
+
+
+def test_the_last_turn_behind_an_inflection_is_no_corner():
+    """It stands alone: the curve turns the other way before it, and ends behind it."""
+    x = np.linspace(0.0, 1.05, 30)
+    wave = np.column_stack([x, 0.1 * np.sin(np.pi * x)])
+    edges = np.diff(wave, axis=0)
+    turns = edges[:-1, 0] * edges[1:, 1] - edges[:-1, 1] * edges[1:, 0]
+    assert turns[-1] > 0.0 > turns[-2]
+    assert find_corners(wave) == []
 
 
 def test_corners_in_space():
@@ -287,14 +304,15 @@ def test_a_list_of_natural_twists_is_refined():
 
 @pytest.mark.parametrize("edges", [5, 10, 20])
 def test_jumps_of_the_curvature_stay_jumps(edges):
-    """The straight leg stays straight, and the arc is left by what a spline leaves a circle."""
+    """The straight leg stays straight, and the arc is left by what a spline of degree 5 leaves a
+    circle: an error of sixth order."""
     points = crook(edges)
     assert find_curvature_jumps(points) == [edges]
     finer = resample_line(points, Fraction(4))
     assert finer[: 4 * edges + 1, 1] == pytest.approx(0.0, abs=1e-12)
     radii = np.linalg.norm(finer[4 * edges :] - [0.5, 0.3], axis=1)
     turn = np.pi / 2 / edges
-    assert radii == pytest.approx(0.3, abs=0.3 * turn**4 / 30)
+    assert radii == pytest.approx(0.3, abs=0.3 * turn**6 / 30)
 
 
 def test_smooth_curves_have_no_jumps_of_the_curvature():
@@ -322,6 +340,46 @@ def test_bars_hold_where_the_curvature_jumps(arm):
     assert not verification.flagged
     assert abs(slope.value) < 1e-8
     assert slope.error_bar < 3e-4  # 0.021 with one spline through all points, which rounds it
+
+
+@pytest.mark.parametrize("other_curve", [False, True])
+@pytest.mark.parametrize("closed", [False, True])
+def test_new_nodes_of_a_curve_are_of_high_order(closed, other_curve):
+    """A spline of degree k errs by h^(k + 1), beside its ends by h^k; the one to compare with is
+    two orders better."""
+    errors = []
+    for elements in (16, 32):
+        whole = 2.0 * np.pi if closed else 2.0
+        turn = np.linspace(0.0, whole, elements + 1)[: -1 if closed else None]
+        points = np.column_stack([np.cos(turn), np.sin(turn)])
+        resample = resample_ring if closed else resample_line
+        finer = resample(points, Fraction(4), other_curve=other_curve)
+        errors.append(np.max(np.abs(np.linalg.norm(finer, axis=1) - 1.0)))
+    least = (7.0 if other_curve else 5.0) + closed
+    assert least - 0.3 < np.log2(errors[0] / errors[1]) < least + 2.0
+
+
+@pytest.mark.parametrize("edges", range(3, 6))
+def test_few_points_are_compared_with_a_lower_degree(edges):
+    """No spline is of higher degree than the polynomial through all of the points."""
+    angle = np.linspace(0.0, 1.5, edges + 1)
+    arc = np.column_stack([np.cos(angle), np.sin(angle)])
+    usual, other = (
+        np.abs(np.linalg.norm(resample_line(arc, Fraction(2), other_curve=o), axis=1) - 1.0).max()
+        for o in (False, True)
+    )
+    assert 0.0 < usual < 5.0 * other
+
+
+def test_what_is_straight_between_corners_leaves_nothing_open(half_circle):
+    ell = [[0.0, 0.0], [0.2, 0.0], [0.5, 0.0], [0.5, 0.1], [0.5, 0.7]]
+    polyline = {**half_circle, "rods": [{**half_circle["rods"][0], "points": ell}]}
+    for scene, curves in ((ARM, []), (polyline, []), (half_circle, ["arm"])):
+        assert curves_between_points(der.Scenario.from_dict(scene)) == curves
+    found = der.verify(polyline)
+    assert found["tip"].drawing is None
+    assert "drawing" not in str(found)
+    assert found.to_dict()["values"][0]["drawing_error"] is None
 
 
 def test_coarser_points_drop_nodes_but_no_corner():
@@ -371,6 +429,91 @@ def test_static_bar_holds_the_elastica(arm):
     assert tip.space.order == pytest.approx(2.0, abs=0.1)
     assert verification.meshes == ("21 nodes", "41 nodes", "81 nodes")
     assert verification.flagged == []
+
+
+def wave(share):
+    """A sine of two half waves over unit length, and its curvature."""
+    height, number = 0.15, 2.0 * np.pi
+    slope = height * number * np.cos(number * share)
+    curvature = -height * number**2 * np.sin(number * share) / (1.0 + slope**2) ** 1.5
+    return np.column_stack([share, height * np.sin(number * share)]), curvature
+
+
+@pytest.fixture
+def drawn_wave(arm):
+    """The sine, drawn by uneven points and free of loads, so that its curvature is known."""
+    even = np.linspace(0.0, 1.0, 26)
+    points, curvature = wave(even + 0.1 * np.sin(2.0 * np.pi * even) * (1.0 - even))
+    rod = {key: arm["rods"][0][key] for key in ("name", "cross_section")}
+    arm["rods"] = [{**rod, "points": points.tolist()}]
+    del arm["loads"]
+    nodes = range(1, 25)
+    arm["output"]["probes"] = {
+        f"node_{node}": {"rod": "arm", "at": {"node": node}, "quantity": "curvature"}
+        for node in nodes
+    }
+    return arm, {f"node_{node}": curvature[node] for node in nodes}
+
+
+def test_the_bar_includes_what_points_leave_open(drawn_wave):
+    """The curvature of a cubic spline through them is off by more than the error of the mesh."""
+    scene, exact = drawn_wave
+    found = der.verify(scene)
+    for name, curvature in exact.items():
+        value = found[name]
+        assert abs(value.value - curvature) <= value.error_bar, name
+        assert abs(value.extrapolated - curvature) <= value.error_bar, name
+        parts = (value.space, value.drawing)
+        assert value.error_bar == pytest.approx(value.solver + sum(p.error_bar for p in parts))
+    assert {value.drawing.verdict for value in found.values} == {"compared"}
+    assert found.to_dict()["values"][0]["drawing_error"]["error_bar"] > 0.0
+    header, first = str(found).splitlines()[2:4]
+    assert header.split()[:6] == ["probe", "value", "error", "space", "time", "drawing"]
+    assert len(first.split()) == 13
+
+
+def test_a_note_tells_where_the_drawing_limits(drawn_wave):
+    found = der.verify(drawn_wave[0])
+    limited = [value.label for value in found.values if value.is_limited_by_drawing]
+    assert 1 < len(limited) < len(found.values)
+    (note,) = found.notes
+    named = ", ".join(f"'{label}'" for label in limited)
+    assert note.startswith(
+        f"the error of {named} is mostly that of the drawing: the points of 'arm' leave open"
+    )
+
+
+def test_what_points_leave_open_over_time(half_circle):
+    """Its tip sinks under a load put on at once; truth from 16 times the points of the circle."""
+    del half_circle["analysis"]
+    half_circle["time"] = {"duration": 0.5, "step": 0.025, "integrator": "tr_bdf2"}
+    half_circle["output"]["every"] = 0.025
+    fine = json.loads(json.dumps(half_circle))
+    angle = np.linspace(0.0, np.pi, 16 * 16 + 1)
+    fine["rods"][0]["points"] = np.column_stack([np.cos(angle), np.sin(angle)]).tolist()
+    found = der.verify(half_circle)
+    truth = der.run(fine).probes["tip"][-1]
+    tip = found["tip"]
+    assert tip.drawing.verdict in ("compared", "exact")
+    assert abs(tip.value - truth) <= tip.space.error_bar + tip.drawing.error_bar + tip.solver
+
+
+def test_failed_run_on_other_curves_is_flagged_with_a_note(half_circle, monkeypatch):
+    original = der.accuracy.verification_runs.Workers.run
+
+    def fail_on_other_curves(self, tasks, **options):
+        outcomes = original(self, tasks, **options)
+        error = der.NotConvergedError("no convergence")
+        return {
+            key: type(outcome)(None, error, 0.0) if key == ("drawing", 1) else outcome
+            for key, outcome in outcomes.items()
+        }
+
+    monkeypatch.setattr(der.accuracy.verification_runs.Workers, "run", fail_on_other_curves)
+    found = der.verify(half_circle)
+    assert found["tip"].verdict == "failed in drawing"
+    assert math.isinf(found["tip"].error_bar)
+    assert found.notes == ("the run with other curves through the points failed: no convergence",)
 
 
 def hanging_rod(weight):
@@ -440,8 +583,8 @@ def bend_the_other_way(scene, monkeypatch):
     """Give the scene a slight natural curvature, and finer meshes the opposite one."""
     scene["rods"][0]["natural_curvature"] = 1e-3
 
-    def other(scenario, factor):
-        finer = with_elements(scenario, factor)
+    def other(scenario, factor, **options):
+        finer = with_elements(scenario, factor, **options)
         return finer if factor == 1 else finer.with_(**{"rods.0.natural_curvature": -1e-3})
 
     monkeypatch.setattr(der.accuracy.verification_runs, "with_elements", other)
@@ -603,6 +746,69 @@ def test_negligible_parts_are_not_flagged_but_stay_in_the_bar(error_bar, verdict
     value = VerifiedValue("tip", "max", "m", 1.0, 0.0, space, time, 0.0, negligible=1e-7)
     assert (value.verdict, value.flagged) == (verdict, verdict != "converged")
     assert value.error_bar == 1e-10 + error_bar
+
+
+def exact_value(value, error_bar, verdict="oscillating", **limits):
+    part = estimate(verdict, error_bar)
+    return VerifiedValue(
+        "p", "final", "m", value, 0.0, part, None, 0.0, exact_below=ExactBelow(**limits)
+    )
+
+
+@pytest.mark.parametrize(
+    ("value", "error_bar", "verdict"),
+    [
+        (3.0, 0.9e-9, "exact"),
+        (3.0, 1.1e-9, "oscillating in space"),
+        (1e-8, 5e-8, "exact"),  # 0 to rounding
+        (6e-8, 5e-8, "oscillating in space"),  # small, but not 0
+        (1e-8, 2e-6, "oscillating in space"),
+        (3.0, math.inf, "oscillating in space"),
+    ],
+)
+def test_values_whose_bar_is_rounding_are_exact(value, error_bar, verdict):
+    found = exact_value(value, error_bar, rounding=1e-9, nothing=1e-6)
+    assert (found.verdict, found.flagged) == (verdict, verdict != "exact")
+    assert found.unsettled == (set() if verdict == "exact" else {"space"})
+    assert found.to_dict()["verdict"] == verdict
+    assert found.error_bar == error_bar
+
+
+def test_exact_values_count_as_measured():
+    assert not exact_value(0.0, 1e-12, "two levels", nothing=1e-9).has_two_levels
+    alone = VerifiedValue("p", "final", "m", 0.0, 0.0, None, None, 0.0)
+    assert alone.verdict == "converged"  # nothing was refined
+
+
+def test_values_that_are_zero_to_rounding_are_exact_in_every_quantity(arm):
+    """A straight rod without load, on a slope so that coordinates have all digits: its curvature is
+    rounding over the square of the edges, and shows any order."""
+    arm["rods"][0] |= {"nodes": 61, "to": [math.cos(0.7), math.sin(0.7)]}
+    del arm["loads"]
+    at = {"rod": "arm", "at": "middle"}
+    names = ("x", "slope", "curvature", "moment", "tension", "strain")
+    probes = {name: {**at, "quantity": name} for name in names}
+    probes["reaction"] = {"support": 0, "quantity": "reaction_x"}
+    probes["energy"] = {"quantity": "elastic_energy"}
+    arm["output"]["probes"] = probes
+    found = der.verify(arm)
+    assert {value.verdict for value in found.values} == {"exact"}
+    assert not found.flagged
+    assert f"All {len(probes)} values converge at the expected order" in str(found)
+
+
+def test_forces_far_below_the_axial_stiffness_are_not_taken_for_zero(arm):
+    """EA is 1e7 N, and 1e-9 of it is much of the force: that of bending is what counts."""
+    limits = exact_below(der.run(arm), "N", 1.0)
+    assert limits.nothing == pytest.approx(1e-9)  # EI / L^2 is 1 N
+    assert limits.rounding < 1e-5
+
+
+def test_positions_far_from_the_origin_are_not_exact_for_it(arm):
+    rod = arm["rods"][0]
+    rod |= {"from": [1000.0, 0.0], "to": [1001.0, 0.0]}
+    limits = exact_below(der.run(arm), "m", 1001.0)
+    assert limits.rounding == pytest.approx(1e-9)
 
 
 def test_what_is_negligible_goes_by_the_way_of_the_probe(swing):

@@ -25,6 +25,7 @@ from typing import Literal
 #:
 #: - ``converged``: at the expected order or faster;
 #: - ``exact``: refining changes nothing beyond rounding;
+#: - ``compared``: with one other way to draw the rods, which shows no order;
 #: - ``two levels``: the order could not be measured, since only one refinement was done;
 #: - ``settled``: the changes shrink by as much as order 1 would have it, but not as expected;
 #: - ``slow``: the changes shrink by less, at less than three quarters of the expected order;
@@ -38,6 +39,7 @@ from typing import Literal
 Verdict = Literal[
     "converged",
     "exact",
+    "compared",
     "two levels",
     "settled",
     "slow",
@@ -63,13 +65,15 @@ _SLOW = 0.75  # of the expected order
 _LEAST_ORDER = 0.5
 #: The last change is at most this share of the largest one: a half, as of order 1, and a little.
 _SETTLED = 0.55
+#: Of the curvature of the splines through points, the least of all quantities.
+_ORDER_OF_SPLINES = 4.0
 #: A value whose bar is less than this share of it does not tell on which side the structure is.
 _SAME_ON_BOTH_SIDES = 0.1
 
 
 @dataclass(frozen=True)
 class ErrorEstimate:
-    """The error of a value that comes from one kind of refinement, in space or in time.
+    """The error of a value of one origin: space, time, or how the rods are drawn.
 
     Attributes
     ----------
@@ -164,6 +168,29 @@ def estimate_from_levels(
     if len(values) < 2:
         return unknown_error("failed", order)
     return estimate_error(values, order, noise, ratio)
+
+
+def estimate_drawing(
+    by_level: Mapping[int, float], others: Mapping[int, float], noise: float
+) -> ErrorEstimate:
+    """Estimate the error from splines through points that are not the curve that they sample.
+
+    Parameters
+    ----------
+    by_level
+        Values on finer meshes, whose nodes lie on these splines.
+    others
+        The same on splines of another degree, whose own error is of a higher order.
+    noise
+        Differences up to this are not significant.
+    """
+    levels = sorted(by_level.keys() & others.keys())
+    if not levels:
+        return unknown_error("failed", _ORDER_OF_SPLINES)
+    apart = max(abs(by_level[level] - others[level]) for level in levels)
+    verdict: Verdict = "compared" if apart > noise else "exact"
+    error_bar = noise + (_FACTOR_OFF_ORDER * apart if apart > noise else 0.0)
+    return ErrorEstimate(0.0, error_bar, None, _ORDER_OF_SPLINES, verdict)
 
 
 def on_one_branch(estimate: ErrorEstimate, mirrored: bool, largest: float) -> ErrorEstimate:

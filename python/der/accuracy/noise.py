@@ -1,9 +1,14 @@
-"""Below which size a difference between two runs is rounding."""
+"""Below which size a difference between two runs, or an error bar, is rounding."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
+import numpy as np
+
 from der._core import Model
 from der.natural_sizes import natural_size
+from der.result import Result
 
 #: Rounding error, as a fraction of the largest value of a probe in the run.
 _OF_VALUE = 1e-10
@@ -30,3 +35,71 @@ def noise_floor(model: Model, unit: str, step: float, largest: float) -> float:
     """
     share = _OF_SIZES.get(unit, _OF_SIZE)
     return _OF_VALUE * largest + share * natural_size(model.rods, unit, step)
+
+
+#: A value is exact if its error bar is less than this share of its size.
+_EXACT = 1e-9
+#: Coordinates are known to this share of the largest: a few times the last digit.
+_OF_COORDINATES = 8 * 2.2e-16
+
+
+@dataclass(frozen=True)
+class ExactBelow:
+    """The error bars of a value that are no more than rounding.
+
+    Attributes
+    ----------
+    rounding
+        Any error bar up to this is, in the unit of the value.
+    nothing
+        So is one up to this if the value is 0 within it.
+    """
+
+    rounding: float = 0.0
+    nothing: float = 0.0
+
+
+#: No error bar is.
+NOTHING = ExactBelow()
+
+
+def exact_below(result: Result, unit: str, largest: float) -> ExactBelow:
+    """Return below which error bars a value is exact.
+
+    Parameters
+    ----------
+    result
+        A run on the finest mesh, which has the largest errors by rounding.
+    unit
+        Unit of the probe.
+    largest
+        Largest absolute value of the probe in the run of the scene.
+    """
+    rods = result.model.rods
+    size = natural_size(rods, unit, 0.0)
+    if unit == "N":  # that of bending; rods that hardly stretch bear no force near EA
+        size = max(rod.EI / rod.length**2 for rod in rods)
+    # Far from the origin, a position is large by the choice of coordinates alone.
+    scale = min(largest, size) if unit == "m" else largest
+    rounding = max(_EXACT * scale, _rounding_of_coordinates(result, unit))
+    return ExactBelow(rounding, _EXACT * size)
+
+
+def _rounding_of_coordinates(result: Result, unit: str) -> float:
+    """Return how exact a quantity of edges and nodes can be with coordinates of 16 digits."""
+    error = _OF_COORDINATES * float(np.max(np.abs(result.positions[-1])))
+    found = 0.0
+    for rod in result.model.rods:
+        edge = float(np.min(np.diff(rod.line_arc_lengths)))
+        angle, curvature = 2.0 * error / edge, 4.0 * error / edge**2
+        sizes = {
+            "m": error,
+            "": angle,
+            "rad": angle,
+            "1/m": curvature,
+            "rad/m": curvature,
+            "N": rod.EA * angle,
+            "N m": rod.EI * curvature,
+        }
+        found = max(found, sizes.get(unit, 0.0))
+    return found

@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from der._core import Scenario
 from der.accuracy.resampling import arc_lengths, resample_line, resample_list, resample_ring
@@ -17,6 +18,9 @@ SPACE_ORDER = 2.0
 
 #: Two places along a rod closer than this share of its length are the same.
 _SAME_PLACE = 1e-9
+#: Two curves through the points of a rod are the same if they differ by no more than this share of
+#: its size.
+_SAME_CURVE = 1e-13
 
 
 def rods_that_cannot_be_refined(scenario: Scenario) -> dict[str, str]:
@@ -49,7 +53,25 @@ def belongs_to_its_mesh(scenario: Scenario, probe: str) -> bool:
     return asked["quantity"] == "turning_angle" and asked["rod"] not in fixed
 
 
-def with_elements(scenario: Scenario, factor: Fraction | int) -> Scenario:
+def curves_between_points(scenario: Scenario) -> list[str]:
+    """Return the rods whose points leave open by which curve finer meshes are to go through them.
+
+    They are rods drawn by points, and refined; not those whose parts between corners are straight.
+    """
+    fixed = rods_that_cannot_be_refined(scenario)
+    found = []
+    for rod in scenario.to_dict()["rods"]:
+        if "points" not in rod or rod["name"] in fixed:
+            continue
+        points, others = (_resampled(rod, Fraction(2), other) for other in (False, True))
+        if np.max(np.abs(points - others)) > _SAME_CURVE * np.max(np.ptp(points, axis=0)):
+            found.append(rod["name"])
+    return found
+
+
+def with_elements(
+    scenario: Scenario, factor: Fraction | int, *, other_curve: bool = False
+) -> Scenario:
     """Return the scene with `factor` times as many elements in every rod that allows it.
 
     Old nodes stay where they are when `factor` is a whole number: supports, loads and probes keep
@@ -63,6 +85,8 @@ def with_elements(scenario: Scenario, factor: Fraction | int) -> Scenario:
         The scene.
     factor
         Factor of the number of elements; less than 1 makes the mesh coarser.
+    other_curve
+        Whether rods drawn by points take another curve through them, to compare with.
 
     Raises
     ------
@@ -77,7 +101,7 @@ def with_elements(scenario: Scenario, factor: Fraction | int) -> Scenario:
     fixed = rods_that_cannot_be_refined(scenario)
     for rod in scene["rods"]:
         if rod["name"] not in fixed:
-            _refine_rod(scene, rod, factor)
+            _refine_rod(scene, rod, factor, other_curve)
     return Scenario.from_dict(scene)
 
 
@@ -126,8 +150,10 @@ def _loads(scene: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
             yield kind, what
 
 
-def _refine_rod(scene: dict[str, Any], rod: dict[str, Any], factor: Fraction) -> None:
-    places = _Places(rod, factor)
+def _refine_rod(
+    scene: dict[str, Any], rod: dict[str, Any], factor: Fraction, other_curve: bool
+) -> None:
+    places = _Places(rod, factor, other_curve)
     for key in ("natural_curvature", "natural_twist", "initial_velocity"):
         if _is_per_node(rod, key):
             values = np.array(rod[key], dtype=float)
@@ -163,10 +189,15 @@ def _what_stands_on(scene: dict[str, Any], rod: dict[str, Any]) -> Iterator[dict
             yield item
 
 
+def _resampled(rod: dict[str, Any], factor: Fraction, other_curve: bool) -> NDArray[np.float64]:
+    resample = resample_ring if rod.get("closed") else resample_line
+    return resample(np.array(rod["points"], dtype=float), factor, other_curve=other_curve)
+
+
 class _Places:
     """Where the nodes of a rod are before and after a refinement."""
 
-    def __init__(self, rod: dict[str, Any], factor: Fraction) -> None:
+    def __init__(self, rod: dict[str, Any], factor: Fraction, other_curve: bool) -> None:
         before = _count_elements(rod)
         self._name = rod["name"]
         self._factor = factor
@@ -175,7 +206,7 @@ class _Places:
         self.points = None
         if "points" in rod:
             old = np.array(rod["points"], dtype=float)
-            self.points = (resample_ring if self._closed else resample_line)(old, factor)
+            self.points = _resampled(rod, factor, other_curve)
             self._old_arc = arc_lengths(old, closed=self._closed)
             self._new_arc = arc_lengths(self.points, closed=self._closed)
 

@@ -11,10 +11,13 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: A turn of more than this is a corner that was meant, whatever is beside it [rad].
-_SHARP_TURN = np.pi / 3.0
-#: So is one that is this many times what the curve turns, the same way, at both nodes beside it.
+#: A turn of more than this is a corner that was meant, whatever is beside it [rad]; a little more,
+#: so that rounding does not tell the nodes of a regular hexagon apart.
+_SHARP_TURN = np.pi / 3.0 + 1e-9
+#: So is one that is this many times what the curve turns, the same way, at both nodes beside it ...
 _ISOLATED_TURN = 3.0
+#: ... and more than this [rad]: the last turn of a curve stands alone, too, behind an inflection.
+_LEAST_CORNER = 0.1
 #: A turn below this is rounding [rad].
 _NO_TURN = 1e-6
 #: A jump of the curvature is this many times all that is uncertain about it.
@@ -24,13 +27,19 @@ _LEAST_SHARE = 0.15
 #: Nodes on either side of a jump, of the same leg, from which it is known.
 _BESIDE_JUMP = 2
 
+#: Degree of the splines through points: the error of their curvature is of fourth order in the
+#: distance of the points, that of a mesh of second.
+_DEGREE = 5
+#: That of splines to compare them with, whose error is smaller by two orders more.
+_OTHER_DEGREE = 7
+
 
 def find_corners(points: Array) -> list[int]:
     """Return the inner nodes at which a line has a corner instead of being a sampled curve.
 
-    A corner is a turn of more than 60 degrees, or one that stands alone: three times what the line
-    turns the same way at the nodes before and after. In a curve that is sampled finely enough to be
-    computed with, neighbouring turns are alike.
+    A corner is a turn of more than 60 degrees, or one of more than 0.1 that stands alone: three
+    times what the line turns the same way at the nodes before and after. In a curve that is sampled
+    finely enough to be computed with, neighbouring turns are alike (`model/corner.hpp`).
 
     Parameters
     ----------
@@ -45,7 +54,7 @@ def find_corners(points: Array) -> list[int]:
     size, axes = _turns(points)
     padded = np.pad(size[:, None] * axes, ((1, 1), (0, 0)))
     beside = np.maximum(np.sum(axes * padded[:-2], axis=1), np.sum(axes * padded[2:], axis=1))
-    alone = (size > _NO_TURN) & (size > _ISOLATED_TURN * np.maximum(beside, 0.0))
+    alone = (size > _LEAST_CORNER) & (size > _ISOLATED_TURN * np.maximum(beside, 0.0))
     return [int(i) + 1 for i in np.flatnonzero(alone | (size > _SHARP_TURN))]
 
 
@@ -105,12 +114,12 @@ def _turns(points: Array) -> tuple[Array, Array]:
     return np.arctan2(sine, np.sum(before * after, axis=1)), axes
 
 
-def resample_line(points: Array, factor: Fraction) -> Array:
+def resample_line(points: Array, factor: Fraction, *, other_curve: bool = False) -> Array:
     """Put `factor` times as many elements on a line; its nodes and corners keep their place.
 
-    Between corners the new nodes lie on a cubic spline through the old ones, over chord length, so
-    that a curve drawn by points becomes rounder with every refinement. Straight parts stay
-    straight. Where the curvature of the points jumps, so does that of the spline.
+    Between corners the new nodes lie on a spline through the old ones, over chord length, so that a
+    curve drawn by points becomes rounder with every refinement. Straight parts stay straight. Where
+    the curvature of the points jumps, so does that of the spline.
 
     Parameters
     ----------
@@ -118,6 +127,9 @@ def resample_line(points: Array, factor: Fraction) -> Array:
         Nodes [m], shape (nodes, dim).
     factor
         A whole number, or one over a whole number that divides the number of elements.
+    other_curve
+        Whether to take splines of another degree. They differ from the usual ones about as much as
+        these do from the smooth curve that the points sample.
 
     Raises
     ------
@@ -128,10 +140,11 @@ def resample_line(points: Array, factor: Fraction) -> Array:
     if factor.numerator == 1:
         return _every_nth(points, len(points) - 1, factor.denominator, corners)
     _demand_whole(factor, len(points) - 1)
-    return _refine_between(points, corners, find_curvature_jumps(points), factor.numerator)
+    jumps = find_curvature_jumps(points)
+    return _refine_between(points, corners, jumps, factor.numerator, other_curve)
 
 
-def resample_ring(points: Array, factor: Fraction) -> Array:
+def resample_ring(points: Array, factor: Fraction, *, other_curve: bool = False) -> Array:
     """Put `factor` times as many elements on a closed line, as `resample_line` does on an open one.
 
     A ring without corners is one periodic spline.
@@ -140,7 +153,7 @@ def resample_ring(points: Array, factor: Fraction) -> Array:
     ----------
     points
         Nodes [m], shape (nodes, dim); the first is not repeated.
-    factor
+    factor, other_curve
         As in `resample_line`.
 
     Raises
@@ -167,10 +180,10 @@ def resample_ring(points: Array, factor: Fraction) -> Array:
     jumps = sorted((jump - first) % count for jump in jumps if jump != first)
     if corners:
         inner = [corner - first for corner in corners[1:]]
-        refined = _refine_between(line, inner, jumps, factor.numerator)
+        refined = _refine_between(line, inner, jumps, factor.numerator, other_curve)
     else:
         ends = "jump" if first_jumps else "smooth"
-        refined = _refine_leg(line, jumps, factor.numerator, ends)
+        refined = _refine_leg(line, jumps, factor.numerator, other_curve, ends)
     return np.roll(refined[:-1], first * factor.numerator, axis=0)
 
 
@@ -179,10 +192,14 @@ def _demand_whole(factor: Fraction, elements: int) -> None:
         raise ValueError(f"a rod drawn by points takes whole multiples of its {elements} elements")
 
 
-def _refine_between(points: Array, corners: list[int], jumps: list[int], factor: int) -> Array:
+def _refine_between(
+    points: Array, corners: list[int], jumps: list[int], factor: int, other_curve: bool
+) -> Array:
     ends = [0, *corners, len(points) - 1]
     legs = [
-        _refine_leg(points[a : b + 1], [jump - a for jump in jumps if a < jump < b], factor)
+        _refine_leg(
+            points[a : b + 1], [jump - a for jump in jumps if a < jump < b], factor, other_curve
+        )
         for a, b in itertools.pairwise(ends)
     ]
     return np.vstack([*(leg[:-1] for leg in legs), points[-1:]])
@@ -196,47 +213,93 @@ def _every_nth(points: Array, elements: int, step: int, corners: list[int]) -> A
     return points[::step]
 
 
-def _refine_leg(points: Array, jumps: list[int], factor: int, ends: str = "free") -> Array:
-    """Put new nodes on the cubic splines of a leg, one from each jump of the curvature to the next.
+def _refine_leg(
+    points: Array, jumps: list[int], factor: int, other_curve: bool, ends: str = "free"
+) -> Array:
+    """Put new nodes on the splines of a leg, one from each jump of the curvature to the next.
 
     `ends` is "smooth" or "jump" for a ring whose two ends meet like this.
     """
-    from scipy.interpolate import CubicSpline  # here, because it takes long to load
+    from scipy.interpolate import make_interp_spline  # here, because it takes long to load
 
-    chord = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    chord = arc_lengths(points)
     old = np.arange(len(points))
     new = np.interp(np.arange(factor * (len(points) - 1) + 1) / factor, old, chord)
     if ends == "smooth" and not jumps:
-        refined: Array = CubicSpline(chord, points, bc_type="periodic")(new)
+        degree = _OTHER_DEGREE if other_curve else _DEGREE
+        refined: Array = make_interp_spline(chord, points, degree, bc_type="periodic")(new)
         refined[::factor] = points
         return refined
     bounds = list(itertools.pairwise([0, *jumps, len(points) - 1]))
     pieces = [(chord[a : b + 1], points[a : b + 1]) for a, b in bounds]
-    splines = [CubicSpline(*piece) for piece in pieces]
-    slopes: list[list[Any]] = [["not-a-knot", "not-a-knot"] for _ in pieces]
+    splines = [_spline(*piece, other_curve) for piece in pieces]
+    slopes: list[list[Array | None]] = [[None, None] for _ in pieces]
     for after in range(0 if ends == "jump" else 1, len(pieces)):
-        slopes[after - 1][1], slopes[after][0] = _common_slopes(splines[after - 1], splines[after])
+        slopes[after - 1][1], slopes[after][0] = _common_slopes(
+            splines[after - 1], pieces[after - 1][0][-2:], splines[after], pieces[after][0][:2]
+        )
     refined = np.empty((len(new), points.shape[1]))
     for (a, b), piece, slope in zip(bounds, pieces, slopes, strict=True):
         here = slice(factor * a, factor * b + 1)
-        refined[here] = CubicSpline(*piece, bc_type=tuple(slope))(new[here])
+        refined[here] = _spline(*piece, other_curve, *slope)(new[here])
     refined[::factor] = points
     return refined
 
 
-def _common_slopes(before: Any, after: Any) -> tuple[tuple[int, Array], tuple[int, Array]]:
+def _spline(
+    chord: Array,
+    points: Array,
+    other_curve: bool,
+    first: Array | None = None,
+    last: Array | None = None,
+) -> Any:
+    """Return a spline through points, with the slopes `first` and `last` at its ends if given.
+
+    Without them, two edges beside an end have one polynomial ("not-a-knot"), three of degree 7.
+    Splines of degree 5 and 7 have one of degree 4 and 6 there, since higher ones overshoot.
+    """
+    from scipy.interpolate import make_interp_spline
+
+    degree = _degree(len(points) + (first is not None) + (last is not None), other_curve)
+    if degree < 3:
+        return make_interp_spline(chord, points, degree)
+    flat = [(degree, np.zeros(points.shape[1]))] if degree > 3 else []
+    ends = [flat if slope is None else [(1, slope), *flat] for slope in (first, last)]
+    merged = max(1, (degree - 3) // 2)
+    start = 1 + merged - (first is not None)
+    stop = len(chord) - 1 - merged + (last is not None)
+    outer = np.ones(degree + 1)
+    knots = np.concatenate([chord[0] * outer, chord[start:stop], chord[-1] * outer])
+    return make_interp_spline(chord, points, degree, knots, tuple(end or None for end in ends))
+
+
+def _degree(conditions: int, other_curve: bool) -> int:
+    """Return the degree of a spline that meets a number of conditions, points for the most part.
+
+    Where they are too few for a higher degree, the other spline has a lower one.
+    """
+    if not other_curve:
+        return _DEGREE if conditions >= _DEGREE else min(conditions - 1, 3)
+    return _OTHER_DEGREE if conditions >= _OTHER_DEGREE else max(1, min(conditions - 2, 3))
+
+
+def _common_slopes(
+    before: Any, last_edge: Array, after: Any, first_edge: Array
+) -> tuple[Array, Array]:
     """Return the slopes at the end of a spline and the start of the next in one direction.
 
     An error in the direction of a spline's end is like the cube of what it turns along an edge, so
-    that a straight leg gives the direction to the arc that it runs into.
+    that a straight leg gives the direction to the arc that it runs into. The edges, beside the node
+    where the two meet, are chord lengths of their two ends.
     """
-    slopes = before(before.x[-1], 1), after(after.x[0], 1)
-    turn_before = np.linalg.norm(before(before.x[-1], 2)) * (before.x[-1] - before.x[-2])
-    turn_after = np.linalg.norm(after(after.x[0], 2)) * (after.x[1] - after.x[0])
+    end, start = last_edge[1], first_edge[0]
+    slopes = before(end, 1), after(start, 1)
+    turn_before = np.linalg.norm(before(end, 2)) * np.ptp(last_edge)
+    turn_after = np.linalg.norm(after(start, 2)) * np.ptp(first_edge)
     sizes = [float(np.linalg.norm(slope)) for slope in slopes]
     mean = turn_after**3 * slopes[0] / sizes[0] + turn_before**3 * slopes[1] / sizes[1]
     mean /= np.linalg.norm(mean)
-    return (1, sizes[0] * mean), (1, sizes[1] * mean)
+    return sizes[0] * mean, sizes[1] * mean
 
 
 def resample_list(values: Array, elements: int, *, closed: bool = False) -> Array:

@@ -11,6 +11,7 @@ from der.accuracy.branches import are_far_apart, are_mirrored, distance, shape_o
 from der.accuracy.cross_check import CROSS_CHECK_STEPPER, cross_check_halvings, cross_check_scenario
 from der.accuracy.refinement import (
     count_nodes,
+    curves_between_points,
     rods_that_cannot_be_refined,
     with_elements,
 )
@@ -22,13 +23,17 @@ from der.result import Result
 #: CPU time [s] up to which a third level is added, which measures the order, unless asked for, and
 #: further ones where it shows no order.
 _BUDGET = 60.0
+#: Level in space at which curves through points are compared: new nodes lie between the points.
+_DRAWING_LEVEL = 1
+#: What the run with these is called.
+OTHER_CURVES = "other curves through the points"
 #: No level is finer than this many times doubled.
 _FINEST = 4
 #: Newton's tolerances are tightened by this, down to the least that rounding allows.
 _TIGHTER = 1e-3
 _LEAST_TOLERANCE = 1e-13
 
-Axis = Literal["space", "time", "cross-check"]
+Axis = Literal["space", "time", "drawing", "cross-check"]
 #: Analyses of an equilibrium, which is one near the shape that they start from.
 _AT_REST = ("static", "modes")
 Key = tuple[Axis, int]
@@ -49,6 +54,11 @@ class VerificationRuns:
     time, space
         Results by level, with a tighter tolerance of Newton's method than the scene's. Space is
         empty where no rod can be refined; levels that failed are missing.
+    drawing
+        One result by its level in space: with other curves through the points of rods that are
+        drawn by them; empty where that failed, or where there is none.
+    curves
+        Names of these rods.
     cross_check
         The run with another stepper and much smaller steps (`der.accuracy.cross_check`); None for
         static scenes and explicit steppers, whose steps are small already.
@@ -63,6 +73,8 @@ class VerificationRuns:
     time_levels: TimeLevels | None = None
     time: dict[int, Result] = field(default_factory=dict)
     space: dict[int, Result] = field(default_factory=dict)
+    drawing: dict[int, Result] = field(default_factory=dict)
+    curves: list[str] = field(default_factory=list)
     cross_check: Result | None = None
     meshes: list[str] = field(default_factory=list)
     steps: list[str] = field(default_factory=list)
@@ -74,8 +86,16 @@ class VerificationRuns:
         """Whether there is a finer mesh."""
         return len(self.meshes) > 1
 
+    @property
+    def finest(self) -> Result:
+        """The run on the finest mesh that did not fail."""
+        return self.space[max(self.space)] if self.space else self.base
+
     def is_mirrored(self, axis: str) -> bool:
-        """Whether a level, in ``space`` or ``time``, ends in the mirror image of the scene's."""
+        """Whether a level of an axis ends in the mirror image of the scene's shape.
+
+        The axes are ``space``, ``time`` and ``drawing``.
+        """
         if self.base.path is not None or self.base.buckling is not None:
             return False  # what they find does not depend on the side
         results: list[Result] = list(getattr(self, axis).values())
@@ -108,6 +128,8 @@ def run_levels(scenario: Scenario, levels: int | None, workers: Workers) -> Runn
     """
     runs = _run_base(scenario, workers, _guess_rest(scenario, levels))
     refined = _can_refine_space(runs)
+    if refined:
+        runs.curves = curves_between_points(scenario)
     runs.levels = levels or _affordable_levels(runs, refined)
     if refined:
         runs.meshes = [_mesh_label(scenario, 2**level) for level in range(runs.levels)]
@@ -158,6 +180,8 @@ def _can_refine_space(runs: VerificationRuns) -> bool:
 
 def _affordable_levels(runs: VerificationRuns, refined: bool) -> int:
     times_base = 4.0 if refined else 0.0
+    if runs.curves:
+        times_base += 2.0**_DRAWING_LEVEL
     if runs.time_levels is not None:
         times_base += 2.0 * runs.time_levels.cost(2)
     if runs.cpu_seconds * times_base <= _BUDGET:
@@ -199,7 +223,8 @@ class Runner:
         """Run all levels."""
         tasks = self._time_tasks()
         if not self._explicit:
-            tasks |= {("space", n): self._task(n, 0) for n in self._space_levels() if n > 0}
+            tasks |= {key: self._task(key[1], 0) for key in self._space_keys() if key[1] > 0}
+            tasks |= self._drawing_tasks(0)
         spaces = self._space_of_explicit(self._finest, self._finest) if self._explicit else {}
         self._run(tasks, later=total_weight(spaces.values()))
         if self._explicit:
@@ -207,7 +232,7 @@ class Runner:
                 self._run_space_of_explicit(self._finest)
         elif self.runs.space_is_refined and 0 in self.runs.time:
             self.runs.space[0] = self.runs.time[0]
-        self._follow_the_branch(self._space_levels())
+        self._follow_the_branch([*self._space_keys(), *self._drawing_tasks(0)])
 
     def refine(self, axes: Collection[str]) -> bool:
         """Run one more level in space, in time or both; tell whether there is one more now.
@@ -240,15 +265,15 @@ class Runner:
             done = self._is_affordable(tasks, level) and self._run(tasks, report=False)
         if done:
             self.runs.meshes.append(_mesh_label(self._scenario, 2**level))
-            self._follow_the_branch([level])
+            self._follow_the_branch([("space", level)])
         return done
 
     def _is_affordable(self, tasks: Mapping[Key, Task], level: int) -> bool:
         seconds = self._base_seconds * total_weight(tasks.values())
         return level <= _FINEST and self.runs.cpu_seconds + seconds <= _BUDGET
 
-    def _space_levels(self) -> range:
-        return range(self.runs.levels if self.runs.space_is_refined else 0)
+    def _space_keys(self) -> list[Key]:
+        return [("space", n) for n in range(self.runs.levels)] if self.runs.space_is_refined else []
 
     def _time_tasks(self) -> dict[Key, Task]:
         tasks: dict[Key, Task] = {("time", 0): self._task(0, 0)}
@@ -259,8 +284,13 @@ class Runner:
             tasks["cross-check", 0] = self._cross_check(self.runs.time_levels)
         return tasks
 
-    def _task(self, space: int, time: int) -> Task:
-        scenario = with_elements(self._scenario, 2**space)
+    def _drawing_tasks(self, time: int) -> dict[Key, Task]:
+        if not self.runs.curves:
+            return {}
+        return {("drawing", _DRAWING_LEVEL): self._task(_DRAWING_LEVEL, time, True)}
+
+    def _task(self, space: int, time: int, other_curve: bool = False) -> Task:
+        scenario = with_elements(self._scenario, 2**space, other_curve=other_curve)
         levels = self.runs.time_levels
         if levels is None:
             return Task([_with_tight_newton(scenario), scenario], 2.0**space)
@@ -289,30 +319,31 @@ class Runner:
         return False
 
     def _space_of_explicit(self, finest: int, time: int) -> dict[Key, Task]:
-        return {("space", n): self._task(n, time) for n in range(finest + 1)}
+        tasks: dict[Key, Task] = {("space", n): self._task(n, time) for n in range(finest + 1)}
+        return tasks | self._drawing_tasks(time)
 
-    def _follow_the_branch(self, levels: Iterable[int]) -> None:
+    def _follow_the_branch(self, keys: Iterable[Key]) -> None:
         """Start levels that have come to another equilibrium from the shape of the scene's run."""
         base = self.runs.base
         if self.runs.time_levels is not None or base.scenario.analysis not in _AT_REST:
             return
-        at_rest = {n: self.runs.space[n] for n in levels if n in self.runs.space}
-        apart = {n: found for n, found in at_rest.items() if are_far_apart(base, found)}
-        outcomes = self._workers.run({n: self._task_from_the_shape(n) for n in apart})
-        for level, outcome in outcomes.items():
+        runs = {(axis, n): getattr(self.runs, axis).get(n) for axis, n in keys}
+        apart = {key: run for key, run in runs.items() if run and are_far_apart(base, run)}
+        outcomes = self._workers.run({key: self._task_from_the_shape(*key) for key in apart})
+        for (axis, level), outcome in outcomes.items():
             self.runs.cpu_seconds += outcome.cpu_seconds
             found = outcome.result
             if outcome.error is not None or found is None:
                 continue
-            if distance(base, found) < 0.5 * distance(base, apart[level]):
-                self.runs.space[level] = found
+            if distance(base, found) < 0.5 * distance(base, apart[axis, level]):
+                getattr(self.runs, axis)[level] = found
                 self.runs.notes.append(
-                    f"the run with {self.runs.meshes[level]} reached another equilibrium; it was "
+                    f"the run with {self._name(axis, level)} reached another equilibrium; it was "
                     "started again from the shape of the scene's own mesh, whose branch it follows"
                 )
 
-    def _task_from_the_shape(self, level: int) -> Task:
-        task = self._task(level, 0)
+    def _task_from_the_shape(self, axis: Axis, level: int) -> Task:
+        task = self._drawing_tasks(0)[axis, level] if axis == "drawing" else self._task(level, 0)
         return replace(task, weight=0.0, start=shape_on(self.runs.base, task.scenarios[0]))
 
     def _run(self, tasks: Mapping[Key, Task], report: bool = True, later: float = 0.0) -> bool:
@@ -326,20 +357,23 @@ class Runner:
         for (axis, level), outcome in outcomes.items():
             if outcome.error is not None:
                 if report:
-                    self.runs.notes.append(f"{self._describe(axis, level)}: {outcome.error}")
+                    name = self._name(axis, level)
+                    self.runs.notes.append(f"the run with {name} failed: {outcome.error}")
             elif axis == "cross-check":
                 self.runs.cross_check = outcome.value()
             else:
                 getattr(self.runs, axis)[level] = outcome.value()
         return all(outcome.error is None for outcome in outcomes.values())
 
-    def _describe(self, axis: Axis, level: int) -> str:
+    def _name(self, axis: Axis, level: int) -> str:
         if axis == "space":
-            return f"the run with {self.runs.meshes[level]} failed"
-        if axis == "cross-check" or self.runs.time_levels is None:
-            other = CROSS_CHECK_STEPPER if axis == "cross-check" else "a tight tolerance"
-            return f"the run with {other} failed"
-        return f"the run with {self.runs.time_levels.label(level)} failed"
+            return self.runs.meshes[level]
+        if axis == "drawing":
+            return OTHER_CURVES
+        if axis == "cross-check":
+            return CROSS_CHECK_STEPPER
+        levels = self.runs.time_levels
+        return "a tight tolerance" if levels is None else levels.label(level)
 
 
 def _with_tight_newton(scenario: Scenario) -> Scenario:

@@ -28,9 +28,12 @@ def values_to_show(values: Sequence[VerifiedValue], duration: float) -> list[Ver
 
 def value_table(values: Sequence[VerifiedValue]) -> list[str]:
     """Return the lines of the table: a header, and one line for each value."""
-    header = ("probe", "value", "error", "space", "time", "extrapolated", "orders", "verdict")
-    rows = [header, *(_row(value) for value in values)]
-    widths = [max(len(row[i]) for row in rows) for i in range(len(header))]
+    header = ("probe", "value", "error", "space", "time", "drawing", "extrapolated", "orders")
+    rows = [(*header, "verdict"), *(_row(value) for value in values)]
+    if all(value.drawing is None for value in values):
+        left_out = header.index("drawing")
+        rows = [row[:left_out] + row[left_out + 1 :] for row in rows]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     return [
         "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
         for row in rows
@@ -80,8 +83,7 @@ def _row(value: VerifiedValue) -> tuple[str, ...]:
         value.label,
         _number(value.value, value),
         f"± {_error_bar_text(value.error_bar)}",
-        _error_bar_text(None if value.space is None else value.space.error_bar),
-        _error_bar_text(None if value.time is None else value.time.error_bar),
+        *(_part_text(part) for part in (value.space, value.time, value.drawing)),
         _number(value.extrapolated, value),
         f"{_order(value.space)}, {_order(value.time)}",
         value.verdict,
@@ -104,9 +106,11 @@ def with_digits_of(value: float, error_bar: float) -> str:
     return f"{value:#.{digits}g}".replace(".e", "e").rstrip(".")
 
 
-def _error_bar_text(error_bar: float | None) -> str:
-    if error_bar is None:
-        return "-"
+def _part_text(part: ErrorEstimate | None) -> str:
+    return "-" if part is None else _error_bar_text(part.error_bar)
+
+
+def _error_bar_text(error_bar: float) -> str:
     return f"{error_bar:.2g}" if math.isfinite(error_bar) else "unknown"
 
 

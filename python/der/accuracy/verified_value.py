@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from der.accuracy.error_bars import ErrorEstimate
+from der.accuracy.noise import NOTHING, ExactBelow
 
 #: Error from Newton's tolerance: at most this times the change under a 1000 times tighter one.
 SOLVER_FACTOR = 2.0
@@ -31,6 +32,9 @@ class VerifiedValue:
         When it is reached [s]; 0 without time.
     space, time
         Error by the mesh and by the step; None where there is nothing to refine.
+    drawing
+        Error by the curves that finer meshes put through the points of rods drawn by them; None
+        where there is no such rod.
     solver
         Bar of the rest: Newton's tolerance, measured with a tolerance a thousand times tighter, and
         rounding.
@@ -38,6 +42,8 @@ class VerifiedValue:
         Change of the value under the tighter tolerance.
     negligible
         Parts of the error up to this are exempt from the order check.
+    exact_below
+        Error bars that are no more than rounding.
     """
 
     probe: str
@@ -50,6 +56,8 @@ class VerifiedValue:
     solver: float
     solver_correction: float = 0.0
     negligible: float = 0.0
+    drawing: ErrorEstimate | None = None
+    exact_below: ExactBelow = NOTHING
 
     @property
     def label(self) -> str:
@@ -60,10 +68,10 @@ class VerifiedValue:
     def error_bar(self) -> float:
         """The whole error bar: the exact value is within value -bar .. +bar with 95 % confidence.
 
-        The truth is that of the rod as a continuum and of exact time; errors of space, time and
-        solver add up.
+        The truth is that of the rod as a continuum and of exact time; errors of space, time,
+        drawing and solver add up.
         """
-        return self.solver + sum(part.error_bar for part in self._parts)
+        return self.solver + sum(part.error_bar for part in self._parts.values())
 
     @property
     def extrapolated(self) -> float:
@@ -73,15 +81,22 @@ class VerifiedValue:
         """
         if math.isinf(self.error_bar):
             return math.nan
-        corrections = sum(part.correction for part in self._parts)
+        corrections = sum(part.correction for part in self._parts.values())
         return self.value + self.solver_correction + corrections
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether refining changes nothing beyond rounding, whatever order that shows."""
+        bar, limits = self.error_bar, self.exact_below
+        is_nothing = abs(self.value) <= bar <= limits.nothing
+        return bool(self._parts) and (bar <= limits.rounding or is_nothing)
 
     @property
     def flagged(self) -> bool:
         """Whether what makes up its error does not converge at the expected order.
 
         A part of the error that is less than a tenth of the whole bar, or negligible, does not
-        count.
+        count. None does of a value that is exact.
         """
         return any(part.flagged for _, part in self._parts_that_count)
 
@@ -101,8 +116,17 @@ class VerifiedValue:
         return any(part.verdict == "two levels" for _, part in self._parts_that_count)
 
     @property
+    def is_limited_by_drawing(self) -> bool:
+        """Whether half of the error bar or more is due to how the rods are drawn."""
+        if self.drawing is None or self.is_exact:
+            return False
+        return 0.5 * self.error_bar <= self.drawing.error_bar < math.inf
+
+    @property
     def verdict(self) -> str:
-        """``converged``, or the verdicts on its errors, such as ``slow in time``."""
+        """``converged``, ``exact``, or verdicts on parts of its error, such as ``slow in time``."""
+        if self.is_exact:
+            return "exact"
         found = [
             f"{part.verdict} in {where}"
             for where, part in self._parts_that_count
@@ -112,16 +136,18 @@ class VerifiedValue:
 
     @property
     def _parts_that_count(self) -> list[tuple[str, ErrorEstimate]]:
-        named = (("space", self.space), ("time", self.time))
-        return [(w, p) for w, p in named if p is not None and self._counts(p)]
+        if self.is_exact:
+            return []
+        return [(where, part) for where, part in self._parts.items() if self._counts(part)]
 
     def _counts(self, part: ErrorEstimate) -> bool:
         # Written so that an unknown bar, which is infinite, counts beside another one.
         return part.error_bar > self.negligible and not part.error_bar < _COUNTS * self.error_bar
 
     @property
-    def _parts(self) -> list[ErrorEstimate]:
-        return [part for part in (self.space, self.time) if part is not None]
+    def _parts(self) -> dict[str, ErrorEstimate]:
+        parts = {"space": self.space, "time": self.time, "drawing": self.drawing}
+        return {where: part for where, part in parts.items() if part is not None}
 
     def to_dict(self) -> dict[str, Any]:
         """Return everything as JSON knows it; an unknown bar is null."""
@@ -137,6 +163,7 @@ class VerifiedValue:
             "flagged": self.flagged,
             "space_error": _part_to_dict(self.space),
             "time_error": _part_to_dict(self.time),
+            "drawing_error": _part_to_dict(self.drawing),
             "solver_error": {"error_bar": self.solver, "correction": self.solver_correction},
         }
 

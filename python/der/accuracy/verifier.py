@@ -8,8 +8,13 @@ from dataclasses import replace
 from der._core import Scenario
 from der.accuracy.cross_check import hidden_motion
 from der.accuracy.default_probes import with_default_probes
-from der.accuracy.error_bars import ErrorEstimate, estimate_from_levels, on_one_branch
-from der.accuracy.noise import noise_floor
+from der.accuracy.error_bars import (
+    ErrorEstimate,
+    estimate_drawing,
+    estimate_from_levels,
+    on_one_branch,
+)
+from der.accuracy.noise import exact_below, noise_floor
 from der.accuracy.probe_extremes import probe_values
 from der.accuracy.refinement import SPACE_ORDER, belongs_to_its_mesh
 from der.accuracy.static_verifier import StaticVerifier
@@ -29,6 +34,8 @@ _CROSS_CHECK_FACTOR = 1.25
 #: Errors smaller than this fraction of the range of the probe in the run are exempt from the order
 #: check: seven digits are more than anyone needs.
 _NEGLIGIBLE = 1e-7
+#: A note names no more values than this.
+_MOST_NAMED = 4
 #: A contradiction by less than this times the noise is none.
 _LITTLE_NOISE = 10.0
 
@@ -96,7 +103,12 @@ def verify(
         meshes=tuple(runs.meshes),
         steps=tuple(runs.steps),
         warnings=tuple(runs.base.summary["warnings"]),
-        notes=(*runs.notes, *_notes_on_angles(runs, scene), *notes),
+        notes=(
+            *runs.notes,
+            *_notes_on_angles(runs, scene),
+            *_notes_on_drawing(runs, values),
+            *notes,
+        ),
         cpu_seconds=runs.cpu_seconds,
     )
 
@@ -106,7 +118,7 @@ def _evaluate(runs: VerificationRuns, scene: Scenario) -> tuple[list[VerifiedVal
         found = StaticVerifier(runs)
         values = found.values()
         return values, [*found.notes(), *_notes_on_branches(values)]
-    mirrored = {axis for axis in ("space", "time") if runs.is_mirrored(axis)}
+    mirrored = {axis for axis in ("space", "time", "drawing") if runs.is_mirrored(axis)}
     evaluated = [
         _Evaluation(
             runs,
@@ -140,6 +152,20 @@ def _notes_on_angles(runs: VerificationRuns, scene: Scenario) -> list[str]:
     ]
 
 
+def _notes_on_drawing(runs: VerificationRuns, values: list[VerifiedValue]) -> list[str]:
+    limited = [value.label for value in values if value.is_limited_by_drawing]
+    if not limited:
+        return []
+    named = ", ".join(f"'{label}'" for label in limited[:_MOST_NAMED])
+    more = f" and {len(limited) - _MOST_NAMED} more" if len(limited) > _MOST_NAMED else ""
+    rods = ", ".join(f"'{rod}'" for rod in runs.curves)
+    return [
+        f"the error of {named}{more} is mostly that of the drawing: the points of {rods} leave "
+        "open how the curve runs between them. Draw more points of the curve; finer meshes do not "
+        "tell"
+    ]
+
+
 def _notes_on_damping(runs: VerificationRuns, evaluated: list[_Evaluation]) -> list[str]:
     notes = []
     damped = [f"'{evaluation.probe}'" for evaluation in evaluated if evaluation.hidden_motion]
@@ -169,6 +195,7 @@ class _Evaluation:
         self.probe = probe
         self._series = runs.base.probes[probe]
         self._space = self._by_level(runs.space) if measures_space else None
+        self._drawing = self._by_level(runs.drawing)
         self._time = self._by_level(runs.time)
         summary = self._series.summary
         self._largest = max(abs(summary["min"]), abs(summary["max"]))
@@ -214,8 +241,10 @@ class _Evaluation:
             time_of_value=summary.get(f"t_{what}", self._runs.base.summary["time"]),
             space=self._space_error(what),
             time=time,
+            drawing=self._drawing_error(what),
             solver=solver + SOLVER_FACTOR * abs(shift),
             solver_correction=shift,
+            exact_below=exact_below(self._runs.finest, self._series.unit, self._largest),
             negligible=_NEGLIGIBLE * (summary["max"] - summary["min"]),
         )
 
@@ -225,6 +254,16 @@ class _Evaluation:
         by_level = {level: values[what] for level, values in self._space.items()}
         estimate = estimate_from_levels(by_level, SPACE_ORDER, self._noise)
         return on_one_branch(estimate, "space" in self._mirrored, self._largest)
+
+    def _drawing_error(self, what: str) -> ErrorEstimate | None:
+        if self._space is None or not self._runs.curves:
+            return None
+        values, others = (
+            {level: found[what] for level, found in levels.items()}
+            for levels in (self._space, self._drawing)
+        )
+        estimate = estimate_drawing(values, others, self._noise)
+        return on_one_branch(estimate, "drawing" in self._mirrored, self._largest)
 
     def _time_error(self, what: str) -> ErrorEstimate:
         by_level = {level: values[what] for level, values in self._time.items()}

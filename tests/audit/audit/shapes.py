@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline, PchipInterpolator
+from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
 from .rod import Array, Rod, straight
@@ -88,17 +89,19 @@ def draw(
         node_s = node_u
     else:
         count = max(count, 11)
-        points = start + L * _curve(rng, np.linspace(0, 1, count))
+        unit = _curve(rng)
+        points = start + L * unit(np.linspace(0.0, 1.0, count))[0]
         entry["points"] = points.tolist()
         node_s = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-        spline = CubicSpline(node_s, points)
-        knots = node_u = node_s
+        last = node_s[-1]  # the parameter is about the arc length
+        knots = node_u = np.linspace(0.0, last, count)
 
         def curve(u: Array) -> tuple[Array, Array, Array, Array]:
-            position, d, dd = spline(u), spline(u, 1), spline(u, 2)
+            position, d, dd = L * unit(np.asarray(u, float) / last)
+            d, dd = d / last, dd / last**2
             speed = np.hypot(d[..., 0], d[..., 1])
             bend = (d[..., 0] * dd[..., 1] - d[..., 1] * dd[..., 0]) / speed**3
-            return position, np.arctan2(d[..., 1], d[..., 0]), bend, speed
+            return start + position, np.arctan2(d[..., 1], d[..., 0]), bend, speed
 
     rod = Rod(knots, curve, EA, EI, mass)
     if rng.random() < 0.15:
@@ -143,22 +146,52 @@ def _section(rng: Random, entry: dict[str, Any], rod: Rod, L: float) -> None:
     rod.EA, rod.EI, rod.mass_per_length = float(E * area), float(E * second), float(density * area)
 
 
-def _curve(rng: Random, t: Array) -> Array:
-    """A smooth curve of about unit length that starts at the origin."""
+def _curve(rng: Random) -> Callable[[Array], Array]:
+    """A smooth curve of about unit length that starts at the origin.
+
+    Its position and its first and second derivatives with respect to a parameter from 0 to 1.
+    """
     kind = rng.choice(["arc", "sine", "parabola", "spiral"])
     if kind == "arc":
-        angle = rng.uniform(0.3, 4.5)
-        x, y = np.sin(angle * t) / angle, (1 - np.cos(angle * t)) / angle
+        of_parameter = _turning(rng.uniform(0.3, 4.5), 0.0)
     elif kind == "sine":
-        x, y = t, rng.uniform(0.03, 0.25) * np.sin(rng.choice([1, 2]) * np.pi * t)
+        height, wave = rng.uniform(0.03, 0.25), float(rng.choice([1, 2])) * np.pi
+        of_parameter = lambda t: _graph(  # noqa: E731
+            t,
+            height * np.sin(wave * t),
+            height * wave * np.cos(wave * t),
+            -height * wave**2 * np.sin(wave * t),
+        )
     elif kind == "parabola":
-        x, y = t, rng.uniform(-1, 1) * t * (1 - t)
+        rise = rng.uniform(-1, 1)
+        of_parameter = lambda t: _graph(  # noqa: E731
+            t, rise * t * (1 - t), rise * (1 - 2 * t), np.full_like(t, -2 * rise)
+        )
     else:
-        fine = np.linspace(0, 1, 4001)
-        turned = rng.uniform(0.5, 3) * fine + rng.uniform(-3, 3) * fine**2
-        dx = np.concatenate([[0], np.cumsum((np.cos(turned[1:]) + np.cos(turned[:-1])) / 8000)])
-        dy = np.concatenate([[0], np.cumsum((np.sin(turned[1:]) + np.sin(turned[:-1])) / 8000)])
-        x, y = np.interp(t, fine, dx), np.interp(t, fine, dy)
+        of_parameter = _turning(rng.uniform(0.5, 3), rng.uniform(-3, 3))
     turn = rng.uniform(-np.pi, np.pi) if rng.random() < 0.5 else 0.0
     c, s = np.cos(turn), np.sin(turn)
-    return np.column_stack([c * x - s * y, s * x + c * y])
+    rotation = np.array([[c, s], [-s, c]])
+    return lambda t: of_parameter(t) @ rotation
+
+
+def _graph(t: Array, y: Array, dy: Array, ddy: Array) -> Array:
+    ones = np.ones_like(t)
+    return np.stack([np.stack(pair, axis=-1) for pair in ((t, y), (ones, dy), (0 * t, ddy))])
+
+
+def _turning(rate: float, growth: float) -> Callable[[Array], Array]:
+    """A curve of unit speed that turns by rate t + growth t^2."""
+    points, weights = np.polynomial.legendre.leggauss(40)
+
+    def of_parameter(t: Array) -> Array:
+        at = 0.5 * t[..., None] * (points + 1.0)
+        angles = rate * at + growth * at**2
+        heading = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+        position = 0.5 * t[..., None] * np.einsum("...ij,i->...j", heading, weights)
+        angle, bend = rate * t + growth * t**2, rate + 2.0 * growth * t
+        d = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        dd = bend[..., None] * np.stack([-np.sin(angle), np.cos(angle)], axis=-1)
+        return np.stack([position, d, dd])
+
+    return of_parameter

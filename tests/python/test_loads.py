@@ -168,21 +168,6 @@ def test_refinement_carries_its_effect(kind):
 
 
 @EVERY_KIND
-def test_acts_in_space_as_in_the_plane(kind):
-    """The load moves the tip of its planar sample as far where the model is `spatial`."""
-    scenes = [{**SAMPLES, "loads": []}, with_only(kind)]
-    for scene in scenes:
-        stiffness = {**scene["rods"][0]["cross_section"]["stiffness"], "GJ": 0.4}
-        scene["rods"] = [{**scene["rods"][0], "cross_section": {"stiffness": stiffness}}]
-    in_plane, in_space = (
-        np.subtract(*(tip({**scene, "model": model}) for scene in scenes))
-        for model in ("planar", "spatial")
-    )
-    assert in_space[2] == 0.0
-    assert in_space[:2] == pytest.approx(in_plane, rel=1e-6)
-
-
-@EVERY_KIND
 def test_at_all_nodes_it_is_not_refined(kind):
     if '"all"' not in json.dumps(properties(kind).get("at")):
         return

@@ -16,7 +16,6 @@ from scenes import END, START, tip_force
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from scipy.optimize import root
-from scipy.spatial.transform import Rotation
 from spatial_scenes import CLAMPED, rod_through, section, straight_rod
 
 SIZES = [20, 40, 80]
@@ -329,30 +328,6 @@ def test_twist_between_clamps(profile):
     assert result.along("rod", "torque")[1] == pytest.approx(-TWISTING * mean, rel=1e-9)
     assert np.abs(result.positions[-1][:, 1:]).max() < 1e-12
     assert elastic_energy(result) == pytest.approx(0.5 * TWISTING * mean**2, rel=1e-9)
-
-
-def turned_scene(turn, **more):
-    """Everything at an angle, drawn with these axes."""
-
-    def axes(*vector):
-        return (turn @ np.array(vector)).tolist()
-
-    points = np.linspace(np.zeros(3), turn @ [1.0, 0, 0], 24)
-    beam = section(axes(0, 1, 0), EA=1e4, EI1=STRONG, EI2=WEAK, GJ=TWISTING)
-    scene = rod_through(points, beam, supports=CLAMPED, loads=tip_force(*axes(0.3, 0.8, -0.4)))
-    scene["actuation"] = [
-        bend([1.3, -0.8], 0.2, 0.71),
-        bend([0.4, 1.1], 0.4, 1.0, "second", profile="linear"),
-        twist(2.1, 0.0, 0.6, profile="smooth"),
-        stretch(0.1, 0.3, 0.5),
-    ]
-    return scene | more
-
-
-def test_turned_scene_gives_the_turned_answer():
-    turn = Rotation.from_rotvec([0.7, -1.1, 0.4]).as_matrix()
-    first, second = (der.equilibrium(turned_scene(each)) for each in (np.eye(3), turn))
-    assert second.positions[-1] == pytest.approx(first.positions[-1] @ turn.T, abs=1e-10)
 
 
 # ---- rings

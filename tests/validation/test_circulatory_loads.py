@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from references.curved_twisted_rod import NATURAL
 from references.follower_loads import held_at_start
-from references.kirchhoff_rod import Rod, rotation
+from references.kirchhoff_rod import Rod
 from references.section_loads import Wrench
 from references.section_loads import held_at_start as held_at_places
 from scenes import END, START, arch
@@ -158,23 +158,6 @@ def test_a_planar_scene_is_the_same_in_space(stepper, load):
     assert answers[1] == pytest.approx(answers[0], abs=1e-9)
     if stepper != "static":  # the ledger of the plane has the energy of the cells besides
         assert balances[1][0] == pytest.approx(balances[0][0], abs=1e-9)
-
-
-def test_a_turned_scene_gives_the_turned_answer():
-    turn = rotation(np.array([1, 2, -2]) / 3, 1.1)
-
-    def answer(matrix):
-        loads = [
-            force(*(matrix @ [-1.0, 1.5, 2.0])),
-            moment(*(matrix @ [0.7, 0.2, 0.5]), follower=True),
-            moment(*(matrix @ [0.1, -0.4, 0.3]), at=0.3),
-            force(*(matrix @ [0.1, 0.5, -0.4]), at=0.61),
-        ]
-        strip = section(matrix @ [0, 1, 0], EA=1e4, EI1=3.0, EI2=1.0, GJ=0.8)
-        scene = straight_rod(16, strip, to=matrix @ [1, 0, 0], loads=loads)
-        return measured(scene, [0.25, 0.5, "end"], XYZ)[0]
-
-    assert answer(turn) == pytest.approx(answer(np.eye(3)) @ turn.T, abs=1e-10)
 
 
 def error_of_small_moment(place, edges):

@@ -290,25 +290,6 @@ def test_a_moment_at_the_place_of_a_spring_as_in_the_plane(place, time):
         assert spatial == pytest.approx(planar, abs=1e-9)
 
 
-def test_a_turned_scene_gives_the_turned_answer():
-    turn = rotation(np.array([1, 2, -2]) / 3, 1.1)
-
-    def answer(matrix):
-        supports = [
-            turning_spring(0.5, 2.0, 0.3, fix=list(XYZ)),
-            {"rod": "rod", "at": 0.61, "spring": {"stiffness": 7.0}},
-        ]
-        loads = [
-            {"foundation": {"rod": "rod", "stiffness": 3.0, "from": 0.2}},
-            force(*(matrix @ [0.5, 1.5, -2.0])),
-        ]
-        strip = section(matrix @ [0, 1, 0], EA=1e4, EI1=STRONG, EI2=WEAK, GJ=TWISTING)
-        scene = straight_rod(16, strip, to=matrix @ [1, 0, 0], supports=supports, loads=loads)
-        return measured(scene, [0.25, 0.5, "end"], XYZ)[0]
-
-    assert answer(turn) == pytest.approx(answer(np.eye(3)) @ turn.T, abs=1e-10)
-
-
 def test_a_twisting_spring_counts_whole_turns():
     """One end turned three times, the other held by a spring: GJ/L and k in series."""
     k, turns = 0.4, 3 * 2 * np.pi

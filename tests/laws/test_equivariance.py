@@ -185,7 +185,6 @@ def test_a_clamp_that_turns_in_the_plane_and_in_space(stepper: str) -> None:
     assert np.log2(apart[0] / apart[2]) / 2 > 2.5
 
 
-@pytest.mark.xfail(strict=True, reason="a quarter of it, on every mesh")
 def test_curvature_at_a_corner_in_the_tangent_measure() -> None:
     """A force F at the end of a leg of length a bends the corner of 90 degrees with F a, and the
     rod's curvature there is F a/EI. The moment is right, and the curvature in space."""
@@ -211,13 +210,11 @@ def test_curvature_at_a_corner_in_the_tangent_measure() -> None:
     assert result.probes["curvature"][-1] == pytest.approx(-force * leg, rel=1e-3)
 
 
-@pytest.mark.xfail(strict=True, reason="the unit is said to be kg^-1/2 m")
 def test_unit_of_the_shapes_of_modes() -> None:
     """Shapes of modal mass 1, v @ M @ v = 1, are numbers over the root of a mass."""
     assert _core.array_units()["modes/shapes"] == SHAPES_OF_MODES
 
 
-@pytest.mark.xfail(strict=True, reason="every table has the unit of the first key with one")
 def test_units_of_tables_in_the_schema() -> None:
     """An editor shows the unit of a table's values: not that of another key."""
     definitions = json.loads(_core.json_schema())["$defs"]

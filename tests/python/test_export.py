@@ -68,7 +68,7 @@ def test_csv_of_paths_and_modes(tube, tmp_path):
     result = der.run(tube)
     *_, modes = result.export("csv", tmp_path)
     titles, rows = read_table(modes)
-    shapes = ["dx [kg^-1/2 m]", "dy [kg^-1/2 m]"]
+    shapes = ["dx [kg^-1/2]", "dy [kg^-1/2]"]
     assert titles == ["mode", "frequency [Hz]", "rod", "node", "s [m]", *shapes]
     assert len(rows) == 2 * 21
     assert float(rows[21 + 5][1]) == result.modes.frequencies[1]

@@ -244,14 +244,13 @@ class BendField : public EdgewiseField<double> {
     return recovery_.inside(edge, place, model, state).z() / per_moment_;
   }
 
-  /// Moment of the chain at this turning angle, or its curvature beyond the natural one.
-  /// Actuations add `actuated` to the rest angle.
+  /// Moment of the chain at this turning angle, or its curvature beyond the natural one: the moment
+  /// over EI, since at a corner the measure of curvature is no angle over a length. Actuations add
+  /// `actuated` to the rest angle.
   [[nodiscard]] double chain(const Known& known, double angle, double actuated) const {
-    if (!is_moment()) {
-      return (angle - known.rest_angle - actuated) / known.length;
-    }
+    const double stiffness = (is_moment() ? EI_ : 1.0) / known.length;
     const double rest_kappa = Measure::of(known.rest_angle).kappa + actuated;
-    return bend_response<Measure>(EI_ / known.length, rest_kappa, angle).moment;
+    return bend_response<Measure>(stiffness, rest_kappa, angle).moment;
   }
 
   [[nodiscard]] bool is_moment() const { return what_ == Bending::Moment; }

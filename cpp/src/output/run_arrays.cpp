@@ -25,7 +25,7 @@ std::vector<RunArray> all_arrays() {
       {"rods/radius", "m"},
       {"modes/frequencies", "Hz"},
       {"modes/growth_rates", "1/s"},
-      {"modes/shapes", "kg^-1/2 m"},
+      {"modes/shapes", "kg^-1/2"},
       {"buckling/load_factors", ""},
       {"buckling/rotations", "rad"},
       {"buckling/strains", ""},

@@ -57,7 +57,7 @@ class SchemaBuilder {
     Json properties = Json::object();
     Json required = Json::array();
     for (const FieldInfo& field : info.fields) {
-      properties[field.key] = property(field);
+      properties[field.key] = property(field, info.unit_of(field));
       if (field.required) required.push_back(field.key);
     }
     Json result{{"type", "object"}, {"description", info.doc}};
@@ -131,10 +131,10 @@ class SchemaBuilder {
     return {{"$ref", "#/$defs/" + id}};
   }
 
-  Json property(const FieldInfo& field) {
+  Json property(const FieldInfo& field, const std::string& unit) {
     Json result = schema(field.shape);
     std::string doc = field.doc;
-    if (!field.shape.unit.empty()) doc += " [" + field.shape.unit + "]";
+    if (!unit.empty()) doc += " [" + unit + "]";
     if (!field.default_text.empty() && !field.default_is_literal) {
       doc += " Default: " + field.default_text + ".";
     }

@@ -1,7 +1,5 @@
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <array>
 #include <set>
 #include <string>
 #include <vector>
@@ -126,9 +124,9 @@ std::string default_text(const FieldInfo& field) {
   return field.default_is_literal ? "`" + field.default_text + "`" : field.default_text;
 }
 
-std::string row(const FieldInfo& field) {
-  return fmt::format("| `{}` | {} | {} | {} | {} |\n", field.key, value_text(field.shape),
-                     field.shape.unit, default_text(field), field.doc);
+std::string row(const FieldInfo& field, const std::string& unit) {
+  return fmt::format("| `{}` | {} | {} | {} | {} |\n", field.key, value_text(field.shape), unit,
+                     default_text(field), field.doc);
 }
 
 std::string alternatives_text(const Alternatives& alternatives) {
@@ -150,12 +148,6 @@ std::string words_text(const FieldInfo& field) {
   return text.empty() ? text : fmt::format("\nAllowed values of `{}`:\n\n{}", field.key, text);
 }
 
-/// Whether a field is a value of a table whose unit is that of the key above it.
-bool takes_unit_of_the_key(const FieldInfo& field) {
-  constexpr std::array keys{"values", "amplitude", "offset"};
-  return std::find(keys.begin(), keys.end(), field.key) != keys.end();
-}
-
 /// Writes a table, then the tables that it refers to, each once.
 class ReferenceWriter {
  public:
@@ -165,10 +157,7 @@ class ReferenceWriter {
     title.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(title.front())));
     text_ += fmt::format("\n<a id=\"{}\"></a>\n\n## {}\n\n{}\n\n", anchor(table), title, table.doc);
     text_ += "| key | value | unit | default | meaning |\n|---|---|---|---|---|\n";
-    for (FieldInfo field : table.fields) {
-      if (table.unit_of_the_key && takes_unit_of_the_key(field)) field.shape.unit = "of the key";
-      text_ += row(field);
-    }
+    for (const FieldInfo& field : table.fields) text_ += row(field, table.unit_of(field));
     for (const Alternatives& alternatives : table.alternatives) {
       text_ += alternatives_text(alternatives);
     }

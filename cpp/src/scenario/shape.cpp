@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "scenario/suggestion.hpp"
@@ -38,6 +39,13 @@ std::vector<std::string> TableInfo::kinds() const {
     if (field.is_kind) kinds.push_back(field.key);
   }
   return kinds;
+}
+
+std::string TableInfo::unit_of(const FieldInfo& field) const {
+  constexpr std::array of_the_key{"values", "amplitude", "offset"};
+  const bool follows = unit_of_the_key && std::find(of_the_key.begin(), of_the_key.end(),
+                                                    field.key) != of_the_key.end();
+  return follows ? "of the key" : field.shape.unit;
 }
 
 int TableInfo::find(std::string_view key) const {

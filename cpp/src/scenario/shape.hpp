@@ -106,6 +106,8 @@ struct TableInfo {
   [[nodiscard]] std::vector<std::string> keys() const;
   /// Those that say which kind it is.
   [[nodiscard]] std::vector<std::string> kinds() const;
+  /// "m", "" or, of a value in a table over time, "of the key".
+  [[nodiscard]] std::string unit_of(const FieldInfo& field) const;
   /// Position in `fields`; -1 for an unknown key.
   [[nodiscard]] int find(std::string_view key) const;
 };

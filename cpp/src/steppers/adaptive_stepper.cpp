@@ -4,9 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "der/core/index.hpp"
 #include "der/model/edge_change.hpp"
-#include "der/model/frames.hpp"
 
 namespace der {
 namespace {
@@ -43,18 +41,6 @@ double shortest_edge(const Model& model) {
   double shortest = std::numeric_limits<double>::infinity();
   for (const Edge& edge : model.edges) shortest = std::min(shortest, edge.rest_length);
   return shortest;
-}
-
-/// Makes the angles in `difference`, of `other` less `state`, those between the sections: the two
-/// have followed the rod in other steps, so that the frames that angles count from differ, too.
-void compare_sections(const Model& model, const State& state, const State& other,
-                      Vector& difference) {
-  const auto frames = state.followed.tail(model.drawn_frames.size());
-  const auto other_frames = other.followed.tail(model.drawn_frames.size());
-  for (Index edge = 0; edge < static_cast<Index>(model.framed_edges.size()); ++edge) {
-    difference[model.framed_edges[to_size(edge)].theta] +=
-        twist_between(reference_frame(edge, frames), reference_frame(edge, other_frames));
-  }
 }
 
 /// Scales the angles in `difference` so that they count as the section's radius of gyration times
@@ -159,7 +145,6 @@ StepReport AdaptiveStepper::attempt(State& state, double length) {
 /// Compares the two halves that led to `state` with the whole step.
 void AdaptiveStepper::measure(const State& state, AdaptiveReport& report) {
   difference_ = whole_.positions - state.positions;
-  compare_sections(model_, state, whole_, difference_);
   const double change = largest_edge_change(model_, difference_);
   count_turns_as_motion(model_, difference_);
   const Index worst = model_.dofs.most_moved(difference_);

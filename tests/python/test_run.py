@@ -103,6 +103,22 @@ def test_a_tolerance_that_is_small_throughout_says_so(swing):
         der.run(swing)
 
 
+@pytest.mark.parametrize("course", ["kinked", "smooth", "sampled"])
+def test_a_hint_names_the_kinks_of_supports_that_start_waves(swing, course):
+    """Not a smooth table, nor straight pieces that sample a smooth motion."""
+    times = [0, 0.05] if course != "sampled" else np.linspace(0, 0.05, 26).tolist()
+    values = [0.02 * np.sin(10 * np.pi * t) ** 2 for t in times]
+    table = {"times": times, "values": values, **({"smooth": True} if course == "smooth" else {})}
+    swing["rods"][0]["nodes"] = 3
+    swing["supports"][0]["prescribe"] = {"x": table}
+    swing["time"] = {"duration": 0.1, "tolerance": 3e-6, "integrator": "implicit_euler"}
+    with pytest.warns(der.DerWarning, match=r"time\.tolerance: 3e-06 took") as caught:
+        der.run(swing)
+    hint = str(caught[0].message)
+    assert ("(supports.0.prescribe.x at 0 s)" in hint) == (course == "kinked")
+    assert ("'smooth: true'" in hint) == (course == "kinked")
+
+
 def test_probes_know_their_unit_and_summary(spheres):
     result = der.run(spheres)
     speed = result.probes["v_mid"]

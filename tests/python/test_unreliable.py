@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 import warnings
@@ -44,6 +45,31 @@ def test_a_run_that_blows_up_fails_by_name_and_keeps_its_frames(whip):
     assert created[result.times < 1].max() < 1e-3
     unchecked = der.run(whip, check=False)
     assert unchecked.status == "unstable_motion"
+
+
+@pytest.mark.parametrize("model", ["planar", "spatial_bend"])
+def test_verlet_of_a_kicked_free_rod_names_a_step_that_works(model):
+    """Steps near the limit do not resolve the fastest vibrations, which a kicked end excites."""
+    dimension = 2 if model == "planar" else 3
+    velocity = np.zeros((19, dimension))
+    velocity[-1, 1] = 162.0
+    rod = {
+        "name": "rod",
+        "nodes": 19,
+        "from": [0] * dimension,
+        "to": [1] + [0] * (dimension - 1),
+        "cross_section": {"circle": {"radius": 0.019}},
+        "material": {"youngs_modulus": 6.5e8, "density": 1000},
+        "initial_velocity": velocity.tolist(),
+    }
+    time = {"duration": 0.1, "step": "auto", "integrator": "verlet"}
+    with pytest.raises(der.DivergedError, match="the integrator created") as caught:
+        der.run({"model": model, "rods": [rod], "time": time})
+    found = re.search(r"To get a right result write 'step: (\S+)'", str(caught.value))
+    assert found is not None
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        der.run({"model": model, "rods": [rod], "time": {**time, "step": float(found[1])}})
 
 
 def test_with_a_callback_and_until_it_fails_too(whip):

@@ -9,6 +9,7 @@ import der
 import numpy as np
 import pytest
 import scenes
+from spatial_scenes import rod_through, section, straight_rod
 
 TOLERANCES = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
 IMPLICIT = [info.name for info in der.steppers() if info.implicit]
@@ -239,3 +240,131 @@ def test_a_run_of_a_day_needs_no_smaller_minimum_step():
     scene["time"] = {"duration": 1e5, "tolerance": 1e-2}
     scene["output"] = {"every": 1e4}
     assert der.run(scene).summary["status"] == "completed"
+
+
+WIRE = {
+    "cross_section": {"circle": {"radius": 0.003}},
+    "material": {"youngs_modulus": 1e7, "poissons_ratio": 0.45, "density": 1100},
+}
+
+
+def turned_wire(nodes, turn, duration, **changes):
+    """A straight wire, 1 m long, whose end is turned about its axis by straight pieces."""
+    rod = {"name": "wire", "nodes": nodes, "from": [0, 0, 0], "to": [1, 0, 0], **WIRE}
+    twist = {"twist": {"times": [0, 1], "values": [0, turn]}}
+    return {
+        "rods": [rod],
+        "supports": [
+            {"rod": "wire", "at": "start", "clamp": True},
+            {"rod": "wire", "at": "end", "clamp": True, "prescribe": twist},
+        ],
+        "loads": [{"damping": {"coefficient": 0.1}}],
+        "time": {"duration": duration, "tolerance": 1e-3},
+        "output": {"every": duration / 20},
+        **changes,
+    }
+
+
+def test_torsional_waves_that_move_no_node_are_damped():
+    """The kink starts waves of 0.01 rad. They turned 500 times the tolerance into steps, 22,126 of
+    them. What is left is the torque of Saint-Venant, GJ times the twist."""
+    scene = turned_wire(41, 3.0, 1.0)
+    scene["output"]["probes"] = {"torque": {"quantity": "torque", "rod": "wire", "at": "middle"}}
+    result = der.run(scene)
+    assert result.summary["steps"] < 200
+    GJ = 1e7 / (2 * 1.45) * np.pi * 0.003**4 / 2
+    assert result.probes["torque"][-1] == pytest.approx(3.0 * GJ, rel=1e-6)
+
+
+def test_a_twisted_wire_that_is_pushed_to_a_loop():
+    """It writhes, snaps and vibrates. The error is that of all its nodes at all frames, and has
+    grown in the snap; the steps were seven times as many."""
+    scene = turned_wire(21, 25.13, 4.0)
+    motion = scene["supports"][1]["prescribe"]
+    motion["twist"]["smooth"] = True
+    motion["x"] = {"times": [1, 3], "values": [0, -0.4], "smooth": True}
+    scene["loads"].append({"gravity": [0, 0, -0.05]})
+    exact = der.run({**scene, "time": {"duration": 4.0, "step": 4e-4}}).positions
+    result = der.run(scene)
+    assert np.abs(exact[..., 2]).max() > 0.15
+    assert np.linalg.norm(result.positions - exact, axis=2).max() < 1e-3
+    assert result.summary["steps"] < 4000
+
+
+def bar_that_swings_about_its_axis(tolerance=None):
+    """A clamped, straight bar whose sections spin in its slowest torsional vibration: steps, and
+    the angles of its sections after 1.3 periods. Its radius of gyration is a tenth of its length.
+    """
+    edges, bar = 20, section(EA=1e3, EI=10.0, GJ=2.0, mass_per_length=1.0, rotary_inertia=0.01)
+    slowest = np.pi / 2 * np.sqrt(2.0 / 0.01)
+    exact = {"step": 1e-4, "integrator": "sdirk5"}
+    stepping = exact if tolerance is None else {"tolerance": tolerance}
+    time = {"duration": 1.3 * 2 * np.pi / slowest, **stepping}
+    simulation = der.Simulation(straight_rod(edges, bar, time=time))
+    simulation.spin[:] = slowest * np.sin(np.pi / 2 * (np.arange(edges) + 0.5) / edges)
+    result = simulation.run()
+    assert np.array_equal(result.positions[-1], result.positions[0])
+    return result.summary["steps"], result.theta[-1]
+
+
+def test_errors_of_angles_follow_the_tolerance_over_the_radius_of_gyration(fitted_order):
+    """Where no node moves, it is the sections' own material that does."""
+    _, exact = bar_that_swings_about_its_axis()
+    assert np.abs(exact).max() > 0.8
+    tolerances = [1e-3, 1e-4, 1e-5]
+    errors = [
+        np.abs(bar_that_swings_about_its_axis(tolerance)[1] - exact).max()
+        for tolerance in tolerances
+    ]
+    assert fitted_order(tolerances, errors) == pytest.approx(1.0, abs=0.15)
+    assert all(e <= 10 * t for e, t in zip(errors, tolerances, strict=True))
+    assert all(e >= 0.5 * t for e, t in zip(errors, tolerances, strict=True))
+
+
+def crank():
+    """A bar that a weight twists by the arm at its end: torsion is all that lets the arm fall."""
+    points = [[0, 0, 0.05 * i] for i in range(11)] + [[0.05 * i, 0, 0.5] for i in range(1, 7)]
+    bar = section([0, 1, 0], EA=500, EI=2.0, GJ=0.05, mass_per_length=0.2, rotary_inertia=2e-5)
+    scene = rod_through(points, bar, loads=[{"gravity": [0, -1.0, 0]}])
+    return scene, 1.0
+
+
+def strip_that_spins():
+    """A bent strip whose clamp turns it about its tangent: it bends and twists as it goes round."""
+    s = np.linspace(0, 0.5, 13)
+    points = np.column_stack([0 * s, (np.cos(3 * s) - 1) / 3, np.sin(3 * s) / 3])
+    strip = section([1, 0, 0], EA=500, EI1=0.04, EI2=0.01, GJ=0.01, mass_per_length=0.3)
+    strip["stiffness"]["rotary_inertia"] = 3e-5
+    twist = {"twist": {"times": [0, 0.8], "values": [0, 6.0], "smooth": True}}
+    support = {**scenes.START, "clamp": True, "prescribe": twist}
+    return rod_through(points, strip, supports=[support]), 0.8
+
+
+def rod_that_unwinds():
+    """A bent rod that is drawn without its natural twist and let go, free at both ends."""
+    s = np.linspace(0, 0.5, 11)
+    points = np.column_stack([(1 - np.cos(4 * s)) / 4, 0 * s, np.sin(4 * s) / 4])
+    soft = section([0, 1, 0], EA=500, EI1=0.05, EI2=0.02, GJ=0.02, mass_per_length=0.3)
+    soft["stiffness"]["rotary_inertia"] = 1e-4
+    return rod_through(points, soft, supports=[], rod={"natural_twist": 3.0}), 0.3
+
+
+@pytest.mark.parametrize("make", [crank, strip_that_spins, rod_that_unwinds])
+def test_errors_follow_the_tolerance_where_torsion_moves_nodes(make, fitted_order):
+    scene, duration = make()
+    del scene["analysis"]
+    scene["output"] = {"every": duration / 20}
+
+    def positions(**time):
+        return der.run({**scene, "time": {"duration": duration, **time}}).positions
+
+    exact = positions(step=duration / 20000, integrator="implicit_midpoint")
+    size = np.linalg.norm(np.diff(exact[0], axis=0), axis=1).sum()
+    tolerances = [1e-2, 1e-3, 1e-4]
+    for integrator in ("tr_bdf2", "newmark"):
+        errors = []
+        for tolerance in tolerances:
+            found = positions(tolerance=tolerance, integrator=integrator)
+            errors.append(np.linalg.norm(found - exact, axis=2).max() / size)
+        assert fitted_order(tolerances, errors) == pytest.approx(1.0, abs=0.3), errors
+        assert all(e <= t for e, t in zip(errors, tolerances, strict=True)), errors

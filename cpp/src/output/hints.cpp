@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 
 #include "der/scenario/scenario.hpp"
+#include "der/steppers/fine_tables.hpp"
 
 namespace der {
 namespace {
@@ -14,6 +16,18 @@ constexpr std::int64_t kManySteps = 20'000;
 /// Ratio of the longest step to the mean one, from which on the motion itself has changed.
 constexpr double kGrownRough = 10.0;
 
+std::string about(const std::vector<MotionKink>& kinks) {
+  std::string places;
+  for (const auto& [path, at] : kinks) {
+    places += fmt::format("{}{} at {:g} s", places.empty() ? "" : ", ", path, at);
+  }
+  return fmt::format(
+      ". Supports jump to another velocity where their tables have kinks ({}). That starts waves "
+      "of every length, and the steps resolve those that move nodes. For fewer steps, write "
+      "'smooth: true' in these tables, or choose a larger tolerance",
+      places);
+}
+
 }  // namespace
 
 std::vector<std::string> hints(const Simulation& simulation, const Counters& counters) {
@@ -22,7 +36,19 @@ std::vector<std::string> hints(const Simulation& simulation, const Counters& cou
   const scenario::Time& time = simulation.scenario().scene().time;
   const double mean = simulation.state().time / static_cast<double>(steps);
   const double longest = simulation.longest_step();
-  if (longest < kGrownRough * mean) {
+  const bool is_even = longest < kGrownRough * mean;
+  auto kinks = motion_kinks(simulation.scenario().scene(), simulation.state().time);
+  if (!is_even) {  // long steps came after a kink at the start: it is not what made them short
+    kinks.erase(std::remove_if(kinks.begin(), kinks.end(),
+                               [](const MotionKink& kink) { return kink.time == 0.0; }),
+                kinks.end());
+  }
+  if (!kinks.empty()) {
+    return {fmt::format("time.tolerance: {:g} took {} steps of about {:.2g} s", time.tolerance,
+                        steps, mean) +
+            about(kinks)};
+  }
+  if (is_even) {
     return {fmt::format(
         "time.tolerance: {:g} took {} steps of about {:.2g} s. It limits the error that all steps "
         "of the whole duration of {:g} s add up to, so that a longer run takes shorter steps. For "

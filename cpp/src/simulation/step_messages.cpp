@@ -1,6 +1,9 @@
 // Why a step failed or is not to be trusted, and what to try.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
+
 #include "der/scenario/scenario.hpp"
 #include "der/simulation.hpp"
 
@@ -34,7 +37,7 @@ std::string Simulation::describe_inaccuracy(const AdaptiveReport& report) const 
 }
 
 std::string Simulation::advice_on_steps() const {
-  const char* shorter = "take smaller steps";
+  std::string shorter = "take smaller steps";
   switch (scenario_.scene().time.stepping) {
     case scenario::Stepping::Fixed:
       break;
@@ -42,7 +45,10 @@ std::string Simulation::advice_on_steps() const {
       shorter = "take a smaller tolerance";
       break;
     case scenario::Stepping::Automatic:
-      shorter = "give a step that is smaller than that of 'auto'";
+      // Half of it resolves the fastest vibration, as pieces of a step do (stability_watch.cpp).
+      shorter = fmt::format(
+          "write 'step: {:.2g}', which resolves the fastest vibrations",
+          plan_.step / static_cast<double>(std::max<std::int64_t>(2, counters_.most_pieces)));
       break;
   }
   constexpr const char* kConserving = "energy_momentum";  // planar only (check_spatial.cpp)

@@ -43,6 +43,19 @@ double shortest_edge(const Model& model) {
   return shortest;
 }
 
+/// Scales the angles in `difference` so that they count as the section's radius of gyration times
+/// the angle, and not as the model's size times it. That is how far the material moves, and, about
+/// a stable shape, in the mean over the mass as far as the angle can ever move nodes: a vibration
+/// cos(W t) d, W^2 = M^-1 K, is never longer than d in the norm of M.
+void count_turns_as_motion(const Model& model, Vector& difference) {
+  const Vector& mass = model.mass.lumped;
+  const double size = model.dofs.length();
+  for (const SpatialEdge& edge : model.framed_edges) {
+    const double radius = std::sqrt(mass[edge.theta] / (0.5 * (mass[edge.start] + mass[edge.end])));
+    difference[edge.theta] *= std::min(radius / size, 1.0);
+  }
+}
+
 /// With steps no longer than see every sine swing.
 AdaptiveOptions resolving_sines(AdaptiveOptions options, const Model& model) {
   for (const scenario::Series& series : model.tables.all()) {
@@ -132,12 +145,13 @@ StepReport AdaptiveStepper::attempt(State& state, double length) {
 /// Compares the two halves that led to `state` with the whole step.
 void AdaptiveStepper::measure(const State& state, AdaptiveReport& report) {
   difference_ = whole_.positions - state.positions;
+  const double change = largest_edge_change(model_, difference_);
+  count_turns_as_motion(model_, difference_);
   const Index worst = model_.dofs.most_moved(difference_);
   const double difference = model_.dofs.motion_of(worst, difference_[worst]);
   report.last.worst_dof = worst;
   const double rounding = kInsignificant * model_.dofs.largest_motion(state.positions);
   const double of_position = difference / (options_.tolerance * model_.size());
-  const double change = largest_edge_change(model_, difference_);
   const double of_edge = change * shortest_edge_ <= rounding ? 0.0 : change / kEdgeError;
   const double share = report.tried / options_.duration;
   report.error = error_factor_ * std::max(of_position, of_edge) / share;

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <variant>
 
 #include "der/scenario/load.hpp"
@@ -9,6 +12,9 @@
 
 namespace der {
 namespace {
+
+/// Share of a table's largest velocity from which on a jump of it is a kink.
+constexpr double kKink = 0.5;
 
 struct Table {
   std::string path;  ///< as in `--set`
@@ -37,6 +43,24 @@ void add_tables(const scenario::Actuation& actuation, std::vector<Table>& tables
     tables.push_back({fmt::format("actuation.{}.{}", actuation.name, key_of(actuation.what)),
                       series.times, series.course});
   }
+}
+
+/// Before its first entry and after its last one a table is constant.
+std::optional<MotionKink> first_kink(const scenario::Series& motion, double until) {
+  const auto& [times, values, course] = motion;
+  if (course.kind != scenario::Course::Kind::Linear) return std::nullopt;
+  const auto rate_from = [&](std::size_t entry) {
+    if (entry + 1 >= times.size()) return 0.0;
+    return (values[entry + 1] - values[entry]) / (times[entry + 1] - times[entry]);
+  };
+  double fastest = 0.0;
+  for (std::size_t i = 0; i < times.size(); ++i)
+    fastest = std::max(fastest, std::abs(rate_from(i)));
+  for (std::size_t i = 0; i < times.size() && times[i] < until; ++i) {
+    const double jump = std::abs(rate_from(i) - (i > 0 ? rate_from(i - 1) : 0.0));
+    if (times[i] >= 0.0 && jump > kKink * fastest) return MotionKink{{}, times[i]};
+  }
+  return std::nullopt;
 }
 
 std::vector<Table> tables(const scenario::Scene& scene) {
@@ -79,6 +103,20 @@ std::vector<std::string> fine_table_warnings(const scenario::Scene& scene, doubl
         path, times[closest - 1], times[closest], step));
   }
   return warnings;
+}
+
+std::vector<MotionKink> motion_kinks(const scenario::Scene& scene, double until) {
+  std::vector<MotionKink> kinks;
+  for (std::size_t i = 0; i < scene.supports.size(); ++i) {
+    const auto enter = [&](const char* key, const scenario::Series& motion) {
+      std::optional<MotionKink> kink = first_kink(motion, until);
+      if (!kink) return;
+      kink->path = fmt::format("supports.{}.prescribe.{}", i, key);
+      kinks.push_back(*kink);
+    };
+    scenario::for_each_motion(scene.supports[i], enter);
+  }
+  return kinks;
 }
 
 }  // namespace der

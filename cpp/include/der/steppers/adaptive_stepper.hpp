@@ -36,11 +36,12 @@ struct AdaptiveReport {
 /// Ordinary Differential Equations I, section II.4); `StepperInfo::error_factor` takes about three
 /// times as much, since errors grow further in the motion. A step may add `tolerance * size` times
 /// its share of the duration, so that the sum of all estimates stays below `tolerance * size` and
-/// the error follows the tolerance in proportion. The same holds for the change of each edge and
-/// half its length, whatever the tolerance: an edge shorter than it could turn over. The next
-/// length comes from a proportional-integral controller (Gustafsson, ACM Trans. Math. Softw. 17,
-/// 1991). Entries of tables over time and ends of ramps, where forces have kinks, are hit exactly,
-/// and no step is longer than a quarter of the period of a sine.
+/// the error follows the tolerance in proportion. The angle of a section counts as its radius of
+/// gyration times that. The same holds for the change of each edge and half its length, whatever
+/// the tolerance: an edge shorter than it could turn over. The next length comes from a
+/// proportional-integral controller (Gustafsson, ACM Trans. Math. Softw. 17, 1991). Entries of
+/// tables over time and ends of ramps, where forces have kinks, are hit exactly, and no step is
+/// longer than a quarter of the period of a sine.
 class AdaptiveStepper {
  public:
   AdaptiveStepper(const Model& model, const Assembler& assembler, Stepper& stepper,

@@ -14,4 +14,13 @@ struct Scene;
 /// order; and about sines that these steps hardly see.
 std::vector<std::string> fine_table_warnings(const scenario::Scene& scene, double step);
 
+/// An entry of a table at which a support jumps to another velocity.
+struct MotionKink {
+  std::string path;   ///< of the table, as in `--set`
+  double time = 0.0;  ///< [s]
+};
+/// For each table of a support's motion that has kinks before the time `until` [s] the first of
+/// them. Pieces that sample a smooth motion have none: each jump is small against the velocity.
+std::vector<MotionKink> motion_kinks(const scenario::Scene& scene, double until);
+
 }  // namespace der

@@ -279,3 +279,22 @@ def test_a_shape_without_turns_that_a_program_writes_unwinds_a_rod():
     simulation.prescribe(1, x=-0.05, angle=0.0)
     simulation.equilibrium()
     assert simulation.positions == pytest.approx(shape, abs=1e-9)
+
+
+@pytest.mark.parametrize("shortening", [0.1, 0.4])
+def test_a_search_from_a_run_whose_clamps_did_not_turn(tmp_path, shortening):
+    """It saved no turns. They were counted from where this scene has the supports: the rod was
+    wound by a whole turn."""
+
+    def ends(x, start, end):
+        return between({"clamp": True, **start}, {"clamp": True, "prescribe": {"x": x, **end}})
+
+    der.run(ends(-0.25, {}, {}), out=tmp_path / "first")
+    clamps = {"prescribe": {"angle": 0.4}}, {"angle": -0.4}
+    later = der.run({**ends(-shortening, *clamps), "start_from": str(tmp_path / "first")})
+    simulation = der.Simulation(ends(-0.25, {"prescribe": {"angle": 0.0}}, {"angle": 0.0}))
+    simulation.equilibrium()
+    simulation.prescribe(0, angle=0.4)
+    simulation.prescribe(1, x=-shortening, angle=-0.4)
+    simulation.equilibrium()
+    assert later.energies["bend"][-1] == pytest.approx(simulation.energies.bend, rel=1e-8)

@@ -17,14 +17,18 @@
 namespace der {
 
 EquilibriumReport Simulation::equilibrium(bool leave_saddles, const Beat& beat) {
+  State before;
+  Undo undo(state_, before);
   EquilibriumReport report = settle(leave_saddles, beat);
-  if (model_.dimension != 2) return report;
-  report.out_of_plane.emplace();
-  if (OutOfPlaneTest* test = out_of_plane_test(beat)) {
-    report.out_of_plane->stability = test->stability(configuration_of(model_, state_));
-  } else {
-    report.out_of_plane->not_tested = constants_->not_tested;
+  if (model_.dimension == 2) {
+    report.out_of_plane.emplace();
+    if (OutOfPlaneTest* test = out_of_plane_test(beat)) {
+      report.out_of_plane->stability = test->stability(configuration_of(model_, state_));
+    } else {
+      report.out_of_plane->not_tested = constants_->not_tested;
+    }
   }
+  undo.keep();
   return report;
 }
 

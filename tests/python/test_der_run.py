@@ -563,6 +563,115 @@ def test_an_interrupted_and_resumed_run_is_the_uninterrupted_one(
     assert "nothing to resume" in done.stdout
 
 
+COLUMN = """\
+title: Column
+rods:
+  - name: rod
+    nodes: 21
+    from: [0, 0]
+    to: [1, 0]
+    cross_section: {stiffness: {EA: 1e6, EI: 1, GJ: 0.8, mass_per_length: 1}}
+supports:
+  - {rod: rod, at: start, fix: [x, y]}
+  - {rod: rod, at: end, fix: [y]}
+loads:
+  - point_force: {rod: rod, at: end, force: [-1, 0]}
+"""
+
+#: Analyses of many seconds. The eigenvalues of a full matrix, as of half of all modes, have no
+#: iterations in which a signal could be seen.
+LONG_ANALYSES = {
+    "static": ("static", 8001, {"loads.0.point_force.force": "[-1e5, 0]"}),
+    "out of the plane": ("static", 30001, {"rods.rod.cross_section.stiffness.GJ": "1e-3"}),
+    "modes": ("{modes: {count: 600}}", 4001, {}),
+    "all modes": ("{modes: {count: 3000}}", 2001, {}),
+    "buckling": ("{buckling: {count: 300}}", 2001, {}),
+    "continuation": (
+        "{continuation: {branches: 1, step: 0.0002, points: 9000}}",
+        1001,
+        {"loads.0.point_force.force": "[-30, 0]"},
+    ),
+}
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
+@pytest.mark.parametrize("case", LONG_ANALYSES)
+def test_a_signal_ends_an_analysis_within_a_second(
+    tmp_path: Path, case: str, number: signal.Signals
+) -> None:
+    analysis, nodes, changes = LONG_ANALYSES[case]
+    path = tmp_path / "column.yaml"
+    path.write_text(COLUMN + f"analysis: {analysis}\n")
+    out = tmp_path / "out"
+    options = [f"{key}={value}" for key, value in {"rods.rod.nodes": nodes, **changes}.items()]
+    scene = [path, *(word for option in options for word in ("--set", option)), "--out", out]
+    run = start(*scene)
+    deadline = time.monotonic() + 60
+    while not (out / "scene.yaml").exists() and time.monotonic() < deadline:
+        time.sleep(0.01)
+    time.sleep(1.0)
+    assert run.poll() is None, run.communicate()
+    run.send_signal(number)
+    sent = time.monotonic()
+    stdout, stderr = run.communicate(timeout=60)
+    assert time.monotonic() - sent < 2.5  # on a machine that is busy with other tests
+    assert run.returncode == 128 + number
+    assert stderr == ""
+    with h5py.File(out / "results.h5") as file:
+        assert len(file["time"]) == 0
+        assert file.attrs["status"] in (b"stopped", b"running")
+        assert ("stopped" in stdout) == (file.attrs["status"] == b"stopped")
+    if (out / "summary.json").exists():
+        summary = summary_of(out)
+        assert summary["status"] == "stopped"
+        assert summary["probes"] == {}
+        assert "stability" not in summary
+    done = der_run(*scene, "--resume")
+    assert done.returncode == 1
+    assert "run it again without --resume" in done.stderr
+
+
+def test_too_many_nodes_are_said_at_once(tmp_path: Path) -> None:
+    """A search took minutes to fail as `too_fine`; a check built the model first."""
+    path = tmp_path / "column.yaml"
+    path.write_text(COLUMN + "analysis: static\n")
+    across = ["--set", "loads.0.point_force.force=[0, 1]"]
+    many = ["--set", "rods.rod.nodes=100000"]
+
+    def refused(*options: str, analysis: str = "static") -> str:
+        begun = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        done = der_run(path, *options, "--set", f"analysis={analysis}", "--check")
+        assert resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - begun < 1.0
+        assert done.returncode == 1
+        return done.stderr
+
+    for error in (
+        refused(*many, *across),
+        refused(*many, analysis="modes"),
+        refused(*many, analysis="buckling"),
+        refused("--set", "rods.rod.nodes=1000000", "--set", "model=spatial"),
+    ):
+        assert re.search(r"0 nodes take [0-9.]+ GB of memory", error)
+        assert "'too_fine': write fewer" in error
+    # Where nothing bends, so many can be solved for; one node less may be.
+    assert der_run(path, *many, "--check").returncode == 0
+    assert der_run(path, "--set", "rods.rod.nodes=99999", *across, "--check").returncode == 0
+
+
+def test_a_check_says_what_is_doubtful_before_it_builds_the_model(tmp_path: Path) -> None:
+    path = tmp_path / "column.yaml"
+    path.write_text(COLUMN + "time: {duration: 1, step: 0.01}\n")
+    run = start(path, "--set", "rods.rod.nodes=1000000", "--check")
+    assert run.stdout is not None
+    try:
+        assert run.stdout.readline() == "Column\n"
+        assert "1000000 nodes take 1.2 GB of memory" in run.stdout.readline()
+        assert run.poll() is None
+    finally:
+        run.kill()
+        run.communicate()
+
+
 def test_a_run_that_was_killed_before_its_summary_gets_one(scene: Path, tmp_path: Path) -> None:
     """All its data were there, and `--resume` said that it was finished."""
     out, reference = tmp_path / "out", tmp_path / "reference"

@@ -132,6 +132,7 @@ def test_supports_are_where_the_scene_has_them(swing, tmp_path):
         der.Simulation(der.Scenario.from_dict(swing))
     static = {key: value for key, value in swing.items() if key not in ("time", "output")}
     simulation = der.Simulation(der.Scenario.from_dict({**static, "analysis": "static"}))
+    simulation.equilibrium()
     assert np.array_equal(simulation.positions[-1], [1.0, 0.0])
 
 

@@ -7,6 +7,8 @@ import der
 import numpy as np
 import pytest
 from scenes import END, START, straight, tip_force
+from scipy.integrate import solve_ivp
+from scipy.special import ellipe, ellipk
 
 SIZES = [20, 40, 80, 160]
 STEPS = [1 / n for n in SIZES]
@@ -67,3 +69,38 @@ def test_buckled_columns_are_found_from_the_straight_one(reference, fitted_order
         found = [np.abs(simulation.positions[:, 1]).max(), 1 - simulation.positions[-1, 0]]
         errors.append(np.linalg.norm(np.subtract(found, exact)))
     assert fitted_order([1 / n for n in sizes], errors) > 1.9
+
+
+def two_half_waves(k, nodes):
+    """Points of a pinned column of length 1 that has buckled in its second mode, unstable under a
+    dead load (Timoshenko and Gere, Theory of Elastic Stability, 2.7); k is the sine of half the
+    largest angle."""
+    load = (4 * ellipk(k**2)) ** 2
+
+    def along(s, state):
+        return [np.cos(state[2]), np.sin(state[2]), state[3], -load * np.sin(state[2])]
+
+    start = [0, 0, 2 * np.arcsin(k), 0]
+    at = np.linspace(0, 1, nodes)
+    points = solve_ivp(along, (0, 1), start, t_eval=at, rtol=1e-11, atol=1e-12).y[:2].T
+    points[[0, -1], 1] = 0.0
+    return points
+
+
+@pytest.mark.parametrize("drawn", [0.6, 0.57], ids=["on it", "beside it"])
+def test_any_equilibrium_is_the_one_nearest_to_the_drawn_shape(fitted_order, drawn):
+    """Stable or not: what leads downhill left it."""
+    exact = 2 * ellipe(0.6**2) / ellipk(0.6**2) - 1
+    errors = []
+    for n in SIZES[1:]:
+        scene = straight(n, "pinned-pinned", 1e7)
+        rod = scene["rods"][0]
+        del rod["nodes"], rod["from"], rod["to"]
+        rod |= {"points": two_half_waves(drawn, n + 1).tolist(), "natural_curvature": 0}
+        scene["loads"] = tip_force(-((4 * ellipk(0.6**2)) ** 2), 0)
+        scene["analysis"] = {"static": {"stability": "any"}}
+        result = der.run(scene)
+        assert result.summary["stability"] == "unstable"
+        assert result.summary["saddles_left"] == 0
+        errors.append(result.positions[-1, -1, 0] - exact)
+    assert fitted_order(STEPS[1:], errors) > 1.9

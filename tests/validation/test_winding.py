@@ -194,3 +194,107 @@ def test_a_turn_that_a_program_writes_is_the_shorter_way():
     assert simulation.energies.spring == stored(np.pi / 2)
     simulation.step()
     assert simulation.energies.spring == pytest.approx(0.5 * K * (np.pi / 2) ** 2, rel=1e-2)
+
+
+def between(start, end) -> Scene:
+    """A rod that bends, between two supports."""
+    scene = straight(40, "clamped-clamped", 1e4)
+    scene["supports"] = [{**START, **start}, {**END, **end}]
+    return scene
+
+
+#: Rods whose equilibrium has turned a clamp, or has one prescribed nearer by more than an edge.
+TURNED = {
+    "nearer": between(
+        {"clamp": True, "prescribe": {"angle": 0.4}},
+        {"clamp": True, "prescribe": {"x": -0.25, "angle": -0.4}},
+    ),
+    "held": between({"clamp": True}, {"clamp": True, "prescribe": {"x": -0.3, "angle": 5.0}}),
+    "both": between(
+        {"clamp": True, "prescribe": {"angle": -2.0}},
+        {"clamp": True, "prescribe": {"x": -0.3, "angle": 5.0}},
+    ),
+    "pinned": between({"fix": ["x", "y"]}, {"clamp": True, "prescribe": {"x": -0.3, "angle": 5.0}}),
+    "spring": between(
+        {"fix": ["x", "y"], "spring": {"rotational_stiffness": 10.0}},
+        {"clamp": True, "prescribe": {"x": -0.3, "angle": 5.0}},
+    ),
+}
+
+
+@pytest.fixture(params=TURNED)
+def turned(request):
+    """One of these scenes, and a simulation in its equilibrium."""
+    simulation = der.Simulation(TURNED[request.param])
+    assert simulation.equilibrium().stability == "stable"
+    return TURNED[request.param], simulation
+
+
+def test_an_equilibrium_that_a_program_writes_is_kept(turned):
+    """Its turns are those of the shape. They were counted from where the supports begin, which had
+    turned an edge over: the rod was wound by a whole turn."""
+    scene, first = turned
+    simulation = der.Simulation(scene)
+    simulation.positions[...] = first.positions
+    batch = der.Batch(scene, 2, 1)
+    batch.positions[1] = first.positions
+    restored = der.Simulation(scene)
+    restored.positions[...] = first.positions
+    state = restored.save_state()
+    restored = der.Simulation(scene)
+    restored.restore_state(state)
+    for written in (simulation, batch, restored):
+        written.equilibrium()
+    for found in (simulation.positions, batch.positions[1], restored.positions):
+        assert found == pytest.approx(first.positions, abs=1e-9)
+
+
+def test_a_search_from_a_saved_equilibrium_keeps_its_turns(turned, tmp_path):
+    """Whether the clamps are where they were, or nearer by more than an edge."""
+    scene, first = turned
+    der.run(scene, out=tmp_path / "first")
+    kept = der.run({**scene, "start_from": str(tmp_path / "first")})
+    assert kept.positions[-1] == pytest.approx(first.positions, abs=1e-9)
+
+    prescribed = {**scene["supports"][1]["prescribe"], "x": -0.4}
+    nearer = {
+        **scene,
+        "supports": [scene["supports"][0], {**scene["supports"][1], "prescribe": prescribed}],
+    }
+    moved = der.run({**nearer, "start_from": str(tmp_path / "first")})
+    first.prescribe(1, x=-0.4)
+    first.equilibrium()
+    assert moved.positions[-1] == pytest.approx(first.positions, abs=1e-8)
+
+
+def test_a_shape_without_turns_that_a_program_writes_unwinds_a_rod():
+    """Two turns were in it before; the shape that is written has none."""
+    scene = between({"clamp": True}, {"clamp": True, "prescribe": {"x": -0.05, "angle": 0.0}})
+    simulation = der.Simulation(scene)
+    simulation.equilibrium()
+    shape = simulation.positions.copy()
+    simulation.prescribe(1, x=-0.5, angle=4 * np.pi)
+    simulation.equilibrium()
+    simulation.positions[...] = shape
+    simulation.prescribe(1, x=-0.05, angle=0.0)
+    simulation.equilibrium()
+    assert simulation.positions == pytest.approx(shape, abs=1e-9)
+
+
+@pytest.mark.parametrize("shortening", [0.1, 0.4])
+def test_a_search_from_a_run_whose_clamps_did_not_turn(tmp_path, shortening):
+    """It saved no turns. They were counted from where this scene has the supports: the rod was
+    wound by a whole turn."""
+
+    def ends(x, start, end):
+        return between({"clamp": True, **start}, {"clamp": True, "prescribe": {"x": x, **end}})
+
+    der.run(ends(-0.25, {}, {}), out=tmp_path / "first")
+    clamps = {"prescribe": {"angle": 0.4}}, {"angle": -0.4}
+    later = der.run({**ends(-shortening, *clamps), "start_from": str(tmp_path / "first")})
+    simulation = der.Simulation(ends(-0.25, {"prescribe": {"angle": 0.0}}, {"angle": 0.0}))
+    simulation.equilibrium()
+    simulation.prescribe(0, angle=0.4)
+    simulation.prescribe(1, x=-shortening, angle=-0.4)
+    simulation.equilibrium()
+    assert later.energies["bend"][-1] == pytest.approx(simulation.energies.bend, rel=1e-8)

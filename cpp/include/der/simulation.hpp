@@ -266,8 +266,8 @@ class Simulation {
     [[nodiscard]] Vector unbalanced(const Model& model) const;
   };
   [[nodiscard]] Forces forces() const;
-  /// Made when it is first asked for; null where there is none.
-  OutOfPlaneTest* out_of_plane_test();
+  /// Made when it is first asked for; null where there is none. It calls `beat` from now on.
+  OutOfPlaneTest* out_of_plane_test(const Beat& beat);
   [[nodiscard]] std::string describe_failure(const StepReport& report, double dt) const;
   [[nodiscard]] std::string describe_inaccuracy(const AdaptiveReport& report) const;
   [[nodiscard]] std::string describe_unstable_motion() const;

@@ -1,5 +1,7 @@
 #include "der/app/interrupt.hpp"
 
+#include <unistd.h>
+
 #include <csignal>
 
 namespace der::app {
@@ -9,6 +11,14 @@ namespace {
 volatile std::sig_atomic_t received = 0;
 
 void remember(int signal) { received = signal; }
+
+void remember_for_a_second(int signal) {
+  received = signal;
+  alarm(1);
+}
+
+// Only what a signal handler may call: no destructor runs, as if the process were killed.
+void give_up(int /*alarm*/) { _exit(128 + received); }
 
 void install(int signal, void (*handler)(int)) {
   struct sigaction action{};
@@ -21,13 +31,17 @@ void install(int signal, void (*handler)(int)) {
 
 }  // namespace
 
-InterruptGuard::InterruptGuard() {
+InterruptGuard::InterruptGuard(Patience patience) {
   received = 0;
-  install(SIGINT, remember);
-  install(SIGTERM, remember);
+  const auto handler = patience == Patience::OneSecond ? remember_for_a_second : remember;
+  install(SIGALRM, give_up);
+  install(SIGINT, handler);
+  install(SIGTERM, handler);
 }
 
 InterruptGuard::~InterruptGuard() {
+  alarm(0);
+  install(SIGALRM, SIG_DFL);
   install(SIGINT, SIG_DFL);
   install(SIGTERM, SIG_DFL);
 }

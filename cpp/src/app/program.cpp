@@ -64,10 +64,16 @@ ExitCode run_scene(const Options& options, Simulation& simulation) {
     });
     return InterruptGuard::signal() == 0;
   };
-  const InterruptGuard guard;
+  const auto beat = [] {
+    if (InterruptGuard::signal() != 0) throw Stopped{};
+  };
+  // A step may take long, and is saved. An analysis has nothing to save before its end.
+  const bool has_steps = simulation.scenario().scene().is_dynamic();
+  const InterruptGuard guard(has_steps ? InterruptGuard::Patience::Endless
+                                       : InterruptGuard::Patience::OneSecond);
   const RunOutcome outcome = options.resume
                                  ? resume_in_folder(folder, simulation, recorder, after_step)
-                                 : run_in_folder(folder, simulation, recorder, after_step);
+                                 : run_in_folder(folder, simulation, recorder, after_step, beat);
   progress.clear();
   if (!options.quiet) {
     print(run_report(simulation, recorder, outcome, folder, Style::of(stdout)));
@@ -94,11 +100,14 @@ ExitCode execute(const Options& options) {
   }
   const Scenario scenario = Scenario::load(options.scene, options.overrides);
   if (options.resume && is_finished(options, scenario)) return ExitCode::Completed;
-  Simulation simulation(scenario);
-  if (options.check) {
-    if (!options.quiet) print(check_report(simulation, Style::of(stdout)));
-    return ExitCode::Completed;
+  const bool reports_check = options.check && !options.quiet;
+  if (reports_check) {
+    print(check_head(scenario, Style::of(stdout)));
+    std::fflush(stdout);
   }
+  Simulation simulation(scenario);
+  if (reports_check) print(check_report(simulation, Style::of(stdout)));
+  if (options.check) return ExitCode::Completed;
   if (!options.resume) apply_start(simulation);
   return run_scene(options, simulation);
 }

@@ -76,9 +76,9 @@ std::string line(std::string_view label, const std::string& text, const Style& s
   return fmt::format("  {} {}\n", style.dim(fmt::format("{:<8}", label)), text);
 }
 
-std::string heading(const Simulation& simulation, const Style& style) {
-  const std::string& title = simulation.scenario().scene().title;
-  return style.bold(printable(title.empty() ? simulation.scenario().source() : title)) + "\n";
+std::string heading(const Scenario& scenario, const Style& style) {
+  const std::string& title = scenario.scene().title;
+  return style.bold(printable(title.empty() ? scenario.source() : title)) + "\n";
 }
 
 std::string model_lines(const Simulation& simulation, const Style& style) {
@@ -164,6 +164,8 @@ std::string status_line(const Simulation& simulation, const RunOutcome& outcome,
     if (simulation.scenario().scene().is_dynamic()) {
       status += fmt::format(" at t = {:.6g} s", outcome.time);
     }
+  } else if (is_static(simulation)) {
+    status = style.warning(status) + " before its end: there is no result";
   } else {
     status = style.warning(status) +
              fmt::format(" at t = {:.6g} s of {:.6g} s; go on with --resume", outcome.time,
@@ -300,7 +302,7 @@ std::string size_text(const Simulation& simulation) {
 
 std::string run_report(const Simulation& simulation, const Recorder& recorder,
                        const RunOutcome& outcome, const RunFolder& folder, const Style& style) {
-  std::string text = heading(simulation, style);
+  std::string text = heading(simulation.scenario(), style);
   text += status_line(simulation, outcome, style);
   text += line("ran", what_ran(simulation), style);
   text += model_lines(simulation, style);
@@ -321,11 +323,14 @@ std::string run_report(const Simulation& simulation, const Recorder& recorder,
   return text;
 }
 
+std::string check_head(const Scenario& scenario, const Style& style) {
+  return heading(scenario, style) + warning_lines(scenario.scene().warnings, style);
+}
+
 std::string check_report(const Simulation& simulation, const Style& style) {
-  return heading(simulation, style) + line("status", style.good("scene is valid"), style) +
+  return line("status", style.good("scene is valid"), style) +
          line("runs", what_ran(simulation), style) + model_lines(simulation, style) +
-         line("results", size_text(simulation), style) +
-         warning_lines(simulation.scenario().scene().warnings, style);
+         line("results", size_text(simulation), style);
 }
 
 }  // namespace der::app

@@ -39,12 +39,12 @@ struct Analyse {
   }
   std::string operator()(const scenario::ModesAnalysis& analysis) const {
     outcome.equilibrium = simulation.equilibrium(true, beat);
-    recorder.observe(simulation);
     outcome.modes = simulation.modes(analysis.count, beat);
     const auto& plane = outcome.equilibrium->out_of_plane;
     if (plane && plane->stability.unstable_directions > 0) {
       outcome.out_of_plane.growth_rate = simulation.growth_rate_out_of_plane(beat);
     }
+    recorder.observe(simulation);
     return run_status::kCompleted;
   }
   std::string operator()(const scenario::BucklingAnalysis& analysis) const {
@@ -85,6 +85,9 @@ RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& a
     fail(error);
   } catch (const DivergedError& error) {
     fail(error);
+  } catch (const Stopped&) {
+    outcome = {};
+    outcome.status = run_status::kStopped;
   }
   // An equilibrium that was not found leaves nothing to record.
   if (recorder.has_data()) recorder.finish(simulation);

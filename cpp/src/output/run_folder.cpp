@@ -11,6 +11,7 @@
 #include "der/output/io_error.hpp"
 #include "der/output/result_size.hpp"
 #include "der/output/summary.hpp"
+#include "der/scenario/scenario.hpp"
 #include "der/version.hpp"
 #include "output/run_lock.hpp"
 #include "output/whole_file.hpp"
@@ -150,6 +151,11 @@ RunFileHead resumable_head(const RunFolder& folder, const Scenario& scenario) {
   if (run_status::is_finished(head.status)) {
     if (is_there(folder.summary())) return head;
     head.status = run_status::kRunning;  // it was killed before it wrote its summary
+  }
+  if (!scenario.scene().is_dynamic()) {
+    throw ResumeError("the analysis in '" + folder.path().string() +
+                      "' did not reach its end, and has no steps to go on from; run it again "
+                      "without --resume");
   }
   if (head.der_version != version) {
     throw ResumeError("the run was started by der " + head.der_version + " and this is " + version +

@@ -25,6 +25,7 @@
 #include "der/scenario/series.hpp"
 #include "der/scenario/support.hpp"
 #include "der/supports/spatial_clamp.hpp"
+#include "der/supports/written_turns.hpp"
 
 namespace der {
 namespace {
@@ -178,20 +179,22 @@ void check_clamps(const std::string& from, const LastFrame& last, const Simulati
   }
 }
 
-/// Takes over whole turns if that run followed the same edges; else they count from the initial
-/// shape. Angles of edges count from the frames of sections, which come with them.
+bool follows_edges_of(const LastFrame& last, const Model& model) {
+  if (last.turns.size() != num_turns(model)) return false;
+  const Model there = build_model(Scenario::parse(last.scene).scene());
+  return std::equal(there.followed_edges.begin(), there.followed_edges.end(),
+                    model.followed_edges.begin(), model.followed_edges.end(),
+                    [](const FollowedEdge& a, const FollowedEdge& b) {
+                      return a.edge.first == b.edge.first && a.edge.last == b.edge.last;
+                    });
+}
+
+/// Takes over whole turns if that run followed the same edges; else they count from its shape.
+/// Angles of edges count from the frames of sections, which come with them.
 void take_over_turns(const LastFrame& last, const Model& model, State& state) {
-  if (last.turns.size() == num_turns(model)) {
-    const Model there = build_model(Scenario::parse(last.scene).scene());
-    const auto& before = there.followed_edges;
-    if (std::equal(before.begin(), before.end(), model.followed_edges.begin(),
-                   model.followed_edges.end(), [](const FollowedEdge& a, const FollowedEdge& b) {
-                     return a.edge.first == b.edge.first && a.edge.last == b.edge.last;
-                   })) {
-      state.followed.head(last.turns.size()) = last.turns;
-    }
-  }
   state.followed.tail(last.section_frames.size()) = last.section_frames;
+  if (!follows_edges_of(last, model)) return follow_written(model, state);
+  state.followed.head(last.turns.size()) = last.turns;
   follow(model, state);
 }
 
@@ -239,11 +242,12 @@ void apply_start(Simulation& simulation, const Beat& beat) {
   State& state = simulation.state();
   state.positions = last.positions;
   state.velocities = last.velocities;
-  Vector controls;
-  model.tables.evaluate(state.time, controls);
-  apply_prescribed_motion(model, controls,
-                          state.positions);  // supports are where this scene has them
+  // Supports are where this scene has them. The search for an equilibrium takes them there itself,
+  // in steps: at once they might fold the edges beside them.
   if (simulation.scenario().scene().is_dynamic()) {
+    Vector controls;
+    model.tables.evaluate(state.time, controls);
+    apply_prescribed_motion(model, controls, state.positions);
     check_held_nodes(from, last, model, state);
     check_clamps(from, last, simulation);
   }

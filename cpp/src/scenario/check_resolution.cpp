@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "der/core/constants.hpp"
+#include "der/scenario/load.hpp"
 #include "der/scenario/stretch_profile.hpp"
 #include "scenario/checks.hpp"
 #include "scenario/directions.hpp"
@@ -120,6 +121,41 @@ double largest_difference(const TwistedClamp& a, const TwistedClamp& b, double e
   return largest;
 }
 
+/// A rod of so many nodes or more has lost its bending to rounding: the error of the stiffness of
+/// its edges grows with the fourth power of their number against that of the whole rod, and is
+/// 1e5 times that of a cantilever by then. Searches end as `too_fine` from about 70,000 on.
+constexpr int kTooManyNodes = 100'000;
+/// Memory that a model takes for each node at least [bytes], of three coordinates and of two.
+constexpr double kBytesInSpace = 2000.0;
+constexpr double kBytesInPlane = 1200.0;
+
+/// Whether a load bends a straight rod: it has a part across it, or may have one.
+struct Bends {
+  const std::string& rod;
+  const Vec3& along;
+
+  bool operator()(const Gravity& load) const { return has_part_across(load.acceleration); }
+  bool operator()(const PointForce& load) const {
+    return load.rod == rod && has_part_across(load.force);
+  }
+  bool operator()(const DistributedForce& load) const {
+    return load.rod == rod && has_part_across(load.force);
+  }
+  bool operator()(const Damping& /*load*/) const { return false; }
+  template <class Other>
+  bool operator()(const Other& /*load*/) const {
+    return true;
+  }
+
+ private:
+  [[nodiscard]] bool has_part_across(const VectorSeries& force) const {
+    return std::any_of(force.values.begin(), force.values.end(), [&](const Components& value) {
+      const Vec3 vector = in_space(value);
+      return vector.cross(along).norm() > kRounding * vector.norm();
+    });
+  }
+};
+
 class Resolution {
  public:
   Resolution(CheckContext& context, int rod)
@@ -142,6 +178,27 @@ class Resolution {
     }
   }
 
+  /// Reports so many nodes that no equilibrium, mode or buckling load of a rod that bends can be
+  /// found, and warns of them in a run over time.
+  void check_fineness() {
+    if (line_.num_nodes() < kTooManyNodes || is_cable(rod_) || is_only_pulled()) return;
+    const double memory =
+        line_.num_nodes() * (context_.dimension == 2 ? kBytesInPlane : kBytesInSpace);
+    const std::string takes = fmt::format(
+        "{} nodes take {:.1f} GB of memory or more, and rounding hides how a rod of so many bends",
+        line_.num_nodes(), 1e-9 * memory);
+    constexpr const char* kAdvice = "write fewer, 200 resolve most shapes and 2000 nearly all";
+    if (context_.scene.is_dynamic()) {
+      context_.scene.warnings.push_back(
+          fmt::format("rod '{}' is too fine: {}: {}", rod_.name, takes, kAdvice));
+      return;
+    }
+    const RodText& given = context_.scene.given_rods[static_cast<std::size_t>(number_)];
+    context_.diagnostics.add(
+        Path{"rods", number_, given.given_points.empty() ? "nodes" : "points"},
+        fmt::format("{}, so that the search would fail as 'too_fine': {}", takes, kAdvice));
+  }
+
   /// Sections without a direction may turn by any angle.
   void check_twist() {
     if (is_isotropic(rod_.cross_section) && size_at(rod_.natural_curvature, 0) == 0.0) return;
@@ -156,6 +213,28 @@ class Resolution {
   }
 
  private:
+  /// Whether the static shape of a planar rod is straight for certain. In space the directions
+  /// across it have to be told as well.
+  [[nodiscard]] bool is_only_pulled() const {
+    const Scene& scene = context_.scene;
+    if (!std::holds_alternative<StaticAnalysis>(scene.analysis) || context_.dimension != 2 ||
+        !std::holds_alternative<AsDrawn>(rod_.natural_curvature) || !is_straight(rod_)) {
+      return false;
+    }
+    const Vec3 along =
+        (in_space(rod_.points.back()) - in_space(rod_.points.front())).stableNormalized();
+    const Bends bends{rod_.name, along};
+    const auto is_load = [&](const Load& load) { return std::visit(bends, load.what); };
+    const auto moves = [&](const Support& support) {
+      bool any = false;
+      if (support.rod == rod_.name) for_each_motion(support, [&](auto&&...) { any = true; });
+      return any;
+    };
+    return scene.actuations.empty() &&
+           std::none_of(scene.loads.begin(), scene.loads.end(), is_load) &&
+           std::none_of(scene.supports.begin(), scene.supports.end(), moves);
+  }
+
   /// Neighbouring clamps spread the twist between them over its edges.
   void check_prescribed_twist() {
     std::vector<TwistedClamp> clamps;
@@ -204,6 +283,7 @@ void check_resolution(CheckContext& context) {
     const Path path{"rods", rod};
     if (context.diagnostics.under(path) || !context.lines[static_cast<std::size_t>(rod)]) continue;
     Resolution resolution(context, rod);
+    resolution.check_fineness();
     resolution.check_curvature();
     resolution.check_twist();
   }

@@ -166,7 +166,7 @@ void Simulation::check_finite_state() const {
 }
 
 State Simulation::save() {
-  if (scenario_.scene().is_dynamic() && find_nonfinite().empty()) {
+  if (find_nonfinite().empty()) {
     enter_writes();
     energy_watch_.begin(state_);
   }

@@ -10,48 +10,55 @@
 #include "der/loads/external_force.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/simulation.hpp"
+#include "der/supports/written_turns.hpp"
 #include "simulation/stepper_options.hpp"
 #include "simulation/undo.hpp"
 
 namespace der {
 
 EquilibriumReport Simulation::equilibrium(bool leave_saddles, const Beat& beat) {
+  State before;
+  Undo undo(state_, before);
   EquilibriumReport report = settle(leave_saddles, beat);
-  if (model_.dimension != 2) return report;
-  report.out_of_plane.emplace();
-  if (OutOfPlaneTest* test = out_of_plane_test()) {
-    report.out_of_plane->stability = test->stability(configuration_of(model_, state_));
-  } else {
-    report.out_of_plane->not_tested = constants_->not_tested;
+  if (model_.dimension == 2) {
+    report.out_of_plane.emplace();
+    if (OutOfPlaneTest* test = out_of_plane_test(beat)) {
+      report.out_of_plane->stability = test->stability(configuration_of(model_, state_));
+    } else {
+      report.out_of_plane->not_tested = constants_->not_tested;
+    }
   }
+  undo.keep();
   return report;
 }
 
-OutOfPlaneTest* Simulation::out_of_plane_test() {
+OutOfPlaneTest* Simulation::out_of_plane_test(const Beat& beat) {
   if (model_.dimension == 2 && constants_->not_tested.empty() && !out_of_plane_) {
     out_of_plane_ = std::make_unique<OutOfPlaneTest>(scenario_.scene(), model_);
   }
+  if (out_of_plane_) out_of_plane_->set_beat(beat);
   return out_of_plane_.get();
 }
 
 double Simulation::growth_rate_out_of_plane(const Beat& beat) {
-  OutOfPlaneTest* test = out_of_plane_test();
-  return test == nullptr ? 0.0 : test->growth_rate(configuration_of(model_, state_), beat);
+  OutOfPlaneTest* test = out_of_plane_test(beat);
+  return test == nullptr ? 0.0 : test->growth_rate(configuration_of(model_, state_));
 }
 
 OutOfPlaneBuckling Simulation::buckling_out_of_plane(const LinearBuckling& in_plane,
                                                      const Beat& beat) {
-  OutOfPlaneTest* test = out_of_plane_test();
+  OutOfPlaneTest* test = out_of_plane_test(beat);
   if (test == nullptr) return {constants_->not_tested, {}};
   State unloaded = state_;
   unloaded.load_factor = 0.0;
-  return test->buckling(configuration_of(model_, unloaded), in_plane.response, beat);
+  return test->buckling(configuration_of(model_, unloaded), in_plane.response);
 }
 
 EquilibriumReport Simulation::settle(bool leave_saddles, const Beat& beat) {
   check_finite_state();
   State found = state_;
   for (Ramp& ramp : found.ramps) ramp.from = ramp.to;
+  if (energy_watch_.was_written(found)) follow_written(model_, found);
   EquilibriumOptions options;
   options.newton = stepper_options(scenario_.scene()).newton;
   // Solved once, not at every step: one more iteration takes the last digits too.
@@ -83,7 +90,7 @@ std::vector<Mode> Simulation::modes(int count, const Beat& beat) {
   }
   constexpr double kBalanced = 1e-6;
   const Forces now = forces();
-  Stiffness stiffness(model_, *assembler_, *solver_.solver);
+  Stiffness stiffness(model_, *assembler_, *solver_.solver, beat);
   stiffness.evaluate(now.here);
   const double unbalanced = model_.dofs.largest_free_force(now.gradient - now.external);
   const double acting =
@@ -151,7 +158,7 @@ std::vector<PathBranch> Simulation::follow(const Beat& beat) {
   options.branching = analysis->branches;
   options.beat = beat;
   TracedPath path =
-      follow_path(model_, *assembler_, *solver_.solver, options, out_of_plane_test(), state_);
+      follow_path(model_, *assembler_, *solver_.solver, options, out_of_plane_test(beat), state_);
   counters_.newton_iterations += path.newton_iterations;
   undo.keep();
   return std::move(path.branches);

@@ -8,6 +8,7 @@
 #include "der/core/error.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/simulation.hpp"
+#include "der/supports/written_turns.hpp"
 #include "simulation/undo.hpp"
 
 namespace der {
@@ -81,7 +82,7 @@ bool Simulation::enter_step(double end, int newton_iterations) {
 
 void Simulation::enter_writes() {
   if (!energy_watch_.was_written(state_)) return;
-  der::follow(model_, state_);
+  follow_written(model_, state_);
   energy_watch_.enter_written(state_);
 }
 

@@ -68,9 +68,18 @@ NewtonReport Newton::solve_downhill(NewtonProblem& problem) {
   return report;
 }
 
+NewtonReport Newton::solve_nearby(NewtonProblem& problem) {
+  last_shift_ = 0.0;
+  problem.begin(displacement_);
+  const NewtonReport report = iterate(problem, Mode::Nearby);
+  if (!report.converged) problem.begin_again(displacement_);
+  return report;
+}
+
 NewtonReport Newton::iterate(NewtonProblem& problem, Mode mode) {
-  const int limit = mode == Mode::FullSteps ? std::min(kFullStepIterations, options_.max_iterations)
-                                            : options_.max_iterations;
+  const bool takes_full_steps = mode != Mode::LineSearch;
+  const int limit = takes_full_steps ? std::min(kFullStepIterations, options_.max_iterations)
+                                     : options_.max_iterations;
   NewtonReport report;
   problem.system(residual_, values_);
   measure(problem, report);
@@ -85,7 +94,7 @@ NewtonReport Newton::iterate(NewtonProblem& problem, Mode mode) {
     ++report.iterations;
     double step = length_;
     bool have_system = false;
-    if (mode == Mode::FullSteps) {
+    if (takes_full_steps) {
       move(problem, displacement_, 1.0);
       have_system = step > kNearSolution * dofs_.length();
       if (have_system) {
@@ -113,7 +122,7 @@ NewtonReport Newton::iterate(NewtonProblem& problem, Mode mode) {
     }
     if (have_system) continue;
     problem.system(residual_, values_);
-    if (mode == Mode::FullSteps) problem.correct_after(step_, values_);
+    if (takes_full_steps) problem.correct_after(step_, values_);
   }
   report.worst_dof = worst_dof();
   report.failure = "no convergence in " + std::to_string(options_.max_iterations) + " iterations";
@@ -146,7 +155,8 @@ bool Newton::factorize(bool positive, NewtonReport& report) {
 /// Sets the step, as far as the problem admits. False: there is none, or it is not a number.
 bool Newton::find_direction(NewtonProblem& problem, Mode mode, NewtonReport& report) {
   const LowRank* unsymmetric = problem.low_rank();
-  if (!factorize(unsymmetric == nullptr || mode == Mode::LineSearch, report)) return false;
+  const bool downhill = mode == Mode::FullSteps ? unsymmetric == nullptr : mode == Mode::LineSearch;
+  if (!factorize(downhill, report)) return false;
   const auto& free = dofs_.free();
   for (std::size_t i = 0; i < free.size(); ++i) {
     direction_[static_cast<Index>(i)] = -residual_[free[i]];

@@ -13,7 +13,9 @@ OutOfPlaneTest::OutOfPlaneTest(const scenario::Scene& scene, const Model& planar
       pattern_(build_pattern(twin_.model)),
       solver_(make_linear_solver("auto", pattern_)),
       assembler_(twin_.model, solver_.solver->layout()),
-      stiffness_(twin_.model, assembler_, *solver_.solver) {}
+      stiffness_(twin_.model, assembler_, *solver_.solver, [this] {
+        if (beat_) beat_();
+      }) {}
 
 Stability OutOfPlaneTest::stability(const Configuration& planar) {
   stiffness_.evaluate(twin_.at(planar_, planar));
@@ -30,17 +32,16 @@ Stability OutOfPlaneTest::stability_by_pivots(const Configuration& planar) {
   return stiffness_.stability_by_pivots();
 }
 
-double OutOfPlaneTest::growth_rate(const Configuration& planar, const Beat& beat) {
+double OutOfPlaneTest::growth_rate(const Configuration& planar) {
   const Model& model = twin_.model;
   if (model.mass.lumped(model.dofs.free()).minCoeff() <= 0.0) return 0.0;
   return vibration_modes(twin_.model, assembler_, *solver_.solver, twin_.at(planar_, planar), 1,
-                         beat)
+                         beat_)
       .front()
       .growth_rate;
 }
 
-OutOfPlaneBuckling OutOfPlaneTest::buckling(const Configuration& unloaded, const Vector& response,
-                                            const Beat& beat) {
+OutOfPlaneBuckling OutOfPlaneTest::buckling(const Configuration& unloaded, const Vector& response) {
   const Configuration here = twin_.at(planar_, unloaded);
   stiffness_.evaluate(here);
   const Stability stability = stiffness_.stability();
@@ -78,7 +79,7 @@ OutOfPlaneBuckling OutOfPlaneTest::buckling(const Configuration& unloaded, const
     stiffness_.hold(neutral);
   }
   const auto modes =
-      buckling_modes(twin_.model, stiffness_, *solver_.solver, here, stress, 1, beat);
+      buckling_modes(twin_.model, stiffness_, *solver_.solver, here, stress, 1, beat_);
   if (modes.empty()) return {};
   return {"", modes.front().load_factor};
 }

@@ -204,7 +204,7 @@ SoftDirection Stiffness::inverse_iteration() {
   Vector next = x;
   for (int i = 0; i < kIterations; ++i) {
     next = x;
-    solver_.solve(next);
+    solve(next);
     next.normalize();
     const double cosine = std::abs(next.dot(x));
     x = next;
@@ -236,7 +236,7 @@ Stiffness::SoftSpace Stiffness::softest_space(Index count) {
   Eigen::MatrixXd basis = Eigen::Map<Eigen::MatrixXd>(column.data(), size, wanted);
   for (Index i = 0; i < wanted; ++i) {
     column = basis.col(i);
-    solver_.solve(column);
+    solve(column);
     basis.col(i) = column.normalized();
   }
   SoftSpace space = rayleigh_ritz(basis, wanted);
@@ -249,7 +249,7 @@ Stiffness::SoftSpace Stiffness::softest_space(Index count) {
           stiffness_product(model_, here_, over_all_dofs(model_, x))(model_.dofs.free()) -
           space.curvatures[i] * x;
       column = force;
-      solver_.solve(column);
+      solve(column);
       space.errors[i] = kErrorShare * std::abs(force.dot(column));
       answers.col(i) = column.normalized();
       const double small = std::max(kSettled * std::abs(space.curvatures[i]), space.rounding[i]);

@@ -52,6 +52,16 @@ TEST_CASE("a search for an equilibrium can be stopped at each iteration") {
               [](Simulation& rod, const Beat& beat) { rod.equilibrium(true, beat); });
 }
 
+TEST_CASE("the verdict out of the plane can be stopped, and leaves the state as it was") {
+  std::string text = straight_rod(21, kPinned + kStatic);
+  text.replace(text.find("EI: 1,"), 6, "EI: 1, GJ: 1,");
+  const Scenario scene = Scenario::parse(text);
+  int search = 0;
+  Simulation(scene).settle(true, [&] { ++search; });
+  check_stops(search + 3, text,
+              [](Simulation& rod, const Beat& beat) { rod.equilibrium(true, beat); });
+}
+
 TEST_CASE("the modes, the buckling loads and the path of a rod can be stopped") {
   check_stops(15, straight_rod(41, kPinned + kStatic),
               [](Simulation& rod, const Beat& beat) { (void)rod.modes(3, beat); });

@@ -103,8 +103,8 @@ MANY = "Many nodes"
     limits=(
         Limit(
             "In space the directions across the rod have to be told as well, and rounding "
-            "hides them from about 1e5 nodes on.",
-            ("too_fine",),
+            "hides them from about 1e5 nodes on: refused before the search.",
+            ("invalid_scene",),
             lambda s: not s.planar and s.value >= 100_000,
         ),
     ),
@@ -123,11 +123,11 @@ def many_pulled(s: Setting) -> Reading:
 @hard(
     MANY,
     "cantilever under P L^2/EI = 1",
-    "refused as too fine: the stiffness matrix has lost the bending",
+    "refused before the search: the stiffness matrix has lost the bending",
     values={},
     long_values={"2e5": 200_000},
     models=("planar",),
-    expected=lambda s: "too_fine",
+    expected=lambda s: "invalid_scene",
 )
 def too_many_bent(s: Setting) -> Reading:
     rod = s.rod(line(2), EA=1e6)

@@ -15,6 +15,8 @@ namespace der {
 
 /// Called after every step; return false to stop the run early (status "stopped").
 using StepCallback = std::function<bool(const Simulation&)>;
+/// What a beat throws to stop an analysis: the outcome is then `stopped` and has nothing else.
+struct Stopped {};
 
 /// Results of the analysis of a planar model for motion out of the plane. The report of the
 /// equilibrium has its own (EquilibriumReport::out_of_plane), and so have the points of a path.
@@ -45,8 +47,8 @@ struct RunOutcome {
 /// Runs a simulation from its present state to the end of the scene, or does the scene's analysis,
 /// feeding the recorder: one frame with the equilibrium, or one for each point of a path. Numerical
 /// failures end the run and are reported in the outcome, with everything up to the last good step
-/// recorded; other errors (of a sink, of the callback) propagate, and what `beat` throws, which is
-/// called in analyses, where there are no steps, at least once an iteration.
+/// recorded; other errors (of a sink, of the callback) propagate, and what `beat` throws, but for
+/// `Stopped`. It is called in analyses, where there are no steps, at least once an iteration.
 RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& after_step = {},
                const Beat& beat = {});
 

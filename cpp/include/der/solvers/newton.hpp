@@ -47,6 +47,9 @@ class Newton {
   /// Solves likewise with the line search only: slower, but it does not jump to the basin of
   /// another minimum.
   NewtonReport solve_downhill(NewtonProblem& problem);
+  /// Solves by plain steps alone, with the matrix as it is where it is not positive definite: they
+  /// lead to a solution near the guess, a minimum of the potential or not.
+  NewtonReport solve_nearby(NewtonProblem& problem);
 
   /// The displacement at the last iterate [m], known to its own rounding.
   [[nodiscard]] const Vector& displacement() const { return displacement_; }
@@ -55,7 +58,7 @@ class Newton {
   [[nodiscard]] const Vector& residual() const { return residual_; }
 
  private:
-  enum class Mode { FullSteps, LineSearch };
+  enum class Mode { FullSteps, LineSearch, Nearby };
 
   NewtonReport iterate(NewtonProblem& problem, Mode mode);
   bool find_direction(NewtonProblem& problem, Mode mode, NewtonReport& report);

@@ -36,6 +36,9 @@ class OutOfPlaneTest {
   /// `planar` is the model of `scene`; as for `build_out_of_plane_model`.
   OutOfPlaneTest(const scenario::Scene& scene, const Model& planar);
 
+  /// `beat` is called in all that follows, again and again; what it throws ends that.
+  void set_beat(const Beat& beat) { beat_ = beat; }
+
   /// Stability of an equilibrium of the planar model.
   Stability stability(const Configuration& planar);
   /// As in Stiffness, of what lies out of the plane.
@@ -44,17 +47,17 @@ class OutOfPlaneTest {
   /// Growth rate [1/s] of the fastest motion out of the plane; 0 if the equilibrium is stable, and
   /// if a section has no inertia against spin.
   /// Throws as `vibration_modes` does.
-  double growth_rate(const Configuration& planar, const Beat& beat = {});
+  double growth_rate(const Configuration& planar);
   /// The lowest factor of the loads at which the structure buckles out of its plane by linear
   /// theory. `unloaded` is its shape without them, stable in its plane, `response` the displacement
   /// (all degrees of freedom of the planar model) that they cause to first order. Motions that
   /// nothing resists, such as the spin of a rod in its clamps, count only where the loads act on
   /// them.
-  OutOfPlaneBuckling buckling(const Configuration& unloaded, const Vector& response,
-                              const Beat& beat = {});
+  OutOfPlaneBuckling buckling(const Configuration& unloaded, const Vector& response);
 
  private:
   const Model& planar_;
+  Beat beat_;
   const OutOfPlaneModel twin_;
   const Pattern pattern_;
   LinearSolverChoice solver_;

@@ -8,6 +8,7 @@
 
 #include "der/energies/circulatory_load.hpp"
 #include "der/loads/external_force.hpp"
+#include "der/model/edge_change.hpp"
 #include "der/statics/potential.hpp"
 #include "der/statics/rigid_motion.hpp"
 #include "statics/equilibrium/dynamic_relaxation.hpp"
@@ -39,6 +40,10 @@ StaticLoads loads_of(const Model& model, const State& state) {
   external_force(model, here, state.extra_force, loads.force);
   return loads;
 }
+
+/// An equilibrium that changes no edge by more than this [rad] is near the shape that the search
+/// began with: nothing nearer is looked for.
+constexpr double kNear = 0.25;
 
 /// The forces of all loads in a shape [N].
 Vector acting_forces(const Model& model, const StaticLoads& loads, const Shape& shape) {
@@ -149,8 +154,33 @@ class EquilibriumSearch {
   /// Newton's method, then pseudo-transient continuation from where it started.
   std::optional<FailedSearch> find_near(const StaticLoads& loads, Shape& shape) {
     if (!has_potential_) return raise_loads(model_, loads, newton_, continuation_, shape);
+    return leave_saddles_ ? find_downhill(loads, shape) : find_nearest(loads, shape);
+  }
+
+  std::optional<FailedSearch> find_downhill(const StaticLoads& loads, Shape& shape) {
     if (!newton_.balance(loads, shape)) return std::nullopt;
     return continuation_.run(loads, inverse_step(), shape).failed;
+  }
+
+  /// What leads downhill leaves an unstable equilibrium, however near it is. So plain Newton steps
+  /// come first, and the nearer one of both answers counts.
+  std::optional<FailedSearch> find_nearest(const StaticLoads& loads, Shape& shape) {
+    const auto change = [&](const Shape& to) {
+      return largest_edge_change(model_, to.positions - shape.positions);
+    };
+    Shape plain = shape;
+    const bool found = !newton_.balance(loads, plain, StaticNewton::LineSearch::Never);
+    Shape lower = shape;
+    std::optional<FailedSearch> failed;
+    if (!found || change(plain) > kNear) {
+      failed = find_downhill(loads, lower);
+      if (!found || (!failed && change(lower) <= change(plain))) {
+        shape = std::move(lower);
+        return failed;
+      }
+    }
+    shape = std::move(plain);
+    return std::nullopt;
   }
 
   /// Moves a shape on the way of the supports to the stable equilibrium near it, if there is one.

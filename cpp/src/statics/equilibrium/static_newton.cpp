@@ -33,8 +33,9 @@ std::optional<FailedSearch> StaticNewton::solve(const Stage& stage, Configuratio
                                                 LineSearch line_search) {
   const Vector before = here.coordinates;
   problem_.pose(stage, here);
-  const NewtonReport report = line_search == LineSearch::Always ? newton_.solve_downhill(problem_)
-                                                                : newton_.solve(problem_);
+  const NewtonReport report = line_search == LineSearch::Never    ? newton_.solve_nearby(problem_)
+                              : line_search == LineSearch::Always ? newton_.solve_downhill(problem_)
+                                                                  : newton_.solve(problem_);
   iterations_ += report.iterations;
   force_scale_ = report.force_scale;
   if (!report.converged) return FailedSearch{EquilibriumFailure::NewtonFailed, report.failure};
@@ -43,9 +44,10 @@ std::optional<FailedSearch> StaticNewton::solve(const Stage& stage, Configuratio
   return inadmissible;
 }
 
-std::optional<FailedSearch> StaticNewton::balance(const StaticLoads& loads, Shape& shape) {
+std::optional<FailedSearch> StaticNewton::balance(const StaticLoads& loads, Shape& shape,
+                                                  LineSearch line_search) {
   Configuration here = loads.at(model_, shape);
-  if (auto failed = solve(stage_of(loads), here)) return failed;
+  if (auto failed = solve(stage_of(loads), here, line_search)) return failed;
   shape.positions = std::move(here.coordinates);
   loads.follow(model_, shape);
   return std::nullopt;

@@ -24,9 +24,13 @@ class StaticNewton {
   StaticNewton(const Model& model, const Assembler& assembler, LinearSolver& solver,
                const NewtonOptions& options, Admissibility admissibility, Beat beat);
 
+  /// Never: plain steps alone, to a solution near by, be it stable or not.
+  enum class LineSearch { Never, IfNeeded, Always };
+
   /// Moves `shape` to the equilibrium to which Newton's method leads from it.
   /// On failure the shape stays as it is.
-  std::optional<FailedSearch> balance(const StaticLoads& loads, Shape& shape);
+  std::optional<FailedSearch> balance(const StaticLoads& loads, Shape& shape,
+                                      LineSearch line_search = LineSearch::IfNeeded);
 
   /// How `balance_nearby` ended.
   struct LastStep {
@@ -38,7 +42,6 @@ class StaticNewton {
   /// higher potential. Otherwise the shape stays as it is.
   LastStep balance_nearby(const StaticLoads& loads, Shape& shape);
 
-  enum class LineSearch { IfNeeded, Always };
   /// Solves a stage for the coordinates of `here`. On failure they stay as they are.
   std::optional<FailedSearch> solve(const Stage& stage, Configuration& here,
                                     LineSearch line_search = LineSearch::IfNeeded);

@@ -174,7 +174,8 @@ std::string unit_problem(const Scene& scene) {
   for (const Load& load : scene.loads) std::visit(pull, load.what);
   const Units units(scene, std::move(pull));
   for (const Rod& rod : scene.rods) {
-    const std::string problem = units.problem(rod, RestLine(rod.points, rod.closed).length());
+    const std::string problem =
+        units.problem(rod, RestLine(rod.points, rod.closed, rod.rest_length).length());
     if (!problem.empty()) return fmt::format("rod '{}' {}", rod.name, problem);
   }
   return {};

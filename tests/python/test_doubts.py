@@ -45,7 +45,7 @@ def test_a_run_warns_once_of_rods_that_pass_through_one_another(fall, tmp_path):
     assert text.startswith("rods 'low' and 'high' pass through one another at t = 0.19")
     assert "at the arc lengths 0.6 m and 0.5 m" in text
     scene = tmp_path / "fall.yaml"
-    scene.write_text(der.Scenario(fall).to_yaml())
+    scene.write_text(der.Scenario.from_dict(fall).to_yaml())
     done = subprocess.run(
         [DER_RUN, scene, "--out", tmp_path / "run"], capture_output=True, text=True, check=True
     )

@@ -134,7 +134,7 @@ std::unique_ptr<RunRecording> record(const py::object& self,
       simulation.run(recorder, until, to_callback(callback), to_tick(tick), out, self);
   recording->frames = std::move(static_cast<FrameData&>(memory));
   recording->data = datasets(simulation.engine(), recording->outcome);
-  recording->doubt = created_energy_warning(simulation.engine());
+  recording->doubts = doubts(simulation.engine(), recording->outcome);
   recording->summary = summary(simulation.engine(), recorder, recording->outcome);
   return recording;
 }
@@ -190,7 +190,7 @@ void bind_recording(py::module_& module) {
             return to_python(r.outcome.error);
           },
           "The failure that ended it, an exception of its own class; None if it did not fail.")
-      .def_readonly("doubt", &RunRecording::doubt,
+      .def_readonly("doubts", &RunRecording::doubts,
                     "Why its result is unreliable though it did not fail; empty if it is not.")
       .def_property_readonly(
           "summary", [](const RunRecording& r) { return to_python(r.summary); },

@@ -31,7 +31,7 @@ struct Recording {
 /// The recorded data of a run that has just ended, and how it ended.
 struct RunRecording : Recording {
   RunOutcome outcome;
-  std::string doubt;  ///< why its result is unreliable; empty: it is not
+  std::vector<std::string> doubts;  ///< why its result is unreliable; none: it is not
   nlohmann::ordered_json summary;
 };
 

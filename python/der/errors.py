@@ -54,9 +54,11 @@ class DerWarning(UserWarning):
 
 
 class UnreliableResultWarning(DerWarning):
-    """The integrator has created energy that is not small against the energy exchanged in the run.
+    """A run has left what the model can tell.
 
-    The run goes on: the message says since when the result is unreliable, and what to try.
+    The integrator has created energy that is not small against the energy exchanged, a rod has
+    passed through itself or another, or is stretched to more than twice its rest length. The run
+    goes on: the message says since when the result is unreliable, and what to try.
     """
 
 

@@ -113,7 +113,8 @@ class Simulation(_core.Simulation):
             If a run with a tolerance takes very many steps: why, and what takes fewer. If an
             equilibrium, a path or a buckling load of a planar model would leave its plane.
         UnreliableResultWarning
-            If the integrator has created energy, but not enough for the run to fail.
+            If the integrator has created energy, but not enough for the run to fail; if a rod
+            passes through itself or another; if a strain is beyond what a linear law holds for.
         """
         end = self._end_time(until)
         if not (callback is None or callable(callback)):
@@ -140,8 +141,8 @@ class Simulation(_core.Simulation):
         if warns:
             warn(result.summary["hints"])
             warn(_leaving_the_plane(result))
-            if recording.doubt and error is None:
-                warn([recording.doubt], UnreliableResultWarning)
+            if error is None:
+                warn(recording.doubts, UnreliableResultWarning)
         return result
 
     def modes(self, k: int = 6) -> Modes:

@@ -60,14 +60,14 @@ void place_nodes(const scenario::Scene& scene, bool with_sections, Model& model)
                                num_rest_entries(scene, model.dimension));
   model.tables = TimeTables(model.rest_shape.end());
   const Index dofs = model.num_dofs();
-  for (Vector* v : {&model.initial_positions, &model.initial_velocities, &model.mass.lumped,
-                    &model.damping, &model.gravity_force, &model.dead_force}) {
+  for (Vector* v : {&model.initial_positions, &model.rest_positions, &model.initial_velocities,
+                    &model.mass.lumped, &model.damping, &model.gravity_force, &model.dead_force}) {
     v->setZero(dofs);
   }
 }
 
-auto position(const Model& model, Index node) {
-  return model.initial_positions.segment(model.dof(node, 0), model.dimension);
+auto rest_position(const Model& model, Index node) {
+  return model.rest_positions.segment(model.dof(node, 0), model.dimension);
 }
 
 /// Direction of the section's width at the rod's start, not yet perpendicular to the tangent there.
@@ -117,25 +117,32 @@ RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, In
   layout.nodes.reserve(rod.points.size());
   layout.arc_length.reserve(rod.points.size());
   layout.edge_length.reserve(rod.points.size());
+  const double magnified = scenario::rest_scale(rod);  // exact places without a rest length
   double s = 0.0;
   for (std::size_t i = 0; i < rod.points.size(); ++i) {
     const Index node = first_node + static_cast<Index>(i);
     layout.nodes.push_back(node);
     for (int c = 0; c < model.dimension; ++c) {
-      model.initial_positions[model.dof(node, c)] = rod.points[i][to_size(c)];
+      const double first = rod.points.front()[to_size(c)];
+      const double here = rod.points[i][to_size(c)];
+      model.initial_positions[model.dof(node, c)] = here;
+      model.rest_positions[model.dof(node, c)] =
+          magnified == 1.0 ? here : first + magnified * (here - first);
       if (!rod.initial_velocity.empty()) {
         model.initial_velocities[model.dof(node, c)] = rod.initial_velocity[i][to_size(c)];
       }
     }
     if (i > 0) {
-      layout.edge_length.push_back((position(model, node) - position(model, node - 1)).norm());
+      layout.edge_length.push_back(
+          (rest_position(model, node) - rest_position(model, node - 1)).norm());
       s += layout.edge_length.back();
     }
     layout.arc_length.push_back(s);
   }
   if (rod.closed) {
     layout.edge_length.push_back(
-        (position(model, layout.nodes.front()) - position(model, layout.nodes.back())).norm());
+        (rest_position(model, layout.nodes.front()) - rest_position(model, layout.nodes.back()))
+            .norm());
   }
   make_room(model.edges, to_size(layout.num_edges()));
   for (Index edge = 0; edge < layout.num_edges(); ++edge) {
@@ -297,6 +304,8 @@ Model build_model(const scenario::Scene& scene) {
     if (model.dimension == 2) turn_followers_under_moments(rod, model);
     if (model.has_sections()) act_on_loaded_sections(rod, model);
   }
+  const Index angles = model.num_dofs() - model.dofs.num_positions();
+  model.initial_positions.tail(angles) = model.rest_positions.tail(angles);
   set_actuated_turns(model);
   follow_slopes(scene, model);
   model.damped = (model.damping.array() != 0.0).any();

@@ -36,7 +36,7 @@ void add_stretch(const RodLayout& rod, const std::vector<EffectiveEdge>& edges, 
   make_room_for_elements<Stretch<2>>(rod.num_edges(), model);
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     const EffectiveEdge& effective = edges[to_size(edge)];
-    const double length = effective.has_pivot() ? effective.drawn(model.initial_positions).norm()
+    const double length = effective.has_pivot() ? effective.drawn(model.rest_positions).norm()
                                                 : rod.edge_length[to_size(edge)];
     const double EA = rod.EA * (length / rod.edge_length[to_size(edge)]);
     add_element<Stretch<2>>(effective.dofs, {EA, length, rod.rest_entries.edge(edge)},
@@ -47,8 +47,7 @@ void add_stretch(const RodLayout& rod, const std::vector<EffectiveEdge>& edges, 
 double rest_angle_between(const RodLayout& rod, Index place, const EffectiveEdge& before,
                           const EffectiveEdge& after, const Model& model) {
   if (rod.natural_curvature.empty()) {
-    return angle_between(before.drawn(model.initial_positions),
-                         after.drawn(model.initial_positions));
+    return angle_between(before.drawn(model.rest_positions), after.drawn(model.rest_positions));
   }
   double angle = rod.natural_curvature[to_size(rod.position(place))] * bend_length(rod, place);
   if (rod.closed) return angle;

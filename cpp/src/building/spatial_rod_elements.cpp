@@ -33,7 +33,7 @@ namespace {
 /// An effective edge from a pivot is shorter than its edge and stretches for all of it.
 void add_stretch(const RodLayout& rod, const SpatialEdge& edge, Index number, Model& model) {
   const double whole = rod.edge_length[to_size(number)];
-  const double length = edge.has_pivot() ? edge.drawn(model.initial_positions).norm() : whole;
+  const double length = edge.has_pivot() ? edge.drawn(model.rest_positions).norm() : whole;
   add_element<Stretch<3>>(
       {edge.start, edge.start + 1, edge.start + 2, edge.end, edge.end + 1, edge.end + 2},
       {rod.EA * (length / whole), length, rod.rest_entries.edge(number)}, edge.first, edge.last,
@@ -278,7 +278,7 @@ class SectionElements {
   }
   [[nodiscard]] SectionFrame frame(Index edge) const { return drawn_frame(model_, number(edge)); }
   [[nodiscard]] double theta(Index edge) const {
-    return model_.initial_positions[this->edge(edge).theta];
+    return model_.rest_positions[this->edge(edge).theta];
   }
 
   /// Whether the two ends of a ring meet at a joint.
@@ -413,12 +413,12 @@ void draw_frames(const RodLayout& rod, Model& model) {
     const SpatialEdge edge = spatial_edge(rod, i, model);
     const SectionFrame& drawn = rod.drawn_frames[to_size(i)];
     const double theta = rod.initial_twist * rod.edge_middle(i);
-    const Vec3 tangent = edge.drawn(model.initial_positions).normalized();
+    const Vec3 tangent = edge.drawn(model.rest_positions).normalized();
     const Vec3 director = transport(drawn.turned(-theta).first, drawn.tangent, tangent);
     const FrameBlock block = FrameBlock::of(rod.first_edge + i);
     model.drawn_frames.segment<3>(block.first) = tangent;
     model.drawn_frames.segment<3>(block.first + 3) = made_perpendicular(director, tangent);
-    model.initial_positions[edge.theta] = theta;
+    model.rest_positions[edge.theta] = theta;
     model.framed_edges.push_back(edge);
   }
 }

@@ -55,7 +55,7 @@ FramedEdge framed_edge(Index number, const Model& model) {
 double drawn_lean(Index edge, const RodLayout& rod, const Model& model) {
   if (rod.closed || rod.natural_curvature.empty()) return 0.0;
   const auto node = [&](Index place) -> Vec2 {
-    return model.initial_positions.segment<2>(model.dof(rod.node(place), 0));
+    return model.rest_positions.segment<2>(model.dof(rod.node(place), 0));
   };
   const auto at_end = [&](Index end, Index inner) {
     const bool bends = rod.is_inner(inner) && rod.clamp_at(inner) == nullptr;
@@ -102,7 +102,7 @@ PlanarFollowerForce planar_follower(double s, const SectionPlace& place, const R
   for (std::size_t i = 0; i < place.direction.size(); ++i) {
     const Index number = rod.position(place.first_edge + static_cast<Index>(i));
     const EffectiveEdge edge = effective_edge(rod, number, model);
-    const Vec2 chord = edge.drawn(model.initial_positions).normalized();
+    const Vec2 chord = edge.drawn(model.rest_positions).normalized();
     const Vec2 drawn = Eigen::Rotation2Dd(drawn_lean(number, rod, model) - kink) * chord;
     follower.edges.push_back({edge, weights[i], drawn});
     add_vector(edge.dofs[0], edge.dofs[2], model, load);
@@ -284,7 +284,7 @@ void follow_as_moments(const MomentPlace& place, const RodLayout& rod, const Mod
   const Eigen::Rotation2Dd to_natural(natural_turn_of_edges(rod, place, model));
   for (std::size_t i = 0; i < place.weights.size(); ++i) {
     PlanarFollowerForce::FollowedEdge& followed = follower.edges[i];
-    const Vec2 chord = followed.edge.drawn(model.initial_positions).normalized();
+    const Vec2 chord = followed.edge.drawn(model.rest_positions).normalized();
     followed.weight = place.weights[i];
     followed.drawn = to_natural * chord;
   }

@@ -9,7 +9,7 @@ namespace {
 /// From node to node in the initial shape [m].
 Vec3 drawn_edge(const RodLayout& rod, Index edge, const Model& model) {
   const auto point = [&](Index place) {
-    return model.initial_positions.segment(model.dof(rod.node(place), 0), model.dimension);
+    return model.rest_positions.segment(model.dof(rod.node(place), 0), model.dimension);
   };
   Vec3 along = Vec3::Zero();
   along.head(model.dimension) = point(edge + 1) - point(edge);

@@ -41,7 +41,7 @@ Index frame_turned_too_far(const Model& model, const Vector& coordinates, const 
 }
 
 SectionFrame drawn_frame(const Model& model, Index edge) {
-  const double theta = model.initial_positions[model.framed_edges[to_size(edge)].theta];
+  const double theta = model.rest_positions[model.framed_edges[to_size(edge)].theta];
   return reference_frame(edge, model.drawn_frames).turned(theta);
 }
 

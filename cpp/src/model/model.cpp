@@ -104,7 +104,7 @@ RodLayout& Model::rod(const std::string& rod_name) {
 
 Index follow_edge(const RodLayout& rod, Index edge, Model& model) {
   const Edge followed = rod.edge(edge, model);
-  const Vec2 drawn = along_edge(followed, model.initial_positions);
+  const Vec2 drawn = along_edge(followed, model.rest_positions);
   const double direction = std::atan2(drawn.y(), drawn.x());
   // An entry of its own, which no table moves.
   model.followed_edges.push_back({followed, direction, model.tables.add({{0.0}, {0.0}})});

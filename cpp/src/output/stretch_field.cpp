@@ -31,10 +31,10 @@ class EffectiveVectors {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) {
       if (model.dimension == 3) {
         in_space_.push_back(spatial_edge(rod, edge, model));
-        rest_length_.push_back(in_space_.back().vector(model.initial_positions, drawn).norm());
+        rest_length_.push_back(in_space_.back().vector(model.rest_positions, drawn).norm());
       } else {
         planar_.push_back(effective_edge(rod, edge, model));
-        rest_length_.push_back(planar_.back().drawn(model.initial_positions).norm());
+        rest_length_.push_back(planar_.back().drawn(model.rest_positions).norm());
       }
       actuated_.emplace_back(rod.rest_entries.edge(edge), 1, model);
     }

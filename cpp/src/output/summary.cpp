@@ -13,6 +13,7 @@
 #include "der/output/hints.hpp"
 #include "der/output/out_of_plane_verdict.hpp"
 #include "der/scenario/scenario.hpp"
+#include "der/scenario/unit_problem.hpp"
 #include "der/steppers/fine_tables.hpp"
 #include "der/version.hpp"
 
@@ -112,6 +113,36 @@ Json out_of_plane_json(const OutOfPlaneVerdict& verdict) {
   return json;
 }
 
+/// When something was seen, in words.
+template <class Seen>
+std::string place_in_run(const Simulation& simulation, const Seen& seen) {
+  const scenario::Scene& scene = simulation.scenario().scene();
+  if (scene.is_dynamic()) return fmt::format("at t = {:.4g} s", seen.time);
+  if (std::holds_alternative<scenario::ContinuationAnalysis>(scene.analysis)) {
+    return fmt::format("at load factor {:.4g}", seen.load_factor);
+  }
+  return "in the equilibrium";
+}
+
+/// That a rod passes through itself or another, where and when; else empty.
+std::string crossing_warning(const Simulation& simulation, const RunOutcome& outcome) {
+  if (!outcome.crossing) return {};
+  return describe(*outcome.crossing, place_in_run(simulation, *outcome.crossing));
+}
+
+/// That a rod is stretched beyond what a linear law holds for, unless the scene has been told
+/// already that a unit is wrong.
+std::string stretch_warning(const Simulation& simulation, const RunOutcome& outcome) {
+  if (!outcome.stretched || outcome.failed()) return {};
+  if (!scenario::unit_problem(simulation.scenario().scene()).empty()) return {};
+  const StrainWatch::Stretched& found = *outcome.stretched;
+  return fmt::format(
+      "rod '{}' is stretched to {:.3g} times its rest length {}, at arc length {:.4g} m: no "
+      "material obeys a linear law so far. Are the units of its modulus, sizes and loads Pa, m and "
+      "N?",
+      found.rod, found.ratio, place_in_run(simulation, found), found.place);
+}
+
 bool sought_buckling(const Simulation& simulation) {
   return std::holds_alternative<scenario::BucklingAnalysis>(simulation.scenario().scene().analysis);
 }
@@ -187,6 +218,14 @@ std::string created_energy_warning(const Simulation& simulation) {
                      audit.unreliable_from, describe(simulation.model(), audit), advice);
 }
 
+std::vector<std::string> doubts(const Simulation& simulation, const RunOutcome& outcome) {
+  std::vector<std::string> found{crossing_warning(simulation, outcome),
+                                 stretch_warning(simulation, outcome),
+                                 created_energy_warning(simulation)};
+  found.erase(std::remove(found.begin(), found.end(), std::string()), found.end());
+  return found;
+}
+
 std::vector<std::string> warnings(const Simulation& simulation, const RunOutcome& outcome) {
   const scenario::Scene& scene = simulation.scenario().scene();
   std::vector<std::string> found = scene.warnings;
@@ -202,8 +241,7 @@ std::vector<std::string> warnings(const Simulation& simulation, const RunOutcome
     return found;
   }
   if (simulation.plan().step > 0.0) add(fine_table_warnings(scene, simulation.plan().step));
-  std::string created = created_energy_warning(simulation);
-  if (!created.empty()) found.push_back(std::move(created));
+  add(doubts(simulation, outcome));
   return found;
 }
 

@@ -191,7 +191,7 @@ class PlanarDirection : public DirectionField<double> {
       drawn_leans_.push_back(0.0);
       if (!leans_as_drawn(rod_, edge)) continue;
       const Vec2 chord = drawn_edge(rod_, edge, model);
-      const Vec2 effective = edges_[to_size(edge)].drawn(model.initial_positions);
+      const Vec2 effective = edges_[to_size(edge)].drawn(model.rest_positions);
       drawn_leans_.back() =
           angle_between(chord, effective) -
           knot_beyond_middle(rod_, edge) * natural.at(edge, rod_.edge_middle(edge));

@@ -116,10 +116,39 @@ bool can_be_closed(const RodText& rod, const Path& path, Diagnostics& diagnostic
   return false;
 }
 
+/// An edge that starts shorter than this fraction of its rest length nearly ends before the pivot
+/// of a clamp; and no rod that is stretched to more than twice its length obeys a linear law.
+constexpr double kShortest = 0.5;
+
+bool check_rest_length(CheckContext& context, const RodText& rod, double drawn, const Path& path) {
+  if (context.diagnostics.under(path)) return false;
+  const double rest = *rod.rest_length;
+  if (rest * kShortest > drawn) {
+    context.diagnostics.add(
+        path,
+        fmt::format("is {:.3g} times the length as drawn, {:.6g} m, and can be {:g} times it: "
+                    "draw a longer rod, as a curve by 'points'",
+                    rest / drawn, drawn, 1.0 / kShortest));
+  } else if (rest < kShortest * drawn) {
+    context.diagnostics.add(
+        path, fmt::format("stretches the rod to {:.3g} times its length where it is drawn, {:.6g} "
+                          "m, and it can be {:g} times it: draw a shorter rod and let 'prescribe' "
+                          "of a support pull its end",
+                          drawn / rest, drawn, 1.0 / kShortest));
+  } else if (std::holds_alternative<BucklingAnalysis>(context.scene.analysis)) {
+    context.diagnostics.add(path,
+                            "linear buckling counts from a shape without stress: draw the rod "
+                            "without 'rest_length', or use 'analysis: continuation'");
+  } else {
+    return true;
+  }
+  return false;
+}
+
 /// The rod's nodes, as far as the keys that say where they are could be read.
 void check_geometry(CheckContext& context, int i) {
   const Path path = rod_path(i);
-  for (const char* key : {"nodes", "from", "to", "points", "closed"}) {
+  for (const char* key : {"nodes", "from", "to", "points", "closed", "rest_length"}) {
     if (context.diagnostics.under(path / key)) return;
   }
   RodText& rod = context.scene.given_rods[static_cast<std::size_t>(i)];
@@ -132,8 +161,12 @@ void check_geometry(CheckContext& context, int i) {
     rod.points = std::move(rod.given_points);
   }
   RestLine line(rod.points, rod.closed);
-  const bool fine = straight ? check_straight(rod, line, path, context.diagnostics)
-                             : check_polyline(rod, line, path, context.diagnostics);
+  bool fine = straight ? check_straight(rod, line, path, context.diagnostics)
+                       : check_polyline(rod, line, path, context.diagnostics);
+  if (fine && rod.rest_length) {
+    fine = check_rest_length(context, rod, line.length(), path / "rest_length");
+    line = RestLine(rod.points, rod.closed, rod.rest_length);
+  }
   if (fine) context.lines[static_cast<std::size_t>(i)] = std::move(line);
 }
 

@@ -49,11 +49,12 @@ void check_every(SceneText& scene, Diagnostics& diagnostics) {
     diagnostics.add(
         path, fmt::format("must be at least the time step, {} s, got {} s", time.step, *given));
   } else if (std::abs(steps - std::round(steps)) > same) {
+    const double nearest = std::round(steps);
+    const double other = nearest < steps ? nearest + 1.0 : nearest - 1.0;
     diagnostics.add(path,
-                    fmt::format("must be a whole multiple of the time step, {} s, but {} s is "
-                                "{:.6g} steps: write {:.9g} or {:.9g}",
-                                time.step, *given, steps, time.step * std::floor(steps),
-                                time.step * std::ceil(steps)));
+                    fmt::format("must be a whole multiple of the time step, {} s, but {} s "
+                                "is {:.6g} steps: write {:.9g} or {:.9g}",
+                                time.step, *given, steps, time.step * nearest, time.step * other));
   }
 }
 
@@ -86,7 +87,8 @@ void check_integrator(const TimeText& given, Time& time, Diagnostics& diagnostic
     diagnostics.add(
         {"time", "step"},
         fmt::format("'auto' is the largest stable step of an explicit integrator; {} is "
-                    "stable with any: give a step, or 'tolerance'",
+                    "stable with any: give 'tolerance' in its place, to which steps adapt, or a "
+                    "step",
                     time.integrator));
   }
 }

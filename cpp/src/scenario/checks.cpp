@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "der/scenario/model_choice.hpp"
+#include "der/scenario/unit_problem.hpp"
 #include "scenario/conform.hpp"
 #include "scenario/suggestion.hpp"
 
@@ -169,6 +170,9 @@ void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   if (diagnostics.size() > 0) return;
   check_cells(context, model.kind);
   warn_of_touching_rods(context);
+  if (std::string problem = unit_problem(scene); !problem.empty()) {
+    scene.warnings.push_back(std::move(problem));
+  }
   conform(scene, model.kind);
 }
 

@@ -73,7 +73,7 @@ void Diagnostics::add(const Path& path, std::string message) {
   record(path, value->mark, std::move(message));
 }
 
-void Diagnostics::note_vector(const Place& place) {
+void Diagnostics::note_vector(const Place& place, std::string (*hint)(const Sequence&)) {
   const std::size_t components = place.value->sequence()->size();
   std::optional<FirstVector>& first = vectors_[components - 2];
   if (first) return;
@@ -83,9 +83,11 @@ void Diagnostics::note_vector(const Place& place) {
   const auto line = [](const Mark& mark) {
     return mark.line > 0 ? fmt::format(" (line {})", mark.line) : std::string();
   };
-  add(place, fmt::format("has {} components, but {}{} has {}: all vectors of a scene have three as "
-                         "soon as one has",
-                         components, written(other->path), line(other->mark), 5 - components));
+  const std::string why = hint(*place.value->sequence());
+  add(place,
+      fmt::format("has {} components, but {}{} has {}: {}", components, written(other->path),
+                  line(other->mark), 5 - components,
+                  why.empty() ? "all vectors of a scene have three as soon as one has" : why));
 }
 
 bool Diagnostics::under(const Path& path) const {

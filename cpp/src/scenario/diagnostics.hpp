@@ -54,8 +54,8 @@ class Diagnostics {
   void add(const Path& path, std::string message);
 
   /// Notes a vector, which has as many components as its value has items. Reports it if one with
-  /// fewer or more has come before.
-  void note_vector(const Place& place);
+  /// fewer or more has come before; `hint` may tell, in a clause, why it has as many.
+  void note_vector(const Place& place, std::string (*hint)(const Sequence&));
   /// Components of the scene's vectors: 3 as soon as one has 3.
   [[nodiscard]] int dimension() const { return vectors_[1] ? 3 : 2; }
   /// Whether vectors of two components stand beside vectors of three. Then nothing that compares

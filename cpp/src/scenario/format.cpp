@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 #include "der/core/printable.hpp"
@@ -94,25 +96,46 @@ bool read_integer(const Shape& shape, const Place& place, Diagnostics& diagnosti
   return check_range(shape, out, place, diagnostics);
 }
 
+/// Those of YAML 1.2, which are Python's, too.
+std::optional<bool> truth_of(std::string_view text) {
+  if (text == "true" || text == "True" || text == "TRUE") return true;
+  if (text == "false" || text == "False" || text == "FALSE") return false;
+  return std::nullopt;
+}
+
+/// What to write in place of a truth value of YAML 1.1, or one in quotes; empty for another value.
+std::string truth_problem(const Value& value) {
+  const std::string* written = text_of(value);
+  if (!written) return {};
+  std::string word(*written);
+  for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const auto is_one_of = [&](std::initializer_list<std::string_view> words) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  if (is_one_of({"true", "yes", "on", "y", "1"})) return "write true";
+  if (is_one_of({"false", "no", "off", "n", "0"})) return "write false";
+  return {};
+}
+
 bool read_boolean(const Shape& shape, const Place& place, Diagnostics& diagnostics, bool& out) {
   if (const auto* typed = std::get_if<bool>(&place.value->content)) {
     out = *typed;
     return true;
   }
   const auto* plain = std::get_if<Plain>(&place.value->content);
-  if (!plain || (plain->text != "true" && plain->text != "false")) {
-    report_expected(expected(shape), place, diagnostics);
+  const std::optional<bool> value = plain ? truth_of(plain->text) : std::nullopt;
+  if (!value) {
+    report_expected(expected(shape), place, diagnostics, truth_problem(*place.value));
     return false;
   }
-  out = plain->text == "true";
+  out = *value;
   return true;
 }
 
 bool read_text(const Shape& shape, const Place& place, Diagnostics& diagnostics, std::string& out) {
   const std::string* written = text_of(*place.value);
   const bool plain = std::holds_alternative<Plain>(place.value->content);
-  if (!written ||
-      (plain && (looks_like_number(*written) || *written == "true" || *written == "false"))) {
+  if (!written || (plain && (looks_like_number(*written) || truth_of(*written)))) {
     report_expected(expected(shape), place, diagnostics, written ? "put it in quotes" : "");
     return false;
   }
@@ -152,6 +175,21 @@ bool read_numbers(const Shape& shape, const Place& place, Diagnostics& diagnosti
   return fine;
 }
 
+/// What to write if two items of a list in one line are the halves of a number with a decimal
+/// comma, as a clause; empty if none seem to be. No space follows that comma.
+std::string decimal_comma_in(const Sequence& items) {
+  for (std::size_t i = 0; i + 1 < items.size(); ++i) {
+    const auto* whole = std::get_if<Plain>(&items[i].content);
+    const auto* fraction = std::get_if<Plain>(&items[i + 1].content);
+    if (!whole || !fraction || items[i].mark.line != items[i + 1].mark.line) continue;
+    const auto end = items[i].mark.column + static_cast<int>(whole->text.size());
+    if (items[i + 1].mark.column != end + 1) continue;
+    std::string problem = decimal_comma_problem(whole->text + "," + fraction->text);
+    if (!problem.empty()) return problem;
+  }
+  return {};
+}
+
 bool read_vector(const Shape& shape, const Place& place, Diagnostics& diagnostics,
                  Components& out) {
   const Sequence* items = place.value->sequence();
@@ -165,10 +203,11 @@ bool read_vector(const Shape& shape, const Place& place, Diagnostics& diagnostic
   }
   const std::size_t count = items->size();
   if (count > 3 || count < static_cast<std::size_t>(shape.min_items)) {
-    report_expected(expected(shape), place, diagnostics, count == 1 ? "is a comma missing?" : "");
+    report_expected(expected(shape), place, diagnostics,
+                    count == 1 ? "is a comma missing?" : decimal_comma_in(*items));
     return false;
   }
-  diagnostics.note_vector(place);
+  diagnostics.note_vector(place, decimal_comma_in);
   out.resize(count);
   return read_numbers(shape, place, diagnostics, out);
 }
@@ -267,8 +306,12 @@ int read_word(const Shape& shape, const Shape& whole, const Place& place,
       return -1;
     }
   }
-  report_expected(expected(whole), place, diagnostics,
-                  written ? did_you_mean(*written, names_of(shape.words)) : "");
+  std::string near = written ? did_you_mean(*written, names_of(shape.words)) : "";
+  if (written && near.empty()) near = did_you_mean_part_of(*written, names_of(shape.words));
+  constexpr std::size_t many = 6;  // a longer list would hide the name that is meant
+  const bool brief = !near.empty() && shape.words.size() > many;
+  report_expected(brief ? fmt::format("one of {} words", shape.words.size()) : expected(whole),
+                  place, diagnostics, near);
   return -1;
 }
 

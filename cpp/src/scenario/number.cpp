@@ -85,6 +85,17 @@ std::string without(std::string_view text, char unwanted) {
   return result;
 }
 
+/// `1234567` of `1,234,567`; empty where commas do not part thousands.
+std::string joined_thousands(std::string_view text) {
+  std::size_t i = skip_digits(text, skip_sign(text, 0));
+  if (i == text.size() || text[skip_sign(text, 0)] == '0') return {};
+  while (i < text.size()) {
+    if (text[i] != ',' || skip_digits(text, i + 1) != i + 4) return {};
+    i += 4;
+  }
+  return without(text, ',');
+}
+
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   return text;
@@ -171,6 +182,8 @@ std::string diagnose(std::string_view text, const Decimal& start, std::string_vi
   if (start.length == 0) return {};
   const std::string_view rest = trimmed(text.substr(start.length));
   if (rest.front() == ',') {
+    if (std::string problem = decimal_comma_problem(text); !problem.empty()) return problem;
+    if (std::string joined = joined_thousands(text); !joined.empty()) return "write " + joined;
     return "decimals have a point, thousands no separator, and a list stands in brackets";
   }
   if (rest.front() == '*' || rest.front() == '/' || rest.front() == '^') {
@@ -205,6 +218,9 @@ Reading<double> read_real(std::string_view text, std::string_view unit) {
 
 Reading<std::int64_t> read_whole(std::string_view text) {
   const Decimal number = scan(text);
+  if (std::string joined = joined_thousands(text); !joined.empty()) {
+    return {std::nullopt, "write " + joined};
+  }
   if (text.empty() || number.length != text.size()) {
     return {std::nullopt, diagnose(text, number, {})};
   }
@@ -219,6 +235,23 @@ Reading<std::int64_t> read_whole(std::string_view text) {
     return {std::nullopt, fmt::format("write {:.0f}", *value)};
   }
   return {std::nullopt, {}};
+}
+
+std::string decimal_comma_problem(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos || comma == 0 || !is_digit(text[comma - 1])) return {};
+  std::string pointed(text);
+  pointed[comma] = '.';
+  const Decimal number = scan(pointed);
+  const bool is_whole = scan(text.substr(0, comma)).length == comma;
+  if (!is_whole || number.length != text.size() || comma + 1 == text.size() ||
+      !is_digit(text[comma + 1])) {
+    return {};
+  }
+  const std::string clause = "a decimal has a point, not a comma: write " + pointed;
+  const std::string thousands = joined_thousands(text);
+  if (thousands.empty()) return clause;
+  return fmt::format("{}, or {} if the comma parts thousands", clause, thousands);
 }
 
 bool looks_like_number(std::string_view text) {

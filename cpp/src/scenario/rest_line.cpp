@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "der/core/nearest_node.hpp"
+#include "der/scenario/rod.hpp"
 
 namespace der::scenario {
 
@@ -11,13 +12,17 @@ double distance(const Components& a, const Components& b) {
   return a.size() > 2 ? std::hypot(in_plane, b[2] - a[2]) : in_plane;
 }
 
-RestLine::RestLine(const std::vector<Components>& points, bool closed)
+RestLine::RestLine(const std::vector<Components>& points, bool closed,
+                   std::optional<double> rest_length)
     : arc_length_(points.size()), closed_(closed) {
   for (std::size_t i = 1; i < points.size(); ++i) {
     arc_length_[i] = arc_length_[i - 1] + distance(points[i - 1], points[i]);
   }
   length_ = arc_length_.back();
   if (closed) length_ += distance(points.back(), points.front());
+  if (!rest_length) return;
+  for (double& s : arc_length_) s *= *rest_length / length_;
+  length_ = *rest_length;
 }
 
 double RestLine::arc_length(int node) const { return arc_length_[static_cast<std::size_t>(node)]; }
@@ -57,6 +62,10 @@ double RestLine::arc_length_of(const Location& at) const {
       break;
   }
   return 0.0;
+}
+
+double rest_scale(const Rod& rod) {
+  return rod.rest_length ? *rod.rest_length / RestLine(rod.points, rod.closed).length() : 1.0;
 }
 
 }  // namespace der::scenario

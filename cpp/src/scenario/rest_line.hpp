@@ -15,7 +15,9 @@ double distance(const Components& a, const Components& b);
 class RestLine {
  public:
   /// `points` [m], at least two; of a `closed` rod the last is joined to the first.
-  explicit RestLine(const std::vector<Components>& points, bool closed = false);
+  /// `rest_length` [m] replaces the length as drawn.
+  explicit RestLine(const std::vector<Components>& points, bool closed = false,
+                    std::optional<double> rest_length = std::nullopt);
 
   [[nodiscard]] int num_nodes() const { return static_cast<int>(arc_length_.size()); }
   [[nodiscard]] bool closed() const { return closed_; }

@@ -185,8 +185,7 @@ Format<RodText> rod_format() {
   return mapping(
       Table<RodText>("rod",
                      "An elastic rod, drawn as a straight line or a polyline, with a node at "
-                     "each corner, or as a ring of such edges. Its rest length is the length as "
-                     "drawn.")
+                     "each corner, or as a ring of such edges.")
           .required("name", &Rod::name, name(),
                     "Supports, loads, probes and override paths refer to it.")
           .optional("nodes", &RodText::nodes, integer({2, false, max_nodes}),
@@ -197,6 +196,12 @@ Format<RodText> rod_format() {
           .optional("points", &RodText::given_points, list_of(vector("m"), 2),
                     "The nodes, one by one.")
           .either({{"nodes", "from", "to"}, {"points"}})
+          .optional("rest_length", &Rod::rest_length, number("m", positive()),
+                    "Length without stress, for a cable that is longer than its span or a string "
+                    "that is shorter: from half the length as drawn to twice. All edges share the "
+                    "difference alike, and the angles between them stay free of stress. The rod "
+                    "starts as drawn, compressed or stretched.",
+                    "as drawn")
           .required("cross_section", &RodText::section, cross_section_format(),
                     "Shape and size across the rod.")
           .optional("material", &Rod::material, material_format(),

@@ -23,8 +23,8 @@ This page is made from the tables that the scene reader itself works with.
 A scene is one YAML file. All values are in SI units and are written as plain decimal numbers:
 `0.5`, `.5`, `-2`, `1e-3`. Numbers with a unit (`5 mm`), a leading zero (`010`) or separators
 (`1_000`), other bases, infinities and NaN are refused; so is `2.0` where a whole number is needed.
-Truth values are `true` and `false`. Names are made of letters, digits, `_` and `-` and do not start
-with a digit. Unknown, duplicate and missing keys are errors. YAML anchors and aliases work; tags,
+Truth values are `true` and `false`, also as `True` and `FALSE`; `yes` and `on` are refused. Names are
+made of letters, digits, `_` and `-` and do not start with a digit. Unknown, duplicate and missing keys are errors. YAML anchors and aliases work; tags,
 merge keys and several documents in one file do not.
 
 A value is overridden by its path: keys and list items joined by dots, items by their `name` or their

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
+#include <utility>
 
 namespace der::scenario {
 namespace {
@@ -51,24 +53,69 @@ bool one_starts_the_other(std::string_view a, std::string_view b) {
   return shared >= 3 && a.substr(0, shared) == b.substr(0, shared);
 }
 
+/// Whether two names have a part in common, as `bending_moment` and `moment_1` have.
+bool share_a_part(std::string_view a, std::string_view b) {
+  constexpr std::size_t shortest = 4;
+  const auto each_part = [](std::string_view name, auto&& is_it) {
+    while (!name.empty()) {
+      const std::size_t end = std::min(name.find('_'), name.size());
+      if (end >= shortest && is_it(name.substr(0, end))) return true;
+      name.remove_prefix(std::min(end + 1, name.size()));
+    }
+    return false;
+  };
+  return each_part(a, [&](std::string_view part) {
+    return each_part(b, [&](std::string_view other) { return other == part; });
+  });
+}
+
+/// The known words with the fewest edits from `given`, if these are few.
+std::vector<std::string> nearest(std::string_view given, const std::vector<std::string>& known) {
+  std::vector<std::string> best;
+  std::size_t best_distance = allowed_distance(given.size());
+  for (const std::string& candidate : known) {
+    if (given.size() > candidate.size() + best_distance) continue;  // as many insertions, or more
+    const std::size_t distance = edit_distance(given, normalised(candidate));
+    if (distance > best_distance) continue;
+    if (distance < best_distance) best.clear();
+    best.push_back(candidate);
+    best_distance = distance;
+  }
+  return best;
+}
+
+template <class Is>
+std::vector<std::string> those(const std::vector<std::string>& known, Is&& is_it) {
+  std::vector<std::string> found;
+  std::copy_if(known.begin(), known.end(), std::back_inserter(found), is_it);
+  return found;
+}
+
+/// "; did you mean 'nodes'?" for the first few words; empty for none.
+std::string question(std::vector<std::string> words) {
+  constexpr std::size_t few = 4;
+  if (words.empty()) return {};
+  words.resize(std::min(words.size(), few));
+  return "; did you mean " + listed(words, " or ") + "?";
+}
+
 }  // namespace
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
   const std::string given = normalised(word);
-  const std::string* best = nullptr;
-  std::size_t best_distance = allowed_distance(given.size()) + 1;
-  for (const std::string& candidate : known) {
-    if (given.size() >= candidate.size() + best_distance) continue;  // as many insertions, or more
-    const std::size_t distance = edit_distance(given, normalised(candidate));
-    if (distance < best_distance) {
-      best = &candidate;
-      best_distance = distance;
-    }
+  std::vector<std::string> words = nearest(given, known);
+  if (words.empty()) {
+    words = those(known, [&](const std::string& other) {
+      return one_starts_the_other(given, normalised(other));
+    });
   }
-  for (const std::string& candidate : known) {
-    if (!best && one_starts_the_other(given, normalised(candidate))) best = &candidate;
-  }
-  return best ? "; did you mean '" + *best + "'?" : "";
+  return question(std::move(words));
+}
+
+std::string did_you_mean_part_of(std::string_view word, const std::vector<std::string>& known) {
+  const std::string given = normalised(word);
+  return question(those(
+      known, [&](const std::string& other) { return share_a_part(given, normalised(other)); }));
 }
 
 std::string with_article(std::string_view noun) {

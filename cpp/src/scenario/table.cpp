@@ -16,7 +16,9 @@ class KeyReader {
       : table_(table), place_(place), diagnostics_(diagnostics), seen_(table.fields.size()) {}
 
   void read_entries(const std::function<bool(int, const Place&)>& read) {
-    for (const Entry& entry : *place_.value->mapping()) {
+    const Mapping& entries = *place_.value->mapping();
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const Entry& entry = entries[i];
       const int field = table_.find(entry.key);
       if (field < 0) {
         report(entry, unknown_key(entry.key));
@@ -31,6 +33,10 @@ class KeyReader {
       first = &entry;
       if (entry.value.is_null()) {
         report(entry, fmt::format("'{}' has no value: give it one, or remove the key", entry.key));
+        continue;
+      }
+      if (i + 1 < entries.size() && is_split_by_comma(entry, entries[i + 1])) {
+        ++i;
         continue;
       }
       read(field, place_.at(entry));
@@ -66,6 +72,18 @@ class KeyReader {
   }
 
  private:
+  /// Reports and returns true where two entries are one number: in brackets a comma ends a value,
+  /// and of `{radius: 0,006}` the key `006` remains, without a value.
+  bool is_split_by_comma(const Entry& entry, const Entry& next) {
+    const auto* written = std::get_if<Plain>(&entry.value.content);
+    if (!written || !next.value.is_null() || table_.find(next.key) >= 0) return false;
+    const std::string number = written->text + "," + next.key;
+    const std::string problem = decimal_comma_problem(number);
+    if (problem.empty()) return false;
+    report(entry, fmt::format("'{}' is two values, parted by a comma: {}", number, problem));
+    return true;
+  }
+
   /// "a rod"
   [[nodiscard]] std::string noun() const { return with_article(table_.name); }
 
@@ -87,6 +105,9 @@ class KeyReader {
     if (looks_like_number(key)) return message + "; is a list missing its brackets?";
     if (const std::string owner = owner_of(key); !owner.empty()) {
       return fmt::format("{}; it belongs under '{}' (indent it further)", message, owner);
+    }
+    if (std::string near = did_you_mean_part_of(key, table_.keys()); !near.empty()) {
+      return message + near;
     }
     return fmt::format("{}; its keys are {}", message, listed(table_.keys()));
   }

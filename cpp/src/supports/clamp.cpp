@@ -129,7 +129,7 @@ double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, co
   if (rod.natural_curvature.empty()) {
     const double held = clamp_of(clamp, edge, rod, model).direction;
     const Vec2 tangent{std::cos(held), std::sin(held)};
-    const Vec2 effective = effective_edge(rod, edge, model).drawn(model.initial_positions);
+    const Vec2 effective = effective_edge(rod, edge, model).drawn(model.rest_positions);
     return side * angle_between(tangent, effective);
   }
   const bool leaves = side > 0.0;

@@ -33,7 +33,7 @@ Index follow_twist(Index number, const SectionFrame& drawn, Model& model) {
   if (known == model.framed_joints.end()) {
     model.framed_joints.push_back(followed);
     model.drawn_frames[followed.twist()] =
-        model.initial_positions[model.framed_edges[to_size(number)].theta];
+        model.rest_positions[model.framed_edges[to_size(number)].theta];
     return followed.twist();
   }
   const bool same = known->held.drawn.tangent == drawn.tangent &&
@@ -339,7 +339,7 @@ typename SectionSpring<Edges>::Constants free_section(const SectionHold& hold,
                                                       const Model& model) {
   auto constants = constants_of<Edges>(hold, none, first_edge, rod, model);
   const auto drawn_angle = [&](Index edge) {
-    return model.initial_positions[model.framed_edges[to_size(number_of(rod, edge))].theta];
+    return model.rest_positions[model.framed_edges[to_size(number_of(rod, edge))].theta];
   };
   const auto count_by = [&](Index reference, double side, double angles) {
     constants.between = {reference, side, angles + side * model.drawn_frames[reference]};

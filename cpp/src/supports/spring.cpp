@@ -62,7 +62,7 @@ void add_point_spring_at(const scenario::Spring& spring, RodLayout& rod, double 
 /// Turn [rad] that is drawn between the two edges of a place; 0 of one edge.
 double drawn_bend(const RodLayout& rod, const MomentPlace& place, const Model& model) {
   if (place.weights.size() == 1) return 0.0;
-  const Vector& drawn = model.initial_positions;
+  const Vector& drawn = model.rest_positions;
   return angle_between(effective_edge(rod, place.first_edge, model).drawn(drawn),
                        effective_edge(rod, place.first_edge + 1, model).drawn(drawn));
 }
@@ -87,7 +87,7 @@ Index add_element_of(const RodLayout& rod, MomentPlace& place, Model& model) {
   }
   const EffectiveEdge first = effective_edge(rod, place.first_edge, model);
   const EffectiveEdge last = effective_edge(rod, place.first_edge + Edges - 1, model);
-  const Vec2 along = first.drawn(model.initial_positions);
+  const Vec2 along = first.drawn(model.rest_positions);
   typename Kernel::Constants constants;
   constants.stiffness = place.stiffness * place.series_share(rod.EI);
   place.followed = follow_edge(rod, place.first_edge, model);

@@ -7,10 +7,9 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from der._core import Scenario
-from der.accuracy.resampling import arc_lengths, resample_line, resample_list, resample_ring
+from der.accuracy.resampling import Array, arc_lengths, resample_line, resample_list, resample_ring
 from der.scene_loads import kind_of
 
 #: Order of the rods in the length of their elements, and of every probe but the turning angle.
@@ -189,9 +188,14 @@ def _what_stands_on(scene: dict[str, Any], rod: dict[str, Any]) -> Iterator[dict
             yield item
 
 
-def _resampled(rod: dict[str, Any], factor: Fraction, other_curve: bool) -> NDArray[np.float64]:
+def _resampled(rod: dict[str, Any], factor: Fraction, other_curve: bool) -> Array:
     resample = resample_ring if rod.get("closed") else resample_line
     return resample(np.array(rod["points"], dtype=float), factor, other_curve=other_curve)
+
+
+def _rest_arcs(rod: dict[str, Any], drawn: Array) -> Array:
+    """Return the rest arc lengths of nodes that are drawn at these arc lengths."""
+    return drawn * (float(rod["rest_length"]) / drawn[-1]) if "rest_length" in rod else drawn
 
 
 class _Places:
@@ -207,8 +211,8 @@ class _Places:
         if "points" in rod:
             old = np.array(rod["points"], dtype=float)
             self.points = _resampled(rod, factor, other_curve)
-            self._old_arc = arc_lengths(old, closed=self._closed)
-            self._new_arc = arc_lengths(self.points, closed=self._closed)
+            self._old_arc = _rest_arcs(rod, arc_lengths(old, closed=self._closed))
+            self._new_arc = _rest_arcs(rod, arc_lengths(self.points, closed=self._closed))
 
     def moved(self, place: Any) -> Any:
         """Return what names, on the new mesh, the place that `place` names on the old one."""

@@ -266,7 +266,11 @@ struct Model {
   DofMap dofs;
   std::vector<RodLayout> rods;
 
-  Vector initial_positions;   ///< [m]
+  /// [m] The shape as drawn, at which runs start and from which displacements count.
+  Vector initial_positions;
+  /// [m] The same shape with each edge at its rest length: the reference of all elements. Each rod
+  /// is magnified about its first node, and stays as drawn without a `rest_length`.
+  Vector rest_positions;
   Vector initial_velocities;  ///< [m/s]
   Mass mass;
   Vector damping;        ///< [N s/m], one entry a degree of freedom: drag and linear damping

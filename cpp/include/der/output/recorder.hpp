@@ -9,9 +9,11 @@
 #include "der/core/types.hpp"
 #include "der/model/state.hpp"
 #include "der/output/checkpoint.hpp"
+#include "der/output/crossing_watch.hpp"
 #include "der/output/frame.hpp"
 #include "der/output/probe.hpp"
 #include "der/output/step_values.hpp"
+#include "der/output/strain_watch.hpp"
 #include "der/simulation.hpp"
 
 namespace der {
@@ -46,6 +48,14 @@ class Recorder {
   [[nodiscard]] bool has_data() const { return seen_time_.has_value(); }
   /// Energies [J] of the last saved instant; none before it.
   [[nodiscard]] const std::optional<Energies>& energies() const { return energies_; }
+  /// Where a rod was seen first to pass through itself or another.
+  [[nodiscard]] const std::optional<CrossingWatch::Crossing>& crossing() const {
+    return crossings_.found();
+  }
+  /// Where a rod was saved first with more than twice its rest length.
+  [[nodiscard]] const std::optional<StrainWatch::Stretched>& stretched() const {
+    return strains_.found();
+  }
   /// Cost of the run so far, earlier parts of a resumed run included.
   [[nodiscard]] Counters counters(const Simulation& simulation) const;
   [[nodiscard]] double wall_seconds() const;
@@ -69,6 +79,8 @@ class Recorder {
   std::vector<FrameSink*> sinks_;
   Vector values_;       // of the probes, now
   StepValues in_step_;  // of the probes, in the last adaptive step
+  CrossingWatch crossings_;
+  StrainWatch strains_;
   std::optional<Energies> energies_;
   State between_;                     // within an adaptive step
   std::optional<double> seen_time_;   // [s] of the last instant recorded

@@ -40,6 +40,10 @@ struct RunOutcome {
   std::vector<PathBranch> path;  ///< of a continuation, and the probes of each of its points
   std::vector<std::vector<double>> path_probes;
   OutOfPlaneAnswer out_of_plane;  ///< of a planar model
+  /// Where a rod was seen first to pass through itself or another, which nothing prevents.
+  std::optional<CrossingWatch::Crossing> crossing;
+  /// Where a rod was seen first to be stretched beyond what a linear law holds for.
+  std::optional<StrainWatch::Stretched> stretched;
   [[nodiscard]] bool ok() const { return run_status::is_finished(status); }
   [[nodiscard]] bool failed() const { return !message.empty(); }
 };

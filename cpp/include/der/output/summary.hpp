@@ -20,8 +20,13 @@ UsedSolver used_solver(const Simulation& simulation);
 /// Why the result is unreliable, if the time stepping has created too much energy; else empty.
 std::string created_energy_warning(const Simulation& simulation);
 
-/// Reasons to doubt a completed run, in sentences: the scene's own warnings; created energy; equal
-/// steps that are too long to resolve a table; a structure to which linear buckling does not apply.
+/// What makes the result of a run doubtful, in sentences: rods that pass through one another,
+/// strains for which no linear law holds, created energy.
+std::vector<std::string> doubts(const Simulation& simulation, const RunOutcome& outcome);
+
+/// Reasons to doubt a completed run, in sentences: the scene's own warnings; those of `doubts`;
+/// equal steps that are too long to resolve a table; a structure to which linear buckling does not
+/// apply.
 std::vector<std::string> warnings(const Simulation& simulation, const RunOutcome& outcome);
 
 /// The summary of an ended run (keys: docs/results.md), in the order in which a person wants to

@@ -40,6 +40,8 @@ struct Rod {
   /// Initial node positions [m], one per node (from `points`, or spaced evenly over `from`..`to`).
   std::vector<Components> points;
   bool closed = false;  ///< whether an edge joins the last node and the first
+  /// Length without stress [m]; absent: as drawn. All edges share the difference alike.
+  std::optional<double> rest_length;
   CrossSection cross_section;
   /// Direction of director 1, that of the section's width, at the rod's start: any length, three
   /// components, made perpendicular to the first edge. Absent: +z, or where the rod begins along z
@@ -58,5 +60,8 @@ struct Rod {
 
   [[nodiscard]] int num_edges() const { return static_cast<int>(points.size()) - (closed ? 0 : 1); }
 };
+
+/// By how much the rod without stress is longer than drawn; exactly 1 without a `rest_length`.
+double rest_scale(const Rod& rod);
 
 }  // namespace der::scenario

@@ -33,7 +33,7 @@ FailureInfo info(EquilibriumFailure cause) {
     case EquilibriumFailure::NotHeld:
       return {"not_held", "", "Add a support that holds it, or balance the loads."};
     case EquilibriumFailure::HeldTooWeakly:
-      return {"not_held", "", "Add a support, or make the springs or the foundation stiffer."};
+      return {"not_held", "", "Make the springs or the foundation stiffer, or add a support."};
     case EquilibriumFailure::DriftsAway:
       return {
           "unbounded",

@@ -2,7 +2,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "der/output/pacer.hpp"
+#include "der/output/flush_timer.hpp"
 
 namespace der::python {
 
@@ -25,7 +25,7 @@ class Heartbeat {
   }
 
  private:
-  Pacer pacer_{Pacer::Seconds{0.05}};
+  FlushTimer pacer_{FlushTimer::Seconds{0.05}};
 };
 
 }  // namespace der::python

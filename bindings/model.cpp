@@ -31,7 +31,7 @@ std::vector<SpringSupport> springs(const Scenario& scenario) {
   std::vector<SpringSupport> result;
   for (const scenario::Support& support : scenario.scene().supports) {
     if (!support.spring) continue;
-    const RodLayout& rod = model.rod(support.rod);
+    const RodMesh& rod = model.rod(support.rod);
     SpringSupport& spring = result.emplace_back();
     spring.rod = rod.name;
     spring.stiffness = support.spring->stiffness;
@@ -53,18 +53,18 @@ py::array_t<T> to_array(const std::vector<T>& values) {
 }
 
 void bind_rod(py::module_& module) {
-  py::class_<RodLayout>(module, "Rod", "Where a rod is in the model, and its measures.")
-      .def_readonly("name", &RodLayout::name, "Name in the scene.")
+  py::class_<RodMesh>(module, "Rod", "Where a rod is in the model, and its measures.")
+      .def_readonly("name", &RodMesh::name, "Name in the scene.")
       .def_property_readonly(
-          "nodes", [](const RodLayout& rod) { return to_array(rod.nodes); },
+          "nodes", [](const RodMesh& rod) { return to_array(rod.nodes); },
           "Row numbers of the rod's nodes in `positions`, in the order of the arc length.")
       .def_property_readonly(
-          "arc_lengths", [](const RodLayout& rod) { return to_array(rod.arc_length); },
+          "arc_lengths", [](const RodMesh& rod) { return to_array(rod.arc_length); },
           "Rest arc length of each node [m].")
-      .def_readonly("closed", &RodLayout::closed, "Whether it is a ring.")
+      .def_readonly("closed", &RodMesh::closed, "Whether it is a ring.")
       .def_property_readonly(
           "line_nodes",
-          [](const RodLayout& rod) {
+          [](const RodMesh& rod) {
             std::vector<Index> nodes = rod.nodes;
             if (rod.closed) nodes.push_back(nodes.front());
             return to_array(nodes);
@@ -72,31 +72,31 @@ void bind_rod(py::module_& module) {
           "Row numbers of the nodes along its line: those of a ring come back to the first one.")
       .def_property_readonly(
           "line_arc_lengths",
-          [](const RodLayout& rod) {
+          [](const RodMesh& rod) {
             std::vector<double> places = rod.arc_length;
             if (rod.closed) places.push_back(rod.rest_length());
             return to_array(places);
           },
           "Rest arc lengths [m] of these, one more than the rod has edges.")
-      .def_property_readonly("length", &RodLayout::rest_length, "Rest length [m].")
+      .def_property_readonly("length", &RodMesh::rest_length, "Rest length [m].")
       .def_property_readonly(
           "rest_turning_angles",
-          [](const RodLayout& rod) { return to_array(rod.rest_turning_angle); },
+          [](const RodMesh& rod) { return to_array(rod.rest_turning_angle); },
           "Natural turning angle at each node [rad]; 0 at the ends.")
       .def_property_readonly(
           "curvature",
-          [](const RodLayout& rod) {
+          [](const RodMesh& rod) {
             return rod.curvature == scenario::CurvatureMeasure::Angle ? "angle" : "tangent";
           },
           "Curvature measure: angle or tangent.")
-      .def_readonly("EA", &RodLayout::EA, "Axial stiffness [N].")
-      .def_readonly("EI", &RodLayout::EI, "Bending stiffness [N m^2].")
-      .def_readonly("radius", &RodLayout::draw_radius,
+      .def_readonly("EA", &RodMesh::EA, "Axial stiffness [N].")
+      .def_readonly("EI", &RodMesh::EI, "Bending stiffness [N m^2].")
+      .def_readonly("radius", &RodMesh::draw_radius,
                     "Half the height of the section [m]; 0 where only stiffnesses are given.")
       .def_property_readonly(
-          "sphere_radii", [](const RodLayout& rod) { return to_array(rod.sphere_radius); },
+          "sphere_radii", [](const RodMesh& rod) { return to_array(rod.sphere_radius); },
           "Radius of the sphere on each node [m]; 0 where there is none.")
-      .def("__repr__", [](const RodLayout& rod) {
+      .def("__repr__", [](const RodMesh& rod) {
         return py::str("<der.Rod {!r}: {} nodes, length {:.6g} m>")
             .format(rod.name, rod.nodes.size(), rod.rest_length());
       });
@@ -135,7 +135,7 @@ void bind_model(py::module_& module) {
       .def_readonly("reason", &Model::reason, "Why this model was taken.")
       .def_readonly("dimension", &Model::dimension, "Components of a position: 2 or 3.")
       .def_property_readonly(
-          "is_actuated", [](const Model& model) { return model.rest_shape.is_actuated(); },
+          "is_actuated", [](const Model& model) { return model.natural_strain.is_actuated(); },
           "Whether actuations change the rest shape.")
       .def_readonly("num_nodes", &Model::num_nodes, "Number of nodes of all rods.")
       .def_property_readonly("num_dofs", &Model::num_dofs,

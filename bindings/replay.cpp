@@ -19,7 +19,7 @@
 #include "der/kinematics/frame_block.hpp"
 #include "der/model/followed.hpp"
 #include "der/model/location.hpp"
-#include "der/output/joint_strain.hpp"
+#include "der/output/vertex_strain.hpp"
 #include "der/scenario/load.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/supports/clamp.hpp"
@@ -48,7 +48,7 @@ std::vector<std::string> held_components(Index node, const Model& model) {
 
 /// Enters the tangent that a clamp holds: the initial one where the rod has no bending stiffness to
 /// carry its moment.
-void enter_tangent(HeldNode& held, const RodLayout& rod, Index place, const Replay& replay) {
+void enter_tangent(HeldNode& held, const RodMesh& rod, Index place, const Replay& replay) {
   const Clamp* clamp = rod.clamp_at(place);
   const Model& model = replay.model();
   if (model.dimension == 3) {
@@ -68,7 +68,7 @@ std::vector<HeldNode> held_nodes(Replay& replay, std::size_t frame) {
   std::vector<HeldNode> result;
   for (const scenario::Support& support : replay.scenario().scene().supports) {
     if (!support.holds()) continue;
-    const RodLayout& rod = replay.model().rod(support.rod);
+    const RodMesh& rod = replay.model().rod(support.rod);
     for (const Index place : nodes_at(support.at, rod)) {
       const Index node = rod.nodes[to_size(place)];
       HeldNode held{rod.name, node, held_components(node, replay.model()), std::nullopt, {}};

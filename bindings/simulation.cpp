@@ -16,7 +16,7 @@
 #include "controls.hpp"
 #include "der/core/error.hpp"
 #include "der/model/momentum.hpp"
-#include "der/output/joint_strain.hpp"
+#include "der/output/vertex_strain.hpp"
 #include "recording.hpp"
 #include "state.hpp"
 

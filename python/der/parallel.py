@@ -36,7 +36,7 @@ Key = TypeVar("Key", bound=Hashable)
 Work = TypeVar("Work")
 Done = TypeVar("Done")
 Found = TypeVar("Found")
-_Block = TypeVar("_Block", bound="EndsWithBlock")
+_Block = TypeVar("_Block", bound="CancellableExecutor")
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class _Stop(Protocol):
     def is_set(self) -> bool: ...
 
 
-class EndsWithBlock(Executor):
+class CancellableExecutor(Executor):
     """An executor whose work ends early when the ``with`` block around it fails.
 
     Its workers are to raise `KeyboardInterrupt` at their next tick once `_stop` is set.
@@ -135,7 +135,7 @@ class EndsWithBlock(Executor):
                 take_all_interrupts()
 
 
-class Threads(EndsWithBlock, ThreadPoolExecutor):
+class Threads(CancellableExecutor, ThreadPoolExecutor):
     """Threads that stop when the ``with`` block around them fails, by Ctrl-C above all.
 
     Parameters

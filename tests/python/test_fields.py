@@ -5,8 +5,8 @@ from dataclasses import replace
 import der
 import numpy as np
 import pytest
+from der.characteristic_scales import characteristic_scale
 from der.fields import fields_of, rod_fields
-from der.natural_sizes import natural_size
 
 TURN = {"times": [0, 0.2], "values": [0, -0.9]}
 
@@ -137,7 +137,7 @@ def test_every_quantity_has_a_natural_size(swing):
     """Views and error bars need one to tell rounding from numbers."""
     rods = der.Model(der.Scenario.from_dict(swing)).rods
     (rod,) = rods
-    sizes = {one.name: natural_size(rods, one.unit, 0.5) for one in der.quantities()}
+    sizes = {one.name: characteristic_scale(rods, one.unit, 0.5) for one in der.quantities()}
     assert all(size > 0.0 for size in sizes.values()), sizes
     assert sizes["curvature"] == pytest.approx(1.0 / rod.length)
     assert sizes["moment"] == pytest.approx(rod.EI / rod.length)

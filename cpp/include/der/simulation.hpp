@@ -15,7 +15,7 @@
 
 #include "der/assembly/assembler.hpp"
 #include "der/assembly/pattern.hpp"
-#include "der/core/beat.hpp"
+#include "der/core/cancel_callback.hpp"
 #include "der/model/elongation_limits.hpp"
 #include "der/model/fields.hpp"
 #include "der/model/model.hpp"
@@ -29,8 +29,8 @@
 #include "der/statics/modes.hpp"
 #include "der/statics/out_of_plane.hpp"
 #include "der/steppers/adaptive_stepper.hpp"
-#include "der/steppers/energy_watch.hpp"
-#include "der/steppers/stability_watch.hpp"
+#include "der/steppers/energy_monitor.hpp"
+#include "der/steppers/stability_monitor.hpp"
 #include "der/steppers/step_plan.hpp"
 #include "der/steppers/stepper.hpp"
 #include "der/steppers/support_motion.hpp"
@@ -77,7 +77,7 @@ class Simulation {
   Simulation& operator=(const Simulation&) = delete;
 
   /// Sets what messages advise where a program has written a number that is not finite.
-  void set_way_out(const char* advice) { way_out_ = advice; }
+  void set_recovery_hint(const char* advice) { way_out_ = advice; }
 
   /// Advances by one time step: of the scene's length, or, with a tolerance, of the length that the
   /// error allows. A step that fails is retried in smaller pieces, and one in which supports move
@@ -98,7 +98,7 @@ class Simulation {
   void keep_steps() { energy_watch_.begin(state_); }
   /// Whether a program has written positions or velocities since the last step, or numbers that are
   /// not finite.
-  [[nodiscard]] bool was_written() const;
+  [[nodiscard]] bool has_external_writes() const;
 
   /// Takes the present state as the start of a motion: of a new ledger, with no steps before it.
   void start_anew();
@@ -120,9 +120,9 @@ class Simulation {
   /// One of a planar model is tested against motion out of its plane. `beat` is called at least
   /// once an iteration of the search, here and below; what it throws ends the search, and the state
   /// is then as before.
-  EquilibriumReport equilibrium(bool leave_saddles = true, const Beat& beat = {});
+  EquilibriumReport equilibrium(bool leave_saddles = true, const CancelCallback& beat = {});
   /// The same without that test, as the start of something else.
-  EquilibriumReport settle(bool leave_saddles = true, const Beat& beat = {});
+  EquilibriumReport settle(bool leave_saddles = true, const CancelCallback& beat = {});
 
   /// Sets what has a name in the scene, in place of its table: each component comes to its value
   /// evenly and stays there until it is set again. `name` is that of a load or support, or of one
@@ -159,13 +159,14 @@ class Simulation {
 
   /// The `count` modes of lowest frequency about the present state, which has to be an equilibrium
   /// (Error if not).
-  [[nodiscard]] std::vector<Mode> modes(int count, const Beat& beat = {});
+  [[nodiscard]] std::vector<Mode> modes(int count, const CancelCallback& beat = {});
   /// Growth rate [1/s] of the fastest motion of the present equilibrium out of the plane of a
   /// planar model; 0 if there is none, or if that is not tested.
-  [[nodiscard]] double growth_rate_out_of_plane(const Beat& beat = {});
+  [[nodiscard]] double growth_rate_out_of_plane(const CancelCallback& beat = {});
   /// Linear buckling of the structure of a planar model out of its plane; nothing in space.
   /// `in_plane` is what `buckling` returned last.
-  OutOfPlaneBuckling buckling_out_of_plane(const LinearBuckling& in_plane, const Beat& beat = {});
+  OutOfPlaneBuckling buckling_out_of_plane(const LinearBuckling& in_plane,
+                                           const CancelCallback& beat = {});
   /// Why equilibria of the scene are not tested against motion out of their plane, as a clause;
   /// empty if they are, and where the model is one in space.
   [[nodiscard]] const std::string& not_tested_out_of_plane() const {
@@ -174,11 +175,11 @@ class Simulation {
   /// Replaces the state by the equilibrium without loads, and returns its linear buckling modes
   /// under the scene's loads. Throws NotConvergedError, and Error where that is not the scene's
   /// analysis.
-  LinearBuckling buckling(int count, const Beat& beat = {});
+  LinearBuckling buckling(int count, const CancelCallback& beat = {});
   /// Follows the equilibria of the scene along its load factor, from the equilibrium at the first
   /// value. Leaves the state there. Throws NotConvergedError, and Error where the scene's analysis
   /// is no continuation.
-  std::vector<PathBranch> follow(const Beat& beat = {});
+  std::vector<PathBranch> follow(const CancelCallback& beat = {});
   /// Shows a point of a path that `follow` has found, number `index` of all: the state is that of
   /// the point, at its load factor.
   void show(const PathPoint& point, std::int64_t index);
@@ -267,7 +268,7 @@ class Simulation {
   };
   [[nodiscard]] Forces forces() const;
   /// Made when it is first asked for; null where there is none. It calls `beat` from now on.
-  OutOfPlaneTest* out_of_plane_test(const Beat& beat);
+  OutOfPlaneTest* out_of_plane_test(const CancelCallback& beat);
   [[nodiscard]] std::string describe_failure(const StepReport& report, double dt) const;
   [[nodiscard]] std::string describe_inaccuracy(const AdaptiveReport& report) const;
   [[nodiscard]] std::string describe_unstable_motion() const;
@@ -286,8 +287,8 @@ class Simulation {
   std::unique_ptr<OutOfPlaneTest> out_of_plane_;
   const StepperInfo& stepper_info_;
   std::unique_ptr<Stepper> stepper_;
-  std::optional<StabilityWatch> stability_;  // of explicit steppers
-  EnergyWatch energy_watch_;
+  std::optional<StabilityMonitor> stability_;  // of explicit steppers
+  EnergyMonitor energy_watch_;
   StepPlan plan_;
   std::optional<AdaptiveStepper> adaptive_;
   SupportMotion support_motion_;

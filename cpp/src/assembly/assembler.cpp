@@ -58,10 +58,10 @@ std::vector<std::size_t> loose_elements(std::size_t size, const std::vector<Plan
 }
 
 template <class Lists>
-struct LooseOf;
+struct OffChainOf;
 template <class... Kernels>
-struct LooseOf<std::tuple<ElementList<Kernels>...>> {
-  using type = std::tuple<LooseElements<Kernels>...>;
+struct OffChainOf<std::tuple<ElementList<Kernels>...>> {
+  using type = std::tuple<OffChainElements<Kernels>...>;
 };
 
 /// The kinds of loose elements to go through.
@@ -70,7 +70,7 @@ template <Kinds K, class Kernel>
 constexpr bool kIsOf = K == Kinds::All || !GoesInLanes<Kernel>::value;
 
 template <class Kernel>
-bool is_one_by_one(const LooseElements<Kernel>& loose) {
+bool is_one_by_one(const OffChainElements<Kernel>& loose) {
   return kIsOf<Kinds::OneByOne, Kernel> && !loose.elements.empty();
 }
 
@@ -90,7 +90,7 @@ struct Assembler::ScatterMaps {
   std::vector<CouplingSlots> couplings;  // of each of the model's mass couplings
   std::vector<PlanarChain> planar_chains;
   std::vector<SpatialChain> spatial_chains;
-  LooseOf<ElementLists::Lists>::type elements;
+  OffChainOf<ElementLists::Lists>::type elements;
   // Slots of every plain stretch element.
   EdgeSlots<2> planar_edges;
   EdgeSlots<3> spatial_edges;
@@ -208,8 +208,8 @@ bool Assembler::has_loose() const {
 }
 
 template <class Kernel>
-const LooseElements<Kernel>& Assembler::loose() const {
-  return std::get<LooseElements<Kernel>>(maps_->elements);
+const OffChainElements<Kernel>& Assembler::loose() const {
+  return std::get<OffChainElements<Kernel>>(maps_->elements);
 }
 
 namespace {

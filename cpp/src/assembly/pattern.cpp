@@ -25,7 +25,7 @@ void add_mass_entries(const Model& model, Entries& entries) {
 }
 
 /// The free degrees of freedom of a ring: they follow one another. None: it is held as a whole.
-Border whole_ring(const RodLayout& rod, const Model& model) {
+Border whole_ring(const RodMesh& rod, const Model& model) {
   Border ring{model.num_free(), 0, 0};
   const auto enter = [&](Index dof) {
     const Index place = model.dofs.free_index(dof);
@@ -46,7 +46,7 @@ Border whole_ring(const RodLayout& rod, const Model& model) {
 /// reaches back over half of it.
 std::vector<Border> find_borders(const Entries& entries, const Model& model) {
   std::vector<Border> borders;
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     if (!rod.closed) continue;
     Border border = whole_ring(rod, model);
     border.first_row = border.end;

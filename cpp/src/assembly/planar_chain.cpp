@@ -62,12 +62,12 @@ Symmetric<T> edge_hessian(const EdgeTerms<T>& edge, const T& moment, const T& st
           moment * bent(1, 1)};
 }
 
-/// Second derivative of the energy of the joint between two edges by the vector of `next` (rows)
+/// Second derivative of the energy of the vertex between two edges by the vector of `next` (rows)
 /// and that of `edge`.
 template <class T>
 Eigen::Matrix<T, 2, 2> coupling(const EdgeTerms<T>& edge, const EdgeTerms<T>& next,
-                                const BendResponseOf<T>& joint) {
-  return -joint.stiffness * next.turn * edge.turn.transpose();
+                                const BendResponseOf<T>& vertex) {
+  return -vertex.stiffness * next.turn * edge.turn.transpose();
 }
 
 /// Slope of the energy by the vector of an edge.
@@ -81,8 +81,8 @@ Vector2<T> edge_force(const EdgeTerms<T>& edge, const T& moment) {
 ///   kIsWhole                    whether the lanes' first edge is that of the chain
 ///   count()                     number of edges of the longest lane
 ///   edge(j), edge_before()      edge `j` of each lane, and the one before edge 0
-///   joint(j, edge, next)        response of the joint behind edge j; zero beyond the chain's ends
-///   last_is_shorter()           whether the lane that has the chain's end lacks the last edge
+///   vertex(j, edge, next)        response of the vertex behind edge j; zero beyond the chain's
+///   ends last_is_shorter()           whether the lane that has the chain's end lacks the last edge
 ///   add_force, add_entries      add to the node at the start of edge j
 ///   add_end(force, block)       adds to the node at the end of the chain
 /// The lanes hold parts of one rod:
@@ -130,8 +130,8 @@ class RodParts {
     edge.stretch.across *= exists;
     return edge;
   }
-  [[nodiscard]] BendResponseOf<T> joint(std::ptrdiff_t j, const EdgeTerms<T>& edge,
-                                        const EdgeTerms<T>& next) const {
+  [[nodiscard]] BendResponseOf<T> vertex(std::ptrdiff_t j, const EdgeTerms<T>& edge,
+                                         const EdgeTerms<T>& next) const {
     const auto constants = [&](int lane) -> const auto& {
       return bends_[std::clamp<std::ptrdiff_t>(spans_.edge(lane, j), 0, last() - 1)];
     };
@@ -140,8 +140,8 @@ class RodParts {
       return chain_.is_actuated() ? c.natural(controls_) : c.rest_kappa;
     });
     const T stiffness = in_lanes<T>([&](int lane) {
-      const std::ptrdiff_t joint = spans_.edge(lane, j);
-      return joint >= 0 && joint < last() ? constants(lane).stiffness_per_length : 0.0;
+      const std::ptrdiff_t vertex = spans_.edge(lane, j);
+      return vertex >= 0 && vertex < last() ? constants(lane).stiffness_per_length : 0.0;
     });
     return bend_response<Curvature>(stiffness, natural, angle_between<T>(edge.vector, next.vector));
   }
@@ -219,8 +219,8 @@ class MemberChains {
     return EdgeTerms<T>({node[2] - node[0], node[3] - node[1]},
                         {constants_.along[j], constants_.rest_length[j], 0.0});
   }
-  [[nodiscard]] BendResponseOf<T> joint(std::ptrdiff_t j, const EdgeTerms<T>& edge,
-                                        const EdgeTerms<T>& next) const {
+  [[nodiscard]] BendResponseOf<T> vertex(std::ptrdiff_t j, const EdgeTerms<T>& edge,
+                                         const EdgeTerms<T>& next) const {
     return bend_response<Curvature>(constants_.bend_stiffness[j], constants_.rest_kappa[j],
                                     angle_between<T>(edge.vector, next.vector));
   }
@@ -267,8 +267,8 @@ void add_chain(const Parts& parts) {
   Block from_before = Block::Zero();             // C_j
   if constexpr (!Parts::kIsWhole) {
     const EdgeTerms<T> previous = parts.edge_before();
-    const BendResponseOf<T> outer = parts.joint(-2, parts.edge(-2), previous);
-    start = parts.joint(-1, previous, edge);
+    const BendResponseOf<T> outer = parts.vertex(-2, parts.edge(-2), previous);
+    start = parts.vertex(-1, previous, edge);
     const T moment = outer.moment - start.moment;
     force_before = edge_force(previous, moment);
     if constexpr (with_hessian) {
@@ -284,7 +284,7 @@ void add_chain(const Parts& parts) {
     const bool is_end = Parts::kIsWhole && is_last;
     const EdgeTerms<T> next = is_end ? edge : parts.edge(j + 1);
     BendResponseOf<T> end;
-    if (!is_end) end = parts.joint(j, edge, next);
+    if (!is_end) end = parts.vertex(j, edge, next);
     const T moment = start.moment - end.moment;
     const Vector2<T> force = edge_force(edge, moment);
     parts.add_force(j, force_before - force);
@@ -368,12 +368,12 @@ void PlanarChain::add(const Model& model, const Configuration& here, Vector& gra
 
 void PlanarChain::add_gradient(const Model& model, const Configuration& here,
                                Vector& gradient) const {
-  run_loop([&] { add<Derivatives::Gradient>(model, here, gradient, nullptr); });
+  dispatch_simd([&] { add<Derivatives::Gradient>(model, here, gradient, nullptr); });
 }
 
 void PlanarChain::add_gradient_and_hessian(const Model& model, const Configuration& here,
                                            Vector& gradient, double* values) const {
-  run_loop([&] { add<Derivatives::Hessian>(model, here, gradient, values); });
+  dispatch_simd([&] { add<Derivatives::Hessian>(model, here, gradient, values); });
 }
 
 template <class T>

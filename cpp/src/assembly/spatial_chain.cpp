@@ -14,16 +14,16 @@ namespace {
 // The terms of a chain: what the loop over its edges needs of the energies, in the lanes of the
 // number type `Number`.
 //   kSize                       variables of an edge: its vector, and its angle if it has one
-//   Bend                        the kernel of its joints
-//   Joint                       what is known of a joint besides its edges
-//   joint(each)                 that of the constants c, each(f) being f(c) in all lanes
+//   Bend                        the kernel of its vertices
+//   Vertex                       what is known of a vertex besides its edges
+//   vertex(each)                 that of the constants c, each(f) being f(c) in all lanes
 //   Edge                        an edge at a configuration
 //   edge(parts, j)              that of edge j
-//   response(..)                response of the joint between two edges
-//   scale(response, factor)     the response of a joint that counts `factor` times
-//   force(edge, start, end)     slope of the energy of two joints by the edge's variables
+//   response(..)                response of the vertex between two edges
+//   scale(response, factor)     the response of a vertex that counts `factor` times
+//   force(edge, start, end)     slope of the energy of two vertices by the edge's variables
 //   own(edge, start, end)       second derivative likewise
-//   coupling(edge, next, joint) second derivative by the variables of `next` (rows) and `edge`
+//   coupling(edge, next, vertex) second derivative by the variables of `next` (rows) and `edge`
 
 /// Rods whose sections count.
 template <class Curvature, class T>
@@ -31,10 +31,10 @@ struct Sections {
   using Number = T;
   static constexpr int kSize = 4;
   using Bend = SpatialBend<Curvature>;
-  using Joint = JointOf<T>;
+  using Vertex = VertexOf<T>;
   using Variables = Eigen::Matrix<T, 4, 1>;
   using Block = Eigen::Matrix<T, 4, 4>;
-  using Response = JointResponseOf<T>;
+  using Response = VertexResponseOf<T>;
 
   struct Edge {
     EdgeFrameOf<T> frame;
@@ -61,29 +61,29 @@ struct Sections {
             {followed(3), followed(4), followed(5)}};
   }
   template <class Each>
-  static Joint joint(const Each& each) {
+  static Vertex vertex(const Each& each) {
     using C = typename Bend::Constants;
-    return {each([](const C& c) { return c.joint.bend_1; }),
-            each([](const C& c) { return c.joint.bend_2; }),
-            each([](const C& c) { return c.joint.twist; }),
-            {each([](const C& c) { return c.joint.rest.kappa_1; }),
-             each([](const C& c) { return c.joint.rest.kappa_2; }),
-             each([](const C& c) { return c.joint.rest.twist; })}};
+    return {each([](const C& c) { return c.vertex.bend_1; }),
+            each([](const C& c) { return c.vertex.bend_2; }),
+            each([](const C& c) { return c.vertex.twist; }),
+            {each([](const C& c) { return c.vertex.rest.kappa_1; }),
+             each([](const C& c) { return c.vertex.rest.kappa_2; }),
+             each([](const C& c) { return c.vertex.rest.twist; })}};
   }
   /// Adds the change of its rest shape by actuations.
   template <class Each>
-  static void actuate(const Each& each, const Vector& controls, Joint& joint) {
+  static void actuate(const Each& each, const Vector& controls, Vertex& vertex) {
     using C = typename Bend::Constants;
-    joint.rest.kappa_1 += each([&](const C& c) { return c.actuated.strain(controls).kappa_1; });
-    joint.rest.kappa_2 += each([&](const C& c) { return c.actuated.strain(controls).kappa_2; });
-    joint.rest.twist += each([&](const C& c) { return c.actuated.strain(controls).twist; });
+    vertex.rest.kappa_1 += each([&](const C& c) { return c.actuated.strain(controls).kappa_1; });
+    vertex.rest.kappa_2 += each([&](const C& c) { return c.actuated.strain(controls).kappa_2; });
+    vertex.rest.twist += each([&](const C& c) { return c.actuated.strain(controls).twist; });
   }
-  static const auto& joints_of(const SpatialChainConstants<T>& constants) {
-    return constants.joints;
+  static const auto& vertices_of(const SpatialChainConstants<T>& constants) {
+    return constants.vertices;
   }
-  static auto& joints_of(SpatialChainConstants<T>& constants) { return constants.joints; }
+  static auto& vertices_of(SpatialChainConstants<T>& constants) { return constants.vertices; }
 
-  /// The joint between edge j and the next one.
+  /// The vertex between edge j and the next one.
   template <bool with_stiffness, class Parts>
   static Response response(const Parts& parts, std::ptrdiff_t j, const Edge& edge,
                            const Edge& next) {
@@ -91,8 +91,8 @@ struct Sections {
     const T twist =
         whole_twist<T>(edge.frame.frame, next.frame.frame, edge.theta, next.theta, reference);
     Response response;
-    JointKinematics<Curvature, T>(edge.frame.frame, next.frame.frame, twist)
-        .template respond<with_stiffness>(parts.joint(j), response);
+    VertexKinematics<Curvature, T>(edge.frame.frame, next.frame.frame, twist)
+        .template respond<with_stiffness>(parts.vertex(j), response);
     return response;
   }
   static void scale(Response& response, const T& factor) {
@@ -108,8 +108,8 @@ struct Sections {
     return edge.rotation.transpose() * turned +
            edge.frame.geometric_stiffness(start.moment - end.moment);
   }
-  static Block coupling(const Edge& edge, const Edge& next, const Response& joint) {
-    const Matrix3<T> stiffness = -(joint.stiffness + cross_matrix<T>(0.5 * joint.moment));
+  static Block coupling(const Edge& edge, const Edge& next, const Response& vertex) {
+    const Matrix3<T> stiffness = -(vertex.stiffness + cross_matrix<T>(0.5 * vertex.moment));
     const typename EdgeFrameOf<T>::Rotation turned = stiffness * edge.rotation;
     return next.rotation.transpose() * turned;
   }
@@ -121,7 +121,7 @@ struct Tangents {
   using Number = T;
   static constexpr int kSize = 3;
   using Bend = IsotropicBend<Curvature>;
-  using Joint = T;  ///< its stiffness over its length [N m]
+  using Vertex = T;  ///< its stiffness over its length [N m]
   using Variables = Vector3<T>;
   using Block = Matrix3<T>;
   struct Response {
@@ -137,22 +137,22 @@ struct Tangents {
     return Edge(parts.vector(j));
   }
   template <class Each>
-  static Joint joint(const Each& each) {
+  static Vertex vertex(const Each& each) {
     return each([](const typename Bend::Constants& c) { return c.stiffness_per_length; });
   }
   template <class Each>
-  static void actuate(const Each& /*each*/, const Vector& /*controls*/, Joint& /*joint*/) {}
-  static const auto& joints_of(const SpatialChainConstants<T>& constants) {
+  static void actuate(const Each& /*each*/, const Vector& /*controls*/, Vertex& /*vertex*/) {}
+  static const auto& vertices_of(const SpatialChainConstants<T>& constants) {
     return constants.bend_stiffness;
   }
-  static auto& joints_of(SpatialChainConstants<T>& constants) { return constants.bend_stiffness; }
+  static auto& vertices_of(SpatialChainConstants<T>& constants) { return constants.bend_stiffness; }
 
   template <bool with_stiffness, class Parts>
   static Response response(const Parts& parts, std::ptrdiff_t j, const Edge& edge,
                            const Edge& next) {
     Response response;
     response.cosine = edge.tangent.dot(next.tangent);
-    response.bend = isotropic_response<Curvature, T>(parts.joint(j), response.cosine);
+    response.bend = isotropic_response<Curvature, T>(parts.vertex(j), response.cosine);
     response.by_before = edge.first(next.tangent, response.cosine);
     response.by_after = next.first(edge.tangent, response.cosine);
     return response;
@@ -164,7 +164,7 @@ struct Tangents {
   static Variables force(const Edge& /*edge*/, const Response& start, const Response& end) {
     return start.bend.slope * start.by_after + end.bend.slope * end.by_before;
   }
-  /// TangentTermOf::second of both joints at once.
+  /// TangentTermOf::second of both vertices at once.
   static Block own(const Edge& edge, const Response& start, const Response& end) {
     const T lean = (start.bend.slope * start.cosine + end.bend.slope * end.cosine) *
                    (edge.per_length * edge.per_length);
@@ -185,11 +185,11 @@ struct Tangents {
     return own;
   }
   /// With the product of the two tangents' derivatives (TangentTermOf::across) multiplied out.
-  static Block coupling(const Edge& edge, const Edge& next, const Response& joint) {
-    const T slope = joint.bend.slope * next.per_length;
-    const Vector3<T> with_before = joint.bend.curvature * joint.by_after - slope * next.tangent;
+  static Block coupling(const Edge& edge, const Edge& next, const Response& vertex) {
+    const T slope = vertex.bend.slope * next.per_length;
+    const Vector3<T> with_before = vertex.bend.curvature * vertex.by_after - slope * next.tangent;
     const T along = slope * edge.per_length;
-    Block result = with_before * joint.by_before.transpose() -
+    Block result = with_before * vertex.by_before.transpose() -
                    (along * edge.tangent) * edge.tangent.transpose();
     result.diagonal().array() += along;
     return result;
@@ -208,8 +208,8 @@ struct TermsOf {
 ///   vector(j), theta(j)         of edge `j` of each lane; beyond the chain, of its outermost edge
 ///   frame(j, entry)             of the edge's FrameBlock
 ///   stretch(j, length)          response of edge j; zero beyond the chain's ends
-///   joint(j)                    behind edge j
-///   mask(j, response)           makes the response of that joint zero beyond the chain's ends
+///   vertex(j)                    behind edge j
+///   mask(j, response)           makes the response of that vertex zero beyond the chain's ends
 ///   last_is_shorter()           whether the lane that has the chain's end lacks the last edge
 ///   add_force, add_entry        add to the node at the start of edge j
 ///   add_torque                  adds to the angle of edge j
@@ -274,21 +274,21 @@ class RodParts {
     }
     return stretch;
   }
-  [[nodiscard]] typename Terms::Joint joint(std::ptrdiff_t j) const {
+  [[nodiscard]] typename Terms::Vertex vertex(std::ptrdiff_t j) const {
     const auto each = [&](const auto& value) {
       return in_lanes<T>([&](int lane) {
         return value(bends_[std::clamp<std::ptrdiff_t>(spans_.edge(lane, j), 0, last() - 1)]);
       });
     };
-    typename Terms::Joint joint = Terms::joint(each);
-    if (chain_.is_actuated()) Terms::actuate(each, controls_, joint);
-    return joint;
+    typename Terms::Vertex vertex = Terms::vertex(each);
+    if (chain_.is_actuated()) Terms::actuate(each, controls_, vertex);
+    return vertex;
   }
   void mask(std::ptrdiff_t j, typename Terms::Response& response) const {
     if (j >= 0 && !spans_.is_near_end(j)) return;
     Terms::scale(response, in_lanes<T>([&](int lane) {
-                   const std::ptrdiff_t joint = spans_.edge(lane, j);
-                   return joint >= 0 && joint < last() ? 1.0 : 0.0;
+                   const std::ptrdiff_t vertex = spans_.edge(lane, j);
+                   return vertex >= 0 && vertex < last() ? 1.0 : 0.0;
                  }));
   }
 
@@ -367,8 +367,8 @@ class MemberChains {
   [[nodiscard]] StretchResponseOf<T> stretch(std::ptrdiff_t j, const T& length) const {
     return stretch_response<T>(constants_.EA[j], constants_.rest_length[j], 0.0, length);
   }
-  [[nodiscard]] const typename Terms::Joint& joint(std::ptrdiff_t j) const {
-    return Terms::joints_of(constants_)[static_cast<std::size_t>(j)];
+  [[nodiscard]] const typename Terms::Vertex& vertex(std::ptrdiff_t j) const {
+    return Terms::vertices_of(constants_)[static_cast<std::size_t>(j)];
   }
   static void mask(std::ptrdiff_t /*j*/, typename Terms::Response& /*response*/) {}
   void add_force(std::ptrdiff_t j, const Vector3<T>& force) const {
@@ -450,7 +450,7 @@ void add_chain(const Parts& parts) {
   using Response = typename Terms::Response;
   using Variables = typename Terms::Variables;
 
-  const auto joint_after = [&](std::ptrdiff_t j, const Edge& edge, const Edge& next) {
+  const auto vertex_after = [&](std::ptrdiff_t j, const Edge& edge, const Edge& next) {
     Response response = Terms::template response<with_hessian>(parts, j, edge, next);
     parts.mask(j, response);
     return response;
@@ -462,14 +462,14 @@ void add_chain(const Parts& parts) {
   };
 
   Edge edge = Terms::edge(parts, 0);
-  Response start;                                // of the joint at the start of the edge
+  Response start;                                // of the vertex at the start of the edge
   Vector3<T> force_before = Vector3<T>::Zero();  // F_{j-1}
   Matrix3<T> before = Matrix3<T>::Zero();        // B_{j-1} by the vector
   Block from_before = Block::Zero();             // C_j
   if constexpr (!Parts::kIsWhole) {
     const Edge previous = Terms::edge(parts, -1);
-    const Response outer = joint_after(-2, Terms::edge(parts, -2), previous);
-    start = joint_after(-1, previous, edge);
+    const Response outer = vertex_after(-2, Terms::edge(parts, -2), previous);
+    start = vertex_after(-1, previous, edge);
     const StretchResponseOf<T> stretch = parts.stretch(-1, previous.length);
     const Variables slope = Terms::force(previous, outer, start);
     force_before = stretch.tension * previous.tangent + slope.template head<3>();
@@ -488,7 +488,7 @@ void add_chain(const Parts& parts) {
     const bool is_end = Parts::kIsWhole && is_last;
     const Edge next = is_end ? edge : Terms::edge(parts, j + 1);
     Response end;
-    if (!is_end) end = joint_after(j, edge, next);
+    if (!is_end) end = vertex_after(j, edge, next);
     const StretchResponseOf<T> stretch = parts.stretch(j, edge.length);
     const Variables slope = Terms::force(edge, start, end);
     const Vector3<T> force = stretch.tension * edge.tangent + slope.template head<3>();
@@ -592,12 +592,12 @@ void SpatialChain::add(const Model& model, const Configuration& here, Vector& gr
 
 void SpatialChain::add_gradient(const Model& model, const Configuration& here,
                                 Vector& gradient) const {
-  run_loop([&] { add<Derivatives::Gradient>(model, here, gradient, nullptr); });
+  dispatch_simd([&] { add<Derivatives::Gradient>(model, here, gradient, nullptr); });
 }
 
 void SpatialChain::add_gradient_and_hessian(const Model& model, const Configuration& here,
                                             Vector& gradient, double* values) const {
-  run_loop([&] { add<Derivatives::Hessian>(model, here, gradient, values); });
+  dispatch_simd([&] { add<Derivatives::Hessian>(model, here, gradient, values); });
 }
 
 template <class T>
@@ -617,7 +617,7 @@ SpatialChainConstants<T> SpatialChain::constants_of(const MemberModels<T>& model
   with_terms<T>([&](auto terms) {
     using Terms = typename decltype(terms)::Type;
     for (std::size_t i = 0; i < bends_.count; ++i) {
-      Terms::joints_of(constants).push_back(Terms::joint([&](const auto& value) {
+      Terms::vertices_of(constants).push_back(Terms::vertex([&](const auto& value) {
         return in_lanes<T>([&](int lane) {
           const ElementLists& elements = *models[to_size(lane)]->elements;
           return value(elements_of<typename Terms::Bend>(elements).constants[bends_.first + i]);

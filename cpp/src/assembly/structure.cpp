@@ -12,7 +12,7 @@
 namespace der {
 namespace {
 
-std::string difference(const RodLayout& here, const RodLayout& other) {
+std::string difference(const RodMesh& here, const RodMesh& other) {
   if (here.name != other.name) {
     return fmt::format("it has a rod '{}' in place of '{}'", here.name, other.name);
   }
@@ -97,9 +97,9 @@ bool same_couplings(const Mass& here, const Mass& other) {
 /// Whether the same elements have an actuated rest shape.
 bool same_actuation(const Model& here, const Model& other) {
   return std::equal(here.rods.begin(), here.rods.end(), other.rods.begin(),
-                    [](const RodLayout& a, const RodLayout& b) {
-                      return a.rest_entries.edges == b.rest_entries.edges &&
-                             a.rest_entries.cells == b.rest_entries.cells;
+                    [](const RodMesh& a, const RodMesh& b) {
+                      return a.natural_strain_entries.edges == b.natural_strain_entries.edges &&
+                             a.natural_strain_entries.cells == b.natural_strain_entries.cells;
                     });
 }
 

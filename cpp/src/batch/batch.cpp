@@ -83,7 +83,7 @@ void check_names(const Simulation& member, const Simulation& first) {
 }  // namespace
 
 Batch::Batch(const Scenario& scenario, std::size_t members,
-             const std::vector<Variation>& variations, int threads, const Beat& beat)
+             const std::vector<Variation>& variations, int threads, const CancelCallback& beat)
     : team_(threads, members) {
   check(members, variations);
   members_.resize(members);
@@ -101,7 +101,7 @@ Batch::Batch(const Scenario& scenario, std::size_t members,
 }
 
 void Batch::build(const Scenario& scenario, const std::vector<Variation>& variations,
-                  const Beat& beat) {
+                  const CancelCallback& beat) {
   Refusals refusals;
   Member& first = members_.front();
   refusals.attempt(0, [&] {
@@ -119,13 +119,13 @@ void Batch::build(const Scenario& scenario, const std::vector<Variation>& variat
       },
       beat);
   refusals.raise();
-  for (const Member& member : members_) member.simulation->set_way_out(kWayOut);
+  for (const Member& member : members_) member.simulation->set_recovery_hint(kWayOut);
 }
 
 /// Members of one scene have one start.
-void Batch::start_alike(const Beat& beat) {
+void Batch::start_alike(const CancelCallback& beat) {
   Member& first = members_.front();
-  start(0, [&] { beat_if_due(beat); });
+  start(0, [&] { poll_cancel(beat); });
   for (std::size_t number = 1; number < size(); ++number) {
     Member& member = members_[number];
     member.start = first.start;
@@ -139,7 +139,7 @@ void Batch::start_alike(const Beat& beat) {
   }
 }
 
-void Batch::start_each(const Beat& beat) {
+void Batch::start_each(const CancelCallback& beat) {
   Refusals refusals;
   all([&](std::size_t number,
           const auto& look) { refusals.attempt(number, [&] { start(number, look); }); },
@@ -158,7 +158,7 @@ void Batch::make_arrays() {
   unreliable_.assign(size(), 0);
 }
 
-void Batch::start(std::size_t number, const Beat& look) {
+void Batch::start(std::size_t number, const CancelCallback& look) {
   Member& member = members_[number];
   try {
     apply_start(*member.simulation, look);
@@ -175,28 +175,28 @@ const Simulation& Batch::member(std::size_t number) const {
                                          size() - 1, number));
 }
 
-void Batch::beat_if_due(const Beat& beat) {
+void Batch::poll_cancel(const CancelCallback& beat) {
   if (beat && pacer_.due()) beat();
 }
 
-void Batch::look(bool on_caller, const ThreadTeam::Call& call, const Beat& beat) {
-  if (on_caller) beat_if_due(beat);
+void Batch::look(bool on_caller, const ThreadTeam::Call& call, const CancelCallback& beat) {
+  if (on_caller) poll_cancel(beat);
   if (call.is_given_up()) throw GivenUp{};
 }
 
 template <class Work>
-void Batch::all(const Work& work, const Beat& beat) {
+void Batch::all(const Work& work, const CancelCallback& beat) {
   team_.for_each(
       size(),
       [&](std::size_t number, bool on_caller, const ThreadTeam::Call& call) {
         work(number, [&] { look(on_caller, call, beat); });
-        if (on_caller) beat_if_due(beat);
+        if (on_caller) poll_cancel(beat);
       },
       beat);
 }
 
 template <class Work>
-void Batch::all_that_go_on(const Work& work, const Beat& beat) {
+void Batch::all_that_go_on(const Work& work, const CancelCallback& beat) {
   team_.for_each(
       size(),
       [&](std::size_t number, bool on_caller, const ThreadTeam::Call& call) {
@@ -215,7 +215,7 @@ void Batch::all_that_go_on(const Work& work, const Beat& beat) {
       beat);
 }
 
-void Batch::step(std::int64_t count, const Beat& beat) {
+void Batch::step(std::int64_t count, const CancelCallback& beat) {
   if (!members_.front().simulation->scenario().scene().is_dynamic()) {
     throw Error("model_error", "a static scene has no time steps: use equilibrium()");
   }
@@ -231,12 +231,12 @@ void Batch::step(std::int64_t count, const Beat& beat) {
       beat);
 }
 
-void Batch::step_in_lanes(std::int64_t count, const Beat& beat) {
+void Batch::step_in_lanes(std::int64_t count, const CancelCallback& beat) {
   const auto lanes = static_cast<std::size_t>(groups_->lanes());
   const auto work = [&](std::size_t group, bool on_caller, const ThreadTeam::Call& call) {
     std::int64_t left = count;
     const auto between_steps = [&] {
-      if (on_caller) beat_if_due(beat);
+      if (on_caller) poll_cancel(beat);
     };
     const auto goes_on = [&] {
       between_steps();
@@ -265,7 +265,7 @@ void Batch::step_in_lanes(std::int64_t count, const Beat& beat) {
 }
 
 std::vector<std::optional<EquilibriumReport>> Batch::equilibrium(bool leave_saddles,
-                                                                 const Beat& beat) {
+                                                                 const CancelCallback& beat) {
   std::vector<std::optional<EquilibriumReport>> reports(size());
   all_that_go_on(
       [&](std::size_t number, const auto& look) {
@@ -394,7 +394,7 @@ void Batch::read_probes(std::size_t number) {
   }
 }
 
-RowMatrix& Batch::probes(const Beat& beat) {
+RowMatrix& Batch::probes(const CancelCallback& beat) {
   const std::size_t count = members_.front().simulation->scenario().scene().output.probes.size();
   if (probes_.size() == 0) probes_.setZero(static_cast<Index>(count), to_row(size()));
   all(

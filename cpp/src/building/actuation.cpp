@@ -48,7 +48,7 @@ Index num_spring_places(const scenario::Rod& rod, const scenario::Scene& scene) 
 }
 
 /// Where a stretch ends: on the node there, if there is one.
-double on_node(const RodLayout& rod, double s) {
+double on_node(const RodMesh& rod, double s) {
   for (Index place = 0; place <= rod.num_edges(); ++place) {
     if (std::abs(rod.arc_length_at(place) - s) <= rod.same_place()) return rod.arc_length_at(place);
   }
@@ -58,13 +58,13 @@ double on_node(const RodLayout& rod, double s) {
 /// The part of one actuation in the rest shape of the elements.
 class Weights {
  public:
-  Weights(const ActuatedStretch& stretch, const RodLayout& rod) : stretch_(stretch), rod_(rod) {}
+  Weights(const ActuatedStretch& stretch, const RodMesh& rod) : stretch_(stretch), rod_(rod) {}
 
-  [[nodiscard]] const std::vector<RestShape::Term>& terms() const { return terms_; }
+  [[nodiscard]] const std::vector<NaturalStrain::Term>& terms() const { return terms_; }
 
   void add_elongation() {
     for (Index edge = 0; edge < rod_.num_edges(); ++edge) {
-      add(rod_.rest_entries.edge(edge), stretch_.integral(start(edge), end(edge)),
+      add(rod_.natural_strain_entries.edge(edge), stretch_.integral(start(edge), end(edge)),
           stretch_.controls[0]);
     }
   }
@@ -96,31 +96,32 @@ class Weights {
     const bool leaves = rod_.clamp_at(edge) != nullptr;
     if (!leaves && !rod_.is_inner(edge)) return;
     const Mat3 half = leaves ? Mat3::Identity() : rod_.cell_halves_at(edge).after;
-    add_strains(half.col(strain), rod_.rest_entries.cell(rod_.position(edge), leaves), weight,
-                table);
+    add_strains(half.col(strain), rod_.natural_strain_entries.cell(rod_.position(edge), leaves),
+                weight, table);
   }
   /// The same of the cell between an edge and what is after it.
   void add_at_end(Index strain, Index edge, double weight, std::size_t table) {
     const bool arrives = rod_.clamp_at(edge + 1) != nullptr;
     if (!arrives && !rod_.is_inner(edge + 1)) return;
     const Mat3 half = arrives ? Mat3::Identity() : rod_.cell_halves_at(edge + 1).before;
-    add_strains(half.col(strain), rod_.rest_entries.cell(rod_.position(edge + 1), false), weight,
-                table);
+    add_strains(half.col(strain), rod_.natural_strain_entries.cell(rod_.position(edge + 1), false),
+                weight, table);
   }
 
-  void add_strains(const Vec3& strains, const RestShift& cell, double weight, std::size_t table) {
+  void add_strains(const Vec3& strains, const NaturalStrainOffset& cell, double weight,
+                   std::size_t table) {
     if (cell.entry < 0) return;
-    for (Index i = 0; i < rod_.rest_entries.strains; ++i) {
+    for (Index i = 0; i < rod_.natural_strain_entries.strains; ++i) {
       add({cell.entry + i}, weight * strains[i], stretch_.controls[table]);
     }
   }
-  void add(const RestShift& shift, double weight, Index control) {
+  void add(const NaturalStrainOffset& shift, double weight, Index control) {
     if (weight != 0.0) terms_.push_back({shift.entry, control, weight});
   }
 
   const ActuatedStretch& stretch_;
-  const RodLayout& rod_;
-  std::vector<RestShape::Term> terms_;
+  const RodMesh& rod_;
+  std::vector<NaturalStrain::Term> terms_;
 };
 
 NamedControl named_control(const ActuatedStretch& stretch) {
@@ -153,25 +154,28 @@ Index num_rest_entries(const scenario::Scene& scene, int dimension) {
 }
 
 void set_rest_entries(const scenario::Scene& scene, Model& model) {
-  Index next = static_cast<Index>(model.drawn_frames.size());
+  Index next = static_cast<Index>(model.initial_frames.size());
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
-    RodLayout& rod = model.rods[i];
+    RodMesh& rod = model.rods[i];
     const Changes changes = changes_of(scene.rods[i], scene);
-    rod.rest_entries.strains = strains_of_cell(model.dimension);
-    if (changes.lengths) rod.rest_entries.edges = std::exchange(next, next + rod.num_edges());
+    rod.natural_strain_entries.strains = strains_of_cell(model.dimension);
+    if (changes.lengths)
+      rod.natural_strain_entries.edges = std::exchange(next, next + rod.num_edges());
     if (changes.cells) {
-      const Index size = 2 * rod.rest_entries.strains * static_cast<Index>(rod.nodes.size());
-      rod.rest_entries.cells = std::exchange(next, next + size);
+      const Index size =
+          2 * rod.natural_strain_entries.strains * static_cast<Index>(rod.nodes.size());
+      rod.natural_strain_entries.cells = std::exchange(next, next + size);
       const Index places = num_spring_places(scene.rods[i], scene);
       if (places > 0) {
-        rod.rest_entries.springs = std::exchange(next, next + rod.rest_entries.strains * places);
+        rod.natural_strain_entries.springs =
+            std::exchange(next, next + rod.natural_strain_entries.strains * places);
       }
     }
   }
 }
 
 void add_actuation(const scenario::Actuation& actuation, Model& model) {
-  RodLayout& rod = model.rod(actuation.rod);
+  RodMesh& rod = model.rod(actuation.rod);
   ActuatedStretch stretch{actuation.name,
                           actuation.what,
                           actuation.profile,
@@ -195,21 +199,21 @@ void add_actuation(const scenario::Actuation& actuation, Model& model) {
       }
       break;
   }
-  model.rest_shape.add(weights.terms());
+  model.natural_strain.add(weights.terms());
   model.named.push_back(named_control(stretch));
   rod.actuated_stretches.push_back(stretch);
 }
 
 void set_actuated_turns(Model& model) {
-  for (RodLayout& rod : model.rods) {
+  for (RodMesh& rod : model.rods) {
     if (rod.actuated_stretches.empty()) continue;
-    const auto shift = [&](const RestShift& spring, const ActuatedTurn& turn) {
+    const auto shift = [&](const NaturalStrainOffset& spring, const ActuatedTurn& turn) {
       if (spring.entry < 0) return;
-      std::vector<RestShape::Term> terms;
+      std::vector<NaturalStrain::Term> terms;
       for (const auto& [strain, control, weight] : turn.terms) {
         terms.push_back({spring.entry + strain, control, weight});
       }
-      model.rest_shape.add(terms);
+      model.natural_strain.add(terms);
     };
     for (MomentPlace& place : rod.moment_places) {
       place.actuated = actuated_turn(place.arc_length, rod);

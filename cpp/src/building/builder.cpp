@@ -13,7 +13,7 @@
 #include "der/core/constants.hpp"
 #include "der/core/error.hpp"
 #include "der/core/index.hpp"
-#include "der/core/make_room.hpp"
+#include "der/core/reserve_more.hpp"
 #include "der/energies/registry.hpp"
 #include "der/loads/circulatory.hpp"
 #include "der/loads/loads.hpp"
@@ -26,7 +26,7 @@
 #include "der/supports/supports.hpp"
 #include "model/corner_twist.hpp"
 #include "model/curvature_jump.hpp"
-#include "model/drawn_edge.hpp"
+#include "model/reference_edge.hpp"
 
 namespace der {
 namespace {
@@ -55,19 +55,19 @@ void place_nodes(const scenario::Scene& scene, bool with_sections, Model& model)
     if (rod.closed) model.dofs.close(first_node, next - 1);
     first_node = next;
   }
-  model.drawn_frames.setZero(FrameBlock::kSize * static_cast<Index>(edge_starts.size()));
-  model.rest_shape = RestShape(static_cast<Index>(model.drawn_frames.size()),
-                               num_rest_entries(scene, model.dimension));
-  model.tables = TimeTables(model.rest_shape.end());
+  model.initial_frames.setZero(FrameBlock::kSize * static_cast<Index>(edge_starts.size()));
+  model.natural_strain = NaturalStrain(static_cast<Index>(model.initial_frames.size()),
+                                       num_rest_entries(scene, model.dimension));
+  model.tables = TimeTables(model.natural_strain.end());
   const Index dofs = model.num_dofs();
-  for (Vector* v : {&model.initial_positions, &model.rest_positions, &model.initial_velocities,
+  for (Vector* v : {&model.initial_positions, &model.reference_positions, &model.initial_velocities,
                     &model.mass.lumped, &model.damping, &model.gravity_force, &model.dead_force}) {
     v->setZero(dofs);
   }
 }
 
 auto rest_position(const Model& model, Index node) {
-  return model.rest_positions.segment(model.dof(node, 0), model.dimension);
+  return model.reference_positions.segment(model.dof(node, 0), model.dimension);
 }
 
 /// Direction of the section's width at the rod's start, not yet perpendicular to the tangent there.
@@ -80,28 +80,29 @@ Vec3 first_director(const scenario::Rod& rod, const Vec3& tangent) {
 /// The director stands across the tangent at the rod's start, not across its first edge, which
 /// leans against it on a curve. It is transported along the drawn rod without twist, then turned by
 /// the initial twist.
-void draw_sections(const scenario::Rod& rod, RodLayout& layout, const Model& model) {
+void draw_sections(const scenario::Rod& rod, RodMesh& layout, const Model& model) {
   layout.initial_twist = rod.initial_twist;
   Vec3 tangent = first_tangent(layout, model);
   Vec3 director = made_perpendicular(first_director(rod, tangent), tangent);
   // With a natural curvature, which the layout does not have yet, it has none.
-  const bool has_corners = std::holds_alternative<scenario::AsDrawn>(rod.natural_curvature);
+  const bool has_corners =
+      std::holds_alternative<scenario::StressFreeReference>(rod.natural_curvature);
   for (Index edge = 0; edge < layout.num_edges(); ++edge) {
-    const Vec3 next = drawn_edge<3>(layout, edge, model).normalized();
+    const Vec3 next = reference_edge<3>(layout, edge, model).normalized();
     director = made_perpendicular(transport(director, tangent, next), next);
     if (has_corners && edge > 0) {
       director = SectionFrame::of(next, director).turned(corner_twist(layout, edge, model)).first;
     }
     tangent = next;
-    layout.drawn_frames.push_back(
+    layout.initial_frames.push_back(
         SectionFrame::of(tangent, director).turned(rod.initial_twist * layout.edge_middle(edge)));
   }
 }
 
 /// The only place that makes a chain of nodes; everything after it reads the layout's lists.
-RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, Index first_node,
-                  Model& model) {
-  RodLayout layout;
+RodMesh lay_out(const scenario::Rod& rod, const SectionProperties& section, Index first_node,
+                Model& model) {
+  RodMesh layout;
   layout.name = rod.name;
   layout.closed = rod.closed;
   layout.curvature = rod.curvature;
@@ -126,7 +127,7 @@ RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, In
       const double first = rod.points.front()[to_size(c)];
       const double here = rod.points[i][to_size(c)];
       model.initial_positions[model.dof(node, c)] = here;
-      model.rest_positions[model.dof(node, c)] =
+      model.reference_positions[model.dof(node, c)] =
           magnified == 1.0 ? here : first + magnified * (here - first);
       if (!rod.initial_velocity.empty()) {
         model.initial_velocities[model.dof(node, c)] = rod.initial_velocity[i][to_size(c)];
@@ -144,7 +145,7 @@ RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, In
         (rest_position(model, layout.nodes.front()) - rest_position(model, layout.nodes.back()))
             .norm());
   }
-  make_room(model.edges, to_size(layout.num_edges()));
+  reserve_more(model.edges, to_size(layout.num_edges()));
   for (Index edge = 0; edge < layout.num_edges(); ++edge) {
     model.edges.push_back(layout.edge(edge, model));
   }
@@ -153,7 +154,7 @@ RodLayout lay_out(const scenario::Rod& rod, const SectionProperties& section, In
   return layout;
 }
 
-void set_natural_twist(const scenario::Rod& rod, RodLayout& layout) {
+void set_natural_twist(const scenario::Rod& rod, RodMesh& layout) {
   if (const auto* constant = std::get_if<double>(&rod.natural_twist)) {
     layout.natural_twist.assign(layout.nodes.size(), *constant);
   } else if (const auto* list = std::get_if<std::vector<double>>(&rod.natural_twist)) {
@@ -161,7 +162,7 @@ void set_natural_twist(const scenario::Rod& rod, RodLayout& layout) {
   }
 }
 
-void set_natural_curvature(const scenario::Rod& rod, RodLayout& layout) {
+void set_natural_curvature(const scenario::Rod& rod, RodMesh& layout) {
   if (const auto* constant = std::get_if<double>(&rod.natural_curvature)) {
     layout.natural_curvature.assign(layout.nodes.size(), *constant);
   } else if (const auto* list = std::get_if<std::vector<double>>(&rod.natural_curvature)) {
@@ -181,7 +182,7 @@ void add_mass(Index node, double mass, Model& model) {
 
 /// Lumped masses: each node carries its Voronoi cell and its sphere, each edge its inertia against
 /// spin.
-void lump_masses(const scenario::Rod& rod, RodLayout& layout, Model& model) {
+void lump_masses(const scenario::Rod& rod, RodMesh& layout, Model& model) {
   std::vector<double> sphere_mass(layout.nodes.size(), 0.0);
   for (const auto& sphere : rod.spheres) {
     for (const Index place : nodes_at(sphere.at, layout)) {
@@ -203,9 +204,9 @@ void lump_masses(const scenario::Rod& rod, RodLayout& layout, Model& model) {
 
 /// The part of each edge's consistent mass that is not lumped, between free degrees of freedom.
 /// Every other edge first: sums over the list then do not wait for the entry just written.
-void couple_masses(const RodLayout& rod, Model& model) {
+void couple_masses(const RodMesh& rod, Model& model) {
   if (rod.mass_per_length == 0.0) return;
-  make_room(model.mass.coupling, to_size(rod.num_edges() * model.dimension));
+  reserve_more(model.mass.coupling, to_size(rod.num_edges() * model.dimension));
   for (const Index first : {0, 1}) {
     for (Index edge = first; edge < rod.num_edges(); edge += 2) {
       const double mass = rod.mass_per_length * rod.edge_length[to_size(edge)] / 6.0;
@@ -224,14 +225,14 @@ void lay_out_rods(const scenario::Scene& scene, Model& model) {
   double size = 0.0;
   for (const auto& rod : scene.rods) {
     const SectionProperties section = section_properties(rod);
-    RodLayout layout = lay_out(rod, section, first_node, model);
+    RodMesh layout = lay_out(rod, section, first_node, model);
     layout.mass_per_length = section.mass_per_length;
     set_natural_curvature(rod, layout);
     set_natural_twist(rod, layout);
     lump_masses(rod, layout, model);
     first_node += static_cast<Index>(rod.points.size());
     size = std::max(size, layout.rest_length());
-    layout.drawn_jumps = drawn_jumps_of(layout, model);
+    layout.reference_jumps = reference_jumps_of(layout, model);
     layout.natural_jumps = natural_jumps_of(layout, model);
     model.rods.push_back(std::move(layout));
   }
@@ -240,8 +241,8 @@ void lay_out_rods(const scenario::Scene& scene, Model& model) {
 }
 
 void check_spin_inertia(const Model& model) {
-  for (const RodLayout& rod : model.rods) {
-    if (!model.has_sections() || rod.joints.empty() || rod.spin_inertia > 0.0) continue;
+  for (const RodMesh& rod : model.rods) {
+    if (!model.has_sections() || rod.vertices.empty() || rod.spin_inertia > 0.0) continue;
     throw Error(
         "model_error",
         "the sections of rod '" + rod.name +
@@ -255,7 +256,7 @@ void follow_slopes(const scenario::Scene& scene, Model& model) {
   if (model.dimension != 2) return;
   for (const auto& probe : scene.output.probes) {
     if (probe.quantity != kSlope) continue;
-    const RodLayout& rod = model.rod(probe.rod.value());
+    const RodMesh& rod = model.rod(probe.rod.value());
     const Edge first = rod.edge(0, model);
     const bool followed =
         std::any_of(model.followed_edges.begin(), model.followed_edges.end(),
@@ -288,7 +289,7 @@ Model build_model(const scenario::Scene& scene) {
   for (std::size_t i = 0; i < scene.supports.size(); ++i) {
     add_support(scene.supports[i], i, model);
   }
-  for (RodLayout& rod : model.rods) {
+  for (RodMesh& rod : model.rods) {
     if (model.dimension == 2) {
       add_rod_elements(rod, model);
     } else {
@@ -300,18 +301,18 @@ Model build_model(const scenario::Scene& scene) {
     std::visit([&](const auto& l) { add_load(l, LoadContext{scene, load.name}, model); },
                load.what);
   }
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     if (model.dimension == 2) turn_followers_under_moments(rod, model);
     if (model.has_sections()) act_on_loaded_sections(rod, model);
   }
   const Index angles = model.num_dofs() - model.dofs.num_positions();
-  model.initial_positions.tail(angles) = model.rest_positions.tail(angles);
+  model.initial_positions.tail(angles) = model.reference_positions.tail(angles);
   set_actuated_turns(model);
   follow_slopes(scene, model);
   model.damped = (model.damping.array() != 0.0).any();
   hold_dofs(model);
   if (scene.is_dynamic()) check_spin_inertia(model);
-  for (const RodLayout& rod : model.rods) couple_masses(rod, model);
+  for (const RodMesh& rod : model.rods) couple_masses(rod, model);
   model.load_variation = load_variation(scene, model);
   return model;
 }

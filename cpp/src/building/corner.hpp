@@ -1,6 +1,6 @@
 #pragma once
 
-#include "der/energies/joint_response.hpp"
+#include "der/energies/vertex_response.hpp"
 #include "der/kinematics/section_frame.hpp"
 #include "der/model/model.hpp"
 
@@ -11,22 +11,22 @@ namespace der {
 // of both. Where a ring is glued turned, it bends about other directors. `curvature: tangent` does
 // not resolve this, at corners not even in their plane.
 
-/// G: a rotation w of the section after a joint changes its strains by G' w.
+/// G: a rotation w of the section after a vertex changes its strains by G' w.
 template <class Curvature>
-Mat3 gradients_of(const JointKinematics<Curvature>& joint) {
-  const auto by_rotation = joint.gradients();
+Mat3 gradients_of(const VertexKinematics<Curvature>& vertex) {
+  const auto by_rotation = vertex.gradients();
   Mat3 gradients;
   gradients << by_rotation.kappa_1, by_rotation.kappa_2, by_rotation.twist;
   return gradients;
 }
 
-/// The joint whose compliance at rest is the sum of its two halves. `drawn` is the joint as strains
-/// see it, `before` and `after` are the drawn frames of its two edges, `smooth` is the joint of a
-/// smooth curve, with stiffnesses greater than 0, and `share` the part of the cell that lies before
-/// the node.
-inline CoupledJoint corner_joint(const SectionFrame& before, const SectionFrame& after,
-                                 const JointKinematics<AngleCurvature>& drawn, double share,
-                                 const Joint& smooth) {
+/// The vertex whose compliance at rest is the sum of its two halves. `drawn` is the vertex as
+/// strains see it, `before` and `after` are the drawn frames of its two edges, `smooth` is the
+/// vertex of a smooth curve, with stiffnesses greater than 0, and `share` the part of the cell that
+/// lies before the node.
+inline CoupledVertex corner_vertex(const SectionFrame& before, const SectionFrame& after,
+                                   const VertexKinematics<AngleCurvature>& drawn, double share,
+                                   const Vertex& smooth) {
   // A curvature towards director 1 is a rotation about director 2.
   const Vec3 compliance = Vec3(smooth.bend_2, smooth.bend_1, smooth.twist).cwiseInverse();
   const auto half = [&](const SectionFrame& frame) -> Mat3 {
@@ -40,10 +40,10 @@ inline CoupledJoint corner_joint(const SectionFrame& before, const SectionFrame&
   return {(gradients.transpose() * sum * gradients).inverse(), smooth.rest};
 }
 
-/// How the strains of the two halves add up to those of the joint `drawn` of its place.
+/// How the strains of the two halves add up to those of the vertex `drawn` of its place.
 template <class Curvature>
 CellHalves cell_halves(Index place, const SectionFrame& before, const SectionFrame& after,
-                       const JointKinematics<Curvature>& drawn) {
+                       const VertexKinematics<Curvature>& drawn) {
   const Mat3 gradients = gradients_of(drawn);
   return {place, gradients.transpose() * turning_axes(before),
           gradients.transpose() * turning_axes(after)};

@@ -25,7 +25,7 @@ bool bears_force(const scenario::Support& support) {
 template <class Use>
 void for_each_force(const scenario::Scene& scene, Model& model, const Use& use) {
   const auto enter = [&](const std::string& name, const scenario::Location& at) {
-    RodLayout& rod = model.rod(name);
+    RodMesh& rod = model.rod(name);
     for (const double s : arc_lengths_of(at, rod)) use(rod, s);
   };
   for (const scenario::Support& support : scene.supports) {
@@ -43,7 +43,7 @@ using Edges = std::vector<Index>;
 
 /// Between two edges with forces, whose places may have nodes in common, the node in the middle
 /// divides what belongs to them.
-void divide_between(const Edges& edges, RodLayout& rod) {
+void divide_between(const Edges& edges, RodMesh& rod) {
   for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
     const Index apart = edges[i + 1] - edges[i];
     if (apart == 0 || apart > 2 * kMostPointNodes) continue;
@@ -54,14 +54,14 @@ void divide_between(const Edges& edges, RodLayout& rod) {
 }  // namespace
 
 void find_force_nodes(const scenario::Scene& scene, Model& model) {
-  for (RodLayout& rod : model.rods) {
+  for (RodMesh& rod : model.rods) {
     rod.bears_force.assign(rod.nodes.size(), false);
     for (std::size_t i = 0; i < rod.nodes.size(); ++i) {
       rod.bears_force[i] = rod.sphere_radius[i] > 0.0;
     }
   }
-  std::map<const RodLayout*, Edges> between_nodes;
-  for_each_force(scene, model, [&](RodLayout& rod, double s) {
+  std::map<const RodMesh*, Edges> between_nodes;
+  for_each_force(scene, model, [&](RodMesh& rod, double s) {
     const std::size_t node = to_size(nearest_node(rod.arc_length, s));
     const bool is_node = std::abs(rod.arc_length[node] - s) <= rod.same_place();
     if (is_node) {
@@ -71,7 +71,7 @@ void find_force_nodes(const scenario::Scene& scene, Model& model) {
       between_nodes[&rod].push_back(static_cast<Index>(behind - rod.arc_length.begin()) - 1);
     }
   });
-  for (RodLayout& rod : model.rods) {
+  for (RodMesh& rod : model.rods) {
     rod.divides_places = rod.bears_force;
     Edges& edges = between_nodes[&rod];
     std::sort(edges.begin(), edges.end());

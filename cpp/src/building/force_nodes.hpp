@@ -5,7 +5,7 @@
 
 namespace der {
 
-/// Sets RodLayout::bears_force and divides_places, which places of supports and loads between nodes
+/// Sets RodMesh::bears_force and divides_places, which places of supports and loads between nodes
 /// need. Spheres are known before.
 void find_force_nodes(const scenario::Scene& scene, Model& model);
 

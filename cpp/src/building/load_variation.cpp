@@ -75,8 +75,8 @@ std::optional<LoadVariation> load_variation(const scenario::Scene& scene, const 
   Vector controls_at_one;
   unloaded.tables.evaluate(0.0, controls_at_zero);
   model.tables.evaluate(0.0, controls_at_one);
-  unloaded.rest_shape.enter(controls_at_zero);
-  model.rest_shape.enter(controls_at_one);
+  unloaded.natural_strain.enter(controls_at_zero);
+  model.natural_strain.enter(controls_at_one);
   return LoadVariation{between(unloaded.gravity_force, model.gravity_force),
                        between(unloaded.dead_force, model.dead_force),
                        between(controls_at_zero, controls_at_one),

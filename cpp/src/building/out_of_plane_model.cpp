@@ -29,13 +29,13 @@ namespace {
 /// A node of a rod.
 struct Place {
   Index rod;
-  Index node;  // position in RodLayout::nodes
+  Index node;  // position in RodMesh::nodes
 };
 
 /// The nodes of a support: those that it holds, or the one next to a spring.
 std::vector<Place> places_of(const scenario::Support& support, const Model& planar) {
   const auto rod = std::find_if(planar.rods.begin(), planar.rods.end(),
-                                [&](const RodLayout& each) { return each.name == support.rod; });
+                                [&](const RodMesh& each) { return each.name == support.rod; });
   const auto number = static_cast<Index>(rod - planar.rods.begin());
   std::vector<Place> places;
   if (support.holds()) {
@@ -102,29 +102,29 @@ scenario::Scene rods_in_space(const scenario::Scene& planar_scene, const Model& 
   return scene;
 }
 
-/// Takes the twist out of the joint at a node, which a fork divides in two.
+/// Takes the twist out of the vertex at a node, which a fork divides in two.
 template <class Kernel>
-void divide_joint(Index first_dof, ElementLists& elements) {
+void divide_vertex(Index first_dof, ElementLists& elements) {
   auto& plain = elements_of<Kernel>(elements);
   for (std::size_t i = 0; i < plain.size(); ++i) {
-    if (plain.dofs[i][3] == first_dof) plain.constants[i].joint.twist = 0.0;
+    if (plain.dofs[i][3] == first_dof) plain.constants[i].vertex.twist = 0.0;
   }
   auto& beside_clamps = elements_of<FromSpatialPivot<Kernel>>(elements);
   for (std::size_t i = 0; i < beside_clamps.size(); ++i) {
     if (beside_clamps.dofs[i][3] != first_dof) continue;
-    beside_clamps.constants[i].element.joint.twist = 0.0;
+    beside_clamps.constants[i].element.vertex.twist = 0.0;
   }
 }
 
 /// From a place to where an edge beside it has the direction of the tangent [m].
-double reach(const RodLayout& rod, Index place, Index edge) {
+double reach(const RodMesh& rod, Index place, Index edge) {
   const double along = tangent_place(rod, edge) - rod.arc_length_at(edge);
   return edge == place ? along : rod.edge_length[to_size(edge)] - along;
 }
 
 /// The tangent at a place as the rod on the side of `edge` alone has it: on the line of the
 /// directions of this edge and the next one on its side.
-OutOfPlaneModel::Tangent one_sided_tangent_at(const RodLayout& rod, Index place, Index edge,
+OutOfPlaneModel::Tangent one_sided_tangent_at(const RodMesh& rod, Index place, Index edge,
                                               const Model& model) {
   const Index number = rod.first_edge + edge;
   const Index inner = rod.position(edge == place ? edge + 1 : edge);
@@ -137,7 +137,7 @@ OutOfPlaneModel::Tangent one_sided_tangent_at(const RodLayout& rod, Index place,
 /// The tangent at a place: between the directions of `edge` and of the one on the other side, as
 /// the rod bends there in one piece; of what is drawn, the mean of both sides. At an end or a
 /// corner that of the one side.
-OutOfPlaneModel::Tangent tangent_at(const RodLayout& rod, Index place, Index edge,
+OutOfPlaneModel::Tangent tangent_at(const RodMesh& rod, Index place, Index edge,
                                     const Model& model) {
   const Index other = edge == place ? rod.edge_before(place) : rod.edge_after(place);
   const OutOfPlaneModel::Tangent own_side = one_sided_tangent_at(rod, place, edge, model);
@@ -149,7 +149,7 @@ OutOfPlaneModel::Tangent tangent_at(const RodLayout& rod, Index place, Index edg
   const bool both_continue =
       own_side.neighbour != own_side.edge && other_side.neighbour != other_side.edge;
   if (!both_continue) return tangent;
-  const Vector& drawn = model.drawn_frames;
+  const Vector& drawn = model.initial_frames;
   const double first = own_side.direction(drawn);
   const double mean = first + 0.5 * nearest_turn(other_side.direction(drawn) - first, 0.0);
   tangent.lean = nearest_turn(mean - tangent.direction(drawn), 0.0);
@@ -160,7 +160,7 @@ OutOfPlaneModel::Tangent tangent_at(const RodLayout& rod, Index place, Index edg
 Vec2 upright(const SectionFrame& drawn) { return {drawn.first.z(), drawn.second.z()}; }
 
 /// Holds the section by the half edge on one side of a node.
-void add_half_fork(const RodLayout& rod, Index place, Index edge, OutOfPlaneModel& twin) {
+void add_half_fork(const RodMesh& rod, Index place, Index edge, OutOfPlaneModel& twin) {
   Model& model = twin.model;
   const Index number = rod.first_edge + edge;
   const SpatialEdge& own = model.framed_edges[to_size(number)];
@@ -169,43 +169,44 @@ void add_half_fork(const RodLayout& rod, Index place, Index edge, OutOfPlaneMode
   const double half = 0.5 * rod.edge_length[to_size(edge)];
   elements_of<FromSpatialPivot<Fork>>(*model.elements)
       .add({own.start, own.start + 1, own.start + 2, own.end, own.end + 1, own.end + 2, own.theta},
-           {{rod.GJ / half, upright(drawn_frame(model, number)), FrameBlock::of(number), direction},
+           {{rod.GJ / half, upright(initial_frame(model, number)), FrameBlock::of(number),
+             direction},
             own.first,
             own.last});
   twin.forks.push_back({tangent, tangent, direction});
 }
 
-/// Stiffness [N m] of the half of a joint's cell that lies on an edge against rotations about axes
+/// Stiffness [N m] of the half of a vertex's cell that lies on an edge against rotations about axes
 /// in the plane; `share` of the cell.
-Eigen::Matrix2d half_stiffness(const RodLayout& rod, const RodJoint& joint, double share,
+Eigen::Matrix2d half_stiffness(const RodMesh& rod, const RodVertex& vertex, double share,
                                const SectionFrame& edge) {
   const Vec2 along = edge.tangent.head<2>().normalized();
   const Vec2 across(-along.y(), along.x());
   const Vec2 upward = upright(edge).cwiseAbs2();
-  const double twisting = rod.GJ / (share * joint.twist_length);
+  const double twisting = rod.GJ / (share * vertex.twist_length);
   const double bending =
-      (rod.EI_1 * upward[0] + rod.EI_2 * upward[1]) / (share * joint.bend_length);
+      (rod.EI_1 * upward[0] + rod.EI_2 * upward[1]) / (share * vertex.bend_length);
   return twisting * along * along.transpose() + bending * across * across.transpose();
 }
 
-/// Holds the section at a corner by what the corner's joint leaves between the two edges.
-void add_corner_fork(const RodLayout& rod, const RodJoint& joint, OutOfPlaneModel& twin) {
+/// Holds the section at a corner by what the corner's vertex leaves between the two edges.
+void add_corner_fork(const RodMesh& rod, const RodVertex& vertex, OutOfPlaneModel& twin) {
   Model& model = twin.model;
-  const Index place = rod.position(joint.place());
-  OutOfPlaneModel::ForkAxis axis{tangent_at(rod, place, joint.before, model),
-                                 tangent_at(rod, place, joint.after, model), 0};
-  const double angle = axis.direction(model.drawn_frames);
+  const Index place = rod.position(vertex.place());
+  OutOfPlaneModel::ForkAxis axis{tangent_at(rod, place, vertex.before, model),
+                                 tangent_at(rod, place, vertex.after, model), 0};
+  const double angle = axis.direction(model.initial_frames);
   const Vec2 tangent(std::cos(angle), std::sin(angle));
   axis.control = model.tables.add({});
 
-  const Index before = rod.first_edge + joint.before;
-  const Index after = rod.first_edge + joint.after;
-  const SectionFrame section_before = drawn_frame(model, before);
-  const SectionFrame section_after = drawn_frame(model, after);
-  const double length = rod.edge_length[to_size(joint.before)];
-  const double share = length / (length + rod.edge_length[to_size(joint.after)]);
-  const Eigen::Matrix2d own = half_stiffness(rod, joint, share, section_before);
-  const Eigen::Matrix2d other = half_stiffness(rod, joint, 1.0 - share, section_after);
+  const Index before = rod.first_edge + vertex.before;
+  const Index after = rod.first_edge + vertex.after;
+  const SectionFrame section_before = initial_frame(model, before);
+  const SectionFrame section_after = initial_frame(model, after);
+  const double length = rod.edge_length[to_size(vertex.before)];
+  const double share = length / (length + rod.edge_length[to_size(vertex.after)]);
+  const Eigen::Matrix2d own = half_stiffness(rod, vertex, share, section_before);
+  const Eigen::Matrix2d other = half_stiffness(rod, vertex, 1.0 - share, section_after);
   const Vec2 turned = (own + other).inverse() * tangent;
   const Eigen::Rotation2Dd from_axis(-angle);
   const SpatialEdge& a = model.framed_edges[to_size(before)];
@@ -223,18 +224,18 @@ void add_corner_fork(const RodLayout& rod, const RodJoint& joint, OutOfPlaneMode
 }
 
 /// Holds the section at a node: on a smooth curve by each of the half edges beside it.
-void add_fork(const RodLayout& rod, Index place, OutOfPlaneModel& twin) {
-  if (rod.joints.empty() || rod.clamp_at(place) != nullptr) return;
+void add_fork(const RodMesh& rod, Index place, OutOfPlaneModel& twin) {
+  if (rod.vertices.empty() || rod.clamp_at(place) != nullptr) return;
   if (is_corner(rod, place, twin.model)) {
-    const auto here = [&](const RodJoint& joint) {
-      return joint.clamp < 0 && rod.position(joint.place()) == place;
+    const auto here = [&](const RodVertex& vertex) {
+      return vertex.clamp < 0 && rod.position(vertex.place()) == place;
     };
-    add_corner_fork(rod, *std::find_if(rod.joints.begin(), rod.joints.end(), here), twin);
+    add_corner_fork(rod, *std::find_if(rod.vertices.begin(), rod.vertices.end(), here), twin);
     return;
   }
   const Index first_dof = twin.model.dof(rod.nodes[to_size(place)], 0);
-  divide_joint<SpatialBend<AngleCurvature>>(first_dof, *twin.model.elements);
-  divide_joint<SpatialBend<TangentCurvature>>(first_dof, *twin.model.elements);
+  divide_vertex<SpatialBend<AngleCurvature>>(first_dof, *twin.model.elements);
+  divide_vertex<SpatialBend<TangentCurvature>>(first_dof, *twin.model.elements);
   for (const Index edge : {rod.edge_before(place), rod.edge_after(place)}) {
     if (edge >= 0) add_half_fork(rod, place, edge, twin);
   }
@@ -294,17 +295,17 @@ Configuration OutOfPlaneModel::at(const Model& planar, const Configuration& here
   for (const Follower& table : actuations) {
     controls[table.control] = table.factor * here.controls[table.planar];
   }
-  model.rest_shape.enter(controls);
-  controls.head(model.drawn_frames.size()) = model.drawn_frames;
-  const auto drawn_tangent = [&](Index edge) -> Vec3 {
-    return FrameBlock::of(edge).tangent(model.drawn_frames);
+  model.natural_strain.enter(controls);
+  controls.head(model.initial_frames.size()) = model.initial_frames;
+  const auto reference_tangent = [&](Index edge) -> Vec3 {
+    return FrameBlock::of(edge).tangent(model.initial_frames);
   };
   for (Index edge = 0; edge < static_cast<Index>(model.framed_edges.size()); ++edge) {
     const FrameBlock block = FrameBlock::of(edge);
     const Vec3 tangent =
         model.framed_edges[to_size(edge)].vector(result.coordinates, controls).normalized();
-    const Eigen::AngleAxisd turn(angle_about_z(drawn_tangent(edge), tangent), Vec3::UnitZ());
-    const Vec3 director = turn * block.director(model.drawn_frames);
+    const Eigen::AngleAxisd turn(angle_about_z(reference_tangent(edge), tangent), Vec3::UnitZ());
+    const Vec3 director = turn * block.director(model.initial_frames);
     controls.segment<3>(block.first) = tangent;
     controls.segment<3>(block.first + 3) = made_perpendicular(director, tangent);
   }
@@ -320,7 +321,7 @@ OutOfPlaneModel build_out_of_plane_model(const scenario::Scene& scene, const Mod
     follow_actuations(scene.rods[i], i, planar, twin);
   std::vector<char> has_fork(to_size(planar.num_nodes), 0);
   for (const auto& [rod, place] : places) {
-    const RodLayout& layout = twin.model.rods[to_size(rod)];
+    const RodMesh& layout = twin.model.rods[to_size(rod)];
     char& done = has_fork[to_size(layout.nodes[to_size(place)])];
     if (std::exchange(done, 1) == 0) add_fork(layout, place, twin);
   }
@@ -330,7 +331,7 @@ OutOfPlaneModel build_out_of_plane_model(const scenario::Scene& scene, const Mod
 bool is_held_out_of_plane(const scenario::Scene& scene, const Model& planar) {
   const bool has_sections =
       std::any_of(planar.rods.begin(), planar.rods.end(),
-                  [](const RodLayout& rod) { return rod.EI > 0.0 && rod.nodes.size() > 2; });
+                  [](const RodMesh& rod) { return rod.EI > 0.0 && rod.nodes.size() > 2; });
   if (has_sections) return false;
   std::vector<char> held(to_size(planar.num_nodes), 0);
   for (const scenario::Support& support : scene.supports) {

@@ -1,7 +1,7 @@
 #include "der/building/rod_elements.hpp"
 
 #include "der/core/index.hpp"
-#include "der/core/make_room.hpp"
+#include "der/core/reserve_more.hpp"
 #include "der/energies/elements_of.hpp"
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/planar_bend.hpp"
@@ -17,12 +17,12 @@ namespace {
 template <class Kernel>
 void make_room_for_elements(Index count, Model& model) {
   ElementList<Kernel>& list = elements_of<Kernel>(*model.elements);
-  make_room(list.dofs, to_size(count));
-  make_room(list.constants, to_size(count));
+  reserve_more(list.dofs, to_size(count));
+  reserve_more(list.constants, to_size(count));
 }
 
 /// One for each edge of the rod.
-std::vector<EffectiveEdge> effective_edges(const RodLayout& rod, const Model& model) {
+std::vector<EffectiveEdge> effective_edges(const RodMesh& rod, const Model& model) {
   std::vector<EffectiveEdge> edges;
   edges.reserve(to_size(rod.num_edges()));
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
@@ -32,22 +32,23 @@ std::vector<EffectiveEdge> effective_edges(const RodLayout& rod, const Model& mo
 }
 
 /// An effective edge from a pivot is shorter than its edge and stretches for all of it.
-void add_stretch(const RodLayout& rod, const std::vector<EffectiveEdge>& edges, Model& model) {
+void add_stretch(const RodMesh& rod, const std::vector<EffectiveEdge>& edges, Model& model) {
   make_room_for_elements<Stretch<2>>(rod.num_edges(), model);
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     const EffectiveEdge& effective = edges[to_size(edge)];
-    const double length = effective.has_pivot() ? effective.drawn(model.rest_positions).norm()
+    const double length = effective.has_pivot() ? effective.drawn(model.reference_positions).norm()
                                                 : rod.edge_length[to_size(edge)];
     const double EA = rod.EA * (length / rod.edge_length[to_size(edge)]);
-    add_element<Stretch<2>>(effective.dofs, {EA, length, rod.rest_entries.edge(edge)},
+    add_element<Stretch<2>>(effective.dofs, {EA, length, rod.natural_strain_entries.edge(edge)},
                             effective.first, effective.last, *model.elements);
   }
 }
 
-double rest_angle_between(const RodLayout& rod, Index place, const EffectiveEdge& before,
+double rest_angle_between(const RodMesh& rod, Index place, const EffectiveEdge& before,
                           const EffectiveEdge& after, const Model& model) {
   if (rod.natural_curvature.empty()) {
-    return angle_between(before.drawn(model.rest_positions), after.drawn(model.rest_positions));
+    return angle_between(before.drawn(model.reference_positions),
+                         after.drawn(model.reference_positions));
   }
   double angle = rod.natural_curvature[to_size(rod.position(place))] * bend_length(rod, place);
   if (rod.closed) return angle;
@@ -62,7 +63,7 @@ double rest_angle_between(const RodLayout& rod, Index place, const EffectiveEdge
 }
 
 template <class Curvature>
-void add_bend(RodLayout& rod, const std::vector<EffectiveEdge>& edges, Model& model) {
+void add_bend(RodMesh& rod, const std::vector<EffectiveEdge>& edges, Model& model) {
   make_room_for_elements<PlanarBend<Curvature>>(rod.num_edges(), model);
   // That between the last edge of a ring and its first one stands last.
   for (Index i = 1; i <= rod.num_edges(); ++i) {
@@ -74,14 +75,14 @@ void add_bend(RodLayout& rod, const std::vector<EffectiveEdge>& edges, Model& mo
     add_element<PlanarBend<Curvature>>({before.dofs[0], before.dofs[1], after.dofs[0],
                                         after.dofs[1], after.dofs[2], after.dofs[3]},
                                        {rod.EI / bend_length(rod, i), Curvature::of(rest).kappa,
-                                        rod.rest_entries.cell(rod.position(i), false)},
+                                        rod.natural_strain_entries.cell(rod.position(i), false)},
                                        before.first, after.last, *model.elements);
   }
 }
 
 }  // namespace
 
-void add_rod_elements(RodLayout& rod, Model& model) {
+void add_rod_elements(RodMesh& rod, Model& model) {
   rod.rest_turning_angle.assign(rod.nodes.size(), 0.0);
   const std::vector<EffectiveEdge> edges = effective_edges(rod, model);
   add_stretch(rod, edges, model);

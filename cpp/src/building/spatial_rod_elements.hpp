@@ -6,6 +6,6 @@ namespace der {
 
 /// Makes the stretch, bend and twist elements of a rod in space that is one of the model's, from
 /// its layout and clamps, and sets its rest strains. Rods are taken in their order.
-void add_spatial_rod_elements(RodLayout& rod, Model& model);
+void add_spatial_rod_elements(RodMesh& rod, Model& model);
 
 }  // namespace der

@@ -10,7 +10,7 @@ namespace der {
 namespace {
 
 struct Choice {
-  Loops loops;
+  SimdLevel loops;
   std::string_view name;
   bool (*suits_processor)();
 };
@@ -32,15 +32,15 @@ bool suits_avx512() {
 #endif
 }
 
-/// In the order of `Loops`.
+/// In the order of `SimdLevel`.
 constexpr std::array<Choice, 3> kChoices{{
-    {Loops::Plain, "plain", [] { return true; }},
-    {Loops::Avx2, "avx2", suits_avx2},
-    {Loops::Avx512, "avx512", suits_avx512},
+    {SimdLevel::Plain, "plain", [] { return true; }},
+    {SimdLevel::Avx2, "avx2", suits_avx2},
+    {SimdLevel::Avx512, "avx512", suits_avx512},
 }};
 
-Loops fastest() {
-  Loops found = Loops::Plain;
+SimdLevel fastest() {
+  SimdLevel found = SimdLevel::Plain;
   for (const Choice& choice : kChoices) {
     if (choice.suits_processor()) found = choice.loops;
   }
@@ -55,7 +55,7 @@ std::string names() {
   return text;
 }
 
-Loops named(const std::string& name) {
+SimdLevel named(const std::string& name) {
   for (const Choice& choice : kChoices) {
     if (choice.name != name) continue;
     if (choice.suits_processor()) return choice.loops;
@@ -67,19 +67,19 @@ Loops named(const std::string& name) {
                          "': unset it, or write one of " + names());
 }
 
-Loops chosen() {
+SimdLevel chosen() {
   const char* name = std::getenv("DER_LOOPS");  // NOLINT(concurrency-mt-unsafe)
   return name == nullptr || *name == '\0' ? fastest() : named(name);
 }
 
 }  // namespace
 
-Loops loops() {
+SimdLevel loops() {
   // Left open by an exception: the next call throws it again.
-  static const Loops loops = chosen();
+  static const SimdLevel loops = chosen();
   return loops;
 }
 
-std::string_view name_of(Loops loops) { return kChoices[static_cast<std::size_t>(loops)].name; }
+std::string_view name_of(SimdLevel loops) { return kChoices[static_cast<std::size_t>(loops)].name; }
 
 }  // namespace der

@@ -24,11 +24,11 @@ double largest_in_loop(Index size, const double* x, const std::int64_t* counts) 
 }  // namespace
 
 double largest_magnitude(Index size, const double* x) {
-  return run_loop([&] { return largest_in_loop(size, x); });
+  return dispatch_simd([&] { return largest_in_loop(size, x); });
 }
 
 double largest_magnitude(Index size, const double* x, const std::int64_t* counts) {
-  return run_loop([&] { return largest_in_loop(size, x, counts); });
+  return dispatch_simd([&] { return largest_in_loop(size, x, counts); });
 }
 
 }  // namespace der

@@ -102,7 +102,7 @@ std::size_t torque_axis(const std::vector<SpatialMoment::TurnedEdge>& edges) {
 }
 
 /// M0 as the edges turn it.
-Vec3 drawn_moment(const SpatialMoment& load, const Vec3& amount) {
+Vec3 reference_moment(const SpatialMoment& load, const Vec3& amount) {
   if (!load.turns_further) return amount;
   return amount + (load.compliance * amount).cross(amount);
 }
@@ -151,27 +151,27 @@ std::array<double, 2> turn_of_outermost_edge(const std::array<double, 2>& weight
 void PlanarFollowerForce::evaluate(const Configuration& here, const Vec3& amount,
                                    CirculatoryTerm& out) const {
   out.reset(size());
-  const Vec2 drawn_force = amount.head<2>();
+  const Vec2 reference_force = amount.head<2>();
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const FollowedEdge& followed = edges[i];
     const Vec2 e = followed.edge.vector(here);
     const Vec2 tangent = e.normalized();
     const Vec2 force =
-        followed.weight * (followed.drawn.dot(drawn_force) * tangent +
-                           cross(followed.drawn, drawn_force) * perpendicular(tangent));
+        followed.weight * (followed.drawn.dot(reference_force) * tangent +
+                           cross(followed.drawn, reference_force) * perpendicular(tangent));
     out.force.head<2>() += force;
     out.tangent.block<2, 2>(0, 2 + 2 * static_cast<Index>(i)) =
         -perpendicular(force) * direction_gradient(e, 1.0 / e.squaredNorm()).transpose();
   }
-  if (drawn_force.isZero(0.0)) return;
+  if (reference_force.isZero(0.0)) return;
   if (edges.size() == 2) {
     Vec2 force = out.force.head<2>();
-    take_length(drawn_force.norm(), force, out.tangent.block<2, 4>(0, 2));
+    take_length(reference_force.norm(), force, out.tangent.block<2, 4>(0, 2));
     out.force.head<2>() = force;
   }
   if (share == 1.0) return;
   const double turned = clamp_turn < 0 ? 0.0 : held_share * here.controls[clamp_turn];
-  hold_back(Eigen::Rotation2Dd(turned) * drawn_force, out);
+  hold_back(Eigen::Rotation2Dd(turned) * reference_force, out);
 }
 
 void PlanarFollowerForce::hold_back(const Vec2& held, CirculatoryTerm& out) const {
@@ -200,7 +200,7 @@ EdgeMoments SpatialMoment::moments_at(const Configuration& here, const Vec3& amo
   EdgeMoments result;
   result.whole = amount;
   if (follower)
-    result.whole = following(edges, here, drawn_moment(*this, amount), amount.norm()).value;
+    result.whole = following(edges, here, reference_moment(*this, amount), amount.norm()).value;
   const Vec3 t = edges[torque_axis(edges)].frame(here).frame.tangent;
   const double torque = result.whole.dot(t);
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -220,7 +220,7 @@ void SpatialMoment::evaluate(const Configuration& here, const Vec3& amount,
   out.reset(size());
   FollowingVector whole{amount, {}};
   whole.slope.setZero(3, size());
-  if (follower) whole = following(edges, here, drawn_moment(*this, amount), amount.norm());
+  if (follower) whole = following(edges, here, reference_moment(*this, amount), amount.norm());
   const auto& [moment, turning] = whole;
 
   const std::size_t axis = torque_axis(edges);

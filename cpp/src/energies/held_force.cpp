@@ -12,7 +12,7 @@ void HeldForce<Edges>::evaluate(const Configuration& here, const Vec3& amount,
   out.reset(size());
   const auto free = this->response(here);
   const HeldSection held = free.held.under(this->load_before(here.controls));
-  const SectionLoad drawn{Vec3::Zero(), this->drawn_components(amount)};
+  const SectionLoad drawn{Vec3::Zero(), this->reference_components(amount)};
   const Vec3 force = drawn.turned(held.section());
   out.force.template head<3>() = force;
   const std::array<Mat3, HeldSection::kMost> turning = held.turning();

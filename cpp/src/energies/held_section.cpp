@@ -23,16 +23,16 @@ bool holds(const SpringInSeries& spring) { return !spring.stiffness.isZero(0.0);
 
 }  // namespace
 
-HeldSection::Rotation::Rotation(const JointKinematics<AngleCurvature>& joint)
-    : kinematics(joint),
-      strain(joint.strain().kappa_1, joint.strain().kappa_2, joint.strain().twist) {
-  const auto [g1, g2, gt] = joint.gradients();
+HeldSection::Rotation::Rotation(const VertexKinematics<AngleCurvature>& vertex)
+    : kinematics(vertex),
+      strain(vertex.strain().kappa_1, vertex.strain().kappa_2, vertex.strain().twist) {
+  const auto [g1, g2, gt] = vertex.gradients();
   slopes << g1, g2, gt;
 }
 
 Mat3 HeldSection::Rotation::curving(const Vec3& load) const {
-  JointResponse response;
-  kinematics.respond<true>(LoadedJoint{{}, {load[0], load[1], load[2]}}, response);
+  VertexResponse response;
+  kinematics.respond<true>(LoadedVertex{{}, {load[0], load[1], load[2]}}, response);
   return response.stiffness;
 }
 
@@ -61,7 +61,7 @@ HeldSection::Place HeldSection::place_at(const SectionFrame& section, double nea
     const CarriedSection& known = carried_[i];
     const double between =
         nearest_turn(twist_between(section, known.frame), known.twist - reference_twist_ - twist);
-    return Rotation(JointKinematics<AngleCurvature>::read_before(section, known.frame, between));
+    return Rotation(VertexKinematics<AngleCurvature>::read_before(section, known.frame, between));
   };
   Place place{section,
               Rotation({reference_, section, twist}),
@@ -74,7 +74,7 @@ HeldSection::Place HeldSection::place_at(const SectionFrame& section, double nea
     place.way += carried_[i].weights * rotation.strain;
     place.slopes += rotation.slopes * carried_[i].weights.transpose();
   }
-  place.per_rotation = place.from_drawn.slopes.transpose().inverse();
+  place.per_rotation = place.from_reference.slopes.transpose().inverse();
   place.slopes = place.per_rotation.transpose() * place.slopes;
   return place;
 }
@@ -87,7 +87,7 @@ HeldSection::Place HeldSection::turned(const Place& place, const Vec3& change) c
   const Mat3 turn = Eigen::AngleAxisd(angle, rotation / angle).toRotationMatrix();
   const SectionFrame section =
       SectionFrame::of((turn * place.section.tangent).normalized(), turn * place.section.first);
-  return place_at(section, place.from_drawn.strain.z() + change.z());
+  return place_at(section, place.from_reference.strain.z() + change.z());
 }
 
 /// The place at which psi = C p, from one nearby.
@@ -104,7 +104,7 @@ HeldSection::Place HeldSection::on_the_way(Place place, const Vec3& moment) cons
 /// The part of the second derivative by z of z . K z/2 + p . psi that is due to the second
 /// derivatives of the rotations, without the change of p.
 Mat3 HeldSection::curving(const Vec3& moment) const {
-  Mat3 own = place_.from_drawn.curving(place_.slopes * moment);
+  Mat3 own = place_.from_reference.curving(place_.slopes * moment);
   for (std::size_t i = 0; i < count_; ++i) own += carried_curving(i, moment);
   return place_.per_rotation.transpose() * own * place_.per_rotation;
 }
@@ -125,7 +125,7 @@ Vec3 HeldSection::load_along_z() const { return place_.per_rotation.transpose() 
 /// constant load q on z by (S - 1/2 [Z q]x) omega, and the part of m that turns by omega x m.
 Mat3 HeldSection::load_curving() const {
   const Vec3 aside = 0.5 * (load_.turned(place_.section) - load_.fixed);
-  const Mat3 own = place_.from_drawn.curving(load_along_z()) + cross_matrix(aside);
+  const Mat3 own = place_.from_reference.curving(load_along_z()) + cross_matrix(aside);
   return place_.per_rotation.transpose() * own * place_.per_rotation;
 }
 
@@ -144,7 +144,7 @@ HeldSection::Mat6 HeldSection::equations() const {
 HeldSection::Vec6 HeldSection::newton_step() const {
   Vec6 missing;
   missing << place_.slopes * moment_ + load_along_z() -
-                 spring_.stiffness.cwiseProduct(place_.from_drawn.strain),
+                 spring_.stiffness.cwiseProduct(place_.from_reference.strain),
       spring_.compliance * moment_ - place_.way;
   return equations().partialPivLu().solve(missing);
 }
@@ -155,12 +155,12 @@ HeldSection::Vec6 HeldSection::newton_step() const {
 bool HeldSection::descend(const Mat3& per_compliance, double& shift) {
   constexpr double kMostShift = 1e6;
   const auto potential = [&](const Place& place) {
-    const Vec3& z = place.from_drawn.strain;
+    const Vec3& z = place.from_reference.strain;
     return 0.5 *
            (z.dot(spring_.stiffness.cwiseProduct(z)) + place.way.dot(per_compliance * place.way));
   };
   const Vec3 slope =
-      spring_.stiffness.cwiseProduct(place_.from_drawn.strain) - place_.slopes * moment_;
+      spring_.stiffness.cwiseProduct(place_.from_reference.strain) - place_.slopes * moment_;
   Mat3 convex = place_.slopes * per_compliance * place_.slopes.transpose();
   convex.diagonal() += spring_.stiffness;
   const Mat3 matrix = convex + curving(moment_);
@@ -214,7 +214,7 @@ void HeldSection::settle() {
   }
   const Mat3 springs = spring_.stiffness.asDiagonal();
   const Mat3 in_series = (Mat3::Identity() + springs * spring_.compliance).inverse() * springs;
-  moment_ = in_series * start.from_drawn.strain;
+  moment_ = in_series * start.from_reference.strain;
   place_ = turned(start, -(spring_.compliance * moment_));
   settled_ = converge(kLongStep);
   if (settled_) return;
@@ -247,7 +247,7 @@ void HeldSection::raise_load() {
 }
 
 double HeldSection::energy_in_springs() const {
-  const Vec3& z = place_.from_drawn.strain;
+  const Vec3& z = place_.from_reference.strain;
   // The moment of stiff springs is known in equilibrium, while K z has lost its digits.
   if (settled_) return 0.5 * z.dot(place_.slopes * moment_ + load_along_z());
   return 0.5 * z.dot(spring_.stiffness.cwiseProduct(z));

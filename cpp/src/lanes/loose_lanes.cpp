@@ -12,9 +12,9 @@ namespace der {
 namespace {
 
 template <class Kernel, class T>
-class LooseOf final : public LooseKind<T> {
+class OffChainOf final : public OffChainKind<T> {
  public:
-  LooseOf(const LooseElements<Kernel>& loose, const MemberModels<T>& models)
+  OffChainOf(const OffChainElements<Kernel>& loose, const MemberModels<T>& models)
       : loose_(loose),
         models_(models),
         dofs_(elements_of<Kernel>(*models[0]->elements).dofs),
@@ -58,7 +58,7 @@ class LooseOf final : public LooseKind<T> {
     });
   }
 
-  const LooseElements<Kernel>& loose_;
+  const OffChainElements<Kernel>& loose_;
   const MemberModels<T>& models_;
   const std::vector<std::array<Index, Kernel::kDofs>>& dofs_;
   std::vector<typename Kernel::template Values<T>> values_;
@@ -67,24 +67,24 @@ class LooseOf final : public LooseKind<T> {
 }  // namespace
 
 template <class T>
-std::vector<std::unique_ptr<LooseKind<T>>> loose_kinds(const Assembler& assembler,
-                                                       const MemberModels<T>& models) {
-  std::vector<std::unique_ptr<LooseKind<T>>> kinds;
+std::vector<std::unique_ptr<OffChainKind<T>>> loose_kinds(const Assembler& assembler,
+                                                          const MemberModels<T>& models) {
+  std::vector<std::unique_ptr<OffChainKind<T>>> kinds;
   for_each_list(*models[0]->elements, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if constexpr (GoesInLanes<Kernel>::value) {
-      const LooseElements<Kernel>& loose = assembler.loose<Kernel>();
+      const OffChainElements<Kernel>& loose = assembler.loose<Kernel>();
       if (loose.elements.empty()) return;
-      kinds.push_back(std::make_unique<LooseOf<Kernel, T>>(loose, models));
+      kinds.push_back(std::make_unique<OffChainOf<Kernel, T>>(loose, models));
     }
   });
   return kinds;
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): the argument is a type
-#define DER_INSTANTIATE(T)                                                          \
-  template std::vector<std::unique_ptr<LooseKind<T>>> loose_kinds(const Assembler&, \
-                                                                  const MemberModels<T>&);
+#define DER_INSTANTIATE(T)                                                             \
+  template std::vector<std::unique_ptr<OffChainKind<T>>> loose_kinds(const Assembler&, \
+                                                                     const MemberModels<T>&);
 // NOLINTEND(bugprone-macro-parentheses)
 DER_FOR_MEMBER_LANES(DER_INSTANTIATE)
 #undef DER_INSTANTIATE

@@ -8,7 +8,7 @@ template <class T>
 MemberControls<T>::MemberControls(const MemberModel<T>& model, const MemberStates<T>& states)
     : model_(model),
       states_(states),
-      num_frames_(static_cast<Index>(model.structure().drawn_frames.size())),
+      num_frames_(static_cast<Index>(model.structure().initial_frames.size())),
       has_tables_(model.structure().tables.size() > num_frames_) {
   for (std::size_t lane = 0; lane < states.size(); ++lane) {
     here_[lane].controls.setZero(model.structure().tables.size());

@@ -24,22 +24,23 @@ MemberFrames<T>::MemberFrames(const MemberModel<T>& model) : model_(model) {
   for (std::size_t i = 0; i < structure.framed_edges.size(); ++i) {
     const SpatialEdge& edge = structure.framed_edges[i];
     const auto offset = [&](SpatialPivot SpatialEdge::* end) {
-      return each<T>(model.models,
-                     [&](const Model& one) { return (one.framed_edges[i].*end).drawn_offset(); });
+      return each<T>(model.models, [&](const Model& one) {
+        return (one.framed_edges[i].*end).reference_offset();
+      });
     };
     edges_.push_back({edge.start, edge.end, edge.theta, FrameBlock::of(static_cast<Index>(i)),
                       offset(&SpatialEdge::first), offset(&SpatialEdge::last)});
   }
-  for (std::size_t i = 0; i < structure.framed_joints.size(); ++i) {
-    const FramedJoint& joint = structure.framed_joints[i];
+  for (std::size_t i = 0; i < structure.framed_vertices.size(); ++i) {
+    const FramedVertex& vertex = structure.framed_vertices[i];
     const auto axis = [&](Vec3 SectionFrame::* of) {
       return each<T>(model.models,
-                     [&](const Model& one) { return one.framed_joints[i].held.drawn.*of; });
+                     [&](const Model& one) { return one.framed_vertices[i].held.drawn.*of; });
     };
-    joints_.push_back(
-        {joint.before,
-         joint.after,
-         joint.twist(),
+    vertices_.push_back(
+        {vertex.before,
+         vertex.after,
+         vertex.twist(),
          {axis(&SectionFrame::tangent), axis(&SectionFrame::first), axis(&SectionFrame::second)}});
   }
 }
@@ -76,12 +77,12 @@ void MemberFrames<T>::follow(LaneSet lanes, const MemberVector<T>& coordinates,
         take(first + 3 + c, moved.first[c]);
       }
     }
-    for (const Joint& joint : joints_) {
+    for (const Vertex& vertex : vertices_) {
       const SectionFrameOf<T> before =
-          joint.before >= 0 ? reference_frame(joint.before, frames) : joint.held;
+          vertex.before >= 0 ? reference_frame(vertex.before, frames) : vertex.held;
       const SectionFrameOf<T> after =
-          joint.after >= 0 ? reference_frame(joint.after, frames) : joint.held;
-      take(joint.twist, nearest_turn(twist_between<T>(before, after), frames[joint.twist]));
+          vertex.after >= 0 ? reference_frame(vertex.after, frames) : vertex.held;
+      take(vertex.twist, nearest_turn(twist_between<T>(before, after), frames[vertex.twist]));
     }
   });
 }

@@ -14,7 +14,7 @@
 #include "der/lanes/member_stepper.hpp"
 #include "der/lanes/members.hpp"
 #include "der/scenario/scenario.hpp"
-#include "der/solvers/two_ended_ldlt.hpp"
+#include "der/solvers/twisted_ldlt.hpp"
 #include "der/steppers/tableau.hpp"
 #include "simulation/stepper_options.hpp"
 
@@ -25,7 +25,7 @@ template <class T>
 constexpr std::size_t kLanes = to_size(LaneTraits<T>::kCount);
 
 Elimination order_of(const Pattern& pattern) {
-  return TwoEndedLdlt::suits(pattern) ? Elimination::FromBothEnds : Elimination::FromStart;
+  return TwistedLdlt::suits(pattern) ? Elimination::FromBothEnds : Elimination::FromStart;
 }
 
 /// Memory in which one group works at a time.
@@ -60,7 +60,7 @@ class Session {
     for (int lane = 0; lane < LaneTraits<T>::kCount; ++lane) {
       const Simulation& simulation = *simulations_[to_size(lane)];
       state_.load(lane, simulation.state());
-      if (lanes.has(lane) && simulation.was_written()) alone_.add(lane);
+      if (lanes.has(lane) && simulation.has_external_writes()) alone_.add(lane);
     }
   }
   Session(const Session&) = delete;
@@ -261,7 +261,7 @@ bool follow_alike(const Model& first, const Model& other) {
 /// Whether clamps hold the tangent, and the section, at the same places.
 bool clamps_alike(const Model& first, const Model& other) {
   return std::equal(first.rods.begin(), first.rods.end(), other.rods.begin(),
-                    [](const RodLayout& a, const RodLayout& b) {
+                    [](const RodMesh& a, const RodMesh& b) {
                       return std::equal(a.clamps.begin(), a.clamps.end(), b.clamps.begin(),
                                         b.clamps.end(), [](const Clamp& x, const Clamp& y) {
                                           return x.place == y.place &&
@@ -298,7 +298,8 @@ std::unique_ptr<MemberGroups> MemberGroups::make(const std::vector<Simulation*>&
   if (!fills(4) || !std::all_of(members.begin(), members.end(), is_alike)) return nullptr;
   if (!has_plain_steps(*members.front())) return nullptr;
 #ifdef DER_HAS_WIDE_LOOPS
-  if (loops() == Loops::Avx512 && fills(8)) return std::make_unique<Groups<EightLanes>>(members);
+  if (loops() == SimdLevel::Avx512 && fills(8))
+    return std::make_unique<Groups<EightLanes>>(members);
 #endif
   return std::make_unique<Groups<FourLanes>>(members);
 }

@@ -261,7 +261,7 @@ void MemberStepper<T>::set_end(const MemberState<T>& state, const T& dt) {
 }
 
 /// The members in which two neighbouring edges are at more than a right angle: whether one has
-/// folded over (EnergyWatch) is for its simulation to see.
+/// folded over (EnergyMonitor) is for its simulation to see.
 template <class T>
 LaneSet MemberStepper<T>::folded() const {
   const std::vector<Edge>& edges = members_->model.structure().edges;
@@ -279,7 +279,7 @@ LaneSet MemberStepper<T>::folded() const {
   return LaneSet::where(folded);
 }
 
-/// StepFinisher::finish.
+/// StepCommit::finish.
 template <class T>
 void MemberStepper<T>::finish(LaneSet done, const T& dt, MemberState<T>& state) {
   const T is_done = done.mask<T>();

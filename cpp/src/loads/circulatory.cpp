@@ -30,7 +30,7 @@ void set_amount(const scenario::VectorSeries& amount, CirculatoryLoad& load, Mod
 }
 
 /// The point at arc length `s` [m] as a local coordinate.
-void add_point(double s, const RodLayout& rod, const Model& model, CirculatoryLoad& load) {
+void add_point(double s, const RodMesh& rod, const Model& model, CirculatoryLoad& load) {
   for (int c = 0; c < model.dimension; ++c) {
     auto& component = load.coordinates.emplace_back();
     for (const auto& [place, weight] : node_weights(rod, s, model)) {
@@ -47,15 +47,16 @@ void add_vector(Index start, Index end, const Model& model, CirculatoryLoad& loa
 }
 
 FramedEdge framed_edge(Index number, const Model& model) {
-  return {model.framed_edges[to_size(number)], FrameBlock::of(number), drawn_frame(model, number)};
+  return {model.framed_edges[to_size(number)], FrameBlock::of(number),
+          initial_frame(model, number)};
 }
 
 /// Angle [rad] by which an edge at a free end leans further than a chord of the drawn curve, if it
 /// had that curve without stress: edges of a rod with a natural curvature do (supports/spring.hpp).
-double drawn_lean(Index edge, const RodLayout& rod, const Model& model) {
+double reference_lean(Index edge, const RodMesh& rod, const Model& model) {
   if (rod.closed || rod.natural_curvature.empty()) return 0.0;
   const auto node = [&](Index place) -> Vec2 {
-    return model.rest_positions.segment<2>(model.dof(rod.node(place), 0));
+    return model.reference_positions.segment<2>(model.dof(rod.node(place), 0));
   };
   const auto at_end = [&](Index end, Index inner) {
     const bool bends = rod.is_inner(inner) && rod.clamp_at(inner) == nullptr;
@@ -72,14 +73,14 @@ double drawn_lean(Index edge, const RodLayout& rod, const Model& model) {
 
 /// By how much the tangent at arc length `s` [m] turns further than the edges on its two sides,
 /// from the drawn shape to a natural one [rad]; of one edge, not at all.
-Vec3 natural_turn(double s, const SectionPlace& place, const RodLayout& rod) {
+Vec3 natural_turn(double s, const SectionPlace& place, const RodMesh& rod) {
   if (place.direction.size() != 2) return Vec3::Zero();
   return natural_turn_from_line(s, place.first_edge, rod);
 }
 
 /// Weights of the directions of edges that a load follows. A planar rod turns by less than its
 /// outermost edge against the next one at a free end, on either side of that edge's middle.
-std::array<double, 2> in_bending(const SectionPlace& place, const RodLayout& rod,
+std::array<double, 2> in_bending(const SectionPlace& place, const RodMesh& rod,
                                  const Model& model) {
   const std::vector<double>& given = place.direction;
   if (given.size() == 1) return weights_in_bending({given[0], 0.0});
@@ -94,7 +95,7 @@ std::array<double, 2> in_bending(const SectionPlace& place, const RodLayout& rod
   return weights_in_bending(weights);
 }
 
-PlanarFollowerForce planar_follower(double s, const SectionPlace& place, const RodLayout& rod,
+PlanarFollowerForce planar_follower(double s, const SectionPlace& place, const RodMesh& rod,
                                     const Model& model, CirculatoryLoad& load) {
   PlanarFollowerForce follower;
   const double kink = natural_turn(s, place, rod).z();
@@ -102,8 +103,8 @@ PlanarFollowerForce planar_follower(double s, const SectionPlace& place, const R
   for (std::size_t i = 0; i < place.direction.size(); ++i) {
     const Index number = rod.position(place.first_edge + static_cast<Index>(i));
     const EffectiveEdge edge = effective_edge(rod, number, model);
-    const Vec2 chord = edge.drawn(model.rest_positions).normalized();
-    const Vec2 drawn = Eigen::Rotation2Dd(drawn_lean(number, rod, model) - kink) * chord;
+    const Vec2 chord = edge.drawn(model.reference_positions).normalized();
+    const Vec2 drawn = Eigen::Rotation2Dd(reference_lean(number, rod, model) - kink) * chord;
     follower.edges.push_back({edge, weights[i], drawn});
     add_vector(edge.dofs[0], edge.dofs[2], model, load);
   }
@@ -116,7 +117,7 @@ PlanarFollowerForce planar_follower(double s, const SectionPlace& place, const R
 
 /// The edges of a place in space, each with what `make` makes of it and of its number among them.
 template <class Kind, class Make>
-Kind with_edges(const SectionPlace& place, const RodLayout& rod, const Model& model,
+Kind with_edges(const SectionPlace& place, const RodMesh& rod, const Model& model,
                 CirculatoryLoad& load, const Make& make) {
   Kind kind;
   for (std::size_t i = 0; i < place.direction.size(); ++i) {
@@ -131,7 +132,7 @@ Kind with_edges(const SectionPlace& place, const RodLayout& rod, const Model& mo
 
 /// How far the section at a place turns further than its edges under a moment [rad/(N m)], in the
 /// axes of the drawn section.
-Mat3 compliance_of(const SectionPlace& place, const SpatialMoment& moment, const RodLayout& rod) {
+Mat3 compliance_of(const SectionPlace& place, const SpatialMoment& moment, const RodMesh& rod) {
   const auto along = [](const Vec3& axis, double cell, double stiffness) -> Mat3 {
     if (stiffness == 0.0) return Mat3::Zero();
     return cell / stiffness * axis * axis.transpose();
@@ -143,7 +144,7 @@ Mat3 compliance_of(const SectionPlace& place, const SpatialMoment& moment, const
 }
 
 /// The actuated section for loads that follow the section at arc length `s` [m].
-ActuatedSection actuated_section(double s, const SectionPlace& place, const RodLayout& rod,
+ActuatedSection actuated_section(double s, const SectionPlace& place, const RodMesh& rod,
                                  const Model& model) {
   const std::array<double, 2> weights = in_bending(place, rod, model);
   ActuatedSection section{actuated_turn_of_follower(s, place, weights, rod), Mat3::Zero()};
@@ -153,14 +154,14 @@ ActuatedSection actuated_section(double s, const SectionPlace& place, const RodL
   } else {
     const Index nearer = weights[1] > weights[0] ? 1 : 0;
     const Index edge = rod.position(place.first_edge + nearer);
-    section.axes = turning_axes(drawn_frame(model, rod.first_edge + edge));
+    section.axes = turning_axes(initial_frame(model, rod.first_edge + edge));
   }
   return section;
 }
 
 /// A moment that acts on the edges.
 SpatialMoment moment_on_edges(bool follower, double s, const SectionPlace& place,
-                              const RodLayout& rod, const Model& model, CirculatoryLoad& load) {
+                              const RodMesh& rod, const Model& model, CirculatoryLoad& load) {
   auto moment = with_edges<SpatialMoment>(
       place, rod, model, load, [&](const FramedEdge& framed, std::size_t i) {
         return SpatialMoment::TurnedEdge{framed, place.direction[i], place.across[i],
@@ -180,14 +181,14 @@ struct SectionLoads {
   std::vector<Index> forces;
 };
 
-SectionLoads& loads_at(double s, const RodLayout& rod, std::vector<SectionLoads>& places) {
+SectionLoads& loads_at(double s, const RodMesh& rod, std::vector<SectionLoads>& places) {
   for (SectionLoads& place : places) {
     if (std::abs(place.arc_length - s) <= rod.same_place()) return place;
   }
   return places.emplace_back(SectionLoads{s, {}, {}});
 }
 
-std::vector<SectionLoads> section_loads(const RodLayout& rod) {
+std::vector<SectionLoads> section_loads(const RodMesh& rod) {
   std::vector<SectionLoads> places;
   for (const SpatialMomentPlace& moment : rod.spatial_moments) {
     loads_at(moment.arc_length, rod, places).moments.push_back(moment.load);
@@ -205,7 +206,7 @@ bool follows(const CirculatoryLoad& moment) {
 
 /// Whether a place is known by an edge at a free end that leans against the natural curve, while
 /// the drawn edge is a chord of the drawn one (supports/spring.hpp).
-bool beside_leaning_end(double s, const RodLayout& rod) {
+bool beside_leaning_end(double s, const RodMesh& rod) {
   if (rod.closed || rod.natural_curvatures.empty()) return false;
   const SectionPlace place = section_place(s, rod);
   const Index last = place.first_edge + static_cast<Index>(place.direction.size());
@@ -214,28 +215,28 @@ bool beside_leaning_end(double s, const RodLayout& rod) {
 }
 
 /// Whether a clamp that holds its section is beside the place.
-bool beside_held_section(double s, const RodLayout& rod) {
+bool beside_held_section(double s, const RodMesh& rod) {
   const auto beside = place_beside_clamp(rod, s);
   return beside && rod.clamps[to_size(beside->clamp)].holds_section;
 }
 
 /// Whether a clamp that lets the section spin is beside the place, or there: it takes up a part of
 /// a moment, and passes on what this has about the tangent at the place.
-bool beside_held_tangent(double s, const RodLayout& rod) {
+bool beside_held_tangent(double s, const RodMesh& rod) {
   const auto beside = place_beside_clamp(rod, s);
   return beside && !rod.clamps[to_size(beside->clamp)].holds_section;
 }
 
 /// Whether the place is beyond the middle of an outermost edge and not at its free end. There a
 /// moment bends the rod up to the place, which the edges do not tell of one that follows.
-bool is_before_free_end(double s, const RodLayout& rod) {
+bool is_before_free_end(double s, const RodMesh& rod) {
   const double from_end = std::min(s, rod.rest_length() - s);
   return beyond_outer_middle(rod, s) > 0.0 && from_end > rod.same_place();
 }
 
 /// Whether the edges tell less than the loads at a place need. Moments of a fixed direction act on
 /// the edges alike, one or many, but what they store is not the sum of what each of them would.
-bool need_section(const SectionLoads& place, const RodLayout& rod, const Model& model) {
+bool need_section(const SectionLoads& place, const RodMesh& rod, const Model& model) {
   const double s = place.arc_length;
   if (is_held_or_at_corner(s, rod, model)) return true;
   if (rod.EI_1 <= 0.0 || rod.EI_2 <= 0.0 || rod.GJ <= 0.0) return false;
@@ -279,12 +280,12 @@ void act_on_section(const typename SectionSpring<Edges>::Constants& section,
 
 /// Beyond an outermost middle a moment at the place bends the rod up to it, so that edges tell its
 /// tangent with the weights by which the moment turns them.
-void follow_as_moments(const MomentPlace& place, const RodLayout& rod, const Model& model,
+void follow_as_moments(const MomentPlace& place, const RodMesh& rod, const Model& model,
                        PlanarFollowerForce& follower) {
   const Eigen::Rotation2Dd to_natural(natural_turn_of_edges(rod, place, model));
   for (std::size_t i = 0; i < place.weights.size(); ++i) {
     PlanarFollowerForce::FollowedEdge& followed = follower.edges[i];
-    const Vec2 chord = followed.edge.drawn(model.rest_positions).normalized();
+    const Vec2 chord = followed.edge.drawn(model.reference_positions).normalized();
     followed.weight = place.weights[i];
     followed.drawn = to_natural * chord;
   }
@@ -298,7 +299,7 @@ Index add(CirculatoryLoad&& load, Model& model) {
 
 }  // namespace
 
-Index add_follower_force(const scenario::VectorSeries& force, double s, const RodLayout& rod,
+Index add_follower_force(const scenario::VectorSeries& force, double s, const RodMesh& rod,
                          Model& model) {
   CirculatoryLoad load;
   set_amount(force, load, model);
@@ -316,8 +317,8 @@ Index add_follower_force(const scenario::VectorSeries& force, double s, const Ro
   return add(std::move(load), model);
 }
 
-void add_spatial_moment(const scenario::VectorSeries& moment, bool follower, double s,
-                        RodLayout& rod, Model& model) {
+void add_spatial_moment(const scenario::VectorSeries& moment, bool follower, double s, RodMesh& rod,
+                        Model& model) {
   CirculatoryLoad load;
   set_amount(moment, load, model);
   const SectionPlace place = section_place(s, rod);
@@ -326,7 +327,7 @@ void add_spatial_moment(const scenario::VectorSeries& moment, bool follower, dou
   rod.spatial_moments.push_back({s, add(std::move(load), model), {}});
 }
 
-void act_on_loaded_sections(const RodLayout& rod, Model& model) {
+void act_on_loaded_sections(const RodMesh& rod, Model& model) {
   auto& loads = circulatory_loads(*model.elements);
   for (const SectionLoads& place : section_loads(rod)) {
     if (!need_section(place, rod, model)) continue;
@@ -343,7 +344,7 @@ void act_on_loaded_sections(const RodLayout& rod, Model& model) {
   }
 }
 
-void turn_followers_under_moments(const RodLayout& rod, Model& model) {
+void turn_followers_under_moments(const RodMesh& rod, Model& model) {
   for (const ForcePlace& force : rod.force_places) {
     if (force.follower < 0 || rod.EI == 0.0) continue;
     const double s = force.arc_length;

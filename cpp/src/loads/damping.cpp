@@ -3,7 +3,7 @@
 namespace der {
 
 void add_load(const scenario::Damping& load, const LoadContext& /*context*/, Model& model) {
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     if (load.rod && *load.rod != rod.name) continue;
     for (std::size_t i = 0; i < rod.nodes.size(); ++i) {
       const double coefficient = load.coefficient * rod.voronoi_length(static_cast<Index>(i));

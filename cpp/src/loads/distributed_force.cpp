@@ -6,7 +6,7 @@ namespace der {
 
 // Consistent loads of the piecewise linear interpolation over the rest length.
 void add_load(const scenario::DistributedForce& load, const LoadContext& context, Model& model) {
-  RodLayout& rod = model.rod(load.rod);
+  RodMesh& rod = model.rod(load.rod);
   const DeadForce force(load.force, !context.name.empty(), model);
   for (const EdgePart& part : edge_parts(rod, load.from, load.to)) {
     const double at_last = length_at_last_end(part, rod);

@@ -10,7 +10,7 @@ namespace der {
 // to Fluid Dynamics, eq. 4.9.19).
 void add_load(const scenario::Fluid& load, const LoadContext& context, Model& model) {
   const auto [gravity, controls] = present_gravity(context.scene, model);
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     for (std::size_t i = 0; i < rod.nodes.size(); ++i) {
       const double radius = rod.sphere_radius[i];
       const double drag = 6.0 * kPi * load.viscosity * radius;

@@ -15,7 +15,7 @@ namespace {
 
 /// Integrals over a part of an edge of the products of its shape functions [m]. The functions are
 /// linear: Simpson's rule has no error.
-Eigen::Matrix2d shape_products(const EdgePart& part, const RodLayout& rod) {
+Eigen::Matrix2d shape_products(const EdgePart& part, const RodMesh& rod) {
   const double s0 = rod.arc_length_at(part.edge);
   const double s1 = rod.arc_length_at(part.edge + 1);
   const auto at = [&](double s) {
@@ -28,7 +28,7 @@ Eigen::Matrix2d shape_products(const EdgePart& part, const RodLayout& rod) {
 }
 
 template <int Dim>
-void add_elements(const scenario::Foundation& load, const RodLayout& rod, Model& model) {
+void add_elements(const scenario::Foundation& load, const RodMesh& rod, Model& model) {
   using Kernel = Foundation<Dim>;
   for (const EdgePart& part : edge_parts(rod, load.from, load.to)) {
     std::array<Index, Kernel::kDofs> dofs{};
@@ -49,7 +49,7 @@ void add_elements(const scenario::Foundation& load, const RodLayout& rod, Model&
 // Nodes lie beside the curve by l^2/12 of its curvature, and edges as far on its other side in the
 // mean: the linear interpolation has the displacement of the curve up to order 4.
 void add_load(const scenario::Foundation& load, const LoadContext& /*context*/, Model& model) {
-  RodLayout& rod = model.rod(load.rod);
+  RodMesh& rod = model.rod(load.rod);
   with_dimension(model, [&](auto dim) { add_elements<dim>(load, rod, model); });
   FoundationPlace place{load.from, load.to, {}};
   std::copy(load.stiffness.begin(), load.stiffness.end(), place.stiffness.begin());

@@ -13,7 +13,7 @@ namespace der {
 namespace {
 
 /// The clamp that holds the tangent at arc length `s` [m]; null: none does.
-const Clamp* clamp_there(const RodLayout& rod, double s) {
+const Clamp* clamp_there(const RodMesh& rod, double s) {
   const auto found = std::find_if(rod.clamps.begin(), rod.clamps.end(), [&](const Clamp& clamp) {
     return std::abs(rod.arc_length[static_cast<std::size_t>(clamp.place)] - s) <= rod.same_place();
   });
@@ -23,7 +23,7 @@ const Clamp* clamp_there(const RodLayout& rod, double s) {
 }  // namespace
 
 void add_load(const scenario::Moment& load, const LoadContext& context, Model& model) {
-  RodLayout& rod = model.rod(load.rod);
+  RodMesh& rod = model.rod(load.rod);
   const double s = arc_length_of(load.at, rod);
   const Clamp* clamp = clamp_there(rod, s);
   if (model.dimension == 3) {

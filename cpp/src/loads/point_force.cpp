@@ -8,7 +8,7 @@
 namespace der {
 
 void add_load(const scenario::PointForce& load, const LoadContext& context, Model& model) {
-  RodLayout& rod = model.rod(load.rod);
+  RodMesh& rod = model.rod(load.rod);
   const auto name_it = [&](const std::array<Index, 3>& controls) {
     if (!context.name.empty()) model.named.push_back(vector_control(context.name, "N", controls));
   };

@@ -9,14 +9,14 @@ namespace der {
 namespace {
 
 /// Arc length [m] of the clamp beside a place.
-double clamp_beside(double s, const PlaceBesideClamp& beside, const RodLayout& rod) {
+double clamp_beside(double s, const PlaceBesideClamp& beside, const RodMesh& rod) {
   const bool is_before = rod.clamps[to_size(beside.clamp)].place == beside.edge;
   return is_before ? s - beside.distance : s + beside.distance;
 }
 
 }  // namespace
 
-scenario::EdgeTurns edge_turns(const ActuatedStretch& stretch, const RodLayout& rod, Index edge) {
+scenario::EdgeTurns edge_turns(const ActuatedStretch& stretch, const RodMesh& rod, Index edge) {
   return scenario::edge_turns({stretch.profile, stretch.from, stretch.to}, rod.arc_length_at(edge),
                               rod.arc_length_at(edge + 1), rod.clamp_at(edge) != nullptr,
                               rod.clamp_at(edge + 1) != nullptr);
@@ -66,7 +66,7 @@ double ActuatedTurnTo::integral(const ActuatedStretch& stretch, double a, double
   return sum;
 }
 
-ActuatedTurn actuated_turn(double s, const RodLayout& rod) {
+ActuatedTurn actuated_turn(double s, const RodMesh& rod) {
   ActuatedTurnTo turn(s, rod);
   for (const auto& [edge, weight] : edge_weights(rod, s)) turn.from_edge(edge, weight, 0.0);
   if (const auto beside = place_beside_clamp(rod, s)) {
@@ -75,7 +75,7 @@ ActuatedTurn actuated_turn(double s, const RodLayout& rod) {
   return turn.turn();
 }
 
-ActuatedTurn actuated_turn(double s, const SectionPlace& place, const RodLayout& rod) {
+ActuatedTurn actuated_turn(double s, const SectionPlace& place, const RodMesh& rod) {
   ActuatedTurnTo turn(s, rod);
   for (std::size_t i = 0; i < place.across.size(); ++i) {
     turn.from_edge(place.first_edge + static_cast<Index>(i), place.across[i], place.along[i]);
@@ -88,7 +88,7 @@ ActuatedTurn actuated_turn(double s, const SectionPlace& place, const RodLayout&
 
 ActuatedTurn actuated_turn_of_follower(double s, const SectionPlace& place,
                                        const std::array<double, 2>& in_bending,
-                                       const RodLayout& rod) {
+                                       const RodMesh& rod) {
   ActuatedTurnTo turn(s, rod);
   for (std::size_t i = 0; i < place.direction.size(); ++i) {
     turn.from_edge(place.first_edge + static_cast<Index>(i), in_bending[i], place.direction[i]);
@@ -100,15 +100,15 @@ Vec3 value_of(const ActuatedTurn& turn, const Model& model, const State& state) 
   return turn.value([&](Index control) { return control_value(model, state, control); });
 }
 
-ActuatedTurn actuated_turn_from_edge(Index edge, double s, const RodLayout& rod) {
+ActuatedTurn actuated_turn_from_edge(Index edge, double s, const RodMesh& rod) {
   ActuatedTurnTo turn(s, rod);
   turn.from_edge(edge, 1.0, 1.0);
   return turn.turn();
 }
 
-ActuatedTurn actuated_turn_from(const RodJoint& joint, double s, const RodLayout& rod) {
+ActuatedTurn actuated_turn_from(const RodVertex& vertex, double s, const RodMesh& rod) {
   ActuatedTurnTo turn(s, rod);
-  const Index place = joint.place();
+  const Index place = vertex.place();
   const auto add_side = [&](Index own, Index edge) {
     if (own < 0) {
       turn.from(rod.arc_length_at(place), 0.5, 0.5);  // of the clamp
@@ -116,8 +116,8 @@ ActuatedTurn actuated_turn_from(const RodJoint& joint, double s, const RodLayout
       turn.from_edge(edge, 0.5, 0.5);
     }
   };
-  add_side(joint.before, place - 1);
-  add_side(joint.after, place);
+  add_side(vertex.before, place - 1);
+  add_side(vertex.after, place);
   return turn.turn();
 }
 

@@ -15,13 +15,13 @@ namespace der {
 // integral of the actuated curvatures and twist, which no line between edges follows.
 
 /// The turn of an edge for a unit of an actuated curvature [m].
-scenario::EdgeTurns edge_turns(const ActuatedStretch& stretch, const RodLayout& rod, Index edge);
+scenario::EdgeTurns edge_turns(const ActuatedStretch& stretch, const RodMesh& rod, Index edge);
 
 /// The actuated turn to a place, from where the parts of a weighted sum are.
 class ActuatedTurnTo {
  public:
   /// `s`: rest arc length [m].
-  ActuatedTurnTo(double s, const RodLayout& rod) : s_(s), rod_(rod) {}
+  ActuatedTurnTo(double s, const RodMesh& rod) : s_(s), rod_(rod) {}
 
   /// From an edge, those of a ring counted on, with these weights of its direction and its twist.
   void from_edge(Index edge, double bend, double twist);
@@ -34,26 +34,25 @@ class ActuatedTurnTo {
   [[nodiscard]] double integral(const ActuatedStretch& stretch, double a, double b) const;
 
   double s_;
-  const RodLayout& rod_;
+  const RodMesh& rod_;
   ActuatedTurn turn_;
 };
 
 /// From the edges that moments at arc length `s` [m] turn, and the clamp beside them; in a plane.
-ActuatedTurn actuated_turn(double s, const RodLayout& rod);
+ActuatedTurn actuated_turn(double s, const RodMesh& rod);
 /// The same in space.
-ActuatedTurn actuated_turn(double s, const SectionPlace& place, const RodLayout& rod);
+ActuatedTurn actuated_turn(double s, const SectionPlace& place, const RodMesh& rod);
 /// From the edges that a load at arc length `s` [m] follows, with these weights of their
 /// directions.
 ActuatedTurn actuated_turn_of_follower(double s, const SectionPlace& place,
-                                       const std::array<double, 2>& in_bending,
-                                       const RodLayout& rod);
+                                       const std::array<double, 2>& in_bending, const RodMesh& rod);
 
 /// The turn at a state.
 Vec3 value_of(const ActuatedTurn& turn, const Model& model, const State& state);
 
 /// To arc length `s` [m] from an edge, whose direction is the mean along it.
-ActuatedTurn actuated_turn_from_edge(Index edge, double s, const RodLayout& rod);
-/// The same from the mean of the directions and sections on the two sides of a joint.
-ActuatedTurn actuated_turn_from(const RodJoint& joint, double s, const RodLayout& rod);
+ActuatedTurn actuated_turn_from_edge(Index edge, double s, const RodMesh& rod);
+/// The same from the mean of the directions and sections on the two sides of a vertex.
+ActuatedTurn actuated_turn_from(const RodVertex& vertex, double s, const RodMesh& rod);
 
 }  // namespace der

@@ -11,9 +11,9 @@ namespace der {
 /// same way at the nodes before and after. In a smooth curve neighbouring turns are alike.
 ///
 /// Corners part a rod into legs. Tangent and section jump there, and what refers to them.
-bool is_corner(const RodLayout& rod, Index place, const Model& model);
+bool is_corner(const RodMesh& rod, Index place, const Model& model);
 
-/// Positions of all corners in RodLayout::nodes, ascending.
-std::vector<Index> corners_of(const RodLayout& rod, const Model& model);
+/// Positions of all corners in RodMesh::nodes, ascending.
+std::vector<Index> corners_of(const RodMesh& rod, const Model& model);
 
 }  // namespace der

@@ -5,14 +5,14 @@
 #include "der/core/index.hpp"
 #include "der/kinematics/section_frame.hpp"
 #include "model/corner.hpp"
-#include "model/drawn_turn.hpp"
+#include "model/reference_rotation.hpp"
 
 namespace der {
-Vec3 leg_tangent(const RodLayout& rod, Index corner, bool arrives, const Model& model) {
-  const auto [before, after] = drawn_edges(rod, corner, model);
+Vec3 leg_tangent(const RodMesh& rod, Index corner, bool arrives, const Model& model) {
+  const auto [before, after] = reference_edges(rod, corner, model);
   const Vec3& edge = arrives ? before : after;
   const Index beside = arrives ? corner - 1 : corner + 1;
-  const DrawnTurn turn = drawn_turn(rod, beside, model);
+  const ReferenceRotation turn = reference_rotation(rod, beside, model);
   if (turn.angle == 0.0 || is_corner(rod, beside, model)) return edge;
   const Index number = arrives ? rod.edge_before(corner) : rod.edge_after(corner);
   const double half = 0.5 * rod.edge_length[to_size(number)];
@@ -20,14 +20,14 @@ Vec3 leg_tangent(const RodLayout& rod, Index corner, bool arrives, const Model& 
   return Eigen::AngleAxisd(arrives ? angle : -angle, turn.axis) * edge;
 }
 
-double corner_twist(const RodLayout& rod, Index place, const Model& model) {
+double corner_twist(const RodMesh& rod, Index place, const Model& model) {
   constexpr double kFoldedBack = 1e-6;  // opposite tangents have no smallest rotation
   if (!is_corner(rod, place, model)) return 0.0;
-  const auto [before, after] = drawn_edges(rod, place, model);
+  const auto [before, after] = reference_edges(rod, place, model);
   const Vec3 arriving = leg_tangent(rod, place, true, model);
   const Vec3 leaving = leg_tangent(rod, place, false, model);
   if (1.0 + arriving.dot(leaving) < kFoldedBack) return 0.0;
-  const Vec3 director = drawn_turn(rod, place, model).axis;
+  const Vec3 director = reference_rotation(rod, place, model).axis;
   Vec3 moved = transport(director, before, arriving);
   moved = transport(moved, arriving, leaving);
   moved = transport(moved, leaving, after);

@@ -6,7 +6,7 @@
 
 #include "der/core/index.hpp"
 #include "model/corner.hpp"
-#include "model/drawn_turn.hpp"
+#include "model/reference_rotation.hpp"
 
 namespace der {
 namespace {
@@ -21,7 +21,7 @@ enum class Known { AtNodes, BetweenEdges };
 /// The curvature of the cells about the nodes of a rod, as a vector [1/m].
 class CellCurvature {
  public:
-  CellCurvature(const RodLayout& rod, std::vector<Vec3> at_nodes, Known known)
+  CellCurvature(const RodMesh& rod, std::vector<Vec3> at_nodes, Known known)
       : rod_(rod), at_nodes_(std::move(at_nodes)), known_(known) {}
 
   /// After an inner node with two more on either side less before it, if it jumps there: else zero.
@@ -75,23 +75,23 @@ class CellCurvature {
     return rod_.arc_length_at(place) + (after - before) / 3.0;
   }
 
-  const RodLayout& rod_;
+  const RodMesh& rod_;
   std::vector<Vec3> at_nodes_;
   Known known_;
 };
 
 /// The vectors about which the drawn rod turns in its cells [1/m].
-std::vector<Vec3> drawn_curvature(const RodLayout& rod, const Model& model) {
+std::vector<Vec3> reference_curvature(const RodMesh& rod, const Model& model) {
   std::vector<Vec3> at_nodes;
   for (Index place = 0; place < static_cast<Index>(rod.nodes.size()); ++place) {
-    const DrawnTurn turn = drawn_turn(rod, place, model);
+    const ReferenceRotation turn = reference_rotation(rod, place, model);
     at_nodes.emplace_back(turn.angle / rod.voronoi_length(place) * turn.axis);
   }
   return at_nodes;
 }
 
 /// The values of the scene [1/m]: about the third axis of a plane, in space towards the directors.
-std::vector<Vec3> given_curvature(const RodLayout& rod) {
+std::vector<Vec3> given_curvature(const RodMesh& rod) {
   std::vector<Vec3> at_nodes;
   for (const double value : rod.natural_curvature) at_nodes.emplace_back(0.0, 0.0, value);
   for (const Vec2& pair : rod.natural_curvatures) at_nodes.emplace_back(pair[0], pair[1], 0.0);
@@ -99,13 +99,13 @@ std::vector<Vec3> given_curvature(const RodLayout& rod) {
 }
 
 /// The twist that the scene gives, along the third axis [rad/m].
-std::vector<Vec3> given_twist(const RodLayout& rod) {
+std::vector<Vec3> given_twist(const RodMesh& rod) {
   std::vector<Vec3> at_nodes;
   for (const double value : rod.natural_twist) at_nodes.emplace_back(0.0, 0.0, value);
   return at_nodes;
 }
 
-std::vector<CurvatureJump> jumps_of(const CellCurvature& curvature, const RodLayout& rod,
+std::vector<CurvatureJump> jumps_of(const CellCurvature& curvature, const RodMesh& rod,
                                     const Model& model) {
   std::vector<CurvatureJump> jumps;
   const auto count = static_cast<Index>(rod.nodes.size());
@@ -121,64 +121,64 @@ std::vector<CurvatureJump> jumps_of(const CellCurvature& curvature, const RodLay
   return jumps;
 }
 
-bool has_cells_beside(const RodLayout& rod) {
+bool has_cells_beside(const RodMesh& rod) {
   return static_cast<Index>(rod.nodes.size()) > 2 * kBeside;
 }
 
 /// The section of the drawn rod before a node.
-const SectionFrame& drawn_section(const RodLayout& rod, Index place) {
-  return rod.drawn_frames[to_size(rod.edge_before(place))];
+const SectionFrame& reference_section(const RodMesh& rod, Index place) {
+  return rod.initial_frames[to_size(rod.edge_before(place))];
 }
 
 /// Those of the curvatures that the scene gives.
-std::vector<CurvatureJump> given_jumps_of(const RodLayout& rod, const Model& model) {
+std::vector<CurvatureJump> given_jumps_of(const RodMesh& rod, const Model& model) {
   std::vector<CurvatureJump> jumps =
       jumps_of({rod, given_curvature(rod), Known::AtNodes}, rod, model);
   if (model.dimension == 2) return jumps;
   for (auto& [place, turn] : jumps) {
-    const SectionFrame& section = drawn_section(rod, place);
+    const SectionFrame& section = reference_section(rod, place);
     turn = section.tangent.cross(turn[0] * section.first + turn[1] * section.second);
   }
   return jumps;
 }
 
 /// Adds those of the twist that the scene gives.
-void add_twist_jumps(const RodLayout& rod, const Model& model, std::vector<CurvatureJump>& jumps) {
+void add_twist_jumps(const RodMesh& rod, const Model& model, std::vector<CurvatureJump>& jumps) {
   for (const auto& [place, twist] : jumps_of({rod, given_twist(rod), Known::AtNodes}, rod, model)) {
     const Index here = place;
     const auto next = std::find_if(jumps.begin(), jumps.end(),
                                    [&](const auto& jump) { return jump.place >= here; });
     const bool is_there = next != jumps.end() && next->place == here;
     const auto own = is_there ? next : jumps.insert(next, {here, Vec3::Zero()});
-    own->turn += twist.z() * drawn_section(rod, here).tangent;
+    own->turn += twist.z() * reference_section(rod, here).tangent;
   }
 }
 
 }  // namespace
 
-std::vector<CurvatureJump> drawn_jumps_of(const RodLayout& rod, const Model& model) {
+std::vector<CurvatureJump> reference_jumps_of(const RodMesh& rod, const Model& model) {
   if (!has_cells_beside(rod)) return {};
-  return jumps_of({rod, drawn_curvature(rod, model), Known::BetweenEdges}, rod, model);
+  return jumps_of({rod, reference_curvature(rod, model), Known::BetweenEdges}, rod, model);
 }
 
-std::vector<CurvatureJump> natural_jumps_of(const RodLayout& rod, const Model& model) {
+std::vector<CurvatureJump> natural_jumps_of(const RodMesh& rod, const Model& model) {
   const bool bends = model.dimension == 2 ? rod.EI > 0.0 : rod.EI_1 > 0.0 && rod.EI_2 > 0.0;
   const bool has_curvature = model.dimension == 2 || model.has_sections();
   if (!bends || !has_curvature || !has_cells_beside(rod)) return {};
   std::vector<CurvatureJump> jumps =
-      bends_as_drawn(rod, model) ? rod.drawn_jumps : given_jumps_of(rod, model);
+      bends_as_drawn(rod, model) ? rod.reference_jumps : given_jumps_of(rod, model);
   if (!rod.natural_twist.empty()) add_twist_jumps(rod, model, jumps);
   return jumps;
 }
 
-double twist_beyond_mean(const RodLayout& rod, Index place, bool after) {
+double twist_beyond_mean(const RodMesh& rod, Index place, bool after) {
   if (rod.natural_twist.empty()) return 0.0;
   const Vec3 turn = curvature_beyond_mean(rod, place, after, rod.natural_jumps);
   if (turn.isZero(0.0)) return 0.0;  // as at an end, before which there is no section
-  return turn.dot(drawn_section(rod, place).tangent);
+  return turn.dot(reference_section(rod, place).tangent);
 }
 
-Vec3 curvature_beyond_mean(const RodLayout& rod, Index place, bool after,
+Vec3 curvature_beyond_mean(const RodMesh& rod, Index place, bool after,
                            const std::vector<CurvatureJump>& jumps) {
   const auto here = std::find_if(jumps.begin(), jumps.end(), [&](const CurvatureJump& jump) {
     return jump.place == rod.position(place);
@@ -189,12 +189,12 @@ Vec3 curvature_beyond_mean(const RodLayout& rod, Index place, bool after,
   return (after ? share : -share) * here->turn;
 }
 
-double planar_curvature_beside(const RodLayout& rod, Index place, bool after) {
+double planar_curvature_beside(const RodMesh& rod, Index place, bool after) {
   return rod.natural_curvature[to_size(rod.position(place))] +
          curvature_beyond_mean(rod, place, after, rod.natural_jumps).z();
 }
 
-Vec3 turn_from_line(double s, Index first_edge, const RodLayout& rod,
+Vec3 turn_from_line(double s, Index first_edge, const RodMesh& rod,
                     const std::vector<CurvatureJump>& jumps) {
   const Index place = first_edge + 1;
   const double node = rod.arc_length_at(place);
@@ -205,9 +205,9 @@ Vec3 turn_from_line(double s, Index first_edge, const RodLayout& rod,
   return -share * after * curvature_beyond_mean(rod, place, true, jumps);
 }
 
-Vec3 natural_turn_from_line(double s, Index first_edge, const RodLayout& rod) {
+Vec3 natural_turn_from_line(double s, Index first_edge, const RodMesh& rod) {
   return turn_from_line(s, first_edge, rod, rod.natural_jumps) -
-         turn_from_line(s, first_edge, rod, rod.drawn_jumps);
+         turn_from_line(s, first_edge, rod, rod.reference_jumps);
 }
 
 }  // namespace der

@@ -34,8 +34,8 @@ std::string ShortenedEdge::of_others(Index control) const {
 
 ElongationLimits::ElongationLimits(const Model& model) {
   for (std::size_t number = 0; number < model.rods.size(); ++number) {
-    const RodLayout& rod = model.rods[number];
-    if (rod.rest_entries.edges < 0) continue;
+    const RodMesh& rod = model.rods[number];
+    if (rod.natural_strain_entries.edges < 0) continue;
     const std::size_t first = elongations_.size();
     for (const ActuatedStretch& stretch : rod.actuated_stretches) {
       if (stretch.strains()) continue;
@@ -45,8 +45,8 @@ ElongationLimits::ElongationLimits(const Model& model) {
       const bool at_clamp = rod.clamp_at(i) != nullptr || rod.clamp_at(i + 1) != nullptr;
       Edge edge{
           number, i, at_clamp ? scenario::kLeastElongationAtClamp : scenario::kLeastElongation, {}};
-      for (const RestShape::Term& term :
-           model.rest_shape.terms_of(rod.rest_entries.edge(i).entry)) {
+      for (const NaturalStrain::Term& term :
+           model.natural_strain.terms_of(rod.natural_strain_entries.edge(i).entry)) {
         std::size_t which = first;
         while (elongations_[which].control != term.control) ++which;
         edge.parts.push_back({which, term.weight / rod.edge_length[to_size(i)]});
@@ -111,7 +111,7 @@ std::optional<ShortenedEdge> ElongationLimits::shortest(const Model& model, cons
 }
 
 ShortenedEdge ElongationLimits::describe(const Edge& edge, const Model& model) const {
-  const RodLayout& rod = model.rods[edge.rod];
+  const RodMesh& rod = model.rods[edge.rod];
   ShortenedEdge found{rod.name,
                       rod.arc_length_at(edge.number),
                       rod.arc_length_at(edge.number + 1),

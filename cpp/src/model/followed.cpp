@@ -19,12 +19,12 @@ Vec2 turned_by(const FollowedEdge& edge, double turn) {
 Index num_turns(const Model& model) { return static_cast<Index>(model.followed_edges.size()); }
 
 Index num_followed(const Model& model) {
-  return num_turns(model) + static_cast<Index>(model.drawn_frames.size());
+  return num_turns(model) + static_cast<Index>(model.initial_frames.size());
 }
 
-Vector followed_as_drawn(const Model& model) {
+Vector unwrapped_of_reference(const Model& model) {
   Vector followed = Vector::Zero(num_followed(model));
-  followed.tail(model.drawn_frames.size()) = model.drawn_frames;
+  followed.tail(model.initial_frames.size()) = model.initial_frames;
   return followed;
 }
 
@@ -35,14 +35,14 @@ void follow(const Model& model, const Vector& coordinates, const Vector& control
     followed[i] += angle_between(turned_by(edge, followed[i]), along_edge(edge.edge, coordinates));
   }
   if (model.framed_edges.empty()) return;
-  follow_frames(model, coordinates, controls, followed.tail(model.drawn_frames.size()));
+  follow_frames(model, coordinates, controls, followed.tail(model.initial_frames.size()));
 }
 
 void enter_followed(const Model& model, const Vector& followed, Vector& controls) {
   for (Index i = 0; i < num_turns(model); ++i) {
     controls[model.followed_edges[to_size(i)].turn] = followed[i];
   }
-  controls.head(model.drawn_frames.size()) = followed.tail(model.drawn_frames.size());
+  controls.head(model.initial_frames.size()) = followed.tail(model.initial_frames.size());
 }
 
 Index turned_too_far(const Model& model, const Vector& coordinates, const Vector& controls,
@@ -54,8 +54,8 @@ Index turned_too_far(const Model& model, const Vector& coordinates, const Vector
     }
   }
   if (model.framed_edges.empty()) return -1;
-  const Index edge =
-      frame_turned_too_far(model, coordinates, controls, followed.tail(model.drawn_frames.size()));
+  const Index edge = frame_turned_too_far(model, coordinates, controls,
+                                          followed.tail(model.initial_frames.size()));
   return edge < 0 ? -1 : model.framed_edges[to_size(edge)].end;
 }
 

@@ -21,12 +21,12 @@ void follow_frames(const Model& model, const Vector& coordinates, const Vector& 
     frames.segment<3>(block.first) = moved.tangent;
     frames.segment<3>(block.first + 3) = moved.first;
   }
-  for (const FramedJoint& joint : model.framed_joints) {
-    const SectionFrame before =
-        joint.before >= 0 ? reference_frame(joint.before, frames) : joint.held.untwisted(controls);
+  for (const FramedVertex& vertex : model.framed_vertices) {
+    const SectionFrame before = vertex.before >= 0 ? reference_frame(vertex.before, frames)
+                                                   : vertex.held.untwisted(controls);
     const SectionFrame after =
-        joint.after >= 0 ? reference_frame(joint.after, frames) : joint.held.untwisted(controls);
-    double& twist = frames[joint.twist()];
+        vertex.after >= 0 ? reference_frame(vertex.after, frames) : vertex.held.untwisted(controls);
+    double& twist = frames[vertex.twist()];
     twist = nearest_turn(twist_between(before, after), twist);
   }
 }
@@ -40,9 +40,9 @@ Index frame_turned_too_far(const Model& model, const Vector& coordinates, const 
   return -1;
 }
 
-SectionFrame drawn_frame(const Model& model, Index edge) {
-  const double theta = model.rest_positions[model.framed_edges[to_size(edge)].theta];
-  return reference_frame(edge, model.drawn_frames).turned(theta);
+SectionFrame initial_frame(const Model& model, Index edge) {
+  const double theta = model.reference_positions[model.framed_edges[to_size(edge)].theta];
+  return reference_frame(edge, model.initial_frames).turned(theta);
 }
 
 SectionFrame section_frame(const Model& model, Index edge, const Configuration& here) {

@@ -10,20 +10,20 @@ constexpr double kLeastGluedTurn = 1e-9;  // [rad]
 
 }  // namespace
 
-bool is_glued_turned(const RodJoint& joint) { return std::abs(joint.glued) > kLeastGluedTurn; }
+bool is_glued_turned(const RodVertex& vertex) { return std::abs(vertex.glued) > kLeastGluedTurn; }
 
-bool meets_turned(const RodJoint& joint) { return joint.clamp < 0 && is_glued_turned(joint); }
+bool meets_turned(const RodVertex& vertex) { return vertex.clamp < 0 && is_glued_turned(vertex); }
 
-bool turns_axes(const RodJoint& joint, const RodLayout& rod) {
-  return meets_turned(joint) && std::abs(std::sin(joint.glued)) > kLeastGluedTurn &&
+bool turns_axes(const RodVertex& vertex, const RodMesh& rod) {
+  return meets_turned(vertex) && std::abs(std::sin(vertex.glued)) > kLeastGluedTurn &&
          rod.EI_1 != rod.EI_2;
 }
 
-bool parts_bending(const RodJoint& joint, const RodLayout& rod) {
+bool parts_bending(const RodVertex& vertex, const RodMesh& rod) {
   const auto& natural = rod.natural_curvatures;
   const auto is_curved = [](const Vec2& at) { return !at.isZero(0.0); };
-  return turns_axes(joint, rod) ||
-         (meets_turned(joint) && std::any_of(natural.begin(), natural.end(), is_curved));
+  return turns_axes(vertex, rod) ||
+         (meets_turned(vertex) && std::any_of(natural.begin(), natural.end(), is_curved));
 }
 
 }  // namespace der

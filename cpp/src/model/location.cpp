@@ -16,18 +16,18 @@ namespace {
 /// moves the end of the chain onto the curve (supports/clamp.hpp).
 constexpr double kEndShare = 1.0 / 12.0;
 
-bool is_node(const RodLayout& rod, Index i, double s) {
+bool is_node(const RodMesh& rod, Index i, double s) {
   return std::abs(rod.arc_length_at(i) - s) <= rod.same_place();
 }
 
 }  // namespace
 
-std::vector<Index> turns_of(const RodLayout& rod) {
+std::vector<Index> turns_of(const RodMesh& rod) {
   if (!rod.closed) return {0};
   return {-1, 0, 1};
 }
 
-std::vector<EdgePart> edge_parts(const RodLayout& rod, double from, double to) {
+std::vector<EdgePart> edge_parts(const RodMesh& rod, double from, double to) {
   std::vector<EdgePart> parts;
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     const double a = std::max(from, rod.arc_length_at(edge));
@@ -37,25 +37,25 @@ std::vector<EdgePart> edge_parts(const RodLayout& rod, double from, double to) {
   return parts;
 }
 
-bool is_cut(const EdgePart& part, const RodLayout& rod) {
+bool is_cut(const EdgePart& part, const RodMesh& rod) {
   const double s0 = rod.arc_length_at(part.edge);
   const double s1 = rod.arc_length_at(part.edge + 1);
   return part.to - part.from < (s1 - s0) - rod.same_place();
 }
 
-double length_at_last_end(const EdgePart& part, const RodLayout& rod) {
+double length_at_last_end(const EdgePart& part, const RodMesh& rod) {
   const double s0 = rod.arc_length_at(part.edge);
   const double s1 = rod.arc_length_at(part.edge + 1);
   return (part.to - part.from) * (0.5 * (part.from + part.to) - s0) / (s1 - s0);
 }
 
-double tangent_place(const RodLayout& rod, Index edge) {
-  const double further = kNextCellLoss * rod.edge_length[to_size(rod.position(edge))];
+double tangent_place(const RodMesh& rod, Index edge) {
+  const double further = kFirstVertexCorrection * rod.edge_length[to_size(rod.position(edge))];
   return rod.edge_middle(edge) + (rod.clamp_at(edge) != nullptr ? further : 0.0) -
          (rod.clamp_at(edge + 1) != nullptr ? further : 0.0);
 }
 
-std::optional<PlaceBesideClamp> place_beside_clamp(const RodLayout& rod, double s) {
+std::optional<PlaceBesideClamp> place_beside_clamp(const RodMesh& rod, double s) {
   for (std::size_t i = 0; i < rod.clamps.size(); ++i) {
     const Index most = rod.closed ? 1 : 0;
     for (Index turns = -most; turns <= most; ++turns) {
@@ -72,14 +72,14 @@ std::optional<PlaceBesideClamp> place_beside_clamp(const RodLayout& rod, double 
   return std::nullopt;
 }
 
-double beyond_outer_middle(const RodLayout& rod, double s) {
+double beyond_outer_middle(const RodMesh& rod, double s) {
   if (rod.closed || place_beside_clamp(rod, s)) return 0.0;
   return std::max({0.0, rod.edge_middle(0) - s, s - rod.edge_middle(rod.num_edges() - 1)});
 }
 
 namespace {
 
-double given_arc_length(const scenario::Location& location, const RodLayout& rod) {
+double given_arc_length(const scenario::Location& location, const RodMesh& rod) {
   using Kind = scenario::Location::Kind;
   switch (location.kind) {
     case Kind::Start:
@@ -102,18 +102,18 @@ double given_arc_length(const scenario::Location& location, const RodLayout& rod
 
 }  // namespace
 
-double arc_length_of(const scenario::Location& location, const RodLayout& rod) {
+double arc_length_of(const scenario::Location& location, const RodMesh& rod) {
   const double s = given_arc_length(location, rod);
   const bool at_end = rod.closed && s >= rod.rest_length() - rod.same_place();
   return at_end ? 0.0 : s;
 }
 
-std::vector<double> arc_lengths_of(const scenario::Location& location, const RodLayout& rod) {
+std::vector<double> arc_lengths_of(const scenario::Location& location, const RodMesh& rod) {
   if (location.kind == scenario::Location::Kind::All) return rod.arc_length;
   return {arc_length_of(location, rod)};
 }
 
-Index node_at(const scenario::Location& location, const RodLayout& rod) {
+Index node_at(const scenario::Location& location, const RodMesh& rod) {
   const double s = arc_length_of(location, rod);
   const Index node = nearest_node(rod.arc_length, s);
   if (!is_node(rod, node, s)) {
@@ -124,14 +124,14 @@ Index node_at(const scenario::Location& location, const RodLayout& rod) {
   return node;
 }
 
-std::vector<Index> nodes_at(const scenario::Location& location, const RodLayout& rod) {
+std::vector<Index> nodes_at(const scenario::Location& location, const RodMesh& rod) {
   if (location.kind != scenario::Location::Kind::All) return {node_at(location, rod)};
   std::vector<Index> all(rod.nodes.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<Index>(i);
   return all;
 }
 
-std::vector<Weighted> edge_weights(const RodLayout& rod, double s) {
+std::vector<Weighted> edge_weights(const RodMesh& rod, double s) {
   if (const auto beside = place_beside_clamp(rod, s)) return {{beside->edge, beside->share()}};
   const Index edges = rod.num_edges();
   const auto beyond = [&](double distance, Index last, Index before) -> std::vector<Weighted> {

@@ -11,14 +11,14 @@
 
 namespace der {
 
-Index RodLayout::position(Index place) const {
+Index RodMesh::position(Index place) const {
   if (!closed) return place;
   const auto count = static_cast<Index>(nodes.size());
   const Index beyond = place % count;
   return beyond < 0 ? beyond + count : beyond;
 }
 
-double RodLayout::arc_length_at(Index place) const {
+double RodMesh::arc_length_at(Index place) const {
   const Index own = position(place);
   const double s = arc_length[to_size(own)];
   if (own == place) return s;
@@ -26,27 +26,27 @@ double RodLayout::arc_length_at(Index place) const {
   return s + turns * rest_length();
 }
 
-double RodLayout::edge_middle(Index edge) const {
+double RodMesh::edge_middle(Index edge) const {
   return 0.5 * (arc_length_at(edge) + arc_length_at(edge + 1));
 }
 
-double RodLayout::voronoi_length(Index node) const {
+double RodMesh::voronoi_length(Index node) const {
   const auto length = [this](Index edge) { return edge < 0 ? 0.0 : edge_length[to_size(edge)]; };
   return 0.5 * (length(edge_before(node)) + length(edge_after(node)));
 }
 
-Edge RodLayout::edge(Index number, const Model& model) const {
+Edge RodMesh::edge(Index number, const Model& model) const {
   return {model.dof(node(number), 0), model.dof(node(number + 1), 0),
           edge_length[to_size(position(number))]};
 }
 
-std::array<Index, 4> RodLayout::edge_dofs(Index edge, const Model& model) const {
+std::array<Index, 4> RodMesh::edge_dofs(Index edge, const Model& model) const {
   const Index a = node(edge);
   const Index b = node(edge + 1);
   return {model.dof(a, 0), model.dof(a, 1), model.dof(b, 0), model.dof(b, 1)};
 }
 
-const Clamp* RodLayout::clamp_at(Index place) const {
+const Clamp* RodMesh::clamp_at(Index place) const {
   const Index here = position(place);
   for (const Clamp& clamp : clamps) {
     if (clamp.place == here) return &clamp;
@@ -54,7 +54,7 @@ const Clamp* RodLayout::clamp_at(Index place) const {
   return nullptr;
 }
 
-CellHalves RodLayout::cell_halves_at(Index place) const {
+CellHalves RodMesh::cell_halves_at(Index place) const {
   const Index here = position(place);
   for (const CellHalves& halves : cell_halves) {
     if (halves.place == here) return halves;
@@ -62,7 +62,7 @@ CellHalves RodLayout::cell_halves_at(Index place) const {
   return {here};
 }
 
-std::vector<double> RodLayout::moment_arc_lengths() const {
+std::vector<double> RodMesh::moment_arc_lengths() const {
   std::vector<double> places;
   for (const MomentPlace& place : moment_places) places.push_back(place.arc_length);
   for (const SpatialMomentPlace& place : spatial_moments) places.push_back(place.arc_length);
@@ -83,28 +83,28 @@ const Place* place_at(double s, const std::vector<Place>& places, double same_pl
 
 }  // namespace
 
-const MomentPlace* RodLayout::moment_place_at(double s) const {
+const MomentPlace* RodMesh::moment_place_at(double s) const {
   return place_at(s, moment_places, same_place());
 }
 
-const SectionSpringPlace* RodLayout::section_spring_at(double s) const {
+const SectionSpringPlace* RodMesh::section_spring_at(double s) const {
   return place_at(s, section_springs, same_place());
 }
 
-const RodLayout& Model::rod(const std::string& rod_name) const {
-  for (const RodLayout& layout : rods) {
+const RodMesh& Model::rod(const std::string& rod_name) const {
+  for (const RodMesh& layout : rods) {
     if (layout.name == rod_name) return layout;
   }
   throw Error("model_error", "there is no rod named '" + rod_name + "'");
 }
 
-RodLayout& Model::rod(const std::string& rod_name) {
+RodMesh& Model::rod(const std::string& rod_name) {
   return rods[static_cast<std::size_t>(&std::as_const(*this).rod(rod_name) - rods.data())];
 }
 
-Index follow_edge(const RodLayout& rod, Index edge, Model& model) {
+Index follow_edge(const RodMesh& rod, Index edge, Model& model) {
   const Edge followed = rod.edge(edge, model);
-  const Vec2 drawn = along_edge(followed, model.rest_positions);
+  const Vec2 drawn = along_edge(followed, model.reference_positions);
   const double direction = std::atan2(drawn.y(), drawn.x());
   // An entry of its own, which no table moves.
   model.followed_edges.push_back({followed, direction, model.tables.add({{0.0}, {0.0}})});
@@ -124,7 +124,7 @@ bool Model::can_set(Index control) const {
 }
 
 NodePlace place_of(const Model& model, Index node) {
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     const auto found = std::find(rod.nodes.begin(), rod.nodes.end(), node);
     if (found != rod.nodes.end()) {
       return {rod.name, static_cast<Index>(found - rod.nodes.begin())};
@@ -133,8 +133,8 @@ NodePlace place_of(const Model& model, Index node) {
   return {};
 }
 
-RestShift rest_shift(const RodLayout& rod, const RodJoint& joint) {
-  return rod.rest_entries.cell(rod.position(joint.place()), joint.leaves_clamp());
+NaturalStrainOffset natural_strain_offset(const RodMesh& rod, const RodVertex& vertex) {
+  return rod.natural_strain_entries.cell(rod.position(vertex.place()), vertex.leaves_clamp());
 }
 
 Vector over_all_dofs(const Model& model, const Vector& free) {

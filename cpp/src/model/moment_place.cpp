@@ -16,7 +16,7 @@
 namespace der {
 namespace {
 
-double cell_length(const RodLayout& rod, const MomentPlace& place) {
+double cell_length(const RodMesh& rod, const MomentPlace& place) {
   if (const auto beside = place_beside_clamp(rod, place.arc_length)) {
     return beside->share() * (1.0 - beside->share()) * beside->reach;
   }
@@ -39,7 +39,7 @@ double applied_moment(const MomentPlace& place, const Vector& controls) {
 /// first edge having turned by `before` [rad] in the last state. `offset(pivot)` is where clamps
 /// have their pivots [m].
 template <int Edges, class Offset>
-double turn_of(const MomentPlace& place, const RodLayout& rod, const Model& model,
+double turn_of(const MomentPlace& place, const RodMesh& rod, const Model& model,
                const Vector& coordinates, const Offset& offset, double before) {
   using Kernel = RotationalSpring<Edges>;
   const std::size_t number = to_size(place.spring);
@@ -60,7 +60,7 @@ double turn_of(const MomentPlace& place, const RodLayout& rod, const Model& mode
 
 /// 0 without springs.
 template <class Offset>
-double spring_turn(const MomentPlace& place, const RodLayout& rod, const Model& model,
+double spring_turn(const MomentPlace& place, const RodMesh& rod, const Model& model,
                    const Vector& coordinates, const Offset& offset, double before) {
   if (place.spring < 0) return 0.0;
   return place.weights.size() == 1 ? turn_of<1>(place, rod, model, coordinates, offset, before)
@@ -70,21 +70,21 @@ double spring_turn(const MomentPlace& place, const RodLayout& rod, const Model& 
 /// The turn of the tangent at the place by a clamp beside it [rad]; `control(i)` is the value of a
 /// control.
 template <class Control>
-double turn_by_clamp(const MomentPlace& place, const RodLayout& rod, const Control& control) {
+double turn_by_clamp(const MomentPlace& place, const RodMesh& rod, const Control& control) {
   const auto beside = place_beside_clamp(rod, place.arc_length);
   if (!beside) return 0.0;
   const Index rotation = rod.clamps[to_size(beside->clamp)].rotation;
   return rotation < 0 ? 0.0 : (1.0 - beside->share()) * control(rotation);
 }
 
-double moment_of(const MomentPlace& place, const RodLayout& rod, double applied, double turn) {
+double moment_of(const MomentPlace& place, const RodMesh& rod, double applied, double turn) {
   return place.series_share(rod.EI) * (applied - place.stiffness * turn);
 }
 
 /// Elastic energy [J] of the cells under the applied moments, with the springs slack.
 double stored_by_loads(const Model& model, const Vector& controls) {
   double energy = 0.0;
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     if (rod.EI == 0.0) continue;
     for (const MomentPlace& place : rod.moment_places) {
       const double applied = applied_moment(place, controls);
@@ -96,7 +96,7 @@ double stored_by_loads(const Model& model, const Vector& controls) {
 
 }  // namespace
 
-MomentPlace moment_place(double s, const RodLayout& rod) {
+MomentPlace moment_place(double s, const RodMesh& rod) {
   std::vector<Weighted> edges = edge_weights(rod, s);
   std::sort(edges.begin(), edges.end(),
             [](const Weighted& a, const Weighted& b) { return a.place < b.place; });
@@ -108,14 +108,14 @@ MomentPlace moment_place(double s, const RodLayout& rod) {
   return place;
 }
 
-MomentPlace& place_of_moments(double s, RodLayout& rod) {
+MomentPlace& place_of_moments(double s, RodMesh& rod) {
   if (const MomentPlace* known = rod.moment_place_at(s)) {
     return rod.moment_places[static_cast<std::size_t>(known - rod.moment_places.data())];
   }
   return rod.moment_places.emplace_back(moment_place(s, rod));
 }
 
-double carried_moment(const MomentPlace& place, const RodLayout& rod, const Model& model,
+double carried_moment(const MomentPlace& place, const RodMesh& rod, const Model& model,
                       const State& state, double applied) {
   const double before = place.followed >= 0 ? state.followed[place.followed] : 0.0;
   const auto offset = [&](const Pivot& pivot) { return offset_of(pivot, model, state); };
@@ -126,7 +126,7 @@ double carried_moment(const MomentPlace& place, const RodLayout& rod, const Mode
   return moment_of(place, rod, applied, turn);
 }
 
-Energies cell_energies(const RodLayout& rod, const Model& model, const Configuration& here) {
+Energies cell_energies(const RodMesh& rod, const Model& model, const Configuration& here) {
   if (model.has_sections()) return section_cell_energies(rod, model, here);
   Energies energies;
   if (rod.EI == 0.0) return energies;

@@ -4,8 +4,8 @@
 
 namespace der {
 
-/// Natural twist at the middle of the length over which a joint twists, its mean there [rad/m]: as
+/// Natural twist at the middle of the length over which a vertex twists, its mean there [rad/m]: as
 /// the scene gives it, or that of the drawn rod.
-double natural_twist_at(const RodLayout& rod, const RodJoint& joint);
+double natural_twist_at(const RodMesh& rod, const RodVertex& vertex);
 
 }  // namespace der

@@ -105,7 +105,7 @@ void take_kink_out(const Numbers& nodes, Numbers& weights) {
 /// The places from the first to the last one that a point between `right - 1` and `right` may have:
 /// up to the next ones on both sides where `ends` says that they end there.
 template <class Ends>
-std::pair<Index, Index> range_about(const RodLayout& rod, Index right, const Ends& ends) {
+std::pair<Index, Index> range_about(const RodMesh& rod, Index right, const Ends& ends) {
   Index first = right - 1;
   Index last = right;
   const auto goes_on = [&](Index place) { return rod.is_inner(place) && !ends(place); };
@@ -116,7 +116,7 @@ std::pair<Index, Index> range_about(const RodLayout& rod, Index right, const End
 
 }  // namespace
 
-std::vector<Weighted> node_weights(const RodLayout& rod, double s, const Model& model) {
+std::vector<Weighted> node_weights(const RodMesh& rod, double s, const Model& model) {
   const auto is_node = [&](Index place) {
     return std::abs(rod.arc_length_at(place) - s) <= rod.same_place();
   };

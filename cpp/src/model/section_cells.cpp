@@ -10,8 +10,7 @@
 namespace der {
 namespace {
 
-StoredBeside stored_by_moments(const RodLayout& rod, const Model& model,
-                               const Configuration& here) {
+StoredBeside stored_by_moments(const RodMesh& rod, const Model& model, const Configuration& here) {
   StoredBeside total;
   for (const SpatialMomentPlace& place : rod.spatial_moments) {
     const auto stored = circulatory_loads(*model.elements)[to_size(place.load)].stored(here);
@@ -30,7 +29,7 @@ double stored_beside_spring(Index element, const Model& model, const Configurati
                                    gather(springs.dofs[number], here.coordinates));
 }
 
-double stored_beside_springs(const RodLayout& rod, const Model& model, const Configuration& here) {
+double stored_beside_springs(const RodMesh& rod, const Model& model, const Configuration& here) {
   double energy = 0.0;
   for (const SectionSpringPlace& spring : rod.section_springs) {
     energy += spring.on_one_edge ? stored_beside_spring<1>(spring.element, model, here)
@@ -41,8 +40,7 @@ double stored_beside_springs(const RodLayout& rod, const Model& model, const Con
 
 }  // namespace
 
-Energies section_cell_energies(const RodLayout& rod, const Model& model,
-                               const Configuration& here) {
+Energies section_cell_energies(const RodMesh& rod, const Model& model, const Configuration& here) {
   Energies energies;
   const double beside_springs = stored_beside_springs(rod, model, here);
   const StoredBeside by_moments = stored_by_moments(rod, model, here);
@@ -53,7 +51,7 @@ Energies section_cell_energies(const RodLayout& rod, const Model& model,
 
 double stored_by_section_moments(const Model& model, const Configuration& here) {
   double energy = 0.0;
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     const StoredBeside stored = stored_by_moments(rod, model, here);
     energy += stored.in_rod + stored.in_springs;
   }

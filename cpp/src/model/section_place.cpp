@@ -8,7 +8,7 @@
 
 namespace der {
 
-SectionPlace section_place(double s, const RodLayout& rod) {
+SectionPlace section_place(double s, const RodMesh& rod) {
   const MomentPlace moments = moment_place(s, rod);
   SectionPlace place;
   place.first_edge = moments.first_edge;

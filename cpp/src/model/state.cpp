@@ -22,7 +22,7 @@ State initial_state(const Model& model) {
   model.tables.evaluate(0.0, controls);
   apply_prescribed_motion(model, controls, state.positions);
   // Supports that are elsewhere at time 0 have come there on a way that nothing tells.
-  state.followed = followed_as_drawn(model);
+  state.followed = unwrapped_of_reference(model);
   return state;
 }
 
@@ -33,7 +33,7 @@ void evaluate_controls(const Model& model, const State& state, double time, Vect
     model.tables.evaluate(time, controls);
   }
   for (const Ramp& ramp : state.ramps) controls[ramp.control] = ramp.at(time);
-  model.rest_shape.enter(controls);
+  model.natural_strain.enter(controls);
   enter_followed(model, state.followed, controls);
 }
 
@@ -82,7 +82,7 @@ Energies energies(const Model& model, const Configuration& here, const Vector& v
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
     if constexpr (is_recorded(Kernel::kTerm)) result[Kernel::kTerm] += element_energy(list, here);
   });
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     result += cell_energies(rod, model, here);
   }
   result[EnergyTerm::Kinetic] = model.mass.kinetic_energy(velocities);

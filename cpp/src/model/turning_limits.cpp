@@ -29,22 +29,22 @@ TurningLimits::TurningLimits(const Model& model) {
 }
 
 void TurningLimits::add_rod(const Model& model, std::size_t number) {
-  const RodLayout& rod = model.rods[number];
-  if (rod.rest_entries.cells < 0) return;
+  const RodMesh& rod = model.rods[number];
+  if (rod.natural_strain_entries.cells < 0) return;
   for (const ActuatedStretch& stretch : rod.actuated_stretches) {
     if (stretch.what != scenario::Actuated::Curvature) continue;
     for (const Index control : stretch.controls) {
       if (control >= 0) curvatures_.push_back({stretch.name, control, 0.0, 0.0, {}, {}});
     }
   }
-  const std::size_t directions = rod.rest_entries.strains == 1 ? 1 : 2;
+  const std::size_t directions = rod.natural_strain_entries.strains == 1 ? 1 : 2;
   for (std::size_t node = 0; node < rod.nodes.size(); ++node) {
     for (const bool leaves : {false, true}) {
-      const Index entry = rod.rest_entries.cell(static_cast<Index>(node), leaves).entry;
+      const Index entry = rod.natural_strain_entries.cell(static_cast<Index>(node), leaves).entry;
       Cell cell{number, static_cast<Index>(node), {}};
       for (std::size_t d = 0; d < directions; ++d) {
-        for (const RestShape::Term& term :
-             model.rest_shape.terms_of(entry + static_cast<Index>(d))) {
+        for (const NaturalStrain::Term& term :
+             model.natural_strain.terms_of(entry + static_cast<Index>(d))) {
           if (!bends(term.control)) continue;  // a twist: at a corner it turns the other leg
           cell.parts.push_back({find(term.control), d, term.weight});
         }
@@ -107,7 +107,7 @@ void TurningLimits::look(const Curvature& curvature, const Cell*& found) const {
 }
 
 SharpTurn TurningLimits::describe(const Cell& cell, const Model& model) const {
-  const RodLayout& rod = model.rods[cell.rod];
+  const RodMesh& rod = model.rods[cell.rod];
   SharpTurn turn{rod.name, cell.node, angle(cell), 0.0, {}, true};
   std::array<double, 2> curvature{};
   for (const Part& part : cell.parts) {

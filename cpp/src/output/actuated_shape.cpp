@@ -11,7 +11,7 @@ namespace {
 /// with `twists` also with those at which its twist jumps. Allocates nothing: fields ask for each
 /// sample.
 template <class Use>
-void for_each_jump(const RodLayout& rod, bool twists, const Use& use) {
+void for_each_jump(const RodMesh& rod, bool twists, const Use& use) {
   for (const ActuatedStretch& stretch : rod.actuated_stretches) {
     if (!stretch.strains() || (!twists && stretch.what == scenario::Actuated::Twist)) continue;
     if (stretch.jumps(false)) use(stretch.from);
@@ -21,10 +21,10 @@ void for_each_jump(const RodLayout& rod, bool twists, const Use& use) {
 
 }  // namespace
 
-ActuatedRest::ActuatedRest(const RestShift& shift, Index size, const Model& model) {
+ActuatedRest::ActuatedRest(const NaturalStrainOffset& shift, Index size, const Model& model) {
   if (shift.entry < 0) return;
   for (Index i = 0; i < size; ++i) {
-    for (RestShape::Term term : model.rest_shape.terms_of(shift.entry + i)) {
+    for (NaturalStrain::Term term : model.natural_strain.terms_of(shift.entry + i)) {
       term.entry = i;
       terms_.push_back(term);
     }
@@ -67,7 +67,7 @@ bool ActuatedShape::is_strained() const {
                      [](const ActuatedStretch& stretch) { return stretch.strains(); });
 }
 
-std::vector<double> actuated_jumps(const RodLayout& rod, bool twists) {
+std::vector<double> actuated_jumps(const RodMesh& rod, bool twists) {
   std::vector<double> places;
   for_each_jump(rod, twists, [&](double s) {
     const bool within = s > rod.same_place() && s < rod.rest_length() - rod.same_place();
@@ -76,7 +76,7 @@ std::vector<double> actuated_jumps(const RodLayout& rod, bool twists) {
   return places;
 }
 
-bool actuation_jumps_at_start(const RodLayout& rod) {
+bool actuation_jumps_at_start(const RodMesh& rod) {
   if (!rod.closed) return false;
   bool found = false;
   for (const ActuatedStretch& stretch : rod.actuated_stretches) {
@@ -88,7 +88,7 @@ bool actuation_jumps_at_start(const RodLayout& rod) {
   return found;
 }
 
-bool actuation_jumps_in(Index edge, const RodLayout& rod, bool twists) {
+bool actuation_jumps_in(Index edge, const RodMesh& rod, bool twists) {
   const double start = rod.arc_length_at(edge) + rod.same_place();
   const double end = rod.arc_length_at(edge + 1) - rod.same_place();
   bool found = false;

@@ -39,8 +39,8 @@ class ActuationForces::Reader {
 };
 
 ActuationForces::Reader::Reader(const Model& model, const std::optional<std::string>& only)
-    : by_entry_(Vector::Zero(model.rest_shape.end())) {
-  for (const RodLayout& rod : model.rods) {
+    : by_entry_(Vector::Zero(model.natural_strain.end())) {
+  for (const RodMesh& rod : model.rods) {
     for (const ActuatedStretch& stretch : rod.actuated_stretches) {
       if (only && *only != stretch.name) continue;
       ActuationForce force;
@@ -57,8 +57,8 @@ ActuationForces::Reader::Reader(const Model& model, const std::optional<std::str
 
 void ActuationForces::Reader::add_parts(const ActuatedStretch& stretch, const Model& model) {
   const ActuationForce& force = forces_.back();
-  for (Index entry = 0; entry < model.rest_shape.end(); ++entry) {
-    for (const RestShape::Term& term : model.rest_shape.terms_of(entry)) {
+  for (Index entry = 0; entry < model.natural_strain.end(); ++entry) {
+    for (const NaturalStrain::Term& term : model.natural_strain.terms_of(entry)) {
       for (std::size_t value = 0; value < force.num_values; ++value) {
         if (term.control != stretch.controls[value]) continue;
         parts_.push_back({forces_.size() - 1, value, entry, term.weight / force.length});

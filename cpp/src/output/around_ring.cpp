@@ -13,7 +13,7 @@ struct Sample {
 };
 
 /// The own samples between the start and the end of the ring, in the order of the arc length.
-std::vector<Sample> own_samples(const RodField& own, const RodLayout& rod) {
+std::vector<Sample> own_samples(const RodField& own, const RodMesh& rod) {
   const double length = rod.rest_length();
   std::vector<Sample> samples;
   for (std::size_t i = 0; i < own.arc_length().size(); ++i) {
@@ -30,7 +30,7 @@ std::vector<Sample> own_samples(const RodField& own, const RodLayout& rod) {
   return samples;
 }
 
-std::vector<Sample> closed_samples(const RodField& own, const RodLayout& rod) {
+std::vector<Sample> closed_samples(const RodField& own, const RodMesh& rod) {
   std::vector<Sample> samples = own_samples(own, rod);
   if (samples.empty() || !own.continuous()) return samples;
   const double length = rod.rest_length();
@@ -107,7 +107,7 @@ class RingField : public RodField {
 
 }  // namespace
 
-std::unique_ptr<RodField> around_ring(std::unique_ptr<RodField> own, const RodLayout& rod) {
+std::unique_ptr<RodField> around_ring(std::unique_ptr<RodField> own, const RodMesh& rod) {
   std::vector<Sample> samples = closed_samples(*own, rod);
   return std::make_unique<RingField>(std::move(own), std::move(samples));
 }

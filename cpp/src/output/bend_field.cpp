@@ -41,7 +41,7 @@ double turning_angle(const BendCell& cell, const Model& model, const State& stat
 }
 
 /// From edge to edge at an inner node, from or to the held tangent at a clamped end.
-BendCell cell_at(const RodLayout& rod, Index node, const Model& model) {
+BendCell cell_at(const RodMesh& rod, Index node, const Model& model) {
   BendCell cell;
   if (const Index edge = rod.edge_before(node); edge >= 0) {
     cell.before = effective_edge(rod, edge, model);
@@ -60,7 +60,7 @@ BendCell cell_at(const RodLayout& rod, Index node, const Model& model) {
 class TurnField : public RodField {
  public:
   /// `nodes`: positions in the rod of the nodes that bend, with the factor of each.
-  TurnField(const RodLayout& rod, const std::vector<Weighted>& nodes, bool continuous,
+  TurnField(const RodMesh& rod, const std::vector<Weighted>& nodes, bool continuous,
             const Model& model)
       : RodField(arc_lengths(rod, nodes)), continuous_(continuous) {
     for (const auto& [node, factor] : nodes) {
@@ -74,7 +74,7 @@ class TurnField : public RodField {
   [[nodiscard]] bool continuous() const override { return continuous_; }
 
  private:
-  static std::vector<double> arc_lengths(const RodLayout& rod, const std::vector<Weighted>& nodes) {
+  static std::vector<double> arc_lengths(const RodMesh& rod, const std::vector<Weighted>& nodes) {
     std::vector<double> result;
     for (const auto& [node, factor] : nodes) result.push_back(rod.arc_length[to_size(node)]);
     return result;
@@ -88,7 +88,7 @@ class TurnField : public RodField {
 enum class Bending { Curvature, Moment, NaturalCurvature };
 
 /// A rod without bending stiffness: moment and natural curvature are zero.
-std::unique_ptr<RodField> limp_field(Bending what, const RodLayout& rod, const Model& model) {
+std::unique_ptr<RodField> limp_field(Bending what, const RodMesh& rod, const Model& model) {
   std::vector<Weighted> nodes;
   for (Index i = 0; i < static_cast<Index>(rod.nodes.size()); ++i) {
     if (!rod.is_inner(i)) continue;
@@ -102,7 +102,7 @@ std::unique_ptr<RodField> limp_field(Bending what, const RodLayout& rod, const M
 template <class Measure>
 class BendField : public EdgewiseField<double> {
  public:
-  static std::unique_ptr<RodField> make(Bending what, const RodLayout& rod, const Model& model) {
+  static std::unique_ptr<RodField> make(Bending what, const RodMesh& rod, const Model& model) {
     std::vector<std::pair<Known, Known>> edges;
     Lines lines;
     const NaturalCurvature natural(rod, model);
@@ -147,7 +147,7 @@ class BendField : public EdgewiseField<double> {
     EffectiveEdge effective;       // of the edge
   };
 
-  BendField(Bending what, const RodLayout& rod, std::vector<Sample> samples, Lines lines,
+  BendField(Bending what, const RodMesh& rod, std::vector<Sample> samples, Lines lines,
             MomentRecovery recovery, std::vector<std::pair<Known, Known>> edges)
       : EdgewiseField(std::move(samples), std::move(lines)),
         what_(what),
@@ -157,7 +157,7 @@ class BendField : public EdgewiseField<double> {
         recovery_(std::move(recovery)),
         edges_(std::move(edges)) {}
 
-  static Known known(const RodLayout& rod, Index edge, bool last, const NaturalCurvature& natural,
+  static Known known(const RodMesh& rod, Index edge, bool last, const NaturalCurvature& natural,
                      const Model& model) {
     const Index node = last ? edge + 1 : edge;
     Known result;
@@ -177,12 +177,14 @@ class BendField : public EdgewiseField<double> {
       }
       result.length = clamp_cell_length(rod, edge);
       result.rest_angle = clamp_rest_angle(rod, *clamp, edge, model);
-      result.actuated = ActuatedRest(rod.rest_entries.cell(clamp->place, !last), 1, model);
+      result.actuated =
+          ActuatedRest(rod.natural_strain_entries.cell(clamp->place, !last), 1, model);
     } else if (rod.is_inner(node)) {
       result.cell = cell_at(rod, node, model);
       result.length = bend_length(rod, node);
       result.rest_angle = rod.rest_turning_angle[to_size(rod.position(node))];
-      result.actuated = ActuatedRest(rod.rest_entries.cell(rod.position(node), false), 1, model);
+      result.actuated =
+          ActuatedRest(rod.natural_strain_entries.cell(rod.position(node), false), 1, model);
     }
     result.share = (result.arc_length - rod.arc_length_at(edge)) / rod.edge_length[to_size(edge)];
     result.natural_curvature = natural.at(edge, result.arc_length);
@@ -263,7 +265,7 @@ class BendField : public EdgewiseField<double> {
   std::vector<std::pair<Known, Known>> edges_;  // first and last of each
 };
 
-std::unique_ptr<RodField> make_bend_field(Bending what, const RodLayout& rod, const Model& model) {
+std::unique_ptr<RodField> make_bend_field(Bending what, const RodMesh& rod, const Model& model) {
   if (rod.EI == 0.0) return limp_field(what, rod, model);
   if (rod.curvature == scenario::CurvatureMeasure::Angle) {
     return BendField<AngleCurvature>::make(what, rod, model);
@@ -273,7 +275,7 @@ std::unique_ptr<RodField> make_bend_field(Bending what, const RodLayout& rod, co
 
 }  // namespace
 
-std::unique_ptr<RodField> make_turning_angle_field(const RodLayout& rod, const Model& model) {
+std::unique_ptr<RodField> make_turning_angle_field(const RodMesh& rod, const Model& model) {
   std::vector<Weighted> nodes;
   for (Index i = 0; i < static_cast<Index>(rod.nodes.size()); ++i) {
     if (rod.is_inner(i) || rod.clamp_at(i) != nullptr) nodes.push_back({i, 1.0});
@@ -281,17 +283,17 @@ std::unique_ptr<RodField> make_turning_angle_field(const RodLayout& rod, const M
   return std::make_unique<TurnField>(rod, nodes, false, model);
 }
 
-std::unique_ptr<RodField> make_curvature_field(const RodLayout& rod, const Model& model) {
+std::unique_ptr<RodField> make_curvature_field(const RodMesh& rod, const Model& model) {
   if (model.dimension == 3) return make_section_field(SectionQuantity::Curvature, rod, model);
   return make_bend_field(Bending::Curvature, rod, model);
 }
 
-std::unique_ptr<RodField> make_moment_field(const RodLayout& rod, const Model& model) {
+std::unique_ptr<RodField> make_moment_field(const RodMesh& rod, const Model& model) {
   if (model.dimension == 3) return make_section_field(SectionQuantity::Moment, rod, model);
   return make_bend_field(Bending::Moment, rod, model);
 }
 
-std::unique_ptr<RodField> make_natural_curvature_field(const RodLayout& rod, const Model& model) {
+std::unique_ptr<RodField> make_natural_curvature_field(const RodMesh& rod, const Model& model) {
   return make_bend_field(Bending::NaturalCurvature, rod, model);
 }
 

@@ -7,7 +7,7 @@
 
 namespace der {
 
-EdgeExcess::EdgeExcess(const RodLayout& rod, const SpreadForces& forces)
+EdgeExcess::EdgeExcess(const RodMesh& rod, const SpreadForces& forces)
     : rod_(rod), edges_(to_size(rod.num_edges())) {
   for (Index edge = 0; edge < rod.num_edges(); ++edge) add_forces(edge, forces);
   for (std::size_t d = 0; d < rod.distributed_places.size(); ++d) add_distributed(d);

@@ -14,7 +14,7 @@ namespace der {
 /// begin or end within the edge.
 class EdgeExcess {
  public:
-  EdgeExcess(const RodLayout& rod, const SpreadForces& forces);
+  EdgeExcess(const RodMesh& rod, const SpreadForces& forces);
 
   /// Whether an edge has no such load.
   [[nodiscard]] bool none(Index edge) const;
@@ -44,7 +44,7 @@ class EdgeExcess {
   [[nodiscard]] Vec3 foundation_force(Index edge, const CutFoundation& foundation,
                                       const Model& model, const State& state) const;
 
-  RodLayout rod_;
+  RodMesh rod_;
   std::vector<Loads> edges_;
 };
 

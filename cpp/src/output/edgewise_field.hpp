@@ -32,7 +32,7 @@ class EdgewiseField : public RodField {
       : RodField(arc_lengths(samples)), samples_(std::move(samples)), lines_(std::move(lines)) {}
 
   /// At the nodes and at all places inside edges where the moment has a kink or jumps.
-  static std::vector<Sample> samples_of(const RodLayout& rod, const MomentRecovery& recovery) {
+  static std::vector<Sample> samples_of(const RodMesh& rod, const MomentRecovery& recovery) {
     std::vector<Sample> samples;
     for (Index edge = 0; edge < rod.num_edges(); ++edge) {
       const auto add = [&](double s, bool before, bool smooth) {
@@ -53,7 +53,7 @@ class EdgewiseField : public RodField {
 
   /// Takes the two sides of the start of a ring apart: the one before it is at the end of the last
   /// edge.
-  static void part_at_start(const RodLayout& rod, std::vector<Sample>& samples) {
+  static void part_at_start(const RodMesh& rod, std::vector<Sample>& samples) {
     samples.front().smooth = false;
     if (samples.back().place.arc_length >= rod.rest_length() - rod.same_place()) return;
     samples.push_back({rod.num_edges() - 1, {rod.rest_length(), true}, false});

@@ -20,7 +20,7 @@ struct Part {
   Mass mass;
   std::vector<Index> dofs;
   ElementLists elements;
-  std::vector<RodLayout> rods;
+  std::vector<RodMesh> rods;
 
   [[nodiscard]] double gravity_energy(const Model& model, const State& state) const {
     const auto energy_in = [&](const auto& weight) {
@@ -66,7 +66,7 @@ class EnergyReader : public ProbeReader {
       constexpr EnergyTerm term = std::decay_t<decltype(list)>::KernelType::kTerm;
       if (reads(term)) energy += element_energy(list, here_);
     });
-    for (const RodLayout& rod : part_.rods) {
+    for (const RodMesh& rod : part_.rods) {
       const Energies cells = cell_energies(rod, model, here_);
       for (const EnergyTerm term : terms_) energy += cells[term];
     }
@@ -78,7 +78,7 @@ class EnergyReader : public ProbeReader {
   Configuration here_;
 };
 
-std::vector<Index> rod_dofs(const RodLayout& rod, const Model& model) {
+std::vector<Index> rod_dofs(const RodMesh& rod, const Model& model) {
   std::vector<Index> dofs;
   for (const Index node : rod.nodes) {
     for (int c = 0; c < model.dimension; ++c) dofs.push_back(model.dof(node, c));
@@ -92,7 +92,7 @@ std::vector<Index> rod_dofs(const RodLayout& rod, const Model& model) {
 }
 
 /// The nodes and edges of a rod, and everything between them.
-Part part_of(const RodLayout& rod, const Model& model) {
+Part part_of(const RodMesh& rod, const Model& model) {
   std::vector<Index> dofs = rod_dofs(rod, model);
   std::sort(dofs.begin(), dofs.end());
   const auto is_here = [&](Index dof) { return std::binary_search(dofs.begin(), dofs.end(), dof); };

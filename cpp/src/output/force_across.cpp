@@ -45,11 +45,11 @@ Course course_of(const RodField& field, double from, double to, const Model& mod
 
 }  // namespace
 
-bool bears_forces_across(const RodLayout& rod, const Model& model) {
-  return model.dimension == 2 ? rod.EI > 0.0 : !rod.joints.empty();
+bool bears_forces_across(const RodMesh& rod, const Model& model) {
+  return model.dimension == 2 ? rod.EI > 0.0 : !rod.vertices.empty();
 }
 
-ForceAcross::ForceAcross(const RodLayout& rod, const Model& model) {
+ForceAcross::ForceAcross(const RodMesh& rod, const Model& model) {
   const auto field = [&](const char* quantity) { return make_rod_field(quantity, rod, model); };
   if (!model.has_sections()) {
     bends_.push_back({field("curvature"), field("moment")});

@@ -11,7 +11,7 @@
 namespace der {
 
 /// Whether a rod bends against a stiffness, so that it can bear forces across it.
-bool bears_forces_across(const RodLayout& rod, const Model& model);
+bool bears_forces_across(const RodMesh& rod, const Model& model);
 
 /// The curvature k of a rod, and the force F in it across its tangent. As the tangent turns, it
 /// turns F into the tension T: dT/ds = k . F / stretch - f . t, with the force f along the rod for
@@ -19,7 +19,7 @@ bool bears_forces_across(const RodLayout& rod, const Model& model);
 class ForceAcross {
  public:
   /// The rod `bears_forces_across`.
-  ForceAcross(const RodLayout& rod, const Model& model);
+  ForceAcross(const RodMesh& rod, const Model& model);
 
   /// Towards the two directors, or in the plane.
   struct Mean {

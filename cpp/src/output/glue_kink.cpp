@@ -1,18 +1,18 @@
 #include "output/glue_kink.hpp"
 
-#include "der/output/joint_strain.hpp"
+#include "der/output/vertex_strain.hpp"
 #include "model/glue.hpp"
 #include "output/section_field.hpp"
 
 namespace der {
 
-std::optional<GlueKink> GlueKink::make(const RodLayout& rod, const Model& model) {
-  const bool has_joint = rod.closed && model.has_sections() && !rod.joints.empty();
-  if (!has_joint || !parts_bending(rod.joints.back(), rod)) return std::nullopt;
+std::optional<GlueKink> GlueKink::make(const RodMesh& rod, const Model& model) {
+  const bool has_vertex = rod.closed && model.has_sections() && !rod.vertices.empty();
+  if (!has_vertex || !parts_bending(rod.vertices.back(), rod)) return std::nullopt;
   return GlueKink(rod, model);
 }
 
-GlueKink::GlueKink(const RodLayout& rod, const Model& model)
+GlueKink::GlueKink(const RodMesh& rod, const Model& model)
     : first_edge_(rod.first_edge),
       last_edge_(rod.first_edge + rod.num_edges() - 1),
       curvature_1_(make_section_field(SectionQuantity::Curvature1, rod, model)),

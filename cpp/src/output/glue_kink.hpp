@@ -14,13 +14,13 @@ namespace der {
 class GlueKink {
  public:
   /// None where the rod bends alike on both sides.
-  static std::optional<GlueKink> make(const RodLayout& rod, const Model& model);
+  static std::optional<GlueKink> make(const RodMesh& rod, const Model& model);
 
   /// By how much the derivative of the tangent is larger at the start than at the end [1/m].
   [[nodiscard]] Vec3 jump(const Model& model, const State& state) const;
 
  private:
-  GlueKink(const RodLayout& rod, const Model& model);
+  GlueKink(const RodMesh& rod, const Model& model);
 
   Index first_edge_, last_edge_;                         // in the model
   std::unique_ptr<RodField> curvature_1_, curvature_2_;  // from the start all around to it

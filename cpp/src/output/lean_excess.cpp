@@ -13,7 +13,7 @@
 
 namespace der {
 
-LeanExcess::LeanExcess(const RodLayout& rod, const SpreadForces& forces, const Model& model)
+LeanExcess::LeanExcess(const RodMesh& rod, const SpreadForces& forces, const Model& model)
     : rod_(rod), actuated_(rod) {
   if (!bears_forces_across(rod, model)) return;
   for (const Clamp& clamp : rod.clamps) {
@@ -21,8 +21,8 @@ LeanExcess::LeanExcess(const RodLayout& rod, const SpreadForces& forces, const M
       if (edge < 0) continue;
       const double further = clamp_cell_length(rod, edge) - 0.5 * rod.edge_length[to_size(edge)];
       const double sign = edge == clamp.place ? 1.0 : -1.0;
-      const Vec2 natural = drawn_curvature(edge, model);
-      add({edge, sign * further, sign * (drawn_lean(rod, edge) - further) * natural, {}});
+      const Vec2 natural = reference_curvature(edge, model);
+      add({edge, sign * further, sign * (reference_lean(rod, edge) - further) * natural, {}});
     }
   }
   add_free_end(false, model);
@@ -56,7 +56,7 @@ const LeanExcess::Lean* LeanExcess::find(Index edge) const {
 
 /// Curvature [1/m] of an edge of a rod that is free of stress as it is drawn; 0 of a straight
 /// one, and where the scene gives it: the cells of a clamp then have it.
-Vec2 LeanExcess::drawn_curvature(Index edge, const Model& model) const {
+Vec2 LeanExcess::reference_curvature(Index edge, const Model& model) const {
   constexpr double kStraight = 1e-12;  // [rad]
   Vec2 drawn = Vec2::Zero();
   if (!rod_.natural_curvature.empty() || !rod_.natural_curvatures.empty()) return drawn;
@@ -64,10 +64,10 @@ Vec2 LeanExcess::drawn_curvature(Index edge, const Model& model) const {
     drawn[0] = NaturalCurvature(rod_, model).at(edge, rod_.edge_middle(edge));
   } else {
     double beside = 0.0;
-    for (const RodJoint& joint : rod_.joints) {
-      if (joint.clamp < 0 && is_corner(rod_, joint.place(), model)) continue;
-      if (joint.after != edge && joint.before != edge) continue;
-      drawn += joint.natural_curvature;
+    for (const RodVertex& vertex : rod_.vertices) {
+      if (vertex.clamp < 0 && is_corner(rod_, vertex.place(), model)) continue;
+      if (vertex.after != edge && vertex.before != edge) continue;
+      drawn += vertex.natural_curvature;
       beside += 1.0;
     }
     if (beside > 0.0) drawn /= beside;
@@ -91,7 +91,7 @@ void LeanExcess::add_free_end(bool last, const Model& model) {
   if (is_bent) {
     // A moment bends the end as a natural curvature does, and the curvature there has both; but
     // that of the drawn shape is no lean, since the nodes of a drawn curve lie on it.
-    add({edge, twelfth, -twelfth * drawn_curvature(edge, model), {}});
+    add({edge, twelfth, -twelfth * reference_curvature(edge, model), {}});
   } else {
     add({edge, 0.0, twelfth * natural, {}});
   }

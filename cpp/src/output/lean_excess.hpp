@@ -21,7 +21,7 @@ namespace der {
 /// (model/actuated_turn.hpp); on an edge on which their curvature jumps that is all.
 class LeanExcess {
  public:
-  LeanExcess(const RodLayout& rod, const SpreadForces& forces, const Model& model);
+  LeanExcess(const RodMesh& rod, const SpreadForces& forces, const Model& model);
 
   /// Whether no edge leans.
   [[nodiscard]] bool none() const { return leans_.empty(); }
@@ -41,13 +41,13 @@ class LeanExcess {
   };
 
   [[nodiscard]] const Lean* find(Index edge) const;
-  [[nodiscard]] Vec2 drawn_curvature(Index edge, const Model& model) const;
+  [[nodiscard]] Vec2 reference_curvature(Index edge, const Model& model) const;
   void add_free_end(bool last, const Model& model);
   [[nodiscard]] bool bears_moment(double s) const;
   void add(const Lean& lean);
   void bound_by(const SpreadForces& forces, Lean& lean) const;
 
-  RodLayout rod_;
+  RodMesh rod_;
   ActuatedShape actuated_;
   std::vector<Lean> leans_;
 };

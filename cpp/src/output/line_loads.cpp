@@ -14,7 +14,7 @@ Vec3 force_per_length(const DistributedPlace& place, const Model& model, const S
   return force;
 }
 
-Vec3 node_displacement(const RodLayout& rod, Index node, const Model& model, const State& state) {
+Vec3 node_displacement(const RodMesh& rod, Index node, const Model& model, const State& state) {
   const Index dof = model.dof(rod.node(node), 0);
   Vec3 displacement = Vec3::Zero();
   for (int c = 0; c < model.dimension; ++c) {
@@ -23,7 +23,7 @@ Vec3 node_displacement(const RodLayout& rod, Index node, const Model& model, con
   return displacement;
 }
 
-Vec3 force_per_length(const FoundationPlace& place, double s, const RodLayout& rod,
+Vec3 force_per_length(const FoundationPlace& place, double s, const RodMesh& rod,
                       const Model& model, const State& state) {
   const auto& arc = rod.arc_length;
   const auto beyond = std::upper_bound(arc.begin() + 1, rod.closed ? arc.end() : arc.end() - 1, s);

@@ -12,11 +12,11 @@ namespace der {
 Vec3 force_per_length(const DistributedPlace& place, const Model& model, const State& state);
 
 /// Displacement [m] of a node of a rod from where it is drawn.
-Vec3 node_displacement(const RodLayout& rod, Index node, const Model& model, const State& state);
+Vec3 node_displacement(const RodMesh& rod, Index node, const Model& model, const State& state);
 
 /// Force [N/m] of a foundation at arc length `s` [m], which is on its part: the displacement is
 /// linear along each edge.
-Vec3 force_per_length(const FoundationPlace& place, double s, const RodLayout& rod,
+Vec3 force_per_length(const FoundationPlace& place, double s, const RodMesh& rod,
                       const Model& model, const State& state);
 
 }  // namespace der

@@ -12,7 +12,7 @@ namespace der {
 namespace {
 
 /// The clamped place nearest to an edge on one side, if there is one.
-std::optional<Index> clamp_before(const RodLayout& rod, Index edge) {
+std::optional<Index> clamp_before(const RodMesh& rod, Index edge) {
   std::optional<Index> nearest;
   for (const Clamp& clamp : rod.clamps) {
     Index place = clamp.place;
@@ -21,7 +21,7 @@ std::optional<Index> clamp_before(const RodLayout& rod, Index edge) {
   }
   return nearest;
 }
-std::optional<Index> clamp_beyond(const RodLayout& rod, Index edge) {
+std::optional<Index> clamp_beyond(const RodMesh& rod, Index edge) {
   std::optional<Index> nearest;
   for (const Clamp& clamp : rod.clamps) {
     Index place = clamp.place;
@@ -33,7 +33,7 @@ std::optional<Index> clamp_beyond(const RodLayout& rod, Index edge) {
 
 }  // namespace
 
-MomentRecovery::MomentRecovery(const RodLayout& rod, const Model& model)
+MomentRecovery::MomentRecovery(const RodMesh& rod, const Model& model)
     : rod_(rod),
       forces_(rod, model),
       moments_(rod, model),

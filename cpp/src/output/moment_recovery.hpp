@@ -27,7 +27,7 @@ namespace der {
 /// by what is beyond a place on what is before it; in a plane they are along z.
 class MomentRecovery {
  public:
-  MomentRecovery(const RodLayout& rod, const Model& model);
+  MomentRecovery(const RodMesh& rod, const Model& model);
 
   /// Where along an edge a value is: a load at that very place is before it or beyond it.
   struct Place {
@@ -123,7 +123,7 @@ class MomentRecovery {
   void add_forces(Index edge, std::optional<Index> start, std::optional<Index> end);
   [[nodiscard]] bool is_same_place(double a, double b) const;
 
-  RodLayout rod_;
+  RodMesh rod_;
   SpreadForces forces_;
   SpreadMoments moments_;
   std::vector<EdgeTerms> edges_;

@@ -12,7 +12,7 @@ namespace {
 /// A field at the nodes, with a kink at the corners.
 class NodeField : public RodField {
  public:
-  NodeField(const RodLayout& rod, const Model& model)
+  NodeField(const RodMesh& rod, const Model& model)
       : RodField(rod.arc_length), corners_(corners_of(rod, model)) {}
   [[nodiscard]] bool smooth_at(std::size_t i) const override {
     return !std::binary_search(corners_.begin(), corners_.end(), static_cast<Index>(i));
@@ -24,7 +24,7 @@ class NodeField : public RodField {
 
 class ComponentField : public NodeField {
  public:
-  ComponentField(Vector State::* vector, int component, const RodLayout& rod, const Model& model)
+  ComponentField(Vector State::* vector, int component, const RodMesh& rod, const Model& model)
       : NodeField(rod, model), vector_(vector) {
     for (const Index node : rod.nodes) dofs_.push_back(model.dof(node, component));
   }
@@ -40,8 +40,7 @@ class ComponentField : public NodeField {
 
 class SpeedField : public NodeField {
  public:
-  SpeedField(const RodLayout& rod, const Model& model)
-      : NodeField(rod, model), closed_(rod.closed) {
+  SpeedField(const RodMesh& rod, const Model& model) : NodeField(rod, model), closed_(rod.closed) {
     for (const Index node : rod.nodes) dofs_.push_back(model.dof(node, 0));
   }
   [[nodiscard]] double sample(std::size_t i, const Model& model,
@@ -59,7 +58,7 @@ class SpeedField : public NodeField {
     Vec3 before = velocity(closed_ ? dofs_.size() - 1 : 0, model, state);
     for (std::size_t i = closed_ ? 0 : 1; i < dofs_.size(); ++i) {
       const Vec3 here = velocity(i, model, state);
-      least = std::min(least, dip_between(before, here));
+      least = std::min(least, min_norm_on_segment(before, here));
       before = here;
     }
     return least;
@@ -79,11 +78,11 @@ class SpeedField : public NodeField {
 }  // namespace
 
 std::unique_ptr<RodField> make_component_field(Vector State::* vector, int component,
-                                               const RodLayout& rod, const Model& model) {
+                                               const RodMesh& rod, const Model& model) {
   return std::make_unique<ComponentField>(vector, component, rod, model);
 }
 
-std::unique_ptr<RodField> make_speed_field(const RodLayout& rod, const Model& model) {
+std::unique_ptr<RodField> make_speed_field(const RodMesh& rod, const Model& model) {
   return std::make_unique<SpeedField>(rod, model);
 }
 

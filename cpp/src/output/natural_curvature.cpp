@@ -5,23 +5,23 @@
 #include "der/core/index.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "model/curvature_jump.hpp"
-#include "model/drawn_edge.hpp"
 #include "model/legs.hpp"
+#include "model/reference_edge.hpp"
 
 namespace der {
 
-NaturalCurvature::NaturalCurvature(const RodLayout& rod, const Model& model) {
+NaturalCurvature::NaturalCurvature(const RodMesh& rod, const Model& model) {
   const std::vector<Index> bounds = leg_bounds(rod, model);
   for (const Index bound : bounds) legs_.push_back({bound, {}, {}});
   legs_.push_back({rod.num_edges(), {}, {}});
   if (rod.natural_curvature.empty()) {
-    read_drawn(bounds, rod, model);
+    read_reference(bounds, rod, model);
   } else {
     read_given(bounds, rod);
   }
 }
 
-void NaturalCurvature::read_given(const std::vector<Index>& bounds, const RodLayout& rod) {
+void NaturalCurvature::read_given(const std::vector<Index>& bounds, const RodMesh& rod) {
   auto leg = legs_.begin();
   for (Index i = 0; i <= rod.num_edges(); ++i) {
     const auto add = [&](bool after) {
@@ -39,8 +39,8 @@ void NaturalCurvature::read_given(const std::vector<Index>& bounds, const RodLay
   }
 }
 
-void NaturalCurvature::read_drawn(const std::vector<Index>& bounds, const RodLayout& rod,
-                                  const Model& model) {
+void NaturalCurvature::read_reference(const std::vector<Index>& bounds, const RodMesh& rod,
+                                      const Model& model) {
   auto leg = legs_.begin();
   for (Index i = 0; i <= rod.num_edges(); ++i) {
     if (std::binary_search(bounds.begin(), bounds.end(), rod.position(i))) {
@@ -51,8 +51,9 @@ void NaturalCurvature::read_drawn(const std::vector<Index>& bounds, const RodLay
     const double before = rod.edge_length[to_size(rod.edge_before(i))];
     const double after = rod.edge_length[to_size(rod.edge_after(i))];
     leg->arc_length.push_back(rod.arc_length_at(i) + (after - before) / 3.0);
-    leg->values.push_back(angle_between(drawn_edge(rod, i - 1, model), drawn_edge(rod, i, model)) /
-                          (0.5 * (before + after)));
+    leg->values.push_back(
+        angle_between(reference_edge(rod, i - 1, model), reference_edge(rod, i, model)) /
+        (0.5 * (before + after)));
   }
 }
 

@@ -12,7 +12,7 @@ namespace der {
 /// curvature a third of their difference beside their node; that of a corner is none.
 class NaturalCurvature {
  public:
-  NaturalCurvature(const RodLayout& rod, const Model& model);
+  NaturalCurvature(const RodMesh& rod, const Model& model);
   /// At arc length `s` [m] of an edge.
   [[nodiscard]] double at(Index edge, double s) const;
 
@@ -24,8 +24,8 @@ class NaturalCurvature {
     std::vector<double> values;      // [1/m]
   };
 
-  void read_given(const std::vector<Index>& bounds, const RodLayout& rod);
-  void read_drawn(const std::vector<Index>& bounds, const RodLayout& rod, const Model& model);
+  void read_given(const std::vector<Index>& bounds, const RodMesh& rod);
+  void read_reference(const std::vector<Index>& bounds, const RodMesh& rod, const Model& model);
 
   std::vector<Leg> legs_;
 };

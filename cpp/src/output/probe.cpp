@@ -75,7 +75,7 @@ bool peaks_between(const double* s, const double* f, double from, double to) {
 /// The smallest or largest value of a field along its rod.
 class ExtremeReader : public ProbeReader {
  public:
-  ExtremeReader(std::unique_ptr<RodField> field, const RodLayout& rod, scenario::Reduce reduce,
+  ExtremeReader(std::unique_ptr<RodField> field, const RodMesh& rod, scenario::Reduce reduce,
                 bool parabola_at_ends)
       : field_(std::move(field)),
         parabola_at_ends_(parabola_at_ends),
@@ -106,7 +106,7 @@ class ExtremeReader : public ProbeReader {
 
   /// A field that has no sample at an end of the rod is continued to it, for its extreme may be
   /// there (the tension of a hanging cable).
-  void add_ends(const RodLayout& rod) {
+  void add_ends(const RodMesh& rod) {
     const double tolerance = 1e-9 * rod.rest_length();
     if (arc_length_.front() > tolerance) {
       start_ = linear_weights(field_->arc_length(), 0.0);
@@ -165,14 +165,14 @@ class ExtremeReader : public ProbeReader {
 /// A number of a ring.
 class RingReader : public ProbeReader {
  public:
-  RingReader(RodReading read, RodLayout rod) : read_(read), rod_(std::move(rod)) {}
+  RingReader(RodReading read, RodMesh rod) : read_(read), rod_(std::move(rod)) {}
   double value(const Model& model, const State& state) override {
     return read_(rod_, model, state);
   }
 
  private:
   RodReading read_;
-  RodLayout rod_;
+  RodMesh rod_;
 };
 
 /// The reaction of a support, at all of its places together.
@@ -211,7 +211,7 @@ class ActuationReader : public ProbeReader {
   ActuationForces forces_;
 };
 
-SampleWeights sample_weights(const std::vector<Weighted>& weights, const RodLayout& rod) {
+SampleWeights sample_weights(const std::vector<Weighted>& weights, const RodMesh& rod) {
   SampleWeights result;
   for (const auto& [place, weight] : weights) {
     result.push_back({static_cast<std::size_t>(rod.position(place)), weight});
@@ -220,7 +220,7 @@ SampleWeights sample_weights(const std::vector<Weighted>& weights, const RodLayo
 }
 
 std::unique_ptr<RodField> make_probed_field(const scenario::Probe& probe, const Quantity& quantity,
-                                            const RodLayout& rod, const Model& model) {
+                                            const RodMesh& rod, const Model& model) {
   auto field = make_rod_field(quantity.name, rod, model);
   if (field->arc_length().empty()) {
     throw Error("model_error", "probe '" + probe.name + "': rod '" + rod.name + "' bends nowhere");
@@ -230,7 +230,7 @@ std::unique_ptr<RodField> make_probed_field(const scenario::Probe& probe, const 
 
 /// Arc length [m] of a probe's place. The start of a ring is its end, too: what is before it is
 /// there.
-double place_of(const scenario::Probe& probe, const RodLayout& rod) {
+double place_of(const scenario::Probe& probe, const RodMesh& rod) {
   const double s = arc_length_of(*probe.at, rod);
   const bool before_start =
       rod.closed && probe.side == scenario::Side::Before && s <= rod.same_place();
@@ -238,7 +238,7 @@ double place_of(const scenario::Probe& probe, const RodLayout& rod) {
 }
 
 SampleWeights point_weights(const scenario::Probe& probe, QuantityKind kind, const RodField& field,
-                            const RodLayout& rod, double s, const Model& model) {
+                            const RodMesh& rod, double s, const Model& model) {
   if (kind == QuantityKind::Position || kind == QuantityKind::Velocity) {
     return sample_weights(node_weights(rod, s, model), rod);
   }
@@ -262,7 +262,7 @@ std::unique_ptr<ProbeReader> make_reader(const scenario::Probe& probe, const Qua
     return std::make_unique<ActuationReader>(quantity.read_actuation, probe.actuation.value(),
                                              model);
   }
-  const RodLayout& rod = model.rod(probe.rod.value());
+  const RodMesh& rod = model.rod(probe.rod.value());
   if (quantity.kind == QuantityKind::Ring) {
     return std::make_unique<RingReader>(quantity.read_rod, rod);
   }

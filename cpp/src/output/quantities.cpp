@@ -20,7 +20,7 @@ namespace {
 
 template <Vector State::* vector, int number>
 Quantity component(std::string name, std::string unit, QuantityKind kind, std::string meaning) {
-  const RodFieldMaker maker = [](const RodLayout& rod, const Model& model) {
+  const RodFieldMaker maker = [](const RodMesh& rod, const Model& model) {
     return make_component_field(vector, number, rod, model);
   };
   return {std::move(name),
@@ -47,7 +47,7 @@ Quantity in(QuantityScope scope, Quantity quantity, std::string advice = {}) {
 
 template <int number>
 Quantity tangent(std::string name, std::string meaning) {
-  const RodFieldMaker maker = [](const RodLayout& rod, const Model& model) {
+  const RodFieldMaker maker = [](const RodMesh& rod, const Model& model) {
     return make_tangent_field(number, rod, model);
   };
   return in(number < 2 ? QuantityScope::All : QuantityScope::Space,
@@ -57,7 +57,7 @@ Quantity tangent(std::string name, std::string meaning) {
 template <SectionQuantity quantity>
 Quantity section(std::string name, std::string unit, std::string meaning,
                  QuantityKind kind = QuantityKind::Section) {
-  const RodFieldMaker maker = [](const RodLayout& rod, const Model& model) {
+  const RodFieldMaker maker = [](const RodMesh& rod, const Model& model) {
     return make_section_field(quantity, rod, model);
   };
   return in(QuantityScope::Sections,

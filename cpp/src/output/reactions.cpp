@@ -14,7 +14,7 @@
 #include "der/model/location.hpp"
 #include "der/model/moment_place.hpp"
 #include "der/model/spin.hpp"
-#include "der/output/joint_strain.hpp"
+#include "der/output/vertex_strain.hpp"
 #include "der/scenario/scenario.hpp"
 #include "der/supports/bearing.hpp"
 #include "output/acting_elements.hpp"
@@ -62,7 +62,7 @@ class Reactions::Reader {
  private:
   /// A spring against turning, at a place where those of several supports may act together.
   struct Turning {
-    std::size_t place = 0;  // in RodLayout::moment_places; in space in `section_springs`
+    std::size_t place = 0;  // in RodMesh::moment_places; in space in `section_springs`
     Vec3 share = Vec3::Zero();
   };
   /// A place of a support; its number is that of its reaction.
@@ -79,7 +79,7 @@ class Reactions::Reader {
   void add_place(const scenario::Scene& scene, std::size_t number, double s, const Model& model);
   void add_spring(const scenario::Scene& scene, std::size_t number, double s, const Model& model,
                   Place& place) const;
-  static void add_bearing(double s, const RodLayout& rod, Place& place);
+  static void add_bearing(double s, const RodMesh& rod, Place& place);
   [[nodiscard]] static std::vector<HeldDof> held_by(const scenario::Support& support, Index node,
                                                     const Model& model);
   /// Where the moment of a clamp is summed: its number among all of the model.
@@ -96,7 +96,7 @@ class Reactions::Reader {
   void add_pivots(const Kernel& kernel, const typename Kernel::Constants& constants,
                   const std::array<Index, Kernel::kDofs>& dofs,
                   const Eigen::Matrix<double, Kernel::kDofs, 1>& gradient);
-  void add_joints(const Model& model, const State& state);
+  void add_vertices(const Model& model, const State& state);
   void add_planar_moments(std::size_t rod, const Model& model, const State& state);
   void add_spatial_moments(std::size_t rod, const Model& model, const State& state);
   void add_gyroscopic_forces(const Model& model, const State& state);
@@ -123,7 +123,7 @@ Reactions::Reader::Reader(const scenario::Scene& scene, const Model& model,
                           std::optional<std::size_t> only)
     : motion_(scene), clamp_at_(to_size(model.num_dofs()), -1) {
   std::size_t clamps = 0;
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     if (model.has_sections()) spread_.emplace_back(rod, model);
     first_clamps_.push_back(clamps);
     for (const Clamp& clamp : rod.clamps) {
@@ -134,7 +134,7 @@ Reactions::Reader::Reader(const scenario::Scene& scene, const Model& model,
   for (std::size_t i = 0; i < scene.supports.size(); ++i) {
     if (only && *only != i) continue;
     const scenario::Support& support = scene.supports[i];
-    const RodLayout& rod = model.rod(support.rod);
+    const RodMesh& rod = model.rod(support.rod);
     for (const double s : arc_lengths_of(support.at, rod)) add_place(scene, i, s, model);
   }
   choose_elements(model);
@@ -143,7 +143,7 @@ Reactions::Reader::Reader(const scenario::Scene& scene, const Model& model,
 void Reactions::Reader::add_place(const scenario::Scene& scene, std::size_t number, double s,
                                   const Model& model) {
   const scenario::Support& support = scene.supports[number];
-  const RodLayout& rod = model.rod(support.rod);
+  const RodMesh& rod = model.rod(support.rod);
   Place place;
   place.rod = static_cast<std::size_t>(&rod - model.rods.data());
   place.nodes = node_weights(rod, s, model);
@@ -185,7 +185,7 @@ std::vector<HeldDof> Reactions::Reader::held_by(const scenario::Support& support
 
 void Reactions::Reader::add_spring(const scenario::Scene& scene, std::size_t number, double s,
                                    const Model& model, Place& place) const {
-  const RodLayout& rod = model.rods[place.rod];
+  const RodMesh& rod = model.rods[place.rod];
   const scenario::Spring& spring = *scene.supports[number].spring;
   for (std::size_t c = 0; c < std::min(spring.stiffness.size(), to_size(model.dimension)); ++c) {
     const auto axis = static_cast<Index>(c);
@@ -226,7 +226,7 @@ void Reactions::Reader::add_spring(const scenario::Scene& scene, std::size_t num
 }
 
 /// Its springs are so much stiffer than others there that they have all of the moment across.
-void Reactions::Reader::add_bearing(double s, const RodLayout& rod, Place& place) {
+void Reactions::Reader::add_bearing(double s, const RodMesh& rod, Place& place) {
   const SectionSpringPlace* found = rod.section_spring_at(s);
   if (found == nullptr) return;
   place.turning =
@@ -306,14 +306,14 @@ void Reactions::Reader::add_elements(const Model& model) {
 }
 
 /// Cells beside clamps in space: their moment acts on the held section.
-void Reactions::Reader::add_joints(const Model& model, const State& state) {
+void Reactions::Reader::add_vertices(const Model& model, const State& state) {
   for (std::size_t i = 0; i < model.rods.size(); ++i) {
-    const RodLayout& rod = model.rods[i];
-    for (const RodJoint& joint : rod.joints) {
-      if (joint.clamp < 0) continue;
-      const Vec3 moment = cell_moment(joint, rod, model, state);
-      Vec3& sum = moments_[first_clamps_[i] + to_size(joint.clamp)];
-      sum += joint.after >= 0 ? Vec3(-moment) : moment;
+    const RodMesh& rod = model.rods[i];
+    for (const RodVertex& vertex : rod.vertices) {
+      if (vertex.clamp < 0) continue;
+      const Vec3 moment = cell_moment(vertex, rod, model, state);
+      Vec3& sum = moments_[first_clamps_[i] + to_size(vertex.clamp)];
+      sum += vertex.after >= 0 ? Vec3(-moment) : moment;
     }
   }
 }
@@ -321,7 +321,7 @@ void Reactions::Reader::add_joints(const Model& model, const State& state) {
 /// A moment beside a clamp acts in part on the edge; the clamp takes the rest of it.
 void Reactions::Reader::add_planar_moments(std::size_t rod_number, const Model& model,
                                            const State& state) {
-  const RodLayout& rod = model.rods[rod_number];
+  const RodMesh& rod = model.rods[rod_number];
   for (const MomentPlace& place : rod.moment_places) {
     const auto beside = place_beside_clamp(rod, place.arc_length);
     if (!beside) continue;
@@ -335,7 +335,7 @@ void Reactions::Reader::add_planar_moments(std::size_t rod_number, const Model& 
 
 void Reactions::Reader::add_spatial_moments(std::size_t rod_number, const Model& model,
                                             const State& state) {
-  const RodLayout& rod = model.rods[rod_number];
+  const RodMesh& rod = model.rods[rod_number];
   const SpreadMoments& spread = spread_[rod_number];
   for (std::size_t i = 0; i < spread.size(); ++i) {
     const auto beside = place_beside_clamp(rod, spread[i].arc_length);
@@ -368,7 +368,7 @@ void Reactions::Reader::add_gyroscopic_forces(const Model& model, const State& s
 /// The moment [N m] of the springs against turning of one support.
 Vec3 Reactions::Reader::turning_moment(const Place& place, const Model& model,
                                        const State& state) const {
-  const RodLayout& rod = model.rods[place.rod];
+  const RodMesh& rod = model.rods[place.rod];
   const auto& [number, share] = *place.turning;
   if (model.dimension == 2) {
     const MomentPlace& there = rod.moment_places[number];
@@ -406,7 +406,7 @@ const std::vector<Reaction>& Reactions::Reader::evaluate(const Model& model, con
   external_force(model, here_, state.extra_force, force_);
   add_elements(model);
   add_gyroscopic_forces(model, state);
-  add_joints(model, state);
+  add_vertices(model, state);
   for (std::size_t rod = 0; rod < model.rods.size(); ++rod) {
     add_planar_moments(rod, model, state);
     if (model.has_sections()) add_spatial_moments(rod, model, state);
@@ -415,7 +415,7 @@ const std::vector<Reaction>& Reactions::Reader::evaluate(const Model& model, con
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const Place& place = places_[i];
     Reaction& reaction = reactions_[i];
-    const RodLayout& rod = model.rods[place.rod];
+    const RodMesh& rod = model.rods[place.rod];
     reaction.point.setZero();
     for (const auto& [node, weight] : place.nodes) {
       reaction.point.head(model.dimension) +=

@@ -108,7 +108,7 @@ void Recorder::hand_out(const Model& model, const State& state) {
                     state.velocities.head(positions),
                     state.positions.tail(angles),
                     state.velocities.tail(angles),
-                    state.followed.tail(model.drawn_frames.size()),
+                    state.followed.tail(model.initial_frames.size()),
                     state.followed.head(num_turns(model)),
                     *energies_,
                     state.work,

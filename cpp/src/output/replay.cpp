@@ -9,7 +9,7 @@
 #include "der/catalog/quantities.hpp"
 #include "der/core/error.hpp"
 #include "der/model/followed.hpp"
-#include "der/output/joint_strain.hpp"
+#include "der/output/vertex_strain.hpp"
 #include "der/scenario/scenario.hpp"
 #include "output/rod_field.hpp"
 
@@ -68,7 +68,7 @@ void Replay::go_to(std::size_t frame, const SavedFrames& frames) {
   state_.positions.head(nodes) = frames.positions.row(row);
   state_.velocities.head(nodes) = frames.velocities.row(row);
   state_.positions.tail(frames.theta.cols()) = frames.theta.row(row);
-  if (frame == 0) state_.followed = followed_as_drawn(model_);
+  if (frame == 0) state_.followed = unwrapped_of_reference(model_);
   // Edges that are followed for the slopes alone come last.
   state_.followed.head(frames.turns.cols()) = frames.turns.row(row);
   follow(model_, state_);

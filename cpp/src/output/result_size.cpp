@@ -36,7 +36,7 @@ double expected_frames(const Simulation& simulation) {
 
 double bytes_per_frame(const Simulation& simulation) {
   const double numbers =
-      2.0 * num_dofs(simulation) + static_cast<double>(simulation.model().drawn_frames.size()) +
+      2.0 * num_dofs(simulation) + static_cast<double>(simulation.model().initial_frames.size()) +
       static_cast<double>(kEnergyTerms.size() + kLedger.size()) +
       static_cast<double>(simulation.scenario().scene().output.probes.size()) + 3.0;
   return static_cast<double>(sizeof(double)) * numbers;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "der/core/constants.hpp"
-#include "der/output/joint_strain.hpp"
+#include "der/output/vertex_strain.hpp"
 #include "der/supports/spatial_clamp.hpp"
 
 namespace der {
@@ -44,10 +44,10 @@ double crossing_angle(const Vec3& start, const Vec3& end, const Vec3& other_star
   return solid_angle(a, c, b, volume) + solid_angle(a, d, c, volume);
 }
 
-/// The corners [m] of the polygon whose sides the joints of a ring turn against each other. It is
+/// The corners [m] of the polygon whose sides the vertices of a ring turn against each other. It is
 /// that of the nodes, but for its way along the held tangent from one pivot of a clamp to the other
 /// (supports/clamp.hpp), where it passes through the node.
-std::vector<Vec3> polygon_of(const RodLayout& rod, const Model& model, const State& state) {
+std::vector<Vec3> polygon_of(const RodMesh& rod, const Model& model, const State& state) {
   std::vector<Vec3> corners;
   for (Index edge = 0; edge < rod.num_edges(); ++edge) {
     const SpatialEdge own = spatial_edge(rod, edge, model);
@@ -57,16 +57,16 @@ std::vector<Vec3> polygon_of(const RodLayout& rod, const Model& model, const Sta
   return corners;
 }
 
-/// Twist [rad] of all joints of a ring.
-double whole_twist_of(const RodLayout& rod, const Model& model, const State& state) {
+/// Twist [rad] of all vertices of a ring.
+double whole_twist_of(const RodMesh& rod, const Model& model, const State& state) {
   double sum = 0.0;
-  for (const RodJoint& joint : rod.joints) sum += strain_of(joint, rod, model, state).twist;
+  for (const RodVertex& vertex : rod.vertices) sum += strain_of(vertex, rod, model, state).twist;
   return sum;
 }
 
 }  // namespace
 
-double writhe_of(const RodLayout& rod, const Model& model, const State& state) {
+double writhe_of(const RodMesh& rod, const Model& model, const State& state) {
   const std::vector<Vec3> corners = polygon_of(rod, model, state);
   const std::size_t sides = corners.size();
   const auto end_of = [&](std::size_t side) { return corners[(side + 1) % sides]; };
@@ -84,7 +84,7 @@ double writhe_of(const RodLayout& rod, const Model& model, const State& state) {
   return sum / (2.0 * kPi);
 }
 
-double link_of(const RodLayout& rod, const Model& model, const State& state) {
+double link_of(const RodMesh& rod, const Model& model, const State& state) {
   return whole_twist_of(rod, model, state) / (2.0 * kPi) + writhe_of(rod, model, state);
 }
 

@@ -46,7 +46,7 @@ double RodField::interpolate(const SampleWeights& weights, const Model& model,
   return sum;
 }
 
-std::unique_ptr<RodField> make_rod_field(const std::string& quantity, const RodLayout& rod,
+std::unique_ptr<RodField> make_rod_field(const std::string& quantity, const RodMesh& rod,
                                          const Model& model) {
   const Quantity* row = find_quantity(quantity);
   if (row != nullptr && row->make_field != nullptr) {

@@ -64,7 +64,7 @@ Error not_available(const Quantity& quantity, const Model& model);
 
 /// The field of a quantity (catalog/quantities.hpp, but for the energies). Throws Error for a name
 /// that is no such quantity. Along a ring it goes all the way around.
-std::unique_ptr<RodField> make_rod_field(const std::string& quantity, const RodLayout& rod,
+std::unique_ptr<RodField> make_rod_field(const std::string& quantity, const RodMesh& rod,
                                          const Model& model);
 
 }  // namespace der

@@ -13,7 +13,7 @@ std::string advance(Simulation& simulation, Recorder& recorder, const StepCallba
     simulation.step();
     recorder.observe(simulation);
     if (after_step && !after_step(simulation) && !simulation.finished()) {
-      if (simulation.state().step >= EnergyWatch::kStride) simulation.audit_energy();
+      if (simulation.state().step >= EnergyMonitor::kStride) simulation.audit_energy();
       return run_status::kStopped;
     }
   }
@@ -26,7 +26,7 @@ struct Analyse {
   Simulation& simulation;
   Recorder& recorder;
   const StepCallback& after_step;
-  const Beat& beat;
+  const CancelCallback& beat;
   RunOutcome& outcome;
 
   std::string operator()(const scenario::DynamicAnalysis& /*analysis*/) const {
@@ -71,7 +71,7 @@ struct Analyse {
 }  // namespace
 
 RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& after_step,
-               const Beat& beat) {
+               const CancelCallback& beat) {
   RunOutcome outcome;
   const auto fail = [&](const Error& error) {
     outcome.status = error.status();

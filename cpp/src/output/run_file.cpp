@@ -8,8 +8,8 @@
 
 #include "der/catalog/run_status.hpp"
 #include "der/model/followed.hpp"
+#include "der/output/flush_timer.hpp"
 #include "der/output/io_error.hpp"
-#include "der/output/pacer.hpp"
 #include "der/output/recorder.hpp"
 #include "der/output/result_size.hpp"
 #include "der/output/saved_run.hpp"
@@ -96,7 +96,7 @@ class RunFile::Writer {
   CheckpointStore checkpoints_;
   bool abandoned_ = false;
   bool ahead_of_checkpoint_ = false;  // frames, written or not, that are later than it
-  Pacer pacer_{kFlushInterval};
+  FlushTimer pacer_{kFlushInterval};
   std::chrono::steady_clock::time_point last_checkpoint_;
 };
 

@@ -38,13 +38,14 @@ std::string first_difference(const std::string& was, const std::string& is) {
 }
 
 RunOutcome run_into_file(RunFile& file, const RunFolder& folder, Simulation& simulation,
-                         Recorder& recorder, const StepCallback& after_step, const Beat& beat) {
+                         Recorder& recorder, const StepCallback& after_step,
+                         const CancelCallback& beat) {
   recorder.add(file);
   const RunOutcome outcome = run(simulation, recorder, after_step, beat);
   file.add(datasets(simulation, outcome));
-  if (!outcome.path.empty()) write_whole(folder.path_table(), path_csv(simulation, outcome));
+  if (!outcome.path.empty()) write_atomically(folder.path_table(), path_csv(simulation, outcome));
   file.finish(outcome.status, simulation, recorder);
-  write_whole(folder.summary(), summary_json(simulation, recorder, outcome));
+  write_atomically(folder.summary(), summary_json(simulation, recorder, outcome));
   return outcome;
 }
 
@@ -185,12 +186,12 @@ RunFileHead check_resumable(const RunFolder& folder, const Scenario& scenario) {
 }
 
 RunOutcome run_in_folder(const RunFolder& folder, Simulation& simulation, Recorder& recorder,
-                         const StepCallback& after_step, const Beat& beat) {
+                         const StepCallback& after_step, const CancelCallback& beat) {
   const std::string scene = simulation.scenario().to_yaml();
   const auto lock = prepare(folder, scene, expected_bytes(simulation));
   // The result file first: it marks the folder as one of a run, should the process end right here.
   const auto file = RunFile::create(folder.results(), simulation, recorder);
-  write_whole(folder.scene(), scene);
+  write_atomically(folder.scene(), scene);
   return run_into_file(*file, folder, simulation, recorder, after_step, beat);
 }
 
@@ -211,8 +212,8 @@ void save_in_folder(const RunFolder& folder, const Scenario& scenario, const Mod
   const std::string scene = scenario.to_yaml();
   const auto lock = prepare(folder, scene, 0.0);
   write_run(folder.results(), scenario, model, run);
-  write_whole(folder.scene(), scene);
-  write_whole(folder.summary(), summary_json);
+  write_atomically(folder.scene(), scene);
+  write_atomically(folder.summary(), summary_json);
 }
 
 }  // namespace der

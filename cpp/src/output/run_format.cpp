@@ -28,7 +28,7 @@ void write_rod_array(hid_t group, const std::string& name, const std::vector<T>&
   write_array(group, name, Array<T>{{values.size()}, values}, unit_of_array("rods/" + name));
 }
 
-void write_rod(hid_t rods, const RodLayout& rod) {
+void write_rod(hid_t rods, const RodMesh& rod) {
   const Handle group = hdf5::create_group(rods, rod.name);
   write_rod_array(group.id(), "nodes", rod.nodes);
   write_rod_array(group.id(), "arc_length", rod.arc_length);
@@ -110,7 +110,7 @@ void write_head(hid_t file, const Scenario& scenario, const Model& model) {
   hdf5::write_attribute(file, "dimension", std::int64_t{model.dimension});
   write_text(file, "scene", scenario.to_yaml());
   const Handle rods = hdf5::create_group(file, "rods");
-  for (const RodLayout& rod : model.rods) write_rod(rods.id(), rod);
+  for (const RodMesh& rod : model.rods) write_rod(rods.id(), rod);
 }
 
 void write_status(hid_t file, const std::string& status) {

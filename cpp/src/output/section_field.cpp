@@ -10,7 +10,7 @@
 
 #include "der/core/index.hpp"
 #include "der/model/location.hpp"
-#include "der/output/joint_strain.hpp"
+#include "der/output/vertex_strain.hpp"
 #include "der/supports/spatial_clamp.hpp"
 #include "model/actuated_turn.hpp"
 #include "model/glue.hpp"
@@ -58,13 +58,13 @@ bool is_moment(SectionQuantity quantity) {
 /// the vector of the moment in fixed axes, and the section at each place takes its components.
 class SectionField : public EdgewiseField<Vec3> {
  public:
-  static std::unique_ptr<RodField> make(SectionQuantity quantity, const RodLayout& rod,
+  static std::unique_ptr<RodField> make(SectionQuantity quantity, const RodMesh& rod,
                                         const Model& model) {
     MomentRecovery recovery(rod, model);
     std::vector<Sample> samples;
     std::vector<std::pair<Known, Known>> edges;
     Lines lines;
-    if (!rod.joints.empty()) {
+    if (!rod.vertices.empty()) {
       samples = samples_of(rod, recovery);
       if (jumps_at_glue(quantity, rod)) part_at_start(rod, samples);
       for (Index edge = 0; edge < rod.num_edges(); ++edge) {
@@ -112,7 +112,8 @@ class SectionField : public EdgewiseField<Vec3> {
     // Where it jumps it does not pass what lies between.
     const auto go_on_to = [&](double s, const Vec3& all) {
       const Vec3 here = bending_of(all, model);
-      if (s > s_before + rod_.same_place()) least = std::min(least, dip_between(before, here));
+      if (s > s_before + rod_.same_place())
+        least = std::min(least, min_norm_on_segment(before, here));
       before = here;
       s_before = s;
     };
@@ -139,7 +140,7 @@ class SectionField : public EdgewiseField<Vec3> {
   /// The first sample of a ring, in the section at the end of the ring.
   [[nodiscard]] Vec3 end_of_ring(const Model& model, const State& state) const {
     const Vec3 first = parts(0, model, state);
-    return model.has_sections() ? turned(first, -rod_.joints.back().glued) : first;
+    return model.has_sections() ? turned(first, -rod_.vertices.back().glued) : first;
   }
   /// The part of bending.
   static Vec3 bending_of(const Vec3& all, const Model& model) {
@@ -166,19 +167,19 @@ class SectionField : public EdgewiseField<Vec3> {
     }
   }
 
-  /// Where the chain has a moment: at a joint, or, as it must be, at an end that is free to turn.
+  /// Where the chain has a moment: at a vertex, or, as it must be, at an end that is free to turn.
   struct Known {
-    const RodJoint* joint = nullptr;  // of the model's rod; none at an end
-    double arc_length = 0.0;          // [m]
-    double twist_place = 0.0;         // where it twists [m]
-    bool is_at_pivot = false;         // of a clamp
-    Vec3 natural = Vec3::Zero();      // curvatures and twist
-    double joint_ahead = 0.0;         // [m] by which the joint counts its places further on
-    double glued = 0.0;               // [rad] by which the section is turned against the joint's
-    ActuatedTurn actuated;            // of the section here against the mean beside the joint
+    const RodVertex* vertex = nullptr;  // of the model's rod; none at an end
+    double arc_length = 0.0;            // [m]
+    double twist_place = 0.0;           // where it twists [m]
+    bool is_at_pivot = false;           // of a clamp
+    Vec3 natural = Vec3::Zero();        // curvatures and twist
+    double vertex_ahead = 0.0;          // [m] by which the vertex counts its places further on
+    double glued = 0.0;                 // [rad] by which the section is turned against the vertex's
+    ActuatedTurn actuated;              // of the section here against the mean beside the vertex
   };
 
-  SectionField(SectionQuantity quantity, const RodLayout& rod, const Model& model,
+  SectionField(SectionQuantity quantity, const RodMesh& rod, const Model& model,
                std::vector<Sample> samples, Lines lines, MomentRecovery recovery,
                std::vector<std::pair<Known, Known>> edges)
       : EdgewiseField(std::move(samples), std::move(lines)),
@@ -201,7 +202,7 @@ class SectionField : public EdgewiseField<Vec3> {
   /// Whether a quantity jumps where the two ends of a ring are glued, their sections being turned
   /// against each other by more than rounding. Natural curvatures are turned with the sections, and
   /// so are the axes of unequal stiffnesses.
-  static bool jumps_at_glue(SectionQuantity quantity, const RodLayout& rod) {
+  static bool jumps_at_glue(SectionQuantity quantity, const RodMesh& rod) {
     const bool is_component =
         quantity == SectionQuantity::Curvature1 || quantity == SectionQuantity::Curvature2 ||
         quantity == SectionQuantity::Moment1 || quantity == SectionQuantity::Moment2 ||
@@ -209,44 +210,47 @@ class SectionField : public EdgewiseField<Vec3> {
         quantity == SectionQuantity::NaturalCurvature2;
     const bool whole_jumps = quantity == SectionQuantity::Curvature &&
                              (!rod.natural_curvatures.empty() || rod.EI_1 != rod.EI_2);
-    return rod.closed && (is_component || whole_jumps) && meets_turned(rod.joints.back());
+    return rod.closed && (is_component || whole_jumps) && meets_turned(rod.vertices.back());
   }
 
   /// Whether components along an edge, or on from it, have a kink or jump.
-  static bool has_kinks(Index edge, const RodLayout& rod, const MomentRecovery& recovery) {
+  static bool has_kinks(Index edge, const RodMesh& rod, const MomentRecovery& recovery) {
     return recovery.has_moments(edge) || recovery.is_corner(edge) || recovery.is_corner(edge + 1) ||
            is_beside_glue(edge, rod) || actuation_jumps_in(edge, rod, true);
   }
-  /// Whether an edge is beside the place where a ring is glued turned and the joint is not that of
+  /// Whether an edge is beside the place where a ring is glued turned and the vertex is not that of
   /// either side: it bends about the directors of both, to the natural curvatures of both.
-  static bool is_beside_glue(Index edge, const RodLayout& rod) {
+  static bool is_beside_glue(Index edge, const RodMesh& rod) {
     if (!rod.closed || (edge != 0 && edge != rod.num_edges() - 1)) return false;
-    return parts_bending(rod.joints.back(), rod);
+    return parts_bending(rod.vertices.back(), rod);
   }
 
-  static Vec3 natural_of(const RodLayout& rod, const RodJoint& joint) {
-    return {joint.natural_curvature[0], joint.natural_curvature[1], natural_twist_at(rod, joint)};
+  static Vec3 natural_of(const RodMesh& rod, const RodVertex& vertex) {
+    return {vertex.natural_curvature[0], vertex.natural_curvature[1],
+            natural_twist_at(rod, vertex)};
   }
 
-  /// Those of the whole cell about a joint, in the joint's frame.
-  [[nodiscard]] Vec3 mean_natural(const RodJoint& joint) const {
-    Vec3 mean = natural_of(rod_, joint);
-    if (meets_turned(joint)) {
-      mean.head<2>() = Vec2(joint.rest.kappa_1, joint.rest.kappa_2) / joint.bend_length;
+  /// Those of the whole cell about a vertex, in the vertex's frame.
+  [[nodiscard]] Vec3 mean_natural(const RodVertex& vertex) const {
+    Vec3 mean = natural_of(rod_, vertex);
+    if (meets_turned(vertex)) {
+      mean.head<2>() = Vec2(vertex.rest.kappa_1, vertex.rest.kappa_2) / vertex.bend_length;
     }
     return mean;
   }
 
-  /// Natural curvatures and twist of a joint, and the arc lengths [m] at which it bends and twists.
+  /// Natural curvatures and twist of a vertex, and the arc lengths [m] at which it bends and
+  /// twists.
   struct NaturalAt {
     double arc_length = 0.0;
     double twist_place = 0.0;
     Vec3 natural;
   };
 
-  /// Natural shapes of the two joints of a leg next to its last end, beyond `edge`, or to its first
-  /// end; fewer where it has no more. Joints between two legs bend on both and belong to none.
-  static std::vector<NaturalAt> naturals_beside_end(const RodLayout& rod, Index edge, bool last,
+  /// Natural shapes of the two vertices of a leg next to its last end, beyond `edge`, or to its
+  /// first end; fewer where it has no more. Vertices between two legs bend on both and belong to
+  /// none.
+  static std::vector<NaturalAt> naturals_beside_end(const RodMesh& rod, Index edge, bool last,
                                                     const MomentRecovery& recovery) {
     std::vector<NaturalAt> found;
     const Index step = last ? -1 : 1;
@@ -257,11 +261,11 @@ class SectionField : public EdgewiseField<Vec3> {
     for (Index place = last ? edge : edge + 1; found.size() < 2 && is_of_leg(place);
          place += step) {
       const auto first_here = static_cast<std::ptrdiff_t>(found.size());
-      for (const RodJoint& joint : rod.joints) {
-        if (rod.position(joint.place()) != rod.position(place)) continue;
-        const double ahead = rod.arc_length_at(place) - rod.arc_length_at(joint.place());
+      for (const RodVertex& vertex : rod.vertices) {
+        if (rod.position(vertex.place()) != rod.position(place)) continue;
+        const double ahead = rod.arc_length_at(place) - rod.arc_length_at(vertex.place());
         found.push_back(
-            {joint.bend_place + ahead, joint.twist_place + ahead, natural_of(rod, joint)});
+            {vertex.bend_place + ahead, vertex.twist_place + ahead, natural_of(rod, vertex)});
       }
       if (last) std::reverse(found.begin() + first_here, found.end());
     }
@@ -270,13 +274,13 @@ class SectionField : public EdgewiseField<Vec3> {
 
   /// Natural curvatures and twist at an end of a leg, beyond `edge` or before it: those of the
   /// drawn rod, extrapolated.
-  static Vec3 natural_at_end_of_leg(const RodLayout& rod, Index edge, bool last,
+  static Vec3 natural_at_end_of_leg(const RodMesh& rod, Index edge, bool last,
                                     const MomentRecovery& recovery) {
-    const std::vector<NaturalAt> joints = naturals_beside_end(rod, edge, last, recovery);
-    if (joints.empty()) return Vec3::Zero();
-    const NaturalAt& near = joints[0];
-    if (joints.size() == 1) return near.natural;
-    const NaturalAt& far = joints[1];
+    const std::vector<NaturalAt> vertices = naturals_beside_end(rod, edge, last, recovery);
+    if (vertices.empty()) return Vec3::Zero();
+    const NaturalAt& near = vertices[0];
+    if (vertices.size() == 1) return near.natural;
+    const NaturalAt& far = vertices[1];
     const double end = rod.arc_length_at(last ? edge + 1 : edge);
     const Vec3 change = near.natural - far.natural;
     const double bends = (end - near.arc_length) / (near.arc_length - far.arc_length);
@@ -285,7 +289,7 @@ class SectionField : public EdgewiseField<Vec3> {
   }
 
   /// Natural curvatures and twist at an end of the rod: as given, or those of the drawn rod.
-  static Vec3 natural_at_end(const RodLayout& rod, bool last, const MomentRecovery& recovery) {
+  static Vec3 natural_at_end(const RodMesh& rod, bool last, const MomentRecovery& recovery) {
     Vec3 result = natural_at_end_of_leg(rod, last ? rod.num_edges() - 1 : 0, last, recovery);
     if (!rod.natural_curvatures.empty()) {
       result.head<2>() = last ? rod.natural_curvatures.back() : rod.natural_curvatures.front();
@@ -295,48 +299,48 @@ class SectionField : public EdgewiseField<Vec3> {
   }
 
   /// As given [rad/m].
-  static double natural_twist_at_end(const RodLayout& rod, bool last) {
+  static double natural_twist_at_end(const RodMesh& rod, bool last) {
     return last ? rod.natural_twist.back() : rod.natural_twist.front();
   }
 
   /// `by_twist`: where the chain twists, in place of where it bends.
-  static Known known(bool by_twist, const RodLayout& rod, Index edge, bool last,
+  static Known known(bool by_twist, const RodMesh& rod, Index edge, bool last,
                      const MomentRecovery& recovery) {
     Known result;
     result.arc_length = result.twist_place = rod.arc_length_at(last ? edge + 1 : edge);
-    const auto joint = std::find_if(rod.joints.begin(), rod.joints.end(), [&](const auto& other) {
-      return (last ? other.before : other.after) == edge;
-    });
-    if (joint == rod.joints.end()) {
+    const auto vertex = std::find_if(
+        rod.vertices.begin(), rod.vertices.end(),
+        [&](const auto& other) { return (last ? other.before : other.after) == edge; });
+    if (vertex == rod.vertices.end()) {
       result.natural = natural_at_end(rod, last, recovery);
       return result;
     }
-    result.natural = natural_of(rod, *joint);
+    result.natural = natural_of(rod, *vertex);
     // A clamp that holds the tangent alone lets the section turn.
-    const bool lets_turn = joint->clamp >= 0 && !rod.clamps[to_size(joint->clamp)].holds_section;
+    const bool lets_turn = vertex->clamp >= 0 && !rod.clamps[to_size(vertex->clamp)].holds_section;
     if (by_twist && lets_turn) {
       if (!rod.natural_twist.empty()) result.natural[2] = natural_twist_at_end(rod, last);
       return result;
     }
-    if (rod.closed && !last && joint->place() > edge) {
-      // The joint at the end of a ring is at its start, too, on the other side of the glue.
-      result.joint_ahead = rod.rest_length();
-      result.glued = joint->glued;
+    if (rod.closed && !last && vertex->place() > edge) {
+      // The vertex at the end of a ring is at its start, too, on the other side of the glue.
+      result.vertex_ahead = rod.rest_length();
+      result.glued = vertex->glued;
       result.natural = turned(result.natural, result.glued);
       // The first of the scene's pairs is that of the section after the glue, too.
       if (!rod.natural_curvatures.empty())
         result.natural.head<2>() = rod.natural_curvatures.front();
     }
-    const bool ends_leg = recovery.bounds_legs(joint->place()) && joint->clamp < 0;
+    const bool ends_leg = recovery.bounds_legs(vertex->place()) && vertex->clamp < 0;
     if (ends_leg) result.natural = natural_at_end_of_leg(rod, edge, last, recovery);
-    result.joint = &*joint;
+    result.vertex = &*vertex;
     // Where a node parts two legs, or sections that are glued turned, the torque has a kink there.
-    const bool has_kink = ends_leg || parts_bending(*joint, rod);
-    result.arc_length = joint->bend_place - result.joint_ahead;
-    result.twist_place = has_kink ? result.arc_length : joint->twist_place - result.joint_ahead;
+    const bool has_kink = ends_leg || parts_bending(*vertex, rod);
+    result.arc_length = vertex->bend_place - result.vertex_ahead;
+    result.twist_place = has_kink ? result.arc_length : vertex->twist_place - result.vertex_ahead;
     if (by_twist) result.arc_length = result.twist_place;
-    result.is_at_pivot = joint->clamp >= 0 && !by_twist;
-    result.actuated = actuated_turn_from(*joint, result.arc_length + result.joint_ahead, rod);
+    result.is_at_pivot = vertex->clamp >= 0 && !by_twist;
+    result.actuated = actuated_turn_from(*vertex, result.arc_length + result.vertex_ahead, rod);
     return result;
   }
 
@@ -381,12 +385,12 @@ class SectionField : public EdgewiseField<Vec3> {
   [[nodiscard]] Bent bent(Index edge, bool last, const Model& model, const State& state) const {
     const Known& known = known_of(edge, last);
     const Vec3 point = point_at(edge, last, model, state);
-    if (known.joint == nullptr) {
+    if (known.vertex == nullptr) {
       const MomentRecovery::Place end{known.arc_length, last};
       return {recovery_.at_end(last, model, state) - recovery_.inside(edge, end, model, state),
               recovery_.share_of(edge, point, state)};
     }
-    return {cell_moment(*known.joint, rod_, model, state) +
+    return {cell_moment(*known.vertex, rod_, model, state) +
                 recovery_.smooth(edge, last, point, model, state),
             recovery_.share_of(edge, point, state)};
   }
@@ -396,15 +400,15 @@ class SectionField : public EdgewiseField<Vec3> {
     const Known& known = known_of(edge, last);
     const Vec3 natural = is_moment(quantity_) ? Vec3::Zero() : known.natural;
     const bool vector = is_vector(edge, model);
-    if (known.joint == nullptr) {
+    if (known.vertex == nullptr) {
       const Vec3 beyond = inside(edge, {known.arc_length, last}, model, state);
       return (vector ? recovery_.at_end(last, model, state) : natural) - beyond;
     }
     const Vec3 missing =
         recovery_.smooth(edge, last, point_at(edge, last, model, state), model, state) +
         taken_by_spin(edge, last, model, state);
-    if (vector) return moment_of(*known.joint, rod_, model, state) + missing;
-    const Vec3 excess = excess_of(*known.joint, model, state);
+    if (vector) return moment_of(*known.vertex, rod_, model, state) + missing;
+    const Vec3 excess = excess_of(*known.vertex, model, state);
     Vec3 moment = stiffness_.cwiseProduct(excess);
     if (model.has_sections()) {
       const Vec3 actuated = value_of(known.actuated, model, state);
@@ -419,7 +423,7 @@ class SectionField : public EdgewiseField<Vec3> {
   [[nodiscard]] Vec3 taken_by_spin(Index edge, bool last, const Model& model,
                                    const State& state) const {
     const Known& known = known_of(edge, last);
-    if (known.joint->clamp < 0) return Vec3::Zero();
+    if (known.vertex->clamp < 0) return Vec3::Zero();
     const double torque = spin_.along(edge, model, state);
     if (torque == 0.0) return Vec3::Zero();
     const double from_clamp = known.arc_length - rod_.arc_length_at(last ? edge + 1 : edge);
@@ -446,29 +450,29 @@ class SectionField : public EdgewiseField<Vec3> {
     return is_vector(edge, model) ? moment : in_section(edge, moment, model, state);
   }
 
-  /// Curvatures and twist of a joint beyond the natural ones [1/m].
-  [[nodiscard]] Vec3 excess_of(const RodJoint& joint, const Model& model,
+  /// Curvatures and twist of a vertex beyond the natural ones [1/m].
+  [[nodiscard]] Vec3 excess_of(const RodVertex& vertex, const Model& model,
                                const State& state) const {
-    const JointStrain strain = strain_of(joint, rod_, model, state);
+    const MaterialCurvature strain = strain_of(vertex, rod_, model, state);
     if (!model.has_sections()) {
-      return strain.kappa_1 / joint.bend_length * bend_axis(joint, rod_, model, state);
+      return strain.kappa_1 / vertex.bend_length * bend_axis(vertex, rod_, model, state);
     }
-    const JointStrain rest = rest_strain(joint, rod_, model, state);
-    return {(strain.kappa_1 - rest.kappa_1) / joint.bend_length,
-            (strain.kappa_2 - rest.kappa_2) / joint.bend_length,
-            (strain.twist - rest.twist) / joint.twist_length};
+    const MaterialCurvature rest = rest_strain(vertex, rod_, model, state);
+    return {(strain.kappa_1 - rest.kappa_1) / vertex.bend_length,
+            (strain.kappa_2 - rest.kappa_2) / vertex.bend_length,
+            (strain.twist - rest.twist) / vertex.twist_length};
   }
 
-  /// The moments of a joint and its torque [N m], which it has in its own frame, in the section's
-  /// frame at the known place. The joint's tangent is the mean of those beside it, and its
+  /// The moments of a vertex and its torque [N m], which it has in its own frame, in the section's
+  /// frame at the known place. The vertex's tangent is the mean of those beside it, and its
   /// directors are those in the middle of the length over which it twists. At inner nodes of an
   /// even mesh all these places are one. `actuated`: the turn from there that actuations make.
   [[nodiscard]] Vec3 moved(const Vec3& moment, const Known& known, bool last, const Vec3& excess,
                            const Vec3& actuated) const {
-    const RodJoint& joint = *known.joint;
-    const double place = known.arc_length + known.joint_ahead;
-    const double from_bend = place - tangent_place(joint, der::tangent_place);
-    const double from_twist = place - joint.twist_place;
+    const RodVertex& vertex = *known.vertex;
+    const double place = known.arc_length + known.vertex_ahead;
+    const double from_bend = place - tangent_place(vertex, der::tangent_place);
+    const double from_twist = place - vertex.twist_place;
     const Vec3 turned = natural_turn(known, last, place) + actuated +
                         Vec3(from_bend, from_bend, from_twist).cwiseProduct(excess);
     // Bending towards a director turns about the other one.
@@ -478,25 +482,25 @@ class SectionField : public EdgewiseField<Vec3> {
   }
 
   /// How far the section at a place is turned, without stress, against the mean of those beside a
-  /// joint: towards the directors and about the tangent [rad]. Where the natural shape jumps,
+  /// vertex: towards the directors and about the tangent [rad]. Where the natural shape jumps,
   /// `known` has that of one side, and the cell the mean of both.
   [[nodiscard]] Vec3 natural_turn(const Known& known, bool last, double place) const {
-    const RodJoint& joint = *known.joint;
-    const Vec3 mean = mean_natural(joint);
-    if (joint.clamp >= 0) {
-      const double from_bend = place - tangent_place(joint, natural_tangent_place);
-      return Vec3(from_bend, from_bend, place - joint.twist_place).cwiseProduct(mean);
+    const RodVertex& vertex = *known.vertex;
+    const Vec3 mean = mean_natural(vertex);
+    if (vertex.clamp >= 0) {
+      const double from_bend = place - tangent_place(vertex, natural_tangent_place);
+      return Vec3(from_bend, from_bend, place - vertex.twist_place).cwiseProduct(mean);
     }
     const Vec3 own = turned(known.natural, -known.glued);
-    const double node = rod_.arc_length_at(joint.place());
-    const double length_before = rod_.edge_length[to_size(joint.before)];
-    const double length_after = rod_.edge_length[to_size(joint.after)];
+    const double node = rod_.arc_length_at(vertex.place());
+    const double length_before = rod_.edge_length[to_size(vertex.before)];
+    const double length_after = rod_.edge_length[to_size(vertex.after)];
     const double other_share = last ? length_before / length_after : length_after / length_before;
     const Vec3 other = mean + other_share * (mean - own);
     const Vec3& before = last ? own : other;
     const Vec3& after = last ? other : own;
-    const double bends_before = node - natural_tangent_place(rod_, joint.place() - 1);
-    const double bends_after = natural_tangent_place(rod_, joint.place()) - node;
+    const double bends_before = node - natural_tangent_place(rod_, vertex.place() - 1);
+    const double bends_after = natural_tangent_place(rod_, vertex.place()) - node;
     const Vec3 to_before(bends_before, bends_before, 0.5 * length_before);
     const Vec3 to_after(bends_after, bends_after, 0.5 * length_after);
     return 0.5 * (to_before.cwiseProduct(before) - to_after.cwiseProduct(after)) +
@@ -504,15 +508,15 @@ class SectionField : public EdgewiseField<Vec3> {
   }
 
   /// Arc length [m] in the middle between the places where the rod has the directions of the two
-  /// sides of a joint: a clamp, or the place of an edge's direction.
+  /// sides of a vertex: a clamp, or the place of an edge's direction.
   template <class PlaceOf>
-  [[nodiscard]] double tangent_place(const RodJoint& joint, const PlaceOf& place_of) const {
-    const Index place = joint.place();
+  [[nodiscard]] double tangent_place(const RodVertex& vertex, const PlaceOf& place_of) const {
+    const Index place = vertex.place();
     const auto side = [&](Index own, Index edge) {
       if (own < 0) return rod_.arc_length_at(place);  // of the clamp
       return place_of(rod_, edge);
     };
-    return 0.5 * (side(joint.before, place - 1) + side(joint.after, place));
+    return 0.5 * (side(vertex.before, place - 1) + side(vertex.after, place));
   }
 
   /// The moment `moment` [N m] in fixed axes at a place of an edge as the field has it, in the
@@ -571,8 +575,8 @@ class SectionField : public EdgewiseField<Vec3> {
       const Index node = last ? rod_.num_edges() : 0;
       if (edge != (last ? node - 1 : node) || rod_.clamp_at(node) != nullptr) continue;
       const Vec3 excess = components(recovery_.excess(edge, model, state), frame);
-      const RodJoint& joint = last ? rod_.joints.back() : rod_.joints.front();
-      turn = joint.bend_length * excess.cwiseQuotient(stiffness_);
+      const RodVertex& vertex = last ? rod_.vertices.back() : rod_.vertices.front();
+      turn = vertex.bend_length * excess.cwiseQuotient(stiffness_);
       const double twelfth = (last ? 1.0 : -1.0) * rod_.edge_length[to_size(edge)] / 12.0;
       if (!rod_.natural_curvatures.empty()) {
         turn.head<2>() += twelfth * rod_.natural_curvatures[to_size(node)];
@@ -610,7 +614,7 @@ class SectionField : public EdgewiseField<Vec3> {
   }
 
   SectionQuantity quantity_;
-  RodLayout rod_;
+  RodMesh rod_;
   Vec3 stiffness_;
   ActuatedShape actuated_;
   MomentRecovery recovery_;
@@ -620,7 +624,7 @@ class SectionField : public EdgewiseField<Vec3> {
 
 }  // namespace
 
-std::unique_ptr<RodField> make_section_field(SectionQuantity quantity, const RodLayout& rod,
+std::unique_ptr<RodField> make_section_field(SectionQuantity quantity, const RodMesh& rod,
                                              const Model& model) {
   return SectionField::make(quantity, rod, model);
 }

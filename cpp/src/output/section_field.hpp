@@ -25,7 +25,7 @@ enum class SectionQuantity {
 };
 
 /// All but the magnitudes need a model with sections.
-std::unique_ptr<RodField> make_section_field(SectionQuantity quantity, const RodLayout& rod,
+std::unique_ptr<RodField> make_section_field(SectionQuantity quantity, const RodMesh& rod,
                                              const Model& model);
 
 }  // namespace der

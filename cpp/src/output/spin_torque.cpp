@@ -7,7 +7,7 @@
 
 namespace der {
 
-SpinTorque::SpinTorque(const RodLayout& rod, const Model& model) {
+SpinTorque::SpinTorque(const RodMesh& rod, const Model& model) {
   if (!model.has_sections()) return;
   for (const Clamp& clamp : rod.clamps) {
     if (!clamp.holds_section) continue;

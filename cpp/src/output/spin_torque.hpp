@@ -16,7 +16,7 @@ namespace der {
 /// is another one if the edge's spin changes.
 class SpinTorque {
  public:
-  SpinTorque(const RodLayout& rod, const Model& model);
+  SpinTorque(const RodMesh& rod, const Model& model);
 
   /// By how much the torque grows along an edge [N m], from its start to its end: what the forces
   /// on its angle leave for the inertia. 0 of edges without such a clamp.

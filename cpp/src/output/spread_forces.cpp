@@ -7,7 +7,7 @@
 
 namespace der {
 
-SpreadForces::SpreadForces(const RodLayout& rod, const Model& model)
+SpreadForces::SpreadForces(const RodMesh& rod, const Model& model)
     : dimension_(model.dimension), rod_(rod) {
   for (const Index node : rod.nodes) first_dofs_.push_back(model.dof(node, 0));
   for (const ForcePlace& place : rod.force_places) {

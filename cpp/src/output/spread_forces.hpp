@@ -20,7 +20,7 @@ class SpreadForces {
     std::vector<Weighted> nodes;
   };
 
-  SpreadForces(const RodLayout& rod, const Model& model);
+  SpreadForces(const RodMesh& rod, const Model& model);
 
   [[nodiscard]] std::size_t size() const { return forces_.size(); }
   [[nodiscard]] const Force& operator[](std::size_t i) const { return forces_[i]; }
@@ -34,7 +34,7 @@ class SpreadForces {
 
  private:
   int dimension_;
-  RodLayout rod_;
+  RodMesh rod_;
   std::vector<Index> first_dofs_;  // of each node
   std::vector<Force> forces_;
 };

@@ -9,7 +9,7 @@
 #include "der/energies/section_spring.hpp"
 #include "der/model/moment_place.hpp"
 #include "der/model/section_place.hpp"
-#include "der/output/joint_strain.hpp"
+#include "der/output/vertex_strain.hpp"
 
 namespace der {
 namespace {
@@ -27,7 +27,7 @@ EdgeMoments moments_of_spring(std::size_t number, const Model& model, const Stat
 
 }  // namespace
 
-SpreadMoments::SpreadMoments(const RodLayout& rod, const Model& model) : rod_(rod) {
+SpreadMoments::SpreadMoments(const RodMesh& rod, const Model& model) : rod_(rod) {
   for (std::size_t i = 0; i < rod.moment_places.size(); ++i) {
     const MomentPlace& place = rod.moment_places[i];
     moments_.push_back({place.arc_length, place.first_edge, place.weights});

@@ -21,7 +21,7 @@ class SpreadMoments {
     std::vector<double> weights;  ///< of the edges from there on: those of moments that bend
   };
 
-  SpreadMoments(const RodLayout& rod, const Model& model);
+  SpreadMoments(const RodMesh& rod, const Model& model);
 
   [[nodiscard]] std::size_t size() const { return moments_.size(); }
   [[nodiscard]] const Moment& operator[](std::size_t i) const { return moments_[i]; }
@@ -30,7 +30,7 @@ class SpreadMoments {
 
  private:
   // The source of a moment: all moments at a place of a planar rod, or in space one load or one
-  // spring. The number is that in RodLayout::moment_places, in ElementLists::circulatory, or of the
+  // spring. The number is that in RodMesh::moment_places, in ElementLists::circulatory, or of the
   // spring's element.
   struct PlanarPlace {
     std::size_t number = 0;
@@ -53,7 +53,7 @@ class SpreadMoments {
   [[nodiscard]] static EdgeMoments value_of(SpatialSpring<2> spring, const Model& model,
                                             const State& state);
 
-  RodLayout rod_;
+  RodMesh rod_;
   std::vector<Moment> moments_;
   std::vector<Source> sources_;  // of each
 };

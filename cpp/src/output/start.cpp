@@ -42,7 +42,7 @@ std::string names_of(const std::vector<SavedRod>& rods) {
 }
 
 /// Describes how a rod differs; empty if it does not.
-std::string difference(const SavedRod& there, const RodLayout& here) {
+std::string difference(const SavedRod& there, const RodMesh& here) {
   if (there.nodes.size() != here.nodes.size()) {
     return fmt::format("rod '{}' has {} nodes there and {} here", here.name, there.nodes.size(),
                        here.nodes.size());
@@ -73,8 +73,8 @@ std::string difference(const SavedRod& there, const RodLayout& here) {
   return {};
 }
 
-std::string difference(const std::vector<SavedRod>& there, const std::vector<RodLayout>& here) {
-  for (const RodLayout& rod : here) {
+std::string difference(const std::vector<SavedRod>& there, const std::vector<RodMesh>& here) {
+  for (const RodMesh& rod : here) {
     const auto same = std::find_if(there.begin(), there.end(),
                                    [&](const SavedRod& saved) { return saved.name == rod.name; });
     if (same == there.end()) {
@@ -93,7 +93,7 @@ std::string difference(const std::vector<SavedRod>& there, const std::vector<Rod
 void check_held_nodes(const std::string& from, const LastFrame& last, const Model& model,
                       const State& state) {
   constexpr double kSame = 1e-6;  // of the rod's length
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     for (Index place = 0; place < static_cast<Index>(rod.nodes.size()); ++place) {
       const Index dof = model.dof(rod.node(place), 0);
       const double jump = (state.positions.segment(dof, model.dimension) -
@@ -161,7 +161,7 @@ void check_clamps(const std::string& from, const LastFrame& last, const Simulati
   const Model& model = simulation.model();
   for (const scenario::Support& clamp : simulation.scenario().scene().supports) {
     if (!clamp.clamps()) continue;
-    const RodLayout& rod = model.rod(clamp.rod);
+    const RodMesh& rod = model.rod(clamp.rod);
     const std::vector<Index> places = nodes_at(clamp.at, rod);
     const Vec3 tangent =
         model.dimension == 3 ? initial_tangent(rod, places.front(), model) : Vec3(Vec3::UnitX());
@@ -216,7 +216,7 @@ LastFrame read_start(const std::string& from) {
 
 }  // namespace
 
-void apply_start(Simulation& simulation, const Beat& beat) {
+void apply_start(Simulation& simulation, const CancelCallback& beat) {
   const std::string& from = simulation.scenario().scene().start_from;
   if (from.empty()) return;
   if (from == "equilibrium") {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "der/core/index.hpp"
-#include "der/output/joint_strain.hpp"
+#include "der/output/vertex_strain.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spatial_clamp.hpp"
 #include "output/edge_excess.hpp"
@@ -26,17 +26,17 @@ namespace {
 /// effective edge is shorter than its edge and stretches for all of it.
 class EffectiveVectors {
  public:
-  EffectiveVectors(const RodLayout& rod, const Model& model) {
+  EffectiveVectors(const RodMesh& rod, const Model& model) {
     const Vector drawn = Vector::Zero(model.tables.size());
     for (Index edge = 0; edge < rod.num_edges(); ++edge) {
       if (model.dimension == 3) {
         in_space_.push_back(spatial_edge(rod, edge, model));
-        rest_length_.push_back(in_space_.back().vector(model.rest_positions, drawn).norm());
+        rest_length_.push_back(in_space_.back().vector(model.reference_positions, drawn).norm());
       } else {
         planar_.push_back(effective_edge(rod, edge, model));
-        rest_length_.push_back(planar_.back().drawn(model.rest_positions).norm());
+        rest_length_.push_back(planar_.back().drawn(model.reference_positions).norm());
       }
-      actuated_.emplace_back(rod.rest_entries.edge(edge), 1, model);
+      actuated_.emplace_back(rod.natural_strain_entries.edge(edge), 1, model);
     }
   }
 
@@ -69,8 +69,7 @@ class EffectiveVectors {
 /// curves.
 class StretchField : public RodField {
  public:
-  static std::unique_ptr<RodField> make(double stiffness, const RodLayout& rod,
-                                        const Model& model) {
+  static std::unique_ptr<RodField> make(double stiffness, const RodMesh& rod, const Model& model) {
     SpreadForces forces(rod, model);
     std::vector<StretchSample> samples = stretch_samples(rod, forces, model);
     return std::unique_ptr<RodField>(
@@ -98,7 +97,7 @@ class StretchField : public RodField {
   [[nodiscard]] bool smooth_at(std::size_t i) const override { return samples_[i].smooth; }
 
  private:
-  StretchField(double stiffness, const RodLayout& rod, const Model& model, SpreadForces forces,
+  StretchField(double stiffness, const RodMesh& rod, const Model& model, SpreadForces forces,
                std::vector<StretchSample> samples)
       : RodField(arc_lengths(samples)),
         stiffness_(stiffness),
@@ -176,7 +175,7 @@ class StretchField : public RodField {
   }
 
   double stiffness_;
-  RodLayout rod_;
+  RodMesh rod_;
   SpreadForces forces_;
   EffectiveVectors vectors_;
   LeanExcess leans_;
@@ -188,11 +187,11 @@ class StretchField : public RodField {
 
 }  // namespace
 
-std::unique_ptr<RodField> make_strain_field(const RodLayout& rod, const Model& model) {
+std::unique_ptr<RodField> make_strain_field(const RodMesh& rod, const Model& model) {
   return StretchField::make(1.0, rod, model);
 }
 
-std::unique_ptr<RodField> make_tension_field(const RodLayout& rod, const Model& model) {
+std::unique_ptr<RodField> make_tension_field(const RodMesh& rod, const Model& model) {
   return StretchField::make(rod.EA, rod, model);
 }
 

@@ -10,8 +10,8 @@ namespace der {
 // sides of the places where a force acts; linear in between, of order 2 everywhere.
 // docs/mechanics.md, "Tension and strain".
 
-std::unique_ptr<RodField> make_strain_field(const RodLayout& rod, const Model& model);
+std::unique_ptr<RodField> make_strain_field(const RodMesh& rod, const Model& model);
 /// In [N].
-std::unique_ptr<RodField> make_tension_field(const RodLayout& rod, const Model& model);
+std::unique_ptr<RodField> make_tension_field(const RodMesh& rod, const Model& model);
 
 }  // namespace der

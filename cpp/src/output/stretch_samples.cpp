@@ -26,7 +26,7 @@ std::vector<Weighted> line_weights(const std::vector<double>& middles, Index fir
 /// The parts of a rod and the samples along them.
 class Layout {
  public:
-  Layout(const RodLayout& rod, const SpreadForces& forces, const Model& model)
+  Layout(const RodMesh& rod, const SpreadForces& forces, const Model& model)
       : rod_(rod), forces_(forces), bounds_(leg_bounds(rod, model)) {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) middles_.push_back(rod.edge_middle(edge));
     find_breaks();
@@ -230,7 +230,7 @@ class Layout {
     return place.from < middle && middle < place.to;
   }
 
-  const RodLayout& rod_;
+  const RodMesh& rod_;
   const SpreadForces& forces_;
   std::vector<Index> bounds_;    // between the legs
   std::vector<double> middles_;  // of the edges [m]
@@ -240,7 +240,7 @@ class Layout {
 
 }  // namespace
 
-std::vector<StretchSample> stretch_samples(const RodLayout& rod, const SpreadForces& forces,
+std::vector<StretchSample> stretch_samples(const RodMesh& rod, const SpreadForces& forces,
                                            const Model& model) {
   return Layout(rod, forces, model).samples();
 }

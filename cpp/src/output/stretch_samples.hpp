@@ -31,8 +31,8 @@ struct StretchSample {
   double arc_length = 0.0;  ///< [m]
   Line line;
   std::vector<Curving> curving;     ///< what the line does not have of it, or has in excess
-  std::vector<Passed> distributed;  ///< in RodLayout::distributed_places
-  std::vector<Passed> foundations;  ///< in RodLayout::foundation_places
+  std::vector<Passed> distributed;  ///< in RodMesh::distributed_places
+  std::vector<Passed> foundations;  ///< in RodMesh::foundation_places
   bool smooth = true;
 
   /// A part of `curving` has no other forces than the sample.
@@ -49,7 +49,7 @@ struct StretchSample {
 /// beside it, with the loads that act between them. Through a single middle, too, the line has the
 /// slope of another part: what differs are the loads along the rod, and the curving under the
 /// forces across it; weight and inertia are the same.
-std::vector<StretchSample> stretch_samples(const RodLayout& rod, const SpreadForces& forces,
+std::vector<StretchSample> stretch_samples(const RodMesh& rod, const SpreadForces& forces,
                                            const Model& model);
 
 }  // namespace der

@@ -135,7 +135,7 @@ std::string crossing_warning(const Simulation& simulation, const RunOutcome& out
 std::string stretch_warning(const Simulation& simulation, const RunOutcome& outcome) {
   if (!outcome.stretched || outcome.failed()) return {};
   if (!scenario::unit_problem(simulation.scenario().scene()).empty()) return {};
-  const StrainWatch::Stretched& found = *outcome.stretched;
+  const StrainMonitor::Stretched& found = *outcome.stretched;
   return fmt::format(
       "rod '{}' is stretched to {:.3g} times its rest length {}, at arc length {:.4g} m: no "
       "material obeys a linear law so far. Are the units of its modulus, sizes and loads Pa, m and "

@@ -9,11 +9,11 @@
 #include "der/model/followed.hpp"
 #include "der/model/frames.hpp"
 #include "der/model/location.hpp"
-#include "der/output/joint_strain.hpp"
+#include "der/output/vertex_strain.hpp"
 #include "der/supports/clamp.hpp"
 #include "der/supports/spatial_clamp.hpp"
 #include "model/curvature_jump.hpp"
-#include "model/drawn_edge.hpp"
+#include "model/reference_edge.hpp"
 #include "output/glue_kink.hpp"
 #include "output/moment_recovery.hpp"
 #include "output/natural_curvature.hpp"
@@ -37,7 +37,7 @@ struct FreeEnd {
   double bend_length = 0.0;  ///< [m] of the node beside it
 };
 
-std::vector<FreeEnd> free_ends(const RodLayout& rod) {
+std::vector<FreeEnd> free_ends(const RodMesh& rod) {
   std::vector<FreeEnd> ends;
   if (rod.closed || rod.num_edges() < 2) return ends;
   for (const bool last : {false, true}) {
@@ -50,28 +50,27 @@ std::vector<FreeEnd> free_ends(const RodLayout& rod) {
 }
 
 /// How much further [m] than the middle of an edge beside a clamp lies its knot.
-double knot_beyond_middle(const RodLayout& rod, Index edge) {
+double knot_beyond_middle(const RodMesh& rod, Index edge) {
   return tangent_place(rod, edge) - rod.edge_middle(edge);
 }
 
 /// Whether an edge beside a clamp leans against a rod that is stress-free as drawn: from its pivot
 /// to a node on the drawn curve it is turned by more than the tangent at its knot. Where the scene
 /// gives the natural curvature, the cell of the clamp has it, and the edge does not.
-bool leans_as_drawn(const RodLayout& rod, Index edge) {
+bool leans_as_drawn(const RodMesh& rod, Index edge) {
   return rod.natural_curvature.empty() && rod.natural_curvatures.empty() &&
          (rod.clamp_at(edge) != nullptr || rod.clamp_at(edge + 1) != nullptr);
 }
 
 /// Adds the arc lengths [m] at which the natural curvature jumps.
-void add_natural_jumps(const RodLayout& rod, std::vector<double>& kinks) {
+void add_natural_jumps(const RodMesh& rod, std::vector<double>& kinks) {
   for (const CurvatureJump& jump : rod.natural_jumps) {
     kinks.push_back(rod.arc_length_at(jump.place));
   }
 }
 
 /// The clamps at the knots, as the knots' legs see them; at those of edges one that is not used.
-std::vector<Clamp> held_at_knots(const TangentLine& line, const RodLayout& rod,
-                                 const Model& model) {
+std::vector<Clamp> held_at_knots(const TangentLine& line, const RodMesh& rod, const Model& model) {
   std::vector<Clamp> held;
   for (const TangentLine::Knot& knot : line.knots()) {
     held.emplace_back();
@@ -154,7 +153,7 @@ class DirectionField : public RodField {
 class PlanarDirection : public DirectionField<double> {
  public:
   /// `component`: of the tangent; none: the angle itself.
-  static std::unique_ptr<RodField> make(std::optional<int> component, const RodLayout& rod,
+  static std::unique_ptr<RodField> make(std::optional<int> component, const RodMesh& rod,
                                         const Model& model) {
     std::vector<double> kinks;
     if (rod.EI > 0.0) {
@@ -166,7 +165,7 @@ class PlanarDirection : public DirectionField<double> {
   }
 
  private:
-  PlanarDirection(std::optional<int> component, const RodLayout& rod, const Model& model,
+  PlanarDirection(std::optional<int> component, const RodMesh& rod, const Model& model,
                   TangentLine line)
       : DirectionField(std::move(line)),
         component_(component),
@@ -178,21 +177,21 @@ class PlanarDirection : public DirectionField<double> {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) {
       edges_.push_back(effective_edge(rod, edge, model));
     }
-    find_drawn_leans(model);
+    find_reference_leans(model);
     for (const CurvatureJump& jump : rod.natural_jumps) {
       natural_jumps_.push_back(jump.turn.z());
     }
     find_reference(model);
   }
 
-  void find_drawn_leans(const Model& model) {
+  void find_reference_leans(const Model& model) {
     const NaturalCurvature natural(rod_, model);
     for (Index edge = 0; edge < rod_.num_edges(); ++edge) {
-      drawn_leans_.push_back(0.0);
+      reference_leans_.push_back(0.0);
       if (!leans_as_drawn(rod_, edge)) continue;
-      const Vec2 chord = drawn_edge(rod_, edge, model);
-      const Vec2 effective = edges_[to_size(edge)].drawn(model.rest_positions);
-      drawn_leans_.back() =
+      const Vec2 chord = reference_edge(rod_, edge, model);
+      const Vec2 effective = edges_[to_size(edge)].drawn(model.reference_positions);
+      reference_leans_.back() =
           angle_between(chord, effective) -
           knot_beyond_middle(rod_, edge) * natural.at(edge, rod_.edge_middle(edge));
     }
@@ -254,7 +253,7 @@ class PlanarDirection : public DirectionField<double> {
     }
     for (std::size_t i = 0; i < places.size(); ++i) {
       knots[i] += offset;
-      if (places[i].clamp < 0) knots[i] -= drawn_leans_[to_size(rod_.position(places[i].edge))];
+      if (places[i].clamp < 0) knots[i] -= reference_leans_[to_size(rod_.position(places[i].edge))];
     }
     for (const FreeEnd& end : ends_) {
       (end.last ? knots.back() : knots.front()) -= lean(end, model, state);
@@ -288,11 +287,11 @@ class PlanarDirection : public DirectionField<double> {
   }
 
   std::optional<int> component_;
-  RodLayout rod_;
+  RodMesh rod_;
   std::vector<Clamp> held_;  // at the knots
   std::vector<EffectiveEdge> edges_;
-  std::vector<double> drawn_leans_;    // of each edge [rad]
-  std::vector<double> natural_jumps_;  // of the curvature [1/m]
+  std::vector<double> reference_leans_;  // of each edge [rad]
+  std::vector<double> natural_jumps_;    // of the curvature [1/m]
   std::vector<FreeEnd> ends_;
   std::optional<MomentRecovery> spread_;  // where moments at free ends may matter
   std::optional<SpreadMoments> moments_;
@@ -302,10 +301,10 @@ class PlanarDirection : public DirectionField<double> {
 
 class SpatialDirection : public DirectionField<Vec3> {
  public:
-  static std::unique_ptr<RodField> make(int component, const RodLayout& rod, const Model& model) {
+  static std::unique_ptr<RodField> make(int component, const RodMesh& rod, const Model& model) {
     std::optional<SpreadMoments> moments;
     std::vector<double> kinks;
-    if (model.has_sections() && !rod.joints.empty()) {
+    if (model.has_sections() && !rod.vertices.empty()) {
       moments.emplace(rod, model);
       for (std::size_t i = 0; i < moments->size(); ++i) kinks.push_back((*moments)[i].arc_length);
       if (kinks.empty()) moments.reset();
@@ -319,7 +318,7 @@ class SpatialDirection : public DirectionField<Vec3> {
   }
 
  private:
-  SpatialDirection(int component, const RodLayout& rod, const Model& model, TangentLine line,
+  SpatialDirection(int component, const RodMesh& rod, const Model& model, TangentLine line,
                    std::optional<SpreadMoments> moments, std::optional<GlueKink> glue)
       : DirectionField(std::move(line)),
         component_(component),
@@ -330,31 +329,31 @@ class SpatialDirection : public DirectionField<Vec3> {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) {
       edges_.push_back(spatial_edge(rod, edge, model));
     }
-    drawn_leans_.assign(edges_.size(), Vec2::Zero());
-    if (!model.has_sections() || rod.joints.empty()) return;
-    find_drawn_leans(model);
+    reference_leans_.assign(edges_.size(), Vec2::Zero());
+    if (!model.has_sections() || rod.vertices.empty()) return;
+    find_reference_leans(model);
     find_natural_jumps(model);
     ends_ = free_ends(rod);
     if (moments_ && !ends_.empty()) spread_.emplace(rod, model);
   }
 
-  void find_drawn_leans(const Model& model) {
-    for (const RodJoint& joint : rod_.joints) {
-      if (joint.clamp < 0) continue;
-      const Index edge = joint.leaves_clamp() ? joint.after : joint.before;
+  void find_reference_leans(const Model& model) {
+    for (const RodVertex& vertex : rod_.vertices) {
+      if (vertex.clamp < 0) continue;
+      const Index edge = vertex.leaves_clamp() ? vertex.after : vertex.before;
       if (!leans_as_drawn(rod_, edge)) continue;
-      const Vec3 chord = drawn_edge<3>(rod_, edge, model);
-      const SectionFrame section = drawn_frame(model, rod_.first_edge + edge);
+      const Vec3 chord = reference_edge<3>(rod_, edge, model);
+      const SectionFrame section = initial_frame(model, rod_.first_edge + edge);
       const Vec3 leant = section.tangent - chord.normalized();
-      drawn_leans_[to_size(edge)] = Vec2(leant.dot(section.first), leant.dot(section.second)) -
-                                    knot_beyond_middle(rod_, edge) * joint.natural_curvature;
+      reference_leans_[to_size(edge)] = Vec2(leant.dot(section.first), leant.dot(section.second)) -
+                                        knot_beyond_middle(rod_, edge) * vertex.natural_curvature;
     }
   }
 
   void find_natural_jumps(const Model& model) {
     for (const auto& [place, turn] : rod_.natural_jumps) {
       const Index edge = rod_.edge_before(place);
-      const SectionFrame section = drawn_frame(model, rod_.first_edge + edge);
+      const SectionFrame section = initial_frame(model, rod_.first_edge + edge);
       const Vec3 bent = turn.cross(section.tangent);
       natural_jumps_.emplace_back(edge, Vec2(bent.dot(section.first), bent.dot(section.second)));
     }
@@ -394,7 +393,7 @@ class SpatialDirection : public DirectionField<Vec3> {
   /// At its knot.
   [[nodiscard]] Vec3 tangent_of_edge(Index edge, const Model& model, const State& state) const {
     Vec3 tangent = effective_vector(edges_[to_size(edge)], model, state).normalized();
-    const Vec2& leans = drawn_leans_[to_size(edge)];
+    const Vec2& leans = reference_leans_[to_size(edge)];
     if (leans.isZero(0.0)) return tangent;
     const SectionFrame section = frame(edge, model, state);
     tangent -= leans[0] * section.first + leans[1] * section.second;
@@ -442,10 +441,10 @@ class SpatialDirection : public DirectionField<Vec3> {
   }
 
   int component_;
-  RodLayout rod_;
+  RodMesh rod_;
   std::vector<Clamp> held_;  // at the knots
   std::vector<SpatialEdge> edges_;
-  std::vector<Vec2> drawn_leans_;  // of each edge, towards its two directors
+  std::vector<Vec2> reference_leans_;  // of each edge, towards its two directors
   /// Jumps of the drawn curvature behind edges, towards their two directors [1/m].
   std::vector<std::pair<Index, Vec2>> natural_jumps_;
   std::vector<FreeEnd> ends_;
@@ -456,11 +455,11 @@ class SpatialDirection : public DirectionField<Vec3> {
 
 }  // namespace
 
-std::unique_ptr<RodField> make_slope_field(const RodLayout& rod, const Model& model) {
+std::unique_ptr<RodField> make_slope_field(const RodMesh& rod, const Model& model) {
   return PlanarDirection::make(std::nullopt, rod, model);
 }
 
-std::unique_ptr<RodField> make_tangent_field(int number, const RodLayout& rod, const Model& model) {
+std::unique_ptr<RodField> make_tangent_field(int number, const RodMesh& rod, const Model& model) {
   if (model.dimension == 2) return PlanarDirection::make(number, rod, model);
   return SpatialDirection::make(number, rod, model);
 }

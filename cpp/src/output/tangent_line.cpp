@@ -17,7 +17,7 @@ namespace {
 double beyond(double s, double kink) { return std::max(0.0, s - kink); }
 
 /// Number of the edge on which a place is.
-Index edge_at(double s, const RodLayout& rod) {
+Index edge_at(double s, const RodMesh& rod) {
   const auto next = std::upper_bound(rod.arc_length.begin(), rod.arc_length.end(), s);
   return std::clamp<Index>(static_cast<Index>(next - rod.arc_length.begin()) - 1, 0,
                            rod.num_edges() - 1);
@@ -25,12 +25,12 @@ Index edge_at(double s, const RodLayout& rod) {
 
 bool bends(const ActuatedStretch& stretch) { return stretch.what == scenario::Actuated::Curvature; }
 
-bool any_bends(const RodLayout& rod) {
+bool any_bends(const RodMesh& rod) {
   return std::any_of(rod.actuated_stretches.begin(), rod.actuated_stretches.end(), bends);
 }
 
 /// Arc lengths [m] at which an actuated curvature jumps.
-void add_actuated_jumps(const RodLayout& rod, std::vector<double>& places) {
+void add_actuated_jumps(const RodMesh& rod, std::vector<double>& places) {
   for (const ActuatedStretch& stretch : rod.actuated_stretches) {
     if (!bends(stretch)) continue;
     if (stretch.jumps(false)) places.push_back(stretch.from);
@@ -40,7 +40,7 @@ void add_actuated_jumps(const RodLayout& rod, std::vector<double>& places) {
 
 }  // namespace
 
-TangentLine::TangentLine(const RodLayout& rod, std::vector<double> kinks, const Model& model)
+TangentLine::TangentLine(const RodMesh& rod, std::vector<double> kinks, const Model& model)
     : rod_(rod), is_actuated_(any_bends(rod)), kinks_(std::move(kinks)) {
   find_knots(model);
   std::vector<double> jumps = kinks_;
@@ -72,7 +72,7 @@ TangentLine::TangentLine(const RodLayout& rod, std::vector<double> kinks, const 
 
 void TangentLine::find_knots(const Model& model) {
   // A ring's first and last edge have neighbours, too.
-  const RodLayout& rod = rod_;
+  const RodMesh& rod = rod_;
   const Index first = rod.closed ? -1 : 0;
   const Index last = rod.num_edges() + (rod.closed ? 1 : 0);
   legs_.push_back({rod.arc_length_at(first), 0.0, 0, 0});

@@ -46,7 +46,7 @@ class TangentLine {
   };
 
   /// `kinks`: arc lengths [m] at which the curvature jumps.
-  TangentLine(const RodLayout& rod, std::vector<double> kinks, const Model& model);
+  TangentLine(const RodMesh& rod, std::vector<double> kinks, const Model& model);
 
   [[nodiscard]] const std::vector<Knot>& knots() const { return knots_; }
   [[nodiscard]] const std::vector<Sample>& samples() const { return samples_; }
@@ -66,7 +66,7 @@ class TangentLine {
   void add_sample(double s, const Leg& leg, bool smooth);
   void add_turns(Sample& sample) const;
 
-  RodLayout rod_;
+  RodMesh rod_;
   bool is_actuated_;
   std::vector<Knot> knots_;
   std::vector<Leg> legs_;

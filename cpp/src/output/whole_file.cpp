@@ -39,7 +39,7 @@ fs::path temporary_name(const fs::path& file) {
   return temporary;
 }
 
-void write_whole(const fs::path& file, const std::string& text) {
+void write_atomically(const fs::path& file, const std::string& text) {
   const fs::path temporary = temporary_name(file);
   remove_file(temporary);
   // O_EXCL: nothing that came there meanwhile is written through, a link least of all.

@@ -13,7 +13,7 @@ std::filesystem::path temporary_name(const std::filesystem::path& file);
 
 /// Writes a text. A temporary file that is there is replaced; where it is a link, that is removed
 /// and what it points to is left alone. Throws IoError.
-void write_whole(const std::filesystem::path& file, const std::string& text);
+void write_atomically(const std::filesystem::path& file, const std::string& text);
 
 /// Gives a file that is whole its name. Throws IoError.
 void publish(const std::filesystem::path& temporary, const std::filesystem::path& file);

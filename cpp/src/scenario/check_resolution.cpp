@@ -32,7 +32,7 @@ template <class Natural>
 double size_at(const Natural& natural, int node) {
   struct Visitor {
     std::size_t node;
-    double operator()(AsDrawn /*none*/) const { return 0.0; }
+    double operator()(StressFreeReference /*none*/) const { return 0.0; }
     double operator()(double one) const { return size_of(one); }
     double operator()(const CurvaturePair& one) const { return size_of(one); }
     double operator()(const std::vector<double>& list) const { return size_of(list[node]); }
@@ -202,7 +202,7 @@ class Resolution {
   /// Sections without a direction may turn by any angle.
   void check_twist() {
     if (is_isotropic(rod_.cross_section) && size_at(rod_.natural_curvature, 0) == 0.0) return;
-    if (std::holds_alternative<AsDrawn>(rod_.natural_twist)) {
+    if (std::holds_alternative<StressFreeReference>(rod_.natural_twist)) {
       const Turning drawn = largest_turning(NaturalTwist(rod_.initial_twist), line_);
       if (drawn.angle > kCoarseTurn) warn("initial_twist", "the sections", drawn);
     } else {
@@ -218,7 +218,8 @@ class Resolution {
   [[nodiscard]] bool is_only_pulled() const {
     const Scene& scene = context_.scene;
     if (!std::holds_alternative<StaticAnalysis>(scene.analysis) || context_.dimension != 2 ||
-        !std::holds_alternative<AsDrawn>(rod_.natural_curvature) || !is_straight(rod_)) {
+        !std::holds_alternative<StressFreeReference>(rod_.natural_curvature) ||
+        !is_straight(rod_)) {
       return false;
     }
     const Vec3 along =

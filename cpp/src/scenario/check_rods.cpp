@@ -340,7 +340,7 @@ void check_masses(CheckContext& context, int i) {
 /// A rod of a single edge has no inner node, so only a clamp can make it bend.
 void check_bends(CheckContext& context, int i) {
   const Rod& rod = context.scene.rods[static_cast<std::size_t>(i)];
-  const bool curved = !std::holds_alternative<AsDrawn>(rod.natural_curvature);
+  const bool curved = !std::holds_alternative<StressFreeReference>(rod.natural_curvature);
   if (!curved || rod.points.size() > 2) return;
   if (context.is_clamped(i, 0) || context.is_clamped(i, 1)) return;
   context.diagnostics.add(

@@ -151,7 +151,7 @@ std::string out_of_plane(const Actuation& actuation, const Scene& scene) {
 // ---- no twist
 
 struct IsZero {
-  bool operator()(const AsDrawn& /*curvature*/) const { return false; }
+  bool operator()(const StressFreeReference& /*curvature*/) const { return false; }
   bool operator()(double curvature) const { return curvature == 0.0; }
   bool operator()(const CurvaturePair& pair) const {
     return pair.first == 0.0 && pair.second == 0.0;
@@ -165,7 +165,7 @@ struct IsZero {
 /// A twist that the rod has by itself.
 std::string own_twist(const Rod& rod) {
   if (rod.initial_twist != 0.0) return fmt::format("rod '{}' has an initial twist", rod.name);
-  const bool as_drawn = std::holds_alternative<AsDrawn>(rod.natural_twist);
+  const bool as_drawn = std::holds_alternative<StressFreeReference>(rod.natural_twist);
   if (!as_drawn && !std::visit(IsZero{}, rod.natural_twist)) {
     return fmt::format("rod '{}' has a natural twist", rod.name);
   }
@@ -189,7 +189,7 @@ std::string prescribed_twist(const Support& support, std::size_t number) {
 }
 
 bool is_naturally_straight(const Rod& rod) {
-  if (std::holds_alternative<AsDrawn>(rod.natural_curvature)) return is_straight(rod);
+  if (std::holds_alternative<StressFreeReference>(rod.natural_curvature)) return is_straight(rod);
   return std::visit(IsZero{}, rod.natural_curvature);
 }
 

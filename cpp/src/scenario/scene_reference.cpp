@@ -74,10 +74,10 @@ std::string anchor(const TableInfo& table) {
   return id;
 }
 
-std::string code_list(const std::vector<std::string>& words, const std::string& last_joint) {
+std::string code_list(const std::vector<std::string>& words, const std::string& last_vertex) {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    if (i > 0) text += i + 1 == words.size() ? last_joint : ", ";
+    if (i > 0) text += i + 1 == words.size() ? last_vertex : ", ";
     text += "`" + words[i] + "`";
   }
   return text;

@@ -123,11 +123,11 @@ std::string with_article(std::string_view noun) {
   return (vowel ? "an " : "a ") + std::string(noun);
 }
 
-std::string listed(const std::vector<std::string>& words, std::string_view last_joint) {
+std::string listed(const std::vector<std::string>& words, std::string_view last_vertex) {
   constexpr std::size_t shown = 20;
   std::string text;
   for (std::size_t i = 0; i < std::min(shown, words.size()); ++i) {
-    if (i > 0) text += i + 1 == words.size() ? std::string(last_joint) : std::string(", ");
+    if (i > 0) text += i + 1 == words.size() ? std::string(last_vertex) : std::string(", ");
     text += "'" + words[i] + "'";
   }
   return words.size() <= shown ? text : text + fmt::format(", ... ({} in all)", words.size());

@@ -18,6 +18,6 @@ std::string did_you_mean_part_of(std::string_view word, const std::vector<std::s
 std::string with_article(std::string_view noun);
 
 /// "'a', 'b' and 'c'"
-std::string listed(const std::vector<std::string>& words, std::string_view last_joint = " and ");
+std::string listed(const std::vector<std::string>& words, std::string_view last_vertex = " and ");
 
 }  // namespace der::scenario

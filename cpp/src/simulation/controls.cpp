@@ -138,7 +138,7 @@ const PrescribedControl& check_prescribed(const Model& model, const scenario::Sc
 }
 
 bool is_elongation(const Model& model, Index control) {
-  return std::any_of(model.rods.begin(), model.rods.end(), [control](const RodLayout& rod) {
+  return std::any_of(model.rods.begin(), model.rods.end(), [control](const RodMesh& rod) {
     return std::any_of(rod.actuated_stretches.begin(), rod.actuated_stretches.end(),
                        [control](const ActuatedStretch& stretch) {
                          return stretch.what == scenario::Actuated::Length &&

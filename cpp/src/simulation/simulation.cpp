@@ -50,7 +50,7 @@ std::map<std::string, Simulation::Settable, std::less<>> settable_in(const Model
 std::string find_spin_inside(const scenario::Scene& scene, const Model& model) {
   for (std::size_t i = 0; i < scene.supports.size(); ++i) {
     const scenario::Support& support = scene.supports[i];
-    const RodLayout& rod = model.rod(support.rod);
+    const RodMesh& rod = model.rod(support.rod);
     if (support.clamp != scenario::Clamp::Tangent || rod.EI == 0.0) continue;
     for (const Index place : nodes_at(support.at, rod)) {
       if (!lets_spin_inside(support, place, rod)) continue;

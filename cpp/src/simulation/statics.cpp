@@ -16,7 +16,7 @@
 
 namespace der {
 
-EquilibriumReport Simulation::equilibrium(bool leave_saddles, const Beat& beat) {
+EquilibriumReport Simulation::equilibrium(bool leave_saddles, const CancelCallback& beat) {
   State before;
   Undo undo(state_, before);
   EquilibriumReport report = settle(leave_saddles, beat);
@@ -32,7 +32,7 @@ EquilibriumReport Simulation::equilibrium(bool leave_saddles, const Beat& beat) 
   return report;
 }
 
-OutOfPlaneTest* Simulation::out_of_plane_test(const Beat& beat) {
+OutOfPlaneTest* Simulation::out_of_plane_test(const CancelCallback& beat) {
   if (model_.dimension == 2 && constants_->not_tested.empty() && !out_of_plane_) {
     out_of_plane_ = std::make_unique<OutOfPlaneTest>(scenario_.scene(), model_);
   }
@@ -40,13 +40,13 @@ OutOfPlaneTest* Simulation::out_of_plane_test(const Beat& beat) {
   return out_of_plane_.get();
 }
 
-double Simulation::growth_rate_out_of_plane(const Beat& beat) {
+double Simulation::growth_rate_out_of_plane(const CancelCallback& beat) {
   OutOfPlaneTest* test = out_of_plane_test(beat);
   return test == nullptr ? 0.0 : test->growth_rate(configuration_of(model_, state_));
 }
 
 OutOfPlaneBuckling Simulation::buckling_out_of_plane(const LinearBuckling& in_plane,
-                                                     const Beat& beat) {
+                                                     const CancelCallback& beat) {
   OutOfPlaneTest* test = out_of_plane_test(beat);
   if (test == nullptr) return {constants_->not_tested, {}};
   State unloaded = state_;
@@ -54,11 +54,11 @@ OutOfPlaneBuckling Simulation::buckling_out_of_plane(const LinearBuckling& in_pl
   return test->buckling(configuration_of(model_, unloaded), in_plane.response);
 }
 
-EquilibriumReport Simulation::settle(bool leave_saddles, const Beat& beat) {
+EquilibriumReport Simulation::settle(bool leave_saddles, const CancelCallback& beat) {
   check_finite_state();
   State found = state_;
   for (Ramp& ramp : found.ramps) ramp.from = ramp.to;
-  if (energy_watch_.was_written(found)) follow_written(model_, found);
+  if (energy_watch_.has_external_writes(found)) follow_written(model_, found);
   EquilibriumOptions options;
   options.newton = stepper_options(scenario_.scene()).newton;
   // Solved once, not at every step: one more iteration takes the last digits too.
@@ -80,7 +80,7 @@ EquilibriumReport Simulation::settle(bool leave_saddles, const Beat& beat) {
   return report;
 }
 
-std::vector<Mode> Simulation::modes(int count, const Beat& beat) {
+std::vector<Mode> Simulation::modes(int count, const CancelCallback& beat) {
   check_finite_state();
   if (!has_potential(*model_.elements)) {
     throw Error("model_error",
@@ -104,7 +104,7 @@ std::vector<Mode> Simulation::modes(int count, const Beat& beat) {
   return vibration_modes(model_, *assembler_, *solver_.solver, now.here, count, beat);
 }
 
-LinearBuckling Simulation::buckling(int count, const Beat& beat) {
+LinearBuckling Simulation::buckling(int count, const CancelCallback& beat) {
   if (!std::holds_alternative<scenario::BucklingAnalysis>(scenario_.scene().analysis)) {
     throw Error("model_error", "the scene asks for no buckling loads: write 'analysis: buckling'");
   }
@@ -119,7 +119,7 @@ LinearBuckling Simulation::buckling(int count, const Beat& beat) {
   return result;
 }
 
-std::vector<PathBranch> Simulation::follow(const Beat& beat) {
+std::vector<PathBranch> Simulation::follow(const CancelCallback& beat) {
   const auto* analysis = std::get_if<scenario::ContinuationAnalysis>(&scenario_.scene().analysis);
   if (analysis == nullptr) {
     throw Error("model_error",

@@ -45,7 +45,7 @@ std::string Simulation::advice_on_steps() const {
       shorter = "take a smaller tolerance";
       break;
     case scenario::Stepping::Automatic:
-      // Half of it resolves the fastest vibration, as pieces of a step do (stability_watch.cpp).
+      // Half of it resolves the fastest vibration, as pieces of a step do (stability_monitor.cpp).
       shorter = fmt::format(
           "write 'step: {:.2g}', which resolves the fastest vibrations",
           plan_.step / static_cast<double>(std::max<std::int64_t>(2, counters_.most_pieces)));

@@ -81,17 +81,17 @@ bool Simulation::enter_step(double end, int newton_iterations) {
 }
 
 void Simulation::enter_writes() {
-  if (!energy_watch_.was_written(state_)) return;
+  if (!energy_watch_.has_external_writes(state_)) return;
   follow_written(model_, state_);
   energy_watch_.enter_written(state_);
 }
 
-bool Simulation::was_written() const {
-  return energy_watch_.was_written(state_) || !find_nonfinite().empty();
+bool Simulation::has_external_writes() const {
+  return energy_watch_.has_external_writes(state_) || !find_nonfinite().empty();
 }
 
 std::int64_t Simulation::audit_stride() const {
-  return EnergyWatch::kStride * (stepper_info_.implicit ? 1 : 4);
+  return EnergyMonitor::kStride * (stepper_info_.implicit ? 1 : 4);
 }
 
 /// After a step. From rest there is nothing to compare with at first: early looks see what is

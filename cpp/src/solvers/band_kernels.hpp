@@ -146,7 +146,7 @@ void factorize_band(Index size, Index width, T* band, T* scratch, Pivots& pivots
   }
 }
 
-/// The band kernels of BandedLdlt and TwoEndedLdlt: `kWidth` is the half-bandwidth, or 0.
+/// The band kernels of BandedLdlt and TwistedLdlt: `kWidth` is the half-bandwidth, or 0.
 template <Index kWidth, class T>
 Inertia factorize_band(Index size, Index run_time_width, T* band, T* scratch) {
   PivotCount<T> pivots;

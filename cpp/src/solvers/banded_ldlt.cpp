@@ -13,15 +13,15 @@ constexpr BandedLdlt::Kernels kKernels{factorize_band<kWidth, double>, eliminate
 // The usual widths are innermost loops.
 template <Index kWidth>
 Inertia factorize_chain(Index size, Index /*width*/, double* band, double* scratch) {
-  return run_loop([&] { return factorize_band<kWidth>(size, kWidth, band, scratch); });
+  return dispatch_simd([&] { return factorize_band<kWidth>(size, kWidth, band, scratch); });
 }
 template <Index kWidth>
 void eliminate_chain(Index size, Index /*width*/, const double* band, double* b) {
-  run_loop([&] { eliminate<kWidth>(size, kWidth, band, b); });
+  dispatch_simd([&] { eliminate<kWidth>(size, kWidth, band, b); });
 }
 template <Index kWidth>
 void substitute_chain(Index size, Index /*width*/, const double* band, double* b) {
-  run_loop([&] { substitute<kWidth>(size, kWidth, band, b); });
+  dispatch_simd([&] { substitute<kWidth>(size, kWidth, band, b); });
 }
 template <Index kWidth>
 constexpr BandedLdlt::Kernels kChainKernels{factorize_chain<kWidth>, eliminate_chain<kWidth>,

@@ -112,19 +112,19 @@ void backward(const Columns& columns, Index any_width, Index any_stride, const d
 template <Index kWidth, Index kStride>
 Inertia factorize_ring(const Columns& columns, Index /*width*/, Index /*stride*/, double* band,
                        double* border, double* corner, double* scratch) {
-  return run_loop([&] {
+  return dispatch_simd([&] {
     return factorize<kWidth, kStride>(columns, kWidth, kStride, band, border, corner, scratch);
   });
 }
 template <Index kWidth, Index kStride>
 void forward_ring(const Columns& columns, Index /*width*/, Index /*stride*/, const double* band,
                   const double* border, double* b) {
-  run_loop([&] { forward<kWidth, kStride>(columns, kWidth, kStride, band, border, b); });
+  dispatch_simd([&] { forward<kWidth, kStride>(columns, kWidth, kStride, band, border, b); });
 }
 template <Index kWidth, Index kStride>
 void backward_ring(const Columns& columns, Index /*width*/, Index /*stride*/, const double* band,
                    const double* border, double* b) {
-  run_loop([&] { backward<kWidth, kStride>(columns, kWidth, kStride, band, border, b); });
+  dispatch_simd([&] { backward<kWidth, kStride>(columns, kWidth, kStride, band, border, b); });
 }
 template <Index kWidth, Index kStride>
 constexpr BorderedLdlt::Kernels kRingKernels{

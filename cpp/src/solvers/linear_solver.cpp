@@ -4,7 +4,7 @@
 #include "der/solvers/banded_ldlt.hpp"
 #include "der/solvers/bordered_ldlt.hpp"
 #include "der/solvers/sparse_ldlt.hpp"
-#include "der/solvers/two_ended_ldlt.hpp"
+#include "der/solvers/twisted_ldlt.hpp"
 
 namespace der {
 namespace {
@@ -15,8 +15,8 @@ constexpr Index kNarrowBand = 32;
 
 std::unique_ptr<LinearSolver> make_banded(const Pattern& pattern, Elimination order) {
   if (!pattern.borders.empty()) return std::make_unique<BorderedLdlt>(pattern);
-  if (order == Elimination::FromBothEnds && TwoEndedLdlt::suits(pattern)) {
-    return std::make_unique<TwoEndedLdlt>(pattern);
+  if (order == Elimination::FromBothEnds && TwistedLdlt::suits(pattern)) {
+    return std::make_unique<TwistedLdlt>(pattern);
   }
   return std::make_unique<BandedLdlt>(pattern);
 }

@@ -31,7 +31,7 @@ double largest_on_diagonal(const DofMap& dofs, const MatrixLayout& layout, const
 }  // namespace
 
 Newton::Newton(const DofMap& dofs, LinearSolver& solver, Index num_values,
-               const NewtonOptions& options, Beat beat)
+               const NewtonOptions& options, CancelCallback beat)
     : dofs_(dofs),
       solver_(solver),
       corrected_(solver, dofs.num_free()),
@@ -99,7 +99,7 @@ NewtonReport Newton::iterate(NewtonProblem& problem, Mode mode) {
       have_system = step > kNearSolution * dofs_.length();
       if (have_system) {
         problem.system(residual_, values_);
-        problem.correct_after(step_, values_);
+        problem.mixed_point_update(step_, values_);
       } else {
         problem.residual(residual_);
       }
@@ -122,7 +122,7 @@ NewtonReport Newton::iterate(NewtonProblem& problem, Mode mode) {
     }
     if (have_system) continue;
     problem.system(residual_, values_);
-    if (takes_full_steps) problem.correct_after(step_, values_);
+    if (takes_full_steps) problem.mixed_point_update(step_, values_);
   }
   report.worst_dof = worst_dof();
   report.failure = "no convergence in " + std::to_string(options_.max_iterations) + " iterations";

@@ -102,7 +102,7 @@ void StageProblem::system(Vector& residual, Vector& values) {
 
 /// The tensions of a discrete gradient are those over the whole step, not those that a step of
 /// Newton's method has put in.
-void StageProblem::correct_after(const Vector& step, Vector& values) {
+void StageProblem::mixed_point_update(const Vector& step, Vector& values) {
   if (stage_->discrete_gradient == nullptr) tension_.use(*here_, step, values);
 }
 
@@ -171,7 +171,7 @@ double StageProblem::gyroscopic_share() const {
 double StageProblem::subtract_external(Vector& residual) const {
   return largest_over(model_.dofs.blocks(), [&](const DofBlock& block) {
     const Index i = block.first;
-    const double largest = run_loop(
+    const double largest = dispatch_simd(
         [&] { return subtract_force(block.count, stage_->force.data() + i, residual.data() + i); });
     return largest / block.length;
   });
@@ -183,7 +183,7 @@ double StageProblem::add_diagonal_forces(double factor, const Vector& diagonal,
                                          const Vector& target, Vector& residual) {
   return largest_over(model_.dofs.blocks(), [&](const DofBlock& block) {
     const Index i = block.first;
-    const double largest = run_loop([&] {
+    const double largest = dispatch_simd([&] {
       return add_lumped_inertia(block.count, factor, diagonal.data() + i, displacement_.data() + i,
                                 target.data() + i, term_.data() + i, residual.data() + i);
     });

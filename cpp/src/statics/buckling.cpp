@@ -19,7 +19,7 @@ namespace {
 /// count times the length of the model: `units` are the unit masses of the free degrees of freedom.
 class Pencil {
  public:
-  Pencil(LinearSolver& solver, Vector k0, Vector k1, Vector units, const Beat& beat)
+  Pencil(LinearSolver& solver, Vector k0, Vector k1, Vector units, const CancelCallback& beat)
       : solver_(solver),
         k0_(std::move(k0)),
         k1_(std::move(k1)),
@@ -73,7 +73,7 @@ class Pencil {
   Vector k0_;
   Vector k1_;
   Vector units_;
-  const Beat& beat_;
+  const CancelCallback& beat_;
 };
 
 /// The factor a at which K0 + a K1 + a^2 K2 is critical for a shape that is critical without K2,
@@ -129,7 +129,8 @@ NotConvergedError hidden_buckling() {
 
 std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& stiffness,
                                          LinearSolver& solver, const Configuration& here,
-                                         const InitialStress& stress, int count, const Beat& beat) {
+                                         const InitialStress& stress, int count,
+                                         const CancelCallback& beat) {
   const Vector& k0 = stiffness.values();
   const Vector k1 = stress.stiffness(model, solver.layout());
   // Factors are sought in units in which both matrices are of a size, so that no load is too large
@@ -173,7 +174,7 @@ std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& st
 }
 
 LinearBuckling linear_buckling(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                               const State& state, int count, const Beat& beat) {
+                               const State& state, int count, const CancelCallback& beat) {
   const Vector no_extra = Vector::Zero(model.num_dofs());
   Stiffness stiffness(model, assembler, solver, beat);
   Configuration here{state.positions, {}};

@@ -43,8 +43,8 @@ Vec3 turned(const EdgeFrame& edge, const Change& d, int node, int angle) {
   return edge.rotation() * change;
 }
 
-/// The change of the moment of a joint as its frames turn.
-Vec3 moment_change(const JointResponse& response, const Vec3& omega_a, const Vec3& omega_b) {
+/// The change of the moment of a vertex as its frames turn.
+Vec3 moment_change(const VertexResponse& response, const Vec3& omega_a, const Vec3& omega_b) {
   return response.stiffness * (omega_b - omega_a) - 0.5 * response.moment.cross(omega_a + omega_b);
 }
 
@@ -56,21 +56,21 @@ Eigen::Matrix4d own_stiffness(const EdgeFrame& edge, const Vec3& moment) {
   return matrix;
 }
 
-/// The two edges of a joint, and the moment that a displacement causes there.
-struct StressedJoint {
+/// The two edges of a vertex, and the moment that a displacement causes there.
+struct StressedVertex {
   EdgeFrame a;
   EdgeFrame b;
   Vec3 moment;  ///< [N m]
 
-  template <class Curvature, class AJoint>
-  static StressedJoint of(const Eigen::Matrix<double, 11, 1>& x,
-                          const Eigen::Matrix<double, 11, 1>& d,
-                          const typename SpatialBend<Curvature, AJoint>::Constants& c,
-                          const Vector& values) {
-    const auto [a, b, twist] = SpatialBend<Curvature, AJoint>::frames(c, values, x);
-    JointResponse response;
-    JointKinematics<Curvature>(a.frame, b.frame, twist)
-        .template respond<true>(c.actuated_joint(values), response);
+  template <class Curvature, class AVertex>
+  static StressedVertex of(const Eigen::Matrix<double, 11, 1>& x,
+                           const Eigen::Matrix<double, 11, 1>& d,
+                           const typename SpatialBend<Curvature, AVertex>::Constants& c,
+                           const Vector& values) {
+    const auto [a, b, twist] = SpatialBend<Curvature, AVertex>::frames(c, values, x);
+    VertexResponse response;
+    VertexKinematics<Curvature>(a.frame, b.frame, twist)
+        .template respond<true>(c.actuated_vertex(values), response);
     return {a, b, moment_change(response, turned(a, d, 0, 9), turned(b, d, 1, 10))};
   }
 
@@ -87,13 +87,13 @@ struct StressedJoint {
 /// The part of S that is the moments times the second derivatives of the strains: of the moments
 /// that the rotation `turn` of frame b relative to frame a causes.
 template <class Curvature>
-Mat3 strain_stiffness(const JointKinematics<Curvature>& kinematics, const Joint& joint,
+Mat3 strain_stiffness(const VertexKinematics<Curvature>& kinematics, const Vertex& vertex,
                       const Vec3& turn) {
   const auto [g1, g2, gt] = kinematics.gradients();
-  const JointStrain moments{joint.bend_1 * g1.dot(turn), joint.bend_2 * g2.dot(turn),
-                            joint.twist * gt.dot(turn)};
-  JointResponse response;
-  kinematics.template respond<true>(LoadedJoint{joint.rest, moments}, response);
+  const MaterialCurvature moments{vertex.bend_1 * g1.dot(turn), vertex.bend_2 * g2.dot(turn),
+                                  vertex.twist * gt.dot(turn)};
+  VertexResponse response;
+  kinematics.template respond<true>(LoadedVertex{vertex.rest, moments}, response);
   return response.stiffness;
 }
 
@@ -111,9 +111,9 @@ struct StressedClamp {
     const auto frames = SpatialClamp<Curvature>::frames(c, values, x);
     const EdgeFrame& edge = frames.edge;
     const auto kinematics = SpatialClamp<Curvature>::kinematics(c, values, frames);
-    const Joint joint = c.actuated_joint(values);
-    JointResponse response;
-    kinematics.template respond<true>(joint, response);
+    const Vertex vertex = c.actuated_vertex(values);
+    VertexResponse response;
+    kinematics.template respond<true>(vertex, response);
     const Vec3 none = Vec3::Zero();
     const Vec3 omega = turned(edge, d, 0, 6);
     StressedClamp clamp{edge, c.side * (c.side > 0.0 ? moment_change(response, none, omega)
@@ -121,7 +121,7 @@ struct StressedClamp {
     // In directors of half the twist the second derivatives of the strains are as small as the
     // strains, and left out, as they are between two edges. In those that spin with the edge they
     // are not.
-    if (!c.holds_section) clamp.with_strain = strain_stiffness(kinematics, joint, c.side * omega);
+    if (!c.holds_section) clamp.with_strain = strain_stiffness(kinematics, vertex, c.side * omega);
     return clamp;
   }
 
@@ -211,8 +211,8 @@ InitialStress::InitialStress(const Model& model, const Configuration& here,
     return;
   }
   add_spatial_edges(model, here, displacement);
-  add_joints<AngleCurvature>(model, here, displacement);
-  add_joints<TangentCurvature>(model, here, displacement);
+  add_vertices<AngleCurvature>(model, here, displacement);
+  add_vertices<TangentCurvature>(model, here, displacement);
   add_springs<1>(model, here, displacement);
   add_springs<2>(model, here, displacement);
 }
@@ -271,22 +271,22 @@ void InitialStress::set_edge(const Dofs& dofs, std::size_t node, std::size_t ang
 }
 
 template <class Curvature>
-void InitialStress::add_joints(const Model& model, const Configuration& here,
-                               const Vector& displacement) {
-  const auto add_joints_of = [&](const auto& kind) {
-    using AJoint = std::decay_t<decltype(kind)>;
-    for_each_element<SpatialBend<Curvature, AJoint>>(
+void InitialStress::add_vertices(const Model& model, const Configuration& here,
+                                 const Vector& displacement) {
+  const auto add_vertices_of = [&](const auto& kind) {
+    using AVertex = std::decay_t<decltype(kind)>;
+    for_each_element<SpatialBend<Curvature, AVertex>>(
         model, here, [&](const auto& dofs, const auto& c, const auto& x) {
-          const auto joint =
-              StressedJoint::of<Curvature, AJoint>(x, gather(dofs, displacement), c, here.controls);
-          Term& term = add_term(joint.moment.norm(), model.size(), 8);
-          term.matrix = joint.stiffness();
+          const auto vertex = StressedVertex::of<Curvature, AVertex>(x, gather(dofs, displacement),
+                                                                     c, here.controls);
+          Term& term = add_term(vertex.moment.norm(), model.size(), 8);
+          term.matrix = vertex.stiffness();
           set_edge(dofs, 0, 9, 0, term);
           set_edge(dofs, 1, 10, 4, term);
         });
   };
-  add_joints_of(Joint{});
-  if constexpr (std::is_same_v<Curvature, AngleCurvature>) add_joints_of(CoupledJoint{});
+  add_vertices_of(Vertex{});
+  if constexpr (std::is_same_v<Curvature, AngleCurvature>) add_vertices_of(CoupledVertex{});
   for_each_pivoted<SpatialClamp<Curvature>>(
       model, here, [&](const auto& dofs, const auto& c, const auto& x) {
         const auto clamp =

@@ -301,7 +301,7 @@ class ModeSearch {
 
 std::vector<Mode> vibration_modes(const Model& model, const Assembler& assembler,
                                   LinearSolver& solver, const Configuration& here, int count,
-                                  const Beat& beat) {
+                                  const CancelCallback& beat) {
   check_masses(model);
   const Index wanted = std::min<Index>(count, model.num_free());
   Stiffness stiffness(model, assembler, solver, beat);

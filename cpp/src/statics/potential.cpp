@@ -148,7 +148,7 @@ namespace {
 
 double largest_spatial_turning_angle(const Model& model, const Vector& positions) {
   double largest = 0.0;
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     for (Index place = 0; place < static_cast<Index>(rod.nodes.size()); ++place) {
       if (!rod.is_inner(place)) continue;
       const Vec3 before = along_edge<3>(rod.edge(rod.edge_before(place), model), positions);

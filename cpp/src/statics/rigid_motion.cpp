@@ -95,7 +95,7 @@ class RigidMotions {
     for (const HeldDof& dof : model_.held) {
       held += columns_.row(dof.dof).transpose() * columns_.row(dof.dof);
     }
-    for (const RodLayout& rod : model_.rods) {
+    for (const RodMesh& rod : model_.rods) {
       if (part_[to_size(rod.nodes.front())] != first_) continue;
       for (const Clamp& clamp : rod.clamps) held += turned_tangent(clamp, controls);
     }

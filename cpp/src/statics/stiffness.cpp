@@ -39,7 +39,7 @@ double tension_rounding(const Model& model, const Configuration& here, const Vec
   const double coordinate =
       here.coordinates.head(model.dofs.num_positions()).lpNorm<Eigen::Infinity>();
   double squares = 0.0;
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     for (Index i = 0; i < rod.num_edges(); ++i) {
       const Edge edge = rod.edge(i, model);
       const double tension = rod.EA * kEpsilon * coordinate / edge.rest_length;
@@ -53,7 +53,7 @@ double tension_rounding(const Model& model, const Configuration& here, const Vec
 }  // namespace
 
 Stiffness::Stiffness(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                     Beat beat)
+                     CancelCallback beat)
     : model_(model),
       assembler_(assembler),
       solver_(solver),

@@ -1,6 +1,6 @@
 #include "der/assembly/discrete_gradient_assembler.hpp"
 #include "der/steppers/implicit_stage.hpp"
-#include "steppers/step_guess.hpp"
+#include "steppers/predictor.hpp"
 #include "steppers/steppers.hpp"
 
 namespace der {
@@ -52,7 +52,7 @@ class EnergyMomentum final : public Stepper {
 
  private:
   const Model& model_;
-  StepGuess guess_;
+  Predictor guess_;
   ImplicitStage stage_;
   DiscreteGradientAssembler gradient_;
   Vector positions_;

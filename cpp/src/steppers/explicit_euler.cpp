@@ -1,5 +1,5 @@
 #include "der/steppers/explicit_force.hpp"
-#include "der/steppers/step_finisher.hpp"
+#include "der/steppers/step_commit.hpp"
 #include "steppers/steppers.hpp"
 
 namespace der {
@@ -34,7 +34,7 @@ class ExplicitEuler final : public Stepper {
 
  private:
   ExplicitForce force_;
-  StepFinisher finisher_;
+  StepCommit finisher_;
   Vector acceleration_;
   Vector positions_;
   Vector displacement_;

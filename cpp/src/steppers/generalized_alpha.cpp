@@ -1,7 +1,7 @@
 #include "der/model/prescribed_motion.hpp"
 #include "der/steppers/explicit_force.hpp"
 #include "der/steppers/implicit_stage.hpp"
-#include "steppers/step_guess.hpp"
+#include "steppers/predictor.hpp"
 #include "steppers/steppers.hpp"
 
 namespace der {
@@ -118,7 +118,7 @@ class AlphaMethod final : public Stepper {
   double alpha_f_;
   double gamma_;
   double beta_;
-  StepGuess guess_;
+  Predictor guess_;
   ImplicitStage stage_;
   ExplicitForce force_;
   const Model& model_;

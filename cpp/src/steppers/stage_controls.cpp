@@ -23,7 +23,7 @@ StageControls::StageControls(const Model& model)
     if (std::any_of(motions_.begin(), motions_.end(), is_same)) continue;
     motions_.push_back({each.control});
   }
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     for (const Clamp& clamp : rod.clamps) {
       for (std::size_t i = 0; i < motions_.size(); ++i) {
         const bool turns = clamp.held.inset >= 0 && motions_[i].control == clamp.held.rotation;
@@ -111,7 +111,7 @@ void StageControls::evaluate(const State& state, double time, Vector& controls) 
       if (find_ramp(state, control) != nullptr) continue;
       controls[control] = value_at(model_.tables[control], time);
     }
-    model_.rest_shape.enter(controls);
+    model_.natural_strain.enter(controls);
   }
   if (stage_ >= 0) move(state, time, controls);
 }

@@ -14,9 +14,9 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kLargestTurn = 1.0;  // [rad]
 
 /// Sums up how far a value moves along straight pieces.
-class Odometer {
+class PathLength {
  public:
-  explicit Odometer(double limit) : left_(limit) {}
+  explicit PathLength(double limit) : left_(limit) {}
   /// The distance left to the limit.
   [[nodiscard]] double left() const { return left_; }
   /// The time at which the limit is reached, on the way from one time and value to others.
@@ -33,8 +33,8 @@ class Odometer {
 
 double time_of_limit(const Ramp& ramp, double limit, double time) {
   if (time >= ramp.end) return kNever;
-  return Odometer(limit).time_of_limit(std::max(time, ramp.start), ramp.at(time), ramp.end,
-                                       ramp.to);
+  return PathLength(limit).time_of_limit(std::max(time, ramp.start), ramp.at(time), ramp.end,
+                                         ramp.to);
 }
 
 /// The share of its time after which a smooth piece has done a share of its change.
@@ -71,7 +71,7 @@ double time_of_limit(const scenario::Series& series, double limit, double time) 
   using Kind = scenario::Course::Kind;
   const auto& [times, values, course] = series;
   if (course.kind == Kind::Sine) return time_of_sine_limit(series, limit, time);
-  Odometer odometer(limit);
+  PathLength odometer(limit);
   double before = time;
   double from = value_at(series, time);
   const auto later = std::upper_bound(times.begin(), times.end(), time);

@@ -1,6 +1,6 @@
 #include "der/model/prescribed_motion.hpp"
 #include "der/steppers/explicit_force.hpp"
-#include "der/steppers/step_finisher.hpp"
+#include "der/steppers/step_commit.hpp"
 #include "steppers/steppers.hpp"
 
 namespace der {
@@ -52,7 +52,7 @@ class Verlet final : public Stepper {
  private:
   const Model& model_;
   ExplicitForce force_;
-  StepFinisher finisher_;
+  StepCommit finisher_;
   Vector positions_;
   Vector acceleration_;
   Vector mean_velocities_;

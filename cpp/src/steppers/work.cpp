@@ -33,7 +33,7 @@ Vec3 turned(const ActuatedTurn& turn, const Configuration& before, const Configu
   return turn.at(after.controls) - turn.at(before.controls);
 }
 
-double planar_work_on_actuated_turns(const RodLayout& rod, const Configuration& before,
+double planar_work_on_actuated_turns(const RodMesh& rod, const Configuration& before,
                                      const Configuration& after) {
   double work = 0.0;
   for (const MomentPlace& place : rod.moment_places) {
@@ -47,7 +47,7 @@ double planar_work_on_actuated_turns(const RodLayout& rod, const Configuration& 
   return work;
 }
 
-double spatial_work_on_actuated_turns(const RodLayout& rod, const Model& model,
+double spatial_work_on_actuated_turns(const RodMesh& rod, const Model& model,
                                       const Configuration& before, const Configuration& after) {
   double work = 0.0;
   for (const SpatialMomentPlace& place : rod.spatial_moments) {
@@ -93,7 +93,7 @@ double work_on_transport(const Model& model, const Configuration& here,
 double work_on_actuated_turns(const Model& model, const Configuration& before,
                               const Configuration& after) {
   double work = 0.0;
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     if (rod.actuated_stretches.empty()) continue;
     work += planar_work_on_actuated_turns(rod, before, after) +
             spatial_work_on_actuated_turns(rod, model, before, after);
@@ -122,7 +122,7 @@ double planar_work_at_pivots(const Model& model, const Configuration& before,
 }
 
 /// The part of a rod's moments that a clamp beside them bears works on the clamp's own turn [J].
-double planar_work_on_clamps(const RodLayout& rod, const Configuration& before,
+double planar_work_on_clamps(const RodMesh& rod, const Configuration& before,
                              const Configuration& after) {
   double work = 0.0;
   for (const MomentPlace& place : rod.moment_places) {
@@ -151,7 +151,7 @@ double turned_by(Index control, const Configuration& before, const Configuration
 }
 
 /// Both works [J] of the moments on a rod in space.
-double spatial_work_at_clamps(const RodLayout& rod, const Model& model, const Configuration& before,
+double spatial_work_at_clamps(const RodMesh& rod, const Model& model, const Configuration& before,
                               const Configuration& after) {
   double work = 0.0;
   for (const SpatialMomentPlace& place : rod.spatial_moments) {
@@ -184,7 +184,7 @@ double work_at_turned_clamps(const Model& model, const Configuration& before,
                              const Configuration& after) {
   double work = 0.0;
   if (model.dimension == 2) work += planar_work_at_pivots(model, before, after);
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     work += model.dimension == 2 ? planar_work_on_clamps(rod, before, after)
                                  : spatial_work_at_clamps(rod, model, before, after);
   }
@@ -223,16 +223,16 @@ ControlWork control_work(const Model& model, const Configuration& before,
                          const Configuration& after) {
   const bool turns = any_clamp_turns(model);
   const double at_clamps = turns ? work_at_turned_clamps(model, before, after) : 0.0;
-  if (!model.rest_shape.is_actuated()) {
+  if (!model.natural_strain.is_actuated()) {
     return {turns ? energy_given(model, before, after) - at_clamps : 0.0, 0.0, at_clamps};
   }
   const double loads = work_on_actuated_turns(model, before, after);
   if (!turns) return {0.0, energy_given(model, before, after) - loads, loads};
   // Each of the two changes first, and after the other.
   Configuration turned = after;
-  model.rest_shape.copy(before.controls, turned.controls);
+  model.natural_strain.copy(before.controls, turned.controls);
   Configuration actuated = before;
-  model.rest_shape.copy(after.controls, actuated.controls);
+  model.natural_strain.copy(after.controls, actuated.controls);
   const auto given = [&](const Configuration& from, const Configuration& to) {
     return 0.5 * energy_given(model, from, to);
   };

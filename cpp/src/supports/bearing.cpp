@@ -18,7 +18,7 @@ namespace {
 /// edge's turn that rounding hides.
 constexpr double kStifferThanEdge = 1e14;
 
-[[noreturn]] void refuse(const char* what, Index place, const RodLayout& rod) {
+[[noreturn]] void refuse(const char* what, Index place, const RodMesh& rod) {
   throw Error("model_error",
               fmt::format("a 'clamp: tangent' inside rod '{}', at arc length {:.6g} m, {}",
                           rod.name, rod.arc_length_at(place), what));
@@ -26,16 +26,16 @@ constexpr double kStifferThanEdge = 1e14;
 
 }  // namespace
 
-bool lets_spin_inside(const scenario::Support& support, Index place, const RodLayout& rod) {
+bool lets_spin_inside(const scenario::Support& support, Index place, const RodMesh& rod) {
   return support.clamp == scenario::Clamp::Tangent && rod.is_inner(place);
 }
 
-bool is_bearing(const scenario::Support& support, Index place, const RodLayout& rod,
+bool is_bearing(const scenario::Support& support, Index place, const RodMesh& rod,
                 const Model& model) {
   return model.has_sections() && lets_spin_inside(support, place, rod);
 }
 
-void hold_in_bearing(const scenario::Support& support, Index place, RodLayout& rod,
+void hold_in_bearing(const scenario::Support& support, Index place, RodMesh& rod,
                      const Model& model) {
   if (is_corner(rod, place, model)) {
     refuse(

@@ -14,8 +14,8 @@
 #include "model/corner.hpp"
 #include "model/corner_twist.hpp"
 #include "model/curvature_jump.hpp"
-#include "model/drawn_edge.hpp"
 #include "model/pivot_offset.hpp"
+#include "model/reference_edge.hpp"
 #include "supports/leg_clamp.hpp"
 
 namespace der {
@@ -25,26 +25,26 @@ double direction(const Vec2& e) { return std::atan2(e.y(), e.x()); }
 
 /// Turning angle at the node nearest to `place` that has two edges, per metre [1/m]; none between
 /// `place` and a corner. Where the curvature jumps, that of the edge after `place`.
-double initial_curvature(const RodLayout& rod, Index place, const Model& model) {
+double initial_curvature(const RodMesh& rod, Index place, const Model& model) {
   if (rod.num_edges() < 2) return 0.0;
   const Index inner = inner_place_near(rod, place);
   if (inner != place && is_corner(rod, inner, model)) return 0.0;
   const double mean =
-      angle_between(drawn_edge(rod, inner - 1, model), drawn_edge(rod, inner, model)) /
+      angle_between(reference_edge(rod, inner - 1, model), reference_edge(rod, inner, model)) /
       rod.voronoi_length(inner);
   if (inner != place) return mean;
-  return mean + curvature_beyond_mean(rod, place, true, rod.drawn_jumps).z();
+  return mean + curvature_beyond_mean(rod, place, true, rod.reference_jumps).z();
 }
 
 /// +1 if the edge leaves the clamp, -1 if it arrives there.
 double side_of(const Clamp& clamp, Index edge) { return edge == clamp.place ? 1.0 : -1.0; }
 
 /// A clamp as an edge beside it sees it.
-Clamp clamp_of(const Clamp& clamp, Index edge, const RodLayout& rod, const Model& model) {
+Clamp clamp_of(const Clamp& clamp, Index edge, const RodMesh& rod, const Model& model) {
   return clamp_of_leg(clamp, side_of(clamp, edge) < 0.0, rod, model);
 }
 
-Pivot pivot_at(const RodLayout& rod, Index place, Index edge, const Model& model) {
+Pivot pivot_at(const RodMesh& rod, Index place, Index edge, const Model& model) {
   const Clamp* clamp = rod.clamp_at(place);
   if (clamp == nullptr) return {};
   return {side_of(*clamp, edge) * kPivotShare * rod.edge_length[to_size(edge)],
@@ -53,23 +53,23 @@ Pivot pivot_at(const RodLayout& rod, Index place, Index edge, const Model& model
 
 }  // namespace
 
-Index edge_beside(const RodLayout& rod, Index place) {
+Index edge_beside(const RodMesh& rod, Index place) {
   return rod.edge_after(place) >= 0 ? place : place - 1;
 }
 
-Index inner_place_near(const RodLayout& rod, Index place) {
+Index inner_place_near(const RodMesh& rod, Index place) {
   if (rod.is_inner(place)) return place;
   return std::clamp<Index>(place, 1, rod.num_edges() - 1);
 }
 
-double initial_tangent_angle(const RodLayout& rod, Index place, const Model& model) {
+double initial_tangent_angle(const RodMesh& rod, Index place, const Model& model) {
   if (is_corner(rod, place, model))
     return direction(leg_tangent(rod, place, false, model).head<2>());
   const double curvature = initial_curvature(rod, place, model);
   const bool leaves = rod.edge_after(place) >= 0;
   const Index edge = leaves ? place : place - 1;
   const double half = 0.5 * rod.edge_length[to_size(edge)];
-  return direction(drawn_edge(rod, edge, model)) + (leaves ? -curvature : curvature) * half;
+  return direction(reference_edge(rod, edge, model)) + (leaves ? -curvature : curvature) * half;
 }
 
 double tangent_angle(const Clamp& clamp, const Model& model, const State& state) {
@@ -84,7 +84,7 @@ double largest_turn_of_clamps(const Model& model, const Vector& controls) {
   return largest;
 }
 
-void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod, Model& model) {
+void hold_tangent(const scenario::Support& support, Index place, RodMesh& rod, Model& model) {
   if (rod.EI == 0.0 || rod.clamp_at(place) != nullptr) return;
   const Index rotation = support.rotation ? model.tables.add(*support.rotation) : -1;
   const Index beside = edge_beside(rod, place);
@@ -93,7 +93,7 @@ void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod,
       {place, initial_tangent_angle(rod, place, model), rotation, followed, {}, true});
 }
 
-EffectiveEdge effective_edge(const RodLayout& rod, Index edge, const Model& model) {
+EffectiveEdge effective_edge(const RodMesh& rod, Index edge, const Model& model) {
   const Index own = rod.position(edge);  // behind the last edge of a ring its first one follows
   return {rod.edge_dofs(own, model), pivot_at(rod, own, own, model),
           pivot_at(rod, own + 1, own, model)};
@@ -111,25 +111,25 @@ Vec2 effective_vector(const EffectiveEdge& effective, const Model& model, const 
          effective_end(effective, false, model, state);
 }
 
-double bend_length(const RodLayout& rod, Index place) {
+double bend_length(const RodMesh& rod, Index place) {
   double length = rod.voronoi_length(place);
   if (rod.clamp_at(place - 1) != nullptr)
-    length -= kNextCellLoss * rod.edge_length[to_size(rod.edge_before(place))];
+    length -= kFirstVertexCorrection * rod.edge_length[to_size(rod.edge_before(place))];
   if (rod.clamp_at(place + 1) != nullptr)
-    length -= kNextCellLoss * rod.edge_length[to_size(rod.edge_after(place))];
+    length -= kFirstVertexCorrection * rod.edge_length[to_size(rod.edge_after(place))];
   return length;
 }
 
-double clamp_cell_length(const RodLayout& rod, Index edge) {
+double clamp_cell_length(const RodMesh& rod, Index edge) {
   return kCellShare * rod.edge_length[to_size(edge)];
 }
 
-double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, const Model& model) {
+double clamp_rest_angle(const RodMesh& rod, const Clamp& clamp, Index edge, const Model& model) {
   const double side = side_of(clamp, edge);
   if (rod.natural_curvature.empty()) {
     const double held = clamp_of(clamp, edge, rod, model).direction;
     const Vec2 tangent{std::cos(held), std::sin(held)};
-    const Vec2 effective = effective_edge(rod, edge, model).drawn(model.rest_positions);
+    const Vec2 effective = effective_edge(rod, edge, model).drawn(model.reference_positions);
     return side * angle_between(tangent, effective);
   }
   const bool leaves = side > 0.0;
@@ -141,7 +141,7 @@ double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, co
 
 double clamp_pivot_share() { return kPivotShare; }
 
-void add_clamp_cells(const Clamp& clamp, RodLayout& rod, Model& model) {
+void add_clamp_cells(const Clamp& clamp, RodMesh& rod, Model& model) {
   const double corner = clamp.direction - clamp_of_leg(clamp, true, rod, model).direction;
   rod.rest_turning_angle[to_size(clamp.place)] += corner;
   for (const Index edge : {rod.edge_before(clamp.place), rod.edge_after(clamp.place)}) {
@@ -155,7 +155,7 @@ void add_clamp_cells(const Clamp& clamp, RodLayout& rod, Model& model) {
       list.add(effective.dofs,
                {{rod.EI / clamp_cell_length(rod, edge), Measure::of(rest).kappa,
                  clamp_of(clamp, edge, rod, model).direction, side_of(clamp, edge), clamp.rotation,
-                 rod.rest_entries.cell(clamp.place, side_of(clamp, edge) > 0.0)},
+                 rod.natural_strain_entries.cell(clamp.place, side_of(clamp, edge) > 0.0)},
                 effective.first,
                 effective.last});
     };

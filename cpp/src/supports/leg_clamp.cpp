@@ -7,13 +7,13 @@
 
 namespace der {
 
-Clamp clamp_of_leg(const Clamp& clamp, bool arrives, const RodLayout& rod, const Model& model) {
+Clamp clamp_of_leg(const Clamp& clamp, bool arrives, const RodMesh& rod, const Model& model) {
   if (!arrives || !is_corner(rod, clamp.place, model)) return clamp;
   const Vec3 arriving = leg_tangent(rod, clamp.place, true, model);
   Clamp result = clamp;
   if (model.dimension == 3) {
     const Index edge = rod.edge_before(clamp.place);
-    result.held.drawn = drawn_section_at_end(rod, edge, true, arriving);
+    result.held.drawn = reference_section_at_end(rod, edge, true, arriving);
   } else {
     const Vec3 leaving = leg_tangent(rod, clamp.place, false, model);
     result.direction -= angle_between(Vec2(arriving.head<2>()), Vec2(leaving.head<2>()));
@@ -21,10 +21,10 @@ Clamp clamp_of_leg(const Clamp& clamp, bool arrives, const RodLayout& rod, const
   return result;
 }
 
-SectionFrame drawn_section_at_end(const RodLayout& rod, Index edge, bool last,
-                                  const Vec3& tangent) {
-  if (rod.drawn_frames.empty()) return SectionFrame::of(tangent, tangent.unitOrthogonal());
-  const SectionFrame& middle = rod.drawn_frames[to_size(edge)];
+SectionFrame reference_section_at_end(const RodMesh& rod, Index edge, bool last,
+                                      const Vec3& tangent) {
+  if (rod.initial_frames.empty()) return SectionFrame::of(tangent, tangent.unitOrthogonal());
+  const SectionFrame& middle = rod.initial_frames[to_size(edge)];
   const Vec3 director = transport(middle.first, middle.tangent, tangent);
   const double beyond = (last ? 0.5 : -0.5) * rod.edge_length[to_size(edge)];
   return SectionFrame::of(tangent, made_perpendicular(director, tangent))

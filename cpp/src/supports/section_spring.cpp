@@ -26,14 +26,14 @@ namespace {
 Index follow_twist(Index number, const SectionFrame& drawn, Model& model) {
   HeldFrame held;
   held.drawn = drawn;
-  const FramedJoint followed{number, -1, held};
+  const FramedVertex followed{number, -1, held};
   const auto known =
-      std::find_if(model.framed_joints.begin(), model.framed_joints.end(),
-                   [&](const FramedJoint& joint) { return joint.twist() == followed.twist(); });
-  if (known == model.framed_joints.end()) {
-    model.framed_joints.push_back(followed);
-    model.drawn_frames[followed.twist()] =
-        model.rest_positions[model.framed_edges[to_size(number)].theta];
+      std::find_if(model.framed_vertices.begin(), model.framed_vertices.end(),
+                   [&](const FramedVertex& vertex) { return vertex.twist() == followed.twist(); });
+  if (known == model.framed_vertices.end()) {
+    model.framed_vertices.push_back(followed);
+    model.initial_frames[followed.twist()] =
+        model.reference_positions[model.framed_edges[to_size(number)].theta];
     return followed.twist();
   }
   const bool same = known->held.drawn.tangent == drawn.tangent &&
@@ -51,12 +51,12 @@ struct SectionHold {
 };
 
 /// The section that the clamp beside a place holds, on the leg of the place.
-HeldFrame held_beside(const PlaceBesideClamp& place, const RodLayout& rod, const Model& model) {
+HeldFrame held_beside(const PlaceBesideClamp& place, const RodMesh& rod, const Model& model) {
   const Clamp& clamp = rod.clamps[to_size(place.clamp)];
   return clamp_of_leg(clamp, place.edge != clamp.place, rod, model).held;
 }
 
-Index number_of(const RodLayout& rod, Index edge) { return rod.first_edge + rod.position(edge); }
+Index number_of(const RodMesh& rod, Index edge) { return rod.first_edge + rod.position(edge); }
 
 /// A section turned by a rotation vector [rad].
 SectionFrame turned_by(const Vec3& rotation, const SectionFrame& section) {
@@ -78,22 +78,22 @@ SectionFrame between(const SectionFrame& from, const SectionFrame& to, double be
 }
 
 /// The drawn section at arc length `s` [m] on the line through those of an edge and the next.
-SectionFrame section_on_line(double s, Index first_edge, const RodLayout& rod, const Model& model) {
+SectionFrame section_on_line(double s, Index first_edge, const RodMesh& rod, const Model& model) {
   const double middle = rod.edge_middle(first_edge);
   const double share = (s - middle) / (rod.edge_middle(first_edge + 1) - middle);
-  return between(drawn_frame(model, number_of(rod, first_edge)),
-                 drawn_frame(model, number_of(rod, first_edge + 1)), share, share);
+  return between(initial_frame(model, number_of(rod, first_edge)),
+                 initial_frame(model, number_of(rod, first_edge + 1)), share, share);
 }
 
 /// The drawn section at arc length `s` [m], inter- or extrapolated from the edges, or from the one
 /// edge and the clamp beside it.
-SectionFrame drawn_section_at(double s, const SectionPlace& place, const RodLayout& rod,
-                              const Model& model) {
+SectionFrame reference_section_at(double s, const SectionPlace& place, const RodMesh& rod,
+                                  const Model& model) {
   if (place.across.size() == 2) {
-    return turned_by(turn_from_line(s, place.first_edge, rod, rod.drawn_jumps),
+    return turned_by(turn_from_line(s, place.first_edge, rod, rod.reference_jumps),
                      section_on_line(s, place.first_edge, rod, model));
   }
-  const SectionFrame first = drawn_frame(model, number_of(rod, place.first_edge));
+  const SectionFrame first = initial_frame(model, number_of(rod, place.first_edge));
   const auto beside = place_beside_clamp(rod, s);
   if (!beside) {
     return first.turned(rod.initial_twist * (s - rod.edge_middle(place.first_edge)));
@@ -119,7 +119,7 @@ Vec3 turn_between(const Vec3& from, const Vec3& to) {
 /// A natural shape that is given is that of a chain whose nodes do not lie on the drawn curve
 /// (spring.hpp).
 Vec3 natural_rotation(double s, const SectionPlace& place, const SectionFrame& section,
-                      const RodLayout& rod, const Model& model) {
+                      const RodMesh& rod, const Model& model) {
   Vec3 rotation = Vec3::Zero();
   if (!rod.natural_curvatures.empty()) {
     const auto [at_start, at_end] = natural_turn_lengths(rod, s, place.first_edge, place.across);
@@ -128,8 +128,8 @@ Vec3 natural_rotation(double s, const SectionPlace& place, const SectionFrame& s
     if (place.across.size() == 2) {
       const double middle = rod.edge_middle(place.first_edge);
       const double spacing = rod.edge_middle(place.first_edge + 1) - middle;
-      const Vec3 first = drawn_frame(model, number_of(rod, place.first_edge)).tangent;
-      const Vec3 second = drawn_frame(model, number_of(rod, place.first_edge + 1)).tangent;
+      const Vec3 first = initial_frame(model, number_of(rod, place.first_edge)).tangent;
+      const Vec3 second = initial_frame(model, number_of(rod, place.first_edge + 1)).tangent;
       const Vec3 between = ((s - middle) / spacing - place.across[1]) * turn_between(first, second);
       rotation += turning_axes(section).transpose() * between;
     }
@@ -154,14 +154,14 @@ SectionFrame turned_back(const SectionFrame& section, const Vec3& rotation) {
 
 /// On one edge, or between two with nearly the same section.
 SectionHold smooth_hold(const SectionSpringPlace& spring, const SectionPlace& place,
-                        const RodLayout& rod, const Model& model) {
+                        const RodMesh& rod, const Model& model) {
   SectionHold hold;
   hold.on_the_way.diagonal() =
       Vec3(place.bend_cell / rod.EI_1, place.bend_cell / rod.EI_2, place.twist_cell / rod.GJ);
   for (std::size_t i = 0; i < place.across.size(); ++i) {
     hold.weights[i] = Vec3(place.across[i], place.across[i], place.along[i]).asDiagonal();
   }
-  hold.section = drawn_section_at(spring.arc_length, place, rod, model);
+  hold.section = reference_section_at(spring.arc_length, place, rod, model);
   hold.of_natural = turned_back(
       hold.section, natural_rotation(spring.arc_length, place, hold.section, rod, model));
   return hold;
@@ -169,20 +169,20 @@ SectionHold smooth_hold(const SectionSpringPlace& spring, const SectionPlace& pl
 
 /// Whether two edges side by side have sections that lie differently: at a corner, and where a ring
 /// is glued turned, by more than rounding.
-bool sections_differ(Index first_edge, const RodLayout& rod, const Model& model) {
+bool sections_differ(Index first_edge, const RodMesh& rod, const Model& model) {
   if (is_corner(rod, first_edge + 1, model)) return true;
-  const bool closes = rod.closed && rod.position(first_edge + 1) == 0 && !rod.joints.empty();
-  return closes && is_glued_turned(rod.joints.back());
+  const bool closes = rod.closed && rod.position(first_edge + 1) == 0 && !rod.vertices.empty();
+  return closes && is_glued_turned(rod.vertices.back());
 }
 
 /// The drawn section at arc length `s` [m] on the leg that ends with an edge, or begins with one:
 /// on the line through those of this edge and its neighbour on the leg, of which the neighbour has
 /// the one number or the other. A leg of one edge is straight.
-SectionFrame section_on_leg(double s, Index edge, Index neighbour, const RodLayout& rod,
+SectionFrame section_on_leg(double s, Index edge, Index neighbour, const RodMesh& rod,
                             const Model& model) {
   const Index first = std::min(edge, neighbour);
   if (!rod.is_inner(first + 1) || sections_differ(first, rod, model)) {
-    return drawn_frame(model, number_of(rod, edge))
+    return initial_frame(model, number_of(rod, edge))
         .turned(rod.initial_twist * (s - rod.edge_middle(edge)));
   }
   return section_on_line(s, first, rod, model);
@@ -194,7 +194,7 @@ SectionFrame section_on_leg(double s, Index edge, Index neighbour, const RodLayo
 /// its tangent [rad].
 Vec3 natural_turn_between_sections(double from, double to, const std::array<Vec3, 2>& tangents,
                                    Index first_edge, const SectionFrame& section,
-                                   const RodLayout& rod, const Model& model) {
+                                   const RodMesh& rod, const Model& model) {
   Vec3 natural(0.0, 0.0,
                rod.natural_twist.empty()
                    ? 0.0
@@ -206,7 +206,7 @@ Vec3 natural_turn_between_sections(double from, double to, const std::array<Vec3
   }
   const double node = rod.arc_length_at(first_edge + 1);
   const auto add = [&](Index edge, double length) {
-    const SectionFrame own = drawn_frame(model, number_of(rod, edge));
+    const SectionFrame own = initial_frame(model, number_of(rod, edge));
     turn += std::max(0.0, length) * (turning_axes(own) * natural);
   };
   add(first_edge, std::min(to, node) - from);
@@ -218,7 +218,7 @@ Vec3 natural_turn_between_sections(double from, double to, const std::array<Vec3
 /// with the compliances A and B about all axes. The moment of the springs on the rod, m, makes the
 /// one in it jump, and the section turns by B (A + B)^-1 r_a + A (A + B)^-1 r_b + D m, with the
 /// rotations of the two edges and D = A (A + B)^-1 B.
-SectionHold corner_hold(double s, Index first_edge, const RodLayout& rod, const Model& model) {
+SectionHold corner_hold(double s, Index first_edge, const RodMesh& rod, const Model& model) {
   const Index second_edge = first_edge + 1;
   const double corner = rod.arc_length_at(second_edge);
   const double start = rod.edge_middle(first_edge);
@@ -233,7 +233,7 @@ SectionHold corner_hold(double s, Index first_edge, const RodLayout& rod, const 
   const Mat3 section = turning_axes(hold.section);
   const Vec3 softness = Vec3(rod.EI_1, rod.EI_2, rod.GJ).cwiseInverse();
   const auto compliance = [&](Index edge, double from, double to) -> Mat3 {
-    const Mat3 own = section.transpose() * turning_axes(drawn_frame(model, number_of(rod, edge)));
+    const Mat3 own = section.transpose() * turning_axes(initial_frame(model, number_of(rod, edge)));
     return std::max(0.0, to - from) * own * softness.asDiagonal() * own.transpose();
   };
   const Mat3 before =
@@ -247,7 +247,7 @@ SectionHold corner_hold(double s, Index first_edge, const RodLayout& rod, const 
   hold.of_natural = hold.section;
   if (!rod.natural_curvatures.empty() || !rod.natural_twist.empty()) {
     const auto tangent = [&](Index edge) {
-      return drawn_frame(model, number_of(rod, edge)).tangent;
+      return initial_frame(model, number_of(rod, edge)).tangent;
     };
     const auto turn = [&](double from, double to, const Vec3& at_start, const Vec3& at_end) {
       return natural_turn_between_sections(from, to, {at_start, at_end}, first_edge, hold.section,
@@ -261,13 +261,13 @@ SectionHold corner_hold(double s, Index first_edge, const RodLayout& rod, const 
   return hold;
 }
 
-bool is_around_corner(const SectionPlace& place, const RodLayout& rod, const Model& model) {
+bool is_around_corner(const SectionPlace& place, const RodMesh& rod, const Model& model) {
   const bool resists = rod.EI_1 > 0.0 && rod.EI_2 > 0.0 && rod.GJ > 0.0;
   return resists && place.across.size() == 2 && sections_differ(place.first_edge, rod, model);
 }
 
-SectionHold hold_at(const SectionSpringPlace& spring, const SectionPlace& place,
-                    const RodLayout& rod, const Model& model) {
+SectionHold hold_at(const SectionSpringPlace& spring, const SectionPlace& place, const RodMesh& rod,
+                    const Model& model) {
   return is_around_corner(place, rod, model)
              ? corner_hold(spring.arc_length, place.first_edge, rod, model)
              : smooth_hold(spring, place, rod, model);
@@ -284,11 +284,11 @@ void add_turn(const ActuatedTurn& turn, const Mat3& weights, ActuatedTurn& sum) 
 }
 
 ActuatedTurn actuated_turn_around_corner(double s, Index first_edge, const SectionHold& hold,
-                                         const RodLayout& rod, const Model& model) {
+                                         const RodMesh& rod, const Model& model) {
   const double corner = rod.arc_length_at(first_edge + 1);
   const Mat3 to_section = turning_axes(hold.section).transpose();
   const auto axes = [&](Index edge) -> Mat3 {
-    return to_section * turning_axes(drawn_frame(model, number_of(rod, edge)));
+    return to_section * turning_axes(initial_frame(model, number_of(rod, edge)));
   };
   ActuatedTurn sum;
   for (const Index side : {0, 1}) {
@@ -307,7 +307,7 @@ ActuatedTurn actuated_turn_around_corner(double s, Index first_edge, const Secti
 template <int Edges>
 typename SectionSpring<Edges>::Constants constants_of(const SectionHold& hold,
                                                       const SectionSpringPlace& spring,
-                                                      Index first_edge, const RodLayout& rod,
+                                                      Index first_edge, const RodMesh& rod,
                                                       const Model& model) {
   using Kernel = SectionSpring<Edges>;
   typename Kernel::Constants constants;
@@ -321,7 +321,7 @@ typename SectionSpring<Edges>::Constants constants_of(const SectionHold& hold,
     held.first = edge.first;
     held.last = edge.last;
     held.weights = hold.weights[to_size(i)];
-    held.carried = axes_of(drawn_frame(model, number)).transpose() * axes_of(hold.of_natural);
+    held.carried = axes_of(initial_frame(model, number)).transpose() * axes_of(hold.of_natural);
   }
   if (const auto beside = place_beside_clamp(rod, spring.arc_length)) {
     const HeldFrame held = held_beside(*beside, rod, model);
@@ -335,19 +335,19 @@ typename SectionSpring<Edges>::Constants constants_of(const SectionHold& hold,
 template <int Edges>
 typename SectionSpring<Edges>::Constants free_section(const SectionHold& hold,
                                                       const SectionSpringPlace& none,
-                                                      Index first_edge, const RodLayout& rod,
+                                                      Index first_edge, const RodMesh& rod,
                                                       const Model& model) {
   auto constants = constants_of<Edges>(hold, none, first_edge, rod, model);
-  const auto drawn_angle = [&](Index edge) {
-    return model.rest_positions[model.framed_edges[to_size(number_of(rod, edge))].theta];
+  const auto reference_direction = [&](Index edge) {
+    return model.reference_positions[model.framed_edges[to_size(number_of(rod, edge))].theta];
   };
   const auto count_by = [&](Index reference, double side, double angles) {
-    constants.between = {reference, side, angles + side * model.drawn_frames[reference]};
+    constants.between = {reference, side, angles + side * model.initial_frames[reference]};
   };
   const FrameBlock block = FrameBlock::of(number_of(rod, first_edge + Edges - 1));
-  const double first = drawn_angle(first_edge);
+  const double first = reference_direction(first_edge);
   if (Edges == 2) {
-    count_by(block.twist_at_start(), 1.0, drawn_angle(first_edge + 1) - first);
+    count_by(block.twist_at_start(), 1.0, reference_direction(first_edge + 1) - first);
   } else if (const auto beside = place_beside_clamp(rod, none.arc_length)) {
     const bool leaves = rod.clamps[to_size(beside->clamp)].place == beside->edge;
     count_by(leaves ? block.twist_at_start() : block.twist_at_end(), leaves ? -1.0 : 1.0, -first);
@@ -358,7 +358,7 @@ typename SectionSpring<Edges>::Constants free_section(const SectionHold& hold,
 /// Returns the number of the element in its list.
 template <int Edges>
 Index add_element(const SectionHold& hold, const SectionSpringPlace& spring, Index first_edge,
-                  const RodLayout& rod, Model& model) {
+                  const RodMesh& rod, Model& model) {
   using Kernel = SectionSpring<Edges>;
   std::array<Index, Kernel::kDofs> dofs{};
   for (Index i = 0; i < Edges; ++i) {
@@ -373,7 +373,7 @@ Index add_element(const SectionHold& hold, const SectionSpringPlace& spring, Ind
   for (Index i = 0; i < Edges && hold.counts_turns; ++i) {
     const Index number = number_of(rod, first_edge + i);
     constants.edges[to_size(i)].reference_twist =
-        follow_twist(number, drawn_frame(model, number), model);
+        follow_twist(number, initial_frame(model, number), model);
   }
   auto& springs = elements_of<Kernel>(*model.elements);
   springs.add(dofs, constants);
@@ -382,7 +382,7 @@ Index add_element(const SectionHold& hold, const SectionSpringPlace& spring, Ind
 
 }  // namespace
 
-void add_to_section_spring(double s, const Vec3& stiffness, RodLayout& rod) {
+void add_to_section_spring(double s, const Vec3& stiffness, RodMesh& rod) {
   if (const SectionSpringPlace* known = rod.section_spring_at(s)) {
     const auto number = static_cast<std::size_t>(known - rod.section_springs.data());
     rod.section_springs[number].stiffness += stiffness;
@@ -394,18 +394,18 @@ void add_to_section_spring(double s, const Vec3& stiffness, RodLayout& rod) {
   }
 }
 
-bool is_held_or_at_corner(double s, const RodLayout& rod, const Model& model) {
+bool is_held_or_at_corner(double s, const RodMesh& rod, const Model& model) {
   return rod.section_spring_at(s) != nullptr || is_around_corner(section_place(s, rod), rod, model);
 }
 
-ActuatedTurn actuated_turn_at(double s, const RodLayout& rod, const Model& model) {
+ActuatedTurn actuated_turn_at(double s, const RodMesh& rod, const Model& model) {
   const SectionPlace place = section_place(s, rod);
   if (!is_around_corner(place, rod, model)) return actuated_turn(s, place, rod);
   const SectionHold hold = corner_hold(s, place.first_edge, rod, model);
   return actuated_turn_around_corner(s, place.first_edge, hold, rod, model);
 }
 
-HeldSectionAt held_section_at(double s, const RodLayout& rod, const Model& model) {
+HeldSectionAt held_section_at(double s, const RodMesh& rod, const Model& model) {
   if (const SectionSpringPlace* spring = rod.section_spring_at(s)) {
     const std::size_t element = to_size(spring->element);
     if (spring->on_one_edge)
@@ -420,10 +420,10 @@ HeldSectionAt held_section_at(double s, const RodLayout& rod, const Model& model
   return free_section<2>(hold, none, place.first_edge, rod, model);
 }
 
-void add_section_springs(RodLayout& rod, Model& model) {
+void add_section_springs(RodMesh& rod, Model& model) {
   Index number = 0;
   for (SectionSpringPlace& spring : rod.section_springs) {
-    spring.shift = rod.rest_entries.spring(number++);
+    spring.shift = rod.natural_strain_entries.spring(number++);
     const SectionPlace place = section_place(spring.arc_length, rod);
     const SectionHold hold = hold_at(spring, place, rod, model);
     spring.on_one_edge = place.across.size() == 1;

@@ -14,16 +14,16 @@
 #include "model/corner.hpp"
 #include "model/corner_twist.hpp"
 #include "model/curvature_jump.hpp"
-#include "model/drawn_edge.hpp"
+#include "model/reference_edge.hpp"
 #include "supports/leg_clamp.hpp"
 
 namespace der {
 namespace {
 
 /// Rotation vector of the turning angle at a place with two edges, per metre [1/m].
-Vec3 initial_curvature_vector(const RodLayout& rod, Index inner, const Model& model) {
-  const Vec3 before = drawn_edge<3>(rod, inner - 1, model);
-  const Vec3 after = drawn_edge<3>(rod, inner, model);
+Vec3 initial_curvature_vector(const RodMesh& rod, Index inner, const Model& model) {
+  const Vec3 before = reference_edge<3>(rod, inner - 1, model);
+  const Vec3 after = reference_edge<3>(rod, inner, model);
   const Vec3 axis = before.cross(after);
   const double sine = axis.norm();
   if (sine == 0.0) return Vec3::Zero();
@@ -33,7 +33,7 @@ Vec3 initial_curvature_vector(const RodLayout& rod, Index inner, const Model& mo
 /// Whether the drawn curvature changes at the start of a ring by much more than beside it, where a
 /// smooth curve that is resolved changes half as much. A jump that is not told apart shifts the
 /// tangent by the square of the edges' length only.
-bool jumps_at_start(const RodLayout& ring, const Model& model) {
+bool jumps_at_start(const RodMesh& ring, const Model& model) {
   constexpr double kLeast = 0.01;  // of the larger curvature
   constexpr double kAlone = 10.0;
   const auto curvature = [&](Index place) { return initial_curvature_vector(ring, place, model); };
@@ -47,13 +47,13 @@ bool jumps_at_start(const RodLayout& ring, const Model& model) {
 /// The tangent at a place on the circle that has the curvature at `inner`, the place itself or one
 /// next to it: straight between the place and a corner, and where no two edges meet. Where the
 /// curvature jumps at the place, that of the edge after it.
-Vec3 tangent_on_circle(const RodLayout& rod, Index place, Index inner, const Model& model) {
+Vec3 tangent_on_circle(const RodMesh& rod, Index place, Index inner, const Model& model) {
   const Index edge = edge_beside(rod, place);
-  const Vec3 chord = drawn_edge<3>(rod, edge, model).normalized();
+  const Vec3 chord = reference_edge<3>(rod, edge, model).normalized();
   if (!rod.is_inner(inner) || (inner != place && is_corner(rod, inner, model))) return chord;
   Vec3 curvature = initial_curvature_vector(rod, inner, model);
   if (inner == place) {
-    curvature += curvature_beyond_mean(rod, place, true, rod.drawn_jumps);
+    curvature += curvature_beyond_mean(rod, place, true, rod.reference_jumps);
   }
   const double half = (edge == place ? -0.5 : 0.5) * rod.edge_length[to_size(edge)];
   const double angle = curvature.norm() * half;
@@ -61,13 +61,13 @@ Vec3 tangent_on_circle(const RodLayout& rod, Index place, Index inner, const Mod
   return Eigen::AngleAxisd(angle, curvature.normalized()) * chord;
 }
 
-SectionFrame drawn_section(const RodLayout& rod, Index place, const Model& model) {
+SectionFrame reference_section(const RodMesh& rod, Index place, const Model& model) {
   const Index edge = edge_beside(rod, place);
-  return drawn_section_at_end(rod, edge, edge != place, initial_tangent(rod, place, model));
+  return reference_section_at_end(rod, edge, edge != place, initial_tangent(rod, place, model));
 }
 
 /// The legs at a corner have two tangents, and turning about one of them turns the other.
-void check_axis_of_twist(const RodLayout& rod, Index place, const Model& model) {
+void check_axis_of_twist(const RodMesh& rod, Index place, const Model& model) {
   if (!is_corner(rod, place, model)) return;
   throw Error("model_error",
               fmt::format("the 'twist' of a clamp turns about its tangent, but the clamp of rod "
@@ -76,7 +76,7 @@ void check_axis_of_twist(const RodLayout& rod, Index place, const Model& model) 
                           rod.name, rod.arc_length_at(place)));
 }
 
-SpatialPivot spatial_pivot_at(const RodLayout& rod, Index place, Index edge, const Model& model) {
+SpatialPivot spatial_pivot_at(const RodMesh& rod, Index place, Index edge, const Model& model) {
   const Clamp* clamp = rod.clamp_at(place);
   if (clamp == nullptr) return {};
   const bool arrives = edge != clamp->place;
@@ -87,24 +87,24 @@ SpatialPivot spatial_pivot_at(const RodLayout& rod, Index place, Index edge, con
 
 }  // namespace
 
-Vec3 initial_tangent(const RodLayout& rod, Index place, const Model& model) {
+Vec3 initial_tangent(const RodMesh& rod, Index place, const Model& model) {
   if (is_corner(rod, place, model)) return leg_tangent(rod, place, false, model);
   const Index inner = rod.num_edges() < 2 ? place : inner_place_near(rod, place);
   return tangent_on_circle(rod, place, inner, model);
 }
 
-Vec3 first_tangent(const RodLayout& rod, const Model& model) {
+Vec3 first_tangent(const RodMesh& rod, const Model& model) {
   const bool is_smooth = rod.closed && !is_corner(rod, 0, model) && !jumps_at_start(rod, model);
   return tangent_on_circle(rod, 0, is_smooth ? 0 : 1, model);
 }
 
-void hold_section(const scenario::Support& support, Index place, RodLayout& rod, Model& model) {
+void hold_section(const scenario::Support& support, Index place, RodMesh& rod, Model& model) {
   if ((rod.EI_1 == 0.0 && rod.EI_2 == 0.0) || rod.clamp_at(place) != nullptr) return;
   if (is_bearing(support, place, rod, model)) return hold_in_bearing(support, place, rod, model);
   Clamp clamp;
   clamp.place = place;
   clamp.holds_section = support.clamp == scenario::Clamp::Section;
-  clamp.held.drawn = drawn_section(rod, place, model);
+  clamp.held.drawn = reference_section(rod, place, model);
   if (support.axis_rotation) {
     const auto& [axis, angle] = *support.axis_rotation;
     clamp.held.axis = Eigen::Map<const Vec3>(axis.data()).stableNormalized();
@@ -120,7 +120,7 @@ void hold_section(const scenario::Support& support, Index place, RodLayout& rod,
   rod.clamps.push_back(clamp);
 }
 
-SpatialEdge spatial_edge(const RodLayout& rod, Index edge, const Model& model) {
+SpatialEdge spatial_edge(const RodMesh& rod, Index edge, const Model& model) {
   const Index number = rod.first_edge + edge;
   return {model.dof(rod.node(edge), 0), model.dof(rod.node(edge + 1), 0),
           model.has_sections() ? model.dofs.angle(number) : -1,

@@ -24,7 +24,7 @@ namespace der {
 namespace {
 
 template <int Dim, int Nodes>
-void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s,
+void add_point_spring(const scenario::Spring& spring, RodMesh& rod, double s,
                       const std::vector<Weighted>& weights, Model& model) {
   using Kernel = PointSpring<Dim, Nodes>;
   using Point = typename Kernel::Point;
@@ -49,7 +49,7 @@ void add_point_spring(const scenario::Spring& spring, RodLayout& rod, double s,
 
 /// Each number of nodes has a kind of element of its own.
 template <int Dim, int Nodes = 1>
-void add_point_spring_at(const scenario::Spring& spring, RodLayout& rod, double s,
+void add_point_spring_at(const scenario::Spring& spring, RodMesh& rod, double s,
                          const std::vector<Weighted>& weights, Model& model) {
   if constexpr (Nodes < kMostPointNodes) {
     if (to_size(Nodes) < weights.size()) {
@@ -60,24 +60,24 @@ void add_point_spring_at(const scenario::Spring& spring, RodLayout& rod, double 
 }
 
 /// Turn [rad] that is drawn between the two edges of a place; 0 of one edge.
-double drawn_bend(const RodLayout& rod, const MomentPlace& place, const Model& model) {
+double reference_bend(const RodMesh& rod, const MomentPlace& place, const Model& model) {
   if (place.weights.size() == 1) return 0.0;
-  const Vector& drawn = model.rest_positions;
+  const Vector& drawn = model.reference_positions;
   return angle_between(effective_edge(rod, place.first_edge, model).drawn(drawn),
                        effective_edge(rod, place.first_edge + 1, model).drawn(drawn));
 }
 
 /// Turn [rad] of the weighted directions, from the initial direction of the first edge, at which
 /// the tangent has the direction of the drawn shape and no moment acts.
-double rest_turn(const RodLayout& rod, const MomentPlace& place, const Model& model) {
+double rest_turn(const RodMesh& rod, const MomentPlace& place, const Model& model) {
   const bool single = place.weights.size() == 1;
-  const double drawn = single ? 0.0 : place.weights[1] * drawn_bend(rod, place, model);
+  const double drawn = single ? 0.0 : place.weights[1] * reference_bend(rod, place, model);
   return drawn + natural_turn_of_edges(rod, place, model);
 }
 
 /// Returns the number of the element in its list.
 template <int Edges>
-Index add_element_of(const RodLayout& rod, MomentPlace& place, Model& model) {
+Index add_element_of(const RodMesh& rod, MomentPlace& place, Model& model) {
   using Kernel = RotationalSpring<Edges>;
   std::array<Index, Kernel::kDofs> dofs{};
   for (Index i = 0; i <= Edges; ++i) {
@@ -87,7 +87,7 @@ Index add_element_of(const RodLayout& rod, MomentPlace& place, Model& model) {
   }
   const EffectiveEdge first = effective_edge(rod, place.first_edge, model);
   const EffectiveEdge last = effective_edge(rod, place.first_edge + Edges - 1, model);
-  const Vec2 along = first.drawn(model.rest_positions);
+  const Vec2 along = first.drawn(model.reference_positions);
   typename Kernel::Constants constants;
   constants.stiffness = place.stiffness * place.series_share(rod.EI);
   place.followed = follow_edge(rod, place.first_edge, model);
@@ -106,7 +106,7 @@ Index add_element_of(const RodLayout& rod, MomentPlace& place, Model& model) {
 
 }  // namespace
 
-std::array<double, 2> natural_turn_lengths(const RodLayout& rod, double s, Index first_edge,
+std::array<double, 2> natural_turn_lengths(const RodMesh& rod, double s, Index first_edge,
                                            const std::vector<double>& weights) {
   std::array<double, 2> lengths{};
   if (rod.closed || place_beside_clamp(rod, s)) return lengths;
@@ -131,7 +131,7 @@ std::array<double, 2> natural_turn_lengths(const RodLayout& rod, double s, Index
   return lengths;
 }
 
-double natural_turn_of_edges(const RodLayout& rod, const MomentPlace& place, const Model& model) {
+double natural_turn_of_edges(const RodMesh& rod, const MomentPlace& place, const Model& model) {
   if (rod.natural_curvature.empty()) return 0.0;
   const double s = place.arc_length;
   const auto [at_start, at_end] = natural_turn_lengths(rod, s, place.first_edge, place.weights);
@@ -140,13 +140,13 @@ double natural_turn_of_edges(const RodLayout& rod, const MomentPlace& place, con
   const double first_middle = rod.edge_middle(place.first_edge);
   const double spacing = rod.edge_middle(place.first_edge + 1) - first_middle;
   const double share = (s - first_middle) / spacing;
-  turn += (share - place.weights[1]) * drawn_bend(rod, place, model);
+  turn += (share - place.weights[1]) * reference_bend(rod, place, model);
   return turn - natural_turn_from_line(s, place.first_edge, rod).z();
 }
 
 void add_spring(const scenario::Support& support, Model& model) {
   const scenario::Spring& spring = *support.spring;
-  RodLayout& rod = model.rod(support.rod);
+  RodMesh& rod = model.rod(support.rod);
   const double s = arc_length_of(support.at, rod);
   if (!spring.stiffness.empty()) {
     const std::vector<Weighted> weights = node_weights(rod, s, model);
@@ -161,14 +161,14 @@ void add_spring(const scenario::Support& support, Model& model) {
   }
 }
 
-void add_rotational_springs(RodLayout& rod, Model& model) {
+void add_rotational_springs(RodMesh& rod, Model& model) {
   Index number = 0;
   for (MomentPlace& place : rod.moment_places) {
     // Clamps may have come since.
     const double stiffness = place.stiffness;
     place = moment_place(place.arc_length, rod);
     place.stiffness = stiffness;
-    place.spring_shift = rod.rest_entries.spring(number++);
+    place.spring_shift = rod.natural_strain_entries.spring(number++);
     place.spring = place.weights.size() == 1 ? add_element_of<1>(rod, place, model)
                                              : add_element_of<2>(rod, place, model);
   }

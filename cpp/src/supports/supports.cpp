@@ -43,7 +43,7 @@ NamedControl named_motion(const std::string& name, std::size_t number, const Mod
 
 /// Holds or moves the nodes of a support.
 void hold_nodes(const scenario::Support& support, std::size_t number, Model& model) {
-  RodLayout& rod = model.rod(support.rod);
+  RodMesh& rod = model.rod(support.rod);
   for (const Index place : nodes_at(support.at, rod)) {
     const Index node = rod.nodes[static_cast<std::size_t>(place)];
     for (const auto& [component, displacement] : support.prescribe) {

@@ -12,8 +12,8 @@ namespace {
 
 /// `State::followed` of the shape as it is drawn, with each clamp turned already.
 Vector followed_with_clamps(const Model& model, const Vector& controls) {
-  Vector followed = followed_as_drawn(model);
-  for (const RodLayout& rod : model.rods) {
+  Vector followed = unwrapped_of_reference(model);
+  for (const RodMesh& rod : model.rods) {
     for (const Clamp& clamp : rod.clamps) {
       if (clamp.followed >= 0) followed[clamp.followed] = controls[clamp.rotation];
     }
@@ -23,7 +23,7 @@ Vector followed_with_clamps(const Model& model, const Vector& controls) {
 
 /// The angles [rad] by which the edges of a planar rod have turned against its first one since they
 /// were drawn.
-Vector turned_along(const RodLayout& rod, const Model& model, const Vector& positions) {
+Vector turned_along(const RodMesh& rod, const Model& model, const Vector& positions) {
   const auto angle_after = [&](Index edge, const Vector& shape) {
     return angle_between(along_edge(rod.edge(edge, model), shape),
                          along_edge(rod.edge(edge + 1, model), shape));
@@ -36,7 +36,7 @@ Vector turned_along(const RodLayout& rod, const Model& model, const Vector& posi
   return turned;
 }
 
-void count_along(const RodLayout& rod, const Model& model, State& state) {
+void count_along(const RodMesh& rod, const Model& model, State& state) {
   struct Place {
     Index edge;
     Index followed;
@@ -75,12 +75,12 @@ void follow_written(const Model& model, State& state) {
   if (state.followed.size() == 0) return;
   Vector controls;
   evaluate_controls(model, state, state.time, controls);
-  if (state.followed == followed_as_drawn(model)) {
+  if (state.followed == unwrapped_of_reference(model)) {
     state.followed = followed_with_clamps(model, controls);
   }
   follow(model, state.positions, controls, state.followed);
   if (model.dimension != 2) return;
-  for (const RodLayout& rod : model.rods) count_along(rod, model, state);
+  for (const RodMesh& rod : model.rods) count_along(rod, model, state);
 }
 
 }  // namespace der

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from der._core import Model
-from der.natural_sizes import natural_size
+from der.characteristic_scales import characteristic_scale
 from der.result import Result
 
 #: Rounding error, as a fraction of the largest value of a probe in the run.
@@ -34,7 +34,7 @@ def noise_floor(model: Model, unit: str, step: float, largest: float) -> float:
         Largest absolute value of the probe in the run.
     """
     share = _OF_SIZES.get(unit, _OF_SIZE)
-    return _OF_VALUE * largest + share * natural_size(model.rods, unit, step)
+    return _OF_VALUE * largest + share * characteristic_scale(model.rods, unit, step)
 
 
 #: A value is exact if its error bar is less than this share of its size.
@@ -76,7 +76,7 @@ def exact_below(result: Result, unit: str, largest: float) -> ExactBelow:
         Largest absolute value of the probe in the run of the scene.
     """
     rods = result.model.rods
-    size = natural_size(rods, unit, 0.0)
+    size = characteristic_scale(rods, unit, 0.0)
     if unit == "N":  # that of bending; rods that hardly stretch bear no force near EA
         size = max(rod.EI / rod.length**2 for rod in rods)
     # Far from the origin, a position is large by the choice of coordinates alone.

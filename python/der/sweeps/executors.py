@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeAlias, TypeVar
 
 from der.errors import warn
-from der.parallel import EndsWithBlock, Threads, checked_jobs
+from der.parallel import CancellableExecutor, Threads, checked_jobs
 from der.sweeps.chunk import Chunk, run_chunk
 from der.sweeps.table import Table
 
@@ -136,7 +136,7 @@ def run_packed(packed: bytes) -> Any:
     return function(*args, **kwargs)
 
 
-class Processes(EndsWithBlock, ProcessPoolExecutor):
+class Processes(CancellableExecutor, ProcessPoolExecutor):
     """Processes that stop when the ``with`` block around them fails, by Ctrl-C above all.
 
     Attributes

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from der._core import Rod, springs
 from der.actuated_stretches import ActuatedStretch, actuated_stretches
+from der.characteristic_scales import characteristic_scale
 from der.fields import fields_of
 from der.film import Film, failure_text, make_film, mode_shapes, round_speed, speed_text
-from der.natural_sizes import natural_size
 from der.plotting.lengths import LengthScale
 from der.plotting.style import quantity_text
 from der.run_data import RunData
@@ -139,7 +139,7 @@ def _noise(rods: list[Rod], unit: str, span: float) -> float:
     rod a billionth of its length along in the whole run (`span` [s]).
     """
     share = 1e-12 if unit in ("", "N") else 1e-9
-    return share * natural_size(rods, unit, span)
+    return share * characteristic_scale(rods, unit, span)
 
 
 def _field_range(unit: str, fields: list[Array], rods: list[Rod], span: float) -> dict[str, Any]:

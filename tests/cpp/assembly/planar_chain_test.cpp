@@ -47,7 +47,7 @@ TEST_CASE("chains are found where edges follow one another") {
   CHECK(chains[0].range_of<Stretch<2>>().count == 10);
   CHECK(chains[0].range_of<PlanarBend<AngleCurvature>>().count == 9);
   CHECK(chains[0].range_of<PlanarBend<TangentCurvature>>().count == 0);
-  // The ring but for its closing edge and the joints at the ends of that.
+  // The ring but for its closing edge and the vertices at the ends of that.
   CHECK(chains[1].range_of<Stretch<2>>().count == 5);
   CHECK(chains[1].range_of<PlanarBend<AngleCurvature>>().count == 4);
   CHECK(chains[2].range_of<Stretch<2>>().count == 6);

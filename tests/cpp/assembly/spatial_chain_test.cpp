@@ -77,7 +77,7 @@ TEST_CASE("chains in space are found where edges follow one another") {
   CHECK(sections[0].range_of<Stretch<3>>().count == 7);
   CHECK(sections[0].range_of<SpatialBend<AngleCurvature>>().count == 6);
   CHECK(sections[0].range_of<SpatialBend<TangentCurvature>>().count == 0);
-  // The ring but for its closing edge and the joints at the ends of that.
+  // The ring but for its closing edge and the vertices at the ends of that.
   CHECK(sections[1].range_of<Stretch<3>>().count == 5);
   CHECK(sections[1].range_of<SpatialBend<AngleCurvature>>().count == 4);
   CHECK(sections[2].range_of<SpatialBend<TangentCurvature>>().count == 3);

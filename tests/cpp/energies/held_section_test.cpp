@@ -17,7 +17,9 @@ SectionFrame turned(const SectionFrame& section, const Vec3& rotation) {
   return SectionFrame::of(turn * section.tangent, turn * section.first);
 }
 
-Vec3 vector(const JointStrain& strain) { return {strain.kappa_1, strain.kappa_2, strain.twist}; }
+Vec3 vector(const MaterialCurvature& strain) {
+  return {strain.kappa_1, strain.kappa_2, strain.twist};
+}
 
 /// A spring on one edge that has turned by up to half a radian, and what its rod stores.
 struct OnOneEdge {
@@ -32,18 +34,18 @@ struct OnOneEdge {
     carried[0].twist = twist_between(spring.drawn, carried[0].frame);
   }
   [[nodiscard]] HeldSection held() const { return {spring, carried, 1}; }
-  [[nodiscard]] Vec3 from_drawn(const SectionFrame& section) const {
-    using Kinematics = JointKinematics<AngleCurvature>;
+  [[nodiscard]] Vec3 from_reference(const SectionFrame& section) const {
+    using Kinematics = VertexKinematics<AngleCurvature>;
     const double twist = twist_between(spring.drawn, section);
     return vector(Kinematics(spring.drawn, section, twist).strain());
   }
   [[nodiscard]] Vec3 to_edge(const SectionFrame& section) const {
-    using Kinematics = JointKinematics<AngleCurvature>;
+    using Kinematics = VertexKinematics<AngleCurvature>;
     const double twist = twist_between(section, carried[0].frame);
     return vector(Kinematics::read_before(section, carried[0].frame, twist).strain());
   }
   [[nodiscard]] double energy_at(const SectionFrame& section) const {
-    const Vec3 z = from_drawn(section);
+    const Vec3 z = from_reference(section);
     const Vec3 psi = to_edge(section);
     return 0.5 *
            (z.dot(spring.stiffness.cwiseProduct(z)) + psi.dot(spring.compliance.inverse() * psi));

@@ -128,7 +128,7 @@ inline HeldFrame sample_held_frame(Random& random) {
   return held;
 }
 
-inline Joint sample_joint(Random& random) {
+inline Vertex sample_vertex(Random& random) {
   const auto stiffness = [&] { return uniform(random, 0.5, 5.0); };
   return {stiffness(),
           stiffness(),
@@ -151,7 +151,7 @@ typename IsotropicClamp<Curvature>::Constants sample_constants(const IsotropicCl
 template <class Curvature>
 typename SpatialBend<Curvature>::Constants sample_constants(const SpatialBend<Curvature>&,
                                                             Random& random) {
-  return {sample_joint(random),
+  return {sample_vertex(random),
           FrameBlock::of(0),
           FrameBlock::of(1),
           uniform(random, -3.0, 3.0),
@@ -159,11 +159,11 @@ typename SpatialBend<Curvature>::Constants sample_constants(const SpatialBend<Cu
 }
 
 inline CornerBend::Constants sample_constants(const CornerBend&, Random& random) {
-  CoupledJoint joint;
+  CoupledVertex vertex;
   const Mat3 root = Mat3::NullaryExpr([&] { return uniform(random, -1.0, 1.0); });
-  joint.coefficients = Mat3::Identity() + root * root.transpose();
-  joint.rest = sample_joint(random).rest;
-  return {joint, FrameBlock::of(0), FrameBlock::of(1), 0.0, {kStrains}};
+  vertex.coefficients = Mat3::Identity() + root * root.transpose();
+  vertex.rest = sample_vertex(random).rest;
+  return {vertex, FrameBlock::of(0), FrameBlock::of(1), 0.0, {kStrains}};
 }
 
 template <class Curvature>
@@ -171,9 +171,9 @@ typename SpatialClamp<Curvature>::Constants sample_constants(const SpatialClamp<
                                                              Random& random) {
   const double side = uniform(random, 0.0, 1.0) < 0.5 ? -1.0 : 1.0;
   const bool holds_section = uniform(random, 0.0, 1.0) < 0.5;
-  Joint joint = sample_joint(random);
-  if (!holds_section) joint.twist = 0.0;
-  return {joint, sample_held_frame(random), FrameBlock::of(0), side, {kStrains}, holds_section};
+  Vertex vertex = sample_vertex(random);
+  if (!holds_section) vertex.twist = 0.0;
+  return {vertex, sample_held_frame(random), FrameBlock::of(0), side, {kStrains}, holds_section};
 }
 
 inline Fork::Constants sample_constants(const Fork&, Random& random) {
@@ -324,9 +324,9 @@ template <class Kernel, class Coordinates>
 void sample_frames(const Kernel& /*kernel*/, const typename Kernel::Constants& /*constants*/,
                    const Coordinates& /*x*/, Random& /*random*/, Configuration& /*here*/) {}
 
-template <class Curvature, class AJoint, class Coordinates>
-void sample_frames(const SpatialBend<Curvature, AJoint>& /*kernel*/,
-                   const typename SpatialBend<Curvature, AJoint>::Constants& constants,
+template <class Curvature, class AVertex, class Coordinates>
+void sample_frames(const SpatialBend<Curvature, AVertex>& /*kernel*/,
+                   const typename SpatialBend<Curvature, AVertex>::Constants& constants,
                    const Coordinates& x, Random& random, Configuration& here) {
   const Vec3 a = x.template segment<3>(3) - x.template segment<3>(0);
   const Vec3 b = x.template segment<3>(6) - x.template segment<3>(3);

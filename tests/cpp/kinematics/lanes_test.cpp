@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "der/energies/joint_response.hpp"
+#include "der/energies/vertex_response.hpp"
 #include "der/kinematics/direction_angle.hpp"
 #include "der/kinematics/edge_frame.hpp"
 #include "der/kinematics/sine_and_cosine.hpp"
@@ -59,9 +59,9 @@ EdgeFrameOf<TwoLanes> frame_of(const Sample& a, const Sample& b) {
           in_two_lanes(a.director, b.director)};
 }
 
-/// The stiffness of a joint by the variables of an edge.
+/// The stiffness of a vertex by the variables of an edge.
 template <class T>
-Eigen::Matrix<T, 4, 4> by_edge(const JointResponseOf<T>& response, const EdgeFrameOf<T>& edge) {
+Eigen::Matrix<T, 4, 4> by_edge(const VertexResponseOf<T>& response, const EdgeFrameOf<T>& edge) {
   const typename EdgeFrameOf<T>::Rotation turned = response.stiffness * edge.rotation();
   return edge.rotation().transpose() * turned;
 }
@@ -143,8 +143,8 @@ TEST_CASE("each lane has the values that a double alone has") {
       const EdgeFrameOf<TwoLanes> a = frame_of(a0, a1);
       const EdgeFrameOf<TwoLanes> b = frame_of(b0, b1);
       const TwoLanes twist = twist_between(a.frame, b.frame);
-      const JointKinematics<AngleCurvature, TwoLanes> both(a.frame, b.frame, twist);
-      JointResponseOf<TwoLanes> response;
+      const VertexKinematics<AngleCurvature, TwoLanes> both(a.frame, b.frame, twist);
+      VertexResponseOf<TwoLanes> response;
       both.respond<true>({{0.3, 0.3}, {0.5, 0.5}, {0.7, 0.7}, {0.1, 0.2, 0.3}}, response);
       for (const int lane : {0, 1}) {
         const EdgeFrame a_alone = (lane == 0 ? a0 : a1).frame();
@@ -152,8 +152,8 @@ TEST_CASE("each lane has the values that a double alone has") {
         CHECK(is_lane(a_alone.rotation(), a.rotation(), lane));
         const double twist_alone = twist_between(a_alone.frame, b_alone.frame);
         CHECK(twist.lane(lane) == twist_alone);
-        JointResponse alone;
-        JointKinematics<AngleCurvature>(a_alone.frame, b_alone.frame, twist_alone)
+        VertexResponse alone;
+        VertexKinematics<AngleCurvature>(a_alone.frame, b_alone.frame, twist_alone)
             .respond<true>({0.3, 0.5, 0.7, {0.1, 0.2, 0.3}}, alone);
         CHECK(is_lane(alone.moment, response.moment, lane));
         CHECK(is_lane(alone.stiffness, response.stiffness, lane));

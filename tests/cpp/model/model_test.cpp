@@ -67,7 +67,7 @@ TEST_CASE("weights between nodes reproduce cubics, so a load keeps its first thr
   // Where an edge at an end is as long as here, two of them.
   for (const auto& [points, most] : {std::pair(kEven, 3), std::pair(kUneven, 2)}) {
     const Model model = model_of(points);
-    const RodLayout& rod = model.rods.front();
+    const RodMesh& rod = model.rods.front();
     for (const double s : {0.0, 0.03, 0.1, 0.27, 0.45, 0.5, 0.77, 0.98, 1.0}) {
       for (int power = 0; power <= most; ++power) {
         double sum = 0.0;
@@ -83,7 +83,7 @@ TEST_CASE("weights between nodes reproduce cubics, so a load keeps its first thr
 
 TEST_CASE("a chain gives way to a force between nodes as the rod does") {
   // sum_ij w_i w_j |s_i - s_j|, the kink that spread forces make, is that of the rod: 0.
-  const auto kink = [](const RodLayout& rod, const std::vector<Weighted>& nodes) {
+  const auto kink = [](const RodMesh& rod, const std::vector<Weighted>& nodes) {
     double sum = 0.0;
     for (const auto& [i, w] : nodes) {
       for (const auto& [j, v] : nodes) {
@@ -103,7 +103,7 @@ TEST_CASE("a chain gives way to a force between nodes as the rod does") {
       "    cross_section: {circle: {radius: 0.01}}\n"
       "    material: {youngs_modulus: 1e7, density: 1000}\n");
   for (const Model* model : {&even, &uneven, &ring, &long_end}) {
-    const RodLayout& rod = model->rods.front();
+    const RodMesh& rod = model->rods.front();
     for (const double s : {0.03, 0.07, 0.13, 0.27, 0.46, 0.57, 0.77, 0.98}) {
       const std::vector<Weighted> nodes = node_weights(rod, s * rod.rest_length(), *model);
       CHECK(nodes.size() == std::min<std::size_t>(6, rod.nodes.size()));
@@ -111,7 +111,7 @@ TEST_CASE("a chain gives way to a force between nodes as the rod does") {
     }
   }
   // Seen from the other end it is the same.
-  const RodLayout& rod = even.rods.front();
+  const RodMesh& rod = even.rods.front();
   const std::vector<Weighted> here = node_weights(rod, 0.43, even);
   const std::vector<Weighted> mirrored = node_weights(rod, 0.57, even);
   for (std::size_t i = 0; i < here.size(); ++i) {
@@ -135,7 +135,7 @@ TEST_CASE("places between nodes have no nodes beyond others on which forces act"
 
 TEST_CASE("weights of edges reproduce a linear change of direction between edge midpoints") {
   const Model model = model_of(kUneven);
-  const RodLayout& rod = model.rods.front();
+  const RodMesh& rod = model.rods.front();
   for (const double s : {0.1, 0.2, 0.3, 0.5, 0.9}) {
     double sum = 0.0;
     for (const auto& [edge, weight] : edge_weights(rod, s)) {

@@ -17,7 +17,7 @@
 namespace der {
 namespace {
 
-using Crossing = std::optional<CrossingWatch::Crossing>;
+using Crossing = std::optional<CrossingMonitor::Crossing>;
 
 struct Run {
   explicit Run(const std::string& scene) : simulation(Scenario::parse(scene, "crossing")) {
@@ -68,7 +68,7 @@ TEST_CASE("crossing: a rod that falls through another is seen when and where it 
     CAPTURE(dimension);
     const Run run(fall(dimension));
     REQUIRE(run.outcome.crossing);
-    const CrossingWatch::Crossing& found = *run.outcome.crossing;
+    const CrossingMonitor::Crossing& found = *run.outcome.crossing;
     CHECK(found.first_rod == "low");
     CHECK(found.second_rod == "high");
     // The held rod sags meanwhile, by a thousandth of that.

@@ -28,7 +28,7 @@ double probe_after(const std::string& probe, Change&& change,
 template <class F>
 auto place(F&& f) {
   return [f](Simulation& simulation) {
-    const RodLayout& rod = simulation.model().rods.at(0);
+    const RodMesh& rod = simulation.model().rods.at(0);
     for (std::size_t i = 0; i < rod.nodes.size(); ++i) {
       simulation.state().positions.segment<2>(2 * rod.nodes[i]) = f(rod.arc_length[i]);
     }
@@ -76,7 +76,7 @@ TEST_CASE("positions between nodes are exact for cubics, at the ends as inside")
 TEST_CASE("velocity and speed between nodes") {
   // The velocity (1 - 2 s, 0) changes its sign at 0.5; the speed has a kink there.
   const auto move = [](Simulation& simulation) {
-    const RodLayout& rod = simulation.model().rods.at(0);
+    const RodMesh& rod = simulation.model().rods.at(0);
     for (std::size_t i = 0; i < rod.nodes.size(); ++i) {
       simulation.state().velocities[2 * rod.nodes[i]] = 1.0 - 2.0 * rod.arc_length[i];
       simulation.state().velocities[2 * rod.nodes[i] + 1] = 0.25;

@@ -106,7 +106,7 @@ std::map<std::string, double> expected_values() {
   const Vec2 pulled = points.back() - Vec2{kLength, 0.0};  // from where the spring is slack
   const double spring =
       0.5 * (kSpringX * pulled.x() * pulled.x() + kSpringY * pulled.y() * pulled.y());
-  // The pin pulls the first edge and carries the shear of the joint behind it, and the weight of
+  // The pin pulls the first edge and carries the shear of the vertex behind it, and the weight of
   // half an edge. At the start of a run it has no acceleration.
   const Vec2 along = (points[1] - points[0]).normalized();
   const Vec2 across{-along.y(), along.x()};
@@ -119,7 +119,7 @@ std::map<std::string, double> expected_values() {
   const double turned = 13.0 / 12.0 * kDirection - 1.0 / 12.0 * (kDirection + kTurn);
   const double cell = 47.0 / 144.0 * edge_length;
   values["reaction_moment"] = -turned / (1.0 / kWrist + cell / kEI);
-  // Actuations do work against the moment of all joints, and against the tension of all edges.
+  // Actuations do work against the moment of all vertices, and against the tension of all edges.
   values["natural_curvature"] = kBend;
   values["actuation_moment"] = -kEI * (kTurn / edge_length - kBend) * (kEdges - 1) / kEdges;
   values["actuation_force"] = -kEA * (kStrain - kGrow);
@@ -139,7 +139,7 @@ double probe_value(const std::string& probe, const std::string& more = {}) {
   scene.insert(scene.find("loads:"), more);
   Simulation simulation(Scenario::parse(scene));
   const std::vector<Vec2> points = corners();
-  const RodLayout& rod = simulation.model().rods.at(0);
+  const RodMesh& rod = simulation.model().rods.at(0);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Index dof = simulation.model().dof(rod.nodes[i], 0);
     simulation.state().positions.segment<2>(dof) = points[i];

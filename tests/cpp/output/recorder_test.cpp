@@ -8,8 +8,8 @@
 #include <limits>
 
 #include "der/core/error.hpp"
+#include "der/output/flush_timer.hpp"
 #include "der/output/memory_sink.hpp"
-#include "der/output/pacer.hpp"
 #include "der/output/run.hpp"
 #include "output/output_scenes.hpp"
 
@@ -190,7 +190,7 @@ TEST_CASE("an instant is recorded once, however often it is shown") {
 }
 
 TEST_CASE("a pacer is due at once, then after its interval, at the right rate in a fast loop") {
-  Pacer pacer{Pacer::Seconds(0.02)};
+  FlushTimer pacer{FlushTimer::Seconds(0.02)};
   CHECK(pacer.due());
   CHECK_FALSE(pacer.due());
   using Clock = std::chrono::steady_clock;

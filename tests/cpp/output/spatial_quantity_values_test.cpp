@@ -94,7 +94,7 @@ output: {{probes: {{p: {{{}}}}}}}
                      kTwist, in_yaml(kSpring), in_yaml(kGravity), actuation, probe);
 }
 
-/// Curvatures [1/m] of the joint at a node towards its two directors. The section has turned from
+/// Curvatures [1/m] of the vertex at a node towards its two directors. The section has turned from
 /// the normal, which points to the arc's centre, by the angle of the start and the twist up to
 /// there.
 Vec2 curvatures_at(int node) {
@@ -154,16 +154,16 @@ std::map<std::string, double> expected_values() {
   }
   const Vec3 pulled = points.back() - corners(0.0).back();  // from where the spring is slack
   const double spring = 0.5 * kSpring.dot(pulled.cwiseAbs2());
-  // Actuations do work against the moments of all joints, and against the tension of all edges.
+  // Actuations do work against the moments of all vertices, and against the tension of all edges.
   Vec2 mean = Vec2::Zero();
   for (int node = 1; node < kEdges; ++node) mean += curvatures_at(node) / kEdges;
-  const double joints = static_cast<double>(kEdges - 1) / kEdges;
+  const double vertices = static_cast<double>(kEdges - 1) / kEdges;
   values["natural_curvature_1"] = kBend[0];
   values["natural_curvature_2"] = kBend[1];
   values["natural_twist"] = kTwisted;
-  values["actuation_moment_1"] = -kEI1 * (mean[0] - joints * kBend[0]);
-  values["actuation_moment_2"] = -kEI2 * (mean[1] - joints * kBend[1]);
-  values["actuation_torque"] = -kGJ * joints * (kTwist - kTwisted);
+  values["actuation_moment_1"] = -kEI1 * (mean[0] - vertices * kBend[0]);
+  values["actuation_moment_2"] = -kEI2 * (mean[1] - vertices * kBend[1]);
+  values["actuation_torque"] = -kGJ * vertices * (kTwist - kTwisted);
   values["actuation_force"] = -kEA * (kStrain - kGrow);
   values["kinetic_energy"] = kinetic;
   values["stretch_energy"] = stretch;
@@ -194,7 +194,7 @@ double probe_value(const std::string& probe, const std::string& actuation = "[]"
   const Model& model = simulation.model();
   State& state = simulation.state();
   const std::vector<Vec3> points = corners(kStrain);
-  const RodLayout& rod = model.rods.at(0);
+  const RodMesh& rod = model.rods.at(0);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Index dof = model.dof(rod.nodes[i], 0);
     state.positions.segment<3>(dof) = points[i];

@@ -97,7 +97,7 @@ TEST_CASE("contract: the tube") {
   CHECK(rod.material->youngs_modulus == 70e9);
   CHECK(rod.material->density == 2700.0);
   CHECK(rod.curvature == scenario::CurvatureMeasure::Angle);
-  CHECK(std::holds_alternative<scenario::AsDrawn>(rod.natural_curvature));
+  CHECK(std::holds_alternative<scenario::StressFreeReference>(rod.natural_curvature));
   CHECK(rod.initial_velocity.empty());
 
   REQUIRE(scene.supports.size() == 2);

@@ -77,7 +77,7 @@ TEST_CASE("space: every key") {
   const scenario::Rod& bar = scene.rods[1];
   CHECK(bar.points[1] == Components{0, 1, 1});
   CHECK_FALSE(bar.director.has_value());
-  CHECK(std::holds_alternative<scenario::AsDrawn>(bar.natural_twist));
+  CHECK(std::holds_alternative<scenario::StressFreeReference>(bar.natural_twist));
   const auto& stiffness = std::get<scenario::Stiffness>(bar.cross_section);
   CHECK_FALSE(stiffness.EI.has_value());
   CHECK(stiffness.EI1 == 2.0);

@@ -7,7 +7,7 @@
 
 #include "batch/samples.hpp"
 #include "der/batch/batch.hpp"
-#include "der/core/beat.hpp"
+#include "der/core/cancel_callback.hpp"
 #include "der/simulation.hpp"
 #include "model/same_state.hpp"
 #include "statics/statics_scenes.hpp"
@@ -18,7 +18,7 @@ namespace {
 struct Stop {};
 
 /// Throws at the call of that number, counted from 1, be it of one copy or another.
-Beat stop_at(int number) {
+CancelCallback stop_at(int number) {
   return [left = std::make_shared<int>(number)] {
     if (--*left == 0) throw Stop{};
   };
@@ -27,7 +27,7 @@ Beat stop_at(int number) {
 /// Stops some work at several of its beats; done in full afterwards, it has the bits of work that
 /// nobody stopped. Work beats at least once an iteration, and at least so often.
 void check_stops(int at_least, const std::string& text,
-                 const std::function<void(Simulation&, Beat)>& work) {
+                 const std::function<void(Simulation&, CancelCallback)>& work) {
   const Scenario scene = Scenario::parse(text);
   int beats = 0;
   Simulation alone(scene);
@@ -49,7 +49,7 @@ void check_stops(int at_least, const std::string& text,
 TEST_CASE("a search for an equilibrium can be stopped at each iteration") {
   const std::string load = "loads:\n  - point_force: {rod: rod, at: end, force: [-1e3, 0]}\n";
   check_stops(100, straight_rod(21, kPinned + load + kStatic),
-              [](Simulation& rod, const Beat& beat) { rod.equilibrium(true, beat); });
+              [](Simulation& rod, const CancelCallback& beat) { rod.equilibrium(true, beat); });
 }
 
 TEST_CASE("the verdict out of the plane can be stopped, and leaves the state as it was") {
@@ -59,16 +59,16 @@ TEST_CASE("the verdict out of the plane can be stopped, and leaves the state as 
   int search = 0;
   Simulation(scene).settle(true, [&] { ++search; });
   check_stops(search + 3, text,
-              [](Simulation& rod, const Beat& beat) { rod.equilibrium(true, beat); });
+              [](Simulation& rod, const CancelCallback& beat) { rod.equilibrium(true, beat); });
 }
 
 TEST_CASE("the modes, the buckling loads and the path of a rod can be stopped") {
   check_stops(15, straight_rod(41, kPinned + kStatic),
-              [](Simulation& rod, const Beat& beat) { (void)rod.modes(3, beat); });
+              [](Simulation& rod, const CancelCallback& beat) { (void)rod.modes(3, beat); });
   check_stops(100, straight_rod(21, kPinned + kPush + kBuckling),
-              [](Simulation& rod, const Beat& beat) { (void)rod.buckling(2, beat); });
+              [](Simulation& rod, const CancelCallback& beat) { (void)rod.buckling(2, beat); });
   check_stops(500, straight_rod(21, kPinned + kPush + "analysis: {continuation: {to: 12}}\n"),
-              [](Simulation& rod, const Beat& beat) { (void)rod.follow(beat); });
+              [](Simulation& rod, const CancelCallback& beat) { (void)rod.follow(beat); });
 }
 
 TEST_CASE("a stop of the equilibria of a batch leaves each member found or as it was") {

@@ -52,9 +52,9 @@ void scale(IsotropicBend<AngleCurvature>::Constants& c, double factor) {
   c.stiffness_per_length *= factor;
 }
 void scale(SpatialBend<AngleCurvature>::Constants& c, double factor) {
-  c.joint.bend_1 *= factor;
-  c.joint.bend_2 *= factor;
-  c.joint.twist *= factor;
+  c.vertex.bend_1 *= factor;
+  c.vertex.bend_2 *= factor;
+  c.vertex.twist *= factor;
 }
 
 /// Scales the plain elements of a kind; those at the clamp keep the stiffness of the scene.

@@ -1,6 +1,6 @@
 // The watch on energy that the time stepping creates: what it stops, what it marks, and what it
 // must not take for the stepper's.
-#include "der/steppers/energy_watch.hpp"
+#include "der/steppers/energy_monitor.hpp"
 
 #include <doctest/doctest.h>
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "der/output/pacer.hpp"
+#include "der/output/flush_timer.hpp"
 
 namespace der::app {
 
@@ -44,7 +44,7 @@ class Progress {
   void measure_speed(std::int64_t step, Clock::time_point now);
 
   bool enabled_;
-  Pacer pacer_;
+  FlushTimer pacer_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_time_ = start_;
   std::int64_t last_step_ = -1;  // -1: not measured yet

@@ -59,7 +59,7 @@ class Assembler {
   [[nodiscard]] bool has_loose() const;  ///< whether there are such elements
   /// All elements of a kind outside of chains.
   template <class Kernel>
-  [[nodiscard]] const LooseElements<Kernel>& loose() const;
+  [[nodiscard]] const OffChainElements<Kernel>& loose() const;
   [[nodiscard]] const std::vector<PlanarChain>& planar_chains() const;
   [[nodiscard]] const std::vector<SpatialChain>& spatial_chains() const;
   /// Slots of the lower triangle of every plain stretch element, column by column.

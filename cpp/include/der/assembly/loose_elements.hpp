@@ -12,7 +12,7 @@ namespace der {
 
 /// The elements of one kind that no chain assembles.
 template <class Kernel>
-struct LooseElements {
+struct OffChainElements {
   static constexpr std::size_t kSlots = Kernel::kDofs * (Kernel::kDofs + 1) / 2;
   std::vector<std::size_t> elements;
   /// Where the entries of their matrices go: of each the lower triangle, column by column.

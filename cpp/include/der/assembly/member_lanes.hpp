@@ -79,13 +79,13 @@ Eigen::Matrix<T, Dim, 1> along_edge(const Edge& edge, const MemberVector<T>& fie
 #define DER_FOR_MEMBER_LANES(INSTANTIATE) INSTANTIATE(FourLanes)
 #endif
 
-/// `run_loop` of a loop over members: eight lanes need AVX-512, four run on every processor.
+/// `dispatch_simd` of a loop over members: eight lanes need AVX-512, four run on every processor.
 template <class T, class Loop>
 auto run_member_loop(const Loop& loop) {
 #ifdef DER_HAS_WIDE_LOOPS
   if constexpr (LaneTraits<T>::kCount == 8) return compiled::avx512(loop);
 #endif
-  return run_loop(loop);
+  return dispatch_simd(loop);
 }
 
 }  // namespace der

@@ -22,8 +22,8 @@ template <class T>
 struct PlanarChainConstants {
   MemberVector<T> along;           ///< of each edge, stiffness along it [N/m]
   MemberVector<T> rest_length;     ///< of each edge [m]
-  MemberVector<T> bend_stiffness;  ///< of each joint, over its length [N m]
-  MemberVector<T> rest_kappa;      ///< of each joint [-]
+  MemberVector<T> bend_stiffness;  ///< of each vertex, over its length [N m]
+  MemberVector<T> rest_kappa;      ///< of each vertex [-]
 };
 
 /// A run of plain planar stretch elements, each beginning where the one before ends, with the bend

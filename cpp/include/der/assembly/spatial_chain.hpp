@@ -10,10 +10,10 @@
 #include "der/assembly/pattern.hpp"
 #include "der/core/types.hpp"
 #include "der/energies/isotropic_bend.hpp"
-#include "der/energies/joint_response.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/energies/spatial_bend.hpp"
 #include "der/energies/stretch.hpp"
+#include "der/energies/vertex_response.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 
@@ -22,14 +22,14 @@ namespace der {
 /// The constants of a SpatialChain in the models of several members.
 template <class T>
 struct SpatialChainConstants {
-  MemberVector<T> EA;              ///< of each edge [N]
-  MemberVector<T> rest_length;     ///< of each edge [m]
-  std::vector<JointOf<T>> joints;  ///< where sections count
-  std::vector<T> bend_stiffness;   ///< of each joint, over its length [N m], where they do not
+  MemberVector<T> EA;                 ///< of each edge [N]
+  MemberVector<T> rest_length;        ///< of each edge [m]
+  std::vector<VertexOf<T>> vertices;  ///< where sections count
+  std::vector<T> bend_stiffness;      ///< of each vertex, over its length [N m], where they do not
 };
 
 /// PlanarChain in space: a run of plain stretch elements with the bend elements between them,
-/// assembled by edges. Frame terms that the energies of an edge's two joints share are worked out
+/// assembled by edges. Frame terms that the energies of an edge's two vertices share are worked out
 /// once, and blocks of edges are differenced into those of nodes. The sums equal those of the
 /// kernels Stretch<3> and SpatialBend or IsotropicBend to rounding.
 class SpatialChain {

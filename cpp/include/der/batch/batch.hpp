@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "der/batch/thread_team.hpp"
-#include "der/core/beat.hpp"
+#include "der/core/cancel_callback.hpp"
 #include "der/core/error.hpp"
 #include "der/core/types.hpp"
 #include "der/lanes/member_groups.hpp"
-#include "der/output/pacer.hpp"
+#include "der/output/flush_timer.hpp"
 #include "der/output/probe.hpp"
 #include "der/scenario/value_override.hpp"
 #include "der/simulation.hpp"
@@ -62,7 +62,7 @@ class Batch {
   /// process may run. Throws SceneError or Error where a member cannot be simulated, and names the
   /// first one. A member that does not get to the start that `start_from` asks for has failed.
   Batch(const Scenario& scenario, std::size_t members, const std::vector<Variation>& variations,
-        int threads, const Beat& beat);
+        int threads, const CancelCallback& beat);
   Batch(const Batch&) = delete;
   Batch& operator=(const Batch&) = delete;
 
@@ -76,10 +76,11 @@ class Batch {
   [[nodiscard]] const Model& model() const { return members_.front().simulation->model(); }
 
   /// Advances every member by `count` steps of its scene. Throws Error if the scene is static.
-  void step(std::int64_t count, const Beat& beat);
+  void step(std::int64_t count, const CancelCallback& beat);
   /// Moves every member to its equilibrium, as Simulation::equilibrium. The reports; none of
   /// members that have failed.
-  std::vector<std::optional<EquilibriumReport>> equilibrium(bool leave_saddles, const Beat& beat);
+  std::vector<std::optional<EquilibriumReport>> equilibrium(bool leave_saddles,
+                                                            const CancelCallback& beat);
 
   /// Values of one name of the scene, a row for each member.
   struct Setting {
@@ -114,11 +115,11 @@ class Batch {
   [[nodiscard]] Vector& time() { return time_; }                   ///< [s] of each member
   [[nodiscard]] std::vector<std::int64_t>& step_count() { return step_count_; }  ///< of each
   [[nodiscard]] std::vector<unsigned char>& failed() { return failed_; }         ///< 0 or 1
-  /// Whether the time integrator of a member has created energy (EnergyWatch): 0 or 1.
+  /// Whether the time integrator of a member has created energy (EnergyMonitor): 0 or 1.
   [[nodiscard]] std::vector<unsigned char>& unreliable() { return unreliable_; }
   /// The scene's probes, a row for each with a value for each member, of the present rows. From the
   /// first time that they are asked for, every call keeps them up to date.
-  RowMatrix& probes(const Beat& beat);
+  RowMatrix& probes(const CancelCallback& beat);
   [[nodiscard]] std::vector<std::string> probe_names() const;
 
   /// By the numbers of the members.
@@ -131,26 +132,27 @@ class Batch {
     std::vector<Probe> probes;           // none until they are asked for
   };
 
-  void build(const Scenario& scenario, const std::vector<Variation>& variations, const Beat& beat);
+  void build(const Scenario& scenario, const std::vector<Variation>& variations,
+             const CancelCallback& beat);
   void make_arrays();
-  void start_alike(const Beat& beat);
-  void start_each(const Beat& beat);
-  void start(std::size_t number, const Beat& look);
-  void beat_if_due(const Beat& beat);
+  void start_alike(const CancelCallback& beat);
+  void start_each(const CancelCallback& beat);
+  void start(std::size_t number, const CancelCallback& look);
+  void poll_cancel(const CancelCallback& beat);
   /// For long work on one thread: calls the beat if that is the caller's, and throws once the call
   /// is given up.
-  void look(bool on_caller, const ThreadTeam::Call& call, const Beat& beat);
+  void look(bool on_caller, const ThreadTeam::Call& call, const CancelCallback& beat);
   /// Calls `work(number, look)` for all members, on all threads, with `look()` as above.
   template <class Work>
-  void all(const Work& work, const Beat& beat);
+  void all(const Work& work, const CancelCallback& beat);
   /// Calls `work(number, look)` for those that have not failed, with their rows in their states;
   /// one for which it throws Error has failed.
   template <class Work>
-  void all_that_go_on(const Work& work, const Beat& beat);
+  void all_that_go_on(const Work& work, const CancelCallback& beat);
   /// Does `change` for all members that have not failed, or for none if it throws.
   template <class Change>
   void change_ramps(const Change& change);
-  void step_in_lanes(std::int64_t count, const Beat& beat);
+  void step_in_lanes(std::int64_t count, const CancelCallback& beat);
   void fail(std::size_t number, const Error& error);
   void take_rows(std::size_t number);
   void write_rows(std::size_t number);
@@ -158,7 +160,7 @@ class Batch {
   [[nodiscard]] State& state(std::size_t number) { return members_[number].simulation->state(); }
 
   ThreadTeam team_;
-  Pacer pacer_{Pacer::Seconds{0.05}};  // of the beats between steps
+  FlushTimer pacer_{FlushTimer::Seconds{0.05}};  // of the beats between steps
   std::vector<Member> members_;
   std::unique_ptr<MemberGroups> groups_;  // null: no lanes
   RowMatrix positions_;

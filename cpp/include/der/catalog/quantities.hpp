@@ -10,7 +10,7 @@
 namespace der {
 
 struct Model;
-struct RodLayout;
+struct RodMesh;
 struct State;
 class RodField;
 struct Reaction;
@@ -48,10 +48,10 @@ enum class QuantityScope {
 };
 
 /// Makes the reader of a quantity along a rod (output/rod_field.hpp).
-using RodFieldMaker = std::unique_ptr<RodField> (*)(const RodLayout& rod, const Model& model);
+using RodFieldMaker = std::unique_ptr<RodField> (*)(const RodMesh& rod, const Model& model);
 
 /// Reads a quantity of a rod as a whole (output/ring_numbers.hpp).
-using RodReading = double (*)(const RodLayout& rod, const Model& model, const State& state);
+using RodReading = double (*)(const RodMesh& rod, const Model& model, const State& state);
 
 /// Reads a quantity of a support off the sum of what it bears at its places (output/reactions.hpp).
 using ReactionReading = double (*)(const Reaction& sum);

@@ -7,19 +7,19 @@
 namespace der {
 
 /// The processors that the innermost loops are compiled for.
-enum class Loops {
+enum class SimdLevel {
   Plain,  ///< all that the rest of the library runs on
   Avx2,   ///< those with AVX2
   Avx512  ///< those with AVX-512, for loops over members of a batch; other loops are those of AVX2
 };
 
-/// The loops that run: those named by the environment variable DER_LOOPS, else the last of `Loops`
-/// that the processor has. They are chosen at the first call. Throws EnvironmentError at every call
-/// if DER_LOOPS names none, or one that the processor does not have.
-Loops loops();
+/// The loops that run: those named by the environment variable DER_LOOPS, else the last of
+/// `SimdLevel` that the processor has. They are chosen at the first call. Throws EnvironmentError
+/// at every call if DER_LOOPS names none, or one that the processor does not have.
+SimdLevel loops();
 
 /// "plain", "avx2" or "avx512".
-std::string_view name_of(Loops loops);
+std::string_view name_of(SimdLevel loops);
 
 // Sanitizers add so much to each call that the compiler would take minutes for a whole loop in one.
 #if DER_HAS_SANITIZER
@@ -57,13 +57,13 @@ avx512(const Loop& loop) {
 
 }  // namespace compiled
 
-/// Calls `loop`, which is compiled with all that it calls inlined, once for each of `Loops`. For
-/// the few innermost loops: each choice costs some nanoseconds, so that a loop is one over a whole
-/// rod.
+/// Calls `loop`, which is compiled with all that it calls inlined, once for each of `SimdLevel`.
+/// For the few innermost loops: each choice costs some nanoseconds, so that a loop is one over a
+/// whole rod.
 template <class Loop>
-auto run_loop(const Loop& loop) {
+auto dispatch_simd(const Loop& loop) {
 #ifdef DER_HAS_WIDE_LOOPS
-  if (loops() != Loops::Plain) return compiled::avx2(loop);
+  if (loops() != SimdLevel::Plain) return compiled::avx2(loop);
 #endif
   return compiled::plain(loop);
 }

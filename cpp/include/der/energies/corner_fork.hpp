@@ -14,7 +14,7 @@ namespace der {
 
 /// A fork at a corner of the drawn rod holds the section there against turning about the mean t of
 /// the tangents on its two sides, as one in the middle of a round does, however small that is. The
-/// joint of the corner has none of this: at its least energy the section turns by
+/// vertex of the corner has none of this: at its least energy the section turns by
 ///   omega_c = (K_a + K_b)^-1 (K_a omega_a + K_b omega_b)
 /// with the stiffnesses K of the half edges beside it, and by t . omega_c = 0 this energy grows by
 /// E = 1/2 k psi^2, psi = p_a . omega_a + p_b . omega_b = t . omega_c, p_i = K_i (K_a + K_b)^-1 t,

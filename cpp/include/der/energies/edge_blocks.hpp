@@ -17,7 +17,7 @@ void set_edge_blocks(const Block& ee, Hessian& hessian) {
 /// The same by the three nodes of two neighbouring edges a and b, from the derivatives by the
 /// vectors of both: `aa`, `ba` (rows: b) and `bb`.
 template <class Block, class Hessian>
-void set_joint_blocks(const Block& aa, const Block& ba, const Block& bb, Hessian& hessian) {
+void set_vertex_blocks(const Block& aa, const Block& ba, const Block& bb, Hessian& hessian) {
   constexpr int n = Block::RowsAtCompileTime;
   hessian.template block<n, n>(0, 0) = aa;
   hessian.template block<n, n>(n, 0) = ba - aa;

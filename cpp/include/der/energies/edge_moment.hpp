@@ -64,8 +64,9 @@ void set_edge_moments(const SectionMoment<T>& a, const SectionMoment<T>& b,
   const Rotation coupled = coupling * turn_a;
   const Block ba = turn_b.transpose() * coupled;
   auto& h = out.hessian;
-  set_joint_blocks<Matrix3<T>>(aa.template topLeftCorner<3, 3>(), ba.template topLeftCorner<3, 3>(),
-                               bb.template topLeftCorner<3, 3>(), h);
+  set_vertex_blocks<Matrix3<T>>(aa.template topLeftCorner<3, 3>(),
+                                ba.template topLeftCorner<3, 3>(),
+                                bb.template topLeftCorner<3, 3>(), h);
   using Row = Eigen::Matrix<T, 1, 3>;
   const Row aa_te = aa.template bottomLeftCorner<1, 3>();
   const Row bb_te = bb.template bottomLeftCorner<1, 3>();

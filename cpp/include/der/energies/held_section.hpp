@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "der/core/types.hpp"
-#include "der/energies/joint_response.hpp"
+#include "der/energies/vertex_response.hpp"
 #include "der/kinematics/section_frame.hpp"
 
 namespace der {
@@ -40,9 +40,9 @@ struct SectionLoad {
 };
 
 /// The section of a rod that springs hold, between or beside one or two that are known. It has the
-/// rotation z from the drawn section, and to the known ones it has the rotations k_i, all as joints
-/// measure them (JointKinematics). With the weights W_i of the known ones, which add up to the unit
-/// matrix, the section lies where
+/// rotation z from the drawn section, and to the known ones it has the rotations k_i, all as
+/// vertices measure them (VertexKinematics). With the weights W_i of the known ones, which add up
+/// to the unit matrix, the section lies where
 ///   E = 1/2 z . K z + 1/2 psi . C^-1 psi,   psi = sum_i W_i k_i
 /// is least: the springs' moment bends and twists the rod on the way, about the axes that the
 /// section has then. This holds for springs of any stiffness, and where there is no rod on the way,
@@ -66,7 +66,7 @@ class HeldSection {
   [[nodiscard]] const SectionFrame& section() const { return place_.section; }
   /// The derivatives of z by the rotation of the section, one a column: along them act the moments
   /// of the springs, k_i z_i each.
-  [[nodiscard]] const Mat3& axes_of_springs() const { return place_.from_drawn.slopes; }
+  [[nodiscard]] const Mat3& axes_of_springs() const { return place_.from_reference.slopes; }
   /// The rotation of the section by that of each known one [-], equilibrium being kept.
   [[nodiscard]] std::array<Mat3, kMost> turning() const;
 
@@ -97,17 +97,17 @@ class HeldSection {
   /// A rotation between two sections, and its derivative by that of the second, one component a
   /// column.
   struct Rotation {
-    JointKinematics<AngleCurvature> kinematics;
+    VertexKinematics<AngleCurvature> kinematics;
     Vec3 strain;
     Mat3 slopes;
-    explicit Rotation(const JointKinematics<AngleCurvature>& joint);
-    /// S of a constant load on the rotation (JointResponse).
+    explicit Rotation(const VertexKinematics<AngleCurvature>& vertex);
+    /// S of a constant load on the rotation (VertexResponse).
     [[nodiscard]] Mat3 curving(const Vec3& load) const;
   };
   /// The section wherever it is, and its rotations.
   struct Place {
     SectionFrame section;
-    Rotation from_drawn;  // z
+    Rotation from_reference;  // z
     std::array<Rotation, kMost> to_carried;
     Mat3 per_rotation;  // omega of the section by z
     Mat3 slopes;        // of -psi by z

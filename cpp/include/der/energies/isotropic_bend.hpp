@@ -11,7 +11,7 @@
 
 namespace der {
 
-/// E = 1/2 B |kb|^2 of a joint whose bending stiffness B is the same in all directions and whose
+/// E = 1/2 B |kb|^2 of a vertex whose bending stiffness B is the same in all directions and whose
 /// rest shape is straight, with its derivatives by the unit tangents of its two edges: for dE/dd =
 /// -B p(d), d = ta . tb, p is f for `angle` and f^2 for `tangent`.
 template <class T>
@@ -29,8 +29,8 @@ IsotropicResponse<T> isotropic_response(const T& stiffness, const T& cosine) {
   return {-stiffness * p, -stiffness * p * power * factor.log_slope};
 }
 
-/// The energy of that joint [J]. The sine is that of the cross product: 1 - d^2 would leave B times
-/// the rounding error of d at every straight joint.
+/// The energy of that vertex [J]. The sine is that of the cross product: 1 - d^2 would leave B
+/// times the rounding error of d at every straight vertex.
 template <class Curvature, class T>
 T isotropic_energy(const T& stiffness, const Vector3<T>& ta, const Vector3<T>& tb) {
   const T f = Binormal<Curvature>::template of<T>(ta.dot(tb)).f;
@@ -109,7 +109,7 @@ struct IsotropicBend {
     const Mat bb = bend.curvature * by_b * by_b.transpose() + bend.slope * b.second(by_b, cosine);
     const Mat ba =
         bend.curvature * by_b * by_a.transpose() + bend.slope * (b.across() * a.across());
-    set_joint_blocks(aa, ba, bb, out.hessian);
+    set_vertex_blocks(aa, ba, bb, out.hessian);
   }
   template <Derivatives D>
   static void evaluate(const Constants& c, const Configuration& here,

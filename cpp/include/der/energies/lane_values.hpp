@@ -27,8 +27,8 @@ struct GoesInLanes<FromPivot<Kernel, PivotKind>> : HasValues<Kernel> {};
 /// Whether the values of a kernel change from step to step, with the frames of edges.
 template <class Kernel>
 struct FollowsFrames : std::false_type {};
-template <class Curvature, class AJoint>
-struct FollowsFrames<SpatialBend<Curvature, AJoint>> : std::true_type {};
+template <class Curvature, class AVertex>
+struct FollowsFrames<SpatialBend<Curvature, AVertex>> : std::true_type {};
 template <class Curvature>
 struct FollowsFrames<SpatialClamp<Curvature>> : std::true_type {};
 template <class Kernel, class PivotKind>

@@ -44,13 +44,13 @@ struct LoadedSection {
     return {section, here, x};
   }
   /// Components of a vector in the initial shape along the directors and the tangent there.
-  [[nodiscard]] Vec3 drawn_components(const Vec3& vector) const {
+  [[nodiscard]] Vec3 reference_components(const Vec3& vector) const {
     const SectionFrame& drawn = section.spring.drawn;
     return {drawn.first.dot(vector), drawn.second.dot(vector), drawn.tangent.dot(vector)};
   }
   void add(const Vec3& amount, bool follower, SectionLoad& load) const {
     if (follower) {
-      load.turning += drawn_components(amount);
+      load.turning += reference_components(amount);
     } else {
       load.fixed += amount;
     }

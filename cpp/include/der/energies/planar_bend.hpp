@@ -9,8 +9,8 @@
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/kinematics/curvature_measure.hpp"
+#include "der/kinematics/natural_strain_offset.hpp"
 #include "der/kinematics/planar_edge.hpp"
-#include "der/kinematics/rest_shift.hpp"
 
 namespace der {
 
@@ -42,7 +42,7 @@ struct PlanarBend {
   struct Constants {
     double stiffness_per_length = 0.0;  ///< EI / l_v [N m]
     double rest_kappa = 0.0;            ///< integrated natural curvature [-]
-    RestShift actuated{};               ///< of `rest_kappa`
+    NaturalStrainOffset actuated{};     ///< of `rest_kappa`
 
     [[nodiscard]] bool is_actuated() const { return actuated.entry >= 0; }
     [[nodiscard]] double natural(const Vector& controls) const {
@@ -93,7 +93,7 @@ struct PlanarBend {
     const Block h11 =
         bend.stiffness * d1 * d1.transpose() + bend.moment * direction_hessian<T>(e1, d1, w1);
     const Block h10 = -bend.stiffness * d1 * d0.transpose();
-    set_joint_blocks(h00, h10, h11, out.hessian);
+    set_vertex_blocks(h00, h10, h11, out.hessian);
   }
   template <Derivatives D>
   static void evaluate(const Constants& c, const Configuration& here,

@@ -8,8 +8,8 @@
 #include "der/energies/local_term.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/kinematics/configuration.hpp"
+#include "der/kinematics/natural_strain_offset.hpp"
 #include "der/kinematics/planar_edge.hpp"
-#include "der/kinematics/rest_shift.hpp"
 
 namespace der {
 
@@ -27,7 +27,7 @@ struct PlanarClamp {
     double direction = 0.0;             ///< initial angle of the clamped tangent [rad]
     double side = 1.0;                  ///< +1: the edge leaves the clamp, -1: it arrives there
     Index rotation = -1;                ///< control that turns the tangent [rad]; -1: none
-    RestShift actuated{};               ///< of `rest_kappa`
+    NaturalStrainOffset actuated{};     ///< of `rest_kappa`
 
     [[nodiscard]] double natural(const Vector& controls) const {
       return rest_kappa + actuated.value(controls);

@@ -9,17 +9,17 @@
 #include "der/energies/spatial_bend.hpp"
 #include "der/energies/stretch.hpp"
 #include "der/kinematics/configuration.hpp"
+#include "der/kinematics/natural_strain_offset.hpp"
 #include "der/kinematics/planar_edge.hpp"
-#include "der/kinematics/rest_shift.hpp"
 
 namespace der {
 
 /// Derivative of the energy of an element by what actuations add to its rest shape: the opposite of
 /// its tension [N], or of its moments and torque [N m].
 ///
-/// A kind of element that has a RestShift specialises it with
+/// A kind of element that has a NaturalStrainOffset specialises it with
 ///   static constexpr int kSize;  // number of entries of the controls from the shift's on
-///   static const RestShift& shift(const Constants&);
+///   static const NaturalStrainOffset& shift(const Constants&);
 ///   static Eigen::Matrix<double, kSize, 1> of(const Constants&, const Configuration& here, x);
 template <class Kernel>
 struct RestGradient {
@@ -31,7 +31,9 @@ struct RestGradient<Stretch<Dim>> {
   using Kernel = Stretch<Dim>;
   static constexpr bool kExists = true;
   static constexpr int kSize = 1;
-  static const RestShift& shift(const typename Kernel::Constants& c) { return c.elongation; }
+  static const NaturalStrainOffset& shift(const typename Kernel::Constants& c) {
+    return c.elongation;
+  }
   static Eigen::Matrix<double, kSize, 1> of(const typename Kernel::Constants& c,
                                             const Configuration& here,
                                             const Eigen::Matrix<double, Kernel::kDofs, 1>& x) {
@@ -48,17 +50,17 @@ struct BendingRestGradient {
   using Moments = Eigen::Matrix<double, Size, 1>;
   static constexpr bool kExists = true;
   static constexpr int kSize = Size;
-  static const RestShift& shift(const Constants& c) { return c.actuated; }
+  static const NaturalStrainOffset& shift(const Constants& c) { return c.actuated; }
 
  protected:
   /// In a plane, at the curvature measure `kappa` [rad].
   static Moments planar(const Constants& c, const Configuration& here, double kappa) {
     return Moments(-c.stiffness_per_length * (kappa - c.natural(here.controls)));
   }
-  /// In space, of a joint's strain.
+  /// In space, of a vertex's strain.
   template <class Strain>
   static Moments spatial(const Constants& c, const Configuration& here, const Strain& strain) {
-    const auto [q1, q2, torque] = c.actuated_joint(here.controls).load(strain);
+    const auto [q1, q2, torque] = c.actuated_vertex(here.controls).load(strain);
     return {-q1, -q2, -torque};
   }
 };
@@ -86,15 +88,15 @@ struct RestGradient<PlanarClamp<Curvature>> : BendingRestGradient<PlanarClamp<Cu
   }
 };
 
-template <class Curvature, class AJoint>
-struct RestGradient<SpatialBend<Curvature, AJoint>>
-    : BendingRestGradient<SpatialBend<Curvature, AJoint>, 3> {
-  using Kernel = SpatialBend<Curvature, AJoint>;
+template <class Curvature, class AVertex>
+struct RestGradient<SpatialBend<Curvature, AVertex>>
+    : BendingRestGradient<SpatialBend<Curvature, AVertex>, 3> {
+  using Kernel = SpatialBend<Curvature, AVertex>;
   using Base = BendingRestGradient<Kernel, 3>;
   static auto of(const typename Base::Constants& c, const Configuration& here,
                  const typename Base::Local& x) {
     const auto [a, b, twist] = Kernel::frames(c, here.controls, x);
-    return Base::spatial(c, here, JointKinematics<Curvature>(a.frame, b.frame, twist).strain());
+    return Base::spatial(c, here, VertexKinematics<Curvature>(a.frame, b.frame, twist).strain());
   }
 };
 
@@ -105,7 +107,7 @@ struct RestGradient<SpatialClamp<Curvature>> : BendingRestGradient<SpatialClamp<
   static auto of(const typename Base::Constants& c, const Configuration& here,
                  const typename Base::Local& x) {
     const auto frames = Kernel::frames(c, here.controls, x);
-    const JointStrain strain = Kernel::kinematics(c, here.controls, frames).strain();
+    const MaterialCurvature strain = Kernel::kinematics(c, here.controls, frames).strain();
     auto moments = Base::spatial(c, here, strain);
     // Natural twist turns the section of a clamp that does not hold it, half as far in the cell's
     // middle.
@@ -121,7 +123,9 @@ struct RestGradient<RotationalSpring<Edges>> {
   using Kernel = RotationalSpring<Edges>;
   static constexpr bool kExists = true;
   static constexpr int kSize = 1;
-  static const RestShift& shift(const typename Kernel::Constants& c) { return c.actuated; }
+  static const NaturalStrainOffset& shift(const typename Kernel::Constants& c) {
+    return c.actuated;
+  }
   static Eigen::Matrix<double, kSize, 1> of(const typename Kernel::Constants& c,
                                             const Configuration& here,
                                             const Eigen::Matrix<double, Kernel::kDofs, 1>& x) {
@@ -135,7 +139,9 @@ struct RestGradient<SectionSpring<Edges>> {
   using Kernel = SectionSpring<Edges>;
   static constexpr bool kExists = true;
   static constexpr int kSize = 3;
-  static const RestShift& shift(const typename Kernel::Constants& c) { return c.actuated; }
+  static const NaturalStrainOffset& shift(const typename Kernel::Constants& c) {
+    return c.actuated;
+  }
   static Vec3 of(const typename Kernel::Constants& c, const Configuration& here,
                  const Eigen::Matrix<double, Kernel::kDofs, 1>& x) {
     return Kernel::by_actuated(c, here, x);
@@ -146,7 +152,7 @@ template <class Kernel, class PivotKind>
 struct RestGradient<FromPivot<Kernel, PivotKind>> : RestGradient<Kernel> {
   using Element = RestGradient<Kernel>;
   using Constants = typename FromPivot<Kernel, PivotKind>::Constants;
-  static const RestShift& shift(const Constants& c) { return Element::shift(c.element); }
+  static const NaturalStrainOffset& shift(const Constants& c) { return Element::shift(c.element); }
   static auto of(const Constants& c, const Configuration& here,
                  const Eigen::Matrix<double, Kernel::kDofs, 1>& x) {
     return Element::of(c.element, here,

@@ -6,8 +6,8 @@
 #include "der/core/types.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/configuration.hpp"
+#include "der/kinematics/natural_strain_offset.hpp"
 #include "der/kinematics/planar_edge.hpp"
-#include "der/kinematics/rest_shift.hpp"
 
 namespace der {
 
@@ -28,8 +28,8 @@ struct RotationalSpring {
     double rest = 0.0;                    ///< [rad]
     std::array<double, Edges> weights{};  ///< [-]
     double total = 1.0;                   ///< of the weights
-    Index turn = -1;           ///< control that holds how far the first edge has turned [rad]
-    RestShift actuated;        ///< how far actuations turn the tangent beyond the sum [rad]
+    Index turn = -1;               ///< control that holds how far the first edge has turned [rad]
+    NaturalStrainOffset actuated;  ///< how far actuations turn the tangent beyond the sum [rad]
     double clamp_share = 0.0;  ///< share of the turn of a clamp beside it that the tangent has [-]
     Index clamp_turn = -1;     ///< control: how far that clamp has turned [rad]; -1: it does not
 

@@ -15,7 +15,7 @@
 #include "der/kinematics/edge_frame.hpp"
 #include "der/kinematics/frame_block.hpp"
 #include "der/kinematics/held_frame.hpp"
-#include "der/kinematics/rest_shift.hpp"
+#include "der/kinematics/natural_strain_offset.hpp"
 
 namespace der {
 
@@ -43,8 +43,8 @@ struct SectionSpring {
   };
   /// How the state counts the twist from the first of the two carried sections to the other.
   struct TwistBetween {
-    Index reference = -1;  ///< control: reference twist of the joint between them [rad]
-    double side = 1.0;     ///< -1 where the joint leads from the second to the first
+    Index reference = -1;  ///< control: reference twist of the vertex between them [rad]
+    double side = 1.0;     ///< -1 where the vertex leads from the second to the first
     double drawn = 0.0;    ///< what the angles and that control make in the drawn shape [rad]
   };
   /// The section that a clamp holds. It has the rest of the weights.
@@ -57,7 +57,8 @@ struct SectionSpring {
     SpringInSeries spring;
     std::array<HeldEdge, Edges> edges;
     std::optional<HeldBeside> clamp;  ///< beside the place on one edge
-    RestShift actuated;    ///< how far actuations turn the section beyond those that are carried
+    NaturalStrainOffset
+        actuated;          ///< how far actuations turn the section beyond those that are carried
     TwistBetween between;  ///< where there are no springs, of two carried sections
   };
 
@@ -75,7 +76,7 @@ struct SectionSpring {
     Mat3 by_strains = Mat3::Zero();  ///< rotation of the turned section by the strains, in its axes
 
     ActuatedRotation(const Constants& c, const Vector& controls) {
-      const JointStrain strain = c.actuated.strain(controls);
+      const MaterialCurvature strain = c.actuated.strain(controls);
       // Bending towards a director turns about the other one.
       Mat3 about;
       about << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;

@@ -4,13 +4,13 @@
 
 #include "der/core/types.hpp"
 #include "der/energies/edge_moment.hpp"
-#include "der/energies/joint_response.hpp"
 #include "der/energies/local_term.hpp"
+#include "der/energies/vertex_response.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/kinematics/edge_frame.hpp"
 #include "der/kinematics/frame_block.hpp"
 #include "der/kinematics/held_frame.hpp"
-#include "der/kinematics/rest_shift.hpp"
+#include "der/kinematics/natural_strain_offset.hpp"
 
 namespace der {
 
@@ -22,7 +22,7 @@ Matrix3<T> cross_matrix(const Vector3<T>& v) {
   return m;
 }
 
-/// Whole twist [rad] of a joint whose reference twist at the start of the step was `reference`:
+/// Whole twist [rad] of a vertex whose reference twist at the start of the step was `reference`:
 /// that of the two frames, which is known up to whole turns, next to what the angles make of it.
 template <class T>
 T whole_twist(const SectionFrameOf<T>& before, const SectionFrameOf<T>& after,
@@ -45,56 +45,56 @@ inline FollowedFrame<double> followed(const FrameBlock& block, const Vector& con
   return {block.tangent(controls), block.director(controls)};
 }
 
-/// The joint at this moment: its natural shape changes by actuations.
-template <class AJoint>
-AJoint actuated_joint(AJoint joint, const RestShift& shift, const Vector& controls) {
-  const JointStrain change = shift.strain(controls);
-  joint.rest.kappa_1 += change.kappa_1;
-  joint.rest.kappa_2 += change.kappa_2;
-  joint.rest.twist += change.twist;
-  return joint;
+/// The vertex at this moment: its natural shape changes by actuations.
+template <class AVertex>
+AVertex actuated_vertex(AVertex vertex, const NaturalStrainOffset& shift, const Vector& controls) {
+  const MaterialCurvature change = shift.strain(controls);
+  vertex.rest.kappa_1 += change.kappa_1;
+  vertex.rest.kappa_2 += change.kappa_2;
+  vertex.rest.twist += change.twist;
+  return vertex;
 }
 
 /// Bending about two axes and twist at a node between two edges (Bergou et al., Discrete Viscous
-/// Threads, SIGGRAPH 2010, section 4.2, with the directors of half the twist; JointKinematics).
+/// Threads, SIGGRAPH 2010, section 4.2, with the directors of half the twist; VertexKinematics).
 /// Coordinates: the three nodes, then the angles of the two edges.
-template <class Curvature, class AJoint = Joint>
+template <class Curvature, class AVertex = Vertex>
 struct SpatialBend {
   static constexpr int kDofs = 11;
   static constexpr int kNodes = 3;
   static constexpr EnergyTerm kTerm = EnergyTerm::Bend;
   struct Constants {
-    AJoint joint;
+    AVertex vertex;
     FrameBlock before;
     FrameBlock after;
     double glued = 0.0;  ///< [rad] by which the section after it is turned without strain
-    RestShift actuated{};
+    NaturalStrainOffset actuated{};
 
     [[nodiscard]] bool is_actuated() const { return actuated.entry >= 0; }
-    [[nodiscard]] AJoint actuated_joint(const Vector& controls) const {
-      return der::actuated_joint(joint, actuated, controls);
+    [[nodiscard]] AVertex actuated_vertex(const Vector& controls) const {
+      return der::actuated_vertex(vertex, actuated, controls);
     }
   };
 
   template <class T>
   struct Values {
-    typename AJoint::template In<T> joint;
+    typename AVertex::template In<T> vertex;
     FollowedFrame<T> before;
     FollowedFrame<T> after;
     T glued = 0.0;      ///< [rad]
     T reference = 0.0;  ///< reference twist [rad]
     auto fields() {
-      return std::tuple_cat(joint.fields(), before.fields(), after.fields(),
+      return std::tuple_cat(vertex.fields(), before.fields(), after.fields(),
                             std::tie(glued, reference));
     }
   };
   static Values<double> values(const Constants& c, const Vector& controls) {
-    return {c.actuated_joint(controls), followed(c.before, controls), followed(c.after, controls),
+    return {c.actuated_vertex(controls), followed(c.before, controls), followed(c.after, controls),
             c.glued, controls[c.after.twist_at_start()]};
   }
 
-  /// The frames of the two edges, that after a glued joint turned back, and the whole twist between
-  /// them [rad].
+  /// The frames of the two edges, that after a glued vertex turned back, and the whole twist
+  /// between them [rad].
   template <class T>
   struct Frames {
     EdgeFrameOf<T> a;
@@ -118,13 +118,13 @@ struct SpatialBend {
   static void evaluate(const Values<T>& c, const Eigen::Matrix<T, kDofs, 1>& x,
                        LocalTerm<kDofs, T>& out) {
     const auto [a, b, twist] = frames<T>(c, x);
-    const JointKinematics<Curvature, T> kinematics(a.frame, b.frame, twist);
+    const VertexKinematics<Curvature, T> kinematics(a.frame, b.frame, twist);
     if constexpr (D == Derivatives::Energy) {
-      out.energy = kinematics.energy(c.joint);
+      out.energy = kinematics.energy(c.vertex);
       return;
     }
-    JointResponseOf<T> response;
-    kinematics.template respond<D == Derivatives::Hessian>(c.joint, response);
+    VertexResponseOf<T> response;
+    kinematics.template respond<D == Derivatives::Hessian>(c.vertex, response);
     out.energy = response.energy;
     const Matrix3<T>& stiffness = response.stiffness;
     set_edge_moments<D, T>({a, -response.moment, stiffness}, {b, response.moment, stiffness},
@@ -137,8 +137,8 @@ struct SpatialBend {
   }
 };
 
-/// The joint of a corner.
-using CornerBend = SpatialBend<AngleCurvature, CoupledJoint>;
+/// The vertex of a corner.
+using CornerBend = SpatialBend<AngleCurvature, CoupledVertex>;
 
 /// Bending and twist of the cell between a held section and the edge next to it. Coordinates: the
 /// two nodes, then the edge's angle. supports/clamp.hpp has the lengths of the cell.
@@ -148,21 +148,21 @@ struct SpatialClamp {
   static constexpr int kNodes = 2;
   static constexpr EnergyTerm kTerm = EnergyTerm::Bend;
   struct Constants {
-    Joint joint;
+    Vertex vertex;
     HeldFrame held;
     FrameBlock edge;
     double side = 1.0;  ///< +1: the edge leaves the clamp, -1: it arrives there
-    RestShift actuated{};
+    NaturalStrainOffset actuated{};
     bool holds_section = true;  ///< against turning about the tangent
 
-    [[nodiscard]] Joint actuated_joint(const Vector& controls) const {
-      return der::actuated_joint(joint, actuated, controls);
+    [[nodiscard]] Vertex actuated_vertex(const Vector& controls) const {
+      return der::actuated_vertex(vertex, actuated, controls);
     }
   };
 
   template <class T>
   struct Values {
-    JointOf<T> joint;
+    VertexOf<T> vertex;
     SectionFrameOf<T> held;
     T turned = 0.0;  ///< of the held section about its tangent [rad]
     FollowedFrame<T> edge;
@@ -171,14 +171,14 @@ struct SpatialClamp {
     T side = 1.0;
     T holds_section = 1.0;  ///< 0: it does not
     auto fields() {
-      return std::tuple_cat(joint.fields(), held.fields(), edge.fields(),
+      return std::tuple_cat(vertex.fields(), held.fields(), edge.fields(),
                             std::tie(turned, reference, side, holds_section));
     }
     [[nodiscard]] bool leaves() const { return LaneTraits<T>::lane(side, 0) > 0.0; }
   };
   static Values<double> values(const Constants& c, const Vector& controls) {
     const double turned = c.held.twist_angle(controls);
-    return {c.actuated_joint(controls),
+    return {c.actuated_vertex(controls),
             c.held.untwisted(controls).turned(turned),
             turned,
             followed(c.edge, controls),
@@ -213,14 +213,14 @@ struct SpatialClamp {
   }
 
   template <class T>
-  static JointKinematics<Curvature, T> kinematics(const Values<T>& c, const Frames<T>& frames) {
+  static VertexKinematics<Curvature, T> kinematics(const Values<T>& c, const Frames<T>& frames) {
     const auto& [edge, a, b, twist] = frames;
     if (LaneTraits<T>::lane(c.holds_section, 0) > 0.0) return {a, b, twist};
     const FreeSide side = c.leaves() ? FreeSide::Before : FreeSide::After;
-    return JointKinematics<Curvature, T>::with_free_side(side, a, b, twist, c.joint.rest.twist);
+    return VertexKinematics<Curvature, T>::with_free_side(side, a, b, twist, c.vertex.rest.twist);
   }
-  static JointKinematics<Curvature> kinematics(const Constants& c, const Vector& controls,
-                                               const Frames<double>& frames) {
+  static VertexKinematics<Curvature> kinematics(const Constants& c, const Vector& controls,
+                                                const Frames<double>& frames) {
     return kinematics<double>(values(c, controls), frames);
   }
 
@@ -228,13 +228,13 @@ struct SpatialClamp {
   static void evaluate(const Values<T>& c, const Eigen::Matrix<T, kDofs, 1>& x,
                        LocalTerm<kDofs, T>& out) {
     const Frames<T> here = frames<T>(c, x);
-    const JointKinematics<Curvature, T> seen = kinematics<T>(c, here);
+    const VertexKinematics<Curvature, T> seen = kinematics<T>(c, here);
     if constexpr (D == Derivatives::Energy) {
-      out.energy = seen.energy(c.joint);
+      out.energy = seen.energy(c.vertex);
       return;
     }
-    JointResponseOf<T> response;
-    seen.template respond<D == Derivatives::Hessian>(c.joint, response);
+    VertexResponseOf<T> response;
+    seen.template respond<D == Derivatives::Hessian>(c.vertex, response);
     out.energy = response.energy;
     set_edge_moment<D, T>(here.edge, c.side * response.moment, response.stiffness, out);
   }

@@ -9,7 +9,7 @@
 #include "der/energies/edge_blocks.hpp"
 #include "der/energies/local_term.hpp"
 #include "der/kinematics/configuration.hpp"
-#include "der/kinematics/rest_shift.hpp"
+#include "der/kinematics/natural_strain_offset.hpp"
 
 namespace der {
 
@@ -46,9 +46,9 @@ struct Stretch {
   static constexpr int kNodes = 2;
   static constexpr EnergyTerm kTerm = EnergyTerm::Stretch;
   struct Constants {
-    double EA = 0.0;           ///< [N]
-    double rest_length = 0.0;  ///< [m]
-    RestShift elongation{};    ///< [m]
+    double EA = 0.0;                   ///< [N]
+    double rest_length = 0.0;          ///< [m]
+    NaturalStrainOffset elongation{};  ///< [m]
     [[nodiscard]] bool is_actuated() const { return elongation.entry >= 0; }
   };
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "der/core/constants_in_turn.hpp"
 #include "der/core/lanes.hpp"
+#include "der/core/static_for.hpp"
 #include "der/kinematics/curvature_measure.hpp"
 
 namespace der {

@@ -20,7 +20,7 @@ struct HeldFrame {
   Index twist = -1;           ///< control: angle about the tangent [rad]; -1: none
 
   /// The frame rotated about the axis by `angle` [rad], without the turn about the tangent, which
-  /// joints count separately, whole turns included.
+  /// vertices count separately, whole turns included.
   [[nodiscard]] SectionFrame rotated(double angle) const {
     const Eigen::AngleAxisd turn(angle, axis);
     return SectionFrame::of(turn * drawn.tangent, turn * drawn.first);
@@ -64,7 +64,7 @@ struct SpatialPivot {
     return distance * held.tangent(controls);
   }
   /// The same in the initial shape, where no clamp has turned yet.
-  [[nodiscard]] Vec3 drawn_offset() const { return distance * held.drawn.tangent; }
+  [[nodiscard]] Vec3 reference_offset() const { return distance * held.drawn.tangent; }
 };
 
 }  // namespace der

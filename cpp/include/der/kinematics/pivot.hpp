@@ -14,11 +14,11 @@ struct Pivot {
   double distance = 0.0;   ///< [m] along the tangent, negative behind the node; 0: the node itself
   double direction = 0.0;  ///< initial angle of the clamped tangent [rad]
   Index rotation = -1;     ///< control that turns the tangent [rad]; -1: none
-  Vec2 drawn_offset = Vec2::Zero();  ///< from the node [m] before any turn
+  Vec2 reference_offset = Vec2::Zero();  ///< from the node [m] before any turn
 
   Pivot() = default;
   Pivot(double along, double angle, Index control)
-      : distance(along), direction(angle), rotation(control), drawn_offset(offset(0.0)) {}
+      : distance(along), direction(angle), rotation(control), reference_offset(offset(0.0)) {}
 
   /// From the node to the pivot [m], the tangent being turned by `turn` [rad].
   [[nodiscard]] Vec2 offset(double turn) const {
@@ -29,7 +29,7 @@ struct Pivot {
     return rotation >= 0 ? controls[rotation] : 0.0;
   }
   [[nodiscard]] Vec2 offset(const Vector& controls) const {
-    return rotation >= 0 ? offset(turn(controls)) : drawn_offset;
+    return rotation >= 0 ? offset(turn(controls)) : reference_offset;
   }
 };
 

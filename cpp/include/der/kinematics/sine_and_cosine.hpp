@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "der/core/constants_in_turn.hpp"
 #include "der/core/lanes.hpp"
+#include "der/core/static_for.hpp"
 
 namespace der {
 

@@ -22,8 +22,8 @@ struct SpatialEdge {
   }
   /// The vector [m] in the initial shape, where no clamp has turned yet.
   [[nodiscard]] Vec3 drawn(const Vector& coordinates) const {
-    return coordinates.segment<3>(end) + last.drawn_offset() - coordinates.segment<3>(start) -
-           first.drawn_offset();
+    return coordinates.segment<3>(end) + last.reference_offset() - coordinates.segment<3>(start) -
+           first.reference_offset();
   }
 };
 

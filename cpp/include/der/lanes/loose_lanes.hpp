@@ -10,12 +10,12 @@ namespace der {
 
 /// The elements of one kind outside of chains, of several members in lanes.
 template <class T>
-class LooseKind {
+class OffChainKind {
  public:
-  LooseKind() = default;
-  LooseKind(const LooseKind&) = delete;
-  LooseKind& operator=(const LooseKind&) = delete;
-  virtual ~LooseKind() = default;
+  OffChainKind() = default;
+  OffChainKind(const OffChainKind&) = delete;
+  OffChainKind& operator=(const OffChainKind&) = delete;
+  virtual ~OffChainKind() = default;
   /// Takes the frames of edges from the controls of the members at the start of a step.
   virtual void follow(const MemberConfigurations<T>& here) = 0;
   /// Adds to `gradient` (all degrees of freedom).
@@ -29,7 +29,7 @@ class LooseKind {
 /// All kinds that go in lanes (energies/lane_values.hpp) and that the models have outside of
 /// chains. Their elements follow frames, but no other control (`suits_lanes`).
 template <class T>
-std::vector<std::unique_ptr<LooseKind<T>>> loose_kinds(const Assembler& assembler,
-                                                       const MemberModels<T>& models);
+std::vector<std::unique_ptr<OffChainKind<T>>> loose_kinds(const Assembler& assembler,
+                                                          const MemberModels<T>& models);
 
 }  // namespace der

@@ -64,7 +64,7 @@ class MemberAssembler {
   const MemberControls<T>& controls_;
   std::vector<PlanarChainConstants<T>> planar_chains_;
   std::vector<SpatialChainConstants<T>> spatial_chains_;
-  std::vector<std::unique_ptr<LooseKind<T>>> loose_;
+  std::vector<std::unique_ptr<OffChainKind<T>>> loose_;
   std::vector<Index> mass_slots_;  // of the entries of the mass matrix
   MemberVector<T> masses_;
   // Constants of the plain stretch elements.

@@ -62,7 +62,7 @@ class MemberFrames {
     Vector3<T> last;
   };
   /// A clamp holds the section that is drawn.
-  struct Joint {
+  struct Vertex {
     Index before;  ///< number of the edge; -1: the clamp
     Index after;
     Index twist;  ///< entry of the reference twist
@@ -107,7 +107,7 @@ class MemberFrames {
 
   const MemberModel<T>& model_;
   std::vector<Edge> edges_;
-  std::vector<Joint> joints_;
+  std::vector<Vertex> vertices_;
 };
 
 }  // namespace der

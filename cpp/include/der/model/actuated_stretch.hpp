@@ -4,7 +4,7 @@
 #include <string>
 
 #include "der/core/types.hpp"
-#include "der/kinematics/rest_shift.hpp"
+#include "der/kinematics/natural_strain_offset.hpp"
 #include "der/scenario/actuation.hpp"
 
 namespace der {
@@ -31,21 +31,23 @@ struct ActuatedStretch {
 
 /// Where the controls have the shifts of the rest shape of a rod's elements: of each edge, of each
 /// cell in which it bends, and of each place at which springs hold it against turning.
-struct RestEntries {
+struct NaturalStrainEntries {
   Index edges = -1;    ///< entry of the first edge; -1: no actuation changes lengths
   Index cells = -1;    ///< entry of the first cell; -1: none changes curvatures or twist
   Index springs = -1;  ///< entry of the first place with springs; -1: as of cells, or no springs
   Index strains = 1;   ///< entries of a cell and of a place: 1 in a plane, 3 in space
 
   /// Entry of the length of an edge.
-  [[nodiscard]] RestShift edge(Index number) const { return {edges < 0 ? -1 : edges + number}; }
+  [[nodiscard]] NaturalStrainOffset edge(Index number) const {
+    return {edges < 0 ? -1 : edges + number};
+  }
   /// Entry of the cell about the node at a position in the rod, or on one side of a clamp there:
   /// between it and the edge that leaves it (`leaves`) or that arrives.
-  [[nodiscard]] RestShift cell(Index position, bool leaves) const {
+  [[nodiscard]] NaturalStrainOffset cell(Index position, bool leaves) const {
     return {cells < 0 ? -1 : cells + strains * (2 * position + (leaves ? 1 : 0))};
   }
   /// Entry of a place with springs against turning, by its number among them.
-  [[nodiscard]] RestShift spring(Index number) const {
+  [[nodiscard]] NaturalStrainOffset spring(Index number) const {
     return {springs < 0 ? -1 : springs + strains * number};
   }
 };

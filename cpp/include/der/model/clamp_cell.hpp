@@ -11,6 +11,6 @@ inline constexpr double kPivotShare = 1.0 / 5.0;
 /// the direction of the edge, a little beyond the middle.
 inline constexpr double kCellShare = 25.0 / 48.0;
 /// By so much less the next node turns: kCellShare - 1/2.
-inline constexpr double kNextCellLoss = 1.0 / 48.0;
+inline constexpr double kFirstVertexCorrection = 1.0 / 48.0;
 
 }  // namespace der

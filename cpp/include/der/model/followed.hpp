@@ -26,7 +26,7 @@ Index num_turns(const Model& model);
 /// Number of entries of a vector `followed` of the model.
 Index num_followed(const Model& model);
 /// That of the initial shape as it is drawn.
-Vector followed_as_drawn(const Model& model);
+Vector unwrapped_of_reference(const Model& model);
 
 /// Moves `followed` to the shape at `coordinates`, by the shorter way from its present value. The
 /// rotations [rad] of edges count from the initial directions. `controls` turn the clamps.

@@ -9,8 +9,8 @@ namespace der {
 
 struct Model;
 
-/// The joint between two edges with section frames, or between one and a clamp.
-struct FramedJoint {
+/// The vertex between two edges with section frames, or between one and a clamp.
+struct FramedVertex {
   Index before = -1;  ///< number of the edge; -1: a clamp, before the edge `after`
   Index after = -1;   ///< number of the edge; -1: a clamp
   HeldFrame held;     ///< of the clamp, if there is one
@@ -48,7 +48,7 @@ Index frame_turned_too_far(const Model& model, const Vector& coordinates, const 
 SectionFrame reference_frame(Index edge, const Eigen::Ref<const Vector>& frames);
 
 /// The section frame of an edge in the initial shape.
-SectionFrame drawn_frame(const Model& model, Index edge);
+SectionFrame initial_frame(const Model& model, Index edge);
 
 /// The section frame of an edge in a configuration.
 SectionFrame section_frame(const Model& model, Index edge, const Configuration& here);

@@ -16,25 +16,25 @@ struct EdgePart {
   double from = 0.0, to = 0.0;
 };
 
-/// The turns around a rod after which a place on it may concern an edge (RodLayout: places of a
+/// The turns around a rod after which a place on it may concern an edge (RodMesh: places of a
 /// ring are counted on): 0, and of a ring one to either side.
-std::vector<Index> turns_of(const RodLayout& rod);
+std::vector<Index> turns_of(const RodMesh& rod);
 
 /// The parts of a rod's edges that lie between two rest arc lengths [m].
-std::vector<EdgePart> edge_parts(const RodLayout& rod, double from, double to);
+std::vector<EdgePart> edge_parts(const RodMesh& rod, double from, double to);
 /// Whether the part is less than its edge.
-bool is_cut(const EdgePart& part, const RodLayout& rod);
+bool is_cut(const EdgePart& part, const RodMesh& rod);
 /// Share of the last end of the edge in a uniform load on the part, as a length [m]: the integral
 /// of (s - s0)/(s1 - s0) over it, the consistent load of linear interpolation.
-double length_at_last_end(const EdgePart& part, const RodLayout& rod);
+double length_at_last_end(const EdgePart& part, const RodMesh& rod);
 
 /// Rest arc length [m] at which the rod's tangent has the direction of an edge: the edge's middle,
 /// or next to a clamp a little further away from it (model/clamp_cell.hpp).
-double tangent_place(const RodLayout& rod, Index edge);
+double tangent_place(const RodMesh& rod, Index edge);
 
 /// A place between a clamp and where the tangent has the direction of the edge beside it.
 struct PlaceBesideClamp {
-  Index clamp = 0;        ///< number in RodLayout::clamps
+  Index clamp = 0;        ///< number in RodMesh::clamps
   Index edge = 0;         ///< number in the rod
   double distance = 0.0;  ///< from the clamp to the place [m]
   double reach = 0.0;     ///< from the clamp to where the tangent has the edge's direction [m]
@@ -44,28 +44,28 @@ struct PlaceBesideClamp {
 };
 
 /// None for a place that is not beside a clamp.
-std::optional<PlaceBesideClamp> place_beside_clamp(const RodLayout& rod, double s);
+std::optional<PlaceBesideClamp> place_beside_clamp(const RodMesh& rod, double s);
 
 /// Distance [m] from the middle of the outermost edge to a place beyond it; 0 for places
 /// inside, and beside a clamp.
-double beyond_outer_middle(const RodLayout& rod, double s);
+double beyond_outer_middle(const RodMesh& rod, double s);
 
 /// Rest arc length [m] that a location names (not for Kind::All). The end of a ring is its start.
-double arc_length_of(const scenario::Location& location, const RodLayout& rod);
+double arc_length_of(const scenario::Location& location, const RodMesh& rod);
 
 /// Rest arc lengths [m] that a location names: those of every node for Kind::All, else one.
-std::vector<double> arc_lengths_of(const scenario::Location& location, const RodLayout& rod);
+std::vector<double> arc_lengths_of(const scenario::Location& location, const RodMesh& rod);
 
-/// Position in RodLayout::nodes of the node at `location`. The reader has checked that there is
+/// Position in RodMesh::nodes of the node at `location`. The reader has checked that there is
 /// one.
-Index node_at(const scenario::Location& location, const RodLayout& rod);
-/// Positions in RodLayout::nodes of the nodes at `location`: every node for Kind::All, else one.
-std::vector<Index> nodes_at(const scenario::Location& location, const RodLayout& rod);
+Index node_at(const scenario::Location& location, const RodMesh& rod);
+/// Positions in RodMesh::nodes of the nodes at `location`: every node for Kind::All, else one.
+std::vector<Index> nodes_at(const scenario::Location& location, const RodMesh& rod);
 
 /// Weights of the edges whose direction angles, linearly interpolated between the places where the
 /// tangent has them, give the direction at arc length `s`. Beside a clamp they add up to less than
 /// 1, as the clamp takes the rest. For a moment within half an edge of a free end the weights go on
 /// to 13/12 and -1/12, which brings the end from the chain's place beside the curve onto it.
-std::vector<Weighted> edge_weights(const RodLayout& rod, double s);
+std::vector<Weighted> edge_weights(const RodMesh& rod, double s);
 
 }  // namespace der

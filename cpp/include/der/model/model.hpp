@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "der/core/hidden.hpp"
+#include "der/core/pimpl.hpp"
 #include "der/core/types.hpp"
 #include "der/kinematics/actuated_turn.hpp"
 #include "der/kinematics/held_frame.hpp"
-#include "der/kinematics/joint_strain.hpp"
+#include "der/kinematics/material_curvature.hpp"
 #include "der/model/actuated_stretch.hpp"
 #include "der/model/dof_map.hpp"
 #include "der/model/edge.hpp"
@@ -19,7 +19,7 @@
 #include "der/model/load_variation.hpp"
 #include "der/model/mass.hpp"
 #include "der/model/named_control.hpp"
-#include "der/model/rest_shape.hpp"
+#include "der/model/natural_strain.hpp"
 #include "der/model/time_tables.hpp"
 #include "der/scenario/curvature_measure.hpp"
 
@@ -30,7 +30,7 @@ struct ElementLists;  // energies/registry.hpp
 
 /// A node of a rod whose tangent is held.
 struct Clamp {
-  Index place = 0;            ///< position in RodLayout::nodes
+  Index place = 0;            ///< position in RodMesh::nodes
   double direction = 0.0;     ///< initial angle of the held tangent [rad], in a plane
   Index rotation = -1;        ///< control that turns it [rad]; -1: none
   Index followed = -1;        ///< place in Model::followed_edges of the edge beside it, if it turns
@@ -39,7 +39,7 @@ struct Clamp {
 };
 
 /// A place at which a rod in space bends and twists: an inner node, or a cell beside a clamp.
-struct RodJoint {
+struct RodVertex {
   Index before = -1;          ///< its edge before, in the rod; -1: a clamp
   Index after = -1;           ///< its edge after; -1: a clamp
   Index clamp = -1;           ///< the clamp's number among those of the rod; -1: an inner node
@@ -48,10 +48,10 @@ struct RodJoint {
   double twist_place = 0.0;   ///< arc length [m] at which it twists
   double twist_length = 0.0;  ///< [m] over which it does
   /// Angle [rad] by which the section after it was turned when it was glued to the one before:
-  /// at the closing joint of a ring. No strain counts it.
+  /// at the closing vertex of a ring. No strain counts it.
   double glued = 0.0;
-  JointStrain rest;
-  /// The place of its node: of the joint that closes a ring, the number of nodes.
+  MaterialCurvature rest;
+  /// The place of its node: of the vertex that closes a ring, the number of nodes.
   [[nodiscard]] Index place() const { return before >= 0 ? before + 1 : after; }
   /// Whether it is the cell between a clamp and the edge that leaves it.
   [[nodiscard]] bool leaves_clamp() const { return clamp >= 0 && after >= 0; }
@@ -60,7 +60,7 @@ struct RodJoint {
 
 /// The two halves of the cell about a node, on the edge before it and on the one after, where their
 /// sections differ: at a corner, and where a ring is glued turned. Each adds its own part to the
-/// strains of the joint. Each matrix takes the strains of a half to those of the joint.
+/// strains of the vertex. Each matrix takes the strains of a half to those of the vertex.
 struct CellHalves {
   Index place = 0;  ///< of the node
   Mat3 before = Mat3::Identity();
@@ -79,8 +79,8 @@ struct MomentPlace {
   double stiffness = 0.0;       ///< of the springs together [N m/rad]
   Index spring = -1;            ///< number of their element in its list; -1: no spring
   Index followed = -1;          ///< place in Model::followed_edges of the first edge, with a spring
-  RestShift spring_shift;       ///< of the springs by actuations
-  ActuatedTurn actuated;        ///< of the tangent there, beyond these edges
+  NaturalStrainOffset spring_shift;  ///< of the springs by actuations
+  ActuatedTurn actuated;             ///< of the tangent there, beyond these edges
 
   /// Stiffness of springs and cell in series against that of the springs, 1/(1 + k c/EI); the part
   /// of the loads' moments that turns the edges.
@@ -112,7 +112,7 @@ struct SectionSpringPlace {
   Vec3 stiffness = Vec3::Zero();  ///< towards the two directors, about the tangent [N m/rad]
   Index element = -1;             ///< number of their element in its list
   bool on_one_edge = false;       ///< SectionSpring<1>; else <2>
-  RestShift shift;                ///< by actuations
+  NaturalStrainOffset shift;      ///< by actuations
 };
 
 /// A part of a rod on which a distributed force acts.
@@ -130,7 +130,7 @@ struct FoundationPlace {
 /// A node at which a curvature or the twist jumps without a corner: where a straight leg runs into
 /// an arc, or one arc into another (model/curvature_jump.hpp).
 struct CurvatureJump {
-  Index place = 0;  ///< position in RodLayout::nodes
+  Index place = 0;  ///< position in RodMesh::nodes
   /// The vector about which the rod turns, after the node less before it [1/m], on the drawn rod.
   Vec3 turn = Vec3::Zero();
 };
@@ -141,7 +141,7 @@ struct CurvatureJump {
 /// A closed rod, a ring, has as many edges as nodes: the last edge leads back to the first node.
 /// Places along it, which number its nodes, and edges are counted on beyond its end and before its
 /// start: of n nodes place n is place 0, one length of the ring further on.
-struct RodLayout {
+struct RodMesh {
   std::string name;
   bool closed = false;
   std::vector<Index> nodes;         ///< in the order of the arc length
@@ -158,17 +158,17 @@ struct RodLayout {
   Index first_edge = 0;  ///< number of its first edge among those of the model
   /// Section frame [-] of each drawn edge at its middle, in space; empty where sections do not
   /// count.
-  std::vector<SectionFrame> drawn_frames;
+  std::vector<SectionFrame> initial_frames;
   double initial_twist = 0.0;            ///< of these frames [rad/m]
   std::vector<Vec2> natural_curvatures;  ///< towards the two directors, at each node [1/m]
   std::vector<double> natural_twist;     ///< at each node [rad/m]; empty: stress-free as drawn
-  /// The joints of a rod in space that bends, from its start to its end; the one between the last
+  /// The vertices of a rod in space that bends, from its start to its end; the one between the last
   /// edge of a ring and its first one stands last.
-  std::vector<RodJoint> joints;
-  std::vector<CellHalves> cell_halves;  ///< of the joints whose halves differ
+  std::vector<RodVertex> vertices;
+  std::vector<CellHalves> cell_halves;  ///< of the vertices whose halves differ
   /// Natural curvature of a planar rod at each node [1/m]; empty: the initial shape is stress-free.
   std::vector<double> natural_curvature;
-  std::vector<CurvatureJump> drawn_jumps;  ///< of the curvature of the drawn shape, ascending
+  std::vector<CurvatureJump> reference_jumps;  ///< of the curvature of the drawn shape, ascending
   /// Jumps of the natural curvature and twist, and so of those of any equilibrium, ascending.
   std::vector<CurvatureJump> natural_jumps;
   /// Natural turning angle at each node that bends [rad], at clamped ones of the clamp's cells; 0
@@ -186,7 +186,7 @@ struct RodLayout {
   std::vector<DistributedPlace> distributed_places;
   std::vector<FoundationPlace> foundation_places;
   std::vector<ActuatedStretch> actuated_stretches;  ///< in the order of the scene
-  RestEntries rest_entries;
+  NaturalStrainEntries natural_strain_entries;
   double draw_radius = 0.0;           ///< half the height of the section [m]; 0 if not known
   std::vector<double> sphere_radius;  ///< per node [m]; 0: no sphere
 
@@ -264,13 +264,13 @@ struct Model {
   int dimension = 2;
   Index num_nodes = 0;
   DofMap dofs;
-  std::vector<RodLayout> rods;
+  std::vector<RodMesh> rods;
 
   /// [m] The shape as drawn, at which runs start and from which displacements count.
   Vector initial_positions;
   /// [m] The same shape with each edge at its rest length: the reference of all elements. Each rod
   /// is magnified about its first node, and stays as drawn without a `rest_length`.
-  Vector rest_positions;
+  Vector reference_positions;
   Vector initial_velocities;  ///< [m/s]
   Mass mass;
   Vector damping;        ///< [N s/m], one entry a degree of freedom: drag and linear damping
@@ -279,9 +279,9 @@ struct Model {
   /// Controls of the acceleration of gravity [m/s^2], where it follows any; its weight is then
   /// among the controlled forces (model/gravity.hpp). -1: there is none, or it is constant.
   std::array<Index, 3> gravity_controls{-1, -1, -1};
-  Vector dead_force;     ///< [N] every constant force but weight: buoyancy, constant loads
-  RestShape rest_shape;  ///< what actuations make of the rest shape
-  TimeTables tables;     ///< tables over time that forces, supports and actuations follow
+  Vector dead_force;             ///< [N] every constant force but weight: buoyancy, constant loads
+  NaturalStrain natural_strain;  ///< what actuations make of the rest shape
+  TimeTables tables;             ///< tables over time that forces, supports and actuations follow
   /// If the scene varies its loads or motions: their dependence on the load factor. It replaces
   /// `gravity_force`, `dead_force` and `tables` for states whose factor is not 1.
   std::optional<LoadVariation> load_variation;
@@ -293,10 +293,10 @@ struct Model {
 
   std::vector<Edge> edges;  ///< of all rods
   std::vector<FollowedEdge> followed_edges;
-  std::vector<SpatialEdge> framed_edges;   ///< all edges, if they have section frames; or none
-  std::vector<FramedJoint> framed_joints;  ///< of these
-  Vector drawn_frames;                     ///< blocks of these in the initial shape
-  Hidden<ElementLists> elements;
+  std::vector<SpatialEdge> framed_edges;      ///< all edges, if they have section frames; or none
+  std::vector<FramedVertex> framed_vertices;  ///< of these
+  Vector initial_frames;                      ///< blocks of these in the initial shape
+  Pimpl<ElementLists> elements;
 
   /// Whether a program may set a control in place of its table.
   [[nodiscard]] bool can_set(Index control) const;
@@ -310,22 +310,22 @@ struct Model {
     return dofs.position(node, component);
   }
   /// Throws Error if there is no rod of that name.
-  [[nodiscard]] const RodLayout& rod(const std::string& rod_name) const;
-  [[nodiscard]] RodLayout& rod(const std::string& rod_name);
+  [[nodiscard]] const RodMesh& rod(const std::string& rod_name) const;
+  [[nodiscard]] RodMesh& rod(const std::string& rod_name);
 };
 
 /// A node by its place in a rod.
 struct NodePlace {
   std::string rod;  ///< the first rod that has it; empty if none does
-  Index place = 0;  ///< position in RodLayout::nodes
+  Index place = 0;  ///< position in RodMesh::nodes
 };
 NodePlace place_of(const Model& model, Index node);
 
 /// Number in Model::followed_edges of an edge of `rod`, which is followed from now on.
-Index follow_edge(const RodLayout& rod, Index edge, Model& model);
+Index follow_edge(const RodMesh& rod, Index edge, Model& model);
 
-/// Where the controls have what actuations add to the rest strains of a joint.
-RestShift rest_shift(const RodLayout& rod, const RodJoint& joint);
+/// Where the controls have what actuations add to the rest strains of a vertex.
+NaturalStrainOffset natural_strain_offset(const RodMesh& rod, const RodVertex& vertex);
 
 /// A vector over the free degrees of freedom as one over all, zero on held ones.
 Vector over_all_dofs(const Model& model, const Vector& free);

@@ -17,18 +17,18 @@ namespace der {
 // docs/mechanics.md derives c.
 
 /// The edges on which moments at arc length `s` [m] of a rod act, as its elements see them.
-MomentPlace moment_place(double s, const RodLayout& rod);
+MomentPlace moment_place(double s, const RodMesh& rod);
 
 /// The place of moments at arc length `s` [m] of a rod, made if it is not there.
-MomentPlace& place_of_moments(double s, RodLayout& rod);
+MomentPlace& place_of_moments(double s, RodMesh& rod);
 
 /// Moment [N m] that acts on the rod where loads apply `applied`: less what the springs take.
-double carried_moment(const MomentPlace& place, const RodLayout& rod, const Model& model,
+double carried_moment(const MomentPlace& place, const RodMesh& rod, const Model& model,
                       const State& state, double applied);
 
 /// Energies [J] of the cells under the moments of a rod: of bending, and of springs besides that of
 /// their elements.
-Energies cell_energies(const RodLayout& rod, const Model& model, const Configuration& here);
+Energies cell_energies(const RodMesh& rod, const Model& model, const Configuration& here);
 
 /// Work [J] that the loads' moments do on the cells in a step: with t = share (w + c M/EI) the
 /// edges turn by share w, and the rest of the tangent's turn depends on M alone. In space it also

@@ -9,7 +9,7 @@ namespace der {
 
 /// A place along a rod as a weighted sum of its nodes (or of its edges).
 struct Weighted {
-  Index place = 0;  ///< of the node (RodLayout::node), or number of the edge after that place
+  Index place = 0;  ///< of the node (RodMesh::node), or number of the edge after that place
   double weight = 0.0;
 };
 
@@ -35,6 +35,6 @@ inline constexpr int kMostPointNodes = 6;
 /// With four nodes the weights are those of the cubic through them, with fewer nodes those of the
 /// polynomial. Where an edge at an end is much longer than its neighbours the third moment is given
 /// up.
-std::vector<Weighted> node_weights(const RodLayout& rod, double s, const Model& model);
+std::vector<Weighted> node_weights(const RodMesh& rod, double s, const Model& model);
 
 }  // namespace der

@@ -26,6 +26,6 @@ struct SectionPlace {
 };
 
 /// The section at arc length `s` [m].
-SectionPlace section_place(double s, const RodLayout& rod);
+SectionPlace section_place(double s, const RodMesh& rod);
 
 }  // namespace der

@@ -36,7 +36,7 @@ struct Work {
 static_assert(lists_all_members<Work>());
 
 /// Energy that the time integrator has created, and energy that the run has exchanged, as far as
-/// `EnergyWatch` has checked.
+/// `EnergyMonitor` has checked.
 struct EnergyAudit {
   double exchanged = 0.0;     ///< [J] largest value so far
   double created = 0.0;       ///< [J] largest value so far

@@ -8,8 +8,9 @@
 namespace der {
 
 /// The time tables of a model, as entries of the controls behind those of the frames
-/// (kinematics/frame_block.hpp) and of the rest shape (model/rest_shape.hpp). Forces, supports and
-/// actuators name a table by its number; a stepper evaluates all of them once for each stage time
+/// (kinematics/frame_block.hpp) and of the rest shape (model/natural_strain.hpp). Forces, supports
+/// and actuators name a table by its number; a stepper evaluates all of them once for each stage
+/// time
 /// (`evaluate_controls` in model/state.hpp, which adds what the state has in place of them).
 class TimeTables {
  public:

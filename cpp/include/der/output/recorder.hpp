@@ -9,11 +9,11 @@
 #include "der/core/types.hpp"
 #include "der/model/state.hpp"
 #include "der/output/checkpoint.hpp"
-#include "der/output/crossing_watch.hpp"
+#include "der/output/crossing_monitor.hpp"
 #include "der/output/frame.hpp"
 #include "der/output/probe.hpp"
 #include "der/output/step_values.hpp"
-#include "der/output/strain_watch.hpp"
+#include "der/output/strain_monitor.hpp"
 #include "der/simulation.hpp"
 
 namespace der {
@@ -49,11 +49,11 @@ class Recorder {
   /// Energies [J] of the last saved instant; none before it.
   [[nodiscard]] const std::optional<Energies>& energies() const { return energies_; }
   /// Where a rod was seen first to pass through itself or another.
-  [[nodiscard]] const std::optional<CrossingWatch::Crossing>& crossing() const {
+  [[nodiscard]] const std::optional<CrossingMonitor::Crossing>& crossing() const {
     return crossings_.found();
   }
   /// Where a rod was saved first with more than twice its rest length.
-  [[nodiscard]] const std::optional<StrainWatch::Stretched>& stretched() const {
+  [[nodiscard]] const std::optional<StrainMonitor::Stretched>& stretched() const {
     return strains_.found();
   }
   /// Cost of the run so far, earlier parts of a resumed run included.
@@ -79,8 +79,8 @@ class Recorder {
   std::vector<FrameSink*> sinks_;
   Vector values_;       // of the probes, now
   StepValues in_step_;  // of the probes, in the last adaptive step
-  CrossingWatch crossings_;
-  StrainWatch strains_;
+  CrossingMonitor crossings_;
+  StrainMonitor strains_;
   std::optional<Energies> energies_;
   State between_;                     // within an adaptive step
   std::optional<double> seen_time_;   // [s] of the last instant recorded

@@ -41,9 +41,9 @@ struct RunOutcome {
   std::vector<std::vector<double>> path_probes;
   OutOfPlaneAnswer out_of_plane;  ///< of a planar model
   /// Where a rod was seen first to pass through itself or another, which nothing prevents.
-  std::optional<CrossingWatch::Crossing> crossing;
+  std::optional<CrossingMonitor::Crossing> crossing;
   /// Where a rod was seen first to be stretched beyond what a linear law holds for.
-  std::optional<StrainWatch::Stretched> stretched;
+  std::optional<StrainMonitor::Stretched> stretched;
   [[nodiscard]] bool ok() const { return run_status::is_finished(status); }
   [[nodiscard]] bool failed() const { return !message.empty(); }
 };
@@ -54,6 +54,6 @@ struct RunOutcome {
 /// recorded; other errors (of a sink, of the callback) propagate, and what `beat` throws, but for
 /// `Stopped`. It is called in analyses, where there are no steps, at least once an iteration.
 RunOutcome run(Simulation& simulation, Recorder& recorder, const StepCallback& after_step = {},
-               const Beat& beat = {});
+               const CancelCallback& beat = {});
 
 }  // namespace der

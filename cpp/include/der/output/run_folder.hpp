@@ -44,7 +44,7 @@ RunFileHead check_resumable(const RunFolder& folder, const Scenario& scenario);
 /// by another run, holds other things than a run, or a scene.yaml that was edited since, or if the
 /// disk has too little room.
 RunOutcome run_in_folder(const RunFolder& folder, Simulation& simulation, Recorder& recorder,
-                         const StepCallback& after_step = {}, const Beat& beat = {});
+                         const StepCallback& after_step = {}, const CancelCallback& beat = {});
 /// Goes on with an interrupted run; what comes out is the same, bit for bit, as if it had never
 /// been interrupted. Throws as `check_resumable` does.
 RunOutcome resume_in_folder(const RunFolder& folder, Simulation& simulation, Recorder& recorder,

@@ -11,6 +11,6 @@ namespace der {
 /// or is one of rods with other names, nodes or rest lengths; Error
 /// ("unstable_step") where an explicit step is too long for that start. `beat` is called at least
 /// once an iteration of a search.
-void apply_start(Simulation& simulation, const Beat& beat = {});
+void apply_start(Simulation& simulation, const CancelCallback& beat = {});
 
 }  // namespace der

@@ -22,7 +22,7 @@ struct Sphere {
 };
 
 /// The rod is stress-free in its initial shape.
-struct AsDrawn {};
+struct StressFreeReference {};
 /// Curvature [1/m] toward directors 1 and 2 of the section.
 struct CurvaturePair {
   double first = 0.0;
@@ -30,10 +30,10 @@ struct CurvaturePair {
 };
 /// Natural curvature [1/m]: one value, or one for each node. Scenes of the planar model have signed
 /// values, positive counter-clockwise; scenes of the spatial models have pairs.
-using NaturalCurvature =
-    std::variant<AsDrawn, double, std::vector<double>, CurvaturePair, std::vector<CurvaturePair>>;
+using NaturalCurvature = std::variant<StressFreeReference, double, std::vector<double>,
+                                      CurvaturePair, std::vector<CurvaturePair>>;
 /// Natural twist [rad/m]: one value, or one for each node, linear in between.
-using NaturalTwist = std::variant<AsDrawn, double, std::vector<double>>;
+using NaturalTwist = std::variant<StressFreeReference, double, std::vector<double>>;
 
 struct Rod {
   std::string name;
@@ -49,8 +49,8 @@ struct Rod {
   std::optional<Components> director;
   std::optional<Material> material;  ///< absent only with `Stiffness`
   CurvatureMeasure curvature = CurvatureMeasure::Angle;
-  NaturalCurvature natural_curvature = AsDrawn{};
-  NaturalTwist natural_twist = AsDrawn{};
+  NaturalCurvature natural_curvature = StressFreeReference{};
+  NaturalTwist natural_twist = StressFreeReference{};
   /// Twist of the drawn frames [rad/m] against frames that are transported without twist.
   double initial_twist = 0.0;
   /// Initial velocities [m/s], one per node; empty: at rest.

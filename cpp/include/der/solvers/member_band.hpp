@@ -8,13 +8,13 @@
 namespace der {
 
 /// The band matrices of several members, each in its lane, factorised as BandedLdlt and
-/// TwoEndedLdlt do: of each member to the last bit as they would. Positive definite ones alone.
+/// TwistedLdlt do: of each member to the last bit as they would. Positive definite ones alone.
 template <class T>
 class MemberBand {
  public:
   /// Whether there are kernels for a matrix.
   static bool suits(const Pattern& pattern);
-  /// For the values in the layout of TwoEndedLdlt or of BandedLdlt.
+  /// For the values in the layout of TwistedLdlt or of BandedLdlt.
   MemberBand(const Pattern& pattern, Elimination order);
 
   /// The matrices' values, to be set before they are factorised, which overwrites them. They have a
@@ -51,7 +51,7 @@ class MemberBand {
   Index size_ = 0;
   Index width_ = 0;
   Elimination order_;
-  Index columns_ = 0;  ///< of each half (TwoEndedLdlt)
+  Index columns_ = 0;  ///< of each half (TwistedLdlt)
   Index padding_ = 0;
   Kernels kernels_;
   MemberVector<T> band_;        ///< of the halves in turns, if there are two

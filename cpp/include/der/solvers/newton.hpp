@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "der/core/beat.hpp"
+#include "der/core/cancel_callback.hpp"
 #include "der/core/types.hpp"
 #include "der/model/dof_map.hpp"
 #include "der/solvers/linear_solver.hpp"
@@ -40,7 +40,7 @@ class Newton {
   /// `num_values`: length of the array of values that the problem fills. `beat` is called once an
   /// iteration.
   Newton(const DofMap& dofs, LinearSolver& solver, Index num_values, const NewtonOptions& options,
-         Beat beat = {});
+         CancelCallback beat = {});
 
   /// Solves from the problem's guess, at which its solution is again if not converged.
   NewtonReport solve(NewtonProblem& problem);
@@ -73,7 +73,7 @@ class Newton {
   LinearSolver& solver_;
   LowRankSolver corrected_;  // of the matrix with the problem's low-rank part
   NewtonOptions options_;
-  Beat beat_;
+  CancelCallback beat_;
   Vector residual_;      // all degrees of freedom
   Vector values_;        // of the matrix, shifted where need be
   Vector direction_;     // over the free degrees of freedom

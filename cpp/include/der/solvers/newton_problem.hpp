@@ -39,7 +39,7 @@ class NewtonProblem {
   [[nodiscard]] virtual const LowRank* low_rank() const { return nullptr; }
   /// May improve the derivative just evaluated after a full `step` (all degrees of freedom) that
   /// led here.
-  virtual void correct_after(const Vector& step, Vector& values) = 0;
+  virtual void mixed_point_update(const Vector& step, Vector& values) = 0;
 
   /// The largest admissible share of a step (all degrees of freedom, 0 on held ones).
   virtual StepBound largest_step(const Vector& step) = 0;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "der/assembly/assembler.hpp"
-#include "der/core/beat.hpp"
+#include "der/core/cancel_callback.hpp"
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
@@ -54,7 +54,7 @@ struct ContinuationOptions {
   double largest_step = 0.05;  ///< of arc length
   int max_points = 500;        ///< of a branch
   int branching = 0;           ///< how many bifurcations deep other branches are followed
-  Beat beat{};                 ///< called at least once an iteration; what it throws ends the path
+  CancelCallback beat{};       ///< called at least once an iteration; what it throws ends the path
 };
 
 /// Traces the equilibria of a model while its loads change in proportion to a factor, through limit

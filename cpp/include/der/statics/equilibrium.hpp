@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "der/assembly/assembler.hpp"
-#include "der/core/beat.hpp"
+#include "der/core/cancel_callback.hpp"
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
@@ -18,7 +18,7 @@ struct EquilibriumOptions {
   NewtonOptions newton;
   /// Leave a saddle for a stable equilibrium; otherwise a saddle is accepted as the result.
   bool leave_saddles = true;
-  Beat beat{};  ///< called at least once an iteration; what it throws ends the search
+  CancelCallback beat{};  ///< called at least once an iteration; what it throws ends the search
 };
 
 /// How a search for an equilibrium ended.

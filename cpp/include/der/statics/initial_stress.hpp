@@ -82,7 +82,7 @@ class InitialStress {
   template <int Edges>
   void add_springs(const Model& model, const Configuration& here, const Vector& displacement);
   template <class Curvature>
-  void add_joints(const Model& model, const Configuration& here, const Vector& displacement);
+  void add_vertices(const Model& model, const Configuration& here, const Vector& displacement);
 
   static double variation_of(const std::vector<Term>& terms, const Vector& direction);
 

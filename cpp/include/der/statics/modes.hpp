@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "der/assembly/assembler.hpp"
-#include "der/core/beat.hpp"
+#include "der/core/cancel_callback.hpp"
 #include "der/core/error.hpp"
 #include "der/core/types.hpp"
 #include "der/kinematics/configuration.hpp"
@@ -33,7 +33,7 @@ struct Mode {
 /// follows here.
 std::vector<Mode> vibration_modes(const Model& model, const Assembler& assembler,
                                   LinearSolver& solver, const Configuration& here, int count,
-                                  const Beat& beat = {});
+                                  const CancelCallback& beat = {});
 
 /// A load at which the straight or little deformed structure becomes unstable.
 struct BucklingMode {
@@ -63,13 +63,13 @@ struct LinearBuckling {
 std::vector<BucklingMode> buckling_modes(const Model& model, const Stiffness& stiffness,
                                          LinearSolver& solver, const Configuration& here,
                                          const InitialStress& stress, int count,
-                                         const Beat& beat = {});
+                                         const CancelCallback& beat = {});
 
 /// Linear buckling: K0 is the stiffness of the unloaded equilibrium `state`, K1 that of the initial
 /// stresses that all loads cause to first order (InitialStress). No modes if the loads do not make
 /// it buckle. Throws NotConvergedError if the unloaded structure is not stable. The model has a
 /// load variation, of all loads.
 LinearBuckling linear_buckling(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                               const State& state, int count, const Beat& beat = {});
+                               const State& state, int count, const CancelCallback& beat = {});
 
 }  // namespace der

@@ -6,7 +6,7 @@
 #include "der/assembly/assembler.hpp"
 #include "der/assembly/pattern.hpp"
 #include "der/building/out_of_plane_model.hpp"
-#include "der/core/beat.hpp"
+#include "der/core/cancel_callback.hpp"
 #include "der/solvers/linear_solver.hpp"
 #include "der/statics/stiffness.hpp"
 
@@ -37,7 +37,7 @@ class OutOfPlaneTest {
   OutOfPlaneTest(const scenario::Scene& scene, const Model& planar);
 
   /// `beat` is called in all that follows, again and again; what it throws ends that.
-  void set_beat(const Beat& beat) { beat_ = beat; }
+  void set_beat(const CancelCallback& beat) { beat_ = beat; }
 
   /// Stability of an equilibrium of the planar model.
   Stability stability(const Configuration& planar);
@@ -57,7 +57,7 @@ class OutOfPlaneTest {
 
  private:
   const Model& planar_;
-  Beat beat_;
+  CancelCallback beat_;
   const OutOfPlaneModel twin_;
   const Pattern pattern_;
   LinearSolverChoice solver_;

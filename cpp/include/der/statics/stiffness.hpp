@@ -1,7 +1,7 @@
 #pragma once
 
 #include "der/assembly/assembler.hpp"
-#include "der/core/beat.hpp"
+#include "der/core/cancel_callback.hpp"
 #include "der/core/types.hpp"
 #include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
@@ -41,7 +41,8 @@ struct SoftDirection {
 class Stiffness {
  public:
   /// `beat` is called at each evaluation, factorisation and solution.
-  Stiffness(const Model& model, const Assembler& assembler, LinearSolver& solver, Beat beat = {});
+  Stiffness(const Model& model, const Assembler& assembler, LinearSolver& solver,
+            CancelCallback beat = {});
 
   void evaluate(const Configuration& here);
   /// Gradient [N] of the elements' energies at the same shape, all degrees of freedom.
@@ -118,7 +119,7 @@ class Stiffness {
   const Model& model_;
   const Assembler& assembler_;
   LinearSolver& solver_;
-  Beat beat_;
+  CancelCallback beat_;
   Vector gradient_;
   Vector values_;
   Vector shifted_;

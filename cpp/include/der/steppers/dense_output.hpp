@@ -15,7 +15,7 @@ namespace der {
 /// slopes, and works the cubics that have the works accumulated at both ends and the powers there.
 /// So a work is right to the order of the motion, and that of a constant force is exactly the force
 /// along the interpolated path. Held degrees of freedom are where the tables have them, with the
-/// velocity that `StepFinisher` gives them for the step: where it jumps, it does so at the start.
+/// velocity that `StepCommit` gives them for the step: where it jumps, it does so at the start.
 class DenseOutput {
  public:
   DenseOutput(const Model& model, const Assembler& assembler);

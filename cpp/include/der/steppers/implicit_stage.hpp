@@ -7,7 +7,7 @@
 #include "der/solvers/stage.hpp"
 #include "der/steppers/explicit_force.hpp"
 #include "der/steppers/stage_controls.hpp"
-#include "der/steppers/step_finisher.hpp"
+#include "der/steppers/step_commit.hpp"
 #include "der/steppers/stepper.hpp"
 
 namespace der {
@@ -62,7 +62,7 @@ class ImplicitStage {
   const Model& model_;
   StageProblem problem_;
   Newton newton_;
-  StepFinisher finisher_;
+  StepCommit finisher_;
   StageControls controls_;
   Vector held_controls_;  // those of `here` are the solved stage's until it is accumulated
   Vector displacement_;

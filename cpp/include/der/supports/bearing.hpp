@@ -14,15 +14,15 @@ struct Support;
 // the bearing is one that is far stiffer than the rod, and they are exact for any stiffness.
 
 /// Whether a support lets a rod spin at a place where it goes on to both sides.
-bool lets_spin_inside(const scenario::Support& support, Index place, const RodLayout& rod);
+bool lets_spin_inside(const scenario::Support& support, Index place, const RodMesh& rod);
 
 /// The same in a model whose sections count: it is a bearing.
-bool is_bearing(const scenario::Support& support, Index place, const RodLayout& rod,
+bool is_bearing(const scenario::Support& support, Index place, const RodMesh& rod,
                 const Model& model);
 
 /// Enters a bearing into the layout of a rod, before its elements are made. Throws where the place
 /// is a corner, which has two tangents, and where the support would turn it.
-void hold_in_bearing(const scenario::Support& support, Index place, RodLayout& rod,
+void hold_in_bearing(const scenario::Support& support, Index place, RodMesh& rod,
                      const Model& model);
 
 }  // namespace der

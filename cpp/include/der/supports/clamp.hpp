@@ -19,14 +19,14 @@ struct Support;
 // that starts from the node, and an error of order l^2). docs/mechanics.md derives it.
 
 /// The edge that leaves a place, or at the end of a rod the one that arrives there.
-Index edge_beside(const RodLayout& rod, Index place);
+Index edge_beside(const RodMesh& rod, Index place);
 /// The place nearest to another at which two edges meet, on a rod of two edges or more.
-Index inner_place_near(const RodLayout& rod, Index place);
+Index inner_place_near(const RodMesh& rod, Index place);
 
 /// Angle [rad] of the tangent at a node of the initial shape: that of the circle through the node's
 /// neighbourhood, so that a clamp on an arc holds the arc's tangent and not the chord's. At a
 /// corner that of the leg which leaves it.
-double initial_tangent_angle(const RodLayout& rod, Index place, const Model& model);
+double initial_tangent_angle(const RodMesh& rod, Index place, const Model& model);
 
 /// Angle [rad] from the x axis at which a clamp holds the tangent in a state.
 double tangent_angle(const Clamp& clamp, const Model& model, const State& state);
@@ -42,7 +42,7 @@ void for_each_turning_control(const Clamp& clamp, const Use& use) {
 /// The same for all clamps of a model.
 template <class Use>
 void for_each_turning_control(const Model& model, const Use& use) {
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     for (const Clamp& clamp : rod.clamps) for_each_turning_control(clamp, use);
   }
 }
@@ -58,9 +58,9 @@ double largest_turn_of_clamps(const Model& model, const Vector& controls);
 
 /// Enters a clamp into the layout of `rod`, which is one of the model's. The rod's elements are
 /// made after it. Without effect on a rod that does not bend.
-void hold_tangent(const scenario::Support& support, Index place, RodLayout& rod, Model& model);
+void hold_tangent(const scenario::Support& support, Index place, RodMesh& rod, Model& model);
 
-EffectiveEdge effective_edge(const RodLayout& rod, Index edge, const Model& model);
+EffectiveEdge effective_edge(const RodMesh& rod, Index edge, const Model& model);
 /// The vector [m] in a state, with the clamps as they are turned there.
 Vec2 effective_vector(const EffectiveEdge& effective, const Model& model, const State& state);
 /// The point [m] about which an effective edge turns at its first or last end: a clamp's pivot, or
@@ -70,16 +70,16 @@ Vec2 effective_end(const EffectiveEdge& effective, bool last, const Model& model
 
 /// Length [m] over which the turning angle at a node without a clamp acts: its Voronoi length, less
 /// 1/48 of an edge that a clamp ends.
-double bend_length(const RodLayout& rod, Index place);
+double bend_length(const RodMesh& rod, Index place);
 /// Length [m] over which an edge turns against the clamped tangent at its end: 25/48 of the edge.
-double clamp_cell_length(const RodLayout& rod, Index edge);
+double clamp_cell_length(const RodMesh& rod, Index edge);
 /// Natural turning angle [rad] of that cell, from the start to the end of the rod.
-double clamp_rest_angle(const RodLayout& rod, const Clamp& clamp, Index edge, const Model& model);
+double clamp_rest_angle(const RodMesh& rod, const Clamp& clamp, Index edge, const Model& model);
 /// Where the moment of that cell acts, as a share of the edge from the clamp on: 1/5.
 double clamp_pivot_share();
 
 /// Adds the bending of a clamp's cells, one on either side of the node, and sets the node's rest
 /// turning angle to their sum.
-void add_clamp_cells(const Clamp& clamp, RodLayout& rod, Model& model);
+void add_clamp_cells(const Clamp& clamp, RodMesh& rod, Model& model);
 
 }  // namespace der

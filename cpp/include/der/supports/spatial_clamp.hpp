@@ -16,16 +16,16 @@ struct Support;
 
 /// Unit tangent at a node of the initial shape: that of the circle through the node's
 /// neighbourhood, at a corner that of the leg which leaves it.
-Vec3 initial_tangent(const RodLayout& rod, Index place, const Model& model);
+Vec3 initial_tangent(const RodMesh& rod, Index place, const Model& model);
 /// The same at the start of a rod, as the rod has it behind its first node: where a ring starts at
 /// a corner, or where its drawn curvature jumps, that of the open rod through its nodes.
-Vec3 first_tangent(const RodLayout& rod, const Model& model);
+Vec3 first_tangent(const RodMesh& rod, const Model& model);
 
 /// Enters a clamp into the layout of `rod`, which is one of the model's. The rod's elements are
 /// made after it. Without effect on a rod that does not bend.
-void hold_section(const scenario::Support& support, Index place, RodLayout& rod, Model& model);
+void hold_section(const scenario::Support& support, Index place, RodMesh& rod, Model& model);
 
 /// An edge of a rod as its elements see it.
-SpatialEdge spatial_edge(const RodLayout& rod, Index edge, const Model& model);
+SpatialEdge spatial_edge(const RodMesh& rod, Index edge, const Model& model);
 
 }  // namespace der

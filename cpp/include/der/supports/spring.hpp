@@ -24,18 +24,18 @@ struct Support;
 /// outermost middle the rod bends on to the place `s` [m]; and the node next to a free end lies
 /// l^2/12 kappa beside the curve (supports/clamp.hpp), which turns the outermost edge.
 /// `weights`: of the edges from `first_edge` on.
-std::array<double, 2> natural_turn_lengths(const RodLayout& rod, double s, Index first_edge,
+std::array<double, 2> natural_turn_lengths(const RodMesh& rod, double s, Index first_edge,
                                            const std::vector<double>& weights);
 
 /// How far [rad] the weighted directions of the edges of a place turn from the drawn shape to one
 /// in which no moment acts and the tangent there has its drawn direction; in a plane.
-double natural_turn_of_edges(const RodLayout& rod, const MomentPlace& place, const Model& model);
+double natural_turn_of_edges(const RodMesh& rod, const MomentPlace& place, const Model& model);
 
 /// Adds the springs of a support: the one to the anchor as an element, the one against turning to
 /// the moment places of its rod, where it joins what is at the same place.
 void add_spring(const scenario::Support& support, Model& model);
 
 /// Adds the elements of a rod's springs against turning, before there are moments of loads.
-void add_rotational_springs(RodLayout& rod, Model& model);
+void add_rotational_springs(RodMesh& rod, Model& model);
 
 }  // namespace der

@@ -353,7 +353,7 @@ class PathTracer {
   double largest_clamp_turn_;  // by a unit of the factor [rad]
   PathEquations equations_;
   EventLocator events_;
-  PlaneWatch plane_;
+  PlaneMonitor plane_;
   std::vector<PathBranch> branches_;
   std::vector<Crossing> crossings_;
 };

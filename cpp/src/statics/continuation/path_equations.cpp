@@ -22,7 +22,7 @@ constexpr double kLastStep = 1e-7;
 
 /// The frames in a vector `followed` of the model.
 Vector model_frames(const Model& model, const Vector& followed) {
-  return followed.tail(model.drawn_frames.size());
+  return followed.tail(model.initial_frames.size());
 }
 
 /// Angle [rad] about an edge by which its director in the frames `to` is turned against that of

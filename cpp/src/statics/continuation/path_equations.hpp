@@ -22,7 +22,7 @@ struct PathNode {
   Vector positions;      ///< all degrees of freedom [m]
   Vector followed;       ///< of the followed edges [rad]
   Stability stability;
-  Stability out_of_plane;  ///< (PlaneWatch)
+  Stability out_of_plane;  ///< (PlaneMonitor)
   [[nodiscard]] bool rising() const { return tangent.factor > 0.0; }
 };
 

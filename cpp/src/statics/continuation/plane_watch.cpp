@@ -11,15 +11,15 @@ constexpr double kPlace = 1e-11;
 
 }  // namespace
 
-void PlaneWatch::look(PathNode& node) {
+void PlaneMonitor::look(PathNode& node) {
   if (test_ == nullptr) return;
   const Configuration& here = equations_.configuration_at(node);
   if (!by_pivots_) by_pivots_ = test_->is_clear(here);
   node.out_of_plane = *by_pivots_ ? test_->stability_by_pivots(here) : test_->stability(here);
 }
 
-void PlaneWatch::locate(const PathNode& start, double reached, const PathNode& end,
-                        std::vector<LocatedEvent>& events) {
+void PlaneMonitor::locate(const PathNode& start, double reached, const PathNode& end,
+                          std::vector<LocatedEvent>& events) {
   const auto unstable = [](const PathNode& node) { return node.out_of_plane.unstable_directions; };
   PathNode before = start;
   double low = 0.0;

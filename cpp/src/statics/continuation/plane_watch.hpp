@@ -10,10 +10,11 @@
 namespace der::statics {
 
 /// Watches whether the equilibria of a planar path are stable against motion out of their plane.
-class PlaneWatch {
+class PlaneMonitor {
  public:
   /// `test` is null where nothing is tested.
-  PlaneWatch(PathEquations& equations, OutOfPlaneTest* test) : equations_(equations), test_(test) {}
+  PlaneMonitor(PathEquations& equations, OutOfPlaneTest* test)
+      : equations_(equations), test_(test) {}
 
   /// Judges the stability of a node.
   void look(PathNode& node);

@@ -16,7 +16,7 @@ namespace {
 constexpr double kRounding = 1e-9;
 
 /// Springs that hold a rod against spinning about one of its tangents.
-bool has_springs(const RodLayout& rod) {
+bool has_springs(const RodMesh& rod) {
   const bool pulls =
       std::any_of(rod.force_places.begin(), rod.force_places.end(),
                   [](const ForcePlace& place) { return !place.stiffness.isZero(0.0); });
@@ -27,7 +27,7 @@ bool has_springs(const RodLayout& rod) {
 }
 
 /// The drawn tangents that clamps hold, and springs against turning across them.
-std::vector<Vec3> held_tangents(const RodLayout& rod, const Model& model) {
+std::vector<Vec3> held_tangents(const RodMesh& rod, const Model& model) {
   std::vector<Vec3> tangents;
   for (const Clamp& clamp : rod.clamps) tangents.push_back(clamp.held.drawn.tangent);
   for (const SectionSpringPlace& place : rod.section_springs) {
@@ -38,7 +38,7 @@ std::vector<Vec3> held_tangents(const RodLayout& rod, const Model& model) {
 }
 
 /// A node that supports hold in all directions.
-std::optional<Vec3> find_held_point(const RodLayout& rod, const Model& model) {
+std::optional<Vec3> find_held_point(const RodMesh& rod, const Model& model) {
   const auto held = [&](Index node) {
     return !model.dofs.is_free(model.dof(node, 0)) && !model.dofs.is_free(model.dof(node, 1)) &&
            !model.dofs.is_free(model.dof(node, 2));
@@ -49,8 +49,7 @@ std::optional<Vec3> find_held_point(const RodLayout& rod, const Model& model) {
 }
 
 /// Whether turning about an axis through `origin` moves none of the places that supports hold.
-bool may_turn_about(const Vec3& axis, const Vec3& origin, const RodLayout& rod,
-                    const Model& model) {
+bool may_turn_about(const Vec3& axis, const Vec3& origin, const RodMesh& rod, const Model& model) {
   return std::all_of(rod.nodes.begin(), rod.nodes.end(), [&](Index node) {
     const Vec3 point = model.initial_positions.segment<3>(model.dof(node, 0));
     const Vec3 motion = axis.cross(point - origin);
@@ -62,7 +61,7 @@ bool may_turn_about(const Vec3& axis, const Vec3& origin, const RodLayout& rod,
   });
 }
 
-bool spins_freely(const RodLayout& rod, const Model& model) {
+bool spins_freely(const RodMesh& rod, const Model& model) {
   const auto holds = [](const Clamp& clamp) { return clamp.holds_section; };
   if (std::any_of(rod.clamps.begin(), rod.clamps.end(), holds) || has_springs(rod)) return false;
   const std::vector<Vec3> tangents = held_tangents(rod, model);
@@ -79,7 +78,7 @@ bool spins_freely(const RodLayout& rod, const Model& model) {
 
 std::string find_free_spin(const Model& model) {
   if (!model.has_sections()) return "";
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     if (!spins_freely(rod, model)) continue;
     return fmt::format(
         "rod '{}' spins freely about the tangent that its clamp holds; write 'clamp: true', which "

@@ -15,7 +15,7 @@ namespace {
 double rotational_compliance(const Model& model) {
   double rods = 0.0;
   double springs = 0.0;
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     if (rod.EI > 0.0) rods = std::max(rods, rod.rest_length() / rod.EI);
     for (const MomentPlace& place : rod.moment_places) {
       if (place.stiffness > 0.0) springs = std::max(springs, 1.0 / place.stiffness);

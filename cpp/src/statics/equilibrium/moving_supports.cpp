@@ -20,14 +20,14 @@ constexpr double kFirstTrial = 1e-9;
 constexpr double kBentBesideClamp = 1.0;
 
 /// The controls with all clamps at their initial angles.
-Vector drawn_controls(const Model& model, Vector controls) {
+Vector reference_controls(const Model& model, Vector controls) {
   for_each_turning_control(model, [&](Index control) { controls[control] = 0.0; });
   return controls;
 }
 
 /// The controls with each clamp of a planar rod turned as far as the edge beside it.
 Vector present_controls(const Model& model, Vector controls, const Vector& followed) {
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     for (const Clamp& clamp : rod.clamps) {
       if (clamp.followed < 0) continue;
       const double turn = followed[clamp.followed];
@@ -45,8 +45,8 @@ std::vector<double> move_supports(const Model& model, const StaticLoads& loads,
                                   const Equilibrate& equilibrate, Shape& shape) {
   const bool as_drawn =
       shape.positions(model.dofs.free()) == model.initial_positions(model.dofs.free());
-  if (as_drawn) shape = {model.initial_positions, followed_as_drawn(model)};
-  StaticLoads drawn{drawn_controls(model, loads.controls), {}};
+  if (as_drawn) shape = {model.initial_positions, unwrapped_of_reference(model)};
+  StaticLoads drawn{reference_controls(model, loads.controls), {}};
   (as_drawn ? drawn : loads).follow(model, shape);
 
   const Vector target_controls = loads.at(model, shape).controls;
@@ -54,7 +54,7 @@ std::vector<double> move_supports(const Model& model, const StaticLoads& loads,
   apply_prescribed_motion(model, target_controls, target);
   const Vector displacement = target - shape.positions;
   const Vector rotation =
-      target_controls - (as_drawn ? drawn_controls(model, target_controls)
+      target_controls - (as_drawn ? reference_controls(model, target_controls)
                                   : present_controls(model, target_controls, shape.followed));
   const double longest = kLargestStep / std::max(largest_edge_change(model, displacement),
                                                  rotation.lpNorm<Eigen::Infinity>());

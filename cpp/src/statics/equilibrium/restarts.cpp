@@ -22,7 +22,7 @@ Vector straightened(const Model& model, const StaticLoads& loads, const Shape& s
                     double direction) {
   const Vec3 along(std::cos(direction), std::sin(direction), 0.0);
   Vector positions = start.positions;
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     if (rod.closed) continue;
     const auto position = [&](std::size_t i) {
       return positions.segment(model.dof(rod.nodes[i], 0), model.dimension);

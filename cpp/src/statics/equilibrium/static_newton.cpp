@@ -16,7 +16,8 @@ constexpr double kLargestLastChange = 0.5;
 }  // namespace
 
 StaticNewton::StaticNewton(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                           const NewtonOptions& options, Admissibility admissibility, Beat beat)
+                           const NewtonOptions& options, Admissibility admissibility,
+                           CancelCallback beat)
     : model_(model),
       problem_(model, assembler, {model.dofs.unit_masses(), {}}),
       newton_(model.dofs, solver, assembler.num_values(), options, std::move(beat)),

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "der/assembly/assembler.hpp"
-#include "der/core/beat.hpp"
+#include "der/core/cancel_callback.hpp"
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
 #include "der/solvers/linear_solver.hpp"
@@ -22,7 +22,7 @@ class StaticNewton {
  public:
   /// `beat` is called once an iteration.
   StaticNewton(const Model& model, const Assembler& assembler, LinearSolver& solver,
-               const NewtonOptions& options, Admissibility admissibility, Beat beat);
+               const NewtonOptions& options, Admissibility admissibility, CancelCallback beat);
 
   /// Never: plain steps alone, to a solution near by, be it stable or not.
   enum class LineSearch { Never, IfNeeded, Always };

@@ -15,8 +15,8 @@ double tangent_angle(const Clamp& clamp, const Configuration& here) {
 }
 
 /// Sum of the turning angles [rad] at all nodes from one clamp to another, both included.
-double turning_angle(const Model& model, const RodLayout& rod, const Clamp& first,
-                     const Clamp& last, const Configuration& here) {
+double turning_angle(const Model& model, const RodMesh& rod, const Clamp& first, const Clamp& last,
+                     const Configuration& here) {
   const auto tangent = [&](const Clamp& clamp) {
     const double angle = tangent_angle(clamp, here);
     return Vec2(std::cos(angle), std::sin(angle));
@@ -37,7 +37,7 @@ double turning_angle(const Model& model, const RodLayout& rod, const Clamp& firs
 std::vector<double> planar_whole_turns(const Model& model, const Configuration& here) {
   std::vector<double> turns;
   if (model.dimension != 2) return turns;
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     for (const Clamp& first : rod.clamps) {
       for (const Clamp& other : rod.clamps) {
         if (first.place >= other.place) continue;

@@ -8,10 +8,10 @@ namespace der {
 
 /// Tells, inside a fast loop, when an interval has passed. It asks the clock only every n-th time,
 /// n growing until that is about once in half a millisecond: in between a call is one decrement.
-class Pacer {
+class FlushTimer {
  public:
   using Seconds = std::chrono::duration<double>;
-  explicit Pacer(Seconds interval) : interval_(interval) {}
+  explicit FlushTimer(Seconds interval) : interval_(interval) {}
 
   /// True when the interval has passed since it last was true; the first call is true.
   bool due() { return --countdown_ <= 0 && check(); }

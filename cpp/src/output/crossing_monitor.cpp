@@ -1,4 +1,4 @@
-#include "der/output/crossing_watch.hpp"
+#include "der/output/crossing_monitor.hpp"
 
 #include <fmt/format.h>
 
@@ -58,10 +58,10 @@ std::array<double, 2> nearest_places(const Vec3& a, const Vec3& a_end, const Vec
 
 }  // namespace
 
-CrossingWatch::CrossingWatch(const Model& model, const State& start, double step_cost)
+CrossingMonitor::CrossingMonitor(const Model& model, const State& start, double step_cost)
     : income_(kIncome * step_cost * static_cast<double>(model.num_nodes)),
       same_(kCrossing * model.size()) {
-  for (const RodLayout& rod : model.rods) thickest_ = std::max(thickest_, rod.draw_radius);
+  for (const RodMesh& rod : model.rods) thickest_ = std::max(thickest_, rod.draw_radius);
   const double touching = std::max(2.0 * kTouching * thickest_, same_);
   for (const Vector* shape : {&model.initial_positions, &start.positions}) {
     if (!shape->allFinite()) continue;
@@ -73,7 +73,7 @@ CrossingWatch::CrossingWatch(const Model& model, const State& start, double step
   }
 }
 
-void CrossingWatch::after_step(const Model& model, const State& state) {
+void CrossingMonitor::after_step(const Model& model, const State& state) {
   if (found_) return;
   credit_ = std::min(credit_ + income_, std::max(kSavings * work_, income_));
   if (credit_ < work_) return;
@@ -85,7 +85,7 @@ void CrossingWatch::after_step(const Model& model, const State& state) {
   look(model, state);
 }
 
-void CrossingWatch::look(const Model& model, const State& state) {
+void CrossingMonitor::look(const Model& model, const State& state) {
   if (found_ || !state.positions.allFinite()) return;
   cut_into_pieces(model, state.positions);
   seen_ = state.positions.head(model.dofs.num_positions());
@@ -116,7 +116,7 @@ void CrossingWatch::look(const Model& model, const State& state) {
                     state.load_factor};
 }
 
-void CrossingWatch::cut_into_pieces(const Model& model, const Vector& positions) {
+void CrossingMonitor::cut_into_pieces(const Model& model, const Vector& positions) {
   pieces_.clear();
   length_.assign(model.rods.size(), 0.0);
   for (Index rod = 0; rod < static_cast<Index>(model.rods.size()); ++rod) {
@@ -125,8 +125,8 @@ void CrossingWatch::cut_into_pieces(const Model& model, const Vector& positions)
 }
 
 /// Short edges are joined: far below the radius a piece tells no more.
-void CrossingWatch::cut_rod(const Model& model, Index number, const Vector& positions) {
-  const RodLayout& rod = model.rods[to_size(number)];
+void CrossingMonitor::cut_rod(const Model& model, Index number, const Vector& positions) {
+  const RodMesh& rod = model.rods[to_size(number)];
   Piece piece;
   piece.rod = number;
   piece.from = point_of(model, positions, rod.node(0));
@@ -145,7 +145,7 @@ void CrossingWatch::cut_rod(const Model& model, Index number, const Vector& posi
   length_[to_size(number)] = piece.end;
 }
 
-Index CrossingWatch::put_into_boxes(Index first, Index count) {
+Index CrossingMonitor::put_into_boxes(Index first, Index count) {
   const auto number = static_cast<Index>(boxes_.size());
   boxes_.emplace_back();
   Box box;
@@ -168,7 +168,7 @@ Index CrossingWatch::put_into_boxes(Index first, Index count) {
 }
 
 template <class Take>
-void CrossingWatch::each_pair(const Model& model, const double& limit, Take&& take) {
+void CrossingMonitor::each_pair(const Model& model, const double& limit, Take&& take) {
   const auto count = static_cast<Index>(pieces_.size());
   work_ = kWorkOfPiece * static_cast<double>(count);
   boxes_.clear();
@@ -183,8 +183,8 @@ void CrossingWatch::each_pair(const Model& model, const double& limit, Take&& ta
 
 /// Box `a` has the pieces before those of `b`.
 template <class Take>
-void CrossingWatch::pairs_between(const Model& model, Index a, Index b, const double& limit,
-                                  Take&& take) {
+void CrossingMonitor::pairs_between(const Model& model, Index a, Index b, const double& limit,
+                                    Take&& take) {
   work_ += 1.0;
   const Box& first = boxes_[to_size(a)];
   const Box& second = boxes_[to_size(b)];
@@ -206,12 +206,12 @@ void CrossingWatch::pairs_between(const Model& model, Index a, Index b, const do
 }
 
 /// Bent to its own radius all around, a rod comes back to itself after this length [m].
-double CrossingWatch::neighbourhood(const Model& model, Index rod) const {
+double CrossingMonitor::neighbourhood(const Model& model, Index rod) const {
   return 2.0 * kPi * radius_of(model, rod) + same_;
 }
 
 /// The pieces come in the order of their rods and arc lengths.
-bool CrossingWatch::can_meet(const Model& model, const Piece& a, const Piece& b) const {
+bool CrossingMonitor::can_meet(const Model& model, const Piece& a, const Piece& b) const {
   const bool crosses =
       model.dimension == 2 || radius_of(model, a.rod) + radius_of(model, b.rod) > 0;
   if (a.rod != b.rod || !crosses) return crosses;
@@ -220,7 +220,7 @@ bool CrossingWatch::can_meet(const Model& model, const Piece& a, const Piece& b)
   return b.start - a.end > around && (!model.rods[to_size(a.rod)].closed || other_way > around);
 }
 
-CrossingWatch::Pair CrossingWatch::pair_of(const Model& model, Index a, Index b) const {
+CrossingMonitor::Pair CrossingMonitor::pair_of(const Model& model, Index a, Index b) const {
   const Piece& first = pieces_[to_size(a)];
   const Piece& second = pieces_[to_size(b)];
   const auto [s, t] = nearest_places(first.from, first.to, second.from, second.to);
@@ -230,7 +230,7 @@ CrossingWatch::Pair CrossingWatch::pair_of(const Model& model, Index a, Index b)
 }
 
 /// Ends that meet, as those of a strip that rolls up to a ring do, pass through nothing.
-bool CrossingWatch::is_left_out(const Model& model, const Pair& pair) const {
+bool CrossingMonitor::is_left_out(const Model& model, const Pair& pair) const {
   const auto from_end = [&](Index number, double share) {
     const Piece& piece = pieces_[to_size(number)];
     if (model.rods[to_size(piece.rod)].closed) return std::numeric_limits<double>::infinity();
@@ -248,7 +248,7 @@ bool CrossingWatch::is_left_out(const Model& model, const Pair& pair) const {
   return left_out_.count({pieces_[to_size(pair.first)].rod, pieces_[to_size(pair.second)].rod}) > 0;
 }
 
-std::string describe(const CrossingWatch::Crossing& crossing, const std::string& when) {
+std::string describe(const CrossingMonitor::Crossing& crossing, const std::string& when) {
   const std::string what =
       crossing.first_rod == crossing.second_rod
           ? fmt::format(

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from der._core import Rod
 
 
-def natural_size(rods: Sequence[Rod], unit: str, time: float) -> float:
+def characteristic_scale(rods: Sequence[Rod], unit: str, time: float) -> float:
     """Return the natural size of quantities of a unit; 0 where there is none.
 
     Parameters

@@ -1,4 +1,4 @@
-#include "der/model/rest_shape.hpp"
+#include "der/model/natural_strain.hpp"
 
 #include <algorithm>
 
@@ -6,25 +6,25 @@ namespace der {
 namespace {
 
 struct ByEntry {
-  bool operator()(const RestShape::Term& a, const RestShape::Term& b) const {
+  bool operator()(const NaturalStrain::Term& a, const NaturalStrain::Term& b) const {
     return a.entry < b.entry;
   }
 };
 
 }  // namespace
 
-void RestShape::add(const std::vector<Term>& terms) {
+void NaturalStrain::add(const std::vector<Term>& terms) {
   terms_.insert(terms_.end(), terms.begin(), terms.end());
   std::stable_sort(terms_.begin(), terms_.end(), ByEntry{});
 }
 
-std::vector<RestShape::Term> RestShape::terms_of(Index entry) const {
+std::vector<NaturalStrain::Term> NaturalStrain::terms_of(Index entry) const {
   const auto [first, last] =
       std::equal_range(terms_.begin(), terms_.end(), Term{entry, 0, 0.0}, ByEntry{});
   return {first, last};
 }
 
-void RestShape::enter(Vector& controls) const {
+void NaturalStrain::enter(Vector& controls) const {
   controls.segment(first_, size_).setZero();
   for (const auto& [entry, control, weight] : terms_) controls[entry] += weight * controls[control];
 }

@@ -9,7 +9,7 @@ namespace der {
 /// How the entries of the controls that shift the rest shape of elements follow from the tables of
 /// the actuations: each is a sum of tables with weights. They stand behind the frames and before
 /// the tables.
-class RestShape {
+class NaturalStrain {
  public:
   /// `weight` times a control, added to an entry.
   struct Term {
@@ -18,9 +18,9 @@ class RestShape {
     double weight = 0.0;
   };
 
-  RestShape() = default;
+  NaturalStrain() = default;
   /// `first`: number of entries before these; `size`: how many there are.
-  RestShape(Index first, Index size) : first_(first), size_(size) {}
+  NaturalStrain(Index first, Index size) : first_(first), size_(size) {}
 
   [[nodiscard]] Index end() const { return first_ + size_; }
   /// Whether any actuation acts.

@@ -4,15 +4,15 @@
 
 namespace der {
 
-/// Curvature, integrated over the joint between two edges, towards the two directors, and its twist
-/// [rad].
+/// Curvature, integrated over the vertex between two edges, towards the two directors, and its
+/// twist [rad].
 template <class T>
-struct JointStrainOf {
+struct MaterialCurvatureOf {
   T kappa_1 = 0.0;
   T kappa_2 = 0.0;
   T twist = 0.0;
   auto fields() { return std::tie(kappa_1, kappa_2, twist); }
 };
-using JointStrain = JointStrainOf<double>;
+using MaterialCurvature = MaterialCurvatureOf<double>;
 
 }  // namespace der

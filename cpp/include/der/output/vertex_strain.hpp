@@ -1,6 +1,6 @@
 #pragma once
 
-#include "der/kinematics/joint_strain.hpp"
+#include "der/kinematics/material_curvature.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
 
@@ -17,24 +17,24 @@ Vector directors_of(const Model& model, const State& state);
 /// The section frame that a clamp in space holds at a state, but for its turn about the tangent.
 SectionFrame held_frame(const HeldFrame& held, const Model& model, const State& state);
 
-/// Curvatures and twist of a joint of a rod in space at a state. Without sections, `kappa_1` is the
-/// integrated curvature, in whatever direction, and the rest is zero.
-JointStrain strain_of(const RodJoint& joint, const RodLayout& rod, const Model& model,
-                      const State& state);
+/// Curvatures and twist of a vertex of a rod in space at a state. Without sections, `kappa_1` is
+/// the integrated curvature, in whatever direction, and the rest is zero.
+MaterialCurvature strain_of(const RodVertex& vertex, const RodMesh& rod, const Model& model,
+                            const State& state);
 
-/// Those of a joint without stress, as actuations have them at a state.
-JointStrain rest_strain(const RodJoint& joint, const RodLayout& rod, const Model& model,
-                        const State& state);
+/// Those of a vertex without stress, as actuations have them at a state.
+MaterialCurvature rest_strain(const RodVertex& vertex, const RodMesh& rod, const Model& model,
+                              const State& state);
 
-/// Moment [N m] in a joint of a rod whose sections count, exerted on the side before it.
-Vec3 moment_of(const RodJoint& joint, const RodLayout& rod, const Model& model, const State& state);
+/// Moment [N m] in a vertex of a rod whose sections count, exerted on the side before it.
+Vec3 moment_of(const RodVertex& vertex, const RodMesh& rod, const Model& model, const State& state);
 
 /// The same of any rod in space: without sections, the vector about which it bends there.
-Vec3 cell_moment(const RodJoint& joint, const RodLayout& rod, const Model& model,
+Vec3 cell_moment(const RodVertex& vertex, const RodMesh& rod, const Model& model,
                  const State& state);
 
-/// Unit vector about which a rod in space bends at a joint; zero where it does not.
-Vec3 bend_axis(const RodJoint& joint, const RodLayout& rod, const Model& model, const State& state);
+/// Unit vector about which a rod in space bends at a vertex; zero where it does not.
+Vec3 bend_axis(const RodVertex& vertex, const RodMesh& rod, const Model& model, const State& state);
 
 /// The point [m] at which an edge of a rod in space begins or ends as its elements see it: a
 /// clamp's pivot, or the node.

@@ -18,11 +18,11 @@ namespace der {
 /// round, of the radius that they are drawn with; without one they can only cross in a plane. Left
 /// out are parts of a rod that a bend of this radius could bring together, and rods that overlap
 /// where they are drawn, or where the watch begins.
-class CrossingWatch {
+class CrossingMonitor {
  public:
   /// `step_cost` is that of a step per node, against one of an implicit stepper of one stage in the
   /// spatial model.
-  CrossingWatch(const Model& model, const State& start, double step_cost);
+  CrossingMonitor(const Model& model, const State& start, double step_cost);
 
   /// Looks if a look is due.
   void after_step(const Model& model, const State& state);
@@ -92,6 +92,6 @@ class CrossingWatch {
 };
 
 /// What was found, in sentences. `when` is its place in the run.
-std::string describe(const CrossingWatch::Crossing& crossing, const std::string& when);
+std::string describe(const CrossingMonitor::Crossing& crossing, const std::string& when);
 
 }  // namespace der

@@ -10,7 +10,7 @@ namespace der {
 
 /// Looks for rods that are stretched to more than twice their rest length, at which no material
 /// obeys a linear law: mostly a unit is wrong. Rods that actuations lengthen are left out.
-class StrainWatch {
+class StrainMonitor {
  public:
   void look(const Model& model, const State& state);
 

@@ -13,7 +13,7 @@ namespace der {
 /// independent of one another, so that they run side by side in two lanes, and a block of the
 /// band's width joins them (a twisted factorisation; Golub and Van Loan, Matrix Computations,
 /// 4th ed., section 4.3.6, is the band's). MatrixLayout::two_ended says where entries lie.
-class TwoEndedLdlt final : public LinearSolver {
+class TwistedLdlt final : public LinearSolver {
  public:
   /// Whether there are kernels for the matrix: half-bandwidth 5, 8 or 10, and halves worth it.
   static bool suits(const Pattern& pattern);
@@ -27,7 +27,7 @@ class TwoEndedLdlt final : public LinearSolver {
     void (*solve_middle)(const double* band, double* b);
   };
 
-  explicit TwoEndedLdlt(const Pattern& pattern);
+  explicit TwistedLdlt(const Pattern& pattern);
   [[nodiscard]] std::string_view name() const override { return "banded"; }
   [[nodiscard]] const MatrixLayout& layout() const override { return layout_; }
   Inertia factorize(const Vector& values) override;

@@ -1,13 +1,13 @@
 #pragma once
 
 #include "der/core/types.hpp"
-#include "der/kinematics/joint_strain.hpp"
+#include "der/kinematics/material_curvature.hpp"
 
 namespace der {
 
 /// Where the controls have what actuations add to the rest shape of an element
-/// (model/rest_shape.hpp).
-struct RestShift {
+/// (model/natural_strain.hpp).
+struct NaturalStrainOffset {
   Index entry = -1;  ///< -1: no actuation reaches the element
 
   /// The shift of an extension [m] or a turning angle [-].
@@ -17,7 +17,7 @@ struct RestShift {
   }
   /// The shifts of two integrated curvatures and a twist, which are three entries [-].
   template <class Values>
-  [[nodiscard]] JointStrain strain(const Values& controls) const {
+  [[nodiscard]] MaterialCurvature strain(const Values& controls) const {
     if (entry < 0) return {};
     return {controls[entry], controls[entry + 1], controls[entry + 2]};
   }

@@ -12,9 +12,9 @@ namespace der {
 /// acceleration say nothing about the end of the step: the terms would be larger than the motion by
 /// the factors w dt and (w dt)^2. A term that changes an edge by more than is plausible is left
 /// out; without that of the velocity, that of the acceleration too.
-class StepGuess {
+class Predictor {
  public:
-  explicit StepGuess(const Model& model) : model_(model), term_(Vector::Zero(model.num_dofs())) {}
+  explicit Predictor(const Model& model) : model_(model), term_(Vector::Zero(model.num_dofs())) {}
 
   /// Sets `positions` [m], over all degrees of freedom, to the guess for a step of `dt` [s].
   void evaluate(const State& state, double dt, Vector& positions);

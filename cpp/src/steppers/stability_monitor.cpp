@@ -1,4 +1,4 @@
-#include "der/steppers/stability_watch.hpp"
+#include "der/steppers/stability_monitor.hpp"
 
 #include <fmt/format.h>
 
@@ -98,24 +98,24 @@ bool has_other_shape(const Model& model, const Vector& positions, const Vector& 
 
 }  // namespace
 
-StabilityWatch::StabilityWatch(const Model& model, const StepperInfo& stepper,
-                               const scenario::Time& time)
+StabilityMonitor::StabilityMonitor(const Model& model, const StepperInfo& stepper,
+                                   const scenario::Time& time)
     : model_(model),
       time_(time),
       bound_(model, stepper.drag_limits_step),
       here_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())} {}
 
-double StabilityWatch::stable_step(const State& state) {
+double StabilityMonitor::stable_step(const State& state) {
   configuration_of(model_, state, here_);
   return bound_.evaluate(here_);
 }
 
-StableStep StabilityWatch::explain(const State& state) {
+StableStep StabilityMonitor::explain(const State& state) {
   configuration_of(model_, state, here_);
   return bound_.explain(here_);
 }
 
-void StabilityWatch::check_start(const State& state) {
+void StabilityMonitor::check_start(const State& state) {
   if (time_.stepping == scenario::Stepping::Adaptive || may_be_unstable(time_)) return;
   const bool automatic = time_.stepping == scenario::Stepping::Automatic;
   const double limit = stable_step(state);
@@ -133,7 +133,7 @@ void StabilityWatch::check_start(const State& state) {
                                    fmt::format(kAdvice, kStepMargin * stable.step));
 }
 
-void StabilityWatch::look(State& state, double step) {
+void StabilityMonitor::look(State& state, double step) {
   if (may_be_unstable(time_)) return;
   const auto* last = std::get_if<StabilityMemory>(&state.memory);
   const bool looked = last != nullptr;
@@ -164,7 +164,7 @@ void StabilityWatch::look(State& state, double step) {
   state.next_step = step / fewest;
 }
 
-std::string StabilityWatch::explain_overrun(const State& state) {
+std::string StabilityMonitor::explain_overrun(const State& state) {
   const StableStep stable = explain(state);
   return fmt::format(
              "the motion would diverge from t = {:.6g} s on: the rod has become stiffer, "
@@ -173,7 +173,7 @@ std::string StabilityWatch::explain_overrun(const State& state) {
          fmt::format(kAdvice, kStepMargin * stable.step);
 }
 
-std::string StabilityWatch::explain_end(const State& state, double least) {
+std::string StabilityMonitor::explain_end(const State& state, double least) {
   return fmt::format(
       "the motion cannot go on from t = {:.6g} s: {} now, too close to time.minimum_step of {:.3g} "
       "s. Edges that are crushed or folded flat do that: take an implicit integrator, or fewer "
@@ -181,7 +181,7 @@ std::string StabilityWatch::explain_end(const State& state, double least) {
       state.time, describe_stable_step(explain(state), time_.integrator, model_), least);
 }
 
-std::string StabilityWatch::explain_blow_up(const State& start, const State& last, double step) {
+std::string StabilityMonitor::explain_blow_up(const State& start, const State& last, double step) {
   const StableStep stable = explain(may_be_unstable(time_) ? start : last);
   const std::string limit = describe_stable_step(stable, time_.integrator, model_);
   if (step <= stable.step) {

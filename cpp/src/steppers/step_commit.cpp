@@ -1,4 +1,4 @@
-#include "der/steppers/step_finisher.hpp"
+#include "der/steppers/step_commit.hpp"
 
 #include "der/model/gravity.hpp"
 #include "der/model/moment_place.hpp"
@@ -7,16 +7,16 @@
 
 namespace der {
 
-StepFinisher::StepFinisher(const Model& model)
+StepCommit::StepCommit(const Model& model)
     : model_(model),
-      controls_work_(any_clamp_turns(model) || model.rest_shape.is_actuated()),
+      controls_work_(any_clamp_turns(model) || model.natural_strain.is_actuated()),
       start_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       end_(start_),
       ahead_(start_),
       behind_(start_) {}
 
-void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector>& velocities,
-                          double dt, State& state) {
+void StepCommit::finish(const Vector& positions, const Eigen::Ref<const Vector>& velocities,
+                        double dt, State& state) {
   configuration_of(model_, state, start_);
   end_.coordinates = positions;
   evaluate_controls(model_, state, state.time + dt, end_.controls);
@@ -50,7 +50,7 @@ void StepFinisher::finish(const Vector& positions, const Eigen::Ref<const Vector
 /// its section by the transport from there, which is not a turn of the clamp: the spin of
 /// sections takes that up (model/spin.hpp). Its work with the edge's torque is of the second order
 /// in each step.
-ControlWork StepFinisher::follow_and_work(State& state) {
+ControlWork StepCommit::follow_and_work(State& state) {
   if (controls_work_) {
     ahead_.coordinates = start_.coordinates;
     ahead_.controls = end_.controls;

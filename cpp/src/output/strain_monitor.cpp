@@ -1,4 +1,4 @@
-#include "der/output/strain_watch.hpp"
+#include "der/output/strain_monitor.hpp"
 
 #include <cmath>
 
@@ -11,9 +11,9 @@ constexpr double kLongest = 2.0;  // times the rest length
 
 }  // namespace
 
-void StrainWatch::look(const Model& model, const State& state) {
+void StrainMonitor::look(const Model& model, const State& state) {
   if (found_) return;
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     if (!rod.actuated_stretches.empty()) continue;
     for (Index i = 0; i < rod.num_edges(); ++i) {
       const Edge edge = rod.edge(i, model);

@@ -21,17 +21,17 @@ namespace der {
 ///
 /// A node that turns through half a turn is another reason for doubt: the turning angle, and with
 /// it the bending energy of a rod with a natural shape or a moment, jumps there by a whole turn.
-class EnergyWatch {
+class EnergyMonitor {
  public:
   /// Number of implicit steps from one check to the next.
   static constexpr std::int64_t kStride = 16;
 
-  explicit EnergyWatch(const Model& model);
+  explicit EnergyMonitor(const Model& model);
 
   /// To be called at the start of a motion, whose energy is the reference.
   void begin(const State& state);
   /// Whether a program has moved the state since the last step.
-  [[nodiscard]] bool was_written(const State& state) const;
+  [[nodiscard]] bool has_external_writes(const State& state) const;
   /// To be called before a step of a state that was: accumulates the energy of what was written.
   void enter_written(State& state);
   /// To be called after each step: enters a node that has folded over in it. Allocates nothing.

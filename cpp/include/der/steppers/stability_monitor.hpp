@@ -16,9 +16,9 @@ struct Time;
 
 /// Keeps the steps of an explicit run stable: compressed edges, and with the
 /// tangent measure bent ones, make a rod stiffer than it was at the start.
-class StabilityWatch {
+class StabilityMonitor {
  public:
-  StabilityWatch(const Model& model, const StepperInfo& stepper, const scenario::Time& time);
+  StabilityMonitor(const Model& model, const StepperInfo& stepper, const scenario::Time& time);
 
   /// Stable step [s] at a state.
   double stable_step(const State& state);

@@ -1,4 +1,4 @@
-#include "der/solvers/two_ended_ldlt.hpp"
+#include "der/solvers/twisted_ldlt.hpp"
 
 #include "der/core/loops.hpp"
 #include "solvers/band_kernels.hpp"
@@ -9,39 +9,39 @@ namespace {
 template <Index kWidth>
 Inertia factorize_halves(Index columns, TwoLanes* band) {
   TwoLanes* const none = nullptr;
-  return run_loop([&] { return factorize_band<kWidth>(columns, kWidth, band, none); });
+  return dispatch_simd([&] { return factorize_band<kWidth>(columns, kWidth, band, none); });
 }
 template <Index kWidth>
 void eliminate_halves(Index columns, const TwoLanes* band, TwoLanes* b) {
-  run_loop([&] { eliminate<kWidth>(columns, kWidth, band, b); });
+  dispatch_simd([&] { eliminate<kWidth>(columns, kWidth, band, b); });
 }
 template <Index kWidth>
 void substitute_halves(Index columns, const TwoLanes* band, TwoLanes* b) {
-  run_loop([&] { substitute<kWidth>(columns, kWidth, band, b); });
+  dispatch_simd([&] { substitute<kWidth>(columns, kWidth, band, b); });
 }
 
 // The middle is a full matrix of the band's width.
 template <Index kWidth>
 Inertia factorize_middle_of(double* band) {
   double* const none = nullptr;
-  return run_loop([&] { return factorize_band<kWidth>(kWidth, kWidth, band, none); });
+  return dispatch_simd([&] { return factorize_band<kWidth>(kWidth, kWidth, band, none); });
 }
 template <Index kWidth>
 void solve_middle_of(const double* band, double* b) {
-  run_loop([&] {
+  dispatch_simd([&] {
     eliminate<kWidth>(kWidth, kWidth, band, b);
     substitute<kWidth>(kWidth, kWidth, band, b);
   });
 }
 
 template <Index kWidth>
-constexpr TwoEndedLdlt::Kernels kTwoEndedKernels{
+constexpr TwistedLdlt::Kernels kTwoEndedKernels{
     factorize_halves<kWidth>, eliminate_halves<kWidth>, substitute_halves<kWidth>,
     factorize_middle_of<kWidth>, solve_middle_of<kWidth>};
 
 }  // namespace
 
-TwoEndedLdlt::Kernels TwoEndedLdlt::kernels_of(Index half_bandwidth) {
+TwistedLdlt::Kernels TwistedLdlt::kernels_of(Index half_bandwidth) {
   switch (half_bandwidth) {
     case 5:  // chains in the plane
       return kTwoEndedKernels<5>;
@@ -54,12 +54,12 @@ TwoEndedLdlt::Kernels TwoEndedLdlt::kernels_of(Index half_bandwidth) {
   }
 }
 
-bool TwoEndedLdlt::suits(const Pattern& pattern) {
+bool TwistedLdlt::suits(const Pattern& pattern) {
   return kernels_of(pattern.half_bandwidth).factorize != nullptr &&
          pattern.size >= 3 * pattern.half_bandwidth;
 }
 
-TwoEndedLdlt::TwoEndedLdlt(const Pattern& pattern)
+TwistedLdlt::TwistedLdlt(const Pattern& pattern)
     : size_(pattern.size),
       width_(pattern.half_bandwidth),
       columns_((size_ - width_ + 1) / 2),
@@ -73,7 +73,7 @@ TwoEndedLdlt::TwoEndedLdlt(const Pattern& pattern)
   middle_right_side_.setZero(2 * width_);
 }
 
-Inertia TwoEndedLdlt::factorize(const Vector& values) {
+Inertia TwistedLdlt::factorize(const Vector& values) {
   for (std::size_t k = 0; k < band_.size(); ++k) band_[k] = TwoLanes::load(values.data() + 2 * k);
   if (padding_ > 0) band_[0] = {band_[0].lane(0), 1.0};
   Inertia inertia = kernels_.factorize(columns_, band_.data());
@@ -91,7 +91,7 @@ Inertia TwoEndedLdlt::factorize(const Vector& values) {
 }
 
 /// The middle's own entries are in the first lane; the second has its rows and columns reversed.
-Inertia TwoEndedLdlt::factorize_middle() {
+Inertia TwistedLdlt::factorize_middle() {
   const Index stride = width_ + 1;
   const TwoLanes* rest = band_.data() + columns_ * stride;
   middle_.setZero();
@@ -105,7 +105,7 @@ Inertia TwoEndedLdlt::factorize_middle() {
   return kernels_.factorize_middle(middle_.data());
 }
 
-void TwoEndedLdlt::solve(Vector& b) {
+void TwistedLdlt::solve(Vector& b) {
   const auto reversed = [&](Index row) { return size_ - 1 - (row - padding_); };
   for (Index row = padding_; row < columns_; ++row) {
     right_side_[to_size(row)] = {b[row], b[reversed(row)]};
@@ -123,7 +123,7 @@ void TwoEndedLdlt::solve(Vector& b) {
   }
 }
 
-void TwoEndedLdlt::solve_middle() {
+void TwistedLdlt::solve_middle() {
   TwoLanes* rest = right_side_.data() + columns_;
   for (Index i = 0; i < width_; ++i) {
     middle_right_side_[i] = rest[i].lane(0) + rest[width_ - 1 - i].lane(1);

@@ -1,4 +1,4 @@
-#include "der/steppers/energy_watch.hpp"
+#include "der/steppers/energy_monitor.hpp"
 
 #include <fmt/format.h>
 
@@ -29,7 +29,7 @@ constexpr double kRoundingStrain = 1e-10;
 
 double strain_energy(const Model& model, double strain) {
   double energy = 0.0;
-  for (const RodLayout& rod : model.rods) {
+  for (const RodMesh& rod : model.rods) {
     energy += 0.5 * rod.EA * strain * strain * rod.rest_length();
   }
   return energy;
@@ -109,27 +109,27 @@ std::string times_text(double share) {
 
 }  // namespace
 
-EnergyWatch::EnergyWatch(const Model& model)
+EnergyMonitor::EnergyMonitor(const Model& model)
     : model_(model),
       rounding_(strain_energy(model, kRoundingStrain)),
       here_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       positions_(Vector::Zero(model.num_dofs())),
       velocities_(Vector::Zero(model.num_dofs())) {}
 
-void EnergyWatch::begin(const State& state) { keep(state); }
+void EnergyMonitor::begin(const State& state) { keep(state); }
 
-bool EnergyWatch::was_written(const State& state) const {
+bool EnergyMonitor::has_external_writes(const State& state) const {
   return !same_bits(state.positions, positions_) || !same_bits(state.velocities, velocities_);
 }
 
-void EnergyWatch::enter_written(State& state) {
+void EnergyMonitor::enter_written(State& state) {
   configuration_of(model_, state, here_);
   const double now = energies(model_, here_, state.velocities).total();
   here_.coordinates = positions_;
   state.audit.written += now - energies(model_, here_, velocities_).total();
 }
 
-void EnergyWatch::after_step(State& state) {
+void EnergyMonitor::after_step(State& state) {
   EnergyAudit& audit = state.audit;
   if (audit.folded_from < 0.0) {
     const Index node = folded_node(model_, positions_, state.positions);
@@ -142,17 +142,17 @@ void EnergyWatch::after_step(State& state) {
   keep(state);
 }
 
-void EnergyWatch::keep(const State& state) {
+void EnergyMonitor::keep(const State& state) {
   positions_ = state.positions;
   velocities_ = state.velocities;
 }
 
-Energies EnergyWatch::energies_of(const State& state) {
+Energies EnergyMonitor::energies_of(const State& state) {
   configuration_of(model_, state, here_);
   return energies(model_, here_, state.velocities);
 }
 
-void EnergyWatch::enter_energies(const Energies& now, State& state) const {
+void EnergyMonitor::enter_energies(const Energies& now, State& state) const {
   const double kinetic = now[EnergyTerm::Kinetic];
   const Work& work = state.work;
   EnergyAudit& audit = state.audit;

@@ -1,16 +1,16 @@
-#include "der/output/pacer.hpp"
+#include "der/output/flush_timer.hpp"
 
 #include <algorithm>
 
 namespace der {
 namespace {
 
-constexpr Pacer::Seconds kCheckInterval{0.5e-3};
+constexpr FlushTimer::Seconds kCheckInterval{0.5e-3};
 constexpr std::int64_t kLargestStride = 1 << 16;
 
 }  // namespace
 
-bool Pacer::check() {
+bool FlushTimer::check() {
   const auto now = Clock::now();
   if (now - last_check_ < kCheckInterval) {
     stride_ = std::min(2 * stride_, kLargestStride);

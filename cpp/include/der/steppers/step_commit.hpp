@@ -9,9 +9,9 @@
 namespace der {
 
 /// Completes a step that is done, the same for every stepper.
-class StepFinisher {
+class StepCommit {
  public:
-  explicit StepFinisher(const Model& model);
+  explicit StepCommit(const Model& model);
 
   /// Moves `state`, still at the start of a step of `dt` [s], to its end. Held degrees of freedom
   /// get the velocity of their motion over the step, free ones that of `velocities` [m/s].

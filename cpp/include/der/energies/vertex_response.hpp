@@ -5,24 +5,24 @@
 
 #include "der/core/types.hpp"
 #include "der/kinematics/curvature_binormal.hpp"
-#include "der/kinematics/joint_strain.hpp"
+#include "der/kinematics/material_curvature.hpp"
 #include "der/kinematics/section_frame.hpp"
 
 namespace der {
 
-/// Stiffnesses and rest shape of the joint between two neighbouring edges.
+/// Stiffnesses and rest shape of the vertex between two neighbouring edges.
 template <class T>
-struct JointOf {
-  T bend_1 = 0.0;         ///< EI1 over the cell length [N m]
-  T bend_2 = 0.0;         ///< EI2 over the cell length [N m]
-  T twist = 0.0;          ///< GJ over the cell length [N m]
-  JointStrainOf<T> rest;  ///< of natural curvature and twist
+struct VertexOf {
+  T bend_1 = 0.0;               ///< EI1 over the cell length [N m]
+  T bend_2 = 0.0;               ///< EI2 over the cell length [N m]
+  T twist = 0.0;                ///< GJ over the cell length [N m]
+  MaterialCurvatureOf<T> rest;  ///< of natural curvature and twist
 
   template <class U>
-  using In = JointOf<U>;
+  using In = VertexOf<U>;
   auto fields() { return std::tuple_cat(std::tie(bend_1, bend_2, twist), rest.fields()); }
   /// The derivative of the energy by the strain [N m].
-  [[nodiscard]] JointStrainOf<T> load(const JointStrainOf<T>& strain) const {
+  [[nodiscard]] MaterialCurvatureOf<T> load(const MaterialCurvatureOf<T>& strain) const {
     return {bend_1 * (strain.kappa_1 - rest.kappa_1), bend_2 * (strain.kappa_2 - rest.kappa_2),
             twist * (strain.twist - rest.twist)};
   }
@@ -33,19 +33,19 @@ struct JointOf {
            twist * gt * gt.transpose();
   }
 };
-using Joint = JointOf<double>;
+using Vertex = VertexOf<double>;
 
-/// A joint whose three strains are coupled, as those at a corner are (building/corner.hpp).
+/// A vertex whose three strains are coupled, as those at a corner are (building/corner.hpp).
 template <class T>
-struct CoupledJointOf {
+struct CoupledVertexOf {
   Matrix3<T> coefficients = Matrix3<T>::Zero();  ///< second derivative of the energy by the strain
                                                  ///< [N m]
-  JointStrainOf<T> rest;
+  MaterialCurvatureOf<T> rest;
 
   template <class U>
-  using In = CoupledJointOf<U>;
+  using In = CoupledVertexOf<U>;
   auto fields() { return std::tuple_cat(std::tie(coefficients), rest.fields()); }
-  [[nodiscard]] JointStrainOf<T> load(const JointStrainOf<T>& strain) const {
+  [[nodiscard]] MaterialCurvatureOf<T> load(const MaterialCurvatureOf<T>& strain) const {
     const Vector3<T> q =
         coefficients * Vector3<T>(strain.kappa_1 - rest.kappa_1, strain.kappa_2 - rest.kappa_2,
                                   strain.twist - rest.twist);
@@ -58,70 +58,72 @@ struct CoupledJointOf {
     return gradients * coefficients * gradients.transpose();
   }
 };
-using CoupledJoint = CoupledJointOf<double>;
+using CoupledVertex = CoupledVertexOf<double>;
 
-/// A joint without stiffness that bears a load whatever its strain.
-struct LoadedJoint {
-  JointStrain rest;
-  JointStrain moments;  ///< [N m]
+/// A vertex without stiffness that bears a load whatever its strain.
+struct LoadedVertex {
+  MaterialCurvature rest;
+  MaterialCurvature moments;  ///< [N m]
 
-  [[nodiscard]] const JointStrain& load(const JointStrain& /*strain*/) const { return moments; }
+  [[nodiscard]] const MaterialCurvature& load(const MaterialCurvature& /*strain*/) const {
+    return moments;
+  }
   [[nodiscard]] static Mat3 stiffness(const Vec3& /*g1*/, const Vec3& /*g2*/, const Vec3& /*gt*/) {
     return Mat3::Zero();
   }
 };
 
-/// Energy [J] of a joint and its derivatives with respect to the rotations omega_a, omega_b of its
+/// Energy [J] of a vertex and its derivatives with respect to the rotations omega_a, omega_b of its
 /// two frames: dE = M . (omega_b - omega_a), and M changes by
 ///   dM = (S - 1/2 [M]x) omega_b - (S + 1/2 [M]x) omega_a.
 /// Turning both frames turns M with them, which is why one symmetric matrix tells it all.
 template <class T>
-struct JointResponseOf {
+struct VertexResponseOf {
   T energy = 0.0;
   Vector3<T> moment = Vector3<T>::Zero();     ///< M [N m]
   Matrix3<T> stiffness = Matrix3<T>::Zero();  ///< S [N m]
 };
-using JointResponse = JointResponseOf<double>;
+using VertexResponse = VertexResponseOf<double>;
 
-/// The side of a joint on which nothing holds the section against turning about the tangent.
+/// The side of a vertex on which nothing holds the section against turning about the tangent.
 enum class FreeSide { Before, After };
 
-/// The joint as its two frames see it: kb = f ta x tb, read in the frame of edge a turned by half
+/// The vertex as its two frames see it: kb = f ta x tb, read in the frame of edge a turned by half
 /// of the twist, so that bending a rod of a round section does not depend on its twist however
 /// large.
 template <class Curvature, class T = double>
-class JointKinematics {
+class VertexKinematics {
  public:
   /// `twist` is the whole twist [rad] between the two frames, whole turns included.
-  JointKinematics(const SectionFrameOf<T>& a, const SectionFrameOf<T>& b, const T& twist)
-      : JointKinematics(a, b, twist, 0.5 * twist, 0.5) {}
+  VertexKinematics(const SectionFrameOf<T>& a, const SectionFrameOf<T>& b, const T& twist)
+      : VertexKinematics(a, b, twist, 0.5 * twist, 0.5) {}
 
-  /// The joint to a side that holds the tangent alone. The section there spins with the edge on the
-  /// other side, from which it differs by `natural`, the rest twist [rad], since no torque passes;
-  /// `twist` is that between the two frames as before, which the held one does not follow.
-  static JointKinematics with_free_side(FreeSide side, const SectionFrameOf<T>& a,
-                                        const SectionFrameOf<T>& b, const T& twist,
-                                        const T& natural) {
+  /// The vertex to a side that holds the tangent alone. The section there spins with the edge on
+  /// the other side, from which it differs by `natural`, the rest twist [rad], since no torque
+  /// passes; `twist` is that between the two frames as before, which the held one does not follow.
+  static VertexKinematics with_free_side(FreeSide side, const SectionFrameOf<T>& a,
+                                         const SectionFrameOf<T>& b, const T& twist,
+                                         const T& natural) {
     if (side == FreeSide::Before) return {a, b, natural, twist - 0.5 * natural, 1.0};
     return {a, b, natural, 0.5 * natural, 0.0};
   }
 
-  /// The joint with its curvature read in the directors of a, which have a meaning of their own
+  /// The vertex with its curvature read in the directors of a, which have a meaning of their own
   /// where a bears a moment.
-  static JointKinematics read_before(const SectionFrameOf<T>& a, const SectionFrameOf<T>& b,
-                                     const T& twist) {
+  static VertexKinematics read_before(const SectionFrameOf<T>& a, const SectionFrameOf<T>& b,
+                                      const T& twist) {
     return {a, b, twist, 0.0, 0.0};
   }
 
-  [[nodiscard]] const JointStrainOf<T>& strain() const { return strain_; }
+  [[nodiscard]] const MaterialCurvatureOf<T>& strain() const { return strain_; }
 
-  /// Energy [J] of a joint, a JointOf<T> or a CoupledJointOf<T>.
-  template <class AJoint>
-  [[nodiscard]] T energy(const AJoint& joint) const {
-    const auto [q1, q2, torque] = joint.load(strain_);
-    return 0.5 * (q1 * (strain_.kappa_1 - joint.rest.kappa_1) +
-                  q2 * (strain_.kappa_2 - joint.rest.kappa_2) +
-                  torque * (strain_.twist - joint.rest.twist));
+  /// Energy [J] of a vertex, a VertexOf<T> or a CoupledVertexOf<T>.
+  template <class AVertex>
+  [[nodiscard]] T energy(const AVertex& vertex) const {
+    const auto [q1, q2, torque] = vertex.load(strain_);
+    return 0.5 * (q1 * (strain_.kappa_1 - vertex.rest.kappa_1) +
+                  q2 * (strain_.kappa_2 - vertex.rest.kappa_2) +
+                  torque * (strain_.twist - vertex.rest.twist));
   }
 
   /// Derivatives of the strain by omega_b, and by -omega_a.
@@ -140,14 +142,14 @@ class JointKinematics {
   }
 
   /// Sets the energy and M, and S if `with_stiffness`.
-  template <bool with_stiffness, class AJoint = JointOf<T>>
-  void respond(const AJoint& joint, JointResponseOf<T>& out) const {
+  template <bool with_stiffness, class AVertex = VertexOf<T>>
+  void respond(const AVertex& vertex, VertexResponseOf<T>& out) const {
     const T& k1 = strain_.kappa_1;
     const T& k2 = strain_.kappa_2;
-    const auto [q1, q2, torque] = joint.load(strain_);
+    const auto [q1, q2, torque] = vertex.load(strain_);
     const auto [g1, g2, gt] = gradients();
     const Vector3<T> bend = q1 * g1 + q2 * g2;
-    out.energy = energy(joint);
+    out.energy = energy(vertex);
     out.moment = bend + torque * gt;
     if constexpr (!with_stiffness) return;
 
@@ -163,7 +165,7 @@ class JointKinematics {
         h * bend + 0.5 * factor_.log_change * in_line * w -
         (0.5 * half * torque + (share_ * h + 0.5 * share_ * half) * across) * gt;
     const Vector3<T> with_gt = share_ * turned + 0.5 * share_ * share_ * in_line * gt;
-    Matrix3<T> half_sum = 0.5 * joint.stiffness(g1, g2, gt) + w * with_w.transpose() +
+    Matrix3<T> half_sum = 0.5 * vertex.stiffness(g1, g2, gt) + w * with_w.transpose() +
                           gt * with_gt.transpose() + 0.5 * tb_ * lean.transpose();
     half_sum.diagonal().array() -= 0.5 * in_line * (1.0 + h * cosine_);
     out.stiffness = half_sum + half_sum.transpose();
@@ -171,8 +173,8 @@ class JointKinematics {
 
  private:
   /// The curvature is read in the frame of a turned by `turn` [rad], `share` of each further twist.
-  JointKinematics(const SectionFrameOf<T>& a, const SectionFrameOf<T>& b, const T& strain,
-                  const T& turn, double share)
+  VertexKinematics(const SectionFrameOf<T>& a, const SectionFrameOf<T>& b, const T& strain,
+                   const T& turn, double share)
       : ta_(a.tangent),
         tb_(b.tangent),
         cosine_(ta_.dot(tb_)),
@@ -191,7 +193,7 @@ class JointKinematics {
   double share_;
   Vector3<T> m1_;
   Vector3<T> m2_;
-  JointStrainOf<T> strain_;
+  MaterialCurvatureOf<T> strain_;
 };
 
 }  // namespace der

@@ -1,4 +1,4 @@
-#include "steppers/step_guess.hpp"
+#include "steppers/predictor.hpp"
 
 #include "der/model/edge_change.hpp"
 
@@ -14,7 +14,7 @@ constexpr double kLargestByAcceleration = 0.01;
 
 }  // namespace
 
-void StepGuess::evaluate(const State& state, double dt, Vector& positions) {
+void Predictor::evaluate(const State& state, double dt, Vector& positions) {
   positions = state.positions;
   term_ = dt * state.velocities;
   if (largest_edge_change(model_, term_) > kLargestByVelocity) return;

@@ -479,6 +479,61 @@ def test_elongation_and_curvature_under_load(fitted_order):
         assert fitted_order(ALIKE_STEPS, column) > 1.9, (quantity, column)
 
 
+@pytest.mark.parametrize(
+    ("value", "part", "profile", "in_space"),
+    [
+        (0.3, (0.0, 1.0), "constant", False),
+        (-0.3, (0.0, 5 / 9), "constant", True),
+        (0.3, (0.0, 4 / 9), "linear", False),
+        (-0.3, (0.0, 1.0), "smooth", False),
+        (0.3, "within the edge", "constant", False),
+        (-0.3, "within the edge", "linear", True),
+    ],
+)
+def test_tension_at_clamps_of_a_rod_that_grows(fitted_order, value, part, profile, in_space):
+    """The edge at a clamp leans against the rod, which turns the force across it into tension: that
+    force is `-M'` over the stretch, elongation included (`references/actuated_rod.py`).
+    """
+    at_start = [clamped(), pulled(FORCE)]
+    at_end = [lambda u: [u[MOMENT], u[4] + FORCE[0], u[5] + FORCE[1]], clamped(1.0)]
+    errors = []
+    for n in ALIKE:
+        off = []
+        for clamp, free, ends in ((START, END, at_start), (END, START, at_end)):
+            parts = (0.0, 0.4 / n) if part == "within the edge" else part
+            if clamp is END:
+                parts = (1 - parts[1], 1 - parts[0])
+            scene = straight(
+                n, "free-free", SOFT, loads=[{"point_force": {**free, "force": FORCE}}]
+            )
+            scene["supports"] = [{**clamp, "clamp": True}]
+            scene["actuation"] = [stretch(value, *parts, profile=profile)]
+            if in_space:
+                scene["model"] = "spatial"
+                scene["rods"][0]["cross_section"]["stiffness"]["GJ"] = 1.0
+            exact = solve(grown_segments(value, parts, profile), *ends, EA=SOFT)
+            place = (0.0, "after") if clamp is START else (1.0, "before")
+            found = probed(scene, [place], ["tension"])[0, 0]
+            off.append(abs(found - exact.at(*place)["tension"]))
+        errors.append(off)
+    for column in np.transpose(errors):
+        assert fitted_order(ALIKE_STEPS, column) > 1.85, column
+
+
+def grown_segments(value, part, profile):
+    """The rod with an elongation on a part."""
+    start, end = part
+
+    def elongation(s):
+        return value * PROFILES[profile]((s - start) / (end - start))
+
+    cuts = sorted({0.0, start, end, 1.0})
+    return [
+        Segment(a, b, elongation=elongation) if start <= a and b <= end else Segment(a, b)
+        for a, b in pairwise(cuts)
+    ]
+
+
 def test_linear_buckling_of_a_rod_that_is_pressed_by_its_growth():
     """The load factor counts from the grown state: near the bifurcation of the path there, from
     which it differs by the strain before buckling, here 0.03.

@@ -22,6 +22,7 @@
 #include "der/scenario/load.hpp"
 #include "der/scenario/model_choice.hpp"
 #include "der/scenario/scenario.hpp"
+#include "der/supports/clamp.hpp"
 #include "der/supports/spatial_clamp.hpp"
 #include "der/supports/supports.hpp"
 #include "model/corner_twist.hpp"
@@ -37,6 +38,8 @@ bool choose_model(const scenario::Scene& scene, Model& model) {
   model.dimension = kind == scenario::ModelChoice::Planar ? 2 : 3;
   model.name = name_of(kind);
   model.reason = reason;
+  model.stands_for_space = scene.model == scenario::ModelChoice::Auto && scene.in_space &&
+                           kind != scenario::ModelChoice::Spatial;
   return kind == scenario::ModelChoice::Spatial;
 }
 
@@ -99,6 +102,14 @@ void draw_sections(const scenario::Rod& rod, RodMesh& layout, const Model& model
   }
 }
 
+/// RodMesh::director
+Vec2 director_across(const scenario::Rod& rod, const RodMesh& layout, const Model& model) {
+  const double angle = initial_tangent_angle(layout, 0, model);
+  const Vec3 tangent(std::cos(angle), std::sin(angle), 0.0);
+  const Vec3 director = first_director(rod, tangent);
+  return Vec2(director.dot(Vec3::UnitZ().cross(tangent)), director.z()).normalized();
+}
+
 /// The only place that makes a chain of nodes; everything after it reads the layout's lists.
 RodMesh lay_out(const scenario::Rod& rod, const SectionProperties& section, Index first_node,
                 Model& model) {
@@ -150,7 +161,11 @@ RodMesh lay_out(const scenario::Rod& rod, const SectionProperties& section, Inde
     model.edges.push_back(layout.edge(edge, model));
   }
   layout.sphere_radius.assign(rod.points.size(), 0.0);
-  if (model.has_sections()) draw_sections(rod, layout, model);
+  if (model.dimension == 3) {
+    draw_sections(rod, layout, model);
+  } else {
+    layout.director = director_across(rod, layout, model);
+  }
   return layout;
 }
 

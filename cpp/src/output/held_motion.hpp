@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "der/core/types.hpp"
 #include "der/model/model.hpp"
@@ -12,7 +13,8 @@ namespace scenario {
 struct Scene;
 }
 
-/// Velocity and acceleration of degrees of freedom that supports move, at the end of a step.
+/// Velocity and acceleration of degrees of freedom that supports move, and the rates at which
+/// clamps turn, at the end of a step.
 ///
 /// Tables are straight between their entries, and a motion in pieces has no acceleration but at its
 /// kinks. A table that samples a smooth motion has it in the mean: over the step before an instant
@@ -31,8 +33,12 @@ class HeldMotion {
   void evaluate(const Model& model, const State& state);
   /// At the state of the last `evaluate`.
   [[nodiscard]] Rates of(const HeldDof& held, const State& state) const;
+  /// Rate [rad/s] of the control that turns a clamp, at the state of the last `evaluate`.
+  [[nodiscard]] double turning_rate(Index control, const Model& model, const State& state) const;
 
  private:
+  /// Those of a control; none where it goes evenly, as far as is known.
+  [[nodiscard]] std::optional<Rates> of_control(Index control, const State& state) const;
   /// From the values at the end of the last step and so many before it.
   template <class At>
   [[nodiscard]] Rates after_steps(const At& at) const;

@@ -27,7 +27,7 @@ class LeanExcess {
   [[nodiscard]] bool none() const { return leans_.empty(); }
   /// Whether an edge does not.
   [[nodiscard]] bool none(Index edge) const { return find(edge) == nullptr; }
-  /// The excess of an edge that leans and is `stretch` times as long as without stress.
+  /// The excess of an edge that leans and is `stretch` times as long as drawn.
   [[nodiscard]] double tension(Index edge, double stretch, const ForceAcross& across,
                                const Model& model, const State& state) const;
 

@@ -200,15 +200,23 @@ class SupportReader : public ProbeReader {
 /// The force or moment that an actuation exerts.
 class ActuationReader : public ProbeReader {
  public:
-  ActuationReader(ActuationReading read, const std::string& name, const Model& model)
-      : read_(read), forces_(model, name) {}
+  ActuationReader(const Quantity& quantity, const std::string& name, const Model& model)
+      : read_(quantity.read_actuation),
+        forces_(model, name),
+        in_plane_(model.dimension == 2 && is_of_space(quantity)) {}
   double value(const Model& model, const State& state) override {
-    return read_(forces_.evaluate(model, state).front());
+    ActuationForce force = forces_.evaluate(model, state).front();
+    if (in_plane_) {
+      const Vec2& director = model.rod(force.rod).director;
+      force.values = {force.values[0] * director[0] + 0.0, -force.values[0] * director[1] + 0.0};
+    }
+    return read_(force);
   }
 
  private:
   ActuationReading read_;
   ActuationForces forces_;
+  bool in_plane_;  // the parts towards the directors of a rod in a plane
 };
 
 SampleWeights sample_weights(const std::vector<Weighted>& weights, const RodMesh& rod) {
@@ -259,8 +267,7 @@ std::unique_ptr<ProbeReader> make_reader(const scenario::Probe& probe, const Qua
     return std::make_unique<SupportReader>(quantity.read_reaction, support, scene, model);
   }
   if (quantity.kind == QuantityKind::Actuation) {
-    return std::make_unique<ActuationReader>(quantity.read_actuation, probe.actuation.value(),
-                                             model);
+    return std::make_unique<ActuationReader>(quantity, probe.actuation.value(), model);
   }
   const RodMesh& rod = model.rod(probe.rod.value());
   if (quantity.kind == QuantityKind::Ring) {

@@ -12,6 +12,7 @@
 #include "output/motion_field.hpp"
 #include "output/ring_numbers.hpp"
 #include "output/section_field.hpp"
+#include "output/smaller_model.hpp"
 #include "output/stretch_field.hpp"
 #include "output/tangent_field.hpp"
 
@@ -23,14 +24,14 @@ Quantity component(std::string name, std::string unit, QuantityKind kind, std::s
   const RodFieldMaker maker = [](const RodMesh& rod, const Model& model) {
     return make_component_field(vector, number, rod, model);
   };
-  return {std::move(name),
-          std::move(unit),
-          kind,
-          std::move(meaning),
-          maker,
-          {},
-          true,
-          number < 2 ? QuantityScope::All : QuantityScope::Space};
+  Quantity quantity{std::move(name), std::move(unit), kind, std::move(meaning), maker, {}, true};
+  if (number == 2) {
+    quantity.scope = QuantityScope::Space;
+    quantity.make_field_in_smaller = [](const RodMesh& rod, const Model& model) {
+      return scaled(0.0, make_component_field(vector, 0, rod, model));
+    };
+  }
+  return quantity;
 }
 
 Quantity field(std::string name, std::string unit, QuantityKind kind, std::string meaning,
@@ -50,8 +51,14 @@ Quantity tangent(std::string name, std::string meaning) {
   const RodFieldMaker maker = [](const RodMesh& rod, const Model& model) {
     return make_tangent_field(number, rod, model);
   };
-  return in(number < 2 ? QuantityScope::All : QuantityScope::Space,
-            field(std::move(name), "", QuantityKind::Tangent, std::move(meaning), maker));
+  Quantity quantity = field(std::move(name), "", QuantityKind::Tangent, std::move(meaning), maker);
+  if (number == 2) {
+    quantity.scope = QuantityScope::Space;
+    quantity.make_field_in_smaller = [](const RodMesh& rod, const Model& model) {
+      return scaled(0.0, make_tangent_field(0, rod, model));
+    };
+  }
+  return quantity;
 }
 
 template <SectionQuantity quantity>
@@ -60,8 +67,13 @@ Quantity section(std::string name, std::string unit, std::string meaning,
   const RodFieldMaker maker = [](const RodMesh& rod, const Model& model) {
     return make_section_field(quantity, rod, model);
   };
-  return in(QuantityScope::Sections,
-            field(std::move(name), std::move(unit), kind, std::move(meaning), maker));
+  Quantity row = in(QuantityScope::Sections,
+                    field(std::move(name), std::move(unit), kind, std::move(meaning), maker));
+  row.make_field_in_smaller = [](const RodMesh& rod, const Model& model) {
+    return make_section_field_in_smaller(quantity, rod, model);
+  };
+  row.is_towards_director = is_towards_director(quantity);
+  return row;
 }
 
 Quantity energy(std::string name, std::string meaning, std::vector<EnergyTerm> terms) {
@@ -268,6 +280,12 @@ bool is_available(const Quantity& quantity, const Model& model) {
   return is_available_in(model.dimension, model.has_sections(), quantity);
 }
 
+bool is_answered(const Quantity& quantity, const Model& model) {
+  return is_available(quantity, model) || (model.stands_for_space && is_of_space(quantity));
+}
+
+bool is_of_space(const Quantity& quantity) { return quantity.scope > QuantityScope::Planar; }
+
 bool is_available_in(int dimension, bool has_sections, const Quantity& quantity) {
   switch (quantity.scope) {
     case QuantityScope::All:
@@ -285,6 +303,13 @@ bool is_available_in(int dimension, bool has_sections, const Quantity& quantity)
 std::string lacks(std::string_view model, const Quantity& quantity) {
   const std::string advice = quantity.advice.empty() ? advice_on(quantity.scope) : quantity.advice;
   return fmt::format("the model '{}' has no '{}': {}", model, quantity.name, advice);
+}
+
+std::string lacks_held_section(std::string_view rod, std::string_view quantity) {
+  return fmt::format(
+      "no clamp holds the section of rod '{}', which may spin: the model 'spatial_bend' has no "
+      "'{}' of it. Write 'model: spatial'",
+      rod, quantity);
 }
 
 const Quantity* find_quantity(std::string_view name) {

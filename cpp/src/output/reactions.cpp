@@ -357,10 +357,26 @@ void Reactions::Reader::add_spatial_moments(std::size_t rod_number, const Model&
   }
 }
 
+/// An edge beside a clamp turns with the pivot, whose velocity the equations of motion leave out
+/// (model/spin.hpp): the clamp bears the part of the couple that they have for it, since the
+/// edge's angular momentum does not change by that.
 void Reactions::Reader::add_gyroscopic_forces(const Model& model, const State& state) {
   const auto rate = [&](Index dof) { return state.velocities[dof]; };
   const auto force = [&](const SpatialEdge& edge, Index /*number*/, const Vec3& vector) {
-    return gyroscopic_force(edge, vector, model.mass, rate);
+    const Vec3 pair = gyroscopic_force(edge, vector, model.mass, rate);
+    const double spin = model.mass.lumped[edge.theta] * state.velocities[edge.theta];
+    const auto add_at_clamp = [&](const SpatialPivot& pivot, Index dof, double side) {
+      add_at_pivot(pivot, dof, Vec3(side * pair));
+      const Index clamp = clamp_at_[to_size(dof)];
+      if (clamp < 0 || pivot.held.rotation < 0) return;
+      const double turning = motion_.turning_rate(pivot.held.rotation, model, state);
+      const Vec3 velocity = turning * pivot.held.axis.cross(pivot.offset(here_.controls));
+      moments_[to_size(clamp)] +=
+          vector.cross(gyroscopic_force<double>(vector, side * velocity, spin));
+    };
+    add_at_clamp(edge.first, edge.start, 1.0);
+    add_at_clamp(edge.last, edge.end, -1.0);
+    return pair;
   };
   take_pairs(model, here_, force, gradient_);
 }
@@ -404,6 +420,7 @@ Mat3 Reactions::Reader::axes_of_springs(const SectionSpringPlace& place, const M
 const std::vector<Reaction>& Reactions::Reader::evaluate(const Model& model, const State& state) {
   configuration_of(model, state, here_);
   external_force(model, here_, state.extra_force, force_);
+  motion_.evaluate(model, state);
   add_elements(model);
   add_gyroscopic_forces(model, state);
   add_vertices(model, state);
@@ -411,7 +428,6 @@ const std::vector<Reaction>& Reactions::Reader::evaluate(const Model& model, con
     add_planar_moments(rod, model, state);
     if (model.has_sections()) add_spatial_moments(rod, model, state);
   }
-  motion_.evaluate(model, state);
   for (std::size_t i = 0; i < places_.size(); ++i) {
     const Place& place = places_[i];
     Reaction& reaction = reactions_[i];

@@ -67,6 +67,7 @@ double whole_twist_of(const RodMesh& rod, const Model& model, const State& state
 }  // namespace
 
 double writhe_of(const RodMesh& rod, const Model& model, const State& state) {
+  if (model.dimension == 2) return 0.0;
   const std::vector<Vec3> corners = polygon_of(rod, model, state);
   const std::size_t sides = corners.size();
   const auto end_of = [&](std::size_t side) { return corners[(side + 1) % sides]; };

@@ -50,10 +50,11 @@ std::unique_ptr<RodField> make_rod_field(const std::string& quantity, const RodM
                                          const Model& model) {
   const Quantity* row = find_quantity(quantity);
   if (row != nullptr && row->make_field != nullptr) {
-    if (!is_available(*row, model)) {
+    if (!is_answered(*row, model)) {
       throw not_available(*row, model);
     }
-    auto field = row->make_field(rod, model);
+    auto field = is_available(*row, model) ? row->make_field(rod, model)
+                                           : row->make_field_in_smaller(rod, model);
     return rod.closed ? around_ring(std::move(field), rod) : std::move(field);
   }
   throw Error("model_error", fmt::format("'{}' is not a quantity along a rod; these are: {}",

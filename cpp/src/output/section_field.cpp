@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "der/core/index.hpp"
+#include "der/model/clamp_cell.hpp"
 #include "der/model/location.hpp"
+#include "der/model/spin.hpp"
 #include "der/output/vertex_strain.hpp"
 #include "der/supports/spatial_clamp.hpp"
 #include "model/actuated_turn.hpp"
@@ -36,6 +38,19 @@ bool is_natural(SectionQuantity quantity) {
          quantity == SectionQuantity::NaturalTwist;
 }
 
+const char* name_of(SectionQuantity quantity) {
+  switch (quantity) {
+    case SectionQuantity::Curvature1:
+      return "curvature_1";
+    case SectionQuantity::Curvature2:
+      return "curvature_2";
+    case SectionQuantity::Moment1:
+      return "moment_1";
+    default:
+      return "moment_2";
+  }
+}
+
 bool is_moment(SectionQuantity quantity) {
   switch (quantity) {
     case SectionQuantity::Moment:
@@ -48,9 +63,47 @@ bool is_moment(SectionQuantity quantity) {
   }
 }
 
+/// The section frames of the edges of a rod that does not twist: along the rod, from the clamp that
+/// holds its section.
+class UntwistedFrames {
+ public:
+  UntwistedFrames(SectionQuantity quantity, const RodMesh& rod, const Model& model) {
+    const auto clamp = std::find_if(rod.clamps.begin(), rod.clamps.end(),
+                                    [](const Clamp& other) { return other.holds_section; });
+    if (clamp == rod.clamps.end()) {
+      throw Error("model_error", lacks_held_section(rod.name, name_of(quantity)));
+    }
+    clamp_ = *clamp;
+    for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+      edges_.push_back(spatial_edge(rod, edge, model));
+    }
+  }
+
+  [[nodiscard]] std::vector<SectionFrame> at(const Model& model, const State& state) const {
+    std::vector<SectionFrame> frames(edges_.size());
+    SectionFrame frame = held_frame(clamp_.held, model, state);
+    const SectionFrame held = frame;
+    const auto go_on_to = [&](Index edge) {
+      const Vec3 next = effective_vector(edges_[to_size(edge)], model, state).normalized();
+      frame = SectionFrame::of(next, transport(frame.first, frame.tangent, next));
+      frames[to_size(edge)] = frame;
+    };
+    for (Index edge = clamp_.place; edge < static_cast<Index>(edges_.size()); ++edge) {
+      go_on_to(edge);
+    }
+    frame = held;
+    for (Index edge = clamp_.place; edge-- > 0;) go_on_to(edge);
+    return frames;
+  }
+
+ private:
+  Clamp clamp_;
+  std::vector<SpatialEdge> edges_;
+};
+
 /// Bending towards the two directors and twist, of a rod with sections: curvatures and twist, or
 /// the two moments and the torque. For a rod without sections it is the vector about which the rod
-/// bends, in fixed axes.
+/// bends, in fixed axes; its components are towards the directors of a rod that does not twist.
 ///
 /// Beside moments inside the rod, and where an actuation begins or ends within an edge, the section
 /// turns at rates that differ on the two sides, and components along it have a kink; at corners,
@@ -82,8 +135,16 @@ class SectionField : public EdgewiseField<Vec3> {
   [[nodiscard]] double sample(std::size_t i, const Model& model,
                               const State& state) const override {
     const Vec3 all = parts(i, model, state);
+    if (frames_) return toward_director(i, all, frames_->at(model, state));
     if (const auto part = component()) return all[*part];
     return bending_of(all, model).norm();
+  }
+  void sample_all(const Model& model, const State& state, double* values) const override {
+    if (!frames_) return RodField::sample_all(model, state, values);
+    const std::vector<SectionFrame> frames = frames_->at(model, state);
+    for (std::size_t i = 0; i < arc_length().size(); ++i) {
+      values[i] = toward_director(i, parts(i, model, state), frames);
+    }
   }
 
   /// Actuated curvatures and twist are what their profiles have at the place, not lines between
@@ -125,6 +186,11 @@ class SectionField : public EdgewiseField<Vec3> {
   }
 
  private:
+  /// The part of a vector in fixed axes at a sample of a rod without sections.
+  [[nodiscard]] double toward_director(std::size_t i, const Vec3& all,
+                                       const std::vector<SectionFrame>& frames) const {
+    return components(all, frames[to_size(sample_at(i).edge)])[*component()];
+  }
   /// Curvatures and twist, or moments and torque, of a sample.
   [[nodiscard]] Vec3 parts(std::size_t i, const Model& model, const State& state) const {
     const Index edge = sample_at(i).edge;
@@ -190,7 +256,10 @@ class SectionField : public EdgewiseField<Vec3> {
         actuated_(rod),
         recovery_(std::move(recovery)),
         spin_(rod, model),
-        edges_(std::move(edges)) {}
+        edges_(std::move(edges)) {
+    if (is_towards_director(quantity) && !model.has_sections())
+      frames_.emplace(quantity, rod, model);
+  }
 
   /// Components towards the two directors of a section that is turned on by an angle [rad].
   static Vec3 turned(const Vec3& parts, double angle) {
@@ -406,7 +475,7 @@ class SectionField : public EdgewiseField<Vec3> {
     }
     const Vec3 missing =
         recovery_.smooth(edge, last, point_at(edge, last, model, state), model, state) +
-        taken_by_spin(edge, last, model, state);
+        taken_by_spin(edge, last, model, state) + taken_by_turning(edge, last, model, state);
     if (vector) return moment_of(*known.vertex, rod_, model, state) + missing;
     const Vec3 excess = excess_of(*known.vertex, model, state);
     Vec3 moment = stiffness_.cwiseProduct(excess);
@@ -429,6 +498,21 @@ class SectionField : public EdgewiseField<Vec3> {
     const double from_clamp = known.arc_length - rod_.arc_length_at(last ? edge + 1 : edge);
     return from_clamp / rod_.edge_length[to_size(edge)] * torque *
            section_frame(model, rod_.first_edge + edge, state).tangent;
+  }
+
+  /// What is missing in the moment of a clamp's cell where the clamp turns and the section spins
+  /// [N m]. The cell has the couple of all of the edge's spin, whose tangent turns with the node
+  /// about the pivot; the rod has that of the sections beyond the pivot, turning with the clamp.
+  [[nodiscard]] Vec3 taken_by_turning(Index edge, bool last, const Model& model,
+                                      const State& state) const {
+    if (!known_of(edge, last).is_at_pivot || !model.has_sections()) return Vec3::Zero();
+    const SpatialEdge& own = model.framed_edges[to_size(rod_.first_edge + edge)];
+    const double spin = model.mass.lumped[own.theta] * state.velocities[own.theta];
+    const Vec3 vector = effective_vector(own, model, state);
+    const Vec3 rate = state.velocities.segment<3>(own.end) - state.velocities.segment<3>(own.start);
+    constexpr double kBeyond = 1.0 - kPivotShare;
+    return (last ? 1.0 : -1.0) * (1.0 - kBeyond * kBeyond) *
+           vector.cross(gyroscopic_force<double>(vector, rate, spin));
   }
 
   /// The point [m] where the first or the last moment of an edge is known.
@@ -620,9 +704,22 @@ class SectionField : public EdgewiseField<Vec3> {
   MomentRecovery recovery_;
   SpinTorque spin_;
   std::vector<std::pair<Known, Known>> edges_;  // first and last of each
+  std::optional<UntwistedFrames> frames_;       // of a component where there are no sections
 };
 
 }  // namespace
+
+bool is_towards_director(SectionQuantity quantity) {
+  switch (quantity) {
+    case SectionQuantity::Curvature1:
+    case SectionQuantity::Curvature2:
+    case SectionQuantity::Moment1:
+    case SectionQuantity::Moment2:
+      return true;
+    default:
+      return false;
+  }
+}
 
 std::unique_ptr<RodField> make_section_field(SectionQuantity quantity, const RodMesh& rod,
                                              const Model& model) {

@@ -24,7 +24,11 @@ enum class SectionQuantity {
   NaturalTwist,       ///< [rad/m]
 };
 
-/// All but the magnitudes need a model with sections.
+/// Whether it is the part of a curvature or moment towards a director.
+bool is_towards_director(SectionQuantity quantity);
+
+/// All but the magnitudes need a model with sections, or, if they are towards a director, a clamp
+/// that holds the section of a rod without twist: throws Error where none does.
 std::unique_ptr<RodField> make_section_field(SectionQuantity quantity, const RodMesh& rod,
                                              const Model& model);
 

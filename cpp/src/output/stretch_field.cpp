@@ -126,17 +126,23 @@ class StretchField : public RodField {
   }
 
   [[nodiscard]] double middle_strain(Index edge, const Model& model, const State& state) const {
-    const double elongation =
-        vectors_.longer(edge, model, state) - vectors_.actuated(edge, model, state);
-    double strain = elongation / rod_.edge_length[to_size(edge)];
+    const double actuated = actuated_strain(edge, model, state);
+    double strain =
+        vectors_.longer(edge, model, state) / rod_.edge_length[to_size(edge)] - actuated;
     if (!excess_.none(edge)) {
       const Vec3 along = vectors_.at(edge, model, state).normalized();
       strain += along.dot(excess_.force(edge, forces_, model, state)) / rod_.EA;
     }
     if (across_ && !leans_.none(edge)) {
-      strain -= leans_.tension(edge, 1.0 + strain, *across_, model, state) / rod_.EA;
+      const double stretch = 1.0 + strain + actuated;
+      strain -= leans_.tension(edge, stretch, *across_, model, state) / rod_.EA;
     }
     return strain;
+  }
+
+  /// What actuations ask for, in the mean of an edge.
+  [[nodiscard]] double actuated_strain(Index edge, const Model& model, const State& state) const {
+    return vectors_.actuated(edge, model, state) / rod_.edge_length[to_size(edge)];
   }
 
   /// The strain that a load adds; `force` is its force [N], or its force per length [N/m].
@@ -168,7 +174,7 @@ class StretchField : public RodField {
     if (!across_) return 0.0;
     double stretch = 1.0 + line_strain(part.line, model, state);
     for (const auto& [edge, weight] : part.line.edges) {
-      stretch += weight * vectors_.actuated(edge, model, state) / rod_.edge_length[to_size(edge)];
+      stretch += weight * actuated_strain(edge, model, state);
     }
     const ForceAcross::Mean mean = across_->mean(part.from, part.to, model, state);
     return part.amount * mean.curvature.dot(mean.force) / (stretch * rod_.EA);

@@ -47,18 +47,32 @@ bool is_of_cable(const Probe& probe, const SceneText& scene) {
                      [&](const Rod& rod) { return probe.rod == rod.name && does_not_bend(rod); });
 }
 
-/// A probe changes no model: what the chosen one does not have has to be asked for.
+bool holds_section(const Probe& probe, const SceneText& scene) {
+  return std::any_of(scene.supports.begin(), scene.supports.end(), [&](const Support& support) {
+    return support.rod == probe.rod && support.clamp == Clamp::Section;
+  });
+}
+
+/// A probe changes no model. What the chosen one does not have has to be asked for, but where it
+/// was chosen for a scene in space: the values of the scene alone made it the smaller one.
 void check_quantities(const SceneText& scene, ModelChoice kind, Diagnostics& diagnostics) {
   for (const Probe& probe : scene.output.probes) {
     const Quantity& quantity = *find_quantity(probe.quantity);
     const int dimension = kind == ModelChoice::Planar ? 2 : 3;
     const Path path{"output", "probes", probe.name, "quantity"};
-    if (!is_available_in(dimension, kind == ModelChoice::Spatial, quantity)) {
+    const bool has_it = is_available_in(dimension, kind == ModelChoice::Spatial, quantity);
+    const bool stands_for_space =
+        scene.model == ModelChoice::Auto && diagnostics.dimension() == 3 && is_of_space(quantity);
+    if (!has_it && !stands_for_space) {
       diagnostics.add(path, lacks(name_of(kind), quantity));
-    } else if (dimension == 3 && is_of_bending(quantity.kind) && is_of_cable(probe, scene)) {
+    } else if ((dimension == 3 || !has_it) && is_of_bending(quantity.kind) &&
+               is_of_cable(probe, scene)) {
       diagnostics.add(path, fmt::format("rod '{}' has no stiffness against bending, EI: it has no "
                                         "'{}' in space",
                                         *probe.rod, probe.quantity));
+    } else if (kind == ModelChoice::SpatialBend && quantity.is_towards_director &&
+               !holds_section(probe, scene)) {
+      diagnostics.add(path, lacks_held_section(*probe.rod, probe.quantity));
     }
   }
 }

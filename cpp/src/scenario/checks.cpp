@@ -173,6 +173,7 @@ void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   if (std::string problem = unit_problem(scene); !problem.empty()) {
     scene.warnings.push_back(std::move(problem));
   }
+  scene.in_space = diagnostics.dimension() == 3;
   conform(scene, model.kind);
 }
 

@@ -54,6 +54,11 @@ Nothing is rounded to the plane: a node 1e-6 m off it is part of the scene, as a
 of the plane is. A larger model than needed may be asked for; a smaller one is refused, with the
 reason. The integrator `energy_momentum` is for the planar model only.
 
+A probe chooses no model. Where `auto` takes a smaller one for a scene of three components, the
+quantities of space have the values that they have there: `z` and `torque` of a rod in the plane are
+0, `moment_1` is the part of its moment towards director 1. So a sweep may pass a scene that is flat.
+A rod of the model `spatial_bend` has components towards directors where a clamp holds its section.
+
 The section of a rod has two directors: director 1 is the direction of its width, director 2 that of
 its height, t x d1 with the tangent t in the direction of growing arc length. `EI1` and `k1` belong to
 bending toward director 1, `EI2` and `k2` to bending toward director 2. The `director` of a

@@ -133,14 +133,18 @@ std::string diagnostics_of_probe(const std::string& quantity, const std::string&
        {"output", "{probes: {tip: {rod: beam, at: end, quantity: " + quantity + "}}}"}});
 }
 
-TEST_CASE("space: a probe asks for what the chosen model has, and chooses none") {
-  for (const std::string model : {"auto", "planar"}) {
-    CHECK(diagnostics_of_probe("slope", model).empty());
-    CHECK(contains(diagnostics_of_probe("z", model),
-                   "output.probes.tip.quantity: the model 'planar' has no 'z': write 'model: "
-                   "spatial', or 'spatial_bend' for a rod that cannot twist"));
-    CHECK(contains(diagnostics_of_probe("twist", model), "the model 'planar' has no 'twist'"));
+TEST_CASE("space: a model that 'auto' chose for a scene in space has the quantities of space") {
+  for (const std::string quantity : {"slope", "z", "twist", "curvature_1"}) {
+    CHECK(diagnostics_of_probe(quantity, "auto").empty());
   }
+}
+
+TEST_CASE("space: a probe asks for what the chosen model has, and chooses none") {
+  CHECK(diagnostics_of_probe("slope", "planar").empty());
+  CHECK(contains(diagnostics_of_probe("z", "planar"),
+                 "output.probes.tip.quantity: the model 'planar' has no 'z': write 'model: "
+                 "spatial', or 'spatial_bend' for a rod that cannot twist"));
+  CHECK(contains(diagnostics_of_probe("twist", "planar"), "the model 'planar' has no 'twist'"));
   CHECK(diagnostics_of_probe("z", "spatial_bend").empty());
   CHECK(contains(diagnostics_of_probe("curvature_1", "spatial_bend"),
                  "the model 'spatial_bend' has no 'curvature_1': write 'model: spatial', in which "

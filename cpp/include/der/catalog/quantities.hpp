@@ -69,6 +69,10 @@ struct Quantity {
   std::vector<EnergyTerm> energies;    ///< the terms that an energy adds up; else empty
   bool is_component = false;  ///< of the position or velocity, which exports write as vectors
   QuantityScope scope = QuantityScope::All;
+  /// Of quantities of space along rods: of a smaller model that stands for a larger one.
+  RodFieldMaker make_field_in_smaller = nullptr;
+  /// Whether it is the part of a curvature or moment towards a director of the section.
+  bool is_towards_director = false;
   RodReading read_rod = nullptr;            ///< of numbers of rings
   ReactionReading read_reaction = nullptr;  ///< of supports
   ActuationReading read_actuation = nullptr;
@@ -85,8 +89,16 @@ const std::vector<Quantity>& quantities();
 /// Whether a model has the quantity, and whether models of its kind have it.
 bool is_available(const Quantity& quantity, const Model& model);
 bool is_available_in(int dimension, bool has_sections, const Quantity& quantity);
+/// Whether a model has the quantity, or has its value because it stands for a larger one: such as
+/// `z` of rods in a plane, where `auto` chose `planar` for a scene of three components.
+bool is_answered(const Quantity& quantity, const Model& model);
+/// Whether only models in space have it by themselves.
+bool is_of_space(const Quantity& quantity);
 /// The message that the model of this name does not have the quantity, with what to write.
 std::string lacks(std::string_view model, const Quantity& quantity);
+/// The message that the model 'spatial_bend', which stands for 'spatial', does not tell where the
+/// directors of a rod are.
+std::string lacks_held_section(std::string_view rod, std::string_view quantity);
 /// Null for an unknown name.
 const Quantity* find_quantity(std::string_view name);
 

@@ -156,9 +156,10 @@ struct RodMesh {
   double mass_per_length = 0.0;     ///< [kg/m] without spheres
   scenario::CurvatureMeasure curvature = scenario::CurvatureMeasure::Angle;
   Index first_edge = 0;  ///< number of its first edge among those of the model
-  /// Section frame [-] of each drawn edge at its middle, in space; empty where sections do not
-  /// count.
+  /// Section frame [-] of each drawn edge at its middle, in space.
   std::vector<SectionFrame> initial_frames;
+  /// Director 1 of a rod in a plane: components along the normal z x t of the rod, and along z.
+  Vec2 director = Vec2::UnitY();
   double initial_twist = 0.0;            ///< of these frames [rad/m]
   std::vector<Vec2> natural_curvatures;  ///< towards the two directors, at each node [1/m]
   std::vector<double> natural_twist;     ///< at each node [rad/m]; empty: stress-free as drawn
@@ -262,6 +263,9 @@ struct Model {
   std::string name;    ///< "planar", "spatial_bend" or "spatial"
   std::string reason;  ///< why this model, in words
   int dimension = 2;
+  /// Whether it is smaller than `spatial` and was chosen by `auto` for a scene of three components:
+  /// it then has the quantities of space, too (catalog/quantities.hpp).
+  bool stands_for_space = false;
   Index num_nodes = 0;
   DofMap dofs;
   std::vector<RodMesh> rods;

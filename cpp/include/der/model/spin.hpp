@@ -48,7 +48,8 @@ inline Vec3 transport_force(const Vec3& edge, Index number, double torque, const
 /// The gyroscopic force on an edge's end [N], where `velocity(dof)` is the rate of a degree of
 /// freedom. The velocity of a clamp's pivot against its node is left out: the couple on that one
 /// edge is then wrong by a share, which changes the shape by the order of the edge squared, and the
-/// forces still do no work on the nodes.
+/// forces still do no work on the nodes. The moment of the clamp makes up for it
+/// (output/reactions.cpp).
 template <class Velocity>
 Vec3 gyroscopic_force(const SpatialEdge& edge, const Vec3& vector, const Mass& mass,
                       Velocity&& velocity) {

@@ -40,6 +40,7 @@ struct Scene {
   /// Components of all vectors but `Rod::director` and `AxisRotation::axis`, which have 3: 2 in a
   /// scene of the planar model, else 3.
   int dimension = 2;
+  bool in_space = false;                  ///< whether its vectors are written with three components
   ModelChoice model = ModelChoice::Auto;  ///< as asked for; see model_choice.hpp
   Analysis analysis = DynamicAnalysis{};
   std::vector<Rod> rods;

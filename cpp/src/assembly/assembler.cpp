@@ -13,6 +13,8 @@
 #include "der/energies/lane_values.hpp"
 #include "der/energies/registry.hpp"
 #include "der/energies/stiffness_across.hpp"
+#include "der/energies/strain_rate.hpp"
+#include "der/energies/viscous_term.hpp"
 #include "der/model/dimension.hpp"
 #include "energies/every_kind.hpp"
 
@@ -91,6 +93,7 @@ struct Assembler::ScatterMaps {
   std::vector<PlanarChain> planar_chains;
   std::vector<SpatialChain> spatial_chains;
   OffChainOf<ElementLists::Lists>::type elements;
+  OffChainOf<ElementLists::Lists>::type damped;  // those with internal damping, in chains or not
   // Slots of every plain stretch element.
   EdgeSlots<2> planar_edges;
   EdgeSlots<3> spatial_edges;
@@ -130,6 +133,15 @@ Assembler::Assembler(const Model& model, const MatrixLayout& layout)
             loose_elements<Kernel>(list.size(), maps->planar_chains, maps->spatial_chains);
         for (const std::size_t e : map.elements) {
           map.slots.push_back(element_slots(list.dofs[e], slot_of));
+        }
+      },
+      kKinds);
+  for_each_pair(
+      model.elements->lists, maps->damped,
+      [&](const auto& list, auto& map) {
+        for (const DampedElement& damped : list.damped) {
+          map.elements.push_back(damped.element);
+          map.slots.push_back(element_slots(list.dofs[damped.element], slot_of));
         }
       },
       kKinds);
@@ -286,6 +298,27 @@ void Assembler::add_tension_stiffness(const Configuration& here, const Vector& t
 void Assembler::add_tension_stiffness(const Configuration& here, const Vector& tension,
                                       Vector& values) const {
   with_dimension(model_, [&](auto dim) { add_tension_stiffness<dim>(here, tension, values); });
+}
+
+void Assembler::add_internal_damping(const Configuration& here, double factor,
+                                     Vector& values) const {
+  for_each_pair(
+      model_.elements->lists, maps_->damped,
+      [&](const auto& list, const auto& map) {
+        using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+        if constexpr (StrainRate<Kernel>::kExists) {
+          for (std::size_t k = 0; k < list.damped.size(); ++k) {
+            const auto matrix = viscous_matrix(list, list.damped[k], here);
+            const Index* slot = map.slots[k].data();
+            for (int column = 0; column < Kernel::kDofs; ++column) {
+              for (int row = column; row < Kernel::kDofs; ++row) {
+                values[*slot++] += factor * matrix(row, column);
+              }
+            }
+          }
+        }
+      },
+      kKinds);
 }
 
 double Assembler::largest_diagonal(const DofBlock& block, const Vector& values) const {

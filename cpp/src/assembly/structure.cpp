@@ -109,6 +109,19 @@ bool same_actuation(const Model& here, const Model& other) {
                     });
 }
 
+/// Whether the same elements have internal damping.
+bool same_damping(const Model& here, const Model& other) {
+  bool same = true;
+  for_each_list(*here.elements, [&](const auto& list) {
+    const auto& damped = std::get<std::decay_t<decltype(list)>>(other.elements->lists).damped;
+    same = same && std::equal(list.damped.begin(), list.damped.end(), damped.begin(), damped.end(),
+                              [](const DampedElement& a, const DampedElement& b) {
+                                return a.element == b.element;
+                              });
+  });
+  return same;
+}
+
 }  // namespace
 
 std::string structural_difference(const Model& here, const Model& other) {
@@ -118,6 +131,7 @@ std::string structural_difference(const Model& here, const Model& other) {
   if (!same_actuation(here, other)) return "its actuations act on other parts of the rods";
   found = difference_of_elements(here, other);
   if (!found.empty()) return found;
+  if (!same_damping(here, other)) return "a time of internal damping is zero in one of the two";
   if (!same_couplings(here.mass, other.mass)) return "the mass of a rod is zero in one of the two";
   return {};
 }

@@ -18,6 +18,7 @@
 #include "der/loads/circulatory.hpp"
 #include "der/loads/loads.hpp"
 #include "der/model/cross_section.hpp"
+#include "der/model/internal_damping.hpp"
 #include "der/model/location.hpp"
 #include "der/scenario/load.hpp"
 #include "der/scenario/model_choice.hpp"
@@ -123,6 +124,7 @@ RodMesh lay_out(const scenario::Rod& rod, const SectionProperties& section, Inde
   layout.EI_2 = section.EI2;
   layout.GJ = section.GJ;
   layout.spin_inertia = section.spin_inertia;
+  layout.damping = section.damping;
   layout.first_edge = static_cast<Index>(model.edges.size());
   layout.draw_radius = section.draw_radius;
 
@@ -305,11 +307,14 @@ Model build_model(const scenario::Scene& scene) {
     add_support(scene.supports[i], i, model);
   }
   for (RodMesh& rod : model.rods) {
+    const ElementCounts before = count_elements(model);
     if (model.dimension == 2) {
       add_rod_elements(rod, model);
     } else {
       add_spatial_rod_elements(rod, model);
     }
+    if (rod.damping.any()) damp_elements(rod.damping, before, model);
+    model.viscous = model.viscous || rod.damping.any();
   }
   for (const auto& actuation : scene.actuations) add_actuation(actuation, model);
   for (const auto& load : scene.loads) {

@@ -319,8 +319,12 @@ class SectionElements {
       if (has_two_halves(vertex) && resists_everything(stiffness)) {
         const double length = rod_.edge_length[to_size(vertex.before)];
         const double share = length / (length + rod_.edge_length[to_size(vertex.after)]);
-        add_vertex_element<CornerBend>(
-            vertex, corner_vertex(a, frame(vertex.after), drawn, share, stiffness));
+        const CoupledVertex corner = corner_vertex(a, frame(vertex.after), drawn, share, stiffness);
+        add_vertex_element<CornerBend>(vertex, corner);
+        if (rod_.damping.any()) {
+          damp_corner(vertex, corner_viscosity(corner, a, frame(vertex.after), drawn, share,
+                                               stiffness, rod_.damping));
+        }
         stiffness = {};  // the edges stay a chain (assembly/spatial_chain.hpp)
       }
     }
@@ -345,6 +349,16 @@ class SectionElements {
         {stiffness, FrameBlock::of(number(vertex.before)), FrameBlock::of(number(vertex.after)),
          vertex.glued, natural_strain_offset(rod_, vertex)},
         before.first, after.last, *model_.elements);
+  }
+
+  /// Of the vertex that was added last.
+  void damp_corner(const RodVertex& vertex, const Mat3& viscosity) {
+    const auto damp = [&](auto& list) { list.damped.push_back({list.size() - 1, viscosity}); };
+    if (edge(vertex.before).first.distance == 0.0 && edge(vertex.after).last.distance == 0.0) {
+      damp(elements_of<CornerBend>(*model_.elements));
+    } else {
+      damp(elements_of<FromSpatialPivot<CornerBend>>(*model_.elements));
+    }
   }
 
   void add_clamp(RodVertex& vertex) {

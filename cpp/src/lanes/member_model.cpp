@@ -64,7 +64,7 @@ T largest_in(const Block& block, const MemberVector<T>& numbers) {
 }  // namespace
 
 bool suits_lanes(const Model& model) {
-  return !model.natural_strain.is_actuated() && !model.load_variation &&
+  return !model.natural_strain.is_actuated() && !model.viscous && !model.load_variation &&
          model.followed_edges.empty() && circulatory_loads(*model.elements).empty() &&
          !any_element_is_a_load(model) && !any_clamp_turns(model) &&
          std::none_of(model.rods.begin(), model.rods.end(), [](const RodMesh& rod) {

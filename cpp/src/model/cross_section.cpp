@@ -69,6 +69,7 @@ SectionProperties properties(const scenario::Stiffness& given) {
   // That of a homogeneous section: rho (I1 + I2).
   const double homogeneous = given.mass_per_length * (section.EI1 + section.EI2) / given.EA;
   section.spin_inertia = given.rotary_inertia.value_or(homogeneous);
+  section.damping = given.damping;
   return section;
 }
 
@@ -80,6 +81,7 @@ SectionProperties properties(const Geometry& shape, const scenario::Material& ma
   section.GJ = shear_modulus(material) * shape.torsion;
   section.mass_per_length = material.density * shape.area;
   section.spin_inertia = material.density * (shape.moment1 + shape.moment2);
+  section.damping = material.damping;
   section.half_width = shape.half_width;
   section.half_height = shape.half_height;
   return section;

@@ -10,6 +10,8 @@
 #include "der/core/index.hpp"
 #include "der/energies/element_energy.hpp"
 #include "der/energies/registry.hpp"
+#include "der/energies/strain_rate.hpp"
+#include "der/energies/viscous_term.hpp"
 #include "der/model/model.hpp"
 
 namespace der {
@@ -45,6 +47,25 @@ class ActingElements {
         visit(Kernel{}, list.constants[e], list.dofs[e], coordinates, local.gradient);
       }
       ++kind;
+    });
+  }
+
+  /// The same for those with internal damping: the gradient is that of their viscous forces.
+  template <class Visit>
+  void for_each_viscous_gradient(const Model& model, const Moving& moving, Visit&& visit) const {
+    std::size_t kind = 0;
+    for_each_list(*model.elements, [&](const auto& list) {
+      using Kernel = typename std::decay_t<decltype(list)>::KernelType;
+      const std::vector<std::size_t>& acting = numbers_[kind++];
+      if constexpr (StrainRate<Kernel>::kExists) {
+        for (const DampedElement& damped : list.damped) {
+          const std::size_t e = damped.element;
+          if (!std::binary_search(acting.begin(), acting.end(), e)) continue;
+          visit(Kernel{}, list.constants[e], list.dofs[e],
+                gather(list.dofs[e], moving.here.coordinates),
+                viscous_term(list, damped, moving).gradient);
+        }
+      }
     });
   }
 

@@ -7,6 +7,8 @@
 #include "der/core/index.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/kinematics/planar_edge.hpp"
+#include "der/model/internal_damping.hpp"
+#include "der/output/vertex_strain.hpp"
 #include "der/supports/clamp.hpp"
 #include "output/actuated_shape.hpp"
 #include "output/edgewise_field.hpp"
@@ -38,6 +40,19 @@ double turning_angle(const BendCell& cell, const Model& model, const State& stat
   const Vec2 after =
       cell.end ? tangent(*cell.end, model, state) : effective_vector(cell.after, model, state);
   return angle_between(before, after);
+}
+
+/// The rate [rad/s] of that angle.
+double turning_rate(const BendCell& cell, const Model& model, const State& state) {
+  const auto of_clamp = [&](const Clamp& clamp) {
+    return clamp.rotation < 0 ? 0.0 : turn_rate(model, state, clamp.rotation);
+  };
+  const auto of_edge = [&](const EffectiveEdge& edge) {
+    const Vec2 vector = effective_vector(edge, model, state);
+    return cross(vector, effective_rate(edge, model, state)) / vector.squaredNorm();
+  };
+  return (cell.end ? of_clamp(*cell.end) : of_edge(cell.after)) -
+         (cell.start ? of_clamp(*cell.start) : of_edge(cell.before));
 }
 
 /// From edge to edge at an inner node, from or to the held tangent at a clamped end.
@@ -153,6 +168,7 @@ class BendField : public EdgewiseField<double> {
         what_(what),
         EI_(rod.EI),
         per_moment_(what == Bending::Moment ? 1.0 : rod.EI),
+        damping_(rod.damping.bending),
         actuated_(rod),
         recovery_(std::move(recovery)),
         edges_(std::move(edges)) {}
@@ -229,10 +245,20 @@ class BendField : public EdgewiseField<double> {
       return {moment / per_moment_, known.share};
     }
     const double angle = turning_angle(*known.cell, model, state);
+    double actuated = known.actuated.value(0, model, state);
+    if (is_moment()) actuated -= viscous(known, angle, model, state);
     const Vec3 point = in_space(effective_end(known.effective, last, model, state));
-    return {chain(known, angle, known.actuated.value(0, model, state)) +
+    return {chain(known, angle, actuated) +
                 recovery_.smooth(edge, last, point, model, state).z() / per_moment_,
             recovery_.share_of(edge, point, state)};
+  }
+
+  /// The bending that internal damping bears in place of the rod's own at a cell: a time by the
+  /// rate of its curvature.
+  [[nodiscard]] double viscous(const Known& known, double angle, const Model& model,
+                               const State& state) const {
+    if (damping_ == 0.0) return 0.0;
+    return damping_ * Measure::of(angle).first * turning_rate(*known.cell, model, state);
   }
 
   [[nodiscard]] const Known& known_of(Index edge, bool last) const {
@@ -260,6 +286,7 @@ class BendField : public EdgewiseField<double> {
   Bending what_;
   double EI_;
   double per_moment_;  // 1, or EI to make curvatures of moments
+  double damping_;     // [s]
   ActuatedShape actuated_;
   MomentRecovery recovery_;
   std::vector<std::pair<Known, Known>> edges_;  // first and last of each

@@ -11,6 +11,7 @@
 #include "der/energies/registry.hpp"
 #include "der/loads/external_force.hpp"
 #include "der/model/clamp_cell.hpp"
+#include "der/model/internal_damping.hpp"
 #include "der/model/location.hpp"
 #include "der/model/moment_place.hpp"
 #include "der/model/spin.hpp"
@@ -87,7 +88,7 @@ class Reactions::Reader {
                                          const Model& model) const;
   void choose_elements(const Model& model);
 
-  void add_elements(const Model& model);
+  void add_elements(const Model& model, const State& state);
   /// A force [N] that acts at a clamp's pivot rather than at its node, whose first degree of
   /// freedom is `dof`.
   template <class PivotKind, class Force>
@@ -114,6 +115,7 @@ class Reactions::Reader {
   // At the state.
   Configuration here_;
   Vector force_;
+  Vector turn_rates_;
   Vector gradient_;            // on held degrees of freedom that are read
   std::vector<Vec3> moments_;  // of clamps
   CirculatoryTerm term_;
@@ -281,7 +283,7 @@ void Reactions::Reader::add_pivots(const Kernel& /*kernel*/,
 
 /// Sums the forces of the elements and, from those beside clamps, how their energy changes as what
 /// a clamp holds turns.
-void Reactions::Reader::add_elements(const Model& model) {
+void Reactions::Reader::add_elements(const Model& model, const State& state) {
   gradient_.setZero(model.num_dofs());
   std::fill(moments_.begin(), moments_.end(), Vec3::Zero());
   const auto add = [&](auto kernel, const auto& constants, const auto& dofs,
@@ -302,6 +304,10 @@ void Reactions::Reader::add_elements(const Model& model) {
     }
   };
   elements_.for_each_gradient(model, here_, add);
+  if (model.viscous) {
+    set_turn_rates(model, state, turn_rates_);
+    elements_.for_each_viscous_gradient(model, {here_, state.velocities, turn_rates_}, add);
+  }
   add_circulatory_forces(model.elements->circulatory, here_, -1.0, gradient_);
 }
 
@@ -421,7 +427,7 @@ const std::vector<Reaction>& Reactions::Reader::evaluate(const Model& model, con
   configuration_of(model, state, here_);
   external_force(model, here_, state.extra_force, force_);
   motion_.evaluate(model, state);
-  add_elements(model);
+  add_elements(model, state);
   add_gyroscopic_forces(model, state);
   add_vertices(model, state);
   for (std::size_t rod = 0; rod < model.rods.size(); ++rod) {

@@ -476,7 +476,10 @@ class SectionField : public EdgewiseField<Vec3> {
     const Vec3 missing =
         recovery_.smooth(edge, last, point_at(edge, last, model, state), model, state) +
         taken_by_spin(edge, last, model, state) + taken_by_turning(edge, last, model, state);
-    if (vector) return moment_of(*known.vertex, rod_, model, state) + missing;
+    if (vector) {
+      const Vec3 all = moment_of(*known.vertex, rod_, model, state) + missing;
+      return is_moment(quantity_) ? all : Vec3(all - viscous_moment(known, edge, model, state));
+    }
     const Vec3 excess = excess_of(*known.vertex, model, state);
     Vec3 moment = stiffness_.cwiseProduct(excess);
     if (model.has_sections()) {
@@ -534,14 +537,32 @@ class SectionField : public EdgewiseField<Vec3> {
     return is_vector(edge, model) ? moment : in_section(edge, moment, model, state);
   }
 
-  /// Curvatures and twist of a vertex beyond the natural ones [1/m].
+  /// The part of internal damping in the moment [N m] where an edge's is known, in fixed axes.
+  [[nodiscard]] Vec3 viscous_moment(const Known& known, Index edge, const Model& model,
+                                    const State& state) const {
+    const RodVertex& vertex = *known.vertex;
+    const MaterialCurvature viscous = viscous_strain(vertex, rod_, model, state);
+    const Vec3 parts = stiffness_.cwiseProduct(Vec3(viscous.kappa_1 / vertex.bend_length,
+                                                    viscous.kappa_2 / vertex.bend_length,
+                                                    viscous.twist / vertex.twist_length));
+    const SectionFrame frame = section_frame(model, rod_.first_edge + edge, state);
+    return parts[0] * frame.second - parts[1] * frame.first + parts[2] * frame.tangent;
+  }
+
+  /// Curvatures and twist of a vertex beyond the natural ones [1/m]; for a moment as if those of
+  /// internal damping were some of them.
   [[nodiscard]] Vec3 excess_of(const RodVertex& vertex, const Model& model,
                                const State& state) const {
     const MaterialCurvature strain = strain_of(vertex, rod_, model, state);
     if (!model.has_sections()) {
       return strain.kappa_1 / vertex.bend_length * bend_axis(vertex, rod_, model, state);
     }
-    const MaterialCurvature rest = rest_strain(vertex, rod_, model, state);
+    MaterialCurvature rest = rest_strain(vertex, rod_, model, state);
+    if (is_moment(quantity_)) {
+      const MaterialCurvature viscous = viscous_strain(vertex, rod_, model, state);
+      rest = {rest.kappa_1 - viscous.kappa_1, rest.kappa_2 - viscous.kappa_2,
+              rest.twist - viscous.twist};
+    }
     return {(strain.kappa_1 - rest.kappa_1) / vertex.bend_length,
             (strain.kappa_2 - rest.kappa_2) / vertex.bend_length,
             (strain.twist - rest.twist) / vertex.twist_length};

@@ -4,6 +4,7 @@
 
 #include "der/core/index.hpp"
 #include "der/loads/external_force.hpp"
+#include "der/model/internal_damping.hpp"
 
 namespace der {
 
@@ -29,11 +30,16 @@ double SpinTorque::along(Index edge, const Model& model, const State& state) con
   external_force(model, here, state.extra_force, force);
   add_circulatory_forces(model.elements->circulatory, here, 1.0, force);
   double torque = force[spun->theta] - model.damping[spun->theta] * state.velocities[spun->theta];
-  spun->elements.for_each_gradient(
-      model, here, [&](auto, const auto&, const auto& dofs, const auto&, const auto& gradient) {
-        const auto own = std::find(dofs.begin(), dofs.end(), spun->theta) - dofs.begin();
-        torque -= gradient[own];
-      });
+  const auto add = [&](auto, const auto&, const auto& dofs, const auto&, const auto& gradient) {
+    const auto own = std::find(dofs.begin(), dofs.end(), spun->theta) - dofs.begin();
+    torque -= gradient[own];
+  };
+  spun->elements.for_each_gradient(model, here, add);
+  if (model.viscous) {
+    Vector turn_rates;
+    set_turn_rates(model, state, turn_rates);
+    spun->elements.for_each_viscous_gradient(model, {here, state.velocities, turn_rates}, add);
+  }
   return torque;
 }
 

@@ -49,6 +49,13 @@ class EffectiveVectors {
   [[nodiscard]] double longer(Index edge, const Model& model, const State& state) const {
     return at(edge, model, state).norm() - rest_length_[to_size(edge)];
   }
+  /// The rate of its length [m/s].
+  [[nodiscard]] double lengthening(Index edge, const Model& model, const State& state) const {
+    const Vec3 rate = model.dimension == 3
+                          ? effective_rate(in_space_[to_size(edge)], model, state)
+                          : in_space(effective_rate(planar_[to_size(edge)], model, state));
+    return at(edge, model, state).normalized().dot(rate);
+  }
   /// The part of it that actuations ask for [m].
   [[nodiscard]] double actuated(Index edge, const Model& model, const State& state) const {
     return actuated_[to_size(edge)].value(0, model, state);
@@ -61,7 +68,7 @@ class EffectiveVectors {
   std::vector<ActuatedRest> actuated_;
 };
 
-/// The strain, times a stiffness [N] (1: the strain itself).
+/// The strain, or the tension: EA times the strain and what internal damping adds to it.
 ///
 /// The tension in an edge of the chain is that of the loads beyond it as they are spread over the
 /// nodes. It is corrected to that of the true loads beyond the edge's middle. From the middles it
@@ -69,11 +76,11 @@ class EffectiveVectors {
 /// curves.
 class StretchField : public RodField {
  public:
-  static std::unique_ptr<RodField> make(double stiffness, const RodMesh& rod, const Model& model) {
+  static std::unique_ptr<RodField> make(bool is_tension, const RodMesh& rod, const Model& model) {
     SpreadForces forces(rod, model);
     std::vector<StretchSample> samples = stretch_samples(rod, forces, model);
     return std::unique_ptr<RodField>(
-        new StretchField(stiffness, rod, model, std::move(forces), std::move(samples)));
+        new StretchField(is_tension, rod, model, std::move(forces), std::move(samples)));
   }
 
   [[nodiscard]] double sample(std::size_t i, const Model& model,
@@ -92,15 +99,15 @@ class StretchField : public RodField {
       strain += passed_strain(load, force_per_length(place, load.arc_length, rod_, model, state),
                               model, state);
     }
-    return stiffness_ * strain;
+    return is_tension_ ? rod_.EA * strain : strain;
   }
   [[nodiscard]] bool smooth_at(std::size_t i) const override { return samples_[i].smooth; }
 
  private:
-  StretchField(double stiffness, const RodMesh& rod, const Model& model, SpreadForces forces,
+  StretchField(bool is_tension, const RodMesh& rod, const Model& model, SpreadForces forces,
                std::vector<StretchSample> samples)
       : RodField(arc_lengths(samples)),
-        stiffness_(stiffness),
+        is_tension_(is_tension),
         rod_(rod),
         forces_(std::move(forces)),
         vectors_(rod, model),
@@ -136,6 +143,10 @@ class StretchField : public RodField {
     if (across_ && !leans_.none(edge)) {
       const double stretch = 1.0 + strain + actuated;
       strain -= leans_.tension(edge, stretch, *across_, model, state) / rod_.EA;
+    }
+    if (is_tension_ && rod_.damping.stretching > 0.0) {
+      strain += rod_.damping.stretching * vectors_.lengthening(edge, model, state) /
+                rod_.edge_length[to_size(edge)];
     }
     return strain;
   }
@@ -180,7 +191,7 @@ class StretchField : public RodField {
     return part.amount * mean.curvature.dot(mean.force) / (stretch * rod_.EA);
   }
 
-  double stiffness_;
+  bool is_tension_;
   RodMesh rod_;
   SpreadForces forces_;
   EffectiveVectors vectors_;
@@ -194,11 +205,11 @@ class StretchField : public RodField {
 }  // namespace
 
 std::unique_ptr<RodField> make_strain_field(const RodMesh& rod, const Model& model) {
-  return StretchField::make(1.0, rod, model);
+  return StretchField::make(false, rod, model);
 }
 
 std::unique_ptr<RodField> make_tension_field(const RodMesh& rod, const Model& model) {
-  return StretchField::make(rod.EA, rod, model);
+  return StretchField::make(true, rod, model);
 }
 
 }  // namespace der

@@ -7,8 +7,11 @@
 #include "der/energies/elements_of.hpp"
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/spatial_bend.hpp"
+#include "der/energies/strain_rate.hpp"
 #include "der/energies/vertex_response.hpp"
+#include "der/kinematics/planar_edge.hpp"
 #include "der/model/frames.hpp"
+#include "der/model/internal_damping.hpp"
 #include "der/supports/spatial_clamp.hpp"
 #include "output/actuated_shape.hpp"
 #include "supports/leg_clamp.hpp"
@@ -23,6 +26,17 @@ double rotation_of(const HeldFrame& held, const Model& model, const State& state
 Vec3 offset(const SpatialPivot& pivot, const Model& model, const State& state) {
   if (pivot.distance == 0.0) return Vec3::Zero();
   return pivot.distance * held_frame(pivot.held, model, state).tangent;
+}
+
+Vec2 rate_of_offset(const Pivot& pivot, const Model& model, const State& state) {
+  if (pivot.rotation < 0) return Vec2::Zero();
+  const Vec2 offset = pivot.offset(control_value(model, state, pivot.rotation));
+  return turn_rate(model, state, pivot.rotation) * perpendicular(offset);
+}
+
+Vec3 rate_of_offset(const SpatialPivot& pivot, const Model& model, const State& state) {
+  if (pivot.distance == 0.0) return Vec3::Zero();
+  return held_spin(pivot.held, model, state).cross(offset(pivot, model, state));
 }
 
 /// The section that the clamp of a vertex holds, on the vertex's leg.
@@ -93,35 +107,75 @@ VertexKinematics<Curvature> kinematics_of(const RodVertex& vertex, const RodMesh
       rest_strain(vertex, rod, model, state).twist);
 }
 
-/// The stiffness of a corner; null if the vertex is none.
-const CoupledVertex* corner_of(const RodVertex& vertex, const RodMesh& rod, const Model& model) {
-  if (vertex.before < 0 || vertex.after < 0) return nullptr;
+/// The stiffness of a corner, null if the vertex is none, and its viscosity.
+struct CornerOf {
+  const CoupledVertex* vertex = nullptr;
+  Mat3 viscosity = Mat3::Zero();
+};
+
+CornerOf corner_of(const RodVertex& vertex, const RodMesh& rod, const Model& model) {
+  if (vertex.before < 0 || vertex.after < 0) return {};
   const Index theta_before = model.framed_edges[to_size(rod.first_edge + vertex.before)].theta;
-  const auto find = [&](const auto& list, const auto& vertex_of) -> const CoupledVertex* {
+  const auto find = [&](const auto& list, const auto& vertex_of) {
+    CornerOf corner;
     for (std::size_t i = 0; i < list.size(); ++i) {
-      if (list.dofs[i][9] == theta_before) return &vertex_of(list.constants[i]);
+      if (list.dofs[i][9] != theta_before) continue;
+      corner.vertex = &vertex_of(list.constants[i]);
+      for (const DampedElement& damped : list.damped) {
+        if (damped.element == i) corner.viscosity = damped.viscosity;
+      }
     }
-    return nullptr;
+    return corner;
   };
   using Plain = CornerBend::Constants;
   using BesideClamp = FromSpatialPivot<CornerBend>::Constants;
-  const auto* plain =
+  const CornerOf plain =
       find(elements_of<CornerBend>(*model.elements),
            [](const Plain& element) -> const CoupledVertex& { return element.vertex; });
-  if (plain != nullptr) return plain;
+  if (plain.vertex != nullptr) return plain;
   return find(
       elements_of<FromSpatialPivot<CornerBend>>(*model.elements),
       [](const BesideClamp& element) -> const CoupledVertex& { return element.element.vertex; });
+}
+
+/// The rates of the strains of a vertex [1/s].
+template <class Curvature>
+Vec3 strain_rate(const RodVertex& vertex, const RodMesh& rod, const Model& model,
+                 const State& state) {
+  const auto spin = [&](Index edge) -> Vec3 {
+    if (edge < 0) return held_spin(held_at(vertex, rod, model), model, state);
+    const SpatialEdge& own = model.framed_edges[to_size(rod.first_edge + edge)];
+    const Vec3 vector = effective_vector(own, model, state);
+    return vector.cross(effective_rate(own, model, state)) / vector.squaredNorm() +
+           state.velocities[own.theta] * vector.normalized();
+  };
+  return by_rotation(kinematics_of<Curvature>(vertex, rod, model, state)) *
+         (spin(vertex.after) - spin(vertex.before));
+}
+
+template <class Curvature>
+MaterialCurvature viscous_part(const RodVertex& vertex, const RodMesh& rod, const Model& model,
+                               const State& state) {
+  const Vec3 rates = strain_rate<Curvature>(vertex, rod, model, state);
+  Vec3 part =
+      Vec3(rod.damping.bending, rod.damping.bending, rod.damping.twisting).cwiseProduct(rates);
+  if (const auto [corner, viscosity] = corner_of(vertex, rod, model); corner != nullptr) {
+    part = corner->coefficients.ldlt().solve(viscosity * rates);
+  }
+  return {part[0], part[1], holds_section(vertex, rod) ? part[2] : 0.0};
 }
 
 template <class Curvature>
 Vec3 response_of(const RodVertex& vertex, const RodMesh& rod, const Model& model,
                  const State& state) {
   const bool twists = holds_section(vertex, rod);
-  const MaterialCurvature rest = rest_strain(vertex, rod, model, state);
+  MaterialCurvature rest = rest_strain(vertex, rod, model, state);
+  const MaterialCurvature viscous = viscous_strain(vertex, rod, model, state);
+  rest = {rest.kappa_1 - viscous.kappa_1, rest.kappa_2 - viscous.kappa_2,
+          rest.twist - viscous.twist};
   const auto kinematics = kinematics_of<Curvature>(vertex, rod, model, state);
   VertexResponse response;
-  if (const CoupledVertex* corner = corner_of(vertex, rod, model)) {
+  if (const CoupledVertex* corner = corner_of(vertex, rod, model).vertex) {
     CoupledVertex actuated = *corner;
     actuated.rest = rest;
     kinematics.template respond<false>(actuated, response);
@@ -195,6 +249,14 @@ MaterialCurvature strain_of(const RodVertex& vertex, const RodMesh& rod, const M
              : measured<TangentCurvature>(vertex, rod, model, state);
 }
 
+MaterialCurvature viscous_strain(const RodVertex& vertex, const RodMesh& rod, const Model& model,
+                                 const State& state) {
+  if (!rod.damping.any() || !model.has_sections()) return {};
+  return rod.curvature == scenario::CurvatureMeasure::Angle
+             ? viscous_part<AngleCurvature>(vertex, rod, model, state)
+             : viscous_part<TangentCurvature>(vertex, rod, model, state);
+}
+
 Vec3 moment_of(const RodVertex& vertex, const RodMesh& rod, const Model& model,
                const State& state) {
   return rod.curvature == scenario::CurvatureMeasure::Angle
@@ -228,6 +290,26 @@ Vec3 effective_end(const SpatialEdge& edge, bool last, const Model& model, const
 
 Vec3 effective_vector(const SpatialEdge& edge, const Model& model, const State& state) {
   return effective_end(edge, true, model, state) - effective_end(edge, false, model, state);
+}
+
+Vec2 effective_rate(const EffectiveEdge& edge, const Model& model, const State& state) {
+  const Vector& v = state.velocities;
+  return Vec2(v[edge.dofs[2]], v[edge.dofs[3]]) - Vec2(v[edge.dofs[0]], v[edge.dofs[1]]) +
+         rate_of_offset(edge.last, model, state) - rate_of_offset(edge.first, model, state);
+}
+
+Vec3 effective_rate(const SpatialEdge& edge, const Model& model, const State& state) {
+  return state.velocities.segment<3>(edge.end) - state.velocities.segment<3>(edge.start) +
+         rate_of_offset(edge.last, model, state) - rate_of_offset(edge.first, model, state);
+}
+
+Vec3 held_spin(const HeldFrame& held, const Model& model, const State& state) {
+  Vec3 spin = Vec3::Zero();
+  if (held.rotation >= 0) spin += turn_rate(model, state, held.rotation) * held.axis;
+  if (held.twist >= 0) {
+    spin += turn_rate(model, state, held.twist) * held_frame(held, model, state).tangent;
+  }
+  return spin;
 }
 
 }  // namespace der

@@ -45,6 +45,11 @@ bool has_torsional_stiffness(const Rod& rod) {
   return rod.material->poissons_ratio || rod.material->shear_modulus;
 }
 
+const DampingTimes& damping_of(const Rod& rod) {
+  const auto* direct = std::get_if<Stiffness>(&rod.cross_section);
+  return direct ? direct->damping : rod.material->damping;
+}
+
 bool is_straight(const Rod& rod) {
   const Vec3 start = in_space(rod.points.front());
   const Vec3 chord = in_space(rod.points.back()) - start;

@@ -205,6 +205,9 @@ std::string may_twist(const Rod& rod, const Scene& scene) {
   if (moves && direct && direct->rotary_inertia.value_or(0.0) > 0.0) {
     return fmt::format("the sections of rod '{}' have a rotary inertia", rod.name);
   }
+  if (scene.is_dynamic() && !is_cable(rod) && damping_of(rod).bending > 0.0) {
+    return fmt::format("the damping of bending inside rod '{}' turns its sections", rod.name);
+  }
   return {};
 }
 

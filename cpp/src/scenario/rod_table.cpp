@@ -45,6 +45,37 @@ Format<Ellipse> ellipse_format() {
                      .required("height", &Ellipse::height, number("m", positive()), kHeight));
 }
 
+/// One time for all, or each by itself. Nothing rings for longer than a few of the largest, about
+/// eleven days.
+Format<DampingTimes> damping_format() {
+  constexpr double longest = 1e6;
+  const Format<double> time = number("s", Range{0.0, false, longest, false});
+  const Format<DampingTimes> each =
+      mapping(Table<DampingTimes>(
+                  "internal damping",
+                  "Times of the Kelvin-Voigt law: a strain that changes at a rate bears the "
+                  "stress of itself and of what it changes by in such a time. A motion of "
+                  "angular frequency w has the damping ratio time w/2. Statics and modes "
+                  "are without it.")
+                  .optional("bending", &DampingTimes::bending, time, "Of curvatures.")
+                  .optional("twisting", &DampingTimes::twisting, time, "Of twist.")
+                  .optional("stretching", &DampingTimes::stretching, time, "Of elongation."));
+  Shape shape{Shape::Kind::AnyOf};
+  shape.unit = time.shape.unit;
+  shape.parts = {time.shape, each.shape};
+  return {std::move(shape), [time, each](const Shape& /*self*/, const Place& place,
+                                         Diagnostics& diagnostics, DampingTimes& out) {
+            if (place.value->mapping()) return each.read(place, diagnostics, out);
+            double all = 0.0;
+            if (!time.read(place, diagnostics, all)) return false;
+            out = {all, all, all};
+            return true;
+          }};
+}
+
+constexpr const char* kDamping =
+    "Internal damping: one time for bending, twisting and stretching, or each.";
+
 /// Bending stiffnesses of which one is 0 would leave a rod that resists bending to one side only.
 void check_stiffness(Stiffness& stiffness, const Place& place, Diagnostics& diagnostics) {
   if (stiffness.EI || (*stiffness.EI1 == 0.0) == (*stiffness.EI2 == 0.0)) return;
@@ -75,6 +106,7 @@ Format<Stiffness> stiffness_format() {
                     "Mass moment of inertia about the tangent per rest length, for the spin of "
                     "sections.",
                     "that of a homogeneous section, mass_per_length (EI1 + EI2)/EA")
+          .optional("damping", &Stiffness::damping, damping_format(), kDamping, "none")
           .check(check_stiffness));
 }
 
@@ -106,7 +138,8 @@ Format<Material> material_format() {
                     "Shear modulus.")
           .at_most_one({{"poissons_ratio"}, {"shear_modulus"}})
           .required("density", &Material::density, number("kg/m^3", not_negative()),
-                    "Density; 0 for a rod whose mass is only in its spheres."));
+                    "Density; 0 for a rod whose mass is only in its spheres.")
+          .optional("damping", &Material::damping, damping_format(), kDamping, "none"));
 }
 
 Format<Sphere> sphere_format() {

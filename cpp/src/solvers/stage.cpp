@@ -9,6 +9,7 @@
 #include "der/core/loops.hpp"
 #include "der/energies/circulatory_load.hpp"
 #include "der/model/edge_change.hpp"
+#include "der/model/internal_damping.hpp"
 #include "der/model/spin.hpp"
 #include "der/solvers/newton_step.hpp"
 #include "solvers/stage_kernels.hpp"
@@ -48,7 +49,8 @@ StageProblem::StageProblem(const Model& model, const Assembler& assembler, Mass 
       circulatory_(circulatory_rank(model)),
       guess_(Vector::Zero(model.num_dofs())),
       displacement_(Vector::Zero(model.num_dofs())),
-      term_(Vector::Zero(model.num_dofs())) {
+      term_(Vector::Zero(model.num_dofs())),
+      velocities_(Vector::Zero(model.viscous ? model.num_dofs() : 0)) {
   assembler_.add_mass(mass_, 1.0, mass_values_);
 }
 
@@ -98,6 +100,9 @@ void StageProblem::system(Vector& residual, Vector& values) {
   if (stage_->velocity_factor != 0.0 && model_.damped) {
     assembler_.add_diagonal(model_.damping, stage_->velocity_factor, values);
   }
+  if (has_viscous_forces()) {
+    assembler_.add_internal_damping(*here_, stage_->velocity_factor, values);
+  }
 }
 
 /// The tensions of a discrete gradient are those over the whole step, not those that a step of
@@ -118,17 +123,25 @@ double StageProblem::position_rounding() const {
 /// Positions and angles are known to their rounding, displacements to their own.
 double StageProblem::residual_rounding(Vector& values) {
   assembler_.gradient_and_hessian(*here_, term_, values);
-  double elastic = 0.0;
-  for (const DofBlock& block : model_.dofs.blocks()) {
-    const double coordinate =
-        largest_magnitude(block.count, here_->coordinates.data() + block.first);
-    elastic += assembler_.largest_diagonal(block, values) * coordinate / block.length;
+  const auto of_matrix = [&](const Vector& known) {
+    double largest = 0.0;
+    for (const DofBlock& block : model_.dofs.blocks()) {
+      const double value = largest_magnitude(block.count, known.data() + block.first);
+      largest += assembler_.largest_diagonal(block, values) * value / block.length;
+    }
+    return largest;
+  };
+  double internal = of_matrix(here_->coordinates);
+  if (has_viscous_forces()) {
+    values.setZero();
+    assembler_.add_internal_damping(*here_, stage_->velocity_factor, values);
+    internal += of_matrix(displacement_);
   }
   const auto largest_term = [&](const Vector& diagonal) {
     term_ = diagonal.cwiseProduct(displacement_);
     return model_.dofs.largest_force(term_);
   };
-  return rounding_of(elastic + stage_->inertia * largest_term(mass_.lumped) +
+  return rounding_of(internal + stage_->inertia * largest_term(mass_.lumped) +
                      stage_->velocity_factor * largest_term(model_.damping));
 }
 
@@ -191,6 +204,15 @@ double StageProblem::add_diagonal_forces(double factor, const Vector& diagonal,
   });
 }
 
+/// Returns the largest of these forces [N].
+double StageProblem::add_viscous_forces(Vector& residual) {
+  velocities_ = stage_->velocity_factor * (displacement_ - stage_->velocity_reference);
+  term_.setZero();
+  der::add_viscous_forces(model_, {*here_, velocities_, stage_->turn_rates}, term_);
+  residual += term_;
+  return model_.dofs.largest_force(term_);
+}
+
 void StageProblem::add_stage_forces(Vector& residual) {
   if (stage_->is_motion) add_spin_forces(residual);
   acting_ = std::max(subtract_external(residual), external_);
@@ -208,6 +230,7 @@ void StageProblem::add_stage_forces(Vector& residual) {
     acting_ = std::max(acting_, add_diagonal_forces(stage_->velocity_factor, model_.damping,
                                                     stage_->velocity_reference, residual));
   }
+  if (has_viscous_forces()) acting_ = std::max(acting_, add_viscous_forces(residual));
 }
 
 }  // namespace der

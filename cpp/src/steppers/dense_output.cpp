@@ -1,6 +1,7 @@
 #include "der/steppers/dense_output.hpp"
 
 #include "der/model/gravity.hpp"
+#include "der/model/internal_damping.hpp"
 #include "der/model/moment_place.hpp"
 #include "der/model/prescribed_motion.hpp"
 #include "der/steppers/work.hpp"
@@ -78,8 +79,15 @@ Work DenseOutput::powers(const State& where, const State& start, const State& en
   }
   force_.evaluate_works(start, where.positions, velocities_, where.time);
   force_.accumulate(velocities_, velocities_, power);
-  before_.coordinates = velocities_;
   evaluate_controls(model_, end, where.time, before_.controls);
+  if (model_.viscous) {
+    before_.coordinates = where.positions;
+    set_turn_rates(model_, where, start.time, end.time, where.time, turn_rates_);
+    const double driven = driven_viscous_power(model_, {before_, velocities_, turn_rates_});
+    power.supports += driven;
+    power.drag += driven;
+  }
+  before_.coordinates = velocities_;
   power.loads += driven_gravity_energy(model_, before_);
   return power;
 }

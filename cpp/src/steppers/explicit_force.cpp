@@ -5,6 +5,7 @@
 #include "der/core/sum_of.hpp"
 #include "der/loads/external_force.hpp"
 #include "der/model/dimension.hpp"
+#include "der/model/internal_damping.hpp"
 #include "der/model/prescribed_motion.hpp"
 #include "der/model/spin.hpp"
 #include "der/steppers/work.hpp"
@@ -20,6 +21,8 @@ constexpr double kCoupleTolerance = 1e-12;
 /// Rounds that converge do so sooner: each one's change is that of the round before times about
 /// the spin in half a step times the square of thickness over edge length.
 constexpr int kMostRounds = 30;
+/// Of the first step, whose length is not known [s]: the rate of a table is that over it.
+constexpr double kShort = 1e-6;
 
 bool any_support_moves(const Model& model) {
   return std::any_of(model.held.begin(), model.held.end(),
@@ -37,6 +40,7 @@ ExplicitForce::ExplicitForce(const Model& model, const Assembler& assembler)
       scratch_controls_(here_.controls),
       force_(Vector::Zero(model.num_dofs())),
       gradient_(Vector::Zero(model.num_dofs())),
+      viscous_(Vector::Zero(model.viscous ? model.num_dofs() : 0)),
       couple_(Vector::Zero(model.num_dofs())),
       next_couple_(couple_) {}
 
@@ -47,17 +51,26 @@ bool ExplicitForce::acceleration(const State& state, const Vector& positions,
   evaluate_gradient();
   const auto solve = [&] {
     acceleration = force_ - gradient_ - model_.damping.cwiseProduct(velocities);
+    if (model_.viscous) acceleration -= viscous_;
     if (model_.has_sections()) acceleration += couple_;
     mass_.solve(damping_time, acceleration);
   };
-  if (!model_.has_sections()) {
+  const auto solve_damped = [&] {
+    set_viscous_force(state, velocities, time);
     solve();
+    if (!model_.viscous || damping_time == 0.0) return;
+    mean_velocities_ = velocities + damping_time * acceleration;
+    set_viscous_force(state, mean_velocities_, time);
+    solve();
+  };
+  if (!model_.has_sections()) {
+    solve_damped();
     return true;
   }
   const auto at_start = [&](Index dof) { return velocities[dof]; };
   const auto mean = [&](Index dof) { return velocities[dof] + damping_time * acceleration[dof]; };
   set_couple(at_start, couple_);
-  solve();
+  solve_damped();
   bool converged = damping_time == 0.0;
   const double largest = model_.dofs.largest_force(gradient_);
   for (int round = 0; round < kMostRounds && !converged; ++round) {
@@ -75,6 +88,7 @@ bool ExplicitForce::acceleration(const State& state, const Vector& positions,
 void ExplicitForce::evaluate_works(const State& state, const Vector& positions,
                                    const Vector& velocities, double time) {
   evaluate_loads(state, positions, time);
+  set_viscous_force(state, velocities, time);
   // Only the reactions on held degrees of freedom need it, and those work where supports move.
   if (!supports_move_) return;
   evaluate_gradient();
@@ -92,6 +106,14 @@ void ExplicitForce::add_gyroscopic_change(const State& state, const Vector& chan
              couple_);
   mass_.solve(0.0, couple_);
   acceleration += couple_;
+}
+
+void ExplicitForce::set_viscous_force(const State& state, const Vector& velocities, double time) {
+  if (!model_.viscous) return;
+  const double until = state.time + (state.last_step > 0.0 ? state.last_step : kShort);
+  set_turn_rates(model_, state, state.time, std::max(time, until), time, turn_rates_);
+  viscous_.setZero();
+  add_viscous_forces(model_, {here_, velocities, turn_rates_}, viscous_);
 }
 
 void ExplicitForce::evaluate_gradient() {
@@ -128,10 +150,12 @@ void ExplicitForce::accumulate(const Vector& velocities, const Vector& displacem
       moment_work(model_, here_, displacement);
   work.drag += sum_of<double>(
       size, [&](Index i) { return displacement[i] * (model_.damping[i] * velocities[i]); });
+  if (model_.viscous) work.drag += displacement.dot(viscous_);
   for (const HeldDof& held : model_.held) {
     // The step's finisher has the drag on held nodes.
     work.drag -= displacement[held.dof] * model_.damping[held.dof] * velocities[held.dof];
     work.supports += displacement[held.dof] * (gradient_[held.dof] - force_[held.dof]);
+    if (model_.viscous) work.supports += displacement[held.dof] * viscous_[held.dof];
   }
 }
 

@@ -7,6 +7,7 @@
 #include "der/core/index.hpp"
 #include "der/core/sum_of.hpp"
 #include "der/loads/external_force.hpp"
+#include "der/model/internal_damping.hpp"
 #include "der/model/prescribed_motion.hpp"
 #include "der/steppers/work.hpp"
 
@@ -42,6 +43,9 @@ StepReport ImplicitStage::solve(const State& state, double time) {
   here.load_factor = state.load_factor;
   controls_.evaluate(state, time, here.controls);
   external_force(model_, here, state.extra_force, equation.force);
+  if (model_.viscous) {
+    set_turn_rates(model_, state, state.time, time, time, equation.turn_rates);
+  }
   equation.origin = state.positions;
   problem_.pose(equation, here);
   const NewtonReport newton = newton_.solve(problem_);
@@ -61,12 +65,12 @@ StepReport ImplicitStage::solve(const State& state, double time) {
   return report;
 }
 
-void ImplicitStage::accumulate(const Vector& displacement, Work& work) const {
+void ImplicitStage::accumulate(const Vector& displacement, Work& work) {
   accumulate_forces(displacement, work);
   accumulate_solver(displacement, work);
 }
 
-void ImplicitStage::accumulate_forces(const Vector& displacement, Work& work) const {
+void ImplicitStage::accumulate_forces(const Vector& displacement, Work& work) {
   const Vector& moved = newton_.displacement();
   const auto size = static_cast<Index>(displacement.size());
   work.loads +=
@@ -80,6 +84,12 @@ void ImplicitStage::accumulate_forces(const Vector& displacement, Work& work) co
                    return displacement[i] *
                           (model_.damping[i] * (moved[i] - equation.velocity_reference[i]));
                  });
+  }
+  if (model_.viscous) {
+    viscous_.setZero(model_.num_dofs());
+    velocities_ = equation.velocity_factor * (moved - equation.velocity_reference);
+    add_viscous_forces(model_, {here, velocities_, equation.turn_rates}, viscous_);
+    work.drag += displacement.dot(viscous_);
   }
   for (const HeldDof& held : model_.held) {
     // Without the inertia and the drag that the scheme gives the held node; `finish` has them.

@@ -90,7 +90,23 @@ void StableStepBound::find_blocks() {
 }
 
 double StableStepBound::evaluate(const Configuration& here) {
+  viscous_rate_ = 0.0;
+  if (model_.viscous) {
+    values_.setZero();
+    assembler_.add_internal_damping(here, 1.0, values_);
+    viscous_rate_ = largest_sum();
+    sums_.maxCoeff(&most_viscous_);
+  }
   assembler_.gradient_and_hessian(here, gradient_, values_);
+  const double w2 = largest_sum();
+  const double g = damping_rate_ + viscous_rate_;
+  // Positive root of dt^2 w2 + 2 dt g = 4, in the form that is stable for small w2 and small g.
+  const double step = 4.0 / (g + std::sqrt(g * g + 4.0 * w2));
+  return std::isnan(step) ? 0.0 : step;
+}
+
+/// Sets the sums over each node's blocks of the values; returns the largest.
+double StableStepBound::largest_sum() {
   values_[layout_.num_values()] = 0.0;
   sums_.setZero();
   for (const Block& block : blocks_) {
@@ -103,11 +119,7 @@ double StableStepBound::evaluate(const Configuration& here) {
     sums_[block.row] += norm;
     if (block.row != block.column) sums_[block.column] += norm;
   }
-  const double w2 = sums_.size() > 0 ? sums_.maxCoeff<Eigen::PropagateNaN>() : 0.0;
-  const double g = damping_rate_;
-  // Positive root of dt^2 w2 + 2 dt g = 4, in the form that is stable for small w2 and small g.
-  const double step = 4.0 / (g + std::sqrt(g * g + 4.0 * w2));
-  return std::isnan(step) ? 0.0 : step;
+  return sums_.size() > 0 ? sums_.maxCoeff<Eigen::PropagateNaN>() : 0.0;
 }
 
 StableStep StableStepBound::explain(const Configuration& here) {
@@ -121,6 +133,11 @@ StableStep StableStepBound::explain(const Configuration& here) {
   if (damping_rate_ * damping_rate_ >= w2) {
     result.limited_by = "drag";
     result.worst_dof = most_damped_;
+    return result;
+  }
+  if (viscous_rate_ * viscous_rate_ >= w2) {
+    result.limited_by = "internal damping";
+    result.worst_dof = model_.dofs.position(most_viscous_, 0);
     return result;
   }
   double largest = 0.0;

@@ -1,6 +1,7 @@
 #include "der/steppers/step_commit.hpp"
 
 #include "der/model/gravity.hpp"
+#include "der/model/internal_damping.hpp"
 #include "der/model/moment_place.hpp"
 #include "der/model/prescribed_motion.hpp"
 #include "der/supports/clamp.hpp"
@@ -26,6 +27,8 @@ void StepCommit::finish(const Vector& positions, const Eigen::Ref<const Vector>&
   state.work.actuation += work.actuation;
   state.work.loads += cell_work(model_, start_, end_) + driven_gravity_energy(model_, end_) -
                       driven_gravity_energy(model_, start_);
+  const bool drives = model_.viscous && any_clamp_turns(model_);
+  const double power_before = drives ? driven_power(start_, state, dt, state.time) : 0.0;
   for (const HeldDof& held : model_.held) {
     const double before = state.velocities[held.dof];
     const double mean = (positions[held.dof] - state.positions[held.dof]) / dt;
@@ -41,7 +44,21 @@ void StepCommit::finish(const Vector& positions, const Eigen::Ref<const Vector>&
     state.velocities[dof] = velocities[dof];
     state.positions[dof] = positions[dof];
   }
+  if (drives) {
+    // Clamps work against the viscous loads beside them, which take that up.
+    const double power = driven_power(end_, state, dt, state.time + dt);
+    const double taken = 0.5 * dt * (power_before + power);
+    state.work.supports += taken;
+    state.work.drag += taken;
+  }
   state.last_step = dt;
+}
+
+/// At one end of the step of `dt` [s] from `state.time`.
+double StepCommit::driven_power(const Configuration& here, const State& state, double dt,
+                                double time) {
+  set_turn_rates(model_, state, state.time, state.time + dt, time, turn_rates_);
+  return driven_viscous_power(model_, {here, state.velocities, turn_rates_});
 }
 
 /// Moves what `state` follows to the end of the step, and returns the works of its controls: the

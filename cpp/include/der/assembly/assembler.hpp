@@ -79,6 +79,9 @@ class Assembler {
   /// gives them.
   void add_tension_stiffness(const Configuration& here, const Vector& tension,
                              Vector& values) const;
+  /// Adds `factor` [1/s] times the matrix C [N s/m] of the internal damping, by which the
+  /// velocities give the viscous forces (model/internal_damping.hpp).
+  void add_internal_damping(const Configuration& here, double factor, Vector& values) const;
   /// Adds `diagonal` (all degrees of freedom) times `factor` to the matrix diagonal.
   void add_diagonal(const Vector& diagonal, double factor, Vector& values) const;
 

@@ -9,6 +9,14 @@
 
 namespace der {
 
+/// The internal damping of an element: the rates of its strains, those of StrainRate, bear the
+/// loads `viscosity` times these, [N s/m] of an extension, [N m s] of curvatures and twist over its
+/// cell. Of one strain the first entry counts. It is symmetric, with no negative eigenvalue.
+struct DampedElement {
+  std::size_t element = 0;  ///< its number in the list
+  Mat3 viscosity = Mat3::Zero();
+};
+
 /// All elements of one kind: for each, the degrees of freedom it acts on (in the order in which its
 /// kernel takes them) and its constants. Elements hold indices into a graph of nodes and edges, so
 /// nothing here knows about chains.
@@ -37,6 +45,7 @@ struct ElementList {
   using KernelType = Kernel;
   std::vector<std::array<Index, Kernel::kDofs>> dofs;
   std::vector<typename Kernel::Constants> constants;
+  std::vector<DampedElement> damped;  ///< those with internal damping
 
   [[nodiscard]] std::size_t size() const noexcept { return dofs.size(); }
   void add(const std::array<Index, Kernel::kDofs>& element_dofs,

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "der/energies/damping_times.hpp"
 #include "der/scenario/rod.hpp"
 
 namespace der {
@@ -16,9 +17,10 @@ struct SectionProperties {
   double GJ = 0.0;               ///< against twist (Saint-Venant) [N m^2]; 0 if not known
   double mass_per_length = 0.0;  ///< [kg/m]
   double spin_inertia = 0.0;     ///< mass moment of inertia about the tangent, per length [kg m]
-  double draw_radius = 0.0;      ///< half the size in the x-y plane [m]; 0 if not known
-  double half_width = 0.0;       ///< [m]; 0 if not known
-  double half_height = 0.0;      ///< [m]; 0 if not known
+  DampingTimes damping;
+  double draw_radius = 0.0;  ///< half the size in the x-y plane [m]; 0 if not known
+  double half_width = 0.0;   ///< [m]; 0 if not known
+  double half_height = 0.0;  ///< [m]; 0 if not known
 };
 
 /// A section whose height lies in the plane of a planar scene. `material` is empty only with

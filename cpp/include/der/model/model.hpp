@@ -8,6 +8,7 @@
 
 #include "der/core/pimpl.hpp"
 #include "der/core/types.hpp"
+#include "der/energies/damping_times.hpp"
 #include "der/kinematics/actuated_turn.hpp"
 #include "der/kinematics/held_frame.hpp"
 #include "der/kinematics/material_curvature.hpp"
@@ -154,6 +155,7 @@ struct RodMesh {
   double GJ = 0.0;                  ///< [N m^2]
   double spin_inertia = 0.0;        ///< about the tangent, per length [kg m]
   double mass_per_length = 0.0;     ///< [kg/m] without spheres
+  DampingTimes damping;             ///< internal
   scenario::CurvatureMeasure curvature = scenario::CurvatureMeasure::Angle;
   Index first_edge = 0;  ///< number of its first edge among those of the model
   /// Section frame [-] of each drawn edge at its middle, in space.
@@ -279,6 +281,7 @@ struct Model {
   Mass mass;
   Vector damping;        ///< [N s/m], one entry a degree of freedom: drag and linear damping
   bool damped = false;   ///< whether any of that is there
+  bool viscous = false;  ///< whether any rod has internal damping (ElementList::damped)
   Vector gravity_force;  ///< [N] constant weight without buoyancy
   /// Controls of the acceleration of gravity [m/s^2], where it follows any; its weight is then
   /// among the controlled forces (model/gravity.hpp). -1: there is none, or it is constant.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "der/energies/effective_edge.hpp"
 #include "der/kinematics/material_curvature.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
@@ -26,7 +27,13 @@ MaterialCurvature strain_of(const RodVertex& vertex, const RodMesh& rod, const M
 MaterialCurvature rest_strain(const RodVertex& vertex, const RodMesh& rod, const Model& model,
                               const State& state);
 
-/// Moment [N m] in a vertex of a rod whose sections count, exerted on the side before it.
+/// By how much internal damping lets a vertex bear more than its strain does, as a strain: times by
+/// the rates of these. Zero without sections, where bending is not damped.
+MaterialCurvature viscous_strain(const RodVertex& vertex, const RodMesh& rod, const Model& model,
+                                 const State& state);
+
+/// Moment [N m] in a vertex of a rod whose sections count, exerted on the side before it, with that
+/// of internal damping.
 Vec3 moment_of(const RodVertex& vertex, const RodMesh& rod, const Model& model, const State& state);
 
 /// The same of any rod in space: without sections, the vector about which it bends there.
@@ -42,5 +49,12 @@ Vec3 effective_end(const SpatialEdge& edge, bool last, const Model& model, const
 
 /// Vector [m] between these points.
 Vec3 effective_vector(const SpatialEdge& edge, const Model& model, const State& state);
+
+/// The rate [m/s] of the vector of an edge as its elements see it, in space and in a plane.
+Vec3 effective_rate(const SpatialEdge& edge, const Model& model, const State& state);
+Vec2 effective_rate(const EffectiveEdge& edge, const Model& model, const State& state);
+
+/// The spin [rad/s] of the section that a clamp holds.
+Vec3 held_spin(const HeldFrame& held, const Model& model, const State& state);
 
 }  // namespace der

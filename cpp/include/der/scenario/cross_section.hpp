@@ -3,6 +3,8 @@
 #include <optional>
 #include <variant>
 
+#include "der/energies/damping_times.hpp"
+
 namespace der::scenario {
 
 struct Circle {
@@ -33,6 +35,7 @@ struct Stiffness {
   double mass_per_length = 0.0;  ///< [kg/m]
   /// Mass moment of inertia of the section about the tangent, per length [kg m], for its spin.
   std::optional<double> rotary_inertia;
+  DampingTimes damping;
 };
 using CrossSection = std::variant<Circle, Tube, Rectangle, Ellipse, Stiffness>;
 
@@ -43,6 +46,7 @@ struct Material {
   double density = 0.0;                  ///< [kg/m^3]
   std::optional<double> poissons_ratio;  ///< of an isotropic material: G = E / (2 (1 + nu))
   std::optional<double> shear_modulus;   ///< [Pa]
+  DampingTimes damping;
 };
 
 }  // namespace der::scenario

@@ -15,12 +15,12 @@ class DiscreteGradientAssembler;
 
 /// The nonlinear system that one stage of an implicit stepper, or a static analysis, has to solve
 /// for the displacement d from the positions `origin`:
-///   inertia M (d - inertia_target) + velocity_factor C (d - velocity_reference)
-///     + grad E(origin + d) - Q(origin + d) - force = 0
+///   inertia M (d - inertia_target) + (C + V(origin + d)) v + grad E(origin + d)
+///     - Q(origin + d) - force = 0,   v = velocity_factor (d - velocity_reference),
 /// over the free degrees of freedom; Q are the circulatory loads, M is `mass`, C the model's
-/// diagonal damping. All vectors have one entry a degree of freedom. The velocity that a stepper
-/// makes of a displacement has the rounding error of the displacement; that of a difference of
-/// positions grows as steps get short.
+/// diagonal damping, V that inside of rods (model/internal_damping.hpp). All vectors have one entry
+/// a degree of freedom. The velocity that a stepper makes of a displacement has the rounding error
+/// of the displacement; that of a difference of positions grows as steps get short.
 struct Stage {
   explicit Stage(const Model& model);
   double inertia = 0.0;          ///< [1/s^2]; 0: statics
@@ -29,6 +29,7 @@ struct Stage {
   double velocity_factor = 0.0;  ///< [1/s]
   Vector velocity_reference;     ///< [m] from the origin
   Vector force;                  ///< [N] external forces at the stage's time
+  Vector turn_rates;  ///< of the controls, with internal damping (model/internal_damping.hpp)
   /// Whether the stage is one of a motion. The rates of angles are then spins of sections, which
   /// change the forces on nodes (model/spin.hpp).
   bool is_motion = false;
@@ -72,11 +73,15 @@ class StageProblem final : public NewtonProblem {
   [[nodiscard]] double velocity(Index dof) const {
     return stage_->velocity_factor * (displacement_[dof] - stage_->velocity_reference[dof]);
   }
+  [[nodiscard]] bool has_viscous_forces() const {
+    return model_.viscous && stage_->velocity_factor != 0.0;
+  }
   void set_circulatory_tangent();
   void add_spin_forces(Vector& residual) const;
   double subtract_external(Vector& residual) const;
   double add_diagonal_forces(double factor, const Vector& diagonal, const Vector& target,
                              Vector& residual);
+  double add_viscous_forces(Vector& residual);
   void add_stage_forces(Vector& residual);
 
   const Model& model_;
@@ -88,9 +93,10 @@ class StageProblem final : public NewtonProblem {
   PredictedTension tension_;
   LowRank circulatory_;  // tangent of the circulatory loads
   CirculatoryTerm term_of_load_;
-  Vector guess_;           // coordinates
-  Vector displacement_;    // from the stage's origin
-  Vector term_;            // one term of the residual
+  Vector guess_;         // coordinates
+  Vector displacement_;  // from the stage's origin
+  Vector term_;          // one term of the residual
+  Vector velocities_;
   double external_ = 0.0;  // largest external force of the stage [N]
   double acting_ = 0.0;
 };

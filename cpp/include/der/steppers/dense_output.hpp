@@ -34,6 +34,7 @@ class DenseOutput {
   ExplicitForce force_;
   Vector velocities_;
   Vector controls_;
+  Vector turn_rates_;
   Configuration before_;
   Configuration after_;
 };

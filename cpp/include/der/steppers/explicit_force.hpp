@@ -21,7 +21,8 @@ class ExplicitForce {
   /// degrees of freedom. `damping_time` t [s] 0: the acceleration as it is; half a step: the mean
   /// one over the step under the damping and the gyroscopic forces (model/spin.hpp) of the mean
   /// velocity v + t a, which for the latter takes a few rounds. False: these rounds did not
-  /// converge; they do where t is zero.
+  /// converge; they do where t is zero. Internal damping is that of the velocity v + t a' with the
+  /// acceleration a' under that of v.
   bool acceleration(const State& state, const Vector& positions, const Vector& velocities,
                     double time, double damping_time, Vector& acceleration);
   /// Adds to an acceleration [m/s^2] at `state` what the gyroscopic forces make of a change of the
@@ -42,6 +43,7 @@ class ExplicitForce {
  private:
   void evaluate_loads(const State& state, const Vector& positions, double time);
   void evaluate_gradient();
+  void set_viscous_force(const State& state, const Vector& velocities, double time);
   template <class Velocity>
   void set_couple(const Velocity& velocity, Vector& couple) const;
 
@@ -53,7 +55,10 @@ class ExplicitForce {
   Vector scratch_controls_;
   Vector force_;
   Vector gradient_;  // without what the transport of frames makes of torques
-  Vector couple_;    // gyroscopic forces on nodes
+  Vector viscous_;   // forces of internal damping
+  Vector turn_rates_;
+  Vector mean_velocities_;
+  Vector couple_;  // gyroscopic forces on nodes
   Vector next_couple_;
 };
 

@@ -36,7 +36,7 @@ class ImplicitStage {
   /// Displacement of the stage solved last, from the start of the step [m].
   [[nodiscard]] const Vector& displacement() const { return newton_.displacement(); }
   /// Adds up what the forces of the stage solved last do along `displacement` [m].
-  void accumulate(const Vector& displacement, Work& work) const;
+  void accumulate(const Vector& displacement, Work& work);
   /// Completes a done step: positions, velocities and the works that do not depend on the stepper.
   void finish(const Vector& new_positions, const Eigen::Ref<const Vector>& new_velocities,
               double dt, State& state) {
@@ -54,7 +54,7 @@ class ImplicitStage {
                              double place, ExplicitForce& at_start, State& state);
 
  private:
-  void accumulate_forces(const Vector& displacement, Work& work) const;
+  void accumulate_forces(const Vector& displacement, Work& work);
   void accumulate_solver(const Vector& displacement, Work& work) const;
   /// Work [J] of the moments.
   [[nodiscard]] double moments(const Vector& displacement) const;
@@ -67,6 +67,8 @@ class ImplicitStage {
   Vector held_controls_;  // those of `here` are the solved stage's until it is accumulated
   Vector displacement_;
   Vector start_velocities_;
+  Vector velocities_;  // of the stage
+  Vector viscous_;     // forces [N]
 };
 
 }  // namespace der

@@ -23,6 +23,7 @@ class StepCommit {
 
  private:
   ControlWork follow_and_work(State& state);
+  double driven_power(const Configuration& here, const State& state, double dt, double time);
 
   const Model& model_;
   bool controls_work_ = false;  // whether any control does work without a displacement
@@ -30,6 +31,7 @@ class StepCommit {
   Configuration end_;
   Configuration ahead_;   // the start with the controls of the end
   Configuration behind_;  // the end with the controls of the start
+  Vector turn_rates_;
 };
 
 }  // namespace der

@@ -35,7 +35,8 @@ class Sections:
         Their rates [rad/s], shape (frames, edges).
     frames
         The frames that the angles count from, shape (frames, edges, 8): tangent, reference
-        director, and the reference twists [rad] of the vertices at the start and the end of the edge.
+        director, and the reference twists [rad] of the vertices at the start and the end of the
+        edge.
     """
 
     theta: NDArray[np.float64]

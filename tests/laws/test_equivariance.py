@@ -33,8 +33,9 @@ from scipy.spatial.transform import Rotation
 
 #: Of the largest number of a unit: rounding, after steps that amplify it.
 ROUNDED = 1e-10
-#: Where it is amplified by more: in a rod about to buckle, and around a ring of few nodes.
-AMPLIFIED = {"helical_buckling": 10, "ring": 10}
+#: Where it is amplified by more: in a rod about to buckle, around a ring of few nodes, and in the
+#: strain of a cable whose EA is 2e7 times its tension.
+AMPLIFIED = {"helical_buckling": 10, "ring": 10, "hanging_cable": 100}
 #: The same on paths, whose events are located by bisection.
 LOCATED = 1e-6
 #: Times the square of the longest edge over the rod's length.

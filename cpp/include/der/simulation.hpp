@@ -95,7 +95,7 @@ class Simulation {
   /// Looks at the energies `now`. Throws DivergedError ("unstable_motion") as `step`.
   void watch_energy(const Energies& now);
   /// Says that the positions and velocities of the state are those of steps entered.
-  void keep_steps() { energy_watch_.begin(state_); }
+  void keep_steps() { energy_monitor_.begin(state_); }
   /// Whether a program has written positions or velocities since the last step, or numbers that are
   /// not finite.
   [[nodiscard]] bool has_external_writes() const;
@@ -104,7 +104,7 @@ class Simulation {
   void start_anew();
   /// Enters the energy that the integrator has created by now into the state's audit; steps do so
   /// now and then.
-  void audit_energy() { energy_watch_.look(state_); }
+  void audit_energy() { energy_monitor_.look(state_); }
   /// Advice where the time stepping is not good enough.
   [[nodiscard]] std::string advice_on_steps() const;
   /// Throws Error ("unstable_step") if the scene's step is too long for an explicit integrator at
@@ -288,7 +288,7 @@ class Simulation {
   const StepperInfo& stepper_info_;
   std::unique_ptr<Stepper> stepper_;
   std::optional<StabilityMonitor> stability_;  // of explicit steppers
-  EnergyMonitor energy_watch_;
+  EnergyMonitor energy_monitor_;
   StepPlan plan_;
   std::optional<AdaptiveStepper> adaptive_;
   SupportMotion support_motion_;

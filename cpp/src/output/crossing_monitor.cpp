@@ -59,7 +59,8 @@ std::array<double, 2> nearest_places(const Vec3& a, const Vec3& a_end, const Vec
 }  // namespace
 
 CrossingMonitor::CrossingMonitor(const Model& model, const State& start, double step_cost)
-    : income_(kIncome * step_cost * static_cast<double>(model.num_nodes)),
+    : seen_(start.positions.head(model.dofs.num_positions())),
+      income_(kIncome * step_cost * static_cast<double>(model.num_nodes)),
       same_(kCrossing * model.size()) {
   for (const RodMesh& rod : model.rods) thickest_ = std::max(thickest_, rod.draw_radius);
   const double touching = std::max(2.0 * kTouching * thickest_, same_);
@@ -77,11 +78,8 @@ void CrossingMonitor::after_step(const Model& model, const State& state) {
   if (found_) return;
   credit_ = std::min(credit_ + income_, std::max(kSavings * work_, income_));
   if (credit_ < work_) return;
-  const Index size = model.dofs.num_positions();
-  if (seen_.size() == size) {
-    const double moved = (state.positions.head(size) - seen_).lpNorm<Eigen::Infinity>();
-    if (2.0 * std::sqrt(model.dimension) * moved < clearance_) return;
-  }
+  const double moved = (state.positions.head(seen_.size()) - seen_).lpNorm<Eigen::Infinity>();
+  if (2.0 * std::sqrt(model.dimension) * moved < clearance_) return;
   look(model, state);
 }
 

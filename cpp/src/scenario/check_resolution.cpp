@@ -188,7 +188,7 @@ class Resolution {
         "{} nodes take {:.1f} GB of memory or more, and rounding hides how a rod of so many bends",
         line_.num_nodes(), 1e-9 * memory);
     constexpr const char* kAdvice = "write fewer, 200 resolve most shapes and 2000 nearly all";
-    if (context_.scene.is_dynamic()) {
+    if (context_.scene.is_dynamic() && context_.scene.start_from != "equilibrium") {
       context_.scene.warnings.push_back(
           fmt::format("rod '{}' is too fine: {}: {}", rod_.name, takes, kAdvice));
       return;

@@ -120,14 +120,17 @@ bool can_be_closed(const RodText& rod, const Path& path, Diagnostics& diagnostic
 /// of a clamp; and no rod that is stretched to more than twice its length obeys a linear law.
 constexpr double kShortest = 0.5;
 
+/// A rod drawn shorter than its rest length by more than this ratio starts waves that fold it.
+constexpr double kCompressed = 1.001;
+
 bool check_rest_length(CheckContext& context, const RodText& rod, double drawn, const Path& path) {
   if (context.diagnostics.under(path)) return false;
   const double rest = *rod.rest_length;
   if (rest * kShortest > drawn) {
     context.diagnostics.add(
         path,
-        fmt::format("is {:.3g} times the length as drawn, {:.6g} m, and can be {:g} times it: "
-                    "draw a longer rod, as a curve by 'points'",
+        fmt::format("is {:.3g} times the length as drawn, {:.6g} m, and can be {:g} times it at "
+                    "most: draw a longer rod, as a curve by 'points'",
                     rest / drawn, drawn, 1.0 / kShortest));
   } else if (rest < kShortest * drawn) {
     context.diagnostics.add(
@@ -140,6 +143,13 @@ bool check_rest_length(CheckContext& context, const RodText& rod, double drawn, 
                             "linear buckling counts from a shape without stress: draw the rod "
                             "without 'rest_length', or use 'analysis: continuation'");
   } else {
+    if (rest > kCompressed * drawn && context.scene.is_dynamic() &&
+        context.scene.start_from.empty()) {
+      context.scene.warnings.push_back(fmt::format(
+          "rod '{}' begins compressed to {:.2g} of its rest length and springs apart: write "
+          "'start_from: equilibrium' to begin at rest",
+          rod.name, drawn / rest));
+    }
     return true;
   }
   return false;

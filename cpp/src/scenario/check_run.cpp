@@ -49,7 +49,7 @@ void check_every(SceneText& scene, Diagnostics& diagnostics) {
     diagnostics.add(
         path, fmt::format("must be at least the time step, {} s, got {} s", time.step, *given));
   } else if (std::abs(steps - std::round(steps)) > same) {
-    const double nearest = std::round(steps);
+    const double nearest = std::ceil(steps - 0.5);  // of two as near the shorter
     const double other = nearest < steps ? nearest + 1.0 : nearest - 1.0;
     diagnostics.add(path,
                     fmt::format("must be a whole multiple of the time step, {} s, but {} s "

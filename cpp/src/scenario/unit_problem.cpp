@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "der/core/constants.hpp"
 #include "der/scenario/load.hpp"
@@ -25,6 +26,10 @@ constexpr double kHeaviest = 3e4;  // [kg/m^3]
 /// foam), below 0.1 MPa at 1 (metal microlattices, aerogels).
 constexpr double kFoam = 25.0;         // [kg/m^3]
 constexpr double kStiffestFoam = 1e5;  // [Pa] at 1 kg/m^3
+
+/// A metal or a stone, in whose modulus [Pa] so small a number counts GPa.
+constexpr double kHeavy = 2e3;  // [kg/m^3]
+constexpr double kFewGPa = 2e3;
 
 /// Strain that the loads cause if each pulls along its rod with all of its force. It is 1 where
 /// the linear law has no meaning; supports, buoyancy and foundations may well bear nine tenths.
@@ -80,16 +85,18 @@ double largest_of(const VectorSeries& series) {
 }
 
 /// What pulls on the rods of a scene: gravity [m/s^2], and by the name of a rod the sum of forces
-/// [N].
+/// [N]. A foundation bears what it may.
 struct Pull {
   double gravity = 0.0;
   std::unordered_map<std::string, double> forces{};
+  std::unordered_set<std::string> borne{};
 
   void operator()(const Gravity& load) { gravity += largest_of(load.acceleration); }
   void operator()(const PointForce& load) { forces[load.rod] += largest_of(load.force); }
   void operator()(const DistributedForce& load) {
     forces[load.rod] += largest_of(load.force) * (load.to - load.from);
   }
+  void operator()(const Foundation& load) { borne.insert(load.rod); }
   template <class Other>
   void operator()(const Other& /*load*/) {}
 };
@@ -142,6 +149,7 @@ class Units {
 
   [[nodiscard]] std::string strain_problem(const Rod& rod, double length) const {
     const Material& material = *rod.material;
+    if (pull_.borne.count(rod.name) > 0) return {};
     const auto found = pull_.forces.find(rod.name);
     const double force = found == pull_.forces.end() ? 0.0 : found->second;
     const double weight = material.density * pull_.gravity * length / material.youngs_modulus;
@@ -153,8 +161,9 @@ class Units {
     };
     static constexpr std::array<Unit, 3> units{{{"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}}};
     constexpr double sound = 0.1;  // a strain that is not absurd
+    const bool is_metal = material.density > kHeavy && material.youngs_modulus < kFewGPa;
     const auto* unit = std::find_if(units.begin(), units.end() - 1, [&](const Unit& candidate) {
-      return strain < sound * candidate.factor;
+      return !is_metal && strain < sound * candidate.factor;
     });
     return fmt::format(
         "would be strained by {:.2g} if its loads pulled along it, where no material is linear "

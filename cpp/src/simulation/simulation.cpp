@@ -123,7 +123,7 @@ Simulation::Simulation(std::shared_ptr<const Constants> constants, const Simulat
       stepper_info_(find_stepper(scenario_.scene().time.integrator)),
       stepper_(make_stepper(stepper_info_.name, model_, *assembler_, *solver_.solver,
                             stepper_options(scenario_.scene()))),
-      energy_watch_(model_),
+      energy_monitor_(model_),
       support_motion_(model_),
       horizon_(scenario_.scene().time.duration),
       state_(initial_state(model_)) {
@@ -148,7 +148,7 @@ Simulation::Simulation(std::shared_ptr<const Constants> constants, const Simulat
 void Simulation::start_anew() {
   forget_steps(state_);
   start_ledger(model_, state_);
-  energy_watch_.begin(state_);
+  energy_monitor_.begin(state_);
 }
 
 std::string Simulation::find_nonfinite() const {
@@ -168,7 +168,7 @@ void Simulation::check_finite_state() const {
 State Simulation::save() {
   if (find_nonfinite().empty()) {
     enter_writes();
-    energy_watch_.begin(state_);
+    energy_monitor_.begin(state_);
   }
   return state_;
 }
@@ -177,7 +177,7 @@ void Simulation::restore(const State& saved) {
   check_state(model_, saved);
   // Vectors of the same length keep their memory when assigned.
   state_ = saved;
-  energy_watch_.begin(state_);
+  energy_monitor_.begin(state_);
 }
 
 }  // namespace der

@@ -58,7 +58,7 @@ EquilibriumReport Simulation::settle(bool leave_saddles, const CancelCallback& b
   check_finite_state();
   State found = state_;
   for (Ramp& ramp : found.ramps) ramp.from = ramp.to;
-  if (energy_watch_.has_external_writes(found)) follow_written(model_, found);
+  if (energy_monitor_.has_written_shape(found)) follow_written(model_, found);
   EquilibriumOptions options;
   options.newton = stepper_options(scenario_.scene()).newton;
   // Solved once, not at every step: one more iteration takes the last digits too.

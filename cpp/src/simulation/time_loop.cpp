@@ -58,8 +58,8 @@ void Simulation::step() {
   ++state_.step;
   ++counters_.steps;
   undo.keep();
-  energy_watch_.after_step(state_);
-  if (is_audit_due(was_finished)) watch_energy(energy_watch_.energies_of(state_));
+  energy_monitor_.after_step(state_);
+  if (is_audit_due(was_finished)) watch_energy(energy_monitor_.energies_of(state_));
 }
 
 std::optional<double> Simulation::end_of_plain_step() const {
@@ -81,13 +81,13 @@ bool Simulation::enter_step(double end, int newton_iterations) {
 }
 
 void Simulation::enter_writes() {
-  if (!energy_watch_.has_external_writes(state_)) return;
-  follow_written(model_, state_);
-  energy_watch_.enter_written(state_);
+  if (!energy_monitor_.has_external_writes(state_)) return;
+  if (energy_monitor_.has_written_shape(state_)) follow_written(model_, state_);
+  energy_monitor_.enter_written(state_);
 }
 
 bool Simulation::has_external_writes() const {
-  return energy_watch_.has_external_writes(state_) || !find_nonfinite().empty();
+  return energy_monitor_.has_external_writes(state_) || !find_nonfinite().empty();
 }
 
 std::int64_t Simulation::audit_stride() const {
@@ -104,7 +104,7 @@ bool Simulation::is_audit_due(bool was_finished) const {
 void Simulation::watch_energy(const Energies& now) {
   const bool is_early = state_.step < audit_stride();
   const EnergyAudit before = state_.audit;
-  energy_watch_.enter_energies(now, state_);
+  energy_monitor_.enter_energies(now, state_);
   if (is_early) {
     state_.audit.created = before.created;
     state_.audit.unreliable_from = before.unreliable_from;

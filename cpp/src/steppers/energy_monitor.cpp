@@ -118,8 +118,12 @@ EnergyMonitor::EnergyMonitor(const Model& model)
 
 void EnergyMonitor::begin(const State& state) { keep(state); }
 
+bool EnergyMonitor::has_written_shape(const State& state) const {
+  return !same_bits(state.positions, positions_);
+}
+
 bool EnergyMonitor::has_external_writes(const State& state) const {
-  return !same_bits(state.positions, positions_) || !same_bits(state.velocities, velocities_);
+  return has_written_shape(state) || !same_bits(state.velocities, velocities_);
 }
 
 void EnergyMonitor::enter_written(State& state) {

@@ -47,8 +47,9 @@ void add_tables(const scenario::Actuation& actuation, std::vector<Table>& tables
 
 /// Before its first entry and after its last one a table is constant.
 std::optional<MotionKink> first_kink(const scenario::Series& motion, double until) {
-  const auto& [times, values, course] = motion;
-  if (course.kind != scenario::Course::Kind::Linear) return std::nullopt;
+  if (motion.course.kind != scenario::Course::Kind::Linear) return std::nullopt;
+  const std::vector<double>& times = motion.times;
+  const std::vector<double>& values = motion.values;
   const auto rate_from = [&](std::size_t entry) {
     if (entry + 1 >= times.size()) return 0.0;
     return (values[entry + 1] - values[entry]) / (times[entry + 1] - times[entry]);

@@ -517,6 +517,15 @@ def _stepped(stepper: der.StepperInfo, *, turns: bool) -> Thing:
     return thing
 
 
+DAMPING_TIMES = {"bending": 0.02, "twisting": 0.03, "stretching": 0.001}
+
+
+def _internal_damping(model: str) -> Scene:
+    stiffness = _base(model)["rods"][0]["cross_section"]["stiffness"]
+    section = {"stiffness": {**stiffness, "damping": DAMPING_TIMES}}
+    return {"rod": {"cross_section": section}, "loads": [{"gravity": _v(model)}]}
+
+
 #: Things that move, or need a motion.
 MOTIONS: dict[str, tuple[tuple[str, ...], Thing]] = {
     "gravity over time": (
@@ -537,6 +546,17 @@ MOTIONS: dict[str, tuple[tuple[str, ...], Thing]] = {
         },
     ),
     "damping": (ALL, lambda m: _load("damping", coefficient=1.5)),
+    "internal damping": (("planar", "spatial"), _internal_damping),
+    "internal damping of a material": (
+        ("planar", "spatial"),
+        lambda m: {
+            "rod": {
+                "cross_section": {"circle": {"radius": 0.02}},
+                "material": {**MATERIAL, "damping": DAMPING_TIMES},
+            },
+            "loads": [{"gravity": _v(m)}],
+        },
+    ),
     "force over time": (
         ALL,
         lambda m: _load("point_force", at=BETWEEN, force={**_vectors_over_time(m), "smooth": True}),

@@ -80,7 +80,7 @@ class CrossingMonitor {
   std::set<std::pair<Index, Index>> left_out_;  // pairs of rods
   std::optional<Crossing> found_;
   Vector seen_;                 // positions at the last look [m]
-  double clearance_ = 0.0;      // then, between all that may meet [m]
+  double clearance_ = 0.0;      // [m] then, between all that may meet; 0 before the first look
   double income_ = 0.0;         // work that a step pays for
   double credit_ = 0.0;         // work that the steps since have paid for
   double work_ = 0.0;           // of the last look

@@ -30,7 +30,9 @@ class EnergyMonitor {
 
   /// To be called at the start of a motion, whose energy is the reference.
   void begin(const State& state);
-  /// Whether a program has moved the state since the last step.
+  /// Whether a program has written positions since the last step.
+  [[nodiscard]] bool has_written_shape(const State& state) const;
+  /// Whether it has written positions or velocities.
   [[nodiscard]] bool has_external_writes(const State& state) const;
   /// To be called before a step of a state that was: accumulates the energy of what was written.
   void enter_written(State& state);

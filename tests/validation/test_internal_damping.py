@@ -417,3 +417,30 @@ def test_statics_are_without_it():
     damped = run(base).positions
     del base["rods"][0]["cross_section"]["stiffness"]["damping"]
     assert np.array_equal(damped, run(base).positions)
+
+
+@pytest.mark.parametrize(("integrator", "warns"), [("tr_bdf2", True), ("sdirk4", False)])
+def test_a_driven_support_is_warned_of(integrator: str, warns: bool) -> None:
+    """Velocities next to a support that moves are differences over an edge: with most integrators
+    the reaction is far off unless steps are far shorter than the motion."""
+    rod = {
+        "name": "rod",
+        "nodes": 9,
+        "from": [0, 0],
+        "to": [1, 0],
+        "cross_section": {
+            "stiffness": {"EA": 1e4, "EI": 1, "mass_per_length": 1, "damping": {"bending": 0.05}}
+        },
+    }
+    shaken = {"times": [0, 0.1], "values": [0, 0.01], "smooth": True}
+    scene = der.Scenario.from_dict(
+        {
+            "rods": [rod],
+            "supports": [{"rod": "rod", "at": "start", "clamp": True, "prescribe": {"y": shaken}}],
+            "time": {"duration": 0.1, "step": 0.01, "integrator": integrator},
+        }
+    )
+    found = [
+        text for text in scene.warnings if "moves rod 'rod', which has internal damping" in text
+    ]
+    assert len(found) == warns

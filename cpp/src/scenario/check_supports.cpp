@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "scenario/directions.hpp"
+
 namespace der::scenario {
 namespace {
 
@@ -143,6 +145,32 @@ void check_spring(CheckContext& context, int number) {
 void check_supports(CheckContext& context) {
   const auto count = static_cast<int>(context.scene.supports.size());
   for (int i = 0; i < count; ++i) check_support(context, i);
+}
+
+void warn_of_driven_damping(CheckContext& context) {
+  constexpr std::array accurate{"sdirk4", "generalized_alpha"};
+  Scene& scene = context.scene;
+  const std::string& integrator = scene.time.integrator;
+  if (!scene.is_dynamic() ||
+      std::find(accurate.begin(), accurate.end(), integrator) != accurate.end()) {
+    return;
+  }
+  for (std::size_t i = 0; i < scene.supports.size(); ++i) {
+    const Support& support = scene.supports[i];
+    const auto rod = std::find_if(scene.rods.begin(), scene.rods.end(),
+                                  [&](const Rod& other) { return other.name == support.rod; });
+    bool moves = false;
+    for_each_motion(support, [&](const auto& /*key*/, const Series& motion) {
+      moves = moves || motion.course.kind == Course::Kind::Sine || motion.values.size() > 1;
+    });
+    if (!moves || !damping_of(*rod).any()) continue;
+    scene.warnings.push_back(fmt::format(
+        "support {} moves rod '{}', which has internal damping. With '{}' its reactions, and "
+        "moments and tension next to it, take far shorter steps than the motion: write "
+        "'integrator: sdirk4', or see their errors with 'der verify'",
+        i, rod->name, integrator));
+    return;
+  }
 }
 
 void check_springs(CheckContext& context) {

@@ -26,15 +26,11 @@ std::string difference(const RodMesh& here, const RodMesh& other) {
   return {};
 }
 
-/// The model with more degrees of freedom.
-const Model& larger(const Model& one, const Model& other) {
-  return one.num_dofs() < other.num_dofs() ? other : one;
-}
-
 std::string difference_of_rods(const Model& here, const Model& other) {
   if (here.name != other.name) {
     return fmt::format("its model is '{}' in place of '{}': write 'model: {}', which can have both",
-                       here.name, other.name, larger(here, other).name);
+                       here.name, other.name,
+                       here.num_dofs() < other.num_dofs() ? other.name : here.name);
   }
   if (here.rods.size() != other.rods.size()) {
     return fmt::format("it has {} rods in place of {}", here.rods.size(), other.rods.size());

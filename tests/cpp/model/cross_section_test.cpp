@@ -107,7 +107,7 @@ TEST_CASE("cross-section: stiffnesses given directly") {
 TEST_CASE("cross-section: a planar rod bends about z, whichever director lies in its plane") {
   scenario::Rod rod;
   rod.cross_section = scenario::Rectangle{0.3, 0.1};
-  rod.material = scenario::Material{kE, kDensity, std::nullopt, std::nullopt};
+  rod.material = scenario::Material{kE, kDensity, std::nullopt, std::nullopt, {}};
   CHECK(section_properties(rod).GJ == 0.0);
   for (const scenario::Components& out_of_plane : {scenario::Components{0, 0, 1}, {1, 0, -2}}) {
     rod.director = out_of_plane;
@@ -121,7 +121,7 @@ TEST_CASE("cross-section: a planar rod bends about z, whichever director lies in
 
 TEST_CASE("cross-section: the shear modulus, given or from Poisson's ratio") {
   const scenario::CrossSection circle = scenario::Circle{0.5};
-  const scenario::Material given{kE, kDensity, std::nullopt, kG};
+  const scenario::Material given{kE, kDensity, std::nullopt, kG, {}};
   CHECK(section_properties(circle, given).GJ == Approx(of(circle).GJ).epsilon(1e-15));
 }
 

@@ -147,7 +147,7 @@ void check_supports(CheckContext& context) {
   for (int i = 0; i < count; ++i) check_support(context, i);
 }
 
-void warn_of_driven_damping(CheckContext& context) {
+void warn_of_turned_damping(CheckContext& context) {
   constexpr std::array accurate{"sdirk4", "generalized_alpha"};
   Scene& scene = context.scene;
   const std::string& integrator = scene.time.integrator;
@@ -159,15 +159,12 @@ void warn_of_driven_damping(CheckContext& context) {
     const Support& support = scene.supports[i];
     const auto rod = std::find_if(scene.rods.begin(), scene.rods.end(),
                                   [&](const Rod& other) { return other.name == support.rod; });
-    bool moves = false;
-    for_each_motion(support, [&](const auto& /*key*/, const Series& motion) {
-      moves = moves || motion.course.kind == Course::Kind::Sine || motion.values.size() > 1;
-    });
-    if (!moves || !damping_of(*rod).any()) continue;
+    const bool turns = support.rotation || support.axis_rotation || support.twist;
+    if (!turns || !damping_of(*rod).any()) continue;
     scene.warnings.push_back(fmt::format(
-        "support {} moves rod '{}', which has internal damping. With '{}' its reactions, and "
-        "moments and tension next to it, take far shorter steps than the motion: write "
-        "'integrator: sdirk4', or see their errors with 'der verify'",
+        "support {} rotates rod '{}', which has internal damping. With '{}' the moments and forces "
+        "next to it may take shorter steps than the motion: write 'integrator: sdirk4', or see "
+        "their errors with 'der verify'",
         i, rod->name, integrator));
     return;
   }

@@ -170,7 +170,7 @@ void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   if (diagnostics.size() > 0) return;
   check_cells(context, model.kind);
   warn_of_touching_rods(context);
-  warn_of_driven_damping(context);
+  warn_of_turned_damping(context);
   if (std::string problem = unit_problem(scene); !problem.empty()) {
     scene.warnings.push_back(std::move(problem));
   }

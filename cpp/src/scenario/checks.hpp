@@ -96,9 +96,9 @@ void check_resolution(CheckContext& context);
 /// Warns of what turns a rod, or turns with it, so near another that the mesh does not part the
 /// two.
 void check_cells(CheckContext& context, ModelChoice model);
-/// Warns of a support that moves a rod with internal damping, unless the integrator has reactions
-/// there as accurate as motions.
-void warn_of_driven_damping(CheckContext& context);
+/// Warns of a clamp that rotates a rod with internal damping over time, unless the integrator has
+/// moments there as accurate as motions.
+void warn_of_turned_damping(CheckContext& context);
 /// Warns of ends of rods that lie on a node: nothing joins them, unless supports hold both.
 void warn_of_touching_rods(CheckContext& context);
 

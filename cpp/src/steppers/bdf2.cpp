@@ -16,7 +16,7 @@ class Bdf2 final : public Stepper {
  public:
   Bdf2(const Model& model, const Assembler& assembler, LinearSolver& solver,
        const StepperOptions& options)
-      : stage_(model, assembler, solver, options.newton),
+      : stage_(model, assembler, solver, options.newton, ImplicitStage::held_velocities(model)),
         force_(model, assembler),
         past_displacement_(model.num_dofs()),
         past_velocities_(model.num_dofs()),

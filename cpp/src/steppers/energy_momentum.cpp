@@ -17,7 +17,7 @@ class EnergyMomentum final : public Stepper {
                  const StepperOptions& options)
       : model_(model),
         guess_(model),
-        stage_(model, assembler, solver, options.newton),
+        stage_(model, assembler, solver, options.newton, ImplicitStage::held_velocities(model)),
         gradient_(model, assembler),
         positions_(model.num_dofs()),
         velocities_(model.num_dofs()) {

@@ -20,13 +20,13 @@ constexpr double kLargeGyroscopicShare = 0.3;
 }  // namespace
 
 ImplicitStage::ImplicitStage(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                             const NewtonOptions& options)
+                             const NewtonOptions& options, StepCommit::HeldVelocities held)
     : equation(model),
       here{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       model_(model),
       problem_(model, assembler, model.mass),
       newton_(model.dofs, solver, assembler.num_values(), options),
-      finisher_(model),
+      finisher_(model, held),
       controls_(model),
       held_controls_(Vector::Zero(model.tables.size())),
       displacement_(Vector::Zero(model.num_dofs())),
@@ -132,7 +132,11 @@ void ImplicitStage::accumulate_and_finish(const Vector& new_positions,
   // The rule with points at 0 and `place` that is exact for a power linear in time.
   const double late = 0.5 / place;
   displacement_ = (1.0 - late) * (new_positions - state.positions);
-  velocities_in_step(model_, state, new_positions, dt, state.time, start_velocities_);
+  if (finisher_.held_velocities() == StepCommit::HeldVelocities::OfScheme) {
+    start_velocities_ = state.velocities;
+  } else {
+    velocities_in_step(model_, state, new_positions, dt, state.time, start_velocities_);
+  }
   at_start.evaluate_works(state, state.positions, start_velocities_, state.time);
   at_start.accumulate(start_velocities_, displacement_, state.work);
   displacement_ = late * (new_positions - state.positions);

@@ -23,7 +23,7 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
                                const StepperOptions& options)
       : tableau_(tableau),
         model_(model),
-        stage_(model, assembler, solver, options.newton),
+        stage_(model, assembler, solver, options.newton, ImplicitStage::held_velocities(model)),
         start_acceleration_(model.num_dofs()),
         past_displacement_(model.num_dofs()),
         past_velocities_(model.num_dofs()),
@@ -69,7 +69,10 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
  private:
   /// The first stage of a method that begins with an explicit one.
   void evaluate_start(const State& state, double dt) {
-    velocities_in_step(model_, state, end_positions_, dt, state.time, past_velocities_);
+    past_velocities_ = state.velocities;
+    if (!model_.viscous) {
+      velocities_in_step(model_, state, end_positions_, dt, state.time, past_velocities_);
+    }
     velocities_.col(0) = past_velocities_;
     start_force_->acceleration(state, state.positions, past_velocities_, state.time, 0.0,
                                start_acceleration_);
@@ -103,15 +106,19 @@ class DiagonallyImplicitRungeKutta final : public Stepper {
     }
     stage_.controls().enter_stage(i);
     stage_.apply_prescribed_motion_at(state, time, stage_.here.coordinates);
+    if (!model_.viscous) hold_velocities(state, dt, g);
+    stage_.equation.inertia_target = past_displacement_ + g * past_velocities_;
+    stage_.equation.velocity_reference = past_displacement_;
+    return stage_.solve(state, time);
+  }
+
+  /// So that the stage's velocities of held degrees of freedom are those of the motion.
+  void hold_velocities(const State& state, double dt, double g) {
     for (const HeldDof& held : model_.held) {
-      // So that the stage's velocity is that of the motion.
       const double mean = (end_positions_[held.dof] - state.positions[held.dof]) / dt;
       past_displacement_[held.dof] = stage_.here.coordinates[held.dof] - state.positions[held.dof] -
                                      g * stage_.controls().velocity(held, mean);
     }
-    stage_.equation.inertia_target = past_displacement_ + g * past_velocities_;
-    stage_.equation.velocity_reference = past_displacement_;
-    return stage_.solve(state, time);
   }
 
   void finish(State& state, double dt) {

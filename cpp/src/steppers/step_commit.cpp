@@ -8,8 +8,9 @@
 
 namespace der {
 
-StepCommit::StepCommit(const Model& model)
+StepCommit::StepCommit(const Model& model, HeldVelocities held)
     : model_(model),
+      held_velocities_(held),
       controls_work_(any_clamp_turns(model) || model.natural_strain.is_actuated()),
       start_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       end_(start_),
@@ -32,7 +33,9 @@ void StepCommit::finish(const Vector& positions, const Eigen::Ref<const Vector>&
   for (const HeldDof& held : model_.held) {
     const double before = state.velocities[held.dof];
     const double mean = (positions[held.dof] - state.positions[held.dof]) / dt;
-    const double after = held_velocity(model_, state, held, state.time + dt, mean);
+    const double after = held_velocities_ == HeldVelocities::OfScheme
+                             ? velocities[held.dof]
+                             : held_velocity(model_, state, held, state.time + dt, mean);
     const double drag = model_.damping[held.dof] * mean * mean * dt;
     state.work.drag += drag;
     state.work.supports +=

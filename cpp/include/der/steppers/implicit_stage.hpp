@@ -16,8 +16,16 @@ namespace der {
 /// positions.
 class ImplicitStage {
  public:
+  /// Whose velocities held degrees of freedom have in the stages of a stepper that can take either:
+  /// the scheme's where there are viscous forces (StepCommit::HeldVelocities).
+  static StepCommit::HeldVelocities held_velocities(const Model& model) {
+    using HeldVelocities = StepCommit::HeldVelocities;
+    return model.viscous ? HeldVelocities::OfScheme : HeldVelocities::OfMotion;
+  }
+
   ImplicitStage(const Model& model, const Assembler& assembler, LinearSolver& solver,
-                const NewtonOptions& options);
+                const NewtonOptions& options,
+                StepCommit::HeldVelocities held = StepCommit::HeldVelocities::OfMotion);
 
   /// Inertia and velocity terms, to be set by the stepper before `solve`; displacements are those
   /// from the start of the step.

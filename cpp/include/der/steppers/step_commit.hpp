@@ -11,10 +11,16 @@ namespace der {
 /// Completes a step that is done, the same for every stepper.
 class StepCommit {
  public:
-  explicit StepCommit(const Model& model);
+  /// Whose velocities held degrees of freedom have at the end of a step: those of their prescribed
+  /// motion, or those that the scheme makes of it, as it does for free ones. Viscous forces are
+  /// differences of velocities over an edge, in which the error of the scheme cancels only if both
+  /// ends have it.
+  enum class HeldVelocities { OfMotion, OfScheme };
+  explicit StepCommit(const Model& model, HeldVelocities held = HeldVelocities::OfMotion);
+  [[nodiscard]] HeldVelocities held_velocities() const { return held_velocities_; }
 
-  /// Moves `state`, still at the start of a step of `dt` [s], to its end. Held degrees of freedom
-  /// get the velocity of their motion over the step, free ones that of `velocities` [m/s].
+  /// Moves `state`, still at the start of a step of `dt` [s], to its end, where free degrees of
+  /// freedom have the `velocities` [m/s], and held ones, too, if they are the scheme's.
   /// Accumulates the work of clamps that turn, of moments on their cells (model/moment_place.hpp),
   /// of a change of gravity, and of what moves held nodes against their inertia and drag; all else
   /// is the stepper's to accumulate.
@@ -26,6 +32,7 @@ class StepCommit {
   double driven_power(const Configuration& here, const State& state, double dt, double time);
 
   const Model& model_;
+  HeldVelocities held_velocities_;
   bool controls_work_ = false;  // whether any control does work without a displacement
   Configuration start_;
   Configuration end_;

@@ -44,7 +44,7 @@ scenario::Scene cantilever(int nodes, scenario::ModelChoice model, bool closed) 
     rod.cross_section = scenario::Rectangle{0.02, 0.01};
     rod.director = scenario::Components{0.0, 0.0, 1.0};
   }
-  rod.material = scenario::Material{1e7, 1000.0, 0.3, {}};
+  rod.material = scenario::Material{1e7, 1000.0, 0.3, {}, {}};
   rod.natural_curvature = 0.0;
   if (model == scenario::ModelChoice::Spatial) {
     rod.natural_curvature = scenario::CurvaturePair{};

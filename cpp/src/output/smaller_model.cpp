@@ -35,7 +35,7 @@ class ScaledField : public RodField {
   std::unique_ptr<RodField> field_;
 };
 
-/// What a curvature in the plane is toward a director.
+/// Component toward a director of a curvature in the plane.
 double share_toward_director(SectionQuantity quantity, const RodMesh& rod) {
   switch (quantity) {
     case SectionQuantity::Curvature1:

@@ -151,7 +151,7 @@ class StretchField : public RodField {
     return strain;
   }
 
-  /// What actuations ask for, in the mean of an edge.
+  /// Strain that actuations ask for, in the mean of an edge.
   [[nodiscard]] double actuated_strain(Index edge, const Model& model, const State& state) const {
     return vectors_.actuated(edge, model, state) / rod_.edge_length[to_size(edge)];
   }

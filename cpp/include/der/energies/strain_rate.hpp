@@ -112,7 +112,7 @@ struct StrainRate<PlanarClamp<Curvature>> : StrainRateBase<PlanarClamp<Curvature
   static Vec2 edge(const typename Base::Local& x) {
     return x.template tail<2>() - x.template head<2>();
   }
-  /// Of the curvature by the direction of the edge.
+  /// Derivative of the curvature by the direction of the edge.
   static double slope(const typename Base::Constants& c, const Configuration& here, const Vec2& e) {
     return c.side * Curvature::of(Kernel::turning_angle(c, here.controls, e)).first;
   }
@@ -138,7 +138,7 @@ inline Vec3 spin_of(const HeldFrame& held, const Vector& controls, const Vector&
   return spin;
 }
 
-/// Of two curvatures and a twist.
+/// Viscosity of two curvatures and a twist.
 inline Mat3 joint_viscosity(const Vertex& vertex, const DampingTimes& times) {
   return Vec3(times.bending * vertex.bend_1, times.bending * vertex.bend_2,
               times.twisting * vertex.twist)

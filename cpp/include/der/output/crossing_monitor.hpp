@@ -91,7 +91,7 @@ class CrossingMonitor {
   std::vector<Box> boxes_;
 };
 
-/// What was found, in sentences. `when` is its place in the run.
+/// Describes a crossing in sentences. `when` is its place in the run.
 std::string describe(const CrossingMonitor::Crossing& crossing, const std::string& when);
 
 }  // namespace der

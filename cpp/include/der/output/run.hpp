@@ -15,7 +15,7 @@ namespace der {
 
 /// Called after every step; return false to stop the run early (status "stopped").
 using StepCallback = std::function<bool(const Simulation&)>;
-/// What a beat throws to stop an analysis: the outcome is then `stopped` and has nothing else.
+/// A beat throws this to stop an analysis: the outcome is then `stopped` and has nothing else.
 struct Stopped {};
 
 /// Results of the analysis of a planar model for motion out of the plane. The report of the

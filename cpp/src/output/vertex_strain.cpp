@@ -213,6 +213,13 @@ MaterialCurvature measured(const RodVertex& vertex, const RodMesh& rod, const Mo
                               : bend_strain<Curvature>(vertex, rod, model, state);
 }
 
+/// Calls f with the measure of a rod's curvature.
+template <class F>
+auto with_measure(const RodMesh& rod, const F& f) {
+  return rod.curvature == scenario::CurvatureMeasure::Angle ? f(AngleCurvature{})
+                                                            : f(TangentCurvature{});
+}
+
 }  // namespace
 
 SectionFrame held_frame(const HeldFrame& held, const Model& model, const State& state) {
@@ -244,24 +251,22 @@ MaterialCurvature rest_strain(const RodVertex& vertex, const RodMesh& rod, const
 
 MaterialCurvature strain_of(const RodVertex& vertex, const RodMesh& rod, const Model& model,
                             const State& state) {
-  return rod.curvature == scenario::CurvatureMeasure::Angle
-             ? measured<AngleCurvature>(vertex, rod, model, state)
-             : measured<TangentCurvature>(vertex, rod, model, state);
+  return with_measure(
+      rod, [&](auto measure) { return measured<decltype(measure)>(vertex, rod, model, state); });
 }
 
 MaterialCurvature viscous_strain(const RodVertex& vertex, const RodMesh& rod, const Model& model,
                                  const State& state) {
   if (!rod.damping.any() || !model.has_sections()) return {};
-  return rod.curvature == scenario::CurvatureMeasure::Angle
-             ? viscous_part<AngleCurvature>(vertex, rod, model, state)
-             : viscous_part<TangentCurvature>(vertex, rod, model, state);
+  return with_measure(rod, [&](auto measure) {
+    return viscous_part<decltype(measure)>(vertex, rod, model, state);
+  });
 }
 
 Vec3 moment_of(const RodVertex& vertex, const RodMesh& rod, const Model& model,
                const State& state) {
-  return rod.curvature == scenario::CurvatureMeasure::Angle
-             ? response_of<AngleCurvature>(vertex, rod, model, state)
-             : response_of<TangentCurvature>(vertex, rod, model, state);
+  return with_measure(
+      rod, [&](auto measure) { return response_of<decltype(measure)>(vertex, rod, model, state); });
 }
 
 Vec3 cell_moment(const RodVertex& vertex, const RodMesh& rod, const Model& model,

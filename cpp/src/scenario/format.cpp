@@ -103,7 +103,8 @@ std::optional<bool> truth_of(std::string_view text) {
   return std::nullopt;
 }
 
-/// What to write in place of a truth value of YAML 1.1, or one in quotes; empty for another value.
+/// Says what to write in place of a truth value of YAML 1.1, or one in quotes; empty for another
+/// value.
 std::string truth_problem(const Value& value) {
   const std::string* written = text_of(value);
   if (!written) return {};
@@ -175,7 +176,7 @@ bool read_numbers(const Shape& shape, const Place& place, Diagnostics& diagnosti
   return fine;
 }
 
-/// What to write if two items of a list in one line are the halves of a number with a decimal
+/// Says what to write if two items of a list in one line are the halves of a number with a decimal
 /// comma, as a clause; empty if none seem to be. No space follows that comma.
 std::string decimal_comma_in(const Sequence& items) {
   for (std::size_t i = 0; i + 1 < items.size(); ++i) {

@@ -24,7 +24,8 @@ Reading<double> read_real(std::string_view text, std::string_view unit);
 /// Reads a whole number; `2.0` and `1e2` are refused with a hint.
 Reading<std::int64_t> read_whole(std::string_view text);
 
-/// What to write in place of a number with a decimal comma, as a clause; empty for another text.
+/// Says what to write in place of a number with a decimal comma, as a clause; empty for another
+/// text.
 std::string decimal_comma_problem(std::string_view text);
 
 /// Whether a text would be read as a number, or only just not (`010`, `.inf`).

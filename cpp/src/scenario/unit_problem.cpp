@@ -21,7 +21,7 @@ constexpr double kSoftest = 5.0;  // [Pa]
 /// Solids weigh 0.16 (graphene aerogel) to 22590 kg/m^3 (osmium).
 constexpr double kLightest = 0.1;  // [kg/m^3]
 constexpr double kHeaviest = 3e4;  // [kg/m^3]
-/// What is lighter than balsa is a foam or a lattice, whose modulus goes with the square of its
+/// A solid lighter than balsa is a foam or a lattice, whose modulus goes with the square of its
 /// density. The stiffest have: 41 MPa at 24 kg/m^3 (aramid honeycomb), 5 MPa at 15 (polystyrene
 /// foam), below 0.1 MPa at 1 (metal microlattices, aerogels).
 constexpr double kFoam = 25.0;         // [kg/m^3]
@@ -105,7 +105,7 @@ class Units {
  public:
   Units(const Scene& scene, Pull pull) : scene_(scene), pull_(std::move(pull)) {}
 
-  /// What is wrong with the numbers of a rod, and which unit is likely; empty: nothing.
+  /// Says what is wrong with the numbers of a rod, and which unit is likely; empty: nothing.
   [[nodiscard]] std::string problem(const Rod& rod, double length) const {
     const Size size = largest_size(rod.cross_section);
     if (size.thickness > length) {

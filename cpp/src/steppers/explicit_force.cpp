@@ -21,7 +21,7 @@ constexpr double kCoupleTolerance = 1e-12;
 /// Rounds that converge do so sooner: each one's change is that of the round before times about
 /// the spin in half a step times the square of thickness over edge length.
 constexpr int kMostRounds = 30;
-/// Of the first step, whose length is not known [s]: the rate of a table is that over it.
+/// Length [s] over which the rate of a table is taken at the first step, whose own is not known.
 constexpr double kShort = 1e-6;
 
 bool any_support_moves(const Model& model) {

@@ -15,9 +15,9 @@ namespace der::app {
 std::string run_report(const Simulation& simulation, const Recorder& recorder,
                        const RunOutcome& outcome, const RunFolder& folder, const Style& style);
 
-/// What --check prints of a scene at once: its title, and what is doubtful about it.
+/// The text that --check prints of a scene at once: its title, and what is doubtful about it.
 std::string check_head(const Scenario& scenario, const Style& style);
-/// What --check prints once the model is there, which may take seconds.
+/// The text that --check prints once the model is there, which may take seconds.
 std::string check_report(const Simulation& simulation, const Style& style);
 
 }  // namespace der::app

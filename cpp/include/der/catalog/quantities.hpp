@@ -69,7 +69,7 @@ struct Quantity {
   std::vector<EnergyTerm> energies;    ///< the terms that an energy adds up; else empty
   bool is_component = false;  ///< of the position or velocity, which exports write as vectors
   QuantityScope scope = QuantityScope::All;
-  /// Of quantities of space along rods: of a smaller model that stands for a larger one.
+  /// Makes quantities of space along rods of a smaller model that stands for a larger one.
   RodFieldMaker make_field_in_smaller = nullptr;
   /// Whether it is the part of a curvature or moment towards a director of the section.
   bool is_towards_director = false;

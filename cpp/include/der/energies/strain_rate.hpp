@@ -139,13 +139,13 @@ inline Vec3 spin_of(const HeldFrame& held, const Vector& controls, const Vector&
 }
 
 /// Viscosity of two curvatures and a twist.
-inline Mat3 joint_viscosity(const Vertex& vertex, const DampingTimes& times) {
+inline Mat3 vertex_viscosity(const Vertex& vertex, const DampingTimes& times) {
   return Vec3(times.bending * vertex.bend_1, times.bending * vertex.bend_2,
               times.twisting * vertex.twist)
       .asDiagonal();
 }
 /// That of a corner follows from its two halves (building/corner.hpp).
-inline Mat3 joint_viscosity(const CoupledVertex& /*vertex*/, const DampingTimes& /*times*/) {
+inline Mat3 vertex_viscosity(const CoupledVertex& /*vertex*/, const DampingTimes& /*times*/) {
   return Mat3::Zero();
 }
 
@@ -155,7 +155,7 @@ struct StrainRate<SpatialBend<Curvature, AVertex>>
   using Kernel = SpatialBend<Curvature, AVertex>;
   using Base = StrainRateBase<Kernel, 3>;
   static Mat3 viscosity(const typename Base::Constants& c, const DampingTimes& times) {
-    return joint_viscosity(c.vertex, times);
+    return vertex_viscosity(c.vertex, times);
   }
   static typename Base::Gradient gradient(const typename Base::Constants& c,
                                           const Configuration& here,
@@ -175,7 +175,7 @@ struct StrainRate<SpatialClamp<Curvature>> : StrainRateBase<SpatialClamp<Curvatu
   using Kernel = SpatialClamp<Curvature>;
   using Base = StrainRateBase<Kernel, 3>;
   static Mat3 viscosity(const typename Base::Constants& c, const DampingTimes& times) {
-    return joint_viscosity(c.vertex, times);
+    return vertex_viscosity(c.vertex, times);
   }
   static typename Base::Gradient gradient(const typename Base::Constants& c,
                                           const Configuration& here,

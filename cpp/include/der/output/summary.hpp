@@ -20,7 +20,7 @@ UsedSolver used_solver(const Simulation& simulation);
 /// Why the result is unreliable, if the time stepping has created too much energy; else empty.
 std::string created_energy_warning(const Simulation& simulation);
 
-/// What makes the result of a run doubtful, in sentences: rods that pass through one another,
+/// Reasons why the result of a run is doubtful, in sentences: rods that pass through one another,
 /// strains for which no linear law holds, created energy.
 std::vector<std::string> doubts(const Simulation& simulation, const RunOutcome& outcome);
 

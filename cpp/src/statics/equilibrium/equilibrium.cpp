@@ -162,7 +162,7 @@ class EquilibriumSearch {
     return continuation_.run(loads, inverse_step(), shape).failed;
   }
 
-  /// What leads downhill leaves an unstable equilibrium, however near it is. So plain Newton steps
+  /// A way downhill leaves an unstable equilibrium, however near it is. So plain Newton steps
   /// come first, and the nearer one of both answers counts.
   std::optional<FailedSearch> find_nearest(const StaticLoads& loads, Shape& shape) {
     const auto change = [&](const Shape& to) {

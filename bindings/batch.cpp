@@ -140,7 +140,7 @@ py::array section_rows(const py::object& self) {
   Batch& engine = self.cast<PyBatch&>().engine();
   const Index first = engine.model().dofs.num_positions();
   return rows_view((engine.*rows)(), first,
-                   {static_cast<py::ssize_t>(engine.size()), engine.model().num_dofs() - first},
+                   {static_cast<py::ssize_t>(engine.size()), engine.model().dofs.num_angles()},
                    self);
 }
 

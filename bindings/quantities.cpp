@@ -38,6 +38,8 @@ const char* kind_name(QuantityKind kind) {
       return "support";
     case QuantityKind::Actuation:
       return "actuation";
+    case QuantityKind::Joint:
+      return "joint";
     case QuantityKind::Energy:
       return "energy";
   }
@@ -68,6 +70,7 @@ void bind_quantities(py::module_& module) {
           "(where "
           "sections bend or twist), bend, edge "
           "(at any arc length, with jumps), ring (of a whole ring), support (of a support), "
+          "joint (of a joint), "
           "energy (of a rod or the whole model, at no place).")
       .def_readonly("meaning", &Quantity::meaning, "In words.")
       .def_readonly("is_component", &Quantity::is_component,

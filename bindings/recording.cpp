@@ -122,7 +122,7 @@ std::unique_ptr<RunRecording> record(const py::object& self,
   const Model& model = simulation.engine().model();
   recording->dimension = model.dimension;
   if (model.has_sections()) recording->sections = static_cast<Index>(model.framed_edges.size());
-  recording->turns = num_turns(model);
+  recording->turns = num_saved_turns(model);
   Recorder recorder(simulation.engine());
   MemorySink memory;
   recorder.add(memory);

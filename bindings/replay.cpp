@@ -57,8 +57,13 @@ void enter_tangent(HeldNode& held, const RodMesh& rod, Index place, const Replay
     held.tangent.assign(tangent.begin(), tangent.end());
     return;
   }
-  const double angle = clamp == nullptr ? initial_tangent_angle(rod, place, model)
-                                        : tangent_angle(*clamp, model, replay.state());
+  double angle = clamp == nullptr ? initial_tangent_angle(rod, place, model)
+                                  : tangent_angle(*clamp, model, replay.state());
+  for (const HeldDof& rotation : model.held) {
+    if (rod.rotation_at(place) < 0 || rotation.displacement < 0) continue;
+    if (rotation.dof != model.dofs.rotation(rod.rotation_at(place))) continue;
+    angle += control_value(model, replay.state(), rotation.displacement);
+  }
   held.tangent_angle = angle;
   held.tangent = {std::cos(angle), std::sin(angle)};
 }
@@ -126,11 +131,11 @@ SavedFrames to_frames(const Replay& replay, const Frames& positions, const Frame
                       const Frames& theta, const Frames& section_frames, const Frames& turns) {
   const Model& model = replay.model();
   const std::size_t frames = replay.num_frames();
-  const Index edges = model.num_dofs() - model.dofs.num_positions();
+  const Index edges = model.dofs.num_angles();
   const py::tuple nodes = py::make_tuple(frames, model.num_nodes, model.dimension);
   // The replay follows the slopes of rods besides.
   const py::ssize_t given = turns.ndim() == 2 ? turns.shape(1) : 0;
-  const py::ssize_t followed = std::min(given, py::ssize_t{num_turns(model)});
+  const py::ssize_t followed = std::min(given, py::ssize_t{num_saved_turns(model)});
   return {to_table(positions, "positions", "(frames, nodes, dim)", nodes),
           to_table(velocities, "velocities", "(frames, nodes, dim)", nodes),
           to_table(theta, "theta", "(frames, edges)", py::make_tuple(frames, edges)),
@@ -163,7 +168,7 @@ py::tuple reactions(Replay& replay, const Frames& positions, const Frames& veloc
                     const Frames& theta, const Frames& section_frames, const Frames& turns,
                     const Frames& spin) {
   const SavedFrames frames = to_frames(replay, positions, velocities, theta, section_frames, turns);
-  const Index edges = replay.model().num_dofs() - replay.model().dofs.num_positions();
+  const Index edges = replay.model().dofs.num_angles();
   const ReactionSeries series = replay.reactions(
       frames,
       to_table(spin, "spin", "(frames, edges)", py::make_tuple(replay.num_frames(), edges)));

@@ -81,8 +81,12 @@ def acting_loads(result: RunData, frame: int) -> ActingLoads:
         result.positions.shape[2],
         lambda rod, at, value: _turned_with(result, frame, rod, at, value),
     )
-    for number, load in enumerate(result.scenario.to_dict().get("loads") or []):
+    scene = result.scenario.to_dict()
+    joined = {joint["name"]: joint["of"][0]["rod"] for joint in scene.get("joints") or []}
+    for number, load in enumerate(scene.get("loads") or []):
         kind, content = kind_of(load)
+        if isinstance(content, dict) and "joint" in content:
+            content = {**content, "rod": joined[content["joint"]]}
         collect = _COLLECTORS[kind]
         if collect is not None:
             arc_lengths = result.load_arc_lengths(number)

@@ -102,6 +102,8 @@ class Simulation {
 
   /// Takes the present state as the start of a motion: of a new ledger, with no steps before it.
   void start_anew();
+  /// Where a program, or the start of a run, has put the nodes.
+  void settle_rotations();
   /// Enters the energy that the integrator has created by now into the state's audit; steps do so
   /// now and then.
   void audit_energy() { energy_monitor_.look(state_); }

@@ -6,6 +6,8 @@
 
 #include "building/actuation.hpp"
 #include "building/force_nodes.hpp"
+#include "building/joints.hpp"
+#include "building/leg_elements.hpp"
 #include "building/load_variation.hpp"
 #include "building/spatial_rod_elements.hpp"
 #include "der/building/rod_elements.hpp"
@@ -44,20 +46,40 @@ bool choose_model(const scenario::Scene& scene, Model& model) {
   return kind == scenario::ModelChoice::Spatial;
 }
 
-void place_nodes(const scenario::Scene& scene, bool with_sections, Model& model) {
-  std::vector<Index> edge_starts;
-  for (const auto& rod : scene.rods) {
-    for (Index i = 0; with_sections && i < rod.num_edges(); ++i) {
-      edge_starts.push_back(model.num_nodes + i);
+/// The nodes of each rod. Rods share those of their joints.
+std::vector<std::vector<Index>> number_nodes(const scenario::Scene& scene, Model& model) {
+  std::vector<std::vector<Index>> nodes;
+  for (const auto& rod : scene.rods) nodes.emplace_back(rod.points.size(), -1);
+  const std::vector<std::vector<JoinedPlace>> joints = joined_places(scene);
+  for (std::size_t rod = 0; rod < nodes.size(); ++rod) {
+    for (std::size_t place = 0; place < nodes[rod].size(); ++place) {
+      if (nodes[rod][place] >= 0) continue;
+      const Index node = model.num_nodes++;
+      nodes[rod][place] = node;
+      for (const auto& members : joints) {
+        const auto is_here = [&](const JoinedPlace& member) {
+          return member.rod == rod && to_size(member.place) == place;
+        };
+        if (std::none_of(members.begin(), members.end(), is_here)) continue;
+        for (const auto& [other, at] : members) nodes[other][to_size(at)] = node;
+      }
     }
-    model.num_nodes += static_cast<Index>(rod.points.size());
+  }
+  return nodes;
+}
+
+/// Returns the nodes of each rod.
+std::vector<std::vector<Index>> place_nodes(const scenario::Scene& scene, bool with_sections,
+                                            Model& model) {
+  std::vector<std::vector<Index>> nodes = number_nodes(scene, model);
+  std::vector<Index> edge_starts;
+  for (std::size_t i = 0; with_sections && i < nodes.size(); ++i) {
+    const auto last = nodes[i].end() - (scene.rods[i].closed ? 0 : 1);
+    edge_starts.insert(edge_starts.end(), nodes[i].begin(), last);
   }
   model.dofs = DofMap(model.dimension, model.num_nodes, edge_starts);
-  Index first_node = 0;
-  for (const auto& rod : scene.rods) {
-    const Index next = first_node + static_cast<Index>(rod.points.size());
-    if (rod.closed) model.dofs.close(first_node, next - 1);
-    first_node = next;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (scene.rods[i].closed) model.dofs.close(nodes[i].front(), nodes[i].back());
   }
   model.initial_frames.setZero(FrameBlock::kSize * static_cast<Index>(edge_starts.size()));
   model.natural_strain = NaturalStrain(static_cast<Index>(model.initial_frames.size()),
@@ -68,6 +90,7 @@ void place_nodes(const scenario::Scene& scene, bool with_sections, Model& model)
                     &model.mass.lumped, &model.damping, &model.gravity_force, &model.dead_force}) {
     v->setZero(dofs);
   }
+  return nodes;
 }
 
 auto rest_position(const Model& model, Index node) {
@@ -112,8 +135,8 @@ Vec2 director_across(const scenario::Rod& rod, const RodMesh& layout, const Mode
 }
 
 /// The only place that makes a chain of nodes; everything after it reads the layout's lists.
-RodMesh lay_out(const scenario::Rod& rod, const SectionProperties& section, Index first_node,
-                Model& model) {
+RodMesh lay_out(const scenario::Rod& rod, const SectionProperties& section,
+                std::vector<Index> nodes, Model& model) {
   RodMesh layout;
   layout.name = rod.name;
   layout.closed = rod.closed;
@@ -128,14 +151,13 @@ RodMesh lay_out(const scenario::Rod& rod, const SectionProperties& section, Inde
   layout.first_edge = static_cast<Index>(model.edges.size());
   layout.draw_radius = section.draw_radius;
 
-  layout.nodes.reserve(rod.points.size());
+  layout.nodes = std::move(nodes);
   layout.arc_length.reserve(rod.points.size());
   layout.edge_length.reserve(rod.points.size());
   const double magnified = scenario::rest_scale(rod);  // exact places without a rest length
   double s = 0.0;
   for (std::size_t i = 0; i < rod.points.size(); ++i) {
-    const Index node = first_node + static_cast<Index>(i);
-    layout.nodes.push_back(node);
+    const Index node = layout.nodes[i];
     for (int c = 0; c < model.dimension; ++c) {
       const double first = rod.points.front()[to_size(c)];
       const double here = rod.points[i][to_size(c)];
@@ -148,7 +170,7 @@ RodMesh lay_out(const scenario::Rod& rod, const SectionProperties& section, Inde
     }
     if (i > 0) {
       layout.edge_length.push_back(
-          (rest_position(model, node) - rest_position(model, node - 1)).norm());
+          (rest_position(model, node) - rest_position(model, layout.nodes[i - 1])).norm());
       s += layout.edge_length.back();
     }
     layout.arc_length.push_back(s);
@@ -237,17 +259,18 @@ void couple_masses(const RodMesh& rod, Model& model) {
   }
 }
 
-void lay_out_rods(const scenario::Scene& scene, Model& model) {
-  Index first_node = 0;
+/// `nodes`: those of each rod.
+void lay_out_rods(const scenario::Scene& scene, std::vector<std::vector<Index>> nodes,
+                  Model& model) {
   double size = 0.0;
-  for (const auto& rod : scene.rods) {
+  for (std::size_t i = 0; i < scene.rods.size(); ++i) {
+    const scenario::Rod& rod = scene.rods[i];
     const SectionProperties section = section_properties(rod);
-    RodMesh layout = lay_out(rod, section, first_node, model);
+    RodMesh layout = lay_out(rod, section, std::move(nodes[i]), model);
     layout.mass_per_length = section.mass_per_length;
     set_natural_curvature(rod, layout);
     set_natural_twist(rod, layout);
     lump_masses(rod, layout, model);
-    first_node += static_cast<Index>(rod.points.size());
     size = std::max(size, layout.rest_length());
     layout.reference_jumps = reference_jumps_of(layout, model);
     layout.natural_jumps = natural_jumps_of(layout, model);
@@ -270,7 +293,7 @@ void check_spin_inertia(const Model& model) {
 
 /// Lets the state follow whole turns of planar rods whose slope is probed and which no clamp holds.
 void follow_slopes(const scenario::Scene& scene, Model& model) {
-  if (model.dimension != 2) return;
+  if (model.dimension != 2 || model.has_rotations()) return;
   for (const auto& probe : scene.output.probes) {
     if (probe.quantity != kSlope) continue;
     const RodMesh& rod = model.rod(probe.rod.value());
@@ -300,15 +323,17 @@ Model build_model(const scenario::Scene& scene) {
   Model model;
   model.elements = make_hidden<ElementLists>();
   const bool with_sections = choose_model(scene, model);
-  place_nodes(scene, with_sections, model);
-  lay_out_rods(scene, model);
+  lay_out_rods(scene, place_nodes(scene, with_sections, model), model);
+  find_joints(scene, model);
   find_force_nodes(scene, model);
   for (std::size_t i = 0; i < scene.supports.size(); ++i) {
     add_support(scene.supports[i], i, model);
   }
   for (RodMesh& rod : model.rods) {
     const ElementCounts before = count_elements(model);
-    if (model.dimension == 2) {
+    if (!rod.legs.empty()) {
+      add_leg_elements(rod, model);
+    } else if (model.dimension == 2) {
       add_rod_elements(rod, model);
     } else {
       add_spatial_rod_elements(rod, model);

@@ -72,6 +72,9 @@ void find_force_nodes(const scenario::Scene& scene, Model& model) {
     }
   });
   for (RodMesh& rod : model.rods) {
+    for (const Leg& leg : rod.legs) {
+      rod.bears_force[to_size(leg.first)] = rod.bears_force[to_size(leg.last)] = true;
+    }
     rod.divides_places = rod.bears_force;
     Edges& edges = between_nodes[&rod];
     std::sort(edges.begin(), edges.end());

@@ -281,6 +281,7 @@ bool are_alike(const Simulation& first, const Simulation& other) {
 
 /// Whether there are steps in lanes for members like this one.
 bool has_plain_steps(const Simulation& like) {
+  if (like.model().has_rotations()) return false;  // each step settles them
   const Tableau* tableau = find_tableau(like.integrator().name);
   if (tableau == nullptr || like.linear_solver() != "banded") return false;
   return MemberBand<FourLanes>::suits(like.pattern()) &&

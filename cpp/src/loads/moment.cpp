@@ -40,6 +40,13 @@ void add_load(const scenario::Moment& load, const LoadContext& context, Model& m
   if (!context.name.empty()) {
     model.named.push_back({context.name, false, {{"z", "N m", {control}}}});
   }
+  if (!rod.legs.empty()) {
+    const Index rotation = rod.rotation_at(node_at(load.at, rod));
+    if (rotation >= 0) {
+      model.controlled_forces.push_back({model.dofs.rotation(rotation), control, 1.0});
+    }
+    return;
+  }
   // The clamp takes it up; on the edges beside it, it would bend the rod by an error of order 1.
   if (clamp != nullptr) return;
   MomentPlace& place = place_of_moments(s, rod);

@@ -5,23 +5,30 @@
 
 namespace der {
 
-DofMap::DofMap(int dimension, Index num_nodes, std::vector<Index> edge_starts)
-    : dimension_(dimension), num_nodes_(num_nodes), starts_(std::move(edge_starts)) {
+DofMap::DofMap(int dimension, Index num_nodes, std::vector<Index> edge_starts,
+               std::vector<Index> rotation_nodes)
+    : dimension_(dimension),
+      num_nodes_(num_nodes),
+      starts_(std::move(edge_starts)),
+      rotation_nodes_(std::move(rotation_nodes)) {
   blocks_.push_back({DofKind::Position, 0, num_positions(), 1.0});
-  if (!starts_.empty()) {
-    blocks_.push_back({DofKind::Angle, num_positions(), static_cast<Index>(starts_.size()), 1.0});
+  if (num_angles() > 0) blocks_.push_back({DofKind::Angle, angle(0), num_angles(), 1.0});
+  if (num_rotations() > 0) {
+    blocks_.push_back({DofKind::Rotation, rotation(0), num_rotations(), 1.0});
   }
   free_index_.assign(to_size(size()), 0);
   number_free();
 }
 
 Dof DofMap::operator[](Index dof) const {
+  if (dof >= rotation(0)) return {DofKind::Rotation, dof - rotation(0), 0};
   if (dof >= num_positions()) return {DofKind::Angle, dof - num_positions(), 0};
   return {DofKind::Position, dof / dimension_, dof % dimension_};
 }
 
 Index DofMap::node_of(Index dof) const {
   const Dof what = (*this)[dof];
+  if (what.kind == DofKind::Rotation) return rotation_nodes_[to_size(what.owner)];
   return what.kind == DofKind::Position ? what.owner : starts_[to_size(what.owner)];
 }
 
@@ -48,11 +55,19 @@ void DofMap::number_free() {
   const auto number_positions = [&](Index node) {
     for (int c = 0; c < dimension_; ++c) number(position(node, c));
   };
-  const auto edges = static_cast<Index>(starts_.size());
+  // Rotations by their nodes.
+  std::vector<std::vector<Index>> rotations(num_rotations() > 0 ? to_size(num_nodes_) : 0);
+  for (Index i = 0; i < num_rotations(); ++i) {
+    rotations[to_size(rotation_nodes_[to_size(i)])].push_back(rotation(i));
+  }
+  const Index edges = num_angles();
   Index edge = 0;
   for (Index node = 0; node < num_nodes_; ++node) {
     const auto begins = [node](const Ring& ring) { return ring.first_node == node; };
     if (std::none_of(rings_.begin(), rings_.end(), begins)) number_positions(node);
+    if (!rotations.empty()) {
+      for (const Index dof : rotations[to_size(node)]) number(dof);
+    }
     for (; edge < edges && starts_[to_size(edge)] == node; ++edge) number(angle(edge));
     for (const Ring& ring : rings_) {
       if (ring.last_node == node) number_positions(ring.first_node);
@@ -63,7 +78,7 @@ void DofMap::number_free() {
 void DofMap::set_length(double length) {
   length_ = length;
   for (DofBlock& block : blocks_) {
-    if (block.kind == DofKind::Angle) block.length = length;
+    if (block.kind != DofKind::Position) block.length = length;
   }
 }
 

@@ -46,6 +46,14 @@ std::array<Index, 4> RodMesh::edge_dofs(Index edge, const Model& model) const {
   return {model.dof(a, 0), model.dof(a, 1), model.dof(b, 0), model.dof(b, 1)};
 }
 
+Index RodMesh::rotation_at(Index place) const {
+  for (const Leg& leg : legs) {
+    if (leg.first == place && leg.start.rotation >= 0) return leg.start.rotation;
+    if (leg.last == place && leg.end.rotation >= 0) return leg.end.rotation;
+  }
+  return -1;
+}
+
 const Clamp* RodMesh::clamp_at(Index place) const {
   const Index here = position(place);
   for (const Clamp& clamp : clamps) {
@@ -149,6 +157,8 @@ std::string describe_dof(const Model& model, Index dof) {
   const NodePlace place = place_of(model, node);
   const std::string rod = place.rod.empty() ? "" : fmt::format(" of rod '{}'", place.rod);
   const Index number = place.rod.empty() ? node : place.place;
+  if (what.kind == DofKind::Rotation)
+    return fmt::format("the joint at node {}{} (rotation)", number, rod);
   if (what.kind == DofKind::Angle)
     return fmt::format("the edge after node {}{} (angle)", number, rod);
   return fmt::format("node {}{} ({})", number, rod, "xyz"[what.component]);

@@ -13,6 +13,7 @@
 #include "output/actuated_shape.hpp"
 #include "output/edgewise_field.hpp"
 #include "output/in_space.hpp"
+#include "output/leg_field.hpp"
 #include "output/moment_recovery.hpp"
 #include "output/natural_curvature.hpp"
 #include "output/section_field.hpp"
@@ -311,16 +312,19 @@ std::unique_ptr<RodField> make_turning_angle_field(const RodMesh& rod, const Mod
 }
 
 std::unique_ptr<RodField> make_curvature_field(const RodMesh& rod, const Model& model) {
+  if (!rod.legs.empty()) return make_leg_field(LegQuantity::Curvature, rod, model);
   if (model.dimension == 3) return make_section_field(SectionQuantity::Curvature, rod, model);
   return make_bend_field(Bending::Curvature, rod, model);
 }
 
 std::unique_ptr<RodField> make_moment_field(const RodMesh& rod, const Model& model) {
+  if (!rod.legs.empty()) return make_leg_field(LegQuantity::Moment, rod, model);
   if (model.dimension == 3) return make_section_field(SectionQuantity::Moment, rod, model);
   return make_bend_field(Bending::Moment, rod, model);
 }
 
 std::unique_ptr<RodField> make_natural_curvature_field(const RodMesh& rod, const Model& model) {
+  if (!rod.legs.empty()) return make_leg_field(LegQuantity::NaturalCurvature, rod, model);
   return make_bend_field(Bending::NaturalCurvature, rod, model);
 }
 

@@ -83,6 +83,11 @@ std::vector<Index> rod_dofs(const RodMesh& rod, const Model& model) {
   for (const Index node : rod.nodes) {
     for (int c = 0; c < model.dimension; ++c) dofs.push_back(model.dof(node, c));
   }
+  for (const Leg& leg : rod.legs) {
+    for (const Index rotation : {leg.start.rotation, leg.end.rotation}) {
+      if (rotation >= 0) dofs.push_back(model.dofs.rotation(rotation));
+    }
+  }
   if (model.has_sections()) {
     for (Index edge = 0; edge < rod.num_edges(); ++edge) {
       dofs.push_back(model.dofs.angle(rod.first_edge + edge));

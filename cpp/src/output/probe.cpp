@@ -14,6 +14,7 @@
 #include "der/scenario/find_support.hpp"
 #include "der/scenario/scenario.hpp"
 #include "output/energy_reader.hpp"
+#include "output/joint_reader.hpp"
 #include "output/rod_field.hpp"
 
 namespace der {
@@ -268,6 +269,9 @@ std::unique_ptr<ProbeReader> make_reader(const scenario::Probe& probe, const Qua
   }
   if (quantity.kind == QuantityKind::Actuation) {
     return std::make_unique<ActuationReader>(quantity, probe.actuation.value(), model);
+  }
+  if (quantity.kind == QuantityKind::Joint) {
+    return make_joint_reader(probe, quantity, scene, model);
   }
   const RodMesh& rod = model.rod(probe.rod.value());
   if (quantity.kind == QuantityKind::Ring) {

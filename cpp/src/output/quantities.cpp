@@ -229,6 +229,26 @@ std::vector<Quantity> quantities_of_actuations() {
   };
 }
 
+Quantity of_joint(JointQuantity what, std::string name, std::string unit, std::string meaning) {
+  Quantity quantity{std::move(name),    std::move(unit), QuantityKind::Joint,
+                    std::move(meaning), nullptr,         {}};
+  quantity.of_joint = what;
+  return in(QuantityScope::Planar, std::move(quantity), "joints are in scenes of two components");
+}
+
+std::vector<Quantity> quantities_of_joints() {
+  return {
+      of_joint(JointQuantity::Rotation, "rotation", "rad",
+               "rotation of a rigid joint from the initial shape, counter-clockwise, whole turns "
+               "included"),
+      of_joint(JointQuantity::ForceX, "force_x", "N",
+               "x component of the force that a rod exerts on a joint"),
+      of_joint(JointQuantity::ForceY, "force_y", "N", "y component of that force"),
+      of_joint(JointQuantity::MomentZ, "moment_z", "N m",
+               "moment that a rod exerts on a joint, counter-clockwise"),
+  };
+}
+
 /// Each term by itself, what is stored elastically, and all together.
 std::vector<Quantity> energy_quantities() {
   std::vector<Quantity> rows;
@@ -250,6 +270,7 @@ std::vector<Quantity> all_quantities() {
   for (Quantity& row : quantities_of_rings()) rows.push_back(std::move(row));
   for (Quantity& row : quantities_of_supports()) rows.push_back(std::move(row));
   for (Quantity& row : quantities_of_actuations()) rows.push_back(std::move(row));
+  for (Quantity& row : quantities_of_joints()) rows.push_back(std::move(row));
   for (Quantity& row : energy_quantities()) rows.push_back(std::move(row));
   return rows;
 }

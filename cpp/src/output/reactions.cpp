@@ -75,6 +75,8 @@ class Reactions::Reader {
     Vec3 stiffness = Vec3::Zero();  // of a spring to the anchor [N/m]
     Vec3 anchor = Vec3::Zero();     // [m]
     std::optional<Turning> turning;
+    Index rotation = -1;              // degree of freedom of a joint's rotation that it holds
+    double rotational_stiffness = 0;  // of springs on that rotation, which it does not hold
   };
 
   void add_place(const scenario::Scene& scene, std::size_t number, double s, const Model& model);
@@ -152,6 +154,9 @@ void Reactions::Reader::add_place(const scenario::Scene& scene, std::size_t numb
   if (support.holds()) {
     const Index node = place.nodes.front().place;
     place.held = held_by(support, rod.node(node), model);
+    if (const Index rotation = rod.rotation_at(node); support.clamps() && rotation >= 0) {
+      place.rotation = model.dofs.rotation(rotation);
+    }
     if (const Clamp* clamp = rod.clamp_at(node); support.clamps() && clamp != nullptr) {
       place.clamp = static_cast<Index>(clamp - rod.clamps.data());
     }
@@ -199,6 +204,11 @@ void Reactions::Reader::add_spring(const scenario::Scene& scene, std::size_t num
     if (!spring.anchor.empty()) place.anchor[axis] = spring.anchor[c];
   }
   if (spring.rotational_stiffness.empty()) return;
+  if (!rod.legs.empty()) {
+    place.rotation = model.dofs.rotation(rod.rotation_at(place.nodes.front().place));
+    place.rotational_stiffness = spring.rotational_stiffness[0];
+    return;
+  }
   const auto is_here = [&](const auto& other) {
     return std::abs(other.arc_length - s) <= rod.same_place();
   };
@@ -245,6 +255,7 @@ void Reactions::Reader::choose_elements(const Model& model) {
   std::vector<bool> read(to_size(model.num_dofs()), false);
   for (const Place& place : places_) {
     for (const HeldDof& held : place.held) read[to_size(held.dof)] = true;
+    if (place.rotation >= 0) read[to_size(place.rotation)] = true;
   }
   elements_ = ActingElements(model, [&](Index dof) { return read[to_size(dof)]; });
 }
@@ -453,6 +464,11 @@ const std::vector<Reaction>& Reactions::Reader::evaluate(const Model& model, con
     reaction.moment.setZero();
     if (place.clamp >= 0)
       reaction.moment = moments_[first_clamps_[place.rod] + to_size(place.clamp)];
+    if (place.rotational_stiffness > 0.0) {
+      reaction.moment.z() = -place.rotational_stiffness * state.positions[place.rotation];
+    } else if (place.rotation >= 0) {
+      reaction.moment.z() = gradient_[place.rotation] - force_[place.rotation];
+    }
     if (place.turning) reaction.moment += turning_moment(place, model, state);
   }
   return reactions_;

@@ -101,15 +101,16 @@ std::string Recorder::read_probes(const Simulation& simulation, const State& sta
 
 void Recorder::hand_out(const Model& model, const State& state) {
   const Index positions = model.dofs.num_positions();
-  const Index angles = model.num_dofs() - positions;
+  const Index angles = model.dofs.num_angles();
   const Frame frame{state.time,
                     state.step,
                     state.positions.head(positions),
                     state.velocities.head(positions),
-                    state.positions.tail(angles),
-                    state.velocities.tail(angles),
+                    state.positions.segment(positions, angles),
+                    state.velocities.segment(positions, angles),
                     state.followed.tail(model.initial_frames.size()),
-                    state.followed.head(num_turns(model)),
+                    model.has_rotations() ? state.positions.tail(model.dofs.num_rotations())
+                                          : state.followed.head(num_turns(model)),
                     *energies_,
                     state.work,
                     values_};

@@ -67,10 +67,14 @@ void Replay::go_to(std::size_t frame, const SavedFrames& frames) {
   const Eigen::Index nodes = frames.positions.cols();
   state_.positions.head(nodes) = frames.positions.row(row);
   state_.velocities.head(nodes) = frames.velocities.row(row);
-  state_.positions.tail(frames.theta.cols()) = frames.theta.row(row);
+  state_.positions.segment(nodes, frames.theta.cols()) = frames.theta.row(row);
   if (frame == 0) state_.followed = unwrapped_of_reference(model_);
-  // Edges that are followed for the slopes alone come last.
-  state_.followed.head(frames.turns.cols()) = frames.turns.row(row);
+  if (model_.has_rotations()) {
+    state_.positions.tail(model_.dofs.num_rotations()) = frames.turns.row(row);
+  } else {
+    // Edges that are followed for the slopes alone come last.
+    state_.followed.head(frames.turns.cols()) = frames.turns.row(row);
+  }
   follow(model_, state_);
   // Frames depend on the way of the rod, which is not saved, so that they are.
   state_.followed.tail(frames.section_frames.cols()) = frames.section_frames.row(row);

@@ -37,7 +37,7 @@ FrameLayout layout_of(const Model& model) {
   return {static_cast<hsize_t>(model.num_nodes),
           static_cast<hsize_t>(model.dimension),
           model.has_sections() ? static_cast<hsize_t>(model.framed_edges.size()) : 0,
-          static_cast<hsize_t>(num_turns(model)),
+          static_cast<hsize_t>(num_saved_turns(model)),
           {},
           {}};
 }

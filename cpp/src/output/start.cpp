@@ -192,6 +192,10 @@ bool follows_edges_of(const LastFrame& last, const Model& model) {
 /// Takes over whole turns if that run followed the same edges; else they count from its shape.
 /// Angles of edges count from the frames of sections, which come with them.
 void take_over_turns(const LastFrame& last, const Model& model, State& state) {
+  if (model.has_rotations() && last.turns.size() == model.dofs.num_rotations()) {
+    state.positions.tail(last.turns.size()) = last.turns;
+    return;
+  }
   state.followed.tail(last.section_frames.size()) = last.section_frames;
   if (!follows_edges_of(last, model)) return follow_written(model, state);
   state.followed.head(last.turns.size()) = last.turns;
@@ -240,8 +244,8 @@ void apply_start(Simulation& simulation, const CancelCallback& beat) {
         from, last.model, model.name, model.reason, last.model));
   }
   State& state = simulation.state();
-  state.positions = last.positions;
-  state.velocities = last.velocities;
+  state.positions.head(last.positions.size()) = last.positions;
+  state.velocities.head(last.velocities.size()) = last.velocities;
   // Supports are where this scene has them. The search for an equilibrium takes them there itself,
   // in steps: at once they might fold the edges beside them.
   if (simulation.scenario().scene().is_dynamic()) {

@@ -14,6 +14,7 @@
 #include "output/force_across.hpp"
 #include "output/in_space.hpp"
 #include "output/lean_excess.hpp"
+#include "output/leg_field.hpp"
 #include "output/line_loads.hpp"
 #include "output/rod_field.hpp"
 #include "output/spread_forces.hpp"
@@ -205,10 +206,12 @@ class StretchField : public RodField {
 }  // namespace
 
 std::unique_ptr<RodField> make_strain_field(const RodMesh& rod, const Model& model) {
+  if (!rod.legs.empty()) return make_leg_field(LegQuantity::Strain, rod, model);
   return StretchField::make(false, rod, model);
 }
 
 std::unique_ptr<RodField> make_tension_field(const RodMesh& rod, const Model& model) {
+  if (!rod.legs.empty()) return make_leg_field(LegQuantity::Tension, rod, model);
   return StretchField::make(true, rod, model);
 }
 

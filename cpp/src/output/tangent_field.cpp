@@ -1,4 +1,5 @@
 #include "output/tangent_field.hpp"
+#include "output/leg_field.hpp"
 
 #include <cmath>
 #include <optional>
@@ -456,10 +457,14 @@ class SpatialDirection : public DirectionField<Vec3> {
 }  // namespace
 
 std::unique_ptr<RodField> make_slope_field(const RodMesh& rod, const Model& model) {
+  if (!rod.legs.empty()) return make_leg_field(LegQuantity::Slope, rod, model);
   return PlanarDirection::make(std::nullopt, rod, model);
 }
 
 std::unique_ptr<RodField> make_tangent_field(int number, const RodMesh& rod, const Model& model) {
+  if (!rod.legs.empty()) {
+    return make_leg_field(number == 0 ? LegQuantity::TangentX : LegQuantity::TangentY, rod, model);
+  }
   if (model.dimension == 2) return PlanarDirection::make(number, rod, model);
   return SpatialDirection::make(number, rod, model);
 }

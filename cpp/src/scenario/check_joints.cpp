@@ -1,143 +1,193 @@
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
+#include <functional>
+#include <map>
+#include <variant>
 
+#include "der/scenario/load.hpp"
 #include "scenario/checks.hpp"
 #include "scenario/directions.hpp"
 
 namespace der::scenario {
 namespace {
 
-/// Nodes closer than this fraction of the shortest edge beside them are at the same place.
-constexpr double kSamePlace = 1e-6;
-/// More of these warnings help nobody.
-constexpr std::size_t kMostWarnings = 5;
+/// Members of a joint may be apart by this share of the longest of their rods, by rounding.
+constexpr double kApart = 1e-9;
 
-struct Node {
-  int rod;
-  int number;
-  bool is_end;
-  Vec3 position;
-  double along;      ///< [m] coordinate along an oblique line, by which nodes are sorted
-  double tolerance;  ///< [m]
+Path joint_path(int joint) { return {"joints", joint}; }
+
+/// A node of a rod.
+struct Member {
+  int rod = 0;
+  int node = 0;
 };
 
-double tolerance_at(const RestLine& line, int node) {
-  double shortest = std::numeric_limits<double>::infinity();
-  if (node > 0) shortest = line.arc_length(node) - line.arc_length(node - 1);
-  if (node + 1 < line.num_nodes()) {
-    shortest = std::min(shortest, line.arc_length(node + 1) - line.arc_length(node));
-  }
-  return kSamePlace * shortest;
-}
-
-/// All nodes that could touch another, sorted by `along`.
-std::vector<Node> nodes_of(const CheckContext& context) {
-  std::vector<Node> nodes;
-  const Vec3 oblique = Vec3(0.7853, 0.6191, 0.4142).normalized();
-  const bool single = context.lines.size() == 1;
-  for (int rod = 0; rod < static_cast<int>(context.lines.size()); ++rod) {
-    const auto& line = context.lines[static_cast<std::size_t>(rod)];
-    const auto number = static_cast<std::size_t>(rod);
-    const bool straight = context.scene.given_rods[number].nodes.has_value();
-    if (!line || (single && straight)) continue;  // a straight rod does not touch itself
-    const int last = line->num_nodes() - 1;
-    for (int i = 0; i <= last; ++i) {
-      const Vec3 position =
-          in_space(context.scene.rods[number].points[static_cast<std::size_t>(i)]);
-      nodes.push_back({rod, i, !line->closed() && (i == 0 || i == last), position,
-                       position.dot(oblique), tolerance_at(*line, i)});
-    }
-  }
-  std::sort(nodes.begin(), nodes.end(),
-            [](const Node& a, const Node& b) { return a.along < b.along; });
-  return nodes;
-}
-
-bool is_held(const CheckContext& context, const Node& node) {
-  return context.is_fixed(node.rod, node.number);
-}
-
-/// "the start of rod 'a'"
-std::string in_words(const CheckContext& context, const Node& node) {
-  const std::string& rod = context.scene.rods[static_cast<std::size_t>(node.rod)].name;
-  if (!node.is_end) return fmt::format("a node of rod '{}'", rod);
-  return fmt::format("the {} of rod '{}'", node.number == 0 ? "start" : "end", rod);
-}
-
-std::string warning_of(const CheckContext& context, const Node& a, const Node& b) {
-  const Vec3& at = a.position;
-  const std::string place = context.dimension == 2
-                                ? fmt::format("({:.6g}, {:.6g}) m", at.x(), at.y())
-                                : fmt::format("({:.6g}, {:.6g}, {:.6g}) m", at.x(), at.y(), at.z());
-  if (a.rod == b.rod && a.is_end && b.is_end) {
-    const std::string& rod = context.scene.rods[static_cast<std::size_t>(a.rod)].name;
-    return fmt::format(
-        "the last point of rod '{}' is its first, {}, but that does not close the rod: it has two "
-        "free ends there, which move apart. For a ring leave the last point out and write "
-        "'closed: true'; or hold both ends by supports, or move them apart if that is what you "
-        "mean",
-        rod, place);
-  }
-  return fmt::format(
-      "{} and {} are at the same place, {}, but nothing joins them: each moves as if the other "
-      "were "
-      "not there. This version has no joints: draw both as one rod with 'points', hold both by "
-      "supports, or move them apart if that is what you mean",
-      in_words(context, a), in_words(context, b), place);
-}
-
-class TouchFinder {
+class JointCheck {
  public:
-  explicit TouchFinder(CheckContext& context)
-      : context_(context), nodes_(nodes_of(context)), next_end_(nodes_.size() + 1) {
-    next_end_.back() = nodes_.size();
-    for (std::size_t k = nodes_.size(); k-- > 0;) {
-      next_end_[k] = nodes_[k].is_end ? k : next_end_[k + 1];
-    }
-  }
+  explicit JointCheck(CheckContext& context) : context_(context) {}
 
   void run() {
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      // Only ends touch. In a scene that lies across the axis of `along` all nodes are near.
-      const auto candidate = [&](std::size_t k) { return nodes_[i].is_end ? k : next_end_[k]; };
-      for (std::size_t k = candidate(i + 1); k < nodes_.size() && near(nodes_[i], nodes_[k]);
-           k = candidate(k + 1)) {
-        if (!touch(nodes_[i], nodes_[k])) continue;
-        if (++found_ > kMostWarnings) {
-          warn("there are more places where rods touch and nothing joins them");
-          return;
-        }
-        warn(nodes_[i], nodes_[k]);
-      }
+    for (int i = 0; i < static_cast<int>(context_.scene.joints.size()); ++i) {
+      if (!context_.diagnostics.under(joint_path(i))) check(i);
     }
   }
 
  private:
-  /// Whether they may touch, by the order in which they are sorted.
-  static bool near(const Node& a, const Node& b) { return b.along - a.along <= 2.0 * a.tolerance; }
-
-  [[nodiscard]] bool touch(const Node& a, const Node& b) const {
-    if (!a.is_end && !b.is_end) return false;  // rods may cross
-    if ((a.position - b.position).norm() > std::min(a.tolerance, b.tolerance)) return false;
-    return !is_held(context_, a) || !is_held(context_, b);
+  void check(int number) {
+    Joint& joint = joint_of(number);
+    std::vector<Member> members;
+    for (int k = 0; k < static_cast<int>(joint.of.size()); ++k) {
+      const auto member = find(number, k);
+      if (!member) return;
+      members.push_back(*member);
+    }
+    if (!meet(number, members)) return;
+    for (std::size_t k = 0; k < members.size(); ++k) enter(number, members, k);
   }
 
-  void warn(const Node& a, const Node& b) {
-    const bool in_order = a.rod != b.rod ? a.rod < b.rod : a.number < b.number;
-    warn(in_order ? warning_of(context_, a, b) : warning_of(context_, b, a));
+  std::optional<Member> find(int number, int k) {
+    JointMember& member = joint_of(number).of[static_cast<std::size_t>(k)];
+    const Path path = joint_path(number) / "of" / k;
+    const std::optional<int> rod = context_.find_rod(member.rod, path / "rod");
+    if (!rod) return std::nullopt;
+    if (member.at.kind == Location::Kind::All) {
+      report(path / "at", "'all' is not a single place, and rods are joined at one");
+      return std::nullopt;
+    }
+    const auto nodes = context_.nodes_at(*rod, member.at, path / "at", true);
+    if (!nodes) return std::nullopt;
+    const Member found{*rod, nodes->front()};
+    const auto known = joint_at_.find(CheckContext::node_key(found.rod, found.node));
+    if (known != joint_at_.end()) {
+      report(path, fmt::format("this place of rod '{}' is in joint '{}' already: name all rods that "
+                               "meet at a point in one joint",
+                               member.rod, joint_of(known->second).name));
+      return std::nullopt;
+    }
+    joint_at_.emplace(CheckContext::node_key(found.rod, found.node), number);
+    return found;
   }
-  void warn(std::string message) { context_.scene.warnings.push_back(std::move(message)); }
+
+  bool meet(int number, const std::vector<Member>& members) {
+    const Components first = point_of(members.front());
+    for (std::size_t k = 1; k < members.size(); ++k) {
+      Components& here = point_of(members[k]);
+      const double apart = distance(first, here);
+      const double length = std::max(length_of(members.front()), length_of(members[k]));
+      if (apart > kApart * length) {
+        const Joint& joint = joint_of(number);
+        report(joint_path(number) / "of" / static_cast<int>(k),
+               fmt::format("rod '{}' is {:.6g} m away from rod '{}' at the joint: draw the rods so "
+                           "that they meet",
+                           joint.of[k].rod, apart, joint.of.front().rod));
+        return false;
+      }
+      if (velocity_of(members[k]) != velocity_of(members.front())) {
+        report(joint_path(number) / "of" / static_cast<int>(k),
+               fmt::format("rods '{}' and '{}' begin with different velocities at the joint: give "
+                           "both one 'initial_velocity' there",
+                           joint_of(number).of.front().rod, joint_of(number).of[k].rod));
+        return false;
+      }
+      here = first;
+    }
+    return true;
+  }
+
+  /// Tells who else is at the place of a member.
+  void enter(int number, const std::vector<Member>& members, std::size_t k) {
+    JoinedNode joined{joint_of(number).kind == JointKind::Rigid, {}};
+    for (std::size_t other = 0; other < members.size(); ++other) {
+      if (other == k) continue;
+      joined.others.push_back(CheckContext::node_key(members[other].rod, members[other].node));
+    }
+    context_.joined.emplace(CheckContext::node_key(members[k].rod, members[k].node),
+                            std::move(joined));
+  }
+
+  Joint& joint_of(int number) { return context_.scene.joints[static_cast<std::size_t>(number)]; }
+  Components& point_of(const Member& member) {
+    return context_.scene.rods[static_cast<std::size_t>(member.rod)]
+        .points[static_cast<std::size_t>(member.node)];
+  }
+  Components velocity_of(const Member& member) {
+    const Rod& rod = context_.scene.rods[static_cast<std::size_t>(member.rod)];
+    return rod.initial_velocity.empty() ? Components(point_of(member).size(), 0.0)
+                                        : rod.initial_velocity[static_cast<std::size_t>(member.node)];
+  }
+  double length_of(const Member& member) {
+    return context_.lines[static_cast<std::size_t>(member.rod)]->length();
+  }
+  void report(const Path& where, const std::string& message) {
+    context_.diagnostics.add(where, message);
+  }
 
   CheckContext& context_;
-  std::vector<Node> nodes_;
-  std::vector<std::size_t> next_end_;  // the first end from each node on; as many as nodes: none
-  std::size_t found_ = 0;
+  std::map<std::int64_t, int> joint_at_;
+};
+
+/// Reports what a scene with joints cannot have in this version.
+class JointedSceneCheck {
+ public:
+  explicit JointedSceneCheck(CheckContext& context) : context_(context) {}
+
+  void run() {
+    const SceneText& scene = context_.scene;
+    if (context_.diagnostics.dimension() == 3) {
+      report({"joints"}, "joints are in scenes of two components: write the points and vectors of "
+                         "the scene with x and y alone");
+    }
+    if (scene.model == ModelChoice::Spatial || scene.model == ModelChoice::SpatialBend) {
+      lacks({"model"}, "a model in space");
+    }
+    for (int i = 0; i < static_cast<int>(scene.rods.size()); ++i) {
+      check_rod(scene.rods[static_cast<std::size_t>(i)], {"rods", i});
+    }
+    if (!scene.actuations.empty()) lacks({"actuation"}, "actuation");
+    for (int i = 0; i < static_cast<int>(scene.loads.size()); ++i) {
+      const Load& load = scene.loads[static_cast<std::size_t>(i)];
+      const auto* force = std::get_if<PointForce>(&load.what);
+      if (force != nullptr && force->follower) {
+        lacks(Path{"loads", i, "point_force"} / "follower", "a force that turns with the rod");
+      }
+    }
+    if (std::holds_alternative<BucklingAnalysis>(scene.analysis)) {
+      lacks({"analysis"}, "linear buckling");
+    }
+    if (scene.is_dynamic() && scene.given_time.integrator == "energy_momentum") {
+      lacks({"time", "integrator"}, "'energy_momentum'");
+    }
+  }
+
+ private:
+  void check_rod(const Rod& rod, const Path& path) {
+    if (rod.closed) lacks(path / "closed", "a closed rod");
+    if (rod.rest_length) lacks(path / "rest_length", "'rest_length'");
+    if (std::holds_alternative<std::vector<double>>(rod.natural_curvature)) {
+      lacks(path / "natural_curvature", "a list of natural curvatures");
+    }
+    const auto& velocity = rod.initial_velocity;
+    if (std::adjacent_find(velocity.begin(), velocity.end(), std::not_equal_to<>()) !=
+        velocity.end()) {
+      lacks(path / "initial_velocity", "a list of initial velocities");
+    }
+    if (damping_of(rod).any()) lacks(path, "internal damping");
+  }
+  void lacks(const Path& where, const std::string& what) {
+    report(where, fmt::format("this version does not have {} in a scene with joints", what));
+  }
+  void report(const Path& where, const std::string& message) {
+    context_.diagnostics.add(where, message);
+  }
+
+  CheckContext& context_;
 };
 
 }  // namespace
 
-void warn_of_touching_rods(CheckContext& context) { TouchFinder(context).run(); }
+void check_joints(CheckContext& context) {
+  if (context.scene.joints.empty()) return;
+  JointCheck(context).run();
+  JointedSceneCheck(context).run();
+}
 
 }  // namespace der::scenario

@@ -367,7 +367,9 @@ bool fit_into_memory(CheckContext& context) {
   int number = 0;
   for (const RodText& rod : context.scene.given_rods) {
     const bool straight = rod.given_points.empty();
-    nodes += straight ? static_cast<std::size_t>(rod.nodes.value_or(0)) : rod.given_points.size();
+    nodes += straight ? static_cast<std::size_t>(rod.nodes.value_or(0)) *
+                            static_cast<std::size_t>(rod.subdivide.value_or(1))
+                      : rod.given_points.size();
     if (nodes > most) {
       context.diagnostics.add(
           rod_path(number) / (straight ? "nodes" : "points"),

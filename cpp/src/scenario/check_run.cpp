@@ -160,6 +160,12 @@ class ProbeCheck {
       check_reaction();
     } else if (kind == QuantityKind::Actuation) {
       check_actuation(quantity.actuates);
+    } else if (kind == QuantityKind::Joint) {
+      check_joint(quantity.of_joint);
+    } else if (probe_.leg) {
+      report(path_ / "leg", fmt::format("'{}' is of a joint or a rod and has no 'leg': those that "
+                                        "do are force_x, force_y and moment_z",
+                                        probe_.quantity));
     } else if (probe_.support || probe_.actuation) {
       const bool of_support = probe_.support.has_value();
       report(path_ / (of_support ? "support" : "actuation"),
@@ -199,6 +205,38 @@ class ProbeCheck {
       report(path_ / "support",
              fmt::format("there is no support '{}': the scene has {} of them{}", *probe_.support,
                          count, count > 0 ? ", counted from 0" : ""));
+    }
+  }
+
+  void check_joint(JointQuantity quantity) {
+    if (!probe_.joint) {
+      report(path_, fmt::format("'{}' belongs to a joint: give 'joint', its name{}",
+                                probe_.quantity, in_place_of()));
+      return;
+    }
+    if (probe_.over != Reduce::None || probe_.side) {
+      report(path_ / (probe_.side ? "side" : "over"),
+             fmt::format("'{}' has the place of its joint: leave this out", probe_.quantity));
+      return;
+    }
+    const auto& joints = context_.scene.joints;
+    const auto joint = std::find_if(joints.begin(), joints.end(),
+                                    [&](const Joint& each) { return each.name == *probe_.joint; });
+    if (joint == joints.end()) {
+      find_joint(context_, *probe_.joint, path_ / "joint");
+    } else if (quantity == JointQuantity::Rotation) {
+      if (joint->kind == JointKind::Rigid) return;
+      report(path_ / "quantity",
+             fmt::format("each rod has its own rotation in hinge '{}': take the 'slope' of a rod "
+                         "there",
+                         joint->name));
+    } else if (!probe_.leg) {
+      report(path_, fmt::format("'{}' is what one rod exerts on the joint: give 'leg', its name",
+                                probe_.quantity));
+    } else if (std::none_of(joint->of.begin(), joint->of.end(), [&](const JointMember& member) {
+                 return member.rod == *probe_.leg;
+               })) {
+      report(path_ / "leg", fmt::format("rod '{}' is not in joint '{}'", *probe_.leg, joint->name));
     }
   }
 

@@ -44,6 +44,19 @@ void check_motion(CheckContext& context, const Series& motion, const Path& path)
   check_start(context, motion, path);
 }
 
+/// The nodes that a joint joins with one are held with it.
+void hold_joined(CheckContext& context, int number, std::int64_t node,
+                 const std::vector<Hold>& held) {
+  const auto found = context.joined.find(node);
+  if (found == context.joined.end()) return;
+  for (const std::int64_t other : found->second.others) {
+    for (const Hold component : held) {
+      if (component == Hold::Angle && !found->second.rigid) continue;
+      context.held[other].enter(component, number);
+    }
+  }
+}
+
 /// Enters what a support holds of its nodes; reports once where another holds it already.
 void hold(CheckContext& context, int number, int rod, const std::vector<int>& nodes) {
   const Support& support = context.scene.supports[static_cast<std::size_t>(number)];
@@ -62,6 +75,7 @@ void hold(CheckContext& context, int number, int rod, const std::vector<int>& no
       }
       holding.enter(component, number);
     }
+    hold_joined(context, number, CheckContext::node_key(rod, node), held);
   }
 }
 

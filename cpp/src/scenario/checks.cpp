@@ -152,6 +152,8 @@ void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   CheckContext context{scene, diagnostics};
   if (!fit_into_memory(context)) return;
   check_rods(context);
+  place_leg_ends(context);
+  check_joints(context);
   check_supports(context);
   if (diagnostics.size() == 0) {
     context.dimension = choose_model(scene).kind == ModelChoice::Planar ? 2 : 3;
@@ -168,7 +170,7 @@ void check_scene(SceneText& scene, Diagnostics& diagnostics) {
   const ChosenModel model = choose_model(scene);
   check_model(scene, model, diagnostics);
   if (diagnostics.size() > 0) return;
-  check_cells(context, model.kind);
+  if (scene.joints.empty()) check_cells(context, model.kind);
   warn_of_touching_rods(context);
   warn_of_turned_damping(context);
   if (std::string problem = unit_problem(scene); !problem.empty()) {

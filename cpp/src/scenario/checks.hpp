@@ -37,6 +37,12 @@ class HeldNode {
   std::array<std::optional<int>, kHolds.size()> by_;
 };
 
+/// Those that a joint joins with a node, by their keys.
+struct JoinedNode {
+  bool rigid = true;
+  std::vector<std::int64_t> others;
+};
+
 /// Everything that the checks share.
 struct CheckContext {
   SceneText& scene;
@@ -44,6 +50,7 @@ struct CheckContext {
   std::vector<std::optional<RestLine>> lines{};  ///< by rod; none where the rod has mistakes
   std::unordered_map<std::string, int> rods{};   ///< number of the rod with a name
   std::unordered_map<std::int64_t, HeldNode> held{};
+  std::unordered_map<std::int64_t, JoinedNode> joined{};  ///< of nodes that are in joints
   /// Components of the motion of nodes: 2 in the planar model, else 3. Where the scene has mistakes
   /// nobody knows the model: 2, so that no further mistake is seen where there is none.
   int dimension = 2;
@@ -75,6 +82,13 @@ bool does_not_bend(const Rod& rod);
 bool fit_into_memory(CheckContext& context);
 /// Checks the rods by themselves and completes `Scene::rods`.
 void check_rods(CheckContext& context);
+/// Moves the nodes of straight rods in a scene with joints to where anything acts at a point, so
+/// that legs end there (leg_mesh.cpp); reports rods with too few nodes.
+void place_leg_ends(CheckContext& context);
+/// The joint of this name; null, and a report at `path`, where there is none.
+const Joint* find_joint(CheckContext& context, const std::string& name, const Path& path);
+/// That the rods of each joint meet, and that this version has all that a scene with joints needs.
+void check_joints(CheckContext& context);
 /// All but the springs, which depend on what other supports hold.
 void check_supports(CheckContext& context);
 void check_springs(CheckContext& context);

@@ -34,10 +34,12 @@ Format<Damping> damping_format() {
 Format<PointForce> point_force_format() {
   return mapping(
       Table<PointForce>("point force", "A force that keeps its direction, or turns with the rod.")
-          .required("rod", &PointForce::rod, name(), "Name of the rod.")
-          .required("at", &PointForce::at, location(),
+          .optional("rod", &PointForce::rod, name(), "Name of the rod.")
+          .optional("at", &PointForce::at, location(),
                     "Where; any arc length. With `all` it acts on each node. A support "
                     "takes up the components that it holds there, with a warning.")
+          .optional("joint", &PointForce::joint, name(), "In place of `rod` and `at`: a joint.")
+          .either({{"rod", "at"}, {"joint"}})
           .required("force", &PointForce::force, vector_series("N"),
                     "A constant, or a table over time.")
           .optional("follower", &PointForce::follower, boolean(),
@@ -102,10 +104,12 @@ Format<MomentValue> moment_value_format() {
 Format<MomentText> moment_format() {
   return mapping(
       Table<MomentText>("moment", "A moment at a place of a rod.")
-          .required("rod", &Moment::rod, name(), "Name of the rod.")
-          .required("at", &Moment::at,
+          .optional("rod", &Moment::rod, name(), "Name of the rod.")
+          .optional("at", &Moment::at,
                     single_location("'all' is not a single place, and a moment acts at one"),
                     "Where; any arc length.")
+          .optional("joint", &Moment::joint, name(), "In place of `rod` and `at`: a rigid joint.")
+          .either({{"rod", "at"}, {"joint"}})
           .required("moment", &MomentText::value, moment_value_format(),
                     "A number: about z, positive counter-clockwise. A vector in a scene of three "
                     "components. Constant, or a table over time.")

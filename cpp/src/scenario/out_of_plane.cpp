@@ -52,6 +52,7 @@ struct WithoutPotential {
 }  // namespace
 
 std::string why_not_tested_out_of_plane(const Scene& scene) {
+  if (!scene.joints.empty()) return "this version tests no joints there";
   for (std::size_t i = 0; i < scene.loads.size(); ++i) {
     std::string clause =
         std::visit(WithoutPotential{i, !scene.loads[i].name.empty()}, scene.loads[i].what);

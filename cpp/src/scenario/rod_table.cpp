@@ -221,6 +221,9 @@ Format<RodText> rod_format() {
                      "each corner, or as a ring of such edges.")
           .required("name", &Rod::name, name(),
                     "Supports, loads, probes and override paths refer to it.")
+          .optional("subdivide", &RodText::subdivide, integer({1, false, max_nodes}),
+                    "In a scene with joints: into how many each element is cut that `nodes` gives.",
+                    "1")
           .optional("nodes", &RodText::nodes, integer({2, false, max_nodes}),
                     "Number of nodes, evenly spaced over `from` .. `to`; a rod bends at its inner "
                     "nodes, so it takes 3 to bend.")

@@ -66,6 +66,10 @@ Table<ProbeText> probe_table() {
                 "In place of `at`: the extreme along the rod.")
       .optional("support", &Probe::support, named_support_format(),
                 "In place of `rod`, for reactions: the number of the support, counted from 0.")
+      .optional("joint", &Probe::joint, name(),
+                "In place of `rod` and `at`: a joint, for its position, velocity and rotation.")
+      .optional("leg", &Probe::leg, name(),
+                "With `joint`, for forces and moments: the rod that exerts them on the joint.")
       .optional("actuation", &Probe::actuation, name(),
                 "In place of `rod`, for what an actuation exerts: its name.")
       .optional("reduce", &Probe::over,
@@ -80,7 +84,7 @@ Table<ProbeText> probe_table() {
                 "and tension at a force, support or sphere, all of these, slope and tangent at a "
                 "corner; without it, after the place.")
       .at_most_one({{"at"}, {"over", "reduce"}})
-      .at_most_one({{"rod"}, {"support"}, {"actuation"}});
+      .at_most_one({{"rod"}, {"support"}, {"actuation"}, {"joint"}});
 }
 
 /// A mapping from free names to probes.
@@ -206,6 +210,8 @@ const Format<SceneText>& scene_format() {
                    {{"spatial", "positions, bending and twist in space"}, ModelChoice::Spatial}}),
               "Mechanical model.")
           .required("rods", &SceneText::given_rods, list_of(rod_format(), 1), "The rods.")
+          .optional("joints", &Scene::joints, list_of(joint_format(), 0),
+                    "Joints between rods. Nothing else joins rods that touch.")
           .optional("supports", &Scene::supports, list_of(support_format(), 0),
                     "Supports that hold or move the rods.")
           .optional("loads", &Scene::loads, list_of(load_format(), 0), "Loads on the rods.")

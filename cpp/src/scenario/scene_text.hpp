@@ -23,6 +23,7 @@ struct RodText : Rod {
   SectionText section;
   std::vector<Components> given_points;  ///< or:
   std::optional<int> nodes;
+  std::optional<int> subdivide;
   Components from;
   Components to;
   Velocities given_velocity;
@@ -50,6 +51,7 @@ struct SceneText : Scene {
 };
 
 Format<RodText> rod_format();
+Format<Joint> joint_format();
 Format<Support> support_format();
 /// A part of a rod without `to` reaches to infinity until the checks know the rod, as the stretch
 /// of an actuation does.

@@ -173,9 +173,11 @@ Format<Support> support_format() {
       Table<SupportText>("support", "Holds or moves nodes of a rod, or holds a place by springs.")
           .optional("name", &Support::name, name(),
                     "A name, by which a program sets what the support prescribes.", "none")
-          .required("rod", &Support::rod, name(), "Name of the rod.")
-          .required("at", &Support::at, location(),
+          .optional("rod", &Support::rod, name(), "Name of the rod.")
+          .optional("at", &Support::at, location(),
                     "The node, or all; there has to be a node. For a spring alone: any arc length.")
+          .optional("joint", &Support::joint, name(), "In place of `rod` and `at`: a joint.")
+          .either({{"rod", "at"}, {"joint"}})
           .optional("fix", &Support::fix, list_of(component_format(), 1),
                     "Components that stay at their initial value.")
           .optional("clamp", &Support::clamp, clamp_format(),

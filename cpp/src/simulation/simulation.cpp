@@ -14,6 +14,7 @@
 #include "der/model/location.hpp"
 #include "der/scenario/out_of_plane.hpp"
 #include "der/scenario/scenario.hpp"
+#include "der/solvers/joint_rotations.hpp"
 #include "der/supports/bearing.hpp"
 #include "simulation/stepper_options.hpp"
 
@@ -146,9 +147,17 @@ Simulation::Simulation(std::shared_ptr<const Constants> constants, const Simulat
 }
 
 void Simulation::start_anew() {
+  settle_rotations();
   forget_steps(state_);
   start_ledger(model_, state_);
   energy_monitor_.begin(state_);
+}
+
+void Simulation::settle_rotations() {
+  if (!model_.has_rotations() || !find_nonfinite().empty()) return;
+  Vector controls;
+  evaluate_controls(model_, state_, state_.time, controls);
+  JointRotations(model_).settle(controls, state_.extra_force, state_.positions);
 }
 
 std::string Simulation::find_nonfinite() const {

@@ -82,7 +82,10 @@ bool Simulation::enter_step(double end, int newton_iterations) {
 
 void Simulation::enter_writes() {
   if (!energy_monitor_.has_external_writes(state_)) return;
-  if (energy_monitor_.has_written_shape(state_)) follow_written(model_, state_);
+  if (energy_monitor_.has_written_shape(state_)) {
+    follow_written(model_, state_);
+    settle_rotations();
+  }
   energy_monitor_.enter_written(state_);
 }
 

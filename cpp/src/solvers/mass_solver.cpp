@@ -16,6 +16,8 @@ MassSolver::MassSolver(const Model& model)
 
 void MassSolver::prepare(double t) {
   diagonal_ = model_.mass.lumped + t * model_.damping;
+  // Nothing acts on rotations of joints that are settled.
+  diagonal_.tail(model_.dofs.num_rotations()).setOnes();
   prepared_for_ = t;
   if (!solver_) return;
   const MatrixLayout& layout = solver_->layout();

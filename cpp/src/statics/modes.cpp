@@ -87,13 +87,28 @@ Eigen::MatrixXd dense(const Operation& operation) {
   return 0.5 * (matrix + matrix.transpose());
 }
 
-/// Modes of a small model: with M = L L^T, the eigenvectors of L^T (K - shift M)^-1 L are L^T v.
-Eigen::MatrixXd dense_vectors(const ShiftInvert& inverse, const MassProduct& mass, Index count) {
-  const Eigen::LLT<Eigen::MatrixXd> factor(dense(mass));
+/// Free degrees of freedom that have mass: all but the rotations of joints, which follow them.
+std::vector<Index> with_mass(const Model& model) {
+  std::vector<Index> places;
+  for (Index i = 0; i < model.num_free(); ++i) {
+    if (model.dofs.free()[to_size(i)] < model.dofs.rotation(0)) places.push_back(i);
+  }
+  return places;
+}
+
+/// Modes of a small model: with M = L L^T over what has mass, the eigenvectors of
+/// L^T (K - shift M)^-1 L are L^T v. Another product with (K - shift M)^-1 M gives the rest of v.
+Eigen::MatrixXd dense_vectors(const ShiftInvert& inverse, const MassProduct& mass, Index count,
+                              const std::vector<Index>& with_mass) {
+  const Eigen::MatrixXd all = dense(mass);
+  const Eigen::MatrixXd answers = dense(inverse);
+  const Eigen::LLT<Eigen::MatrixXd> factor(all(with_mass, with_mass));
   const Eigen::MatrixXd L = factor.matrixL();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(L.transpose() * dense(inverse) * L);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+      L.transpose() * answers(with_mass, with_mass) * L);
   const Eigen::MatrixXd scaled = solver.eigenvectors().rowwise().reverse().leftCols(count);
-  return factor.matrixU().solve(scaled);
+  const Eigen::MatrixXd shapes = factor.matrixU().solve(scaled);
+  return answers * (all(Eigen::all, with_mass) * shapes);
 }
 
 /// A shape v of modal mass 1 with the square of its angular frequency, v' K v.
@@ -117,7 +132,10 @@ struct Noise {
 
 Noise matrix_noise(Stiffness& stiffness, const Model& model) {
   Noise noise;
-  noise.square = stiffness.rounding_over(model.mass.lower_bound());
+  const auto can_vibrate = static_cast<Index>(with_mass(model).size());
+  Vector mass = model.mass.lower_bound();
+  mass.tail(model.dofs.num_rotations()).setConstant(std::numeric_limits<double>::infinity());
+  noise.square = stiffness.rounding_over(mass);
   const auto below = [&](double square) {
     return stiffness.factorize(-square, model.mass).negative_pivots;
   };
@@ -125,7 +143,7 @@ Noise matrix_noise(Stiffness& stiffness, const Model& model) {
   noise.near_zero = std::max<Index>(0, below(noise.square) - noise.below);
   double next = noise.square;
   while (below(4.0 * next) == noise.below + noise.near_zero &&
-         noise.below + noise.near_zero < model.num_free()) {
+         noise.below + noise.near_zero < can_vibrate) {
     next *= 4.0;
   }
   const double typical = noise.square / (8.0 * std::sqrt(model.num_free()));
@@ -143,7 +161,8 @@ double shift_below(Stiffness& stiffness, const Model& model, Index count, double
 }
 
 void check_masses(const Model& model) {
-  if (model.mass.lumped(model.dofs.free()).minCoeff() > 0.0) return;
+  const Vector masses = model.mass.lumped(model.dofs.free());
+  if (masses(with_mass(model)).minCoeff() > 0.0) return;
   throw Error("model_error",
               "a node without mass has no vibration: give the rod a density, or spheres");
 }
@@ -171,6 +190,7 @@ class ModeSearch {
       : model_(model),
         stiffness_(stiffness),
         here_(here),
+        with_mass_(with_mass(model)),
         known_(model.num_free(), 0),
         momenta_(model.num_free(), 0) {}
 
@@ -202,16 +222,24 @@ class ModeSearch {
     const Index size = model_.num_free();
     ShiftInvert inverse(stiffness_, model_, known_, momenta_);
     MassProduct mass(model_);
-    if (pass == 0 && (size <= kSmall || 2 * count >= size)) {
+    const auto can_vibrate = static_cast<Index>(with_mass_.size());
+    if (pass == 0 && (size <= kSmall || 2 * count >= can_vibrate)) {
       inverse.set_shift(shift);
-      return dense_vectors(inverse, mass, count);
+      return dense_vectors(inverse, mass, count, with_mass_);
     }
-    const Index wanted = std::min(count, size - 1);
-    const Index basis = std::min(size, std::max<Index>(2 * wanted + 1, 20));
+    const Index wanted = std::min(count, can_vibrate - 1);
+    const Index basis = std::min(can_vibrate, std::max<Index>(2 * wanted + 1, 20));
     Spectra::SymGEigsShiftSolver<ShiftInvert, MassProduct, Spectra::GEigsMode::ShiftInvert> solver(
         inverse, mass, wanted, basis, shift);
     // Each pass has another start vector, which contains only one shape of a repeated square.
-    const Vector start = unstructured_vector((pass + 1) * size).tail(size);
+    Vector start = unstructured_vector((pass + 1) * size).tail(size);
+    if (can_vibrate < size) {
+      // Rotations of joints, which have no mass, stay as they begin.
+      inverse.set_shift(shift);
+      Vector momentum(size);
+      mass.perform_op(start.data(), momentum.data());
+      inverse.perform_op(momentum.data(), start.data());
+    }
     solver.init(start.data());
     solver.compute(Spectra::SortRule::LargestMagn, kRestarts, kTolerance,
                    Spectra::SortRule::SmallestAlge);
@@ -292,6 +320,7 @@ class ModeSearch {
   const Model& model_;
   Stiffness& stiffness_;
   const Configuration& here_;
+  std::vector<Index> with_mass_;
   std::vector<Shape> shapes_;  // by ascending square
   Eigen::MatrixXd known_;      // the same over the free degrees of freedom, as they were found
   Eigen::MatrixXd momenta_;    // M times those
@@ -303,7 +332,7 @@ std::vector<Mode> vibration_modes(const Model& model, const Assembler& assembler
                                   LinearSolver& solver, const Configuration& here, int count,
                                   const CancelCallback& beat) {
   check_masses(model);
-  const Index wanted = std::min<Index>(count, model.num_free());
+  const Index wanted = std::min<Index>(count, static_cast<Index>(with_mass(model).size()));
   Stiffness stiffness(model, assembler, solver, beat);
   stiffness.evaluate(here);
   const Noise noise = matrix_noise(stiffness, model);

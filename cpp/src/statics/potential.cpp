@@ -8,6 +8,7 @@
 
 #include "der/energies/element_energy.hpp"
 #include "der/energies/elements_of.hpp"
+#include "der/energies/num_joints.hpp"
 #include "der/energies/registry.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "energies/every_kind.hpp"
@@ -48,7 +49,11 @@ constexpr int kMostDofs =
 template <class Kernel, class = void>
 struct NumPositions : std::integral_constant<int, Kernel::kDofs> {};
 template <class Kernel>
-struct NumPositions<Kernel, std::enable_if_t<(Kernel::kDofs > 3 * Kernel::kNodes)>>
+struct NumPositions<Kernel, std::enable_if_t<(NumJoints<Kernel>::value > 0)>>
+    : std::integral_constant<int, Kernel::kDofs - Kernel::kJoints> {};
+template <class Kernel>
+struct NumPositions<Kernel, std::enable_if_t<(NumJoints<Kernel>::value == 0 &&
+                                              Kernel::kDofs > 3 * Kernel::kNodes)>>
     : std::integral_constant<int, 3 * Kernel::kNodes> {};
 
 /// The Hessian of an element of any kind. Its size is no part of the type, so that the functions

@@ -132,9 +132,16 @@ class RigidMotions {
     }
   }
 
-  /// A section that turns with its rod turns about its tangent by the rotation's component along
+  /// Joints turn with their rods. A section that turns with its rod turns about its tangent by the rotation's component along
   /// it: its reference frame, transported in parallel, does not.
   void turn_sections(const Configuration& here) {
+    if constexpr (Dimension == 2) {
+      for (Index i = 0; i < model_.dofs.num_rotations(); ++i) {
+        const Index rotation = model_.dofs.rotation(i);
+        if (part_[to_size(model_.dofs.node_of(rotation))] != first_) continue;
+        columns_(rotation, Dimension) = 1.0 / model_.size();
+      }
+    }
     if constexpr (Dimension == 3) {
       for (const SpatialEdge& edge : model_.framed_edges) {
         if (part_[to_size(model_.dofs.node_of(edge.start))] != first_) continue;

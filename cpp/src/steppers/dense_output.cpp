@@ -29,6 +29,7 @@ struct Hermite {
 DenseOutput::DenseOutput(const Model& model, const Assembler& assembler)
     : model_(model),
       force_(model, assembler),
+      rotations_(model),
       velocities_(Vector::Zero(model.num_dofs())),
       controls_(Vector::Zero(model.tables.size())),
       before_{Vector::Zero(model.num_dofs()), controls_},
@@ -46,6 +47,7 @@ void DenseOutput::evaluate(double time, const State& start, const State& end, St
   evaluate_controls(model_, end, time, controls_);
   apply_prescribed_motion(model_, controls_, result.positions);
   if (model_.has_sections()) follow(model_, result);
+  rotations_.settle(controls_, end.extra_force, result.positions);
 
   Work work_start = start.work;
   for (const HeldDof& held : model_.held) {

@@ -36,6 +36,7 @@ ExplicitForce::ExplicitForce(const Model& model, const Assembler& assembler)
       assembler_(assembler),
       supports_move_(any_support_moves(model)),
       mass_(model),
+      rotations_(model),
       here_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       scratch_controls_(here_.controls),
       force_(Vector::Zero(model.num_dofs())),
@@ -138,6 +139,7 @@ void ExplicitForce::evaluate_loads(const State& state, const Vector& positions, 
   here_.coordinates = positions;
   here_.load_factor = state.load_factor;
   evaluate_controls(model_, state, time, here_.controls);
+  rotations_.settle(here_.controls, state.extra_force, here_.coordinates);
   external_force(model_, here_, state.extra_force, force_);
 }
 

@@ -44,6 +44,8 @@ StableStepBound::StableStepBound(const Model& model, bool drag_limits_step)
       gradient_(model.num_dofs()),
       values_(assembler_.num_values()),
       sums_(model.num_nodes) {
+  // Rotations of joints follow the positions: without them the stiffness is not less.
+  inverse_root_mass_.tail(model.dofs.num_rotations()).setZero();
   block_size_ = model.dimension + (model.framed_edges.empty() ? 0 : 1);
   find_blocks();
   if (!drag_limits_step) return;
@@ -80,6 +82,8 @@ void StableStepBound::find_blocks() {
     for (Index k = pattern_.outer[to_size(column)]; k < pattern_.outer[to_size(column + 1)]; ++k) {
       const Index row_dof = model_.dofs.free()[to_size(pattern_.inner[to_size(k)])];
       const Index column_dof = model_.dofs.free()[to_size(column)];
+      const Index first_rotation = model_.dofs.rotation(0);
+      if (row_dof >= first_rotation || column_dof >= first_rotation) continue;
       add(row_dof, column_dof, k);
       // The pattern has only the lower half of a block on the diagonal.
       if (model_.dofs.node_of(row_dof) == model_.dofs.node_of(column_dof))

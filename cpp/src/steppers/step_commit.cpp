@@ -11,6 +11,7 @@ namespace der {
 StepCommit::StepCommit(const Model& model, HeldVelocities held)
     : model_(model),
       held_velocities_(held),
+      rotations_(model),
       controls_work_(any_clamp_turns(model) || model.natural_strain.is_actuated()),
       start_{Vector::Zero(model.num_dofs()), Vector::Zero(model.tables.size())},
       end_(start_),
@@ -47,6 +48,7 @@ void StepCommit::finish(const Vector& positions, const Eigen::Ref<const Vector>&
     state.velocities[dof] = velocities[dof];
     state.positions[dof] = positions[dof];
   }
+  settle_rotations(dt, state);
   if (drives) {
     // Clamps work against the viscous loads beside them, which take that up.
     const double power = driven_power(end_, state, dt, state.time + dt);
@@ -55,6 +57,19 @@ void StepCommit::finish(const Vector& positions, const Eigen::Ref<const Vector>&
     state.work.drag += taken;
   }
   state.last_step = dt;
+}
+
+/// What a scheme makes of rotations, which have no inertia, is a guess. Their mean rate is one for
+/// the next step.
+void StepCommit::settle_rotations(double dt, State& state) {
+  if (!model_.has_rotations()) return;
+  rotations_.settle(end_.controls, state.extra_force, state.positions);
+  for (Index i = 0; i < model_.dofs.num_rotations(); ++i) {
+    const Index dof = model_.dofs.rotation(i);
+    if (!model_.dofs.is_free(dof)) continue;
+    state.velocities[dof] = (state.positions[dof] - start_.coordinates[dof]) / dt;
+    state.accelerations[dof] = 0.0;
+  }
 }
 
 /// At one end of the step of `dt` [s] from `state.time`.

@@ -8,6 +8,7 @@
 
 #include "der/core/index.hpp"
 #include "der/energies/elements_of.hpp"
+#include "der/energies/joint_spring.hpp"
 #include "der/energies/point_spring.hpp"
 #include "der/energies/rotational_spring.hpp"
 #include "der/kinematics/planar_edge.hpp"
@@ -154,7 +155,11 @@ void add_spring(const scenario::Support& support, Model& model) {
                    [&](auto dim) { add_point_spring_at<dim>(spring, rod, s, weights, model); });
   }
   if (spring.rotational_stiffness.empty()) return;
-  if (model.dimension == 2) {
+  if (const Index rotation = rod.legs.empty() ? -1 : rod.rotation_at(node_at(support.at, rod));
+      rotation >= 0) {
+    elements_of<JointSpring>(*model.elements)
+        .add({model.dofs.rotation(rotation)}, {spring.rotational_stiffness[0]});
+  } else if (model.dimension == 2) {
     place_of_moments(s, rod).stiffness += spring.rotational_stiffness[0];
   } else {
     add_to_section_spring(s, Eigen::Map<const Vec3>(spring.rotational_stiffness.data()), rod);

@@ -69,6 +69,12 @@ void hold_nodes(const scenario::Support& support, std::size_t number, Model& mod
         }
         continue;
       }
+      if (const Index rotation = rod.rotation_at(place); rotation >= 0) {
+        const Index control = support.rotation ? model.tables.add(*support.rotation) : -1;
+        hold(model, model.dofs.rotation(rotation), control);
+        if (control >= 0) model.prescribed.push_back({number, "angle", control});
+        continue;
+      }
       hold_tangent(support, place, rod, model);
       const Clamp* clamp = rod.clamp_at(place);
       if (support.rotation && clamp != nullptr && clamp->rotation >= 0) {

@@ -134,7 +134,9 @@ def _set(table: dict[str, Any], key: str, value: Any) -> None:
 
 
 def _count_nodes(rod: dict[str, Any]) -> int:
-    return len(rod["points"]) if "points" in rod else int(rod["nodes"])
+    if "points" in rod:
+        return len(rod["points"])
+    return (int(rod["nodes"]) - 1) * int(rod.get("subdivide", 1)) + 1
 
 
 def _count_elements(rod: dict[str, Any]) -> int:
@@ -152,6 +154,13 @@ def _loads(scene: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
 def _refine_rod(
     scene: dict[str, Any], rod: dict[str, Any], factor: Fraction, other_curve: bool
 ) -> None:
+    if scene.get("joints") and "points" not in rod:
+        # Each leg between joints is cut alike, so that its places stay where they are.
+        parts = factor * int(rod.get("subdivide", 1))
+        if parts.denominator != 1:
+            raise ValueError(f"the elements of rod {rod['name']!r} cannot be cut into {parts}")
+        rod["subdivide"] = int(parts)
+        return
     places = _Places(rod, factor, other_curve)
     for key in ("natural_curvature", "natural_twist", "initial_velocity"):
         if _is_per_node(rod, key):
@@ -183,7 +192,8 @@ def _what_stands_on(scene: dict[str, Any], rod: dict[str, Any]) -> Iterator[dict
     yield from rod.get("spheres") or []
     probes = (scene.get("output") or {}).get("probes") or {}
     loads = (what for _, what in _loads(scene))
-    for item in (*(scene.get("supports") or []), *loads, *probes.values()):
+    members = (member for joint in scene.get("joints") or [] for member in joint["of"])
+    for item in (*(scene.get("supports") or []), *loads, *members, *probes.values()):
         if item.get("rod") == rod["name"]:
             yield item
 

@@ -124,12 +124,13 @@ void for_each_sample(F&& f) {
   }
 }
 
-/// Calls f(kernel) for each kernel that `energy_momentum` takes: it is for planar rods alone.
+/// Calls f(kernel) for each kernel that `energy_momentum` takes: it is for planar rods without
+/// joints alone.
 template <class F>
 void for_each_kernel(F&& f) {
   for_each_list(ElementLists{}, [&](const auto& list) {
     using Kernel = typename std::decay_t<decltype(list)>::KernelType;
-    if constexpr (!IsSpatial<Kernel>::value) f(Kernel{});
+    if constexpr (!IsSpatial<Kernel>::value && !HasRotations<Kernel>::value) f(Kernel{});
   });
 }
 

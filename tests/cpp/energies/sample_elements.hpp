@@ -5,6 +5,7 @@
 #include <random>
 #include <type_traits>
 
+#include "der/energies/num_joints.hpp"
 #include "der/energies/registry.hpp"
 
 /// Random constants and configurations for every kind of element, for the checks that loop over the
@@ -238,6 +239,22 @@ typename SectionSpring<Edges>::Constants sample_constants(const SectionSpring<Ed
   return c;
 }
 
+template <class Curvature, int Edges, int Joints>
+typename EndCell<Curvature, Edges, Joints>::Constants sample_constants(
+    const EndCell<Curvature, Edges, Joints>&, Random& random) {
+  typename EndCell<Curvature, Edges, Joints>::Constants c;
+  using Stiffness = typename EndCell<Curvature, Edges, Joints>::Stiffness;
+  const Stiffness root = Stiffness::NullaryExpr([&] { return uniform(random, -1.0, 1.0); });
+  c.stiffness = Stiffness::Identity() + root * root.transpose();
+  for (double& rest : c.rest) rest = uniform(random, -1.0, 1.0);
+  for (double& angle : c.direction) angle = uniform(random, -0.5, 0.5);
+  return c;
+}
+
+inline JointSpring::Constants sample_constants(const JointSpring&, Random& random) {
+  return {uniform(random, 0.5, 5.0)};
+}
+
 enum class Shape { Arbitrary, NearStraight, NearFolded, Stretched };
 constexpr Shape kShapes[] = {Shape::Arbitrary, Shape::NearStraight, Shape::NearFolded,
                              Shape::Stretched};
@@ -270,12 +287,32 @@ Eigen::Matrix<double, N, 1> sample_planar_positions(Shape shape, Random& random)
   return x;
 }
 
+/// Whether a kernel has rotations of joints among its coordinates, behind those of its nodes.
+template <class Kernel>
+struct HasRotations : std::bool_constant<(NumJoints<Kernel>::value > 0)> {};
+
 /// Whether the coordinates of a kernel are those of nodes in space, then angles of edges.
 template <class Kernel, class = void>
 struct IsSpatial : std::false_type {};
 template <class Kernel>
 struct IsSpatial<Kernel, std::void_t<decltype(Kernel::kNodes)>>
-    : std::bool_constant<(Kernel::kDofs >= 3 * Kernel::kNodes)> {};
+    : std::bool_constant<(Kernel::kDofs >= 3 * Kernel::kNodes) && !HasRotations<Kernel>::value> {};
+
+/// As sample_planar_positions; the tangents of joints stay within 2.5 rad of the edges beside them.
+template <class Kernel>
+Eigen::Matrix<double, Kernel::kDofs, 1> sample_jointed_positions(Shape shape, Random& random) {
+  constexpr int nodes = 2 * Kernel::kNodes;
+  Eigen::Matrix<double, Kernel::kDofs, 1> x;
+  for (int i = nodes; i < Kernel::kDofs; ++i) x[i] = uniform(random, -0.5, 0.5);
+  if constexpr (nodes > 0) {
+    x.template head<nodes>() = sample_planar_positions<nodes>(shape, random);
+    if constexpr (Kernel::kJoints == 2) {
+      const Vec2 last = x.template segment<2>(nodes - 2) - x.template segment<2>(nodes - 4);
+      x[nodes + 1] += std::atan2(last.y(), last.x()) + uniform(random, -1.5, 1.5);
+    }
+  }
+  return x;
+}
 
 /// As sample_planar_positions; each edge turns about any axis across the one before it. Angles of
 /// edges are up to two turns.
@@ -301,6 +338,8 @@ template <class Kernel>
 Eigen::Matrix<double, Kernel::kDofs, 1> sample_positions(Shape shape, Random& random) {
   if constexpr (IsSpatial<Kernel>::value) {
     return sample_spatial_positions<Kernel>(shape, random);
+  } else if constexpr (HasRotations<Kernel>::value) {
+    return sample_jointed_positions<Kernel>(shape, random);
   } else {
     return sample_planar_positions<Kernel::kDofs>(shape, random);
   }

@@ -318,8 +318,11 @@ def _reversed_scene(scene: Scene) -> Scene:
     ends = _end_directors(scene, model)
     for rod in scene["rods"]:
         _reverse_rod(rod, rods[rod["name"]], planar, ends.get(rod["name"]))
+    members = [member for joint in scene.get("joints", ()) for member in joint["of"]]
+    for part in (*members, *scene.get("supports", ())):
+        if "at" in part:
+            part["at"] = _other_place(part["at"], rods[part["rod"]])
     for support in scene.get("supports", ()):
-        support["at"] = _other_place(support["at"], rods[support["rod"]])
         if "twist" in support.get("prescribe", {}):
             support["prescribe"]["twist"] = _negated(support["prescribe"]["twist"])
     for load in scene.get("loads", ()):
@@ -546,7 +549,9 @@ def shuffled() -> Law:
     def write(scene: Scene) -> Scene:
         scene = copy.deepcopy(scene)
         loads, supports = len(scene.get("loads", ())), len(scene.get("supports", ()))
-        for key in ("rods", "supports", "loads", "actuation"):
+        for joint in scene.get("joints", ()):
+            joint["of"] = joint["of"][::-1]
+        for key in ("rods", "joints", "supports", "loads", "actuation"):
             if key in scene:
                 scene[key] = scene[key][::-1]
         for probe in scene.get("output", {}).get("probes", {}).values():
@@ -578,6 +583,8 @@ def in_space(model: str) -> Law:
     def write(scene: Scene) -> Scene:
         if not is_planar(scene):
             raise NotApplicableError("the scene is not planar")
+        if "joints" in scene:
+            raise NotApplicableError("joints are planar")
         analysis = scene.get("analysis", "static")
         if analysis != "static" and "static" not in analysis:
             raise NotApplicableError("motions out of the plane are among its answers")

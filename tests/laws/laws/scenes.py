@@ -235,6 +235,55 @@ def _other_rod(model: str) -> Scene:
     }
 
 
+def _joined(kind: str) -> Thing:
+    """An arm that leaves the rod, with all that acts on a joint; its end meets a third rod."""
+
+    def thing(model: str) -> Scene:
+        rod = _base(model)["rods"][0]
+        at = np.array(rod["points"][4])
+        stiffness = {"EA": 400.0, "EI": 0.3, "mass_per_length": 0.2}
+        knee = (at + [0.3, -0.4]).round(12).tolist()
+
+        def straight(name: str, start: list[float], end: list[float]) -> Scene:
+            section = {"stiffness": dict(stiffness)}
+            return {"name": name, "nodes": 7, "from": start, "to": end, "cross_section": section}
+
+        arm = {**straight("arm", at.tolist(), knee), "subdivide": 2, "natural_curvature": 0.6}
+        foot = straight("foot", knee, [knee[0] + 0.4, knee[1] + 0.1])
+        hip = [{"rod": "rod", "at": {"node": 4}}, {"rod": "arm", "at": "start"}]
+        ankle = [{"rod": "arm", "at": "end"}, {"rod": "foot", "at": "start"}]
+        turning = {"rod": "arm", "at": "start"} if kind == "hinge" else {"joint": "hip"}
+        probed = {"quantity": "rotation", "joint": "ankle"}
+        return {
+            "rods": [arm, foot],
+            "joints": [
+                {"name": "hip", "of": hip, "kind": kind},
+                {"name": "ankle", "of": ankle},
+            ],
+            "supports": [
+                *CLAMP,
+                {**turning, "spring": {"rotational_stiffness": 0.8}},
+                {"rod": "foot", "at": "end", "fix": ["y"]},
+                {"joint": "ankle", "spring": {"stiffness": 2.0}},
+            ],
+            "loads": [
+                {"gravity": _v(model)},
+                {"moment": {"joint": "ankle", "moment": 0.05}},
+                {"point_force": {"joint": "hip", "force": _v(model)}},
+                {"point_force": {"rod": "arm", "at": 0.21, "force": _v(model)}},
+            ],
+            "output": {
+                "probes": {
+                    "own": probed,
+                    "pull": {"quantity": "force_x", "joint": "ankle", "leg": "foot"},
+                    "bend": {"quantity": "moment_z", "joint": "hip", "leg": "rod"},
+                }
+            },
+        }
+
+    return thing
+
+
 ALL, TWISTS, FLAT, STRIP = MODELS, ("planar", "spatial"), ("planar",), ("spatial",)
 UNTWISTED = ("planar", "spatial_bend")
 
@@ -412,6 +461,9 @@ THINGS: dict[str, tuple[tuple[str, ...], Thing]] = {
             *([{"to": 0.6, "natural_twist": 2.1, "profile": "smooth"}] if m == "spatial" else []),
         ),
     ),
+    # Joints
+    "joint": (FLAT, _joined("rigid")),
+    "hinge": (FLAT, _joined("hinge")),
     # Rods
     "natural curvature": (TWISTS, lambda m: {"rod": {"natural_curvature": _curvature(m, 0.8)}}),
     "natural curvatures": (TWISTS, lambda m: {"rod": {"natural_curvature": _curves(m)}}),

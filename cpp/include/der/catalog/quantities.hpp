@@ -29,6 +29,7 @@ enum class QuantityKind {
   Ring,       ///< of a closed rod as a whole: no place
   Support,    ///< of a support: no place but that of the support
   Actuation,  ///< of an actuation: no place but its stretch
+  Joint,      ///< of a joint: no place but that of the joint
   Energy,     ///< of a rod or of the whole model: no place
 };
 
@@ -59,6 +60,9 @@ using ReactionReading = double (*)(const Reaction& sum);
 /// Reads a quantity of an actuation off what it exerts (output/actuation_forces.hpp).
 using ActuationReading = double (*)(const ActuationForce& force);
 
+/// What a joint tells (output/joint_reader.hpp).
+enum class JointQuantity { None, Rotation, ForceX, ForceY, MomentZ };
+
 /// One row of the table of quantities: probes, `Replay::along`, exports and views follow it.
 struct Quantity {
   std::string name;
@@ -76,6 +80,7 @@ struct Quantity {
   RodReading read_rod = nullptr;            ///< of numbers of rings
   ReactionReading read_reaction = nullptr;  ///< of supports
   ActuationReading read_actuation = nullptr;
+  JointQuantity of_joint = JointQuantity::None;
   std::string actuates{};  ///< of actuations: the key of those that have the quantity
   std::string advice{};    ///< what to take in its place in a model that lacks it; may be empty
 };

@@ -6,10 +6,12 @@
 #include "der/energies/circulatory_load.hpp"
 #include "der/energies/corner_fork.hpp"
 #include "der/energies/element_list.hpp"
+#include "der/energies/end_cell.hpp"
 #include "der/energies/fork.hpp"
 #include "der/energies/foundation.hpp"
 #include "der/energies/from_pivot.hpp"
 #include "der/energies/isotropic_bend.hpp"
+#include "der/energies/joint_spring.hpp"
 #include "der/energies/planar_bend.hpp"
 #include "der/energies/planar_clamp.hpp"
 #include "der/energies/planar_moment.hpp"
@@ -33,6 +35,15 @@ struct ElementLists {
                            ElementList<FromPivot<PlanarBend<TangentCurvature>>>,             //
                            ElementList<FromPivot<PlanarClamp<AngleCurvature>>>,              //
                            ElementList<FromPivot<PlanarClamp<TangentCurvature>>>,            //
+                           ElementList<EndCell<AngleCurvature, 1, 1>>,
+                           ElementList<EndCell<TangentCurvature, 1, 1>>,
+                           ElementList<EndCell<AngleCurvature, 2, 1>>,
+                           ElementList<EndCell<TangentCurvature, 2, 1>>,
+                           ElementList<EndCell<AngleCurvature, 1, 2>>,
+                           ElementList<EndCell<TangentCurvature, 1, 2>>,
+                           ElementList<EndCell<AngleCurvature, 2, 2>>,
+                           ElementList<EndCell<TangentCurvature, 2, 2>>,
+                           ElementList<JointSpring>,
                            ElementList<Stretch<3>>,                                          //
                            ElementList<FromSpatialPivot<Stretch<3>>>,                        //
                            ElementList<IsotropicBend<AngleCurvature>>,                       //

@@ -14,12 +14,14 @@ namespace der {
 enum class DofKind {
   Position,  ///< a component of a node's position [m]
   Angle,     ///< the angle of an edge's material frame [rad]
+  Rotation,  ///< the rotation of a joint from the initial shape [rad], in a plane
 };
 
-/// Identifies a degree of freedom: a component of a node's position, or the angle of an edge.
+/// Identifies a degree of freedom: a component of a node's position, the angle of an edge, or the
+/// rotation of a joint.
 struct Dof {
   DofKind kind = DofKind::Position;
-  Index owner = 0;    ///< the node, or the edge
+  Index owner = 0;    ///< the node, the edge, or the number of the rotation
   int component = 0;  ///< of a position: 0 x, 1 y, 2 z
 };
 
@@ -42,27 +44,34 @@ double largest_over(const std::vector<DofBlock>& blocks, const Value& value) {
 /// The only place that knows how degrees of freedom are numbered: what each one is, where it is
 /// stored, in which order the solver eliminates it, and what it counts for in a norm.
 ///
-/// The positions of all nodes are stored first, then the angles of all edges, so that each of the
-/// two is one contiguous view. Those that the solver finds, the free ones, are eliminated
-/// node by node, an angle after the node at which its edge begins: that makes the matrix a band.
+/// The positions of all nodes are stored first, then the angles of all edges, then the rotations of
+/// all joints, so that each of the three is one contiguous view. Those that the solver finds, the
+/// free ones, are eliminated node by node, an angle after the node at which its edge begins and a
+/// rotation after the node of its joint: that makes the matrix a band.
 /// The first node of a ring is eliminated after all of its others, next to the last one: what
 /// couples the ring's end with its start is then in the rows of a few last degrees of freedom.
 class DofMap {
  public:
   DofMap() = default;
-  /// `edge_starts`: the first node of each edge that has an angle, in ascending order. All are free
-  /// at first.
-  DofMap(int dimension, Index num_nodes, std::vector<Index> edge_starts = {});
+  /// `edge_starts`: the first node of each edge that has an angle, in ascending order.
+  /// `rotation_nodes`: the node of each rotation of a joint. All are free at first.
+  DofMap(int dimension, Index num_nodes, std::vector<Index> edge_starts = {},
+         std::vector<Index> rotation_nodes = {});
 
-  [[nodiscard]] Index size() const { return num_positions() + static_cast<Index>(starts_.size()); }
+  [[nodiscard]] Index size() const { return num_positions() + num_angles() + num_rotations(); }
   [[nodiscard]] Index num_positions() const { return dimension_ * num_nodes_; }
+  [[nodiscard]] Index num_angles() const { return static_cast<Index>(starts_.size()); }
+  [[nodiscard]] Index num_rotations() const { return static_cast<Index>(rotation_nodes_.size()); }
   [[nodiscard]] Index position(Index node, int component) const {
     return dimension_ * node + component;
   }
   [[nodiscard]] Index angle(Index edge) const { return num_positions() + edge; }
+  [[nodiscard]] Index rotation(Index number) const {
+    return num_positions() + num_angles() + number;
+  }
   /// The kind, owner and component of a degree of freedom.
   [[nodiscard]] Dof operator[](Index dof) const;
-  /// Its node, or the node at which its edge begins.
+  /// Its node, that of its joint, or the one at which its edge begins.
   [[nodiscard]] Index node_of(Index dof) const;
 
   /// Says that the nodes from `first_node` to `last_node` are those of a ring.
@@ -118,6 +127,7 @@ class DofMap {
   double length_ = 1.0;
   Index num_nodes_ = 0;
   std::vector<Index> starts_;  // of the edges that have an angle
+  std::vector<Index> rotation_nodes_;
   std::vector<Ring> rings_;
   std::vector<DofBlock> blocks_;
   std::vector<Index> free_;

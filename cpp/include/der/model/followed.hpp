@@ -23,6 +23,9 @@ struct FollowedEdge {
 
 /// Number of followed edges.
 Index num_turns(const Model& model);
+/// Number of rotations that are saved of each state: those of followed edges, or of joints. A model
+/// has one kind or the other.
+Index num_saved_turns(const Model& model);
 /// Number of entries of a vector `followed` of the model.
 Index num_followed(const Model& model);
 /// That of the initial shape as it is drawn.

@@ -17,6 +17,7 @@
 #include "der/model/edge.hpp"
 #include "der/model/followed.hpp"
 #include "der/model/frames.hpp"
+#include "der/model/leg.hpp"
 #include "der/model/load_variation.hpp"
 #include "der/model/mass.hpp"
 #include "der/model/named_control.hpp"
@@ -177,7 +178,8 @@ struct RodMesh {
   /// Natural turning angle at each node that bends [rad], at clamped ones of the clamp's cells; 0
   /// at free ends.
   std::vector<double> rest_turning_angle;
-  std::vector<Clamp> clamps;               ///< none on a rod that does not bend
+  std::vector<Leg> legs;                   ///< of a rod in a scene with joints; else none
+  std::vector<Clamp> clamps;               ///< none on a rod that does not bend, or has legs
   std::vector<MomentPlace> moment_places;  ///< no two at the same place
   std::vector<ForcePlace> force_places;    ///< of forces at single places
   /// Whether single forces act on each node, of supports, loads or spheres: strain may jump there.
@@ -228,6 +230,8 @@ struct RodMesh {
   [[nodiscard]] Edge edge(Index number, const Model& model) const;
   /// Degrees of freedom (x, y of both ends) of an edge of a planar model.
   [[nodiscard]] std::array<Index, 4> edge_dofs(Index edge, const Model& model) const;
+  /// Number of the joint's rotation that the rod's tangent follows at a node; -1: there is none.
+  [[nodiscard]] Index rotation_at(Index place) const;
   /// Null if the tangent at that place is free.
   [[nodiscard]] const Clamp* clamp_at(Index place) const;
   /// Places at which moments act, of loads and of springs against turning [m].
@@ -310,7 +314,9 @@ struct Model {
   [[nodiscard]] Index num_dofs() const { return dofs.size(); }
   [[nodiscard]] Index num_free() const { return dofs.num_free(); }
   /// Whether edges have angles of their sections as degrees of freedom.
-  [[nodiscard]] bool has_sections() const { return dofs.size() > dofs.num_positions(); }
+  [[nodiscard]] bool has_sections() const { return dofs.num_angles() > 0; }
+  /// Whether it has joints with rotations of their own, which have no mass.
+  [[nodiscard]] bool has_rotations() const { return dofs.num_rotations() > 0; }
   /// The largest extent of the initial shape [m]: the length against which steps are small.
   [[nodiscard]] double size() const { return dofs.length(); }
   [[nodiscard]] Index dof(Index node, int component) const {

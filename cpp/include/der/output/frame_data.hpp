@@ -17,7 +17,7 @@ struct FrameData {
   std::vector<double> theta;           ///< frames x edges [rad]; none without sections
   std::vector<double> spin;            ///< frames x edges [rad/s]
   std::vector<double> section_frames;  ///< frames x (edges * 8) (kinematics/frame_block.hpp)
-  std::vector<double> turns;           ///< frames x followed edges [rad] (model/followed.hpp)
+  std::vector<double> turns;           ///< frames x followed edges, or joints [rad]
   std::vector<double> energies;        ///< frames x kEnergyTerms [J]
   std::vector<double> work;            ///< frames x kLedger [J]
   std::vector<double> probes;          ///< frames x probes

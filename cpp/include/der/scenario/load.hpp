@@ -29,6 +29,7 @@ struct OnRod {
 };
 /// At a place of a rod.
 struct AtPlace : OnRod {
+  std::string joint;  ///< in place of the rod and the place, which the checks then set
   Location at;
 };
 /// On a part of a rod, [m] of its rest length.

@@ -6,6 +6,7 @@
 
 #include "der/scenario/actuation.hpp"
 #include "der/scenario/analysis.hpp"
+#include "der/scenario/joint.hpp"
 #include "der/scenario/output.hpp"
 #include "der/scenario/rod.hpp"
 #include "der/scenario/solver.hpp"
@@ -44,6 +45,7 @@ struct Scene {
   ModelChoice model = ModelChoice::Auto;  ///< as asked for; see model_choice.hpp
   Analysis analysis = DynamicAnalysis{};
   std::vector<Rod> rods;
+  std::vector<Joint> joints;
   std::vector<Support> supports;
   std::vector<Load> loads;
   std::vector<Actuation> actuations;

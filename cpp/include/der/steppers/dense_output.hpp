@@ -5,6 +5,7 @@
 #include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
+#include "der/solvers/joint_rotations.hpp"
 #include "der/steppers/explicit_force.hpp"
 
 namespace der {
@@ -32,6 +33,7 @@ class DenseOutput {
 
   const Model& model_;
   ExplicitForce force_;
+  JointRotations rotations_;
   Vector velocities_;
   Vector controls_;
   Vector turn_rates_;

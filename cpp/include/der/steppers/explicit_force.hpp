@@ -5,6 +5,7 @@
 #include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
+#include "der/solvers/joint_rotations.hpp"
 #include "der/solvers/mass_solver.hpp"
 #include "der/steppers/stepper.hpp"
 
@@ -51,6 +52,7 @@ class ExplicitForce {
   const Assembler& assembler_;
   bool supports_move_;
   MassSolver mass_;
+  JointRotations rotations_;
   Configuration here_;  // of the last evaluation
   Vector scratch_controls_;
   Vector force_;

@@ -4,6 +4,7 @@
 #include "der/kinematics/configuration.hpp"
 #include "der/model/model.hpp"
 #include "der/model/state.hpp"
+#include "der/solvers/joint_rotations.hpp"
 #include "der/steppers/work.hpp"
 
 namespace der {
@@ -29,10 +30,12 @@ class StepCommit {
 
  private:
   ControlWork follow_and_work(State& state);
+  void settle_rotations(double dt, State& state);
   double driven_power(const Configuration& here, const State& state, double dt, double time);
 
   const Model& model_;
   HeldVelocities held_velocities_;
+  JointRotations rotations_;
   bool controls_work_ = false;  // whether any control does work without a displacement
   Configuration start_;
   Configuration end_;

@@ -1,0 +1,158 @@
+#include "building/joints.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <variant>
+
+#include "der/core/index.hpp"
+#include "der/kinematics/planar_edge.hpp"
+#include "der/model/location.hpp"
+#include "der/scenario/load.hpp"
+#include "der/scenario/scenario.hpp"
+#include "model/corner.hpp"
+#include "model/reference_edge.hpp"
+#include "scenario/rest_line.hpp"
+
+namespace der {
+namespace {
+
+/// What the nodes of one rod are.
+struct RodPoints {
+  std::vector<bool> ends_leg;
+  std::vector<bool> turns;  ///< whether something holds or loads the rotation there
+  std::vector<int> joint;   ///< number in the scene; -1: none
+};
+
+RodPoints points_of(const scenario::Scene& scene, const RodMesh& rod, const Model& model) {
+  const std::size_t count = rod.nodes.size();
+  RodPoints points{std::vector<bool>(count), std::vector<bool>(count), std::vector<int>(count, -1)};
+  points.ends_leg.front() = points.ends_leg.back() = true;
+  const auto enter = [&](const std::string& name, const scenario::Location& at, bool turns) {
+    if (name != rod.name) return;
+    const bool all = at.kind == scenario::Location::Kind::All;
+    for (const Index place : nodes_at(at, rod)) {
+      if (!all || turns) points.ends_leg[to_size(place)] = true;
+      if (turns) points.turns[to_size(place)] = true;
+    }
+  };
+  for (const auto& support : scene.supports) {
+    const bool turns =
+        support.clamps() || (support.spring && !support.spring->rotational_stiffness.empty());
+    enter(support.rod, support.at, turns);
+  }
+  for (const auto& load : scene.loads) {
+    if (const auto* force = std::get_if<scenario::PointForce>(&load.what)) {
+      enter(force->rod, force->at, false);
+    } else if (const auto* moment = std::get_if<scenario::Moment>(&load.what)) {
+      enter(moment->rod, moment->at, true);
+    }
+  }
+  for (const Index place : corners_of(rod, model)) points.ends_leg[to_size(place)] = true;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (rod.sphere_radius[i] > 0.0) points.ends_leg[i] = true;
+  }
+  for (std::size_t j = 0; j < scene.joints.size(); ++j) {
+    for (const auto& member : scene.joints[j].of) {
+      if (member.rod != rod.name) continue;
+      const std::size_t place = to_size(node_at(member.at, rod));
+      points.joint[place] = static_cast<int>(j);
+      points.ends_leg[place] = true;
+    }
+  }
+  return points;
+}
+
+/// Gives joints their rotations. The rods of a rigid joint follow one; each other node of a rod has
+/// one of its own.
+class Rotations {
+ public:
+  Rotations(const scenario::Scene& scene, const Model& model) : scene_(scene), model_(model) {}
+
+  /// That of a rod at one of its nodes where a leg ends; -1: the rod needs none there.
+  Index of(std::size_t rod, Index place, const RodPoints& points) {
+    const RodMesh& mesh = model_.rods[rod];
+    if (mesh.EI == 0.0) return -1;
+    const int joint = points.joint[to_size(place)];
+    const bool rigid =
+        joint >= 0 && scene_.joints[to_size(joint)].kind == scenario::JointKind::Rigid;
+    if (!rigid && !mesh.is_inner(place) && !points.turns[to_size(place)]) return -1;
+    const auto key = rigid ? std::tuple<Index, Index>(-1, joint)
+                           : std::tuple<Index, Index>(static_cast<Index>(rod), place);
+    const auto [known, is_new] = numbers_.emplace(key, static_cast<Index>(nodes_.size()));
+    if (is_new) nodes_.push_back(mesh.node(place));
+    return known->second;
+  }
+  /// The node of each rotation.
+  [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
+
+ private:
+  const scenario::Scene& scene_;
+  const Model& model_;
+  std::map<std::tuple<Index, Index>, Index> numbers_;
+  std::vector<Index> nodes_;
+};
+
+/// Angle [rad] of the drawn tangent at an end of a leg: its outermost edge leans against it by half
+/// the turn from one node to the next.
+double tangent_direction(const RodMesh& rod, const Leg& leg, bool at_end, const Model& model) {
+  const Index edge = at_end ? leg.last - 1 : leg.first;
+  const Vec2 vector = reference_edge(rod, edge, model);
+  const double direction = std::atan2(vector.y(), vector.x());
+  if (leg.last - leg.first == 1) return direction;
+  const Index node = at_end ? leg.last - 1 : leg.first + 1;
+  const double turn =
+      angle_between(reference_edge(rod, node - 1, model), reference_edge(rod, node, model));
+  const double half = 0.5 * rod.edge_length[to_size(edge)] * turn / rod.voronoi_length(node);
+  return at_end ? direction + half : direction - half;
+}
+
+}  // namespace
+
+std::vector<std::vector<JoinedPlace>> joined_places(const scenario::Scene& scene) {
+  std::vector<std::vector<JoinedPlace>> joints;
+  for (const auto& joint : scene.joints) {
+    auto& places = joints.emplace_back();
+    for (const auto& member : joint.of) {
+      const auto rod = std::find_if(scene.rods.begin(), scene.rods.end(),
+                                    [&](const auto& other) { return other.name == member.rod; });
+      const scenario::RestLine line(rod->points);
+      places.push_back({static_cast<std::size_t>(rod - scene.rods.begin()),
+                        *line.node_at(line.arc_length_of(member.at))});
+    }
+  }
+  return joints;
+}
+
+void find_joints(const scenario::Scene& scene, Model& model) {
+  if (scene.joints.empty()) return;
+  Rotations rotations(scene, model);
+  for (std::size_t i = 0; i < model.rods.size(); ++i) {
+    RodMesh& rod = model.rods[i];
+    const RodPoints points = points_of(scene, rod, model);
+    Leg leg;
+    for (Index place = 0; place <= rod.num_edges(); ++place) {
+      if (!points.ends_leg[to_size(place)]) continue;
+      const Index rotation = rotations.of(i, place, points);
+      if (place > 0) {
+        leg.last = place;
+        leg.end.rotation = rotation;
+        leg.start.direction = tangent_direction(rod, leg, false, model);
+        leg.end.direction = tangent_direction(rod, leg, true, model);
+        rod.legs.push_back(leg);
+      }
+      leg = {place, place, {rotation, 0.0}, {}};
+    }
+  }
+  const double length = model.dofs.length();
+  model.dofs = DofMap(model.dimension, model.num_nodes, {}, rotations.nodes());
+  model.dofs.set_length(length);
+  for (Vector* v : {&model.initial_positions, &model.reference_positions, &model.initial_velocities,
+                    &model.mass.lumped, &model.damping, &model.gravity_force, &model.dead_force}) {
+    v->conservativeResize(model.num_dofs());
+    v->tail(model.dofs.num_rotations()).setZero();
+  }
+}
+
+}  // namespace der

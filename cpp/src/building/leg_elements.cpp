@@ -1,0 +1,128 @@
+#include "building/leg_elements.hpp"
+
+#include <Eigen/LU>
+
+#include "der/core/constants.hpp"
+#include "der/core/index.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/end_cell.hpp"
+#include "der/energies/planar_bend.hpp"
+#include "der/energies/stretch.hpp"
+#include "der/kinematics/planar_edge.hpp"
+#include "model/reference_edge.hpp"
+
+namespace der {
+namespace {
+
+template <class Curvature>
+class LegBuilder {
+ public:
+  LegBuilder(Leg& leg, RodMesh& rod, Model& model) : leg_(leg), rod_(rod), model_(model) {}
+
+  void add() {
+    const Index cells = leg_.num_cells();
+    const bool at_start = leg_.start.rotation >= 0;
+    const bool at_end = leg_.end.rotation >= 0;
+    if (at_start && at_end && cells <= 2) {
+      cells == 1 ? add_end_cell<1, 2>(true) : add_end_cell<2, 2>(true);
+      return;
+    }
+    if (at_start) cells == 1 ? add_end_cell<1, 1>(true) : add_end_cell<2, 1>(true);
+    if (at_end) cells == 1 ? add_end_cell<1, 1>(false) : add_end_cell<2, 1>(false);
+    for (Index place = leg_.first + 1; place < leg_.last; ++place) {
+      const bool in_end_cell = (at_start && place == leg_.first + 1) ||
+                               (at_end && place == leg_.last - 1);
+      if (!in_end_cell) add_bend(place);
+    }
+  }
+
+ private:
+  [[nodiscard]] bool has_natural() const { return !rod_.natural_curvature.empty(); }
+  [[nodiscard]] double length(Index edge) const { return rod_.edge_length[to_size(edge)]; }
+  [[nodiscard]] Vec2 edge(Index number) const { return reference_edge(rod_, number, model_); }
+
+  void add_bend(Index place) {
+    double rest = angle_between(edge(place - 1), edge(place));
+    if (has_natural()) {
+      // A free end is on the curve, the node next to it beside it.
+      double over = rod_.voronoi_length(place);
+      if (place == leg_.first + 1) over += length(leg_.first) / 12.0;
+      if (place == leg_.last - 1) over += length(leg_.last - 1) / 12.0;
+      rest = rod_.natural_curvature.front() * over;
+    }
+    const auto before = rod_.edge_dofs(place - 1, model_);
+    const auto after = rod_.edge_dofs(place, model_);
+    auto& list = elements_of<PlanarBend<Curvature>>(*model_.elements);
+    if (leg_.first_bend < 0) leg_.first_bend = static_cast<Index>(list.size());
+    list.add({before[0], before[1], after[0], after[1], after[2], after[3]},
+             {rod_.EI / rod_.voronoi_length(place), Curvature::of(rest).kappa, {}});
+  }
+
+  /// From the joint at the start of the leg, or from that at its end.
+  template <int Edges, int Joints>
+  void add_end_cell(bool from_start) {
+    using Kernel = EndCell<Curvature, Edges, Joints>;
+    const Index joint = from_start ? leg_.first : leg_.last;
+    const Index step = from_start ? 1 : -1;
+    const auto edge_number = [&](int k) { return from_start ? joint + k : joint - 1 - k; };
+    std::array<Index, Kernel::kDofs> dofs{};
+    for (int k = 0; k < Kernel::kNodes; ++k) {
+      const Index node = rod_.node(joint + step * k);
+      for (int c = 0; c < 2; ++c) dofs[to_size(2 * k + c)] = model_.dof(node, c);
+    }
+    typename Kernel::Constants c;
+    std::array<Vec2, Kernel::kDirections> drawn;
+    const auto enter_joint = [&](int number, const LegEnd& end, std::size_t place) {
+      const double direction = end.direction + (from_start ? 0.0 : kPi);
+      dofs[to_size(2 * Kernel::kNodes + number)] = model_.dofs.rotation(end.rotation);
+      c.direction[to_size(number)] = direction;
+      drawn[place] = {std::cos(direction), std::sin(direction)};
+    };
+    enter_joint(0, from_start ? leg_.start : leg_.end, 0);
+    if constexpr (Joints == 2) enter_joint(1, leg_.end, Kernel::kDirections - 1);
+    for (int k = 0; k < Edges; ++k) drawn[to_size(k) + 1] = step * edge(edge_number(k));
+
+    const Mat3 C = end_compliance(leg_, from_start, rod_.edge_length);
+    constexpr int n = Kernel::kAngles;
+    c.stiffness = rod_.EI * C.template topLeftCorner<n, n>().inverse();
+    for (int i = 0; i < n; ++i) {
+      const double rest =
+          has_natural() ? step * rod_.natural_curvature.front() * C.row(i).sum()
+                        : angle_between(drawn[to_size(i)], drawn[to_size(i) + 1]);
+      c.rest[i] = Curvature::of(rest).kappa;
+    }
+    auto& list = elements_of<Kernel>(*model_.elements);
+    (from_start ? leg_.start_cell : leg_.end_cell) = static_cast<Index>(list.size());
+    list.add(dofs, c);
+  }
+
+  Leg& leg_;
+  RodMesh& rod_;
+  Model& model_;
+};
+
+}  // namespace
+
+void add_leg_elements(RodMesh& rod, Model& model) {
+  rod.rest_turning_angle.assign(rod.nodes.size(), 0.0);
+  for (Index edge = 0; edge < rod.num_edges(); ++edge) {
+    elements_of<Stretch<2>>(*model.elements)
+        .add(rod.edge_dofs(edge, model), {rod.EA, rod.edge_length[to_size(edge)], {}});
+  }
+  for (Index place = 1; place < rod.num_edges(); ++place) {
+    rod.rest_turning_angle[to_size(place)] =
+        rod.natural_curvature.empty()
+            ? angle_between(reference_edge(rod, place - 1, model), reference_edge(rod, place, model))
+            : rod.natural_curvature.front() * rod.voronoi_length(place);
+  }
+  if (rod.EI == 0.0) return;
+  for (Leg& leg : rod.legs) {
+    if (rod.curvature == scenario::CurvatureMeasure::Angle) {
+      LegBuilder<AngleCurvature>(leg, rod, model).add();
+    } else {
+      LegBuilder<TangentCurvature>(leg, rod, model).add();
+    }
+  }
+}
+
+}  // namespace der

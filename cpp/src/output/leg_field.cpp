@@ -1,0 +1,293 @@
+#include "output/leg_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "der/core/index.hpp"
+#include "der/energies/element_energy.hpp"
+#include "der/energies/elements_of.hpp"
+#include "der/energies/end_cell.hpp"
+#include "der/energies/planar_bend.hpp"
+#include "der/energies/stretch.hpp"
+#include "der/kinematics/planar_edge.hpp"
+#include "model/reference_edge.hpp"
+
+namespace der {
+namespace {
+
+/// Reads a moment [N m] off the coordinates.
+using MomentReader = std::function<double(const Vector& coordinates)>;
+
+/// What the nodes and edges of one leg tell.
+class LegReader {
+ public:
+  LegReader(const Leg& leg, const RodMesh& rod, const Model& model) : leg_(leg), rod_(rod) {
+    moments_.assign(to_size(leg.num_cells()) + 1, [](const Vector& /*coordinates*/) { return 0.0; });
+    if (rod.EI > 0.0) {
+      if (rod.curvature == scenario::CurvatureMeasure::Angle) {
+        find_moments<AngleCurvature>(model);
+      } else {
+        find_moments<TangentCurvature>(model);
+      }
+    }
+    find_natural(model);
+    for (const bool from_start : {true, false}) {
+      const Mat3 C = end_compliance(leg, from_start, rod.edge_length);
+      End& end = from_start ? start_ : end_;
+      end.per_moment = rod.EI > 0.0 ? C(0, 1) / rod.EI : 0.0;
+      const double direction = (from_start ? leg.start : leg.end).direction;
+      const Vec2 edge = reference_edge(rod, from_start ? leg.first : leg.last - 1, model);
+      const double drawn = angle_between({std::cos(direction), std::sin(direction)}, edge);
+      end.natural = rod.natural_curvature.empty()
+                        ? drawn
+                        : (from_start ? 1.0 : -1.0) * rod.natural_curvature.front() * C.row(0).sum();
+    }
+  }
+
+  /// Moment [N m] at a node of the leg, counted from its start.
+  [[nodiscard]] double moment(Index node, const Vector& x) const {
+    return moments_[to_size(node)](x);
+  }
+  /// [1/m]
+  [[nodiscard]] double natural_curvature(Index node) const { return natural_[to_size(node)]; }
+  [[nodiscard]] double curvature(Index node, const Vector& x) const {
+    const double elastic = rod_.EI > 0.0 ? moment(node, x) / rod_.EI : 0.0;
+    return elastic + natural_curvature(node);
+  }
+
+  /// The angle of the tangent from the x axis [rad].
+  [[nodiscard]] double slope(Index node, const Model& model, const Vector& x) const {
+    const Index last = leg_.num_cells();
+    if (node == 0 && leg_.start.rotation >= 0) return slope_of(leg_.start, model, x);
+    if (node == last && leg_.end.rotation >= 0) return slope_of(leg_.end, model, x);
+    if (leg_.start.rotation < 0 && leg_.end.rotation >= 0) {
+      // From the joint at the end back.
+      double edge = edge_beside(slope_of(leg_.end, model, x), last - 1, model, x);
+      for (Index k = last - 1; k > node; --k) edge -= turn(k, model, x);
+      return node == 0 ? edge - lean(start_, 1, x) : edge - share_before(node) * turn(node, model, x);
+    }
+    double edge = edge_beside(leg_.start.rotation >= 0 ? slope_of(leg_.start, model, x)
+                                                       : leg_.start.direction,
+                              0, model, x);
+    if (node == 0) return edge - lean(start_, 1, x);
+    for (Index k = 1; k < node; ++k) edge += turn(k, model, x);
+    if (node == last) return edge - lean(end_, last - 1, x);
+    return edge + (1.0 - share_before(node)) * turn(node, model, x);
+  }
+
+  /// The force [N] that the rod behind a node exerts on the rod before it: linear through the
+  /// middles of the two nearest edges.
+  [[nodiscard]] Vec2 force(Index node, const Model& model, const Vector& x) const {
+    const Index last = leg_.num_cells();
+    if (last == 1) return edge_force(0, model, x);
+    const Index before = std::min(std::max<Index>(node - 1, 0), last - 2);
+    const double a = length(before);
+    const double b = length(before + 1);
+    const double from_middle = node <= before       ? -0.5 * a
+                               : node == before + 1 ? 0.5 * a
+                                                    : 0.5 * a + b;
+    const double share = from_middle / (0.5 * (a + b));
+    return (1.0 - share) * edge_force(before, model, x) + share * edge_force(before + 1, model, x);
+  }
+  /// Its component along the tangent [N].
+  [[nodiscard]] double tension(Index node, const Model& model, const Vector& x) const {
+    const double angle = slope(node, model, x);
+    return force(node, model, x).dot(Vec2{std::cos(angle), std::sin(angle)});
+  }
+
+ private:
+  /// How the outermost edge leans against the tangent at an end without a joint.
+  struct End {
+    double per_moment = 0.0;  ///< of the node next to it [rad/(N m)]
+    double natural = 0.0;     ///< without stress [rad]
+  };
+
+  template <class Curvature>
+  void find_moments(const Model& model) {
+    const Index cells = leg_.num_cells();
+    const bool both = leg_.start.rotation >= 0 && leg_.end.rotation >= 0 && cells <= 2;
+    if (leg_.start_cell >= 0) {
+      if (both) {
+        cells == 1 ? add_cell<EndCell<Curvature, 1, 2>>(true, model)
+                   : add_cell<EndCell<Curvature, 2, 2>>(true, model);
+      } else {
+        cells == 1 ? add_cell<EndCell<Curvature, 1, 1>>(true, model)
+                   : add_cell<EndCell<Curvature, 2, 1>>(true, model);
+      }
+    }
+    if (leg_.end_cell >= 0) {
+      cells == 1 ? add_cell<EndCell<Curvature, 1, 1>>(false, model)
+                 : add_cell<EndCell<Curvature, 2, 1>>(false, model);
+    }
+    if (leg_.first_bend < 0) return;
+    const auto& bends = elements_of<PlanarBend<Curvature>>(*model.elements);
+    const Index first = leg_.start_cell >= 0 ? 2 : 1;
+    const Index last = cells - (leg_.end_cell >= 0 ? 2 : 1);
+    for (Index node = first; node <= last; ++node) {
+      const std::size_t number = to_size(leg_.first_bend + node - first);
+      const auto constants = bends.constants[number];
+      const auto dofs = bends.dofs[number];
+      moments_[to_size(node)] = [constants, dofs](const Vector& x) {
+        const auto [before, after] = PlanarBend<Curvature>::edges(gather(dofs, x));
+        return bend_response<Curvature>(constants.stiffness_per_length, constants.rest_kappa,
+                                        angle_between(before, after))
+            .moment;
+      };
+    }
+  }
+
+  template <class Kernel>
+  void add_cell(bool from_start, const Model& model) {
+    const auto& list = elements_of<Kernel>(*model.elements);
+    const std::size_t number = to_size(from_start ? leg_.start_cell : leg_.end_cell);
+    const auto constants = list.constants[number];
+    const auto dofs = list.dofs[number];
+    const double sign = from_start ? 1.0 : -1.0;
+    for (int k = 0; k < Kernel::kAngles; ++k) {
+      const Index node = from_start ? k : leg_.num_cells() - k;
+      moments_[to_size(node)] = [constants, dofs, sign, k](const Vector& x) {
+        return sign * Kernel::moments(constants, gather(dofs, x))[k];
+      };
+    }
+  }
+
+  /// Curvature without stress at the nodes: that of the drawn shape is known at inner nodes.
+  void find_natural(const Model& model) {
+    const Index last = leg_.num_cells();
+    natural_.assign(to_size(last) + 1, 0.0);
+    if (!rod_.natural_curvature.empty()) {
+      natural_.assign(natural_.size(), rod_.natural_curvature.front());
+      return;
+    }
+    if (last == 1) return;
+    for (Index k = 1; k < last; ++k) {
+      natural_[to_size(k)] = angle_between(reference_edge(rod_, leg_.first + k - 1, model),
+                                           reference_edge(rod_, leg_.first + k, model)) /
+                             rod_.voronoi_length(leg_.first + k);
+    }
+    const auto beyond = [&](Index near, Index far, double distance, double apart) {
+      return last == 2 ? natural_[1]
+                       : natural_[to_size(near)] +
+                             distance / apart * (natural_[to_size(near)] - natural_[to_size(far)]);
+    };
+    natural_.front() = beyond(1, 2, length(0), last > 2 ? length(1) : 1.0);
+    natural_.back() = beyond(last - 1, last - 2, length(last - 1), last > 2 ? length(last - 2) : 1.0);
+  }
+
+  [[nodiscard]] double length(Index edge) const {
+    return rod_.edge_length[to_size(leg_.first + edge)];
+  }
+  [[nodiscard]] Vec2 vector(Index edge, const Model& model, const Vector& x) const {
+    return along_edge<2>(rod_.edge(leg_.first + edge, model), x);
+  }
+  [[nodiscard]] double turn(Index node, const Model& model, const Vector& x) const {
+    return angle_between(vector(node - 1, model, x), vector(node, model, x));
+  }
+  static double slope_of(const LegEnd& end, const Model& model, const Vector& x) {
+    return end.direction + x[model.dofs.rotation(end.rotation)];
+  }
+  /// Direction [rad] of an edge within half a turn of a slope.
+  [[nodiscard]] double edge_beside(double slope, Index edge, const Model& model,
+                                   const Vector& x) const {
+    return slope + angle_between({std::cos(slope), std::sin(slope)}, vector(edge, model, x));
+  }
+  /// By how much the outermost edge has turned against the tangent at an end where no moment acts.
+  [[nodiscard]] double lean(const End& end, Index beside, const Vector& x) const {
+    const double sign = &end == &start_ ? 1.0 : -1.0;
+    return end.natural + sign * end.per_moment * moment(beside, x);
+  }
+  /// Share of the edge before a node in the turn between the middles of its two edges.
+  [[nodiscard]] double share_before(Index node) const {
+    return length(node) / (length(node - 1) + length(node));
+  }
+
+  /// The force [N] that the rod behind an edge exerts on the rod before it.
+  [[nodiscard]] Vec2 edge_force(Index edge, const Model& model, const Vector& x) const {
+    const Vec2 along = vector(edge, model, x);
+    const double now = along.norm();
+    const double tension = rod_.EA * (now / length(edge) - 1.0);
+    const double shear = (moment(edge, x) - moment(edge + 1, x)) / now;
+    return (tension * along + shear * perpendicular(along)) / now;
+  }
+
+  Leg leg_;
+  RodMesh rod_;
+  std::vector<MomentReader> moments_;  // of each node
+  std::vector<double> natural_;        // [1/m] of each node
+  End start_;
+  End end_;
+};
+
+class LegField : public RodField {
+ public:
+  LegField(LegQuantity quantity, const RodMesh& rod, const Model& model)
+      : RodField(arc_lengths(rod)), quantity_(quantity), EA_(rod.EA) {
+    for (const Leg& leg : rod.legs) {
+      for (Index node = 0; node <= leg.num_cells(); ++node) {
+        places_.emplace_back(legs_.size(), node);
+        const Index first_or_last = node == 0 ? leg.first : node == leg.num_cells() ? leg.last : 0;
+        smooth_.push_back(first_or_last == 0 || first_or_last == rod.num_edges());
+      }
+      legs_.emplace_back(leg, rod, model);
+    }
+  }
+
+  [[nodiscard]] double sample(std::size_t i, const Model& model,
+                              const State& state) const override {
+    const auto& [number, node] = places_[i];
+    const LegReader& leg = legs_[number];
+    const Vector& x = state.positions;
+    switch (quantity_) {
+      case LegQuantity::Moment:
+        return leg.moment(node, x);
+      case LegQuantity::Curvature:
+        return leg.curvature(node, x);
+      case LegQuantity::NaturalCurvature:
+        return leg.natural_curvature(node);
+      case LegQuantity::Strain:
+        return leg.tension(node, model, x) / EA_;
+      case LegQuantity::Tension:
+        return leg.tension(node, model, x);
+      case LegQuantity::ForceX:
+        return leg.force(node, model, x).x();
+      case LegQuantity::ForceY:
+        return leg.force(node, model, x).y();
+      case LegQuantity::TangentX:
+        return std::cos(leg.slope(node, model, x));
+      case LegQuantity::TangentY:
+        return std::sin(leg.slope(node, model, x));
+      case LegQuantity::Slope:
+        break;
+    }
+    return leg.slope(node, model, x);
+  }
+  [[nodiscard]] bool smooth_at(std::size_t i) const override { return smooth_[i]; }
+
+ private:
+  static std::vector<double> arc_lengths(const RodMesh& rod) {
+    std::vector<double> places;
+    for (const Leg& leg : rod.legs) {
+      for (Index place = leg.first; place <= leg.last; ++place) {
+        places.push_back(rod.arc_length[to_size(place)]);
+      }
+    }
+    return places;
+  }
+
+  LegQuantity quantity_;
+  double EA_;
+  std::vector<LegReader> legs_;
+  std::vector<std::pair<std::size_t, Index>> places_;  // of each sample: its leg, its node there
+  std::vector<bool> smooth_;
+};
+
+}  // namespace
+
+std::unique_ptr<RodField> make_leg_field(LegQuantity quantity, const RodMesh& rod,
+                                         const Model& model) {
+  return std::make_unique<LegField>(quantity, rod, model);
+}
+
+}  // namespace der

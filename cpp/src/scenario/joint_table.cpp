@@ -1,0 +1,30 @@
+#include "scenario/scene_text.hpp"
+#include "scenario/table.hpp"
+
+namespace der::scenario {
+namespace {
+
+Format<JointMember> member_format() {
+  return mapping(Table<JointMember>("member of a joint", "A rod at one of its places.")
+                     .required("rod", &JointMember::rod, name(), "Name of the rod.")
+                     .required("at", &JointMember::at, location(), "The place, an end or inside."));
+}
+
+}  // namespace
+
+Format<Joint> joint_format() {
+  return mapping(
+      Table<Joint>("joint", "Joins rods that meet at a point. In scenes of two components.")
+          .required("name", &Joint::name, name(), "Name of the joint.")
+          .required("of", &Joint::of, list_of(member_format(), 2),
+                    "The rods that meet, each at its place.")
+          .optional("kind", &Joint::kind,
+                    choice<JointKind>(
+                        {{{"rigid", "the rods keep the angles between them, as if welded"},
+                          JointKind::Rigid},
+                         {{"hinge", "each rod turns freely about the others"}, JointKind::Hinge}},
+                        {{"ball", "in a plane a ball is a hinge: write 'hinge'"}}),
+                    "How they are joined."));
+}
+
+}  // namespace der::scenario

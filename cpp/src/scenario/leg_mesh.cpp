@@ -1,0 +1,246 @@
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "der/scenario/load.hpp"
+#include "scenario/checks.hpp"
+#include "scenario/suggestion.hpp"
+
+namespace der::scenario {
+namespace {
+
+/// Places closer than this share of a rod's length are one: a leg of one cell of length l makes
+/// the stiffness (L/l)^3 times as large as that of the rod, and rounding rules below that.
+constexpr double kSamePoint = 2e-5;
+
+/// The places of a rod at which something acts at a point, by the keys that name them.
+using Places = std::vector<Location*>;
+
+/// All that name a place of each rod: at `acting` something acts, at `read` a probe reads.
+struct RodPlaces {
+  Places acting;
+  Places read;
+};
+
+template <class Enter>
+void for_each_place(SceneText& scene, const Enter& enter) {
+  for (Joint& joint : scene.joints) {
+    for (JointMember& member : joint.of) enter(member.rod, member.at, true);
+  }
+  for (Support& support : scene.supports) enter(support.rod, support.at, true);
+  for (Load& load : scene.loads) {
+    std::visit(
+        [&](auto& what) {
+          if constexpr (std::is_base_of_v<AtPlace, std::decay_t<decltype(what)>>) {
+            enter(what.rod, what.at, true);
+          }
+        },
+        load.what);
+  }
+  for (Rod& rod : scene.rods) {
+    for (Sphere& sphere : rod.spheres) enter(rod.name, sphere.at, true);
+  }
+  for (Probe& probe : scene.given_output.probes) {
+    if (probe.rod && probe.at) enter(*probe.rod, *probe.at, false);
+  }
+}
+
+/// Nodes move: the place of one is that of an even rod.
+void name_by_arc_length(const RestLine& line, Location& at) {
+  const bool is_node = at.kind == Location::Kind::Node && at.node < line.num_nodes() &&
+                       at.node >= -line.num_nodes();
+  if (!is_node && at.kind != Location::Kind::Middle) return;
+  at.arc_length = line.arc_length_of(at);
+  at.kind = Location::Kind::ArcLength;
+}
+
+/// The places inside a rod where legs end, ascending. Those that are nearly one become one.
+std::vector<double> leg_ends(const RestLine& line, Places& acting) {
+  const double near = kSamePoint * line.length();
+  Places inside;
+  for (Location* at : acting) {
+    name_by_arc_length(line, *at);
+    if (at->kind != Location::Kind::ArcLength || at->arc_length > line.length()) continue;
+    if (at->arc_length <= near) {
+      at->kind = Location::Kind::Start;
+    } else if (at->arc_length >= line.length() - near) {
+      at->kind = Location::Kind::End;
+    } else {
+      inside.push_back(at);
+    }
+  }
+  std::sort(inside.begin(), inside.end(),
+            [](const Location* a, const Location* b) { return a->arc_length < b->arc_length; });
+  std::vector<double> ends;
+  for (Location* at : inside) {
+    if (ends.empty() || at->arc_length > ends.back() + near) ends.push_back(at->arc_length);
+    at->arc_length = ends.back();
+  }
+  return ends;
+}
+
+/// Shares cells out among legs of these lengths, one each at least, so that the longest cell is as
+/// short as can be.
+std::vector<int> share_out(int cells, const std::vector<double>& lengths, double whole) {
+  std::vector<int> counts;
+  int given = 0;
+  for (const double length : lengths) {
+    counts.push_back(std::max(1, static_cast<int>(cells * (length / whole) * (1.0 - 1e-12))));
+    given += counts.back();
+  }
+  const auto cell = [&](std::size_t leg, int more) { return lengths[leg] / (counts[leg] + more); };
+  for (; given != cells; given += given < cells ? 1 : -1) {
+    std::size_t chosen = lengths.size();
+    for (std::size_t leg = 0; leg < lengths.size(); ++leg) {
+      if (given > cells && counts[leg] == 1) continue;
+      const bool better =
+          chosen == lengths.size() ||
+          (given < cells ? cell(leg, 0) > cell(chosen, 0) : cell(leg, -1) < cell(chosen, -1));
+      if (better) chosen = leg;
+    }
+    counts[chosen] += given < cells ? 1 : -1;
+  }
+  return counts;
+}
+
+/// Places the nodes of a straight rod evenly on each leg: as many cells as the scene's `nodes` say,
+/// each cut into as many as `subdivide` says.
+void place_nodes(RodText& text, Rod& rod, const std::vector<double>& ends, double length) {
+  std::vector<double> bounds{0.0};
+  bounds.insert(bounds.end(), ends.begin(), ends.end());
+  bounds.push_back(length);
+  std::vector<double> lengths;
+  for (std::size_t i = 0; i + 1 < bounds.size(); ++i) lengths.push_back(bounds[i + 1] - bounds[i]);
+  std::vector<int> cells = share_out(*text.nodes - 1, lengths, length);
+  const int factor = text.subdivide.value_or(1);
+  for (int& count : cells) count *= factor;
+  rod.points.resize(static_cast<std::size_t>((*text.nodes - 1) * factor) + 1, rod.points.back());
+  if (!rod.initial_velocity.empty()) {  // one for all nodes
+    rod.initial_velocity.resize(rod.points.size(), rod.initial_velocity.front());
+  }
+  std::size_t node = 0;
+  for (std::size_t leg = 0; leg < cells.size(); ++leg) {
+    for (int k = 1; k <= cells[leg]; ++k) {
+      const double s = bounds[leg] + lengths[leg] * k / cells[leg];
+      Components& point = rod.points[++node];
+      for (std::size_t c = 0; c < point.size(); ++c) {
+        point[c] = text.from[c] + s / length * (text.to[c] - text.from[c]);
+      }
+    }
+  }
+  rod.points.back() = text.to;
+}
+
+void place_leg_ends(CheckContext& context, std::size_t number, RodPlaces& places) {
+  const Path path{"rods", static_cast<int>(number)};
+  std::optional<RestLine>& line = context.lines[number];
+  RodText& text = context.scene.given_rods[number];
+  Rod& rod = context.scene.rods[number];
+  if (!text.nodes) return;  // those of a rod drawn by points stay
+  const std::vector<double> ends = leg_ends(*line, places.acting);
+  for (Location* at : places.read) name_by_arc_length(*line, *at);
+  const int least = static_cast<int>(ends.size()) + 2;
+  if (*text.nodes < least) {
+    context.diagnostics.add(
+        path / "nodes",
+        fmt::format("things act at {} places inside the rod, and it takes a node at each: write "
+                    "{} or more",
+                    ends.size(), least));
+    line.reset();
+    return;
+  }
+  place_nodes(text, rod, ends, line->length());
+  line = RestLine(rod.points);
+}
+
+/// Gives all that stands on a joint the place of the joint's first member.
+void name_members(CheckContext& context) {
+  SceneText& scene = context.scene;
+  const auto take = [&](const std::string& name, const Path& path, std::string& rod,
+                        Location& at) -> const Joint* {
+    const Joint* joint = find_joint(context, name, path);
+    if (joint == nullptr || joint->of.empty()) return nullptr;
+    rod = joint->of.front().rod;
+    at = joint->of.front().at;
+    return joint;
+  };
+  const auto need_rigid = [&](const Joint* joint, const Path& path) {
+    if (joint == nullptr || joint->kind == JointKind::Rigid) return;
+    context.diagnostics.add(path, fmt::format("each rod has its own rotation in hinge '{}': write "
+                                              "the 'rod' and 'at' in place of 'joint'",
+                                              joint->name));
+  };
+  for (int i = 0; i < static_cast<int>(scene.supports.size()); ++i) {
+    Support& support = scene.supports[static_cast<std::size_t>(i)];
+    if (support.joint.empty()) continue;
+    const Path path = Path{"supports", i} / "joint";
+    const Joint* joint = take(support.joint, path, support.rod, support.at);
+    const bool turns =
+        support.clamps() || (support.spring && !support.spring->rotational_stiffness.empty());
+    if (turns) need_rigid(joint, path);
+  }
+  for (int i = 0; i < static_cast<int>(scene.loads.size()); ++i) {
+    std::visit(
+        [&](auto& what) {
+          using Kind = std::decay_t<decltype(what)>;
+          if constexpr (std::is_base_of_v<AtPlace, Kind>) {
+            if (what.joint.empty()) return;
+            const Path path = Path{"loads", i, Kind::kKey} / "joint";
+            const Joint* joint = take(what.joint, path, what.rod, what.at);
+            if (std::is_same_v<Kind, Moment>) need_rigid(joint, path);
+          }
+        },
+        scene.loads[static_cast<std::size_t>(i)].what);
+  }
+  for (Probe& probe : scene.given_output.probes) {
+    if (!probe.joint || probe.at || probe.leg) continue;
+    const Path path{"output", "probes", probe.name, "joint"};
+    probe.rod.emplace();
+    const Joint* joint = take(*probe.joint, path, *probe.rod, probe.at.emplace());
+    if (joint != nullptr) continue;
+    probe.rod.reset();
+    probe.at.reset();
+  }
+}
+
+}  // namespace
+
+const Joint* find_joint(CheckContext& context, const std::string& name, const Path& path) {
+  const auto& joints = context.scene.joints;
+  const auto found = std::find_if(joints.begin(), joints.end(),
+                                  [&](const Joint& joint) { return joint.name == name; });
+  if (found != joints.end()) return &*found;
+  std::vector<std::string> names;
+  for (const Joint& joint : joints) names.push_back(joint.name);
+  const std::string near = did_you_mean(name, names);
+  context.diagnostics.add(path, fmt::format("there is no joint '{}'{}", name,
+                                            !near.empty()   ? near
+                                            : names.empty() ? "; the scene has none"
+                                                            : "; there is " + listed(names)));
+  return nullptr;
+}
+
+void place_leg_ends(CheckContext& context) {
+  SceneText& scene = context.scene;
+  for (std::size_t i = 0; i < scene.given_rods.size(); ++i) {
+    if (!scene.given_rods[i].subdivide) continue;
+    if (!scene.joints.empty() && scene.given_rods[i].nodes) continue;
+    context.diagnostics.add(Path{"rods", static_cast<int>(i)} / "subdivide",
+                            "is for straight rods in a scene with joints: write the number of "
+                            "'nodes', or more 'points'");
+  }
+  name_members(context);
+  if (scene.joints.empty()) return;
+  std::vector<RodPlaces> places(scene.rods.size());
+  for_each_place(scene, [&](const std::string& name, Location& at, bool acts) {
+    const auto rod = context.rods.find(name);
+    if (rod == context.rods.end()) return;
+    RodPlaces& here = places[static_cast<std::size_t>(rod->second)];
+    (acts ? here.acting : here.read).push_back(&at);
+  });
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (context.lines[i]) place_leg_ends(context, i, places[i]);
+  }
+}
+
+}  // namespace der::scenario

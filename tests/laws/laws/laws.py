@@ -29,7 +29,7 @@ ALONG_AXES = {"stiffness"}
 OF_SECTIONS = {"rotational_stiffness"}
 
 AXES = ("x", "y", "z")
-_OF_AXES = re.compile(r"(v|t|reaction_moment_|reaction_)?([xyz])")
+_OF_AXES = re.compile(r"(v|t|force_|reaction_moment_|reaction_)?([xyz])")
 _BASES = {"kg": (1, 0, 0), "m": (0, 1, 0), "s": (0, 0, 1), "Hz": (0, 0, -1), "rad": (0, 0, 0),
           "N": (1, 1, -2), "Pa": (1, -1, -2), "J": (1, 2, -2)}  # fmt: skip
 

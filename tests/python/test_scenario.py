@@ -291,7 +291,7 @@ def test_rods_that_touch_are_warned_of(lines, words):
     [warning] = scenario.warnings
     assert warning.startswith(words)
     advice = "For a ring leave the last point out and write 'closed: true'"
-    assert (advice if "its first" in words else "This version has no joints") in warning
+    assert (advice if "its first" in words else "To join them write 'joints: [{name: ") in warning
     with pytest.warns(der.DerWarning) as caught:
         result = der.run(scenario)
     assert [str(w.message) for w in caught] == [warning]

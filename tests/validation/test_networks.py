@@ -198,7 +198,7 @@ def stretched(n: int) -> Scene:
             clamp("a", "start", prescribe={"x": -0.05, "angle": 0.2}),
             at("a", 0.4, spring={"stiffness": [5, 8]}),
             at("b", "start", spring={"rotational_stiffness": 1.5}),
-            pin("b", "end", prescribe={"x": 0.15, "y": -0.1}),
+            at("b", "end", prescribe={"x": 0.15, "y": -0.1}),
         ],
         [force("a", 0.2, 3, -1), force("b", "start", 1, 0.5)],
     )

@@ -44,7 +44,7 @@ RodPoints points_of(const scenario::Scene& scene, const RodMesh& rod, const Mode
   }
   for (const auto& load : scene.loads) {
     if (const auto* force = std::get_if<scenario::PointForce>(&load.what)) {
-      enter(force->rod, force->at, false);
+      enter(force->rod, force->at, force->follower);
     } else if (const auto* moment = std::get_if<scenario::Moment>(&load.what)) {
       enter(moment->rod, moment->at, true);
     }

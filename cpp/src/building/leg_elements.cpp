@@ -1,6 +1,8 @@
 #include "building/leg_elements.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 
 #include "der/core/constants.hpp"
 #include "der/core/index.hpp"
@@ -38,6 +40,10 @@ class LegBuilder {
 
  private:
   [[nodiscard]] bool has_natural() const { return !rod_.natural_curvature.empty(); }
+  /// Natural curvature at a node [1/m].
+  [[nodiscard]] double natural(Index place) const {
+    return rod_.natural_curvature[to_size(place)];
+  }
   [[nodiscard]] double length(Index edge) const { return rod_.edge_length[to_size(edge)]; }
   [[nodiscard]] Vec2 edge(Index number) const { return reference_edge(rod_, number, model_); }
 
@@ -45,10 +51,9 @@ class LegBuilder {
     double rest = angle_between(edge(place - 1), edge(place));
     if (has_natural()) {
       // A free end is on the curve, the node next to it beside it.
-      double over = rod_.voronoi_length(place);
-      if (place == leg_.first + 1) over += length(leg_.first) / 12.0;
-      if (place == leg_.last - 1) over += length(leg_.last - 1) / 12.0;
-      rest = rod_.natural_curvature.front() * over;
+      rest = natural(place) * rod_.voronoi_length(place);
+      if (place == leg_.first + 1) rest += natural(leg_.first) * length(leg_.first) / 12.0;
+      if (place == leg_.last - 1) rest += natural(leg_.last) * length(leg_.last - 1) / 12.0;
     }
     const auto before = rod_.edge_dofs(place - 1, model_);
     const auto after = rod_.edge_dofs(place, model_);
@@ -86,9 +91,13 @@ class LegBuilder {
     constexpr int n = Kernel::kAngles;
     c.stiffness = rod_.EI * C.template topLeftCorner<n, n>().inverse();
     for (int i = 0; i < n; ++i) {
-      const double rest =
-          has_natural() ? step * rod_.natural_curvature.front() * C.row(i).sum()
-                        : angle_between(drawn[to_size(i)], drawn[to_size(i) + 1]);
+      double rest = angle_between(drawn[to_size(i)], drawn[to_size(i) + 1]);
+      if (has_natural()) {
+        rest = 0.0;
+        for (Index k = 0; k <= std::min<Index>(leg_.num_cells(), 2); ++k) {
+          rest += step * C(i, k) * natural(joint + step * k);
+        }
+      }
       c.rest[i] = Curvature::of(rest).kappa;
     }
     auto& list = elements_of<Kernel>(*model_.elements);
@@ -113,7 +122,7 @@ void add_leg_elements(RodMesh& rod, Model& model) {
     rod.rest_turning_angle[to_size(place)] =
         rod.natural_curvature.empty()
             ? angle_between(reference_edge(rod, place - 1, model), reference_edge(rod, place, model))
-            : rod.natural_curvature.front() * rod.voronoi_length(place);
+            : rod.natural_curvature[to_size(place)] * rod.voronoi_length(place);
   }
   if (rod.EI == 0.0) return;
   for (Leg& leg : rod.legs) {

@@ -117,7 +117,8 @@ template <class Kind, class... Forces>
 constexpr bool kIsOneOf = (std::is_same_v<Kind, Forces> || ...);
 template <class Kind>
 constexpr bool kIsForce =
-    kIsOneOf<Kind, PlanarFollowerForce, FollowerForce, HeldForce<1>, HeldForce<2>>;
+    kIsOneOf<Kind, PlanarFollowerForce, JointFollowerForce, FollowerForce, HeldForce<1>,
+             HeldForce<2>>;
 
 /// The value that `f` has for a moment; a default for a force.
 template <class Result, class Kinds, class F>
@@ -146,6 +147,14 @@ std::array<double, 2> turn_of_outermost_edge(const std::array<double, 2>& weight
   result[outermost] = kTrueTurn * weights[outermost];
   result[1 - outermost] = 1.0 - result[outermost];
   return result;
+}
+
+void JointFollowerForce::evaluate(const Configuration& here, const Vec3& amount,
+                                  CirculatoryTerm& out) const {
+  out.reset(size());
+  const Vec2 force = Eigen::Rotation2Dd(here.coordinates[rotation]) * amount.head<2>();
+  out.force.head<2>() = force;
+  out.tangent.block<2, 1>(0, 2) = -perpendicular(force);
 }
 
 void PlanarFollowerForce::evaluate(const Configuration& here, const Vec3& amount,
@@ -256,7 +265,8 @@ Vec3 CirculatoryLoad::force(const Configuration& here) const {
   if (of_moment<bool>(kind, [](const auto&) { return true; })) return total;
   CirculatoryTerm term;
   evaluate(here, term);
-  if (std::holds_alternative<PlanarFollowerForce>(kind)) {
+  if (std::holds_alternative<PlanarFollowerForce>(kind) ||
+      std::holds_alternative<JointFollowerForce>(kind)) {
     total.head<2>() = term.force.head<2>();
   } else {
     total = term.force.head<3>();

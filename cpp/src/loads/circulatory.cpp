@@ -7,7 +7,9 @@
 #include <variant>
 #include <vector>
 
+#include "der/core/error.hpp"
 #include "der/core/index.hpp"
+#include "der/core/nearest_node.hpp"
 #include "der/energies/circulatory_load.hpp"
 #include "der/kinematics/planar_edge.hpp"
 #include "der/model/frames.hpp"
@@ -304,6 +306,14 @@ Index add_follower_force(const scenario::VectorSeries& force, double s, const Ro
   CirculatoryLoad load;
   set_amount(force, load, model);
   add_point(s, rod, model, load);
+  if (!rod.legs.empty()) {
+    const Index number = rod.rotation_at(nearest_node(rod.arc_length, s));
+    if (number < 0) throw Error("model_error", "rod '" + rod.name + "' turns no force: its EI is 0");
+    const Index rotation = model.dofs.rotation(number);
+    load.coordinates.push_back({{rotation, 1.0}});
+    load.kind = JointFollowerForce{rotation};
+    return add(std::move(load), model);
+  }
   const SectionPlace place = section_place(s, rod);
   load.amount.actuated = actuated_section(s, place, rod, model);
   if (model.dimension == 2) {

@@ -39,10 +39,14 @@ class LegReader {
       end.per_moment = rod.EI > 0.0 ? C(0, 1) / rod.EI : 0.0;
       const double direction = (from_start ? leg.start : leg.end).direction;
       const Vec2 edge = reference_edge(rod, from_start ? leg.first : leg.last - 1, model);
-      const double drawn = angle_between({std::cos(direction), std::sin(direction)}, edge);
-      end.natural = rod.natural_curvature.empty()
-                        ? drawn
-                        : (from_start ? 1.0 : -1.0) * rod.natural_curvature.front() * C.row(0).sum();
+      end.natural = angle_between({std::cos(direction), std::sin(direction)}, edge);
+      if (rod.natural_curvature.empty()) continue;
+      end.natural = 0.0;
+      for (Index k = 0; k <= std::min<Index>(leg.num_cells(), 2); ++k) {
+        const Index place = from_start ? leg.first + k : leg.last - k;
+        end.natural +=
+            (from_start ? 1.0 : -1.0) * C(0, k) * rod.natural_curvature[to_size(place)];
+      }
     }
   }
 
@@ -158,7 +162,8 @@ class LegReader {
     const Index last = leg_.num_cells();
     natural_.assign(to_size(last) + 1, 0.0);
     if (!rod_.natural_curvature.empty()) {
-      natural_.assign(natural_.size(), rod_.natural_curvature.front());
+      const auto first = rod_.natural_curvature.begin() + leg_.first;
+      natural_.assign(first, first + last + 1);
       return;
     }
     if (last == 1) return;

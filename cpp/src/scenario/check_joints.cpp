@@ -1,9 +1,6 @@
 #include <algorithm>
-#include <functional>
 #include <map>
-#include <variant>
 
-#include "der/scenario/load.hpp"
 #include "scenario/checks.hpp"
 #include "scenario/directions.hpp"
 
@@ -143,16 +140,6 @@ class JointedSceneCheck {
       check_rod(scene.rods[static_cast<std::size_t>(i)], {"rods", i});
     }
     if (!scene.actuations.empty()) lacks({"actuation"}, "actuation");
-    for (int i = 0; i < static_cast<int>(scene.loads.size()); ++i) {
-      const Load& load = scene.loads[static_cast<std::size_t>(i)];
-      const auto* force = std::get_if<PointForce>(&load.what);
-      if (force != nullptr && force->follower) {
-        lacks(Path{"loads", i, "point_force"} / "follower", "a force that turns with the rod");
-      }
-    }
-    if (std::holds_alternative<BucklingAnalysis>(scene.analysis)) {
-      lacks({"analysis"}, "linear buckling");
-    }
     if (scene.is_dynamic() && scene.given_time.integrator == "energy_momentum") {
       lacks({"time", "integrator"}, "'energy_momentum'");
     }
@@ -162,14 +149,6 @@ class JointedSceneCheck {
   void check_rod(const Rod& rod, const Path& path) {
     if (rod.closed) lacks(path / "closed", "a closed rod");
     if (rod.rest_length) lacks(path / "rest_length", "'rest_length'");
-    if (std::holds_alternative<std::vector<double>>(rod.natural_curvature)) {
-      lacks(path / "natural_curvature", "a list of natural curvatures");
-    }
-    const auto& velocity = rod.initial_velocity;
-    if (std::adjacent_find(velocity.begin(), velocity.end(), std::not_equal_to<>()) !=
-        velocity.end()) {
-      lacks(path / "initial_velocity", "a list of initial velocities");
-    }
     if (damping_of(rod).any()) lacks(path, "internal damping");
   }
   void lacks(const Path& where, const std::string& what) {

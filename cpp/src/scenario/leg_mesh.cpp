@@ -103,6 +103,28 @@ std::vector<int> share_out(int cells, const std::vector<double>& lengths, double
   return counts;
 }
 
+/// A list with a value for each node of an even rod, linear in between.
+class EvenList {
+ public:
+  EvenList(int nodes, double length) : cells_(nodes - 1), length_(length) {}
+
+  template <class Item, class Number>
+  [[nodiscard]] double value(const std::vector<Item>& list, double s, const Number& number) const {
+    const double place = s / length_ * cells_;
+    const int before = std::clamp(static_cast<int>(place), 0, cells_ - 1);
+    const double share = place - before;
+    const auto at = [&](int k) { return number(list[static_cast<std::size_t>(k)]); };
+    return (1.0 - share) * at(before) + share * at(before + 1);
+  }
+  [[nodiscard]] double value(const std::vector<double>& list, double s) const {
+    return value(list, s, [](double each) { return each; });
+  }
+
+ private:
+  int cells_;
+  double length_;
+};
+
 /// Places the nodes of a straight rod evenly on each leg: as many cells as the scene's `nodes` say,
 /// each cut into as many as `subdivide` says.
 void place_nodes(RodText& text, Rod& rod, const std::vector<double>& ends, double length) {
@@ -115,9 +137,13 @@ void place_nodes(RodText& text, Rod& rod, const std::vector<double>& ends, doubl
   const int factor = text.subdivide.value_or(1);
   for (int& count : cells) count *= factor;
   rod.points.resize(static_cast<std::size_t>((*text.nodes - 1) * factor) + 1, rod.points.back());
-  if (!rod.initial_velocity.empty()) {  // one for all nodes
-    rod.initial_velocity.resize(rod.points.size(), rod.initial_velocity.front());
-  }
+  const EvenList even(text.nodes.value(), length);
+  const std::vector<Components> velocities = rod.initial_velocity;
+  rod.initial_velocity.resize(velocities.empty() ? 0 : rod.points.size(),
+                              velocities.empty() ? Components() : velocities.back());
+  auto* curvatures = std::get_if<std::vector<double>>(&rod.natural_curvature);
+  const std::vector<double> natural = curvatures != nullptr ? *curvatures : std::vector<double>();
+  if (curvatures != nullptr) curvatures->resize(rod.points.size(), natural.back());
   std::size_t node = 0;
   for (std::size_t leg = 0; leg < cells.size(); ++leg) {
     for (int k = 1; k <= cells[leg]; ++k) {
@@ -125,6 +151,11 @@ void place_nodes(RodText& text, Rod& rod, const std::vector<double>& ends, doubl
       Components& point = rod.points[++node];
       for (std::size_t c = 0; c < point.size(); ++c) {
         point[c] = text.from[c] + s / length * (text.to[c] - text.from[c]);
+      }
+      if (curvatures != nullptr) (*curvatures)[node] = even.value(natural, s);
+      for (std::size_t c = 0; c < point.size() && !velocities.empty(); ++c) {
+        rod.initial_velocity[node][c] =
+            even.value(velocities, s, [c](const Components& each) { return each[c]; });
       }
     }
   }

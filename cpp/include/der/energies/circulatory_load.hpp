@@ -64,6 +64,16 @@ struct PlanarFollowerForce {
   void hold_back(const Vec2& held, CirculatoryTerm& out) const;
 };
 
+/// A force that turns with a joint in a plane: R(theta) F0, theta the rotation of the joint. Local
+/// coordinates: the point on which it acts, then theta.
+struct JointFollowerForce {
+  Index rotation = 0;  ///< degree of freedom
+
+  [[nodiscard]] static Index size() { return 3; }
+  /// `amount` is F0 [N].
+  void evaluate(const Configuration& here, const Vec3& amount, CirculatoryTerm& out) const;
+};
+
 /// A force that turns with a rod in space: PlanarFollowerForce with the rotations of section
 /// frames. Local coordinates: the point, then the vector and the angle of each edge.
 struct FollowerForce {
@@ -118,7 +128,7 @@ struct CirculatoryLoad {
     double weight = 1.0;
   };
 
-  std::variant<PlanarFollowerForce, FollowerForce, HeldForce<1>, HeldForce<2>, SpatialMoment,
+  std::variant<PlanarFollowerForce, JointFollowerForce, FollowerForce, HeldForce<1>, HeldForce<2>, SpatialMoment,
                HeldMoment<1>, HeldMoment<2>>
       kind;
   LoadAmount amount;
